@@ -1,0 +1,130 @@
+"""Runs benchmarks, prints each value beside its bound, and exits with 1 when a bound is broken.
+
+Exit code 2: wrong usage, an unknown name, or reference captures that are missing or cannot be read.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import json
+import math
+import os
+import pkgutil
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from time import perf_counter
+
+from rich.console import Console
+from rich.table import Table
+
+import benchmarks
+from benchmarks.checks import Check, Context
+from mbkf.errors import InvalidInput, MbkfError, UnknownName
+
+DATA_VARIABLE = "MBKF_DATA"
+NOT_BENCHMARKS = {"__main__", "checks"}
+
+
+def names() -> tuple[str, ...]:
+    """Names of all benchmarks, in alphabetical order."""
+    found = (module.name for module in pkgutil.iter_modules(benchmarks.__path__))
+    return tuple(sorted(set(found) - NOT_BENCHMARKS))
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the benchmarks named on the command line, or all of them.
+
+    Args:
+        arguments: What follows ``python -m benchmarks``; taken from ``sys.argv`` when None.
+
+    Returns:
+        0 when every bound is kept, 1 when one is broken, 2 on bad input.
+    """
+    args = _parser().parse_args(arguments)
+    try:
+        checks = _run(args)
+    except (MbkfError, OSError) as error:
+        print(f"benchmarks: error: {' '.join(str(error).split())}", file=sys.stderr)
+        return 2
+    return 0 if all(check.passed for check in checks) else 1
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks",
+        description=f"Measure mbkf against its bounds. Known benchmarks: {', '.join(names())}.",
+        epilog="example:\n  python -m benchmarks main_job --quick",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("names", nargs="*", metavar="NAME", help="benchmarks to run (default: all)")
+    parser.add_argument("--quick", action="store_true", help="shorter runs, for a first look")
+    parser.add_argument(
+        "--data",
+        type=Path,
+        metavar="DIR",
+        default=os.environ.get(DATA_VARIABLE) or None,
+        help=f"folder of the reference captures (default: ${DATA_VARIABLE})",
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        default=Path("results", "benchmarks"),
+        help="where checks.json and the benchmarks' own files go (default: %(default)s)",
+    )
+    return parser
+
+
+def _run(args: argparse.Namespace) -> list[Check]:
+    """Run what was asked for, print its table and write ``checks.json``."""
+    known = names()
+    for name in args.names:
+        if name not in known:
+            raise UnknownName("benchmark", name, known)
+    if args.data is not None and not args.data.is_dir():
+        raise InvalidInput(f"{args.data}: no such folder; give the reference captures with --data DIR")
+    console = Console()
+    results: dict[str, list[Check]] = {}
+    for name in args.names or known:
+        out = args.out / name
+        out.mkdir(parents=True, exist_ok=True)
+        start = perf_counter()
+        module = importlib.import_module(f"benchmarks.{name}")
+        results[name] = module.run(Context(data=args.data, out=out, quick=args.quick))
+        console.print(_table(name, results[name], perf_counter() - start))
+    _write(args.out / "checks.json", results, args.quick)
+    return [check for checks in results.values() for check in checks]
+
+
+def _table(name: str, checks: Sequence[Check], seconds: float) -> Table:
+    table = Table("check", title=f"{name} ({seconds:.1f} s)", title_justify="left")
+    table.add_column("value", justify="right")
+    table.add_column("bound", justify="right")
+    table.add_column("unit")
+    table.add_column("")
+    for check in checks:
+        verdict = "[green]pass[/green]" if check.passed else "[bold red]FAIL[/bold red]"
+        value, bound = f"{check.value:.4g}", f"{check.relation} {check.bound:.4g}"
+        table.add_row(check.name, value, bound, check.unit, verdict)
+    return table
+
+
+def _write(path: Path, results: dict[str, list[Check]], quick: bool) -> None:
+    rows = [
+        {
+            "benchmark": name,
+            **asdict(check),
+            "value": float(check.value) if math.isfinite(check.value) else None,
+            "passed": check.passed,
+        }
+        for name, checks in results.items()
+        for check in checks
+    ]
+    path.write_text(json.dumps({"quick": quick, "checks": rows}, indent=2) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

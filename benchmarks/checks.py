@@ -1,0 +1,62 @@
+"""What a benchmark is given and what it gives back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from mbkf.errors import InvalidInput
+
+
+@dataclass(frozen=True)
+class Check:
+    """One measured number and the bound it has to keep.
+
+    Attributes:
+        name: What is measured, and on which trial.
+        value: The measured number; NaN never passes.
+        bound: The number it is compared with.
+        relation: "<=" where the value may not exceed the bound, ">=" where it must reach it.
+        unit: Unit of value and bound, "" for pure numbers.
+    """
+
+    name: str
+    value: float
+    bound: float
+    relation: Literal["<=", ">="]
+    unit: str = ""
+
+    def __post_init__(self) -> None:
+        if self.relation not in {"<=", ">="}:
+            raise InvalidInput(f"check '{self.name}': relation must be '<=' or '>=', got '{self.relation}'")
+
+    @property
+    def passed(self) -> bool:
+        """Whether the value keeps its bound."""
+        return bool(self.value <= self.bound if self.relation == "<=" else self.value >= self.bound)
+
+
+@dataclass(frozen=True)
+class Context:
+    """What a benchmark may use.
+
+    Attributes:
+        data: Folder of the public reference captures, or None when there is none.
+        out: Folder for whatever the benchmark wants to keep; exists.
+        quick: Whether to do a shorter run, for a first look.
+    """
+
+    data: Path | None
+    out: Path
+    quick: bool = False
+
+    def require_data(self) -> Path:
+        """The folder of reference captures.
+
+        Raises:
+            InvalidInput: No folder was given.
+        """
+        if self.data is None:
+            raise InvalidInput("the reference captures are needed; give --data DIR or set MBKF_DATA")
+        return self.data

@@ -1,0 +1,1 @@
+"""The command `mbkf`: one file per subcommand, no mathematics."""

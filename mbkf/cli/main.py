@@ -1,0 +1,124 @@
+"""The command `mbkf`: chooses the subcommand and turns every foreseen failure into one line and an exit code.
+
+A command is a module of this package that exposes ``add_parser(subparsers)``, which adds its own parser and
+sets ``run`` as default, and ``run(args) -> int``. Libraries that load slowly are imported inside ``run``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+from mbkf.errors import MbkfError
+from mbkf.version import __version__
+
+COMMANDS = ("demo", "synth", "info", "scale", "reconstruct", "observability", "export")
+"""Names of the subcommands, in the order of the help; each is the module ``mbkf.cli.<name>``."""
+
+EXIT_BUG = 1
+EXIT_BAD_INPUT = 2
+EXIT_INTERRUPTED = 130  # 128 + SIGINT, as shells report it
+EXIT_PIPE_CLOSED = 141  # 128 + SIGPIPE
+
+TRACEBACK_VARIABLE = "MBKF_TRACEBACK"
+"""Environment variable that, when set, shows where an unforeseen error came from."""
+
+
+class OneLineParser(argparse.ArgumentParser):
+    """Parser that keeps the layout of examples in its help and reports wrong usage on a single line."""
+
+    def __init__(self, **options: object) -> None:
+        options.setdefault("formatter_class", argparse.RawDescriptionHelpFormatter)
+        options.setdefault("allow_abbrev", False)
+        super().__init__(**options)  # type: ignore[arg-type]
+
+    def error(self, message: str) -> NoReturn:
+        """Print what is wrong and where to read more on one line of stderr, and exit with 2."""
+        self.exit(EXIT_BAD_INPUT, f"{self.prog}: error: {_one_line(message)} (see {self.prog} --help)\n")
+
+
+def build_parser(commands: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
+    """The parser of the whole command line, or of a few of its commands.
+
+    Args:
+        commands: Names out of ``COMMANDS``; only their modules are imported.
+    """
+    parser = OneLineParser(
+        prog="mbkf",
+        description="Joint angles, torques and ground reactions, each with its standard deviation, "
+        "from motion capture.",
+        epilog="example:\n  mbkf demo\n\n`mbkf COMMAND --help` explains a command and gives an example.",
+    )
+    parser.add_argument("--version", action="version", version=f"mbkf {__version__}")
+    subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, title="commands")
+    for name in commands:
+        importlib.import_module(f"mbkf.cli.{name}").add_parser(subparsers)
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Args:
+        arguments: What follows ``mbkf``; taken from ``sys.argv`` when None.
+
+    Returns:
+        0 on success, 2 on bad input, 130 when interrupted, 1 on a bug in mbkf.
+
+    Raises:
+        SystemExit: By argparse: 2 on wrong usage, 0 after ``--help`` and ``--version``.
+    """
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    named = words[:1] if words[:1] and words[0] in COMMANDS else COMMANDS
+    args = build_parser(named).parse_args(words)
+    try:
+        code = args.run(args)
+        sys.stdout.flush()  # so that a closed pipe is noticed here
+        return code
+    except MbkfError as error:
+        return _fail(str(error))
+    except KeyboardInterrupt:
+        return _fail("interrupted", EXIT_INTERRUPTED)
+    except BrokenPipeError:  # the reader of `mbkf info … | head` has left
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return EXIT_PIPE_CLOSED
+    except OSError as error:
+        return _fail(_describe(error))
+    except Exception as error:
+        if os.environ.get(TRACEBACK_VARIABLE):
+            raise
+        return _fail(
+            f"unforeseen {type(error).__name__}: {error} "
+            f"(a bug in mbkf; {TRACEBACK_VARIABLE}=1 shows where it comes from)",
+            EXIT_BUG,
+        )
+
+
+def _fail(message: str, code: int = EXIT_BAD_INPUT) -> int:
+    print(f"mbkf: error: {_one_line(message)}", file=sys.stderr)
+    return code
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _describe(error: OSError) -> str:
+    """What the operating system refused, where, and what to do."""
+    if error.filename is None or error.strerror is None:
+        return str(error)
+    if isinstance(error, FileExistsError | NotADirectoryError):
+        return f"{error.filename}: a file stands where a folder is needed; name another folder"
+    if isinstance(error, IsADirectoryError):
+        return f"{error.filename}: is a folder; name a file"
+    if isinstance(error, PermissionError):
+        return f"{error.filename}: permission denied; name a place you may read and write"
+    return f"{error.filename}: {error.strerror}"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

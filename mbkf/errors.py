@@ -1,0 +1,60 @@
+"""Every error mbkf raises: one root, each with its evidence and a hint of what to do."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from pathlib import Path
+
+
+class MbkfError(Exception):
+    """Root of all errors of this package; its text is one line a person can act on."""
+
+
+class FileFormatError(MbkfError):
+    """A file is missing, unreadable or not what its name promises."""
+
+    def __init__(self, path: str | Path, reason: str, line: int | None = None) -> None:
+        self.path, self.reason, self.line = Path(path), reason, line
+        where = f"{path}, line {line}" if line is not None else str(path)
+        super().__init__(f"{where}: {reason}")
+
+
+class UnknownName(MbkfError):
+    """A name (marker, segment, protocol, plate, option …) is not among the valid ones."""
+
+    def __init__(self, kind: str, name: str, choices: Iterable[str], where: str = "") -> None:
+        self.kind, self.name, self.choices = kind, name, tuple(choices)
+        close = difflib.get_close_matches(name, self.choices, n=3, cutoff=0.5)
+        listed = close or self.choices[:12]
+        hint = "did you mean" if close else "known are"
+        prefix = f"{where}: " if where else ""
+        super().__init__(f"{prefix}unknown {kind} '{name}'; {hint} {', '.join(listed)}")
+
+
+class ShapeError(MbkfError):
+    """An array does not have the documented shape."""
+
+    def __init__(self, name: str, expected: str, got: tuple[int, ...]) -> None:
+        self.name, self.expected, self.got = name, expected, got
+        super().__init__(f"{name} must have shape {expected}, got {got}")
+
+
+class InvalidInput(MbkfError):
+    """A value is readable but cannot be right (negative mass, wrong unit, NaN force …)."""
+
+
+class NotObservable(MbkfError):
+    """The markers present do not determine the body, so nothing can be followed."""
+
+
+class NotConverged(MbkfError):
+    """An optimisation ended without reaching its tolerance."""
+
+
+class MissingDependency(MbkfError):
+    """An optional package is needed for what was asked."""
+
+    def __init__(self, package: str, needed_for: str) -> None:
+        self.package, self.needed_for = package, needed_for
+        super().__init__(f"{needed_for} needs the package '{package}': pip install {package}")

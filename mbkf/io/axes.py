@@ -1,0 +1,148 @@
+"""Axes and length units of files: how their numbers become metres in mbkf's z-up world."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.errors import InvalidInput, UnknownName
+
+METRES_PER_UNIT = {"mm": 1e-3, "cm": 1e-2, "dm": 1e-1, "m": 1.0, "in": 0.0254, "ft": 0.3048}
+"""Length units a file may state, and their size in metres."""
+
+UNIT_SPELLINGS = {
+    "millimeter": "mm", "millimeters": "mm", "millimetre": "mm", "millimetres": "mm",
+    "centimeter": "cm", "centimeters": "cm", "centimetre": "cm", "centimetres": "cm",
+    "meter": "m", "meters": "m", "metre": "m", "metres": "m",
+    "inch": "in", "inches": "in", "foot": "ft", "feet": "ft",
+}  # fmt: skip
+"""Longer spellings of the same units."""
+
+WORLD_AXES = {
+    "z": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
+    "-z": ((1, 0, 0), (0, -1, 0), (0, 0, -1)),
+    "y": ((1, 0, 0), (0, 0, -1), (0, 1, 0)),
+    "-y": ((1, 0, 0), (0, 0, 1), (0, -1, 0)),
+    "x": ((0, 1, 0), (0, 0, 1), (1, 0, 0)),
+    "-x": ((0, 1, 0), (0, 0, -1), (-1, 0, 0)),
+}
+"""World x, y and z expressed in the file's axes, for each axis of the file that may point up."""
+
+BODY_EXTENT_M = (0.3, 30.0)
+"""A person's markers spread over more than the first and less than the second length."""
+
+ODD_EXTENT_M = 8.0
+"""One person's markers hardly spread over more than this; worth a remark, no error."""
+
+_CHECKED_FRAMES = 200
+
+
+def up_axis(name: str) -> str:
+    """The canonical name of an axis: ``"x"``, ``"-y"`` … from ``"X"``, ``"+X"``, ``"-Y"`` …
+
+    Raises:
+        UnknownName: It names no axis.
+    """
+    axis = name.strip().lower().removeprefix("+")
+    if axis not in WORLD_AXES:
+        raise UnknownName("up axis", name, WORLD_AXES)
+    return axis
+
+
+def rotation_to_world(up: str) -> Array:
+    """Rotation R with ``p_world = R @ p_file``.
+
+    For a file with z up it is the identity, for y up (OpenSim) file x → x, file −z → y, file y → z.
+
+    Args:
+        up: Axis of the file that points up, as in :func:`up_axis`.
+
+    Returns:
+        (3, 3) proper rotation.
+
+    Raises:
+        UnknownName: ``up`` names no axis.
+    """
+    return np.array(WORLD_AXES[up_axis(up)], dtype=np.float64)
+
+
+def length_unit(name: str) -> str:
+    """The canonical short name of a length unit: ``"mm"`` from ``" MM"``, ``"Millimeters"`` …
+
+    Raises:
+        UnknownName: It is no unit of length known here.
+    """
+    word = name.strip().lower()
+    word = UNIT_SPELLINGS.get(word, word)
+    if word not in METRES_PER_UNIT:
+        raise UnknownName("length unit", name, METRES_PER_UNIT)
+    return word
+
+
+def positions_to_world(values: Array, present: BoolArray, up: str, unit: str) -> Array:
+    """Marker positions of a file in metres and world axes.
+
+    Args:
+        values: (T, M, 3) coordinates in the file's axes and unit.
+        present: (T, M) whether the file holds a measurement there; exact (0, 0, 0) never counts as one.
+        up: Axis of the file that points up.
+        unit: Length unit of the values.
+
+    Returns:
+        (T, M, 3) positions in m, NaN where missing.
+
+    Raises:
+        UnknownName: Unknown axis or unit.
+    """
+    seen = present & np.isfinite(values).all(axis=2) & (values != 0.0).any(axis=2)
+    metres = values @ rotation_to_world(up).T * METRES_PER_UNIT[length_unit(unit)]
+    return np.where(seen[:, :, None], metres, np.nan)
+
+
+def body_extent_m(positions_m: Array) -> float:
+    """How far a capture's markers spread at one instant.
+
+    The longest side of the box around the markers of a frame without the outermost tenth on either side
+    (ghosts), median over up to 200 frames spread over the trial; all markers where fewer than ten are seen.
+
+    Args:
+        positions_m: (T, M, 3) positions in m, NaN where missing.
+
+    Returns:
+        Extent in m, NaN where no frame has four markers.
+    """
+    chosen = np.unique(np.linspace(0, len(positions_m) - 1, _CHECKED_FRAMES).astype(int))
+    extents = []
+    for points in positions_m[chosen] if len(positions_m) else ():
+        seen = points[~np.isnan(points).any(axis=1)]
+        if len(seen) >= 4:
+            cut = 10 if len(seen) >= 10 else 0
+            low, high = np.percentile(seen, [cut, 100 - cut], axis=0)
+            extents.append((high - low).max())
+    return float(np.median(extents)) if extents else float("nan")
+
+
+def check_body_size(positions_m: Array, unit: str, where: str) -> tuple[str, ...]:
+    """Refuse markers that spread like no person does, which means that the unit is wrong.
+
+    Args:
+        positions_m: (T, M, 3) positions in m.
+        unit: The length unit they were read with, for the message.
+        where: The file, for the message.
+
+    Returns:
+        A remark, if the spread is odd without being impossible.
+
+    Raises:
+        InvalidInput: The markers spread over less than 0.3 m or more than 30 m.
+    """
+    extent = body_extent_m(positions_m)
+    low, high = BODY_EXTENT_M
+    if extent < low or extent > high:
+        raise InvalidInput(
+            f"{where}: read in {unit}, the markers spread over {extent:.3g} m, which no person does; "
+            "give the right unit with --unit (mm, cm or m)"
+        )
+    if extent > ODD_EXTENT_M:
+        return (f"markers spread over {extent:.1f} m at one instant: several people, or a wrong unit ({unit})",)
+    return ()

@@ -1,0 +1,123 @@
+"""Whether a C3D file is one and is complete, judged from its header before a library reads the data.
+
+Reading libraries return fewer frames from a truncated file, or fail in odd ways. The layout is that of the
+C3D manual (c3d.org): a 512-byte header of 16-bit words, a parameter section, then frames of points (four
+numbers each) and analog samples, two bytes a number if the point scale is positive, else four.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+
+from mbkf.errors import FileFormatError
+
+_BLOCK = 512
+_KEY = 0x50
+_BYTE_ORDERS = {84: "<", 85: "<", 86: ">"}  # Intel, DEC, MIPS
+_DEC = 85
+_MOST_FRAMES = 65535
+"""The header cannot count further; longer files count in their parameters."""
+
+
+@dataclass(frozen=True)
+class C3dLayout:
+    """Sizes a C3D header promises.
+
+    Attributes:
+        points: Points per frame.
+        analog_per_frame: Analog numbers per frame, over all channels.
+        first_frame: Number of the first frame, counted from 1.
+        frames: Frames the header counts (at most 65535).
+        data_block: 512-byte block at which the data start, counted from 1.
+        bytes_per_number: 2 (integers) or 4 (floats).
+        file_bytes: Size of the file.
+    """
+
+    points: int
+    analog_per_frame: int
+    first_frame: int
+    frames: int
+    data_block: int
+    bytes_per_number: int
+    file_bytes: int
+
+    @property
+    def bytes_per_frame(self) -> int:
+        """Bytes of one frame of data."""
+        return (4 * self.points + self.analog_per_frame) * self.bytes_per_number
+
+    @property
+    def frames_present(self) -> int:
+        """Whole frames for which the file has bytes."""
+        available = self.file_bytes - (self.data_block - 1) * _BLOCK
+        return max(available, 0) // self.bytes_per_frame if self.bytes_per_frame else self.frames
+
+
+def check_layout(path: Path) -> C3dLayout:
+    """Read a C3D file's header and make sure that the file is as long as it says.
+
+    Args:
+        path: The file.
+
+    Returns:
+        The sizes in its header.
+
+    Raises:
+        FileFormatError: The file is missing, empty, not a C3D file or cut short.
+    """
+    if not path.is_file():
+        kind = "is a folder" if path.is_dir() else "no such file"
+        raise FileFormatError(path, f"{kind}; name a C3D file")
+    size = path.stat().st_size
+    if size == 0:
+        raise FileFormatError(path, "the file is empty; copy or export it again")
+    with path.open("rb") as file:
+        header = file.read(_BLOCK)
+        if len(header) < 2 or header[1] != _KEY:
+            raise FileFormatError(path, "not a C3D file (its second byte is not 0x50); export it as C3D")
+        start = (header[0] - 1) * _BLOCK
+        file.seek(max(start, 0))
+        parameters = file.read(4)
+    if len(header) < _BLOCK or start < _BLOCK or len(parameters) < 4:
+        raise FileFormatError(path, f"cut short inside its header ({size} bytes); copy or export it again")
+    if parameters[3] not in _BYTE_ORDERS:
+        raise FileFormatError(path, f"processor type {parameters[3]} is not one of C3D's (84, 85, 86)")
+    if size < start + parameters[2] * _BLOCK:
+        raise FileFormatError(path, f"cut short inside its parameters ({size} bytes); copy or export it again")
+    layout = _layout(header, parameters[3], size)
+    check_frames(path, layout, layout.frames)
+    return layout
+
+
+def check_frames(path: Path, layout: C3dLayout, frames: int) -> None:
+    """Make sure that the file holds the data of so many frames.
+
+    Raises:
+        FileFormatError: There are no frames, or fewer than promised.
+    """
+    if frames <= 0:
+        raise FileFormatError(path, "its header counts no frames; export the trial again")
+    if layout.frames_present < frames:
+        raise FileFormatError(
+            path,
+            f"cut short: {frames} frames promised, {layout.frames_present} present; copy or export it again",
+        )
+
+
+def _layout(header: bytes, processor: int, size: int) -> C3dLayout:
+    order = _BYTE_ORDERS[processor]
+    words = struct.unpack(f"{order}256H", header)
+    # The sign bit of the point scale: in the first word on DEC and MIPS, in the second on Intel.
+    scale_word = words[7] if processor not in (_DEC, 86) else words[6]
+    first, last = words[3], words[4]
+    return C3dLayout(
+        points=words[1],
+        analog_per_frame=words[2],
+        first_frame=first,
+        frames=last - first + 1 if last >= first else 0,
+        data_block=words[8],
+        bytes_per_number=4 if scale_word & 0x8000 else 2,
+        file_bytes=size,
+    )

@@ -1,0 +1,105 @@
+"""Which points of a C3D file were measured, and which a laboratory's software computed and stored beside them.
+
+A file says so for angles, forces, moments, powers and scalars (POINT:ANGLES …, named by POINT:TYPE_GROUPS).
+Joint centres, segment axes and the like carry no sign but their names, so the names of Vicon Plug-in Gait and
+of the Oxford Foot Model are known here. In doubt a point counts as measured.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+
+GROUP_KINDS = {"ANGLES": "angle", "FORCES": "force", "MOMENTS": "moment", "POWERS": "power", "SCALARS": "scalar"}
+"""Parameters of the group POINT that list derived points, and the kind they list."""
+
+UNIT_PARAMETERS = {
+    "angle": "ANGLE_UNITS",
+    "force": "FORCE_UNITS",
+    "moment": "MOMENT_UNITS",
+    "power": "POWER_UNITS",
+    "scalar": "SCALAR_UNITS",
+    "point": "UNITS",
+}
+"""Parameter of the group POINT that states the unit of each kind."""
+
+_SIDE = r"[LR]"
+
+NAMED_KINDS = (
+    ("angle", re.compile(rf"{_SIDE}?[A-Z]\w*[a-z]Angles?")),
+    ("moment", re.compile(rf"{_SIDE}?[A-Z]\w*[a-z]Moment")),
+    ("force", re.compile(rf"{_SIDE}?([A-Z]\w*[a-z]Force|NormalisedGRF)")),
+    ("power", re.compile(rf"{_SIDE}?[A-Z]\w*[a-z]Power")),
+    ("scalar", re.compile(rf"{_SIDE}?(ArchHeight(Index)?|ViconLegLength)")),
+    ("point", re.compile(r"(WholeBody|Body)?Cent(re|er)OfMass(Floor)?")),
+    ("point", re.compile(rf"{_SIDE}_?[HKASEW]J[C]")),
+)
+"""Names of model outputs that no one gives to a marker, whatever else the file holds."""
+
+FOOT_MODEL = re.compile(
+    rf"({_SIDE}(FOF[0-3]|HDF[0-3]|HLX[0-3]|TIB[1-3]|HE1|D1M0|D5M0|ANK1|HFplantar|KAX|PROXFF|DISTFF)"
+    rf"|proj{_SIDE}(KAX|TIB))"
+)
+"""Virtual points of the Oxford Foot Model; some could be markers elsewhere, so the next must be there too."""
+
+FOOT_MODEL_SIGNATURE = re.compile(rf"{_SIDE}(HDF[0-3]|FETBA|HFTBA|FFHFA)")
+
+AXIS_ENDS = "OALP"
+"""Last letters of the four points that draw a segment's frame: origin, anterior, lateral, proximal."""
+
+
+def group_kinds(parameters: Mapping[str, object]) -> dict[str, str]:
+    """Parameters of the group POINT that list derived points.
+
+    Args:
+        parameters: Name → value of the parameters of the group; TYPE_GROUPS holds pairs (list, kind).
+
+    Returns:
+        Name of the list → kind, the standard ones and those the file declares.
+    """
+    kinds = dict(GROUP_KINDS)
+    pairs = parameters.get("TYPE_GROUPS", ())
+    words = [str(word).strip() for word in pairs] if isinstance(pairs, Sequence) else []
+    for group, kind in zip(words[::2], words[1::2], strict=False):
+        name = kind.lower()
+        kinds[group.upper()] = name if name in UNIT_PARAMETERS else "point"
+    return kinds
+
+
+def classify(labels: Sequence[str], listed: Mapping[str, str]) -> dict[str, str]:
+    """The kind of every derived point.
+
+    Args:
+        labels: Labels of all points of a file.
+        listed: Label → kind, for the points the file itself declares derived.
+
+    Returns:
+        Label → kind ("angle", "force", "moment", "power", "scalar", "point"); measured markers are absent.
+    """
+    kinds = {label: listed[label] for label in labels if label in listed}
+    axes = segment_axes(labels)
+    foot_model = any(FOOT_MODEL_SIGNATURE.fullmatch(label) for label in labels)
+    for label in labels:
+        if label in kinds:
+            continue
+        named = next((kind for kind, pattern in NAMED_KINDS if pattern.fullmatch(label)), None)
+        if named is not None:
+            kinds[label] = named
+        elif label in axes or (foot_model and FOOT_MODEL.fullmatch(label)):
+            kinds[label] = "point"
+    return kinds
+
+
+def segment_axes(labels: Iterable[str]) -> set[str]:
+    """Points that come as a full set of origin, anterior, lateral and proximal, like PELO, PELA, PELL, PELP.
+
+    Args:
+        labels: Labels of all points of a file.
+
+    Returns:
+        The labels that belong to such a set of four.
+    """
+    known = set(labels)
+    stems = {label[:-1] for label in known if len(label) >= 4 and label[-1] == "O"}
+    complete = [stem for stem in stems if all(stem + end in known for end in AXIS_ENDS)]
+    return {stem + end for stem in complete for end in AXIS_ENDS}

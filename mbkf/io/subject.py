@@ -1,0 +1,120 @@
+"""The subject file: what scaling found and every later step reads (TOML, written by ``mbkf scale``)."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mbkf.conventions import Array, read_only
+from mbkf.errors import FileFormatError, InvalidInput
+
+
+@dataclass(frozen=True)
+class SubjectMarker:
+    """A marker on this subject: (3,) ``position_m`` in its segment's frame, ``noise_m`` per coordinate."""
+
+    name: str
+    segment: str
+    position_m: Array
+    noise_m: float
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A scaled person.
+
+    Attributes:
+        body: Name of the reference body, e.g. ``"human18"``.
+        mass_kg: Body mass.
+        scale_factors: Independent scale factor by name (Table 4.1).
+        markers: The markers that follow this subject, with corrected positions.
+        protocol: Name of the marker protocol.
+        height_m: Body height where it was given.
+        report: Plain data about how the subject was found (see ``mbkf.scaling``).
+    """
+
+    body: str
+    mass_kg: float
+    scale_factors: dict[str, float]
+    markers: tuple[SubjectMarker, ...]
+    protocol: str
+    height_m: float | None = None
+    report: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.mass_kg) and self.mass_kg > 0):
+            raise InvalidInput(f"mass must be positive, got {self.mass_kg} kg; give --mass KG")
+
+
+def write_subject(subject: Subject, path: str | Path) -> None:
+    """Writes a subject as TOML, whole or not at all."""
+    lines = [
+        "# A scaled subject, written by mbkf. Lengths in m, mass in kg; positions in the segment's frame.",
+        f"body = {_text(subject.body)}",
+        f"mass_kg = {subject.mass_kg!r}",
+    ]
+    if subject.height_m is not None:
+        lines.append(f"height_m = {subject.height_m!r}")
+    lines += [f"protocol = {_text(subject.protocol)}", "", "[scale_factors]"]
+    lines += [f"{name} = {float(value)!r}" for name, value in subject.scale_factors.items()]
+    for marker in subject.markers:
+        position = ", ".join(repr(float(x)) for x in marker.position_m)
+        lines += [
+            "",
+            "[[marker]]",
+            f"name = {_text(marker.name)}",
+            f"segment = {_text(marker.segment)}",
+            f"position_m = [{position}]",
+            f"noise_m = {marker.noise_m!r}",
+        ]
+    if subject.report:
+        lines += ["", "# How it was found: one JSON object.", f"report = {_text(json.dumps(subject.report))}"]
+        lines.insert(1, lines.pop())
+        lines.insert(1, lines.pop())
+    target = Path(path)
+    partial = target.with_name(target.name + ".partial")
+    partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    partial.replace(target)
+
+
+def read_subject(path: str | Path) -> Subject:
+    """Reads a subject file.
+
+    Raises:
+        FileFormatError: The file is missing, not TOML, or lacks an entry.
+        InvalidInput: The mass is not positive.
+    """
+    source = Path(path)
+    try:
+        table = tomllib.loads(source.read_text(encoding="utf-8"))
+        return Subject(
+            body=table["body"],
+            mass_kg=float(table["mass_kg"]),
+            scale_factors={name: float(value) for name, value in table["scale_factors"].items()},
+            markers=tuple(_marker(entry) for entry in table["marker"]),
+            protocol=table["protocol"],
+            height_m=table.get("height_m"),
+            report=json.loads(table.get("report", "{}")),
+        )
+    except FileNotFoundError as error:
+        raise FileFormatError(source, "no such file; make it with 'mbkf scale'") from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileFormatError(source, f"cannot be read ({error})") from error
+    except (tomllib.TOMLDecodeError, KeyError, TypeError, ValueError) as error:
+        raise FileFormatError(source, f"not a subject file ({error}); make it with 'mbkf scale'") from error
+
+
+def _marker(entry: dict[str, Any]) -> SubjectMarker:
+    position = read_only(entry["position_m"])
+    if position.shape != (3,) or not np.isfinite(position).all():
+        raise ValueError(f"marker {entry['name']} needs three finite coordinates")
+    return SubjectMarker(entry["name"], entry["segment"], position, float(entry["noise_m"]))
+
+
+def _text(value: str) -> str:
+    return json.dumps(value, ensure_ascii=False)

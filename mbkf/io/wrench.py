@@ -1,0 +1,145 @@
+"""What a plate's forces and moments mean: centre of pressure, zero offset, checked records."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.errors import InvalidInput
+
+DEFAULT_COP_THRESHOLD_N = 20.0
+"""Vertical force below which a centre of pressure is mostly noise, in N."""
+
+UNLOADED_RANGE_N = (-200.0, 50.0)
+"""Vertical force a plate without load may show; a plate cannot pull, so much more is believed below zero."""
+
+_WINDOW_S = 0.03
+_QUIET_SD_N = 2.0
+_QUIET_RATIO = 4.0
+_LEAST_UNLOADED_S = 0.08
+
+
+@dataclass(frozen=True)
+class Tare:
+    """Offset found in a plate's readings.
+
+    Attributes:
+        offset: (6,) force in N and moment in N m the plate shows without load; zero where not found.
+        unloaded_s: Seconds of recording it rests on; zero where not found.
+    """
+
+    offset: Array
+    unloaded_s: float
+
+    @property
+    def found(self) -> bool:
+        """Whether the plate was without load for long enough."""
+        return self.unloaded_s > 0.0
+
+
+def centre_of_pressure(
+    force_n: Array, moment_nm: Array, origin_m: Array, normal: Array, threshold_n: float
+) -> Array:
+    """Point of a plate's surface about which the horizontal moment vanishes.
+
+    With M the moment about a point o of the surface, F the force and n the normal, r = n × M / (n · F) and
+    the point is o + r.
+
+    Args:
+        force_n: (S, 3) forces in N, world axes.
+        moment_nm: (S, 3) moments about ``origin_m`` in N m, world axes.
+        origin_m: (3,) a point of the surface in m.
+        normal: (3,) unit normal of the surface.
+        threshold_n: Vertical force in N below which the point is not given.
+
+    Returns:
+        (S, 3) world points in m, NaN where the vertical force is below the threshold.
+    """
+    pressed = force_n @ normal
+    loaded = (force_n[:, 2] >= threshold_n) & (pressed > 0.0)
+    points = np.full(force_n.shape, np.nan)
+    points[loaded] = origin_m + np.cross(normal, moment_nm[loaded]) / pressed[loaded, None]
+    return points
+
+
+def require_finite(force_n: Array, moment_nm: Array, rate_hz: float, start_time_s: float, where: str) -> None:
+    """Refuse readings that are not numbers.
+
+    Raises:
+        InvalidInput: A force or moment is NaN or infinite; says where first and how many.
+    """
+    bad = ~(np.isfinite(force_n).all(axis=1) & np.isfinite(moment_nm).all(axis=1))
+    if bad.any():
+        first = start_time_s + np.argmax(bad) / rate_hz
+        raise InvalidInput(
+            f"{where}: {bad.sum()} of {len(bad)} samples of force or moment are not numbers, the first at "
+            f"{first:.3f} s; cut these samples or leave the plate out"
+        )
+
+
+def find_tare(wrench: Array, rate_hz: float) -> Tare:
+    """Offset of a plate, from the stretches in which nobody stands on it.
+
+    The recording is cut into windows of 30 ms. Those with a vertical force inside ``UNLOADED_RANGE_N`` and a
+    small spread are candidates; the mode of their vertical force is the unloaded level, and the offset is the
+    median of the candidates near it. A plate that is loaded all the time has no candidates and no offset.
+    Samples in which all six readings are exactly zero were zeroed by software and say nothing about another
+    level, so they only count where they prevail.
+
+    Args:
+        wrench: (S, 6) force in N and moment in N m of the plate on the body, world axes (z up).
+        rate_hz: Sample rate in Hz.
+
+    Returns:
+        The offset and how long the plate was seen without load.
+    """
+    size = max(4, round(_WINDOW_S * rate_hz))
+    count = len(wrench) // size
+    windows = wrench[: count * size].reshape(count, size, 6)
+    means, spread = windows.mean(axis=1), windows[:, :, 2].std(axis=1)
+    low, high = UNLOADED_RANGE_N
+    candidate = (means[:, 2] > low) & (means[:, 2] < high)
+    if not candidate.any():
+        return Tare(np.zeros(6), 0.0)
+    limit = max(_QUIET_SD_N, _QUIET_RATIO * float(np.percentile(spread[candidate], 20)))
+    quiet = candidate & (spread < limit)
+    level = half_sample_mode(means[quiet, 2])
+    near = quiet & (np.abs(means[:, 2] - level) < limit)
+    seconds = float(near.sum() * size / rate_hz)
+    if seconds < _LEAST_UNLOADED_S:
+        return Tare(np.zeros(6), 0.0)
+    return Tare(np.median(means[near], axis=0), seconds)
+
+
+def remove_tare(wrench: Array, tare: Tare) -> Array:
+    """Readings without their offset; samples a software had zeroed stay zero.
+
+    Args:
+        wrench: (S, 6) force in N and moment in N m.
+        tare: The offset, as :func:`find_tare` gives it.
+
+    Returns:
+        (S, 6) corrected readings.
+    """
+    zeroed = (wrench == 0.0).all(axis=1)
+    return np.where(zeroed[:, None], 0.0, wrench - tare.offset)
+
+
+def half_sample_mode(values: Array) -> float:
+    """Mode of a sample: the half of it that is closest together, again and again (Bickel and Frühwirth 2006).
+
+    Args:
+        values: (n,) numbers, at least one.
+
+    Returns:
+        The value around which the sample is densest.
+    """
+    kept = np.sort(values)
+    while len(kept) > 2:
+        half = (len(kept) + 1) // 2
+        widths = kept[half - 1 :] - kept[: len(kept) - half + 1]
+        start = int(np.argmin(widths))
+        kept = kept[start : start + half]
+    return float(kept.mean())

@@ -1,0 +1,203 @@
+"""A scaled body in Pinocchio: kinematics, dynamics and their derivatives in the tangent space.
+
+The only door to Pinocchio's joints: free-flyer root, spherical joints as unit quaternions, universal joints as two
+hinges (x, then y), hinges about y. Joints are added depth-first, which Pinocchio's algorithms rely on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from mbkf.conventions import GRAVITY_M_S2, Array, read_only
+from mbkf.errors import InvalidInput, ShapeError, UnknownName
+from mbkf.model.description import JOINT_DOF, BodyDescription, Segment, load_body
+
+
+@dataclass(frozen=True)
+class SegmentJoint:
+    """Where a segment's joint lies in q and v, and its Pinocchio joint.
+
+    Attributes:
+        segment: Segment name.
+        kind: "free", "spherical", "universal" or "hinge".
+        joint_id: Pinocchio index of the joint that carries the segment.
+        q: Slice of the configuration.
+        v: Slice of the tangent space.
+    """
+
+    segment: str
+    kind: str
+    joint_id: int
+    q: slice
+    v: slice
+
+
+class HumanModel:
+    """A body scaled to one person.
+
+    Attributes:
+        description: The reference body it was built from.
+        scale: (K,) independent scale factors.
+        mass_kg: Body mass.
+        pin_model: The Pinocchio model (gravity along −z).
+        joints: One :class:`SegmentJoint` per segment, by segment name, in depth-first order.
+        nq, nv: Dimensions of configuration and tangent space.
+        posture_sd: (nv,) spread of each dof about the neutral posture, rad; 0 where there is no prior.
+        acceleration_sd: (nv,) typical acceleration of each dof, m/s² or rad/s².
+        supports: (joints, nv) True where a dof moves a joint's segment.
+    """
+
+    def __init__(self, description: BodyDescription, scale: Array, mass_kg: float) -> None:
+        self.description = description
+        self.scale = read_only(scale)
+        if self.scale.shape != (len(description.scale_factors),):
+            raise ShapeError("scale", f"({len(description.scale_factors)},)", self.scale.shape)
+        if not (np.isfinite(mass_kg) and mass_kg > 0):
+            raise InvalidInput(f"mass must be positive, got {mass_kg} kg")
+        if not (np.isfinite(self.scale).all() and (self.scale > 0).all()):
+            raise InvalidInput("scale factors must be positive")
+        self.mass_kg = float(mass_kg)
+        self.pin_model = pin.Model()
+        self.pin_model.name = description.name
+        self.pin_model.gravity.linear = np.array([0.0, 0.0, -GRAVITY_M_S2])
+        self.joints: dict[str, SegmentJoint] = {}
+        for segment in description.segments:
+            self.joints[segment.name] = self._add(segment)
+        self._data = self.pin_model.createData()
+        if not self.pin_model.check(self._data):
+            raise InvalidInput("body description is not depth-first: each subtree must be contiguous")
+        self.nq, self.nv = self.pin_model.nq, self.pin_model.nv
+        segments = description.segments
+        self.posture_sd = read_only(np.concatenate([_per_dof(s.posture_sd_rad, s) for s in segments]))
+        self.acceleration_sd = read_only(np.concatenate([_per_dof(s.acceleration_sd, s) for s in segments]))
+        self.supports = self._supports()
+
+    @classmethod
+    def scaled(cls, factors: Mapping[str, float] | None = None, mass_kg: float | None = None,
+               body: str = "human18") -> HumanModel:
+        """A body from named scale factors (all 1 when None) and mass (the reference mass when None).
+
+        Raises:
+            UnknownName: The body or a factor is unknown.
+        """
+        description = load_body(body)
+        scale = np.ones(len(description.scale_factors))
+        for name, value in (factors or {}).items():
+            if name not in description.scale_factors:
+                raise UnknownName("scale factor", name, description.scale_factors)
+            scale[description.scale_factors.index(name)] = value
+        return cls(description, scale, description.reference_mass_kg if mass_kg is None else mass_kg)
+
+    def _add(self, segment: Segment) -> SegmentJoint:
+        model = self.pin_model
+        parent_id, origin = 0, np.zeros(3)
+        if segment.parent != "world":
+            parent = self.joints[segment.parent]
+            parent_id = parent.joint_id
+            origin = self.axis_scale(self.description.segment(segment.parent)) * segment.origin_m
+        placement = pin.SE3(np.eye(3), origin)
+        first_q, first_v = model.nq, model.nv
+        if segment.joint == "universal":
+            parent_id = model.addJoint(parent_id, pin.JointModelRX(), placement, f"{segment.name}_x")
+            placement = pin.SE3.Identity()
+        kinds = {"free": pin.JointModelFreeFlyer, "spherical": pin.JointModelSpherical,
+                 "universal": pin.JointModelRY, "hinge": pin.JointModelRY}
+        joint_id = model.addJoint(parent_id, kinds[segment.joint](), placement, segment.name)
+        model.appendBodyToJoint(joint_id, self._inertia(segment), pin.SE3.Identity())
+        return SegmentJoint(segment.name, segment.joint, joint_id,
+                            slice(first_q, model.nq), slice(first_v, model.nv))
+
+    def axis_scale(self, segment: Segment) -> Array:
+        """(3,) scale factors of a segment's x, y, z axes."""
+        return segment.scale_matrix @ self.scale
+
+    def _inertia(self, segment: Segment) -> pin.Inertia:
+        """Mass by k_m, centre of mass by the axes' factors, moments by k_m k² (eqs. 4.2–4.4)."""
+        k_m = self.mass_kg / self.description.reference_mass_kg
+        k = self.scale[segment.length_index]
+        com = self.axis_scale(segment) * segment.com_m
+        return pin.Inertia(k_m * segment.mass_kg, com, np.diag(k_m * k**2 * segment.inertia_kg_m2))
+
+    def _supports(self) -> np.ndarray:
+        supports = np.zeros((self.pin_model.njoints, self.nv), dtype=bool)
+        for j in range(1, self.pin_model.njoints):
+            supports[j] = supports[self.pin_model.parents[j]]
+            joint = self.pin_model.joints[j]
+            supports[j, joint.idx_v : joint.idx_v + joint.nv] = True
+        supports.setflags(write=False)
+        return supports
+
+    def joint(self, segment: str) -> SegmentJoint:
+        """The joint that carries a segment.
+
+        Raises:
+            UnknownName: There is no such segment.
+        """
+        if segment not in self.joints:
+            raise UnknownName("segment", segment, self.joints)
+        return self.joints[segment]
+
+    def neutral(self) -> Array:
+        """(nq,) standing posture at the world origin, facing +x."""
+        return pin.neutral(self.pin_model)
+
+    def integrate(self, q: Array, dv: Array) -> Array:
+        """(nq,) configuration reached from q by the tangent vector dv (nv,)."""
+        return pin.integrate(self.pin_model, q, dv)
+
+    def difference(self, q0: Array, q1: Array) -> Array:
+        """(nv,) tangent vector that takes q0 to q1."""
+        return pin.difference(self.pin_model, q0, q1)
+
+    def placements(self, q: Array) -> tuple[Array, Array]:
+        """World rotations (J, 3, 3) and origins (J, 3) of all Pinocchio joints at q (index 0 is the world)."""
+        pin.forwardKinematics(self.pin_model, self._data, q)
+        return self._read_placements()
+
+    def placements_and_jacobian(self, q: Array) -> tuple[Array, Array, Array]:
+        """Placements as :meth:`placements`, and J (6, nv): each dof's spatial velocity at the world origin.
+
+        Rows are (linear, angular) in world axes; a column counts for a joint only where ``supports`` says so.
+        """
+        jacobian = pin.computeJointJacobians(self.pin_model, self._data, q)
+        rotations, origins = self._read_placements()
+        return rotations, origins, jacobian
+
+    def _read_placements(self) -> tuple[Array, Array]:
+        homogeneous = np.array([placement.homogeneous for placement in self._data.oMi])
+        return homogeneous[:, :3, :3], homogeneous[:, :3, 3]
+
+    def inverse_dynamics(self, q: Array, v: Array, a: Array) -> Array:
+        """(nv,) generalised forces M a − Q_g for given motion, without contact (eq. 3.12)."""
+        return pin.rnea(self.pin_model, self._data, q, v, a)
+
+    def mass_matrix(self, q: Array) -> Array:
+        """(nv, nv) symmetric mass matrix."""
+        upper = pin.crba(self.pin_model, self._data, q)
+        return np.triu(upper) + np.triu(upper, 1).T
+
+    def gravity_torques(self, q: Array) -> Array:
+        """(nv,) generalised forces that hold the body still at q."""
+        return pin.computeGeneralizedGravity(self.pin_model, self._data, q).copy()
+
+    def centre_of_mass(self, q: Array) -> Array:
+        """(3,) world centre of mass of the whole body, m."""
+        return pin.centerOfMass(self.pin_model, self._data, q).copy()
+
+    def segment_jacobian(self, q: Array, segment: str, point_m: Array) -> Array:
+        """(6, nv) world Jacobian (linear, angular) of a point fixed to a segment, given in world coordinates."""
+        jacobian = pin.computeJointJacobians(self.pin_model, self._data, q)
+        jacobian = np.where(self.supports[self.joint(segment).joint_id], jacobian, 0.0)
+        jacobian[:3] += np.cross(jacobian[3:].T, point_m).T
+        return jacobian
+
+
+def _per_dof(values: Array, segment: Segment) -> Array:
+    dof = JOINT_DOF[segment.joint]
+    if values.shape != (dof,):
+        raise ShapeError(f"per-dof values of {segment.name}", f"({dof},)", values.shape)
+    return values

@@ -1,0 +1,38 @@
+"""Rotation vectors of unit quaternions, with derivatives, for many rotations at once."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import Array
+
+
+def skew(vectors: Array) -> Array:
+    """(…, 3, 3) matrices [v]× of vectors (…, 3)."""
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    zero = np.zeros_like(x)
+    return np.stack([np.stack([zero, -z, y], -1), np.stack([z, zero, -x], -1), np.stack([-y, x, zero], -1)], -2)
+
+
+def quaternion_log(quaternions: Array) -> Array:
+    """(…, 3) rotation vectors, of angle at most π, of unit quaternions (…, 4) in (x, y, z, w) order."""
+    signed = np.where(quaternions[..., 3:] < 0, -quaternions, quaternions)
+    vector, scalar = signed[..., :3], signed[..., 3:]
+    sine = np.linalg.norm(vector, axis=-1, keepdims=True)
+    angle = 2.0 * np.arctan2(sine, scalar)
+    factor = np.where(sine < 1e-8, 2.0 / np.maximum(scalar, 0.5), angle / np.maximum(sine, 1e-300))
+    return factor * vector
+
+
+def log_and_inverse_jacobian(quaternions: Array) -> tuple[Array, Array]:
+    """Rotation vectors φ (n, 3) and ∂φ/∂ω (n, 3, 3) for a local (right) rotation ω.
+
+    J_r⁻¹(φ) = I + ½[φ]× + (1/θ² − (1 + cos θ)/(2 θ sin θ)) [φ]×²  (Solà et al., arXiv:1812.01537, eq. 144).
+    """
+    phi = quaternion_log(quaternions)
+    theta = np.linalg.norm(phi, axis=-1)[..., None, None]
+    cross = skew(phi)
+    safe = np.maximum(theta, 1e-4)
+    exact = 1.0 / safe**2 - (1.0 + np.cos(safe)) / (2.0 * safe * np.sin(np.minimum(safe, np.pi - 1e-9)))
+    factor = np.where(theta < 1e-4, 1.0 / 12.0, exact)
+    return phi, np.eye(3) + 0.5 * cross + factor * (cross @ cross)

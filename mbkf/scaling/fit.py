@@ -1,0 +1,169 @@
+"""From trials to a scaled subject: frames, first poses, Levenberg–Marquardt, local marker correction, report."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.errors import InvalidInput, NotConverged
+from mbkf.io.records import MarkerTrajectories
+from mbkf.io.subject import Subject, SubjectMarker
+from mbkf.model.description import load_body
+from mbkf.model.protocol import Protocol
+from mbkf.numerics.levenberg_marquardt import Solution, minimise
+from mbkf.scaling.frames import ScalingFrames, choose_frames
+from mbkf.scaling.problem import FACTOR_BOUNDS, ScalingProblem, ScalingSettings, ScalingState
+from mbkf.sensors.pose_fit import segment_by_segment
+
+MAX_ITERATIONS = 60
+_GIVE_UP_M = 0.15
+
+
+def scale_subject(
+    static: Sequence[MarkerTrajectories],
+    dynamic: Sequence[MarkerTrajectories],
+    protocol: Protocol,
+    *,
+    mass_kg: float,
+    height_m: float | None = None,
+    settings: ScalingSettings | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Subject:
+    """Scale factors and marker positions of a person from standing trials, moving trials or both.
+
+    Args:
+        static: Standing trials (neutral posture).
+        dynamic: Trials of any movement.
+        protocol: The marker protocol.
+        mass_kg: Body mass.
+        height_m: Body height, if known.
+        settings: Weights of the priors.
+        progress: Called with accepted iterations and the most there can be.
+
+    Raises:
+        InvalidInput: Mass or height is not positive, or no trial is given.
+        NotObservable: Too few markers of the protocol.
+        NotConverged: The fit is so poor that the markers cannot be this protocol on a person.
+    """
+    settings = settings or ScalingSettings()
+    if not (np.isfinite(mass_kg) and mass_kg > 0):
+        raise InvalidInput(f"mass must be positive, got {mass_kg} kg; give --mass KG")
+    if height_m is not None and not 0.5 < height_m < 2.6:
+        raise InvalidInput(f"height must be between 0.5 and 2.6 m, got {height_m} m")
+    if not static and not dynamic:
+        raise InvalidInput("scaling needs a static trial or at least one --trial")
+    frames = choose_frames([*static, *dynamic], protocol, settings.frames_per_trial)
+    problem = _problem(frames, len(static), protocol, height_m, settings, frames.measured_m)
+    start = problem.start(_first_poses(problem))
+    solution = _minimise(problem, start, progress)
+    cleaned, dropped = _without_outliers(problem, solution.state, settings.outlier_m)
+    if dropped.any():
+        problem = _problem(frames, len(static), protocol, height_m, settings, cleaned)
+        solution = _minimise(problem, solution.state, progress)
+    errors = np.linalg.norm(problem.errors_m(solution.state), axis=2)
+    rms = float(np.sqrt(np.nanmean(errors**2)))
+    if rms > _GIVE_UP_M / 3:
+        raise NotConverged(f"markers fit the body only to {1e3 * rms:.0f} mm; is '{protocol.name}' their protocol?")
+    return _subject(problem, solution, frames, dropped, protocol, mass_kg, height_m, settings)
+
+
+def _problem(frames: ScalingFrames, static_trials: int, protocol: Protocol, height_m: float | None,
+             settings: ScalingSettings, measured_m: Array) -> ScalingProblem:
+    body = load_body(protocol.body)
+    counts = np.bincount(frames.trial)
+    looks = np.where(np.arange(len(counts)) < static_trials, settings.static_posture_frames,
+                     settings.dynamic_posture_frames)
+    weight = np.minimum(looks / counts, 1.0)[frames.trial]
+    expected = 1.0 if height_m is None else height_m / body.reference_height_m
+    stature = settings.stature_sd if height_m is None else settings.known_stature_sd
+    return ScalingProblem(body, frames.markers, measured_m, weight, expected, stature, settings.proportion_sd)
+
+
+def _first_poses(problem: ScalingProblem) -> Array:
+    state = problem.start(np.zeros((0, problem.posture.model.nq)))
+    sensor = problem.sensor(state)
+    anatomical = np.array([m.kind != "technical" for m in problem.markers])
+    tracked = {m.segment for m in problem.markers if m.kind != "technical"}
+    usable = anatomical | np.array([m.segment not in tracked for m in problem.markers])
+    return np.array([segment_by_segment(sensor, np.where(usable[:, None], frame, np.nan))
+                     if (~np.isnan(frame[usable]).any(axis=1)).sum() >= 6 else segment_by_segment(sensor, frame)
+                     for frame in problem.measured_m])
+
+
+def _minimise(problem: ScalingProblem, start: ScalingState,
+              progress: Callable[[int, int], None] | None) -> Solution[ScalingState]:
+    report = None if progress is None else lambda done: progress(done, MAX_ITERATIONS)
+    return minimise(start, problem.linearise, problem.cost, problem.move, tolerance=1e-4,
+                    max_iterations=MAX_ITERATIONS, on_iteration=report)
+
+
+def _without_outliers(problem: ScalingProblem, state: ScalingState, limit_m: float) -> tuple[Array, Array]:
+    """Measured positions with samples too far from the body removed, and which (N, M) those are."""
+    distance = np.nan_to_num(np.linalg.norm(problem.errors_m(state), axis=2))
+    far = distance > limit_m
+    return np.where(far[:, :, None], np.nan, problem.measured_m), far
+
+
+def _subject(problem: ScalingProblem, solution: Solution[ScalingState], frames: ScalingFrames, dropped: Array,
+             protocol: Protocol, mass_kg: float, height_m: float | None, settings: ScalingSettings) -> Subject:
+    state = solution.state
+    local = problem.local_m(state.factors, state.offsets_m)
+    found = {m.name: (position, m.noise_m) for m, position in zip(problem.markers, local, strict=True)}
+    body = problem.body
+    markers = []
+    for marker in protocol.markers:
+        if marker.kind == "computed":
+            continue
+        reference = (body.segment(marker.segment).scale_matrix @ state.factors) * marker.position_m
+        noise = float(np.hypot(marker.noise_m, marker.placement_sd_m))
+        position, noise = found.get(marker.name, (reference, noise))
+        markers.append(SubjectMarker(marker.name, marker.segment, position, noise))
+    return Subject(
+        body=body.name,
+        mass_kg=float(mass_kg),
+        scale_factors={n: float(k) for n, k in zip(body.scale_factors, state.factors, strict=True)},
+        markers=tuple(markers),
+        protocol=protocol.name,
+        height_m=height_m,
+        report=_report(problem, solution, frames, dropped, settings),
+    )
+
+
+def _report(problem: ScalingProblem, solution: Solution[ScalingState], frames: ScalingFrames, dropped: Array,
+            settings: ScalingSettings) -> dict[str, Any]:
+    """Plain numbers: fit per marker (mm), factors with standard errors and active bounds, what was left out."""
+    state, body = solution.state, problem.body
+    errors_mm = 1e3 * np.linalg.norm(problem.errors_m(state), axis=2)
+    count = len(body.scale_factors)
+    errors = np.sqrt(np.diag(np.linalg.inv(solution.equations.schur_complement()))[:count])
+    markers = {}
+    for i, marker in enumerate(problem.markers):
+        column = errors_mm[:, i][~np.isnan(errors_mm[:, i])]
+        markers[marker.name] = {
+            "kind": marker.kind,
+            "rms_mm": round(float(np.sqrt((column**2).mean())), 3) if len(column) else None,
+            "max_mm": round(float(column.max()), 3) if len(column) else None,
+            "moved_mm": round(1e3 * float(np.linalg.norm(state.offsets_m[i])), 2),
+            "samples": len(column),
+            "samples_left_out": int(dropped[:, i].sum()),
+        }
+    return {
+        "marker_rms_mm": round(float(np.sqrt(np.nanmean(errors_mm**2))), 3),
+        "frames": len(state.poses),
+        "converged": solution.converged,
+        "factors": {
+            name: {
+                "value": round(float(k), 5),
+                "standard_error": round(float(error), 5),
+                "at_bound": bool(k <= FACTOR_BOUNDS[0] + 1e-9 or k >= FACTOR_BOUNDS[1] - 1e-9),
+            }
+            for name, k, error in zip(body.scale_factors, state.factors, errors, strict=True)
+        },
+        "markers": markers,
+        "left_out": frames.left_out,
+        "settings": asdict(settings),
+    }

@@ -1,0 +1,191 @@
+"""Scaling as one least-squares problem over many frames (SPEC §4, eq. 4.1): residuals and analytic derivatives.
+
+Unknowns: the pose x_t of every frame, the independent scale factors k and an offset δ of every marker from its
+reference place, shared by all frames. Residuals, each divided by its standard deviation:
+
+    markers    r_b(x, k) + A_b(x) (D_b(k) m̄ + δ) − measured
+    placement  δ                     (tight for anatomical markers, loose for technical ones)
+    factors    k − stature           (bodies are alike in proportion, less so in size)
+    posture    joint rotations       (what no marker sees stays near standing)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array, read_only
+from mbkf.model.description import BodyDescription
+from mbkf.model.human import HumanModel
+from mbkf.model.protocol import ProtocolMarker
+from mbkf.numerics.levenberg_marquardt import ArrowEquations
+from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.posture import PostureSensor
+
+FACTOR_BOUNDS = (0.5, 1.6)
+"""Range of a scale factor; one that ends here is reported as an active bound."""
+
+
+@dataclass(frozen=True)
+class ScalingSettings:
+    """How much the priors of scaling weigh.
+
+    Attributes:
+        proportion_sd: Spread of a factor about the person's overall size.
+        stature_sd: Spread of overall size when no height is given.
+        known_stature_sd: Spread of overall size when the height is given.
+        static_posture_frames: How many independent looks at the posture a static trial counts for.
+        dynamic_posture_frames: The same for a dynamic trial.
+        frames_per_trial: Most frames taken from one trial.
+        outlier_m: A sample further than this from the fitted body is left out, m.
+    """
+
+    proportion_sd: float = 0.06
+    stature_sd: float = 0.20
+    known_stature_sd: float = 0.02
+    static_posture_frames: float = 2.0
+    dynamic_posture_frames: float = 10.0
+    frames_per_trial: int = 40
+    outlier_m: float = 0.06
+
+
+@dataclass(frozen=True)
+class ScalingState:
+    """One point of the search: ``poses`` (N, nq), ``factors`` (K,), ``offsets_m`` (M, 3)."""
+
+    poses: Array
+    factors: Array
+    offsets_m: Array
+
+
+class ScalingProblem:
+    """Residuals of N frames of M markers.
+
+    Attributes:
+        body: The reference body.
+        markers: The M protocol markers.
+        measured_m: (N, M, 3) measured positions, NaN where missing.
+        posture_weight: (N,) weight of each frame's posture prior.
+        expected_factor: Overall size about which the factors spread.
+    """
+
+    def __init__(self, body: BodyDescription, markers: tuple[ProtocolMarker, ...], measured_m: Array,
+                 posture_weight: Array, expected_factor: float, stature_sd: float, proportion_sd: float) -> None:
+        self.body, self.markers = body, markers
+        self.measured_m = read_only(measured_m)
+        self.posture_weight = read_only(posture_weight)
+        self.expected_factor = expected_factor
+        self.seen = ~np.isnan(self.measured_m).any(axis=2)
+        self.noise_m = np.array([m.noise_m for m in markers])
+        self.placement_sd_m = np.array([m.placement_sd_m for m in markers])
+        self.reference_m = np.array([m.position_m for m in markers])
+        self.segments = tuple(m.segment for m in markers)
+        count = len(body.scale_factors)
+        covariance = proportion_sd**2 * np.eye(count) + stature_sd**2 * np.ones((count, count))
+        self.factor_root = np.linalg.cholesky(np.linalg.inv(covariance)).T
+        self._segment_scale = np.array([body.segment(name).scale_matrix for name in self.segments])
+        self.posture = PostureSensor(HumanModel.scaled(body=body.name))
+
+    def start(self, poses: Array) -> ScalingState:
+        """State with all factors at the expected size and every marker at its reference place."""
+        return ScalingState(poses, np.full(len(self.body.scale_factors), self.expected_factor),
+                            np.zeros_like(self.reference_m))
+
+    def local_m(self, factors: Array, offsets_m: Array) -> Array:
+        """(M, 3) marker positions in their segments' frames: D_b(k) m̄ + δ."""
+        return np.einsum("mak,k->ma", self._segment_scale, factors) * self.reference_m + offsets_m
+
+    def sensor(self, state: ScalingState) -> MarkerSensor:
+        """The markers on the body as the state has it."""
+        model = HumanModel(self.body, state.factors, self.body.reference_mass_kg)
+        return MarkerSensor(model, self.segments, self.local_m(state.factors, state.offsets_m))
+
+    def errors_m(self, state: ScalingState) -> Array:
+        """(N, M, 3) modelled minus measured, NaN where a marker is missing."""
+        sensor = self.sensor(state)
+        return np.array([sensor.positions(q) for q in state.poses]) - self.measured_m
+
+    def cost(self, state: ScalingState) -> float:
+        """Sum of squared residuals."""
+        errors = np.where(self.seen[:, :, None], self.errors_m(state), 0.0) / self.noise_m[:, None]
+        deviations = np.array([self.posture.reading(q).deviation for q in state.poses]) / self.posture.sd
+        posture = float((self.posture_weight[:, None] * deviations**2).sum())
+        return float((errors**2).sum()) + posture + self._shared_cost(state)
+
+    def _shared_cost(self, state: ScalingState) -> float:
+        factors = self.factor_root @ (state.factors - self.expected_factor)
+        return float((factors**2).sum() + ((state.offsets_m / self.placement_sd_m[:, None]) ** 2).sum())
+
+    def move(self, state: ScalingState, own: Array, shared: Array) -> ScalingState:
+        """The state after a step; factors stay inside their bounds."""
+        model = self.posture.model
+        count = len(self.body.scale_factors)
+        poses = np.array([model.integrate(q, dq) for q, dq in zip(state.poses, own, strict=True)])
+        factors = np.clip(state.factors + shared[:count], *FACTOR_BOUNDS)
+        return ScalingState(poses, factors, state.offsets_m + shared[count:].reshape(-1, 3))
+
+    def linearise(self, state: ScalingState) -> ArrowEquations:
+        """Gauss–Newton equations; frames border only factors and offsets."""
+        sensor = self.sensor(state)
+        nv, count = sensor.model.nv, len(self.body.scale_factors)
+        shared = count + 3 * len(self.markers)
+        frames = np.empty((len(state.poses), nv, nv))
+        border = np.empty((len(state.poses), nv, shared))
+        frame_gradient = np.empty((len(state.poses), nv))
+        corner, corner_gradient = self._prior_equations(state)
+        for t, q in enumerate(state.poses):
+            errors, by_pose, by_shared = self._frame(sensor, q, t)
+            prior = self.posture.reading(q)
+            pull = prior.jacobian / self.posture.sd[:, None]
+            weight = self.posture_weight[t]
+            frames[t] = by_pose.T @ by_pose + weight * (pull.T @ pull) + 1e-9 * np.eye(nv)
+            frame_gradient[t] = by_pose.T @ errors + weight * (pull.T @ (prior.deviation / self.posture.sd))
+            border[t] = by_pose.T @ by_shared
+            corner += by_shared.T @ by_shared
+            corner_gradient += by_shared.T @ errors
+        return ArrowEquations(frames, border, corner, frame_gradient, corner_gradient, self.cost(state))
+
+    def _prior_equations(self, state: ScalingState) -> tuple[Array, Array]:
+        count = len(self.body.scale_factors)
+        shared = count + state.offsets_m.size
+        corner, gradient = np.zeros((shared, shared)), np.zeros(shared)
+        information = self.factor_root.T @ self.factor_root
+        corner[:count, :count] = information
+        gradient[:count] = information @ (state.factors - self.expected_factor)
+        precision = np.repeat(1.0 / self.placement_sd_m**2, 3)
+        offsets = np.arange(count, shared)
+        corner[offsets, offsets] = precision
+        gradient[count:] = precision * state.offsets_m.ravel()
+        return corner, gradient
+
+    def _frame(self, sensor: MarkerSensor, q: Array, t: int) -> tuple[Array, Array, Array]:
+        """Whitened errors (3S,) of the S markers seen and their Jacobians by pose (3S, nv) and shared unknowns."""
+        seen = np.flatnonzero(self.seen[t])
+        reading = sensor.reading(q)
+        rotations, _ = sensor.model.placements(q)
+        whiten = 1.0 / self.noise_m[seen, None]
+        errors = (reading.positions_m[seen] - self.measured_m[t, seen]) * whiten
+        by_pose = reading.jacobian[seen] * whiten[:, :, None]
+        count = len(self.body.scale_factors)
+        by_shared = np.zeros((len(seen), 3, count + 3 * len(self.markers)))
+        axes = rotations[sensor.joint_ids[seen]] * whiten[:, :, None]
+        origins = self._origin_derivatives(sensor.model, rotations)
+        by_shared[:, :, :count] = origins[sensor.joint_ids[seen]] * whiten[:, :, None]
+        by_shared[:, :, :count] += axes @ (self.reference_m[seen, :, None] * self._segment_scale[seen])
+        for column in range(3):
+            by_shared[np.arange(len(seen)), :, count + 3 * seen + column] = axes[:, :, column]
+        size = 3 * len(seen)
+        return errors.ravel(), by_pose.reshape(size, -1), by_shared.reshape(size, -1)
+
+    def _origin_derivatives(self, model: HumanModel, rotations: Array) -> Array:
+        """(J, 3, K) derivative of every joint's world origin by the scale factors, along the chain."""
+        derivatives = np.zeros((len(rotations), 3, len(self.body.scale_factors)))
+        for segment in self.body.segments:
+            if segment.parent == "world":
+                continue
+            parent = model.joint(segment.parent).joint_id
+            lever = segment.origin_m[:, None] * self.body.segment(segment.parent).scale_matrix
+            joint = model.joint(segment.name).joint_id
+            derivatives[joint] = derivatives[parent] + rotations[parent] @ lever
+        return derivatives

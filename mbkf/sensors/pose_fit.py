@@ -1,0 +1,125 @@
+"""The pose that fits one frame of markers: segment by segment first, then all at once (eq. 4.1 with positions only)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.numerics.levenberg_marquardt import ArrowEquations, minimise
+from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.posture import PostureSensor
+
+_TRUNK_WEIGHT = 0.05
+_NEUTRAL_PULL = 2e-3
+
+
+@dataclass(frozen=True)
+class PoseFit:
+    """A fitted pose.
+
+    Attributes:
+        q: (nq,) configuration.
+        rms_m: RMS distance of the markers used, m.
+        covariance: (nv, nv) of q in its tangent space.
+        converged: Whether the iteration settled.
+    """
+
+    q: Array
+    rms_m: float
+    covariance: Array
+    converged: bool
+
+
+def segment_by_segment(sensor: MarkerSensor, measured_m: Array) -> Array:
+    """A first pose from the markers of each segment in turn (Wahba's problem, SVD solution of Markley 1988).
+
+    Each segment turns about its proximal joint so that its markers point where they were measured; the little weight
+    given to the parent's orientation decides what the markers leave open.
+
+    Args:
+        sensor: The markers on the body.
+        measured_m: (M, 3) measured positions, NaN where missing.
+
+    Returns:
+        (nq,) configuration.
+    """
+    model = sensor.model
+    seen = ~np.isnan(measured_m).any(axis=1)
+    q = model.neutral()
+    placed = sensor.positions(q)
+    names = np.array(sensor.segments)
+    weight = np.where(names == "pelvis", 1.0, _TRUNK_WEIGHT) * seen
+    if weight.sum() == 0.0:
+        return q
+    target = np.where(seen[:, None], measured_m, 0.0)
+    centre_from = (weight[:, None] * placed).sum(axis=0) / weight.sum()
+    centre_to = (weight[:, None] * target).sum(axis=0) / weight.sum()
+    attitude = (weight[:, None] * (target - centre_to)).T @ (placed - centre_from)
+    rotation = _nearest_rotation(attitude + 1e-9 * np.eye(3))
+    root = model.joint("pelvis")
+    q[root.q][:3] = centre_to - rotation @ centre_from
+    q[root.q][3:] = _quaternion(rotation)
+    for joint in model.joints.values():
+        if joint.kind != "spherical":
+            continue
+        mine = seen & (names == joint.segment)
+        rotations, origins = model.placements(q)
+        parent = rotations[joint.joint_id]
+        arms = sensor.local_m[mine]
+        attitude = (target[mine] - origins[joint.joint_id]).T @ arms + _NEUTRAL_PULL * parent
+        q[joint.q] = _quaternion(parent.T @ _nearest_rotation(attitude))
+    return q
+
+
+def fit_pose(sensor: MarkerSensor, posture: PostureSensor, measured_m: Array, noise_m: Array, start: Array,
+             max_iterations: int = 30) -> PoseFit:
+    """The most likely pose given one frame of markers and the weak posture prior.
+
+    Args:
+        sensor: The markers on the body.
+        posture: The posture prior.
+        measured_m: (M, 3) measured positions, NaN where missing.
+        noise_m: (M,) marker noise, m.
+        start: (nq,) first guess.
+        max_iterations: Most iterations.
+    """
+    seen: BoolArray = ~np.isnan(measured_m).any(axis=1)
+    weights = 1.0 / noise_m[seen]
+    target = measured_m[seen]
+    nv = sensor.model.nv
+
+    def cost(q: Array) -> float:
+        errors = (sensor.positions(q)[seen] - target) * weights[:, None]
+        deviation = posture.reading(q).deviation / posture.sd
+        return float((errors**2).sum() + (deviation**2).sum())
+
+    def linearise(q: Array) -> ArrowEquations:
+        reading, prior = sensor.reading(q), posture.reading(q)
+        errors = ((reading.positions_m[seen] - target) * weights[:, None]).ravel()
+        jacobian = (reading.jacobian[seen] * weights[:, None, None]).reshape(-1, nv)
+        deviation = prior.deviation / posture.sd
+        pull = prior.jacobian / posture.sd[:, None]
+        hessian = jacobian.T @ jacobian + pull.T @ pull + 1e-9 * np.eye(nv)
+        gradient = jacobian.T @ errors + pull.T @ deviation
+        total = float((errors**2).sum() + (deviation**2).sum())
+        return ArrowEquations(hessian[None], np.zeros((1, nv, 0)), np.zeros((0, 0)), gradient[None], np.zeros(0),
+                              total)
+
+    solution = minimise(start, linearise, cost, lambda q, own, _: sensor.model.integrate(q, own[0]),
+                        tolerance=1e-4, max_iterations=max_iterations)
+    q = solution.state
+    distance = np.linalg.norm(sensor.positions(q)[seen] - target, axis=1)
+    rms = float(np.sqrt((distance**2).mean())) if seen.any() else np.inf
+    return PoseFit(q, rms, np.linalg.inv(solution.equations.frames[0]), solution.converged)
+
+
+def _nearest_rotation(matrix: Array) -> Array:
+    u, _, vt = np.linalg.svd(matrix)
+    return u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt
+
+
+def _quaternion(rotation: Array) -> Array:
+    return Rotation.from_matrix(rotation).as_quat()

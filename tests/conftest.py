@@ -1,0 +1,21 @@
+"""Fixtures shared by all tests."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+
+@pytest.fixture(scope="session")
+def real_data() -> Path:
+    """Folder of the public reference captures, named by the environment variable MBKF_DATA.
+
+    Where it is not set a test is skipped, except in continuous integration (CI set), where it fails.
+    """
+    named = os.environ.get("MBKF_DATA", "")
+    if not named and not os.environ.get("CI"):
+        pytest.skip("MBKF_DATA is not set; it names the folder of the public reference captures")
+    folder = Path(named or "MBKF_DATA is not set")
+    if not folder.is_dir():
+        pytest.fail(f"no folder of reference captures: {folder}")
+    return folder
