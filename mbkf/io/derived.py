@@ -32,7 +32,7 @@ NAMED_KINDS = (
     ("power", re.compile(rf"{_SIDE}?[A-Z]\w*[a-z]Power")),
     ("scalar", re.compile(rf"{_SIDE}?(ArchHeight(Index)?|ViconLegLength)")),
     ("point", re.compile(r"(WholeBody|Body)?Cent(re|er)OfMass(Floor)?")),
-    ("point", re.compile(rf"{_SIDE}_?[HKASEW]J[C]")),
+    ("point", re.compile(rf"{_SIDE}_?[HKASEW]JC")),
 )
 """Names of model outputs that no one gives to a marker, whatever else the file holds."""
 

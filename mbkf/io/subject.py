@@ -16,12 +16,21 @@ from mbkf.errors import FileFormatError, InvalidInput
 
 @dataclass(frozen=True)
 class SubjectMarker:
-    """A marker on this subject: (3,) ``position_m`` in its segment's frame, ``noise_m`` per coordinate."""
+    """A marker on this subject.
+
+    Attributes:
+        name: Marker name.
+        segment: Segment that carries it.
+        position_m: (3,) position in the segment's frame, m.
+        noise_m: Measurement noise with skin movement, per coordinate, m.
+        placement_sd_m: How well its position is known, per coordinate, m; 0 when it was seen in scaling.
+    """
 
     name: str
     segment: str
     position_m: Array
     noise_m: float
+    placement_sd_m: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -71,6 +80,7 @@ def write_subject(subject: Subject, path: str | Path) -> None:
             f"segment = {_text(marker.segment)}",
             f"position_m = [{position}]",
             f"noise_m = {marker.noise_m!r}",
+            f"placement_sd_m = {marker.placement_sd_m!r}",
         ]
     if subject.report:
         lines += ["", "# How it was found: one JSON object.", f"report = {_text(json.dumps(subject.report))}"]
@@ -113,7 +123,8 @@ def _marker(entry: dict[str, Any]) -> SubjectMarker:
     position = read_only(entry["position_m"])
     if position.shape != (3,) or not np.isfinite(position).all():
         raise ValueError(f"marker {entry['name']} needs three finite coordinates")
-    return SubjectMarker(entry["name"], entry["segment"], position, float(entry["noise_m"]))
+    return SubjectMarker(entry["name"], entry["segment"], position, float(entry["noise_m"]),
+                         float(entry.get("placement_sd_m", 0.0)))
 
 
 def _text(value: str) -> str:

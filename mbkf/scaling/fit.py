@@ -16,7 +16,7 @@ from mbkf.model.description import load_body
 from mbkf.model.protocol import Protocol
 from mbkf.numerics.levenberg_marquardt import Solution, minimise
 from mbkf.scaling.frames import ScalingFrames, choose_frames
-from mbkf.scaling.problem import FACTOR_BOUNDS, ScalingProblem, ScalingSettings, ScalingState
+from mbkf.scaling.problem import FACTOR_BOUNDS, ScalingPrior, ScalingProblem, ScalingSettings, ScalingState
 from mbkf.sensors.pose_fit import segment_by_segment
 
 MAX_ITERATIONS = 60
@@ -80,7 +80,14 @@ def _problem(frames: ScalingFrames, static_trials: int, protocol: Protocol, heig
     weight = np.minimum(looks / counts, 1.0)[frames.trial]
     expected = 1.0 if height_m is None else height_m / body.reference_height_m
     stature = settings.stature_sd if height_m is None else settings.known_stature_sd
-    return ScalingProblem(body, frames.markers, measured_m, weight, expected, stature, settings.proportion_sd)
+    count = len(body.scale_factors)
+    prior = ScalingPrior(
+        factors=np.full(count, expected),
+        factor_covariance=settings.proportion_sd**2 * np.eye(count) + stature**2 * np.ones((count, count)),
+        offsets_m=np.zeros((len(frames.markers), 3)),
+        placement_sd_m=np.array([m.placement_sd_m for m in frames.markers]),
+    )
+    return ScalingProblem(body, frames.markers, measured_m, weight, prior)
 
 
 def _first_poses(problem: ScalingProblem) -> Array:
@@ -112,16 +119,16 @@ def _subject(problem: ScalingProblem, solution: Solution[ScalingState], frames: 
              protocol: Protocol, mass_kg: float, height_m: float | None, settings: ScalingSettings) -> Subject:
     state = solution.state
     local = problem.local_m(state.factors, state.offsets_m)
-    found = {m.name: (position, m.noise_m) for m, position in zip(problem.markers, local, strict=True)}
+    found = {m.name: position for m, position in zip(problem.markers, local, strict=True)}
     body = problem.body
     markers = []
     for marker in protocol.markers:
         if marker.kind == "computed":
             continue
         reference = (body.segment(marker.segment).scale_matrix @ state.factors) * marker.position_m
-        noise = float(np.hypot(marker.noise_m, marker.placement_sd_m))
-        position, noise = found.get(marker.name, (reference, noise))
-        markers.append(SubjectMarker(marker.name, marker.segment, position, noise))
+        seen = marker.name in found
+        markers.append(SubjectMarker(marker.name, marker.segment, found[marker.name] if seen else reference,
+                                     marker.noise_m, 0.0 if seen else marker.placement_sd_m))
     return Subject(
         body=body.name,
         mass_kg=float(mass_kg),

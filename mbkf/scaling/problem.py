@@ -4,8 +4,8 @@ Unknowns: the pose x_t of every frame, the independent scale factors k and an of
 reference place, shared by all frames. Residuals, each divided by its standard deviation:
 
     markers    r_b(x, k) + A_b(x) (D_b(k) m̄ + δ) − measured
-    placement  δ                     (tight for anatomical markers, loose for technical ones)
-    factors    k − stature           (bodies are alike in proportion, less so in size)
+    placement  δ − δ₀                (tight for anatomical markers, loose for technical ones)
+    factors    k − k₀                (bodies are alike in proportion, less so in size)
     posture    joint rotations       (what no marker sees stays near standing)
 """
 
@@ -59,6 +59,23 @@ class ScalingState:
     offsets_m: Array
 
 
+@dataclass(frozen=True)
+class ScalingPrior:
+    """What is known before the fit.
+
+    Attributes:
+        factors: (K,) expected scale factors k₀.
+        factor_covariance: (K, K) their covariance.
+        offsets_m: (M, 3) expected offsets δ₀ of the markers.
+        placement_sd_m: (M,) spread of each offset, per coordinate.
+    """
+
+    factors: Array
+    factor_covariance: Array
+    offsets_m: Array
+    placement_sd_m: Array
+
+
 class ScalingProblem:
     """Residuals of N frames of M markers.
 
@@ -67,30 +84,26 @@ class ScalingProblem:
         markers: The M protocol markers.
         measured_m: (N, M, 3) measured positions, NaN where missing.
         posture_weight: (N,) weight of each frame's posture prior.
-        expected_factor: Overall size about which the factors spread.
+        prior: What is expected of factors and offsets.
+        seen: (N, M) whether a marker is there.
     """
 
     def __init__(self, body: BodyDescription, markers: tuple[ProtocolMarker, ...], measured_m: Array,
-                 posture_weight: Array, expected_factor: float, stature_sd: float, proportion_sd: float) -> None:
-        self.body, self.markers = body, markers
+                 posture_weight: Array, prior: ScalingPrior) -> None:
+        self.body, self.markers, self.prior = body, markers, prior
         self.measured_m = read_only(measured_m)
         self.posture_weight = read_only(posture_weight)
-        self.expected_factor = expected_factor
-        self.seen = ~np.isnan(self.measured_m).any(axis=2)
+        self.seen = np.asarray(~np.isnan(self.measured_m).any(axis=2))
         self.noise_m = np.array([m.noise_m for m in markers])
-        self.placement_sd_m = np.array([m.placement_sd_m for m in markers])
         self.reference_m = np.array([m.position_m for m in markers])
         self.segments = tuple(m.segment for m in markers)
-        count = len(body.scale_factors)
-        covariance = proportion_sd**2 * np.eye(count) + stature_sd**2 * np.ones((count, count))
-        self.factor_root = np.linalg.cholesky(np.linalg.inv(covariance)).T
+        self.factor_root = np.linalg.cholesky(np.linalg.inv(prior.factor_covariance)).T
         self._segment_scale = np.array([body.segment(name).scale_matrix for name in self.segments])
         self.posture = PostureSensor(HumanModel.scaled(body=body.name))
 
     def start(self, poses: Array) -> ScalingState:
-        """State with all factors at the expected size and every marker at its reference place."""
-        return ScalingState(poses, np.full(len(self.body.scale_factors), self.expected_factor),
-                            np.zeros_like(self.reference_m))
+        """State with factors and offsets as expected."""
+        return ScalingState(poses, self.prior.factors, self.prior.offsets_m)
 
     def local_m(self, factors: Array, offsets_m: Array) -> Array:
         """(M, 3) marker positions in their segments' frames: D_b(k) m̄ + δ."""
@@ -114,8 +127,9 @@ class ScalingProblem:
         return float((errors**2).sum()) + posture + self._shared_cost(state)
 
     def _shared_cost(self, state: ScalingState) -> float:
-        factors = self.factor_root @ (state.factors - self.expected_factor)
-        return float((factors**2).sum() + ((state.offsets_m / self.placement_sd_m[:, None]) ** 2).sum())
+        factors = self.factor_root @ (state.factors - self.prior.factors)
+        offsets = (state.offsets_m - self.prior.offsets_m) / self.prior.placement_sd_m[:, None]
+        return float((factors**2).sum() + (offsets**2).sum())
 
     def move(self, state: ScalingState, own: Array, shared: Array) -> ScalingState:
         """The state after a step; factors stay inside their bounds."""
@@ -152,11 +166,11 @@ class ScalingProblem:
         corner, gradient = np.zeros((shared, shared)), np.zeros(shared)
         information = self.factor_root.T @ self.factor_root
         corner[:count, :count] = information
-        gradient[:count] = information @ (state.factors - self.expected_factor)
-        precision = np.repeat(1.0 / self.placement_sd_m**2, 3)
+        gradient[:count] = information @ (state.factors - self.prior.factors)
+        precision = np.repeat(1.0 / self.prior.placement_sd_m**2, 3)
         offsets = np.arange(count, shared)
         corner[offsets, offsets] = precision
-        gradient[count:] = precision * state.offsets_m.ravel()
+        gradient[count:] = precision * (state.offsets_m - self.prior.offsets_m).ravel()
         return corner, gradient
 
     def _frame(self, sensor: MarkerSensor, q: Array, t: int) -> tuple[Array, Array, Array]:

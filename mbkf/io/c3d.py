@@ -1,0 +1,166 @@
+"""Reading C3D files: markers, derived points, force plates, analog channels and events in one capture."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mbkf.errors import FileFormatError, UnknownName
+from mbkf.io.axes import WORLD_AXES, check_body_size, length_unit, up_axis
+from mbkf.io.c3d_analog import analog_channels, events, plate_readings, raw_plates
+from mbkf.io.c3d_layout import C3dLayout, check_frames, check_layout
+from mbkf.io.c3d_parameters import Parameters
+from mbkf.io.c3d_plates import RawPlate, plate_axes
+from mbkf.io.c3d_points import read_points
+from mbkf.io.c3d_write import write_c3d
+from mbkf.io.records import Capture
+from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
+
+__all__ = ["read_c3d", "write_c3d"]
+
+
+def read_c3d(
+    path: str | Path,
+    *,
+    up: str | None = None,
+    unit: str | None = None,
+    cop_threshold_n: float = DEFAULT_COP_THRESHOLD_N,
+    tare: bool = True,
+    plates: bool = True,
+) -> Capture:
+    """Read a C3D file.
+
+    Positions, forces and moments come out in SI units and world axes (z up), forces as those of the plate on
+    the body. Derived points and analog channels stay in the file's own units and axes.
+
+    Args:
+        path: The file.
+        up: Axis of the file that points up ("x", "-y", "z" …); by default the normal of the force plates
+            decides, then POINT:Y_SCREEN, then z.
+        unit: Length unit of the file; by default POINT:UNITS, mm where that is empty.
+        cop_threshold_n: Vertical force in N below which no centre of pressure is given.
+        tare: Whether the offset a plate shows without load is removed.
+        plates: Whether force plates are read; False for a file whose plates are not usable.
+
+    Returns:
+        The capture; its times are the file's own (frame 1 at 0 s).
+
+    Raises:
+        FileFormatError: The file is missing, no C3D file, cut short, or a plate is not usable.
+        InvalidInput: A force is not a number, or the length unit cannot be right.
+        UnknownName: Unknown axis or unit.
+    """
+    path = Path(path)
+    layout = check_layout(path)
+    content = _load(path)
+    parameters = Parameters(content["parameters"])
+    _check_complete(path, layout, parameters, content["data"]["points"].shape[2])
+    rate_hz = _rate(path, content, parameters)
+    start_s = max(layout.first_frame - 1, 0) / rate_hz
+
+    notes: list[str] = []
+    used_unit = _length_unit(path, parameters, unit, notes)
+    raw = raw_plates(path, content, parameters, used_unit, notes) if plates else []
+    used_up = up_axis(up) if up is not None else _up_axis(parameters, raw, notes)
+    markers, derived = read_points(content, parameters, used_up, used_unit, rate_hz, start_s, notes)
+    if unit is None:
+        notes += check_body_size(markers.positions_m, used_unit, str(path))
+    analog = analog_channels(content, parameters)
+    return Capture(
+        path=str(path),
+        markers=markers,
+        plates=tuple(
+            plate_readings(plate, path, used_unit, used_up, start_s, cop_threshold_n, tare, notes) for plate in raw
+        ),
+        derived=derived,
+        analog=analog,
+        events=events(content, parameters),
+        up_axis=used_up,
+        length_unit=used_unit,
+        notes=tuple(notes),
+        subject_mass_kg=_mass_kg(parameters),
+    )
+
+
+def _load(path: Path) -> Any:
+    """The file's content as ezc3d gives it; whatever ezc3d throws becomes one kind of error."""
+    import ezc3d
+
+    try:
+        return ezc3d.c3d(str(path))
+    except (OSError, RuntimeError, ValueError, TypeError, IndexError, KeyError, MemoryError) as error:
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise FileFormatError(path, f"cannot be read as C3D ({reason}); export it again") from error
+
+
+def _check_complete(path: Path, layout: C3dLayout, parameters: Parameters, frames_read: int) -> None:
+    """Compare what was read with what header and parameters promise (the header ends at 65535 frames)."""
+    promised = layout.frames
+    actual = parameters.numbers("TRIAL", "ACTUAL_END_FIELD").ravel()
+    first = parameters.numbers("TRIAL", "ACTUAL_START_FIELD").ravel()
+    if len(actual) == 2 and len(first) == 2:  # 32-bit numbers in two 16-bit words, low word first
+        words = np.array([1, 65536])
+        promised = max(promised, int((actual % 65536) @ words - (first % 65536) @ words) + 1)
+    check_frames(path, layout, promised)
+    if frames_read < layout.frames:
+        raise FileFormatError(path, f"only {frames_read} of {layout.frames} frames can be read; export it again")
+
+
+def _rate(path: Path, content: Any, parameters: Parameters) -> float:
+    rate_hz = parameters.number("POINT", "RATE") or float(content["header"]["points"]["frame_rate"])
+    if not (math.isfinite(rate_hz) and rate_hz > 0.0):
+        raise FileFormatError(path, f"POINT:RATE is {rate_hz:g}, not a frame rate; export the trial again")
+    return single_precision(rate_hz)
+
+
+def single_precision(value: float) -> float:
+    """The shortest decimal number a 32-bit float stands for: 59.94 instead of 59.939998626708984."""
+    return float(str(np.float32(value)))
+
+
+def _length_unit(path: Path, parameters: Parameters, given: str | None, notes: list[str]) -> str:
+    if given is not None:
+        return length_unit(given)
+    stated = parameters.text("POINT", "UNITS")
+    if not stated:
+        notes.append("POINT:UNITS is empty; lengths taken as mm, the default of C3D")
+        return "mm"
+    try:
+        return length_unit(stated)
+    except UnknownName as error:
+        reason = f"POINT:UNITS is '{stated}', no unit of length; give it with --unit (mm, cm or m)"
+        raise FileFormatError(path, reason) from error
+
+
+def _up_axis(parameters: Parameters, plates: list[RawPlate], notes: list[str]) -> str:
+    """The axis that points up, from the plates' surfaces, else from the screen axes, else z."""
+    screen = parameters.text("POINT", "Y_SCREEN").lower().removeprefix("+")
+    from_plates = {_nearest_axis(-plate_axes(plate.corners)[:, 2]) for plate in plates}
+    if len(from_plates) == 1:
+        axis = from_plates.pop()
+        if screen in WORLD_AXES and screen != axis:
+            notes.append(f"force plates face {axis}, POINT:Y_SCREEN says {screen}; taken as up: {axis}")
+        return axis
+    if from_plates:
+        notes.append(f"force plates face different axes ({', '.join(sorted(from_plates))})")
+    if screen in WORLD_AXES:
+        return screen
+    notes.append("neither force plates nor POINT:Y_SCREEN say which axis points up; taken as z (--up changes it)")
+    return "z"
+
+
+def _nearest_axis(direction: np.ndarray) -> str:
+    axis = int(np.argmax(np.abs(direction)))
+    return ("-" if direction[axis] < 0.0 else "") + "xyz"[axis]
+
+
+def _mass_kg(parameters: Parameters) -> float | None:
+    """Body mass stated in PROCESSING or SUBJECTS, if it is one."""
+    for group, name in (("PROCESSING", "BODYMASS"), ("SUBJECTS", "BODYMASS"), ("SUBJECTS", "WEIGHT")):
+        mass = parameters.number(group, name)
+        if math.isfinite(mass) and mass > 0.0:
+            return single_precision(mass)
+    return None

@@ -1,0 +1,209 @@
+"""Analog side of a C3D file: channels as stored, force plates as readings in world axes, events."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.errors import FileFormatError
+from mbkf.io.axes import METRES_PER_UNIT, rotation_to_world
+from mbkf.io.c3d_parameters import Parameters
+from mbkf.io.c3d_plates import RawPlate, check_geometry, wrench_at_surface
+from mbkf.io.records import AnalogChannel, Event, PlateReadings
+from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare, require_finite
+
+_OFF_PLATE_M = 0.1
+_OFF_PLATE_SHARE = 0.5
+
+
+def analog_rate_hz(content: Any, parameters: Parameters) -> float:
+    """Sample rate of the analog channels in Hz, from their number per frame."""
+    frames = content["data"]["points"].shape[2]
+    samples = content["data"]["analogs"].shape[2]
+    rate_hz = parameters.number("POINT", "RATE") or float(content["header"]["points"]["frame_rate"])
+    per_frame = samples / frames if frames else 0.0
+    return float(str(np.float32(rate_hz * per_frame)))
+
+
+def analog_channels(content: Any, parameters: Parameters) -> tuple[AnalogChannel, ...]:
+    """Every analog channel, scaled as the file says, in its own unit.
+
+    Args:
+        content: What ezc3d read.
+        parameters: Its parameters.
+
+    Returns:
+        The channels in the file's order.
+    """
+    values = content["data"]["analogs"][0]
+    if not values.size:
+        return ()
+    labels, units = parameters.texts("ANALOG", "LABELS"), parameters.texts("ANALOG", "UNITS")
+    rate_hz = analog_rate_hz(content, parameters)
+    return tuple(
+        AnalogChannel(
+            name=(labels[i] if i < len(labels) else "") or f"channel {i + 1}",
+            values=np.array(row, dtype=np.float64),
+            unit=units[i] if i < len(units) else "",
+            rate_hz=rate_hz,
+        )
+        for i, row in enumerate(values)
+    )
+
+
+def raw_plates(
+    path: Path, content: Any, parameters: Parameters, unit: str, notes: list[str]
+) -> list[RawPlate]:
+    """The force plates a file declares, checked but not yet converted.
+
+    Args:
+        path: The file, for messages.
+        content: What ezc3d read.
+        parameters: Its parameters.
+        unit: The file's length unit.
+        notes: Receives which plates are skipped, because no channel belongs to them.
+
+    Returns:
+        The plates; empty where the file has none.
+
+    Raises:
+        FileFormatError: A plate is not usable: type, channels, corners or calibration.
+    """
+    analog = content["data"]["analogs"][0]
+    used = int(parameters.number("FORCE_PLATFORM", "USED"))
+    kinds = parameters.numbers("FORCE_PLATFORM", "TYPE").ravel()
+    channels = parameters.per_plate("CHANNEL", (-1,))
+    corners = parameters.per_plate("CORNERS", (3, 4))
+    origins = parameters.per_plate("ORIGIN", (3,))
+    calibrations = parameters.per_plate("CAL_MATRIX", (6, 6))
+    units = parameters.texts("ANALOG", "UNITS") + [""] * len(analog)
+    plates = []
+    for i in range(used):
+        indices = channels[i].astype(int) - 1 if i < len(channels) else np.zeros(0, dtype=int)
+        indices = indices[indices >= 0]
+        if not analog.size or not indices.size:
+            notes.append(f"force plate {i + 1} has no analog channels and is left out")
+            continue
+        if indices.max() >= len(analog):
+            reason = f"force plate {i + 1} names channel {indices.max() + 1}, the file has {len(analog)}"
+            raise FileFormatError(path, f"{reason}; export it again or use --forces")
+        plate = RawPlate(
+            number=i + 1,
+            kind=int(kinds[i]) if i < len(kinds) else 0,
+            corners=corners[i] if i < len(corners) else np.zeros((3, 4)),
+            origin=origins[i] if i < len(origins) else np.zeros(3),
+            readings=np.asarray(analog[indices], dtype=np.float64).T,
+            units=tuple(units[k] for k in indices),
+            rate_hz=analog_rate_hz(content, parameters),
+            calibration=calibrations[i] if i < len(calibrations) else None,
+        )
+        check_geometry(plate, str(path), unit)
+        plates.append(plate)
+    return plates
+
+
+def plate_readings(
+    plate: RawPlate,
+    path: Path,
+    unit: str,
+    up: str,
+    start_time_s: float,
+    threshold_n: float,
+    tare: bool,
+    notes: list[str],
+) -> PlateReadings:
+    """One plate in SI units and world axes.
+
+    Args:
+        plate: The checked plate.
+        path: The file, for messages.
+        unit: The file's length unit.
+        up: Axis of the file that points up.
+        start_time_s: Time of the first sample in s.
+        threshold_n: Vertical force in N below which no centre of pressure is given.
+        tare: Whether to remove the offset of the unloaded plate.
+        notes: Receives offsets removed and doubts about the plate.
+
+    Returns:
+        Force on the body, moment about the centre of the surface, centre of pressure.
+
+    Raises:
+        InvalidInput: A force or moment is not a number.
+    """
+    rotation = rotation_to_world(up)
+    corners = (rotation @ plate.corners * METRES_PER_UNIT[unit]).T
+    centre = corners.mean(axis=0)
+    wrench = wrench_at_surface(plate, unit)
+    wrench = np.hstack([wrench[:, :3] @ rotation.T, wrench[:, 3:] @ rotation.T])
+    name = f"force plate {plate.number}"
+    require_finite(wrench[:, :3], wrench[:, 3:], plate.rate_hz, start_time_s, f"{path}, {name}")
+    offset = np.zeros(6)
+    if tare:
+        found = find_tare(wrench, plate.rate_hz)
+        wrench, offset = remove_tare(wrench, found), found.offset
+        if not found.found:
+            notes.append(f"{name} is loaded all the time; no offset removed")
+        elif abs(offset[2]) >= 0.5:
+            notes.append(f"{name}: offset of {offset[2]:+.1f} N vertical force removed")
+    normal = np.cross(corners[0] - corners[2], corners[1] - corners[3])
+    normal *= np.sign(normal[2]) / np.linalg.norm(normal) if normal[2] else 1.0 / np.linalg.norm(normal)
+    pressure = centre_of_pressure(wrench[:, :3], wrench[:, 3:], centre, normal, threshold_n)
+    notes += _doubts(name, wrench, pressure, corners, threshold_n)
+    return PlateReadings(
+        name=str(plate.number),
+        rate_hz=plate.rate_hz,
+        start_time_s=start_time_s,
+        origin_m=centre,
+        force_n=wrench[:, :3],
+        moment_nm=wrench[:, 3:],
+        centre_of_pressure_m=pressure,
+        threshold_n=threshold_n,
+        corners_m=corners,
+        offset=offset,
+    )
+
+
+def _doubts(name: str, wrench: Array, pressure: Array, corners: Array, threshold_n: float) -> list[str]:
+    """Remarks on readings that a person cannot have caused."""
+    doubts = []
+    vertical = wrench[:, 2]
+    if vertical.min() < -5.0 * threshold_n and -vertical.min() > vertical.max():
+        doubts.append(f"{name} pulls the body down by up to {-vertical.min():.0f} N; check signs and CORNERS")
+    seen = pressure[~np.isnan(pressure).any(axis=1)]
+    if len(seen):
+        half = np.abs(corners - corners.mean(axis=0)).max(axis=0) + _OFF_PLATE_M
+        off = (np.abs(seen - corners.mean(axis=0)) > half).any(axis=1).mean()
+        if off > _OFF_PLATE_SHARE:
+            doubts.append(f"{name}: centre of pressure lies off the plate {off:.0%} of the time; check CORNERS")
+    return doubts
+
+
+def events(content: Any, parameters: Parameters) -> tuple[Event, ...]:
+    """Labelled instants, from the group EVENT, or from the header where that group has none.
+
+    Args:
+        content: What ezc3d read.
+        parameters: Its parameters; EVENT:TIMES holds minutes and seconds.
+
+    Returns:
+        Events in order of time.
+    """
+    times = parameters.numbers("EVENT", "TIMES")
+    labels, contexts = parameters.texts("EVENT", "LABELS"), parameters.texts("EVENT", "CONTEXTS")
+    found = []
+    if times.size and times.shape[0] == 2:
+        seconds = 60.0 * times[0] + times[1]
+        for i, time_s in enumerate(np.atleast_1d(seconds)):
+            label = labels[i] if i < len(labels) else ""
+            context = contexts[i] if i < len(contexts) else ""
+            found.append(Event(label, context, round(float(time_s), 6)))
+    else:
+        header = content["header"].get("events", {})
+        names, stamps = header.get("events_label", ()), header.get("events_time", ())
+        for name, stamp in zip(names, stamps, strict=False):
+            if str(name).strip():
+                found.append(Event(str(name).strip(), "", round(float(stamp), 6)))
+    return tuple(sorted(found, key=lambda event: event.time_s))

@@ -1,0 +1,76 @@
+"""Parameters of a C3D file, whatever their case, number of continuation lists and odd dimensions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from mbkf.conventions import Array
+
+CONTINUATIONS = 1000
+"""More lists than this (LABELS2, LABELS3 …) no file has."""
+
+
+class Parameters:
+    """Read access to the parameters ezc3d returns; names are found in any case, missing ones are empty."""
+
+    def __init__(self, groups: Mapping[str, Mapping[str, Any]]) -> None:
+        self._groups = {
+            group.upper(): {name.upper(): entry["value"] for name, entry in members.items() if "value" in entry}
+            for group, members in groups.items()
+        }
+
+    def group(self, group: str) -> dict[str, Any]:
+        """All parameters of a group, name in capitals → value."""
+        return dict(self._groups.get(group.upper(), {}))
+
+    def numbers(self, group: str, name: str) -> Array:
+        """A parameter as an array of numbers; empty where it is missing or text."""
+        value = self._groups.get(group.upper(), {}).get(name.upper(), ())
+        try:
+            return np.asarray(value, dtype=np.float64)
+        except (TypeError, ValueError):
+            return np.zeros(0)
+
+    def number(self, group: str, name: str, default: float = 0.0) -> float:
+        """First number of a parameter."""
+        values = self.numbers(group, name).ravel()
+        return float(values[0]) if len(values) else default
+
+    def texts(self, group: str, name: str) -> list[str]:
+        """A parameter as texts without surrounding blanks, its continuations (NAME2, NAME3 …) appended."""
+        found: list[str] = []
+        members = self._groups.get(group.upper(), {})
+        for number in range(1, CONTINUATIONS):
+            key = name.upper() + (str(number) if number > 1 else "")
+            if key not in members:
+                break
+            value = members[key]
+            words = [value] if isinstance(value, str) else list(np.ravel(np.asarray(value, dtype=object)))
+            found += [str(word).strip() for word in words]
+        return found
+
+    def text(self, group: str, name: str) -> str:
+        """First text of a parameter, "" where it is missing."""
+        return next(iter(self.texts(group, name)), "")
+
+    def per_plate(self, name: str, shape: tuple[int, ...]) -> list[Array]:
+        """An array parameter of FORCE_PLATFORM cut into one block per plate.
+
+        Args:
+            name: CORNERS, ORIGIN, CHANNEL or CAL_MATRIX.
+            shape: Shape of one plate's block; −1 stands for what the file has.
+
+        Returns:
+            The blocks; a shorter list than plates where the parameter is short.
+        """
+        values = self.numbers("FORCE_PLATFORM", name)
+        if not values.size:
+            return []
+        rows = tuple(values.shape[0] if size == -1 else size for size in shape)
+        block = int(np.prod(rows))
+        flat = values.ravel(order="F")
+        count = len(flat) // block
+        return [flat[i * block : (i + 1) * block].reshape(rows, order="F") for i in range(count)]

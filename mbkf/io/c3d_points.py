@@ -1,0 +1,114 @@
+"""Points of a C3D file: labels made unambiguous, measured markers and derived points told apart."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.io.axes import positions_to_world
+from mbkf.io.c3d_parameters import Parameters
+from mbkf.io.derived import UNIT_PARAMETERS, classify, group_kinds
+from mbkf.io.records import DerivedPoint, MarkerTrajectories
+
+
+def read_points(
+    content: Any,
+    parameters: Parameters,
+    up: str,
+    unit: str,
+    rate_hz: float,
+    start_time_s: float,
+    notes: list[str],
+) -> tuple[MarkerTrajectories, tuple[DerivedPoint, ...]]:
+    """Markers and derived points of a file.
+
+    Args:
+        content: What ezc3d read.
+        parameters: Its parameters.
+        up: Axis of the file that points up.
+        unit: Length unit of the file.
+        rate_hz: Frame rate in Hz.
+        start_time_s: Time of the first frame in s.
+        notes: Receives remarks on labels.
+
+    Returns:
+        Measured markers in m and world axes, and the derived points as the file has them.
+    """
+    points = np.asarray(content["data"]["points"][:3], dtype=np.float64).transpose(2, 1, 0)
+    present = _present(content, points)
+    labels = point_labels(parameters, points.shape[1], notes)
+    kinds = classify(labels, _listed(parameters))
+    measured = [i for i, label in enumerate(labels) if label not in kinds]
+    positions = positions_to_world(points[:, measured], present[:, measured], up, unit)
+    markers = MarkerTrajectories(tuple(labels[i] for i in measured), positions, rate_hz, start_time_s)
+    derived = tuple(
+        DerivedPoint(
+            name=label,
+            kind=kinds[label],
+            values=np.where(present[:, i, None], points[:, i], np.nan),
+            unit=parameters.text("POINT", UNIT_PARAMETERS[kinds[label]]),
+        )
+        for i, label in enumerate(labels)
+        if label in kinds
+    )
+    return markers, derived
+
+
+def point_labels(parameters: Parameters, count: int, notes: list[str]) -> list[str]:
+    """One unique label per point.
+
+    Missing labels become ``*i`` (i counted from 0), a subject's name before all labels ("Anna:LASI") is taken
+    off, and repeated labels get a number.
+
+    Args:
+        parameters: The file's parameters; labels continue in POINT:LABELS2, LABELS3 ….
+        count: Number of points.
+        notes: Receives what was changed.
+
+    Returns:
+        ``count`` labels.
+    """
+    labels = parameters.texts("POINT", "LABELS")[:count]
+    if len(labels) < count:
+        notes.append(f"{count - len(labels)} of {count} points have no label; named by their number")
+    labels += [""] * (count - len(labels))
+    labels = [label or f"*{i}" for i, label in enumerate(labels)]
+    subjects = {label.partition(":")[0] for label in labels if ":" in label}
+    if len(subjects) == 1:
+        prefix = f"{subjects.pop()}:"
+        labels = [label.removeprefix(prefix) or label for label in labels]
+    return _unique(labels, notes)
+
+
+def _unique(labels: list[str], notes: list[str]) -> list[str]:
+    taken = set(labels)
+    seen: set[str] = set()
+    result, renamed = [], []
+    for label in labels:
+        name, number = label, 2
+        while name in seen or (name != label and name in taken):
+            name, number = f"{label}_{number}", number + 1
+        if name != label:
+            renamed.append(f"{label} → {name}")
+        seen.add(name)
+        result.append(name)
+    if renamed:
+        notes.append(f"labels that occur more than once were renamed: {', '.join(renamed[:6])}")
+    return result
+
+
+def _present(content: Any, points: Array) -> BoolArray:
+    """(T, N) whether a point was seen: residual not negative, coordinates numbers and not all zero."""
+    residuals = np.asarray(content["data"]["meta_points"]["residuals"], dtype=np.float64)
+    present = np.isfinite(points).all(axis=2)
+    if residuals.shape == (1, points.shape[1], points.shape[0]):
+        present &= residuals[0].T >= 0.0
+    return present
+
+
+def _listed(parameters: Parameters) -> dict[str, str]:
+    """Label → kind of the points the file itself declares derived."""
+    kinds = group_kinds(parameters.group("POINT"))
+    return {label: kind for group, kind in kinds.items() for label in parameters.texts("POINT", group)}

@@ -1,0 +1,159 @@
+"""Writing captures as C3D files that this package and other software read back."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.errors import InvalidInput
+from mbkf.io.atomic import replacing
+from mbkf.io.axes import METRES_PER_UNIT, length_unit, rotation_to_world
+from mbkf.io.c3d_plates import plate_axes
+from mbkf.io.derived import GROUP_KINDS, UNIT_PARAMETERS
+from mbkf.io.records import Capture, DerivedPoint, PlateReadings
+
+_MM = 1000.0
+_DEFAULT_HALF_SIDES_M = np.array([[0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2], [0.3, -0.2]])
+"""Corners given to a plate whose geometry is not known, about the point its moments refer to."""
+
+_CHANNELS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
+
+
+def write_c3d(capture: Capture, path: str | Path) -> None:
+    """Write a capture as C3D: z up, mm, plates of type 2 with their offset already removed.
+
+    Missing samples get residual −1. Plate and analog samples are interpolated to a whole number per frame
+    where they are not; where a recording does not reach, they hold 0. C3D stores 32-bit floats.
+
+    Args:
+        capture: What to write; markers may be labelled or unlabelled (``*0`` …).
+        path: The file, replaced whole or not at all; its suffix is ``.c3d``.
+
+    Raises:
+        InvalidInput: The name does not end in ``.c3d``, or the capture has no frames.
+        OSError: The file cannot be written.
+    """
+    import ezc3d
+
+    path = Path(path)
+    if path.suffix.lower() != ".c3d":
+        raise InvalidInput(f"{path}: a C3D file is named .c3d; change the name")
+    if not capture.markers.frames:
+        raise InvalidInput(f"{path}: nothing to write, the capture has no frames")
+    content = ezc3d.c3d()
+    markers = capture.markers
+    content["header"]["points"]["first_frame"] = max(round(markers.start_time_s * markers.rate_hz), 0)
+    _fill_points(content, capture)
+    _fill_analog(content, capture)
+    _fill_events(content, capture)
+    if capture.subject_mass_kg is not None:
+        content.add_parameter("PROCESSING", "Bodymass", [float(capture.subject_mass_kg)])
+    with replacing(path.with_suffix(".c3d")) as temporary:
+        content.write(str(temporary))
+
+
+def _fill_points(content: Any, capture: Capture) -> None:
+    markers, derived = capture.markers, capture.derived
+    values = [markers.positions_m * _MM]
+    values += [_in_file_axes(point, capture)[:, None, :] for point in derived]
+    points = np.concatenate(values, axis=1)
+    missing = ~np.isfinite(points).all(axis=2)
+    points = np.where(missing[:, :, None], 0.0, points)
+    group = content["parameters"]["POINT"]
+    group["LABELS"]["value"] = [*markers.names, *(point.name for point in derived)]
+    group["UNITS"]["value"] = ["mm"]
+    group["RATE"]["value"] = np.array([markers.rate_hz])
+    content["data"]["points"] = np.concatenate([points, np.ones_like(points[:, :, :1])], axis=2).transpose(2, 1, 0)
+    content["data"]["meta_points"]["residuals"] = np.where(missing, -1.0, 0.0).T[None]
+    content.add_parameter("POINT", "X_SCREEN", ["+X"])
+    content.add_parameter("POINT", "Y_SCREEN", ["+Z"])
+    for name, kind in GROUP_KINDS.items():
+        listed = [point for point in derived if point.kind == kind]
+        if listed:
+            content.add_parameter("POINT", name, [point.name for point in listed])
+            content.add_parameter("POINT", UNIT_PARAMETERS[kind], [listed[0].unit])
+
+
+def _in_file_axes(point: DerivedPoint, capture: Capture) -> Array:
+    """Values to store: places in mm and world axes, all other kinds as they are."""
+    if point.kind != "point":
+        return point.values
+    unit = length_unit(point.unit or capture.length_unit)
+    return point.values @ rotation_to_world(capture.up_axis).T * (METRES_PER_UNIT[unit] * _MM)
+
+
+def _fill_analog(content: Any, capture: Capture) -> None:
+    """Six channels per plate, then every analog channel with a name of its own."""
+    markers = capture.markers
+    rates = [plate.rate_hz for plate in capture.plates] + [channel.rate_hz for channel in capture.analog]
+    if not rates:
+        return
+    per_frame = max(1, round(max(rates) / markers.rate_hz))
+    rate_hz = per_frame * markers.rate_hz
+    times = markers.start_time_s + np.arange(markers.frames * per_frame) / rate_hz
+    rows: list[Array] = []
+    names: list[str] = []
+    units: list[str] = []
+    corners = []
+    for number, plate in enumerate(capture.plates, start=1):
+        outline = _corners(plate)
+        corners.append(outline)
+        wrench = _plate_channels(plate, outline)
+        rows += [np.interp(times, plate.times_s, row, left=0.0, right=0.0) for row in wrench.T]
+        names += [f"{channel}{number}" for channel in _CHANNELS]
+        units += ["N"] * 3 + ["Nmm"] * 3
+    for channel in capture.analog:
+        if channel.name not in names:
+            stamps = markers.start_time_s + np.arange(len(channel.values)) / channel.rate_hz
+            rows.append(np.interp(times, stamps, channel.values, left=0.0, right=0.0))
+            names.append(channel.name)
+            units.append(channel.unit)
+    group = content["parameters"]["ANALOG"]
+    group["RATE"]["value"] = np.array([rate_hz])
+    group["LABELS"]["value"] = names
+    group["UNITS"]["value"] = units
+    content["data"]["analogs"] = np.array(rows)[None]
+    if corners:
+        _declare_plates(content, corners)
+
+
+def _declare_plates(content: Any, corners: list[Array]) -> None:
+    count = len(corners)
+    group = "FORCE_PLATFORM"
+    content.add_parameter(group, "USED", count)
+    content.add_parameter(group, "TYPE", [2] * count)
+    content.add_parameter(group, "ZERO", [1, 0])
+    content.add_parameter(group, "CORNERS", np.stack([outline.T * _MM for outline in corners], axis=2))
+    content.add_parameter(group, "ORIGIN", np.zeros((3, count)))
+    channels = np.arange(1, 6 * count + 1).reshape(6, count, order="F")
+    content.add_parameter(group, "CHANNEL", channels.astype(float))
+
+
+def _corners(plate: PlateReadings) -> Array:
+    """(4, 3) corners in m; an outline about the reference point where the geometry is not known."""
+    if plate.corners_m is not None:
+        return plate.corners_m
+    outline = np.tile(plate.origin_m, (4, 1))
+    # Seen from above, x and −y to the quadrants, so that the plate's own z points down.
+    outline[:, :2] += _DEFAULT_HALF_SIDES_M * [1.0, -1.0]
+    return outline
+
+
+def _plate_channels(plate: PlateReadings, corners: Array) -> Array:
+    """(S, 6) force in N and moment in N mm about the middle of the corners, in the plate's own axes."""
+    axes = plate_axes(corners.T)
+    moment = plate.moment_nm + np.cross(plate.origin_m - corners.mean(axis=0), plate.force_n)
+    return np.hstack([plate.force_n @ axes, moment @ axes * _MM])
+
+
+def _fill_events(content: Any, capture: Capture) -> None:
+    if not capture.events:
+        return
+    minutes, seconds = np.divmod([event.time_s for event in capture.events], 60.0)
+    content.add_parameter("EVENT", "USED", len(capture.events))
+    content.add_parameter("EVENT", "CONTEXTS", [event.context for event in capture.events])
+    content.add_parameter("EVENT", "LABELS", [event.label for event in capture.events])
+    content.add_parameter("EVENT", "TIMES", np.vstack([minutes, seconds]))

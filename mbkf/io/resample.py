@@ -1,0 +1,69 @@
+"""Plate readings brought to the frames of the markers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array, read_only
+from mbkf.io.records import PlateReadings
+
+
+@dataclass(frozen=True)
+class FrameLoads:
+    """Mean reading of one plate per marker frame.
+
+    Attributes:
+        force_n: (T, 3) mean force on the body in N, world axes; NaN where the plate was not recorded.
+        moment_nm: (T, 3) mean moment about the plate's origin in N m.
+    """
+
+    force_n: Array
+    moment_nm: Array
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "force_n", read_only(self.force_n))
+        object.__setattr__(self, "moment_nm", read_only(self.moment_nm))
+
+
+def average_over_frames(plate: PlateReadings, frame_times_s: Array, rate_hz: float) -> FrameLoads:
+    """Mean force and moment over each frame, from half a frame before its time to half a frame after.
+
+    The readings are joined by straight lines, f(t), and the mean is ∫ f dt / Δt over the part of the window
+    inside the recording, so that rates need not divide each other and no half sample of delay arises.
+
+    Args:
+        plate: Readings at any rate.
+        frame_times_s: (T,) times of the frames in s.
+        rate_hz: Frame rate in Hz.
+
+    Returns:
+        Mean readings; NaN for frames more than half a sample outside the recording.
+    """
+    times = np.asarray(frame_times_s, dtype=np.float64)
+    samples = np.hstack([plate.force_n, plate.moment_nm])
+    if not len(samples):
+        empty = np.full((len(times), 3), np.nan)
+        return FrameLoads(empty, empty)
+    last = len(samples) - 1
+    position = (times - plate.start_time_s) * plate.rate_hz  # in samples
+    half = 0.5 * plate.rate_hz / rate_hz
+    low, high = (np.clip(position + side * half, 0.0, last) for side in (-1.0, 1.0))
+    steps = 0.5 * (samples[1:] + samples[:-1])
+    integral = np.vstack([np.zeros((1, 6)), np.cumsum(steps, axis=0)])
+    area = _integral_at(high, samples, integral) - _integral_at(low, samples, integral)
+    width = (high - low)[:, None]
+    single = samples[np.clip(np.round(position), 0, last).astype(int)]
+    means = np.where(width > 1e-9, area / np.maximum(width, 1e-9), single)
+    inside = (position >= -0.5) & (position <= last + 0.5)
+    means = np.where(inside[:, None], means, np.nan)
+    return FrameLoads(means[:, :3], means[:, 3:])
+
+
+def _integral_at(position: Array, samples: Array, integral: Array) -> Array:
+    """Integral of the joined samples from the first one to a place between them, in samples."""
+    floor = np.minimum(position.astype(int), max(len(samples) - 2, 0))
+    rest = (position - floor)[:, None]
+    following = samples[np.minimum(floor + 1, len(samples) - 1)]
+    return integral[floor] + rest * (samples[floor] + 0.5 * rest * (following - samples[floor]))

@@ -1,0 +1,202 @@
+"""The result of a reconstruction: motion, torques and reactions together, each with its standard deviation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray, read_only
+from mbkf.errors import ShapeError, UnknownName
+from mbkf.io.subject import Subject
+
+SHAPES: dict[str, str] = {
+    "times_s": "T", "q": "T nq", "v": "T nv", "a": "T nv", "tau": "T nv",
+    "sd_q": "T nv", "sd_v": "T nv", "sd_tau": "T nv",
+    "angles": "T A", "angle_rates": "T A", "moments": "T A",
+    "angles_sd": "T A", "angle_rates_sd": "T A", "moments_sd": "T A", "singular": "T A",
+    "measured_m": "T M 3", "predicted_m": "T M 3", "hidden": "T M", "rejected": "T M",
+    "foot_wrench": "T 2 6", "foot_cop_m": "T 2 3", "foot_free_moment_nm": "T 2",
+    "residual_force_n": "T 3", "residual_moment_nm": "T 3", "tracked": "T", "valid": "T",
+    "nis": "T", "nis_readings": "T", "step_seconds": "T", "plate_change": "T P 6", "covariance": "T 2nv 2nv",
+}  # fmt: skip
+"""Dimensions of every array of a :class:`Reconstruction`: T frames, nv dofs, A coordinates, M markers, P plates."""
+
+DTYPES: dict[str, type] = {name: np.bool_ for name in ("singular", "hidden", "rejected", "tracked", "valid")}
+DTYPES["nis_readings"] = np.int64
+"""Arrays that are not floating-point."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reconstruction:
+    """What a filter found in one trial. Arrays are read-only; world axes are x forward, y left, z up.
+
+    Attributes:
+        trial: Name of the trial.
+        protocol: Marker protocol.
+        filter: "kinematic", "torque" or "dynamic".
+        smoothed: Whether later frames were used, too.
+        version: Version of mbkf.
+        subject: The scaled person.
+        rate_hz: Frame rate.
+        times_s: (T,) times of the frames.
+        dof_names: (nv,) tangent dofs, e.g. ``"right_thigh_x"`` (see ``mbkf.model.clinical.dof_names``).
+        q: (T, nq) configurations.
+        v, a: (T, nv) tangent velocities and accelerations.
+        tau: (T, nv) generalised forces; the first six are the residual at the pelvis in its axes.
+        sd_q, sd_v, sd_tau: (T, nv) standard deviations in the tangent space, NaN where not known.
+        coordinate_names: (A,) clinical coordinates, OpenSim's names where it has them.
+        angles, angle_rates, moments: (T, A) coordinates, their rates and conjugate moments: rad, rad/s, N m; the
+            pelvis's translations m, m/s, N.
+        angles_sd, angle_rates_sd, moments_sd: (T, A) their standard deviations, NaN where not known.
+        singular: (T, A) within 10° of the angles' singularity.
+        marker_names: (M,) markers followed.
+        measured_m: (T, M, 3) measured world positions, NaN where not seen; hidden samples are kept here.
+        predicted_m: (T, M, 3) where the reconstructed body has them.
+        hidden: (T, M) taken away on purpose.
+        rejected: (T, M) refused by the innovation gate.
+        foot_wrench: (T, 2, 6) ground on right and left foot: force N, moment N m about the world's origin.
+        foot_cop_m: (T, 2, 3) centres of pressure, NaN where not loaded.
+        foot_free_moment_nm: (T, 2) moment about the vertical through the centre of pressure, NaN where not loaded.
+        residual_force_n, residual_moment_nm: (T, 3) residual at the pelvis from measured plates, world axes, moment
+            about the pelvis's origin.
+        tracked: (T,) enough markers to follow the body.
+        valid: (T,) every loaded foot stands on a measured plate.
+        held_dofs: Names of dofs that nothing observes.
+        nis: (T,) normalised innovation squared.
+        nis_readings: (T,) number of scalar readings in it.
+        step_seconds: (T,) computing time of a frame.
+        warnings: Remarks for the reader.
+        settings: What the run was set to, as plain data.
+        plate_change: (T, P, 6) estimated minus measured plate wrench (N, N m), NaN where a plate is not compared;
+            None without plates.
+        covariance: (T, 2nv, 2nv) of (q, v) in the tangent space; only kept on request and never written.
+    """
+
+    trial: str
+    protocol: str
+    filter: str
+    smoothed: bool
+    version: str
+    subject: Subject
+    rate_hz: float
+    times_s: Array
+    dof_names: tuple[str, ...]
+    q: Array
+    v: Array
+    a: Array
+    tau: Array
+    sd_q: Array
+    sd_v: Array
+    sd_tau: Array
+    coordinate_names: tuple[str, ...]
+    angles: Array
+    angle_rates: Array
+    moments: Array
+    angles_sd: Array
+    angle_rates_sd: Array
+    moments_sd: Array
+    singular: BoolArray
+    marker_names: tuple[str, ...]
+    measured_m: Array
+    predicted_m: Array
+    hidden: BoolArray
+    rejected: BoolArray
+    foot_wrench: Array
+    foot_cop_m: Array
+    foot_free_moment_nm: Array
+    residual_force_n: Array
+    residual_moment_nm: Array
+    tracked: BoolArray
+    valid: BoolArray
+    held_dofs: tuple[str, ...]
+    nis: Array
+    nis_readings: Array
+    step_seconds: Array
+    warnings: tuple[str, ...] = ()
+    settings: dict[str, Any] = field(default_factory=dict)
+    plate_change: Array | None = None
+    covariance: Array | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        for name in ("dof_names", "coordinate_names", "marker_names", "held_dofs", "warnings"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        sizes = {
+            "T": np.shape(self.times_s)[0],
+            "nv": len(self.dof_names),
+            "2nv": 2 * len(self.dof_names),
+            "A": len(self.coordinate_names),
+            "M": len(self.marker_names),
+        }
+        for name, dimensions in SHAPES.items():
+            if getattr(self, name) is None:
+                continue
+            array = read_only(getattr(self, name), dtype=DTYPES.get(name, np.float64))
+            wanted = [sizes.get(d) if not d.isdigit() else int(d) for d in dimensions.split()]
+            if len(wanted) != array.ndim or any(
+                n not in (None, m) for n, m in zip(wanted, array.shape, strict=True)
+            ):
+                known = ", ".join(str(n) if n is not None else d for n, d in zip(wanted, dimensions.split(), strict=True))
+                raise ShapeError(name, f"({known})", array.shape)
+            object.__setattr__(self, name, array)
+
+    @property
+    def frames(self) -> int:
+        """Number of frames T."""
+        return len(self.times_s)
+
+    @property
+    def present(self) -> BoolArray:
+        """(T, M) markers that were seen and not taken away on purpose."""
+        return ~np.isnan(self.measured_m).any(axis=2) & ~self.hidden
+
+    def angle(self, name: str) -> Array:
+        """(T,) a clinical coordinate by its name: rad, m for the pelvis's translations.
+
+        Raises:
+            UnknownName: There is no such coordinate.
+        """
+        return self.angles[:, self._coordinate(name)]
+
+    def angle_sd(self, name: str) -> Array:
+        """(T,) its standard deviation, NaN where not known."""
+        return self.angles_sd[:, self._coordinate(name)]
+
+    def angle_rate(self, name: str) -> Array:
+        """(T,) a coordinate's rate: rad/s, m/s for translations."""
+        return self.angle_rates[:, self._coordinate(name)]
+
+    def angle_rate_sd(self, name: str) -> Array:
+        """(T,) its standard deviation, NaN where not known."""
+        return self.angle_rates_sd[:, self._coordinate(name)]
+
+    def moment(self, name: str) -> Array:
+        """(T,) the moment conjugate to a coordinate: N m, N for translations (the pelvis's are residuals)."""
+        return self.moments[:, self._coordinate(name)]
+
+    def moment_sd(self, name: str) -> Array:
+        """(T,) its standard deviation, NaN where not known."""
+        return self.moments_sd[:, self._coordinate(name)]
+
+    torque = moment
+    torque_sd = moment_sd
+
+    def marker(self, name: str) -> Array:
+        """(T, 3) a marker's reconstructed world position, m.
+
+        Raises:
+            UnknownName: There is no such marker.
+        """
+        if name not in self.marker_names:
+            raise UnknownName("marker", name, self.marker_names)
+        return self.predicted_m[:, self.marker_names.index(name)]
+
+    def _coordinate(self, name: str) -> int:
+        if name not in self.coordinate_names:
+            raise UnknownName("coordinate", name, self.coordinate_names)
+        return self.coordinate_names.index(name)
+
+
+ARRAYS = tuple(f.name for f in fields(Reconstruction) if f.name in SHAPES)
+"""Names of the array fields, in the record's order."""

@@ -1,0 +1,117 @@
+"""A reconstruction as one HDF5 file, ``motion.h5``: everything but the covariance, with units; written and read."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from mbkf.conventions import read_only
+from mbkf.errors import FileFormatError, MbkfError
+from mbkf.io.atomic import replacing
+from mbkf.io.results import ARRAYS, DTYPES, Reconstruction
+from mbkf.io.subject import Subject, SubjectMarker
+
+FORMAT = "mbkf reconstruction"
+FORMAT_VERSION = 1
+
+_TANGENT = "{}; the pelvis's first three dofs {}"
+UNITS = {
+    "times_s": "s", "q": "m, and unit quaternions (x, y, z, w), and rad",
+    "v": _TANGENT.format("rad/s", "m/s"), "a": _TANGENT.format("rad/s^2", "m/s^2"), "tau": _TANGENT.format("N m", "N"),
+    "sd_q": _TANGENT.format("rad", "m"), "sd_v": _TANGENT.format("rad/s", "m/s"),
+    "sd_tau": _TANGENT.format("N m", "N"),
+    "angles": "rad; pelvis_t* m", "angle_rates": "rad/s; pelvis_t* m/s", "moments": "N m; pelvis_t* N",
+    "angles_sd": "rad; pelvis_t* m", "angle_rates_sd": "rad/s; pelvis_t* m/s", "moments_sd": "N m; pelvis_t* N",
+    "measured_m": "m", "predicted_m": "m", "foot_wrench": "N, N m about the world's origin", "foot_cop_m": "m",
+    "foot_free_moment_nm": "N m", "residual_force_n": "N", "residual_moment_nm": "N m",
+    "step_seconds": "s", "plate_change": "N, N m",
+}  # fmt: skip
+"""Unit of each array; the others (flags, counts, the innovation statistic) have none and carry "1"."""
+
+_TEXTS = ("trial", "protocol", "filter", "version")
+_NAME_LISTS = ("dof_names", "coordinate_names", "marker_names", "held_dofs", "warnings")
+_NEVER_WRITTEN = ("covariance",)
+
+
+def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
+    """Writes a reconstruction, whole or not at all.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    with replacing(path) as partial, h5py.File(partial, "w") as file:
+        file.attrs["format"] = FORMAT
+        file.attrs["format_version"] = FORMAT_VERSION
+        file.attrs["axes"] = "x forward, y left, z up; forces act on the body; moments in the conventions of mbkf"
+        for name in _TEXTS:
+            file.attrs[name] = getattr(reconstruction, name)
+        file.attrs["smoothed"] = reconstruction.smoothed
+        file.attrs["rate_hz"] = reconstruction.rate_hz
+        file.attrs["settings"] = json.dumps(reconstruction.settings, default=_plain)
+        file.attrs["subject"] = json.dumps(dataclasses.asdict(reconstruction.subject), default=_plain)
+        for name in _NAME_LISTS:
+            file.create_dataset(name, data=list(getattr(reconstruction, name)), dtype=h5py.string_dtype())
+        for name in ARRAYS:
+            array = getattr(reconstruction, name)
+            if array is None or name in _NEVER_WRITTEN:
+                continue
+            packed = {"compression": "gzip", "compression_opts": 1, "shuffle": True} if array.size > 256 else {}
+            dataset = file.create_dataset(name, data=array, **packed)
+            dataset.attrs["unit"] = UNITS.get(name, "1")
+
+
+def read_h5(path: str | Path) -> Reconstruction:
+    """Reads what :func:`write_h5` wrote.
+
+    Raises:
+        FileFormatError: The file is missing, damaged or something else.
+    """
+    source = Path(path)
+    if not source.is_file():
+        raise FileFormatError(source, "no such file; make it with 'mbkf reconstruct'")
+    try:
+        with h5py.File(source, "r") as file:
+            if file.attrs.get("format") != FORMAT:
+                raise FileFormatError(source, "not a reconstruction; make it with 'mbkf reconstruct'")
+            if file.attrs["format_version"] > FORMAT_VERSION:
+                raise FileFormatError(source, "written by a newer mbkf; upgrade to read it")
+            values: dict[str, Any] = {name: str(file.attrs[name]) for name in _TEXTS}
+            values["smoothed"] = bool(file.attrs["smoothed"])
+            values["rate_hz"] = float(file.attrs["rate_hz"])
+            values["settings"] = json.loads(file.attrs["settings"])
+            values["subject"] = _subject(json.loads(file.attrs["subject"]))
+            for name in _NAME_LISTS:
+                values[name] = tuple(file[name].asstr()[:])
+            for name in ARRAYS:
+                if name in file:
+                    values[name] = np.asarray(file[name][()], dtype=DTYPES.get(name, np.float64))
+        return Reconstruction(**values)
+    except (OSError, KeyError, TypeError, ValueError) as error:
+        raise FileFormatError(source, f"damaged or not a reconstruction ({error})") from error
+    except FileFormatError:
+        raise
+    except MbkfError as error:
+        raise FileFormatError(source, f"damaged: {error}") from error
+
+
+def _subject(table: dict[str, Any]) -> Subject:
+    markers = tuple(
+        SubjectMarker(m["name"], m["segment"], read_only(m["position_m"]), m["noise_m"]) for m in table["markers"]
+    )
+    return Subject(**{**table, "markers": markers})
+
+
+def _plain(value: Any) -> Any:
+    """What JSON does not know: numpy's scalars and arrays, paths, records, sets."""
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return dataclasses.asdict(value)
+    if isinstance(value, set | frozenset):
+        return sorted(value)
+    return str(value)

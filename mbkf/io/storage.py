@@ -1,0 +1,169 @@
+"""OpenSim's text tables (MOT and STO): a header up to ``endheader``, a line of names, rows of numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+
+from mbkf.conventions import Array, read_only
+from mbkf.errors import FileFormatError, ShapeError, UnknownName
+from mbkf.io.atomic import replacing
+
+_WRITTEN_BY_US = {"nrows", "ncolumns", "indegrees", "version", "datarows", "datacolumns", "range", "name"}
+_MOST_HEADER_LINES = 500
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table over time.
+
+    Attributes:
+        names: C column names, without time.
+        times_s: (T,) times in s.
+        columns: (T, C) values, in the units of the file.
+        in_degrees: Whether rotational columns are in degrees.
+        title: First line of the file.
+        header: Header entries, name → text.
+    """
+
+    names: tuple[str, ...]
+    times_s: Array
+    columns: Array
+    in_degrees: bool = False
+    title: str = ""
+    header: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "names", tuple(self.names))
+        object.__setattr__(self, "times_s", read_only(self.times_s))
+        object.__setattr__(self, "columns", read_only(self.columns))
+        object.__setattr__(self, "header", MappingProxyType(dict(self.header)))
+        expected = (len(self.times_s), len(self.names))
+        if self.columns.shape != expected:
+            raise ShapeError("columns", str(expected), self.columns.shape)
+
+    def column(self, name: str) -> Array:
+        """(T,) values of one column.
+
+        Raises:
+            UnknownName: There is no such column.
+        """
+        if name not in self.names:
+            raise UnknownName("column", name, self.names)
+        return self.columns[:, self.names.index(name)]
+
+
+def read_storage(path: str | Path) -> Table:
+    """Read a MOT or STO file of any of the header dialects OpenSim has had.
+
+    Args:
+        path: The file.
+
+    Returns:
+        The table; degrees stay degrees (``in_degrees`` tells).
+
+    Raises:
+        FileFormatError: The file is missing, has no header or names, or a row is not as long as the names;
+            names the line.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise FileFormatError(path, "no such file; name a MOT or STO file")
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    end = next((i for i, line in enumerate(lines[:_MOST_HEADER_LINES]) if _is_end(line)), None)
+    if end is None:
+        raise FileFormatError(path, "not a MOT or STO file (no line 'endheader')")
+    title, header = _header(lines[:end])
+    start = next((i for i in range(end + 1, len(lines)) if lines[i].strip()), None)
+    if start is None:
+        raise FileFormatError(path, "cut short: no column names after the header", end + 1)
+    names = _cells(lines[start])
+    if not names or names[0].lower() != "time":
+        raise FileFormatError(path, "the first column is not 'time'", start + 1)
+    rows = _rows(path, lines, start + 1, len(names))
+    promised = header.get("nrows", header.get("datarows", ""))
+    if promised.isdigit() and int(promised) > len(rows):
+        reason = f"cut short: the header promises {promised} rows, {len(rows)} are there; copy or export it again"
+        raise FileFormatError(path, reason)
+    degrees = header.get("indegrees", "no").lower() in {"yes", "true", "1"}
+    return Table(tuple(names[1:]), rows[:, 0], rows[:, 1:], degrees, title, header)
+
+
+def write_storage(table: Table, path: str | Path) -> None:
+    """Write a table as OpenSim reads it.
+
+    Args:
+        table: What to write; other entries of its header follow the standard ones.
+        path: The file, replaced whole or not at all.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    path = Path(path)
+    degrees = "yes" if table.in_degrees else "no"
+    lines = [table.title or path.stem, "version=1", f"nRows={len(table.times_s)}"]
+    lines += [f"nColumns={len(table.names) + 1}", f"inDegrees={degrees}"]
+    lines += [f"{name}={text}" for name, text in table.header.items() if name.lower() not in _WRITTEN_BY_US]
+    lines += ["endheader", "\t".join(["time", *table.names])]
+    with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="\n") as file:
+        file.write("\n".join(lines) + "\n")
+        for time_s, row in zip(table.times_s, table.columns, strict=True):
+            file.write("\t".join([f"{time_s:.10g}", *(f"{value:.12g}" for value in row)]) + "\n")
+
+
+def _is_end(line: str) -> bool:
+    return line.strip().lower() == "endheader"
+
+
+def _header(lines: list[str]) -> tuple[str, dict[str, str]]:
+    """Title and entries: "name=text" lines, and the older "name text" ones."""
+    header: dict[str, str] = {}
+    title = ""
+    for number, line in enumerate(text.strip() for text in lines):
+        if "=" in line:
+            name, _, text = line.partition("=")
+            header[name.strip().lower()] = text.strip()
+        elif line.split(" ")[0].lower() in {"name", "datacolumns", "datarows", "range", "nrows", "ncolumns"}:
+            name, _, text = line.partition(" ")
+            header[name.lower()] = text.strip()
+        elif number == 0:
+            title = line
+    return title or header.get("name", ""), header
+
+
+def _cells(line: str) -> list[str]:
+    """Names between tabs, or between blanks where there are no tabs."""
+    cells = line.split("\t") if "\t" in line else line.split()
+    return [cell.strip() for cell in cells if cell.strip()]
+
+
+def _rows(path: Path, lines: list[str], start: int, width: int) -> Array:
+    table = []
+    for number, line in enumerate(lines[start:], start=start + 1):
+        cells = line.split()
+        if not cells:
+            continue
+        if len(cells) != width:
+            raise FileFormatError(path, f"{len(cells)} values for {width} columns; export the file again", number)
+        table.append(cells)
+    if not table:
+        raise FileFormatError(path, "cut short: no rows after the column names", start)
+    try:
+        return np.array(table, dtype=np.float64)
+    except ValueError as error:
+        for number, cells in enumerate(table, start=start + 1):
+            if any(not _is_number(cell) for cell in cells):
+                raise FileFormatError(path, f"a value is not a number ({error})", number) from error
+        raise
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True

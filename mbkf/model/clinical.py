@@ -1,0 +1,189 @@
+"""Clinical joint angles of a posture, their rates and the joint moments conjugate to them.
+
+Inside mbkf a joint is a rotation; people read angles. The table ``models/clinical_angles.toml`` says which.
+θ̇ = E v with the tangent velocity v, v = B θ̇, and m = Bᵀ τ, so that Σ m θ̇ = τᵀ v joint by joint.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray, read_only
+from mbkf.errors import InvalidInput, ShapeError
+from mbkf.model.clinical_table import Angle, ClinicalJoint, load_clinical_joints
+from mbkf.model.human import HumanModel
+from mbkf.numerics.cardan import cardan_angles, follow, near_singularity, quaternion_matrices, rate_map, velocity_map
+
+AXES = {"x": 0, "y": 1, "z": 2}
+
+
+def dof_names(model: HumanModel) -> tuple[str, ...]:
+    """Names of the nv tangent dofs: ``<segment>_<axis>`` turns about that axis, ``pelvis_t<axis>`` moves along it.
+
+    Free and spherical joints: axes of the segment's own frame. Universal joint: x, then y.
+    """
+    axes = {"free": ("tx", "ty", "tz", "x", "y", "z"), "spherical": ("x", "y", "z"), "universal": ("x", "y"),
+            "hinge": ("y",)}
+    return tuple(f"{joint.segment}_{axis}" for joint in model.joints.values() for axis in axes[joint.kind])
+
+
+class ClinicalAngles:
+    """Clinical coordinates of a body: angles of every joint, and the pelvis's position in OpenSim's axes.
+
+    As many coordinates as tangent dofs (A = nv). Angles are in rad, the pelvis's translations in m.
+
+    Attributes:
+        model: The body.
+        joints: The joints' entries of the table, in the model's order.
+        names: (A,) coordinate names, OpenSim's where it has them.
+        units: (A,) "rad" or "m".
+        rotational: (A,) True for angles, False for the pelvis's translations.
+    """
+
+    def __init__(self, model: HumanModel) -> None:
+        entries = {entry.distal: entry for entry in load_clinical_joints()}
+        missing = [name for name in model.joints if name not in entries]
+        if missing:
+            raise InvalidInput(f"clinical_angles.toml has no joint for the segments {', '.join(missing)}")
+        self.model = model
+        self.joints: tuple[ClinicalJoint, ...] = tuple(entries[name] for name in model.joints)
+        self.names: tuple[str, ...] = tuple(c.name for joint in self.joints for c in joint.coordinates)
+        column = {name: i for i, name in enumerate(self.names)}
+        translations = [c.name for joint in self.joints for c in joint.translations]
+        self.rotational: BoolArray = read_only([name not in translations for name in self.names], dtype=bool)
+        self.units: tuple[str, ...] = tuple("rad" if turns else "m" for turns in self.rotational)
+        self._place_balls(column)
+        self._place_dofs(column)
+        self._place_root(column)
+
+    def _place_balls(self, column: dict[str, int]) -> None:
+        """Rotations by three angles: n of them, each with its order, signs, columns and places in q and v."""
+        found = [(joint, self.model.joints[joint.distal]) for joint in self.joints if len(joint.order) == 3]
+        self._order = np.array([[AXES[axis] for axis in joint.order] for joint, _ in found])
+        self._parity = np.array([np.linalg.det(np.eye(3)[order]) for order in self._order]).round()
+        self._ball_sign = np.array([[angle.sign for angle in joint.angles] for joint, _ in found], dtype=float)
+        self._ball_column = np.array([[column[angle.name] for angle in joint.angles] for joint, _ in found])
+        self._ball_q = np.array([np.arange(place.q.stop - 4, place.q.stop) for _, place in found])
+        rows = np.array([np.arange(place.v.stop - 3, place.v.stop) for _, place in found])
+        self._ball_v = np.take_along_axis(rows, self._order, axis=1)
+        self._winds = np.array([place.kind == "free" for _, place in found])
+
+    def _place_dofs(self, column: dict[str, int]) -> None:
+        """Hinges and universal joints: every angle is one dof, up to its sign."""
+        rows: list[tuple[int, int, int, Angle]] = []
+        for joint in self.joints:
+            place = self.model.joints[joint.distal]
+            if len(joint.order) < 3:
+                rows += [(place.q.start + i, place.v.start + i, column[a.name], a) for i, a in enumerate(joint.angles)]
+        self._dof_q, self._dof_v, self._dof_column = (np.array([row[i] for row in rows], int) for i in range(3))
+        self._dof_sign = np.array([float(row[3].sign) for row in rows])
+
+    def _place_root(self, column: dict[str, int]) -> None:
+        """The root's translations: S (3, 3) takes its world position to the table's axes."""
+        root = next(joint for joint in self.joints if joint.proximal == "world")
+        place = self.model.joints[root.distal]
+        self._root_columns = np.array([column[c.name] for c in root.translations])
+        self._root_axes = np.array([c.sign * np.eye(3)[AXES[c.axis]] for c in root.translations])
+        self._root_v = np.arange(place.v.start, place.v.start + 3)
+        self._root_q = slice(place.q.start, place.q.start + 3)
+        self._root_quaternion = slice(place.q.start + 3, place.q.start + 7)
+
+    def angles(self, q: Array, start: Array | None = None) -> Array:
+        """Coordinates of a motion, continuous in time (see :func:`mbkf.numerics.cardan.follow`).
+
+        Args:
+            q: (T, nq) configurations; NaN frames give NaN.
+            start: (A,) coordinates of the frame before, to continue a stream frame by frame.
+
+        Returns:
+            (T, A) rad, and m for translations.
+
+        Raises:
+            ShapeError: q is not (T, nq).
+        """
+        q = self._checked("q", q, self.model.nq)
+        coordinates = np.empty((len(q), len(self.names)))
+        R = quaternion_matrices(q[:, self._ball_q])
+        joints = np.arange(len(self._order))[:, None, None]
+        R_ijk = R[:, joints, self._order[:, :, None], self._order[:, None, :]]
+        before = None if start is None else self._ball_sign * np.asarray(start)[self._ball_column]
+        cardan = follow(cardan_angles(R_ijk, self._parity), self._winds, before)
+        coordinates[:, self._ball_column] = self._ball_sign * cardan
+        coordinates[:, self._dof_column] = self._dof_sign * q[:, self._dof_q]
+        coordinates[:, self._root_columns] = q[:, self._root_q] @ self._root_axes.T
+        return coordinates
+
+    def singular(self, angles: Array) -> BoolArray:
+        """(T, A) True for all angles of a joint within 10° of its singularity, where they are poorly determined.
+
+        Args:
+            angles: (T, A) coordinates as :meth:`angles` gives them.
+        """
+        angles = self._checked("angles", angles, len(self.names))
+        flags = np.zeros(angles.shape, dtype=bool)
+        flags[:, self._ball_column] = near_singularity(self._cardan(angles))[..., None]
+        return flags
+
+    def rate_matrix(self, q: Array, angles: Array | None = None) -> Array:
+        """E (A, nv) of θ̇ = E v at one configuration q (nq,); see :meth:`rate_matrices`."""
+        return self.rate_matrices(np.asarray(q)[None], None if angles is None else np.asarray(angles)[None])[0]
+
+    def rate_matrices(self, q: Array, angles: Array | None = None) -> Array:
+        """Matrices that take the tangent velocity to the rates of the coordinates.
+
+        Args:
+            q: (T, nq) configurations.
+            angles: (T, A) their coordinates; computed from q as one motion when None. Beyond a singularity two sets
+                of angles describe one posture, and the rates must belong to the set that is shown.
+
+        Returns:
+            (T, A, nv) E of θ̇ = E v; very large at a singularity (see :meth:`singular`).
+        """
+        q, angles = self._with_angles(q, angles)
+        E = np.zeros((len(q), len(self.names), self.model.nv))
+        blocks = self._ball_sign[:, :, None] * rate_map(self._cardan(angles), self._parity)
+        E[:, self._ball_column[:, :, None], self._ball_v[:, None, :]] = blocks
+        E[:, self._dof_column, self._dof_v] = self._dof_sign
+        E[:, self._root_columns[:, None], self._root_v] = self._root_axes @ self._root_rotation(q)
+        return E
+
+    def moments(self, q: Array, tau: Array, angles: Array | None = None) -> Array:
+        """Generalised moments conjugate to the coordinates, m = Bᵀ τ: power m·θ̇ equals τ·v in every joint.
+
+        Args:
+            q: (T, nq) configurations.
+            tau: (T, nv) generalised forces in the tangent space.
+            angles: (T, A) coordinates, as for :meth:`rate_matrices`.
+
+        Returns:
+            (T, A) N m, and N for translations; regular at singularities.
+        """
+        q, angles = self._with_angles(q, angles)
+        tau = self._checked("tau", tau, self.model.nv)
+        conjugate = np.empty((len(q), len(self.names)))
+        B = velocity_map(self._cardan(angles), self._parity)
+        conjugate[:, self._ball_column] = self._ball_sign * np.einsum("tnij,tni->tnj", B, tau[:, self._ball_v])
+        conjugate[:, self._dof_column] = self._dof_sign * tau[:, self._dof_v]
+        world_force = np.einsum("tij,tj->ti", self._root_rotation(q), tau[:, self._root_v])
+        conjugate[:, self._root_columns] = world_force @ self._root_axes.T
+        return conjugate
+
+    def _cardan(self, angles: Array) -> Array:
+        return self._ball_sign * angles[:, self._ball_column]
+
+    def _root_rotation(self, q: Array) -> Array:
+        return quaternion_matrices(q[:, self._root_quaternion])
+
+    def _with_angles(self, q: Array, angles: Array | None) -> tuple[Array, Array]:
+        q = self._checked("q", q, self.model.nq)
+        angles = self.angles(q) if angles is None else self._checked("angles", angles, len(self.names))
+        if len(angles) != len(q):
+            raise ShapeError("angles", f"({len(q)}, {len(self.names)})", angles.shape)
+        return q, angles
+
+    @staticmethod
+    def _checked(name: str, values: Array, width: int) -> Array:
+        values = np.asarray(values, dtype=float)
+        if values.ndim != 2 or values.shape[1] != width:
+            raise ShapeError(name, f"(T, {width})", values.shape)
+        return values

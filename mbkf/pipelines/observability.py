@@ -1,0 +1,87 @@
+"""Which degrees of freedom a marker protocol determines, and which go with named markers."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.errors import NotObservable, UnknownName
+from mbkf.model.human import HumanModel
+from mbkf.model.protocol import Protocol, ProtocolMarker
+from mbkf.sensors.observability import Observability, analyse
+
+
+@dataclass(frozen=True)
+class ProtocolObservability:
+    """Observability of the reference body by a protocol.
+
+    Attributes:
+        protocol: The protocol.
+        markers: Names of the markers that were counted, without the lost ones.
+        lost: Names of the markers taken away.
+        before: What all followed markers determine.
+        after: What the remaining ones determine; the same as ``before`` when none is lost.
+    """
+
+    protocol: Protocol
+    markers: tuple[str, ...]
+    lost: tuple[str, ...]
+    before: Observability
+    after: Observability
+
+    @property
+    def lost_dofs(self) -> tuple[str, ...]:
+        """Dofs that the loss takes: determined before in every posture, afterwards not in every one."""
+        seen_before = set(self.before.dofs) - set(self.before.unseen) - set(self.before.sometimes_unseen)
+        blind_after = set(self.after.unseen) | set(self.after.sometimes_unseen)
+        return tuple(name for name in self.before.dofs if name in seen_before & blind_after)
+
+
+def check_protocol(protocol: Protocol, lost: Collection[str] = ()) -> ProtocolObservability:
+    """Observability of a protocol on its reference body, and without the lost markers.
+
+    Computed points (joint centres) do not count: they are never followed.
+
+    Args:
+        protocol: The protocol.
+        lost: Names or aliases of lost markers.
+
+    Raises:
+        UnknownName: A lost marker is not one of the protocol's.
+        NotObservable: No marker is left.
+    """
+    followed = [marker for marker in protocol.markers if marker.kind != "computed"]
+    gone = _resolve(protocol, followed, lost)
+    left = [marker for marker in followed if marker.name not in gone]
+    if not left:
+        raise NotObservable(f"protocol {protocol.name} has no marker left without {', '.join(gone)}")
+    model = HumanModel.scaled(body=protocol.body)
+    before = _analyse(model, followed)
+    return ProtocolObservability(
+        protocol=protocol,
+        markers=tuple(marker.name for marker in left),
+        lost=gone,
+        before=before,
+        after=_analyse(model, left) if gone else before,
+    )
+
+
+def _resolve(protocol: Protocol, followed: list[ProtocolMarker], lost: Collection[str]) -> tuple[str, ...]:
+    known = {marker.name: marker.name for marker in followed}
+    aliases = {alias: marker.name for marker in followed for alias in marker.aliases}
+    names = aliases | known
+    for name in lost:
+        if name not in names:
+            raise UnknownName("marker", name, known, f"protocol {protocol.name}")
+    return tuple(dict.fromkeys(names[name] for name in lost))
+
+
+def _analyse(model: HumanModel, markers: list[ProtocolMarker]) -> Observability:
+    return analyse(
+        model,
+        [marker.segment for marker in markers],
+        np.array([marker.position_m for marker in markers]),
+        np.array([marker.noise_m for marker in markers]),
+    )

@@ -1,0 +1,167 @@
+"""Which degrees of freedom markers determine: ranks of H and of the observability matrix (eq. 4.14)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mbkf.conventions import Array, BoolArray, read_only
+from mbkf.errors import ShapeError
+from mbkf.model.clinical import dof_names
+from mbkf.model.human import HumanModel
+from mbkf.sensors.markers import MarkerSensor
+
+RANK_TOLERANCE = 1e-6
+"""Singular values below this part of the largest one count as zero."""
+
+SHARE_THRESHOLD = 0.01
+"""A dof is called unseen when more than this share of it lies in the null space."""
+
+BENT_POSTURES = 4
+_BEND_RAD = 0.35
+
+
+@dataclass(frozen=True)
+class Observability:
+    """What markers say about a body, in several postures; P postures, the first of them standing straight.
+
+    Attributes:
+        dofs: (nv,) names of the tangent dofs.
+        ranks: (P,) rank of the marker Jacobian H; nv where every dof is determined.
+        state_ranks: (P,) rank of [H; HF; HF²; …] for positions and velocities; 2 nv where it is full.
+        unseen_share: (P, nv) share of each dof in the null space of H: 0 fully seen, 1 not at all.
+        sd: (P, nv) standard deviation that one frame leaves on each dof, rad (m for the pelvis's
+            translations); infinite where it is not determined.
+    """
+
+    dofs: tuple[str, ...]
+    ranks: NDArray[np.int64]
+    state_ranks: NDArray[np.int64]
+    unseen_share: Array
+    sd: Array
+
+    @property
+    def complete(self) -> bool:
+        """Whether positions and velocities of all dofs are determined in every posture."""
+        nv = len(self.dofs)
+        return bool((self.ranks == nv).all() and (self.state_ranks == 2 * nv).all())
+
+    @property
+    def typical_sd(self) -> Array:
+        """(nv,) median of ``sd`` over the bent postures; infinite where most do not determine the dof."""
+        return np.asarray(np.median(self.sd[1:], axis=0))
+
+    @property
+    def unseen(self) -> tuple[str, ...]:
+        """Dofs that no posture determines fully; each may still be seen in part (see ``unseen_share``)."""
+        return self._named(np.all(self.unseen_share > SHARE_THRESHOLD, axis=0))
+
+    @property
+    def sometimes_unseen(self) -> tuple[str, ...]:
+        """Dofs that are determined in some postures only (a straight elbow hides the arm's turning, say)."""
+        hidden = self.unseen_share > SHARE_THRESHOLD
+        return self._named(np.any(hidden, axis=0) & ~np.all(hidden, axis=0))
+
+    def _named(self, chosen: NDArray) -> tuple[str, ...]:
+        return tuple(name for name, here in zip(self.dofs, chosen, strict=True) if here)
+
+
+def numerical_rank(matrix: Array, tolerance: float = RANK_TOLERANCE) -> int:
+    """Rank of a matrix (m, n): singular values above ``tolerance`` times the largest one."""
+    return int(np.sum(_above(np.linalg.svd(matrix, compute_uv=False), tolerance)))
+
+
+def null_space(matrix: Array, tolerance: float = RANK_TOLERANCE) -> Array:
+    """(n, n − rank) orthonormal basis of the directions that a matrix (m, n) does not see."""
+    _, singular, directions = np.linalg.svd(matrix, full_matrices=True)
+    return directions[int(np.sum(_above(singular, tolerance))) :].T
+
+
+def observability_matrix(measurement: Array, plant: Array) -> Array:
+    """[H; HF; HF²; …] (eq. 4.14), as far as its rows are not all zero and at most n blocks.
+
+    Args:
+        measurement: (m, n) H.
+        plant: (n, n) F of ẋ = F x.
+
+    Raises:
+        ShapeError: F does not fit H.
+    """
+    n = measurement.shape[1]
+    if plant.shape != (n, n):
+        raise ShapeError("plant", f"({n}, {n})", plant.shape)
+    blocks = [measurement]
+    while len(blocks) < n:
+        following = blocks[-1] @ plant
+        if not following.any():
+            break
+        blocks.append(following)
+    return np.vstack(blocks)
+
+
+def kinematic_plant(nv: int) -> Array:
+    """(2 nv, 2 nv) F of the kinematic filter: velocities move positions, nothing moves velocities."""
+    plant = np.zeros((2 * nv, 2 * nv))
+    plant[:nv, nv:] = np.eye(nv)
+    return plant
+
+
+def generic_postures(model: HumanModel, bent: int = BENT_POSTURES) -> Array:
+    """(1 + bent, nq) postures: standing straight, then every dof bent by about 20° in fixed random ways.
+
+    Bent postures show what markers determine in general; the straight one shows what they lose by symmetry.
+    """
+    rng = np.random.default_rng(18)
+    bends = rng.uniform(0.5, 1.5, (bent, model.nv)) * rng.choice((-1.0, 1.0), (bent, model.nv)) * _BEND_RAD
+    neutral = model.neutral()
+    return np.array([neutral, *(model.integrate(neutral, bend) for bend in bends)])
+
+
+def analyse(model: HumanModel, segments: Sequence[str], local_m: Array, noise_m: Array) -> Observability:
+    """Observability of a body by M markers in the postures of :func:`generic_postures`.
+
+    Args:
+        model: The body.
+        segments: Segment of each marker.
+        local_m: (M, 3) positions in the segments' frames, m.
+        noise_m: (M,) measurement noise (1 sd), m.
+
+    Raises:
+        ShapeError: The arrays do not have one row per marker.
+        UnknownName: A segment is unknown.
+    """
+    sensor = MarkerSensor(model, segments, local_m)
+    if noise_m.shape != (len(sensor.segments),):
+        raise ShapeError("noise_m", f"({len(sensor.segments)},)", noise_m.shape)
+    plant = kinematic_plant(model.nv)
+    ranks, state_ranks, shares, deviations = [], [], [], []
+    for q in generic_postures(model):
+        H = sensor.reading(q).jacobian
+        rows = H.reshape(-1, model.nv)
+        unseen = null_space(rows)
+        of_state = np.hstack([rows, np.zeros_like(rows)])
+        ranks.append(model.nv - unseen.shape[1])
+        state_ranks.append(numerical_rank(observability_matrix(of_state, plant)))
+        shares.append(np.sum(unseen**2, axis=1))
+        deviations.append(_one_frame_sd((H / noise_m[:, None, None]).reshape(-1, model.nv), shares[-1]))
+    return Observability(
+        dofs=dof_names(model),
+        ranks=read_only(ranks, dtype=np.int64),
+        state_ranks=read_only(state_ranks, dtype=np.int64),
+        unseen_share=read_only(shares),
+        sd=read_only(deviations),
+    )
+
+
+def _one_frame_sd(weighted: Array, share: Array) -> Array:
+    """(nv,) square root of the diagonal of (HᵀR⁻¹H)⁺; infinite for dofs with a share in the null space."""
+    inverse = np.linalg.pinv(weighted, rcond=RANK_TOLERANCE)
+    return np.where(share > SHARE_THRESHOLD, np.inf, np.linalg.norm(inverse, axis=1))
+
+
+def _above(singular: NDArray, tolerance: float) -> BoolArray:
+    largest = singular[0] if singular.size else 0.0
+    return (singular > tolerance * largest) & (largest > 0.0)

@@ -1,0 +1,110 @@
+"""Where the centre of mass must move so that the ground's pressure lies where it is wanted.
+
+With h the height of the centre of mass c, F_z = m (g + ḧ) and L its angular momentum, the point of zero moment is
+x = c_x − (h m c̈_x + L̇_y) / F_z and y = c_y − (h m c̈_y − L̇_x) / F_z. Given x and y, h and L̇, this is a linear
+equation for the curve c, solved by least squares on quintic splines, one per spell on the ground.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.interpolate import BSpline
+from scipy.linalg import lstsq, null_space
+
+from mbkf.conventions import GRAVITY_M_S2, Array
+from mbkf.synthesis.jets import Jet
+
+DEGREE = 5
+
+
+class HorizontalPath:
+    """A curve (T, 2) made of quintic splines on the ground and straight uniform motion between them.
+
+    Attributes:
+        spells: (start, end) of each spell on the ground, s.
+    """
+
+    def __init__(self, spells: Sequence[tuple[float, float]], knot_s: float = 0.04) -> None:
+        self.spells = list(spells)
+        self.knots: list[Array] = []
+        for start, end in self.spells:
+            inner = np.linspace(start, end, max(2, round((end - start) / knot_s) + 1))
+            self.knots.append(np.r_[[start] * DEGREE, inner, [end] * DEGREE])
+        self.sizes = [len(knots) - DEGREE - 1 for knots in self.knots]
+        self.first = np.cumsum([0, *self.sizes])
+        self.coefficients = np.zeros((self.first[-1], 2))
+
+    def rows(self, spell: int, times: Array, order: int) -> Array:
+        """(T, K) rows that give the curve's derivative of an order at times inside a spell."""
+        rows = np.zeros((len(times), self.first[-1]))
+        knots, size = self.knots[spell], self.sizes[spell]
+        basis = BSpline(knots, np.eye(size), DEGREE)
+        rows[:, self.first[spell] : self.first[spell] + size] = basis(times, nu=order)
+        return rows
+
+    def __call__(self, times: Array) -> Jet:
+        """The curve as a jet (T, 2)."""
+        orders = [np.zeros((len(times), 2)) for _ in range(3)]
+        for k, (start, end) in enumerate(self.spells):
+            own = self.coefficients[self.first[k] : self.first[k + 1]]
+            spline = BSpline(self.knots[k], own, DEGREE)
+            last = k + 1 == len(self.spells)
+            inside = (times >= start if k else np.ones_like(times, bool)) & (np.ones_like(times, bool) if last
+                                                                            else times <= end)
+            for order in range(3):
+                orders[order][inside] = spline(times[inside], nu=order)
+            if not last:
+                flying = (times > end) & (times < self.spells[k + 1][0])
+                velocity = spline(end, nu=1)
+                orders[0][flying] = spline(end) + (times[flying] - end)[:, None] * velocity
+                orders[1][flying] = velocity
+        return Jet(*orders)
+
+    def _ties(self) -> Array:
+        """Linear conditions: no horizontal force in the air, straight uniform motion from spell to spell."""
+        ties = []
+        for k in range(len(self.spells) - 1):
+            end, start = np.array([self.spells[k][1]]), np.array([self.spells[k + 1][0]])
+            ties += [self.rows(k, end, 2), self.rows(k + 1, start, 2),
+                     self.rows(k, end, 1) - self.rows(k + 1, start, 1),
+                     self.rows(k, end, 0) + (start - end) * self.rows(k, end, 1) - self.rows(k + 1, start, 0)]
+        return np.vstack(ties) if ties else np.zeros((0, self.first[-1]))
+
+    def solve(self, times: Array, target: Array, height: Jet, turning: Array) -> None:
+        """Fits the curve to the wanted pressure.
+
+        Args:
+            times: (T,) s.
+            target: (T, 2) wanted point of zero moment, m.
+            height: (T,) height of the centre of mass, m.
+            turning: (T, 2) L̇_y / m and −L̇_x / m, m²/s².
+        """
+        rows, wanted = [], []
+        for k, (start, end) in enumerate(self.spells):
+            use = (times >= start) & (times <= end)
+            lift = GRAVITY_M_S2 + height.second[use]
+            weight = np.clip(lift, 0.0, None) / (np.clip(lift, 0.0, None) + 0.03 * GRAVITY_M_S2)
+            safe = np.maximum(lift, 1e-3)
+            ratio = height.value[use] / safe
+            rows.append((self.rows(k, times[use], 0) - ratio[:, None] * self.rows(k, times[use], 2))
+                        * weight[:, None])
+            wanted.append((target[use] + turning[use] / safe[:, None]) * weight[:, None])
+        for k, at in ((0, 0), (len(self.spells) - 1, -1)):
+            rows.append(3.0 * self.rows(k, np.array([self.spells[k][at]]), 0))
+            wanted.append(3.0 * target[[at]])
+        free = null_space(self._ties()) if len(self.spells) > 1 else np.eye(self.first[-1])
+        solution = lstsq(np.vstack(rows) @ free, np.vstack(wanted), lapack_driver="gelsy")[0]
+        self.coefficients = free @ solution
+
+
+def zero_moment_point(com: Jet, turning: Array) -> Array:
+    """(T, 2) point of the ground about which the ground's force has no horizontal moment.
+
+    Args:
+        com: (T, 3) centre of mass, m.
+        turning: (T, 2) L̇_y / m and −L̇_x / m, m²/s².
+    """
+    lift = GRAVITY_M_S2 + com.second[:, 2]
+    return com.value[:, :2] - (com.value[:, 2:] * com.second[:, :2] + turning) / lift[:, None]

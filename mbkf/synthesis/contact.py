@@ -1,0 +1,98 @@
+"""The ground under the feet: outline of the soles, load sharing, and the split of one ground wrench into two."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.model.human import HumanModel
+
+FRICTION = 0.8
+"""Coefficient of friction of a shoe on a dry laboratory floor; horizontal force stays below this times vertical."""
+
+
+@dataclass(frozen=True)
+class SoleOutline:
+    """Rectangle under a foot in its frame, m: ``heel_x``…``toe_x``, ``low_y``…``high_y``, at ``height``."""
+
+    heel_x: float
+    toe_x: float
+    low_y: float
+    high_y: float
+    height: float
+
+    def holds(self, points: Array, tolerance_m: float = 1e-9) -> np.ndarray:
+        """(...) whether points (..., 3) of the foot's frame lie over the rectangle."""
+        x, y = points[..., 0], points[..., 1]
+        return ((x >= self.heel_x - tolerance_m) & (x <= self.toe_x + tolerance_m)
+                & (y >= self.low_y - tolerance_m) & (y <= self.high_y + tolerance_m))
+
+
+def sole_outline(model: HumanModel, side: str) -> SoleOutline:
+    """The scaled sole of side "r" or "l"."""
+    sole = model.description.sole
+    name = "right_foot" if side == "r" else "left_foot"
+    x, y, z = model.axis_scale(model.description.segment(name))
+    across = sorted((1.0 if side == "r" else -1.0) * y * edge for edge in (sole.inner_y_m, sole.outer_y_m))
+    return SoleOutline(x * sole.heel_x_m, x * sole.toe_x_m, across[0], across[1], z * sole.height_m)
+
+
+@dataclass(frozen=True)
+class Load:
+    """How the feet are meant to carry the body.
+
+    Attributes:
+        share: (T,) part of the load on the right foot, 0…1.
+        pressure: (T, 2, 2) wanted centre of pressure of right and left foot on the floor, m.
+        grounded: (T,) whether anything is on the ground.
+    """
+
+    share: Array
+    pressure: Array
+    grounded: np.ndarray
+
+    @property
+    def total_pressure(self) -> Array:
+        """(T, 2) wanted point of zero moment of both feet together, m."""
+        share = self.share[:, None]
+        return share * self.pressure[:, 0] + (1 - share) * self.pressure[:, 1]
+
+
+LoadPlan = Callable[[Array], Load]
+"""(T,) times in s to the load."""
+
+
+def split(wrench: Array, load: Load, height: Array) -> tuple[Array, Array]:
+    """Divides the ground's wrench between the feet.
+
+    Each foot's force points from its centre of pressure roughly at the centre of mass, so that in walking the
+    front foot brakes and the rear one pushes; the forces that this adds lie on the line between the feet and cancel.
+
+    Args:
+        wrench: (T, 6) total force N and moment N m about the world origin.
+        load: The intended load; what the motion misses of it shifts both centres of pressure alike.
+        height: (T,) height of the centre of mass, m.
+
+    Returns:
+        (T, 2, 6) wrenches about the world origin of right and left foot, and (T, 2, 3) centres of pressure, NaN
+        for a foot without load.
+    """
+    frames = len(wrench)
+    wrenches, centres = np.zeros((frames, 2, 6)), np.full((frames, 2, 3), np.nan)
+    on = load.grounded
+    force, moment = wrench[on, :3], wrench[on, 3:]
+    zero_moment = np.stack([-moment[:, 1], moment[:, 0]], axis=-1) / force[:, 2:]
+    missed = zero_moment - load.total_pressure[on]
+    twist = moment[:, 2] - (zero_moment[:, 0] * force[:, 1] - zero_moment[:, 1] * force[:, 0])
+    for foot, share in enumerate((load.share[on], 1 - load.share[on])):
+        at = np.column_stack([load.pressure[on, foot] + missed, np.zeros(on.sum())])
+        part = share[:, None] * force
+        part[:, :2] += (share * force[:, 2] / height[on])[:, None] * (zero_moment - at[:, :2])
+        turned = np.cross(at, part)
+        turned[:, 2] += share * twist
+        wrenches[on, foot] = np.hstack([part, turned])
+        centres[on, foot] = np.where(share[:, None] > 0, at, np.nan)
+    return wrenches, centres

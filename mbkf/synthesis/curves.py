@@ -1,0 +1,61 @@
+"""Smooth curves of time from which motions are made: quintic paths through knots, and small endless ripples."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from scipy.interpolate import BPoly, PPoly
+
+from mbkf.conventions import Array
+from mbkf.synthesis.jets import Jet
+
+Curve = Callable[[Array], Jet]
+"""A quantity of time: (T,) times in s to a jet of shape (T,) or (T, n)."""
+
+
+def path(knots: Sequence[tuple]) -> Curve:
+    """A curve with continuous acceleration through knots (time, value[, velocity[, acceleration]]).
+
+    Quintic between knots; velocities and accelerations that are not given are 0; constant outside.
+    """
+    times = np.array([knot[0] for knot in knots], dtype=float)
+    shape = np.shape(knots[0][1])
+    rows = [[np.broadcast_to(np.asarray(d, dtype=float), shape) for d in (*knot[1:], 0.0, 0.0)[:3]] for knot in knots]
+    polynomial = PPoly.from_bernstein_basis(BPoly.from_derivatives(times, rows))
+
+    def curve(at: Array) -> Jet:
+        inside = np.clip(at, times[0], times[-1])
+        moving = ((at >= times[0]) & (at <= times[-1])).reshape(at.shape + (1,) * len(shape))
+        return Jet(polynomial(inside), np.where(moving, polynomial(inside, 1), 0.0),
+                   np.where(moving, polynomial(inside, 2), 0.0))
+
+    return curve
+
+
+def ripple(amplitude: float, frequency_hz: float, phase: float, offset: float = 0.0) -> Curve:
+    """offset + amplitude · sin(2π f t + phase)."""
+    w = 2 * np.pi * frequency_hz
+
+    def curve(at: Array) -> Jet:
+        angle = w * at + phase
+        return Jet(offset + amplitude * np.sin(angle), amplitude * w * np.cos(angle),
+                   -amplitude * w**2 * np.sin(angle))
+
+    return curve
+
+
+def added(*curves: Curve) -> Curve:
+    """The sum of curves."""
+    def curve(at: Array) -> Jet:
+        total = curves[0](at)
+        for other in curves[1:]:
+            total = total + other(at)
+        return total
+
+    return curve
+
+
+def scaled(factor: float, curve: Curve) -> Curve:
+    """A curve times a number."""
+    return lambda at: curve(at) * factor

@@ -1,0 +1,232 @@
+"""A moving body built from its centre of mass, its feet and its joint angles: every segment's pose with exact rates.
+
+The legs follow from hip and ankle in closed form (two links with a knee). The pelvis stands where the centre of mass
+comes out as asked. Angles: a joint's rotation is Ry(y) Rx(x) Rz(z); the pelvis's is Rz Ry Rx.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from mbkf.conventions import SIDES, Array
+from mbkf.errors import InvalidInput
+from mbkf.model.human import HumanModel
+from mbkf.synthesis import jets
+from mbkf.synthesis.jets import Jet
+
+SIDE_NAMES = {"r": "right", "l": "left"}
+
+STRAIGHT_RAD = np.deg2rad(2.5)
+"""The knee never gets straighter than this; a leg asked to reach further stays short."""
+
+
+@dataclass(frozen=True)
+class FootPose:
+    """Where a foot is: ``ankle`` (T, 3) m, (T,) ``yaw`` and ``pitch`` (heel up positive) and ``toes`` hinge, rad."""
+
+    ankle: Jet
+    yaw: Jet
+    pitch: Jet
+    toes: Jet
+
+
+@dataclass(frozen=True)
+class Pose:
+    """The whole body over time.
+
+    Attributes:
+        rotations: Per segment the (T, 3, 3) world rotation.
+        origins: Per segment the (T, 3) world origin, m.
+        angles: Per dof of a hinge or universal joint, by segment, the (T,) angles, rad.
+        knee: (T, 2) flexion of right and left knee, rad.
+        reach: Largest ratio of a hip–ankle distance to the length of the leg.
+    """
+
+    rotations: dict[str, Jet]
+    origins: dict[str, Jet]
+    angles: dict[str, tuple[Jet, ...]]
+    knee: Array
+    reach: float
+
+
+class Figure:
+    """Builds poses of one scaled body.
+
+    Attributes:
+        model: The body.
+        mass: Mass by segment, kg.
+        com: (3,) centre of mass by segment, m.
+        moments: (3, 3) second moments of mass about the centre of mass by segment, kg m².
+        offset: (3,) joint in the parent's frame by segment, m.
+    """
+
+    def __init__(self, model: HumanModel) -> None:
+        self.model = model
+        self.mass: dict[str, float] = {}
+        self.com: dict[str, Array] = {}
+        self.moments: dict[str, Array] = {}
+        self.offset: dict[str, Array] = {}
+        self.parent: dict[str, str] = {}
+        for segment in model.description.segments:
+            inertia = model.pin_model.inertias[model.joint(segment.name).joint_id]
+            about_com = np.array(inertia.inertia)
+            self.mass[segment.name] = float(inertia.mass)
+            self.com[segment.name] = np.array(inertia.lever)
+            self.moments[segment.name] = 0.5 * np.trace(about_com) * np.eye(3) - about_com
+            self.parent[segment.name] = segment.parent
+            if segment.parent != "world":
+                parent = model.description.segment(segment.parent)
+                self.offset[segment.name] = model.axis_scale(parent) * segment.origin_m
+        self.total_mass = sum(self.mass.values())
+
+    def leg_length(self, side: str) -> float:
+        """Hip to ankle with a straight knee, m; side "r" or "l"."""
+        name = SIDE_NAMES[side]
+        return float(np.linalg.norm(self.offset[f"{name}_shank"]) + np.linalg.norm(self.offset[f"{name}_foot"]))
+
+    def pose(self, com: Jet, angles: Mapping[str, tuple[Jet, ...]], feet: Mapping[str, FootPose],
+             start: Jet | None = None) -> Pose:
+        """The pose with a given (T, 3) centre of mass, m.
+
+        Args:
+            com: Whole-body centre of mass.
+            angles: Joint angles (x, y, z) of pelvis, torso, neck (x, y), head, arms, and the knees' small
+                rotations ``{side}_shank`` (x, z), rad.
+            feet: The feet by side.
+            start: Pelvis position to start from.
+        """
+        upper = self._upper(angles)
+        rest = sum((self._weighted(name, *upper) for name in upper[0]), start=Jet.constant(np.zeros(3)))
+        upper_mass = sum(self.mass[name] for name in upper[0])
+        pelvis = com if start is None else start
+        for _ in range(60):
+            legs = self._legs(pelvis, upper[0]["pelvis"], angles, feet)
+            below = sum((self._weighted(name, *legs[:2]) for name in legs[0]), start=Jet.constant(np.zeros(3)))
+            error = com - (rest + below + pelvis * upper_mass) / self.total_mass
+            pelvis = pelvis + error * np.array([1.2, 1.2, 1.1])
+            if all(np.abs(e).max() < tol for e, tol in zip(error.orders, (1e-13, 1e-11, 1e-9), strict=True)):
+                break
+        legs = self._legs(pelvis, upper[0]["pelvis"], angles, feet)
+        rotations, origins = {**upper[0], **legs[0]}, {name: p + pelvis for name, p in upper[1].items()}
+        origins.update(legs[1])
+        hinged = {"neck": angles["neck"][:2], "right_toes": (feet["r"].toes,), "left_toes": (feet["l"].toes,)}
+        return Pose(rotations, origins, hinged, legs[2], legs[3])
+
+    def _weighted(self, name: str, rotations: dict[str, Jet], origins: dict[str, Jet]) -> Jet:
+        return (origins[name] + rotations[name].apply(self.com[name])) * self.mass[name]
+
+    def _upper(self, angles: Mapping[str, tuple[Jet, ...]]) -> tuple[dict[str, Jet], dict[str, Jet]]:
+        """World rotations and origins relative to the pelvis's origin, of pelvis, trunk, head and arms."""
+        rotations = {"pelvis": jets.euler(*angles["pelvis"], order="zyx")}
+        origins = {"pelvis": Jet.constant(np.zeros_like(angles["pelvis"][0].value)[:, None] + np.zeros(3))}
+        for name, parent in self.parent.items():
+            if parent == "world" or name.endswith(("thigh", "shank", "foot", "toes")):
+                continue
+            if name == "neck":
+                x, y = angles[name][:2]
+                relative = jets.rotation(0, x) @ jets.rotation(1, y)
+            else:
+                relative = jets.euler(*angles[name])
+            rotations[name] = rotations[parent] @ relative
+            origins[name] = origins[parent] + rotations[parent].apply(self.offset[name])
+        return rotations, origins
+
+    def _legs(self, pelvis: Jet, pelvis_rotation: Jet, angles: Mapping[str, tuple[Jet, ...]],
+              feet: Mapping[str, FootPose]) -> tuple[dict[str, Jet], dict[str, Jet], Array, float]:
+        rotations: dict[str, Jet] = {}
+        origins: dict[str, Jet] = {}
+        knees, reach = [], 0.0
+        for side in SIDES:
+            name, foot = SIDE_NAMES[side], feet[side]
+            hip = pelvis + pelvis_rotation.apply(self.offset[f"{name}_thigh"])
+            thigh, shank, knee, used = self._leg(name, foot.ankle - hip, angles[f"{name}_shank"], foot.yaw)
+            foot_rotation = jets.rotation(2, foot.yaw) @ jets.rotation(1, foot.pitch)
+            rotations[f"{name}_thigh"], origins[f"{name}_thigh"] = thigh, hip
+            rotations[f"{name}_shank"] = shank
+            origins[f"{name}_shank"] = hip + thigh.apply(self.offset[f"{name}_shank"])
+            rotations[f"{name}_foot"], origins[f"{name}_foot"] = foot_rotation, foot.ankle
+            rotations[f"{name}_toes"] = foot_rotation @ jets.rotation(1, foot.toes)
+            origins[f"{name}_toes"] = foot.ankle + foot_rotation.apply(self.offset[f"{name}_toes"])
+            knees.append(knee)
+            reach = max(reach, used)
+        return rotations, origins, np.stack(knees, axis=-1), reach
+
+    def _leg(self, name: str, span: Jet, knee_xz: tuple[Jet, ...], yaw: Jet) -> tuple[Jet, Jet, Array, float]:
+        """Thigh and shank rotations that put the ankle at ``span`` from the hip, knee axis across the foot."""
+        upper, lower = -self.offset[f"{name}_shank"][2], -self.offset[f"{name}_foot"][2]
+        square = jets.dot(span, span)
+        cosine = (square - upper**2 - lower**2) / (jets.cos(knee_xz[0]) * (2 * upper * lower))
+        limit = float(np.cos(STRAIGHT_RAD))
+        cosine = jets.where((cosine.value < limit) & (cosine.value > -limit), cosine,
+                            Jet.constant(np.clip(cosine.value, -limit, limit)))
+        flexion = jets.arccos(cosine)
+        knee = jets.euler(knee_xz[0], flexion, knee_xz[1])
+        local = knee.apply(np.array([0.0, 0.0, -lower])) + np.array([0.0, 0.0, -upper])
+        across = jets.stack([-jets.sin(yaw), jets.cos(yaw), yaw * 0.0])
+        side_axis = Jet.constant(np.zeros_like(span.value) + np.array([0.0, 1.0, 0.0]))
+        thigh = _frame(span, across) @ _frame(local, side_axis).transposed()
+        used = float(np.sqrt(square.value.max())) / (upper + lower)
+        return thigh, thigh @ knee, flexion.value, used
+
+    def momentum(self, pose: Pose) -> tuple[Jet, Array, Array]:
+        """Centre of mass (T, 3), angular momentum about it (T, 3) in N m s and its derivative (T, 3) in N m."""
+        com = sum((self._weighted(name, pose.rotations, pose.origins) for name in self.mass),
+                  start=Jet.constant(np.zeros(3))) / self.total_mass
+        spin, change = np.zeros_like(com.value), np.zeros_like(com.value)
+        for name, mass in self.mass.items():
+            R = pose.rotations[name]
+            at = pose.origins[name] + R.apply(self.com[name]) - com
+            carried = self.moments[name] @ np.swapaxes(R.value, -1, -2)
+            spin += 2 * jets.axial(R.first @ carried) + mass * np.cross(at.value, at.first)
+            change += 2 * jets.axial(R.second @ carried) + mass * np.cross(at.value, at.second)
+        return com, spin, change
+
+    def coordinates(self, pose: Pose) -> tuple[Array, Array, Array]:
+        """q (T, nq), v (T, nv), a (T, nv) of a pose, in Pinocchio's coordinates; quaternions do not jump."""
+        frames = len(pose.knee)
+        q = np.zeros((frames, self.model.nq))
+        v, a = np.zeros((frames, self.model.nv)), np.zeros((frames, self.model.nv))
+        for name, joint in self.model.joints.items():
+            if joint.kind in ("hinge", "universal"):
+                for k, angle in enumerate(pose.angles[name]):
+                    at_q, at_v = joint.q.start + k, joint.v.start + k
+                    q[:, at_q], v[:, at_v], a[:, at_v] = angle.orders
+                continue
+            rotation, first_q, first_v = pose.rotations[name], joint.q.start, joint.v.start
+            if joint.kind == "free":
+                to_body, origin = rotation.transposed(), pose.origins[name]
+                q[:, first_q : first_q + 3] = origin.value
+                v[:, first_v : first_v + 3] = _apply(to_body.value, origin.first)
+                a[:, first_v : first_v + 3] = (_apply(to_body.value, origin.second)
+                                               + _apply(to_body.first, origin.first))
+                first_q, first_v = first_q + 3, first_v + 3
+            else:
+                rotation = pose.rotations[self.parent[name]].transposed() @ rotation
+            q[:, first_q : first_q + 4] = _quaternions(rotation.value)
+            v[:, first_v : first_v + 3], a[:, first_v : first_v + 3] = jets.local_rates(rotation)
+        if not (np.isfinite(q).all() and np.isfinite(a).all()):
+            raise InvalidInput("the motion cannot be performed by this body")
+        return q, v, a
+
+
+def _apply(matrices: Array, vectors: Array) -> Array:
+    return (matrices @ vectors[..., None])[..., 0]
+
+
+def _frame(along: Jet, across: Jet) -> Jet:
+    """(T, 3, 3) right-handed frame whose first axis is ``along`` and whose second is nearest to ``across``."""
+    u = jets.unit(along)
+    w = jets.unit(across - u * jets.dot(across, u)[..., None])
+    return jets.stack([u, w, jets.cross(u, w)])
+
+
+def _quaternions(rotations: Array) -> Array:
+    quaternions = Rotation.from_matrix(rotations).as_quat()
+    turned = np.sign(np.einsum("ti,ti->t", quaternions[1:], quaternions[:-1]))
+    turned[turned == 0] = 1.0
+    quaternions[1:] *= np.cumprod(turned)[:, None]
+    return quaternions

@@ -1,0 +1,182 @@
+"""Functions of time carried with their exact first and second derivatives (second-order jets)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mbkf.conventions import Array
+
+
+class Jet:
+    """An array quantity x(t) sampled at T times, with ẋ and ẍ; arithmetic follows the chain rule exactly.
+
+    Attributes:
+        value: (T, ...) x.
+        first: (T, ...) ẋ, per second.
+        second: (T, ...) ẍ, per second squared.
+    """
+
+    __array_ufunc__ = None  # an array on the left leaves the arithmetic to the jet
+    __slots__ = ("first", "second", "value")
+
+    def __init__(self, value: Array, first: Array, second: Array) -> None:
+        self.value, self.first, self.second = value, first, second
+
+    @classmethod
+    def constant(cls, value: Array) -> Jet:
+        """A jet that does not change."""
+        array = np.asarray(value, dtype=float)
+        return cls(array, np.zeros_like(array), np.zeros_like(array))
+
+    @property
+    def orders(self) -> tuple[Array, Array, Array]:
+        """x, ẋ, ẍ."""
+        return self.value, self.first, self.second
+
+    def __getitem__(self, index: object) -> Jet:
+        return Jet(*(x[index] for x in self.orders))  # type: ignore[index]
+
+    def __neg__(self) -> Jet:
+        return Jet(*(-x for x in self.orders))
+
+    def __add__(self, other: Jet | Array | float) -> Jet:
+        if isinstance(other, Jet):
+            return Jet(*(x + y for x, y in zip(self.orders, other.orders, strict=True)))
+        return Jet(self.value + other, self.first + 0.0 * other, self.second + 0.0 * other)
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Jet | Array | float) -> Jet:
+        return self + (-other)
+
+    def __rsub__(self, other: Array | float) -> Jet:
+        return (-self) + other
+
+    def __mul__(self, other: Jet | Array | float) -> Jet:
+        if isinstance(other, Jet):
+            return Jet(self.value * other.value,
+                       self.first * other.value + self.value * other.first,
+                       self.second * other.value + 2 * self.first * other.first + self.value * other.second)
+        return Jet(*(x * other for x in self.orders))
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Jet | Array | float) -> Jet:
+        if isinstance(other, Jet):
+            x = other.value
+            return self * other.chain(1 / x, -1 / x**2, 2 / x**3)
+        return Jet(*(x / other for x in self.orders))
+
+    def __matmul__(self, other: Jet | Array) -> Jet:
+        """Matrix product of (T, m, n) and (T, n, p)."""
+        if isinstance(other, Jet):
+            return Jet(self.value @ other.value,
+                       self.first @ other.value + self.value @ other.first,
+                       self.second @ other.value + 2 * (self.first @ other.first) + self.value @ other.second)
+        return Jet(*(x @ other for x in self.orders))
+
+    def chain(self, f: Array, df: Array, ddf: Array) -> Jet:
+        """Jet of f(x), from f and its first two derivatives at x."""
+        return Jet(f, df * self.first, ddf * self.first**2 + df * self.second)
+
+    def transposed(self) -> Jet:
+        """The last two axes exchanged."""
+        return Jet(*(np.swapaxes(x, -1, -2) for x in self.orders))
+
+    def apply(self, vector: Jet | Array) -> Jet:
+        """Matrix times vector: (T, 3, 3) on (T, 3), or on one constant (3,)."""
+        if isinstance(vector, Jet):
+            return (self @ vector[..., None])[..., 0]
+        return Jet(*(x @ vector for x in self.orders))
+
+    def sum(self, axis: int) -> Jet:
+        """Sum along an axis."""
+        return Jet(*(x.sum(axis=axis) for x in self.orders))
+
+
+def sin(x: Jet) -> Jet:
+    """Sine of a jet."""
+    s, c = np.sin(x.value), np.cos(x.value)
+    return x.chain(s, c, -s)
+
+
+def cos(x: Jet) -> Jet:
+    """Cosine of a jet."""
+    s, c = np.sin(x.value), np.cos(x.value)
+    return x.chain(c, -s, -c)
+
+
+def sqrt(x: Jet) -> Jet:
+    """Square root of a positive jet."""
+    root = np.sqrt(x.value)
+    return x.chain(root, 0.5 / root, -0.25 / (root * x.value))
+
+
+def arccos(x: Jet) -> Jet:
+    """Arc cosine of a jet inside (−1, 1)."""
+    rest = 1 - x.value**2
+    return x.chain(np.arccos(x.value), -1 / np.sqrt(rest), -x.value / rest**1.5)
+
+
+def dot(a: Jet, b: Jet) -> Jet:
+    """(T,) inner product of two (T, 3) jets."""
+    return (a * b).sum(axis=-1)
+
+
+def cross(a: Jet, b: Jet) -> Jet:
+    """(T, 3) vector product of two (T, 3) jets."""
+    return Jet(np.cross(a.value, b.value),
+               np.cross(a.first, b.value) + np.cross(a.value, b.first),
+               np.cross(a.second, b.value) + 2 * np.cross(a.first, b.first) + np.cross(a.value, b.second))
+
+
+def unit(a: Jet) -> Jet:
+    """(T, 3) direction of a (T, 3) jet."""
+    length = sqrt(dot(a, a))
+    return a / length[..., None]
+
+
+def stack(jets: Sequence[Jet], axis: int = -1) -> Jet:
+    """Several jets of one shape along a new axis."""
+    return Jet(*(np.stack(parts, axis=axis) for parts in zip(*(j.orders for j in jets), strict=True)))
+
+
+def where(condition: np.ndarray, a: Jet, b: Jet) -> Jet:
+    """Jet a at the times of a (T,) condition, b elsewhere."""
+    mask = condition.reshape(condition.shape + (1,) * (a.value.ndim - 1))
+    return Jet(*(np.where(mask, x, y) for x, y in zip(a.orders, b.orders, strict=True)))
+
+
+_FIXED = [np.diag(row).astype(float) for row in np.eye(3)]
+_TURNED = [np.eye(3) - fixed for fixed in _FIXED]
+_SKEW = [np.array([[0, 0, 0], [0, 0, -1], [0, 1, 0]], dtype=float),
+         np.array([[0, 0, 1], [0, 0, 0], [-1, 0, 0]], dtype=float),
+         np.array([[0, -1, 0], [1, 0, 0], [0, 0, 0]], dtype=float)]
+
+
+def rotation(axis: int, angle: Jet) -> Jet:
+    """(T, 3, 3) rotation by a (T,) angle in rad about axis 0, 1 or 2."""
+    return cos(angle)[..., None, None] * _TURNED[axis] + sin(angle)[..., None, None] * _SKEW[axis] + _FIXED[axis]
+
+
+def euler(x: Jet, y: Jet, z: Jet, order: str = "yxz") -> Jet:
+    """(T, 3, 3) product of elementary rotations by the angles about x, y and z, in the given order."""
+    angles = {"x": x, "y": y, "z": z}
+    product = rotation("xyz".index(order[0]), angles[order[0]])
+    for axis in order[1:]:
+        product = product @ rotation("xyz".index(axis), angles[axis])
+    return product
+
+
+def local_rates(rotations: Jet) -> tuple[Array, Array]:
+    """(T, 3) angular velocity and its derivative in the rotating frame: ω = (Rᵀ Ṙ)ˇ, ω̇ = (Rᵀ R̈)ˇ."""
+    transposed = np.swapaxes(rotations.value, -1, -2)
+    return axial(transposed @ rotations.first), axial(transposed @ rotations.second)
+
+
+def axial(matrix: Array) -> Array:
+    """(..., 3) vector of the antisymmetric part of (..., 3, 3) matrices."""
+    return 0.5 * np.stack([matrix[..., 2, 1] - matrix[..., 1, 2], matrix[..., 0, 2] - matrix[..., 2, 0],
+                           matrix[..., 1, 0] - matrix[..., 0, 1]], axis=-1)

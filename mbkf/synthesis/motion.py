@@ -1,0 +1,125 @@
+"""True motions of a body: joint trajectories, torques and ground reactions that obey Newton's law together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import SIDES, Array, read_only
+from mbkf.errors import InvalidInput, NotConverged, UnknownName
+from mbkf.model.human import HumanModel
+from mbkf.synthesis.composition import Composition, compose
+from mbkf.synthesis.contact import FRICTION, sole_outline, split
+from mbkf.synthesis.figure import SIDE_NAMES
+from mbkf.synthesis.squat import squat_plan
+
+PLANS = {"squat": squat_plan}
+"""Plan of every motion by name."""
+
+MIN_SECONDS, MAX_SECONDS = 1.0, 120.0
+
+
+@dataclass(frozen=True)
+class TrueMotion:
+    """A motion known exactly.
+
+    Attributes:
+        name: "squat", "walk" or "jump".
+        rate_hz: Sample rate.
+        times_s: (T,) s.
+        q: (T, nq) configuration.
+        v: (T, nv) its exact rate in the tangent space.
+        a: (T, nv) the exact rate of v.
+        tau: (T, nv) generalised forces of the joints; the six of the pelvis are 0.
+        foot_wrench: (T, 2, 6) force N and moment N m about the world origin, world axes, of the ground on the
+            right, then the left foot (with its toes), applied to the foot segment.
+        centre_of_pressure: (T, 2, 3) on the floor, m; NaN for a foot without load.
+        plate_rate_hz: Sample rate of ``plate_wrench``, a multiple of ``rate_hz``.
+        plate_wrench: (S, 2, 6) the same wrenches at that rate.
+        flight_s: Take-off and touch-down times of a jump, or None.
+    """
+
+    name: str
+    rate_hz: float
+    times_s: Array
+    q: Array
+    v: Array
+    a: Array
+    tau: Array
+    foot_wrench: Array
+    centre_of_pressure: Array
+    plate_rate_hz: float
+    plate_wrench: Array
+    flight_s: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("times_s", "q", "v", "a", "tau", "foot_wrench", "centre_of_pressure", "plate_wrench"):
+            object.__setattr__(self, name, read_only(getattr(self, name)))
+
+
+def synthesise_motion(model: HumanModel, motion: str, seconds: float, rate_hz: float = 100.0,
+                      seed: int = 0) -> TrueMotion:
+    """Makes a motion of a body, a different one for every seed.
+
+    Raises:
+        UnknownName: There is no such motion.
+        InvalidInput: Duration or rate make no sense.
+        NotConverged: Balance was not found for this body.
+    """
+    if motion not in PLANS:
+        raise UnknownName("motion", motion, PLANS)
+    if not MIN_SECONDS <= seconds <= MAX_SECONDS:
+        raise InvalidInput(f"a motion lasts {MIN_SECONDS:g} to {MAX_SECONDS:g} s, got {seconds:g} s")
+    if not 20.0 <= rate_hz <= 2000.0:
+        raise InvalidInput(f"a camera rate lies between 20 and 2000 Hz, got {rate_hz:g} Hz")
+    plan = PLANS[motion](model, float(seconds), np.random.default_rng([seed, sorted(PLANS).index(motion)]))
+    composition = compose(model, plan)
+    every = max(1, int(np.ceil(1000.0 / rate_hz - 1e-9)))
+    frames = int(np.floor(seconds * rate_hz + 1e-9)) + 1
+    fine = np.arange((frames - 1) * every + 1) / (rate_hz * every)
+    q, v, a, wrenches, centres, tau = _dynamics(model, composition, fine, every)
+    _check(model, q, wrenches[::every], centres)
+    flight = plan.flight
+    return TrueMotion(motion, rate_hz, fine[::every], q, v, a, tau, wrenches[::every], centres,
+                      rate_hz * every, wrenches,
+                      None if flight is None else (flight.take_off_s, flight.touch_down_s))
+
+
+def _dynamics(model: HumanModel, composition: Composition, times: Array, every: int) -> tuple[Array, ...]:
+    """q, v, a, centres and torques at every n-th time, foot wrenches at all."""
+    q, v, a = composition.coordinates(times)
+    load = composition.plan.load(times)
+    needed = np.array([model.inverse_dynamics(*state)[:6] for state in zip(q, v, a, strict=True)])
+    for k in np.flatnonzero(~load.grounded):
+        a[k, :6] -= np.linalg.solve(model.mass_matrix(q[k])[:6, :6], needed[k])
+    rotations = composition.pelvis_rotations(times)
+    force = np.einsum("tij,tj->ti", rotations, needed[:, :3])
+    moment = np.einsum("tij,tj->ti", rotations, needed[:, 3:]) + np.cross(q[:, :3], force)
+    height = composition.com(times).value[:, 2]
+    wrenches, centres = split(np.hstack([force, moment]), load, height)
+    q, v, a, centres, own = q[::every], v[::every], a[::every], centres[::every], wrenches[::every]
+    tau = np.empty_like(v)
+    feet = [model.joint(f"{SIDE_NAMES[side]}_foot").joint_id for side in SIDES]
+    for k in range(len(q)):
+        tau[k] = model.inverse_dynamics(q[k], v[k], a[k])
+        jacobian = model.placements_and_jacobian(q[k])[2]
+        for foot, joint in enumerate(feet):
+            tau[k] -= np.where(model.supports[joint], own[k, foot] @ jacobian, 0.0)
+    return q, v, a, wrenches, centres, tau
+
+
+def _check(model: HumanModel, q: Array, wrenches: Array, centres: Array) -> None:
+    """Holds the result against the ground's laws: it pushes only, under the soles only, within friction."""
+    for foot, side in enumerate(SIDES):
+        outline, joint = sole_outline(model, side), model.joint(f"{SIDE_NAMES[side]}_foot").joint_id
+        vertical = wrenches[:, foot, 2]
+        loaded = vertical > 0
+        along = np.linalg.norm(wrenches[:, foot, :2], axis=1)
+        if vertical.min() < 0 or (along > FRICTION * vertical + 1e-9).any():
+            raise NotConverged(f"the {SIDE_NAMES[side]} foot would pull at the floor or slip; try another seed")
+        for k in np.flatnonzero(loaded):
+            rotations, origins = model.placements(q[k])
+            local = rotations[joint].T @ (centres[k, foot] - origins[joint])
+            if not outline.holds(local):
+                raise NotConverged(f"the {SIDE_NAMES[side]} foot's pressure leaves the sole; try another seed")

@@ -1,0 +1,90 @@
+"""What a motion asks of the body, before balance: joint angles, feet, height and load over time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.synthesis.contact import LoadPlan
+from mbkf.synthesis.curves import Curve, added, path, ripple
+from mbkf.synthesis.figure import FootPose
+
+FeetPlan = Callable[[Array], dict[str, FootPose]]
+"""(T,) times in s to the feet by side."""
+
+JOINTS = ("torso", "neck", "head", "right_upper_arm", "right_forearm", "right_hand", "left_upper_arm",
+          "left_forearm", "left_hand", "right_shank", "left_shank")
+"""Joints whose angles (x, y, z) are given; of the shanks only x and z, as the knee's flexion follows from the leg."""
+
+
+@dataclass(frozen=True)
+class Flight:
+    """A spell in the air: take-off and touch-down times in s, and the pelvis's angles around it.
+
+    ``before`` and ``after`` hold, per axis x, y, z, the knots (time, angle) of the pelvis on the ground.
+    """
+
+    take_off_s: float
+    touch_down_s: float
+    before: tuple[list[tuple], ...]
+    after: tuple[list[tuple], ...]
+
+
+@dataclass(frozen=True)
+class MotionPlan:
+    """A motion before balance.
+
+    Attributes:
+        start_s, end_s: Time over which balance is solved (a margin around the recorded time, if any).
+        angles: Curves (x, y, z) by joint, and of the pelvis (where there is no flight), rad.
+        feet: Poses of the feet.
+        height: Height of the centre of mass over the floor, m; shifted as a whole until the legs fit.
+        load: Load sharing and pressure.
+        straightest_rad: Knee flexion at the straightest moment of the motion.
+        flight: The spell in the air, if any.
+    """
+
+    start_s: float
+    end_s: float
+    angles: dict[str, tuple[Curve, Curve, Curve]]
+    feet: FeetPlan
+    height: Curve
+    load: LoadPlan
+    straightest_rad: float
+    flight: Flight | None = None
+    notes: dict[str, float] = field(default_factory=dict)
+
+
+def degrees(*knots: tuple[float, ...]) -> Curve:
+    """A path whose knots (time, angle, rate, acceleration) are in degrees."""
+    return path([(knot[0], *np.deg2rad(knot[1:])) for knot in knots])
+
+
+def lively(curves: dict[str, tuple[Curve, Curve, Curve]], rng: np.random.Generator,
+           amplitude_deg: float = 1.0) -> dict[str, tuple[Curve, Curve, Curve]]:
+    """Every angle with a slow ripple of about the amplitude on top, so that no joint is ever quite still."""
+    moving = {}
+    for joint in ("pelvis", *JOINTS):
+        if joint not in curves:
+            continue
+        small = 0.5 if joint.endswith("shank") or joint == "pelvis" else 1.0
+        moving[joint] = tuple(
+            added(curve, ripple(np.deg2rad(small * amplitude_deg * rng.uniform(0.5, 1.0)),
+                                rng.uniform(0.3, 0.8), rng.uniform(0, 2 * np.pi)))
+            for curve in curves[joint])
+    return moving
+
+
+def resting(**changes: tuple[float, float, float]) -> dict[str, tuple[float, float, float]]:
+    """Joint angles (x, y, z) in degrees of a relaxed standing person, with changes."""
+    posture = {
+        "torso": (0.0, 0.0, 0.0), "neck": (0.0, 8.0, 0.0), "head": (0.0, -8.0, 0.0),
+        "right_upper_arm": (-8.0, 0.0, 8.0), "left_upper_arm": (8.0, 0.0, -8.0),
+        "right_forearm": (0.0, -14.0, 10.0), "left_forearm": (0.0, -14.0, -10.0),
+        "right_hand": (2.0, -3.0, 0.0), "left_hand": (-2.0, -3.0, 0.0),
+        "right_shank": (0.5, 0.0, -1.5), "left_shank": (-0.5, 0.0, 1.5),
+    }
+    return {**posture, **changes}

@@ -1,0 +1,78 @@
+"""Standing on two flat feet: where they are, how they share the load, and postures between two extremes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from mbkf.conventions import SIDES, Array
+from mbkf.model.human import HumanModel
+from mbkf.synthesis.contact import Load, LoadPlan, sole_outline
+from mbkf.synthesis.curves import Curve, added, ripple, scaled
+from mbkf.synthesis.figure import FootPose
+from mbkf.synthesis.jets import Jet
+from mbkf.synthesis.plan import JOINTS, FeetPlan
+
+
+def constant(times: Array, value: float) -> Jet:
+    """(T,) jet that stays at a value."""
+    return Jet.constant(np.full(len(times), value))
+
+
+def planted(model: HumanModel, half_width_m: float, toe_out_deg: float) -> FeetPlan:
+    """Both feet flat and still, ankles at x = 0 and y = ∓ half the width."""
+    def feet(times: Array) -> dict[str, FootPose]:
+        poses = {}
+        for side, sign in zip(SIDES, (-1.0, 1.0), strict=True):
+            at = np.array([0.0, sign * half_width_m, -sole_outline(model, side).height])
+            poses[side] = FootPose(Jet.constant(np.tile(at, (len(times), 1))),
+                                   constant(times, sign * np.deg2rad(toe_out_deg)),
+                                   constant(times, 0.0), constant(times, 0.0))
+        return poses
+
+    return feet
+
+
+def standing_load(feet: FeetPlan, forward_m: float, rng: np.random.Generator) -> LoadPlan:
+    """About half the load on each foot, pressure under the middle of the feet, both swaying a little."""
+    sway = ripple(0.03 * rng.uniform(0.5, 1), rng.uniform(0.2, 0.5), rng.uniform(0, 6.28),
+                  0.5 + 0.03 * rng.uniform(-1, 1))
+    forth = ripple(0.006, rng.uniform(0.2, 0.5), rng.uniform(0, 6.28), forward_m)
+
+    def load(times: Array) -> Load:
+        poses = feet(times)
+        pressure = np.stack([pressed(poses[side], forth(times).value) for side in SIDES], axis=1)
+        return Load(sway(times).value, pressure, np.ones(len(times), dtype=bool))
+
+    return load
+
+
+def pressed(foot: FootPose, forward_m: Array, left_m: Array | float = 0.0) -> Array:
+    """(T, 2) floor point ahead and to the left of the ankle, along the foot's heading."""
+    c, s = np.cos(foot.yaw.value), np.sin(foot.yaw.value)
+    return foot.ankle.value[:, :2] + np.stack([c * forward_m - s * left_m, s * forward_m + c * left_m], axis=-1)
+
+
+def posture(base_deg: Mapping[str, tuple[float, float, float]], gains: list[tuple[Curve, Mapping]],
+            rng: np.random.Generator, spread: float = 0.08) -> dict[str, tuple[Curve, Curve, Curve]]:
+    """Joint angles: a base posture plus curves (0…1) times what each adds, each person a little different.
+
+    Args:
+        base_deg: Angles (x, y, z) in degrees by joint.
+        gains: Pairs of a curve and the angles in degrees that it adds at 1.
+        rng: Source of the differences.
+        spread: Relative size (1 sd) of the differences.
+    """
+    curves = {}
+    for joint in ("pelvis", *JOINTS):
+        axes = []
+        for axis in range(3):
+            own = base_deg.get(joint, (0.0, 0.0, 0.0))[axis] + rng.normal(0.0, 1.0) * (joint != "pelvis")
+            parts = [ripple(0.0, 1.0, 0.0, np.deg2rad(own))]
+            for curve, gain in gains:
+                amount = np.deg2rad(gain.get(joint, (0.0, 0.0, 0.0))[axis]) * (1 + spread * rng.normal())
+                parts.append(scaled(amount, curve))
+            axes.append(added(*parts))
+        curves[joint] = (axes[0], axes[1], axes[2])
+    return curves

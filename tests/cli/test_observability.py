@@ -1,0 +1,70 @@
+"""The tables of `mbkf observability`."""
+
+import pytest
+
+from mbkf.cli.main import main
+from mbkf.model.protocol import protocol_names
+
+
+@pytest.fixture(autouse=True)
+def wide_terminal(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "120")
+
+
+def test_the_reference_protocol_is_complete(capsys):
+    assert main(["observability", "reference36"]) == 0
+    shown = capsys.readouterr().out
+    assert "52 of 52" in shown
+    assert "104 of 104" in shown
+    assert "All 52 degrees of freedom" in shown
+
+
+def test_undetermined_dofs_are_listed_with_their_share(capsys):
+    assert main(["observability", "plug_in_gait"]) == 0
+    shown = capsys.readouterr().out
+    assert "48 of 52" in shown
+    (row,) = (line for line in shown.splitlines() if "right_toes_y" in line)
+    assert row.count("100 %") == 2
+
+
+def test_lost_markers_take_dofs(capsys):
+    assert main(["observability", "reference36", "--lost", "RHAL, LHAL"]) == 0
+    shown = capsys.readouterr().out
+    assert "34 markers" in shown
+    assert "Lost with these markers: right_toes_y, left_toes_y." in shown
+
+
+def test_a_loss_that_takes_nothing_says_so(capsys):
+    assert main(["observability", "reference36", "--lost", "RTHI"]) == 0
+    assert "Lost with these markers: nothing." in capsys.readouterr().out
+
+
+def test_without_a_protocol_all_are_listed(capsys):
+    assert main(["observability"]) == 0
+    shown = capsys.readouterr().out
+    for name in protocol_names():
+        assert name in shown
+    assert "hand (r, l)" in shown
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        (["plug_in_gate"], "did you mean plug_in_gait"),
+        (["reference36", "--lost", "XYZ"], "unknown marker 'XYZ'"),
+        (["missing.toml"], "missing.toml"),
+        (["--lost", "RASI"], "--lost needs the protocol"),
+    ],
+)
+def test_mistakes_are_one_line(capsys, words, complaint):
+    assert main(["observability", *words]) == 2
+    error = capsys.readouterr().err
+    assert complaint in error
+    assert error.count("\n") == 1
+
+
+def test_help_gives_an_example(capsys):
+    with pytest.raises(SystemExit) as leaving:
+        main(["observability", "--help"])
+    assert leaving.value.code == 0
+    assert "mbkf observability reference36" in capsys.readouterr().out
