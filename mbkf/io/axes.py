@@ -38,7 +38,7 @@ _CHECKED_FRAMES = 200
 
 
 def up_axis(name: str) -> str:
-    """The canonical name of an axis: ``"x"``, ``"-y"`` … from ``"X"``, ``"+X"``, ``"-Y"`` …
+    """The canonical name of an axis, ``"y"`` for ``"+Y"``.
 
     Raises:
         UnknownName: It names no axis.
@@ -67,7 +67,7 @@ def rotation_to_world(up: str) -> Array:
 
 
 def length_unit(name: str) -> str:
-    """The canonical short name of a length unit: ``"mm"`` from ``" MM"``, ``"Millimeters"`` …
+    """The canonical short name of a length unit, ``"mm"`` for ``"Millimeters"``.
 
     Raises:
         UnknownName: It is no unit of length known here.
@@ -77,6 +77,11 @@ def length_unit(name: str) -> str:
     if word not in METRES_PER_UNIT:
         raise UnknownName("length unit", name, METRES_PER_UNIT)
     return word
+
+
+def finite(values: Array) -> BoolArray:
+    """Whether all components along the last axis are finite; has the shape of ``values`` without that axis."""
+    return np.asarray(np.isfinite(values).all(axis=-1))
 
 
 def positions_to_world(values: Array, present: BoolArray, up: str, unit: str) -> Array:
@@ -94,7 +99,7 @@ def positions_to_world(values: Array, present: BoolArray, up: str, unit: str) ->
     Raises:
         UnknownName: Unknown axis or unit.
     """
-    seen = present & np.isfinite(values).all(axis=2) & (values != 0.0).any(axis=2)
+    seen = present & finite(values) & (values != 0.0).any(axis=2)
     metres = values @ rotation_to_world(up).T * METRES_PER_UNIT[length_unit(unit)]
     return np.where(seen[:, :, None], metres, np.nan)
 
@@ -144,5 +149,5 @@ def check_body_size(positions_m: Array, unit: str, where: str) -> tuple[str, ...
             "give the right unit with --unit (mm, cm or m)"
         )
     if extent > ODD_EXTENT_M:
-        return (f"markers spread over {extent:.1f} m at one instant: several people, or a wrong unit ({unit})",)
+        return (f"markers spread over {extent:.1f} m at one instant: several people, or not in {unit}",)
     return ()

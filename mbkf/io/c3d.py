@@ -11,7 +11,7 @@ import numpy as np
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.axes import WORLD_AXES, check_body_size, length_unit, up_axis
 from mbkf.io.c3d_analog import analog_channels, events, plate_readings, raw_plates
-from mbkf.io.c3d_layout import C3dLayout, check_frames, check_layout
+from mbkf.io.c3d_layout import LAST_FRAME_OF_HEADER, C3dLayout, check_frames, check_layout
 from mbkf.io.c3d_parameters import Parameters
 from mbkf.io.c3d_plates import RawPlate, plate_axes
 from mbkf.io.c3d_points import read_points
@@ -68,15 +68,16 @@ def read_c3d(
     markers, derived = read_points(content, parameters, used_up, used_unit, rate_hz, start_s, notes)
     if unit is None:
         notes += check_body_size(markers.positions_m, used_unit, str(path))
-    analog = analog_channels(content, parameters)
+    readings = [
+        plate_readings(plate, path, used_unit, used_up, start_s, cop_threshold_n, tare, notes)
+        for plate in raw
+    ]
     return Capture(
         path=str(path),
         markers=markers,
-        plates=tuple(
-            plate_readings(plate, path, used_unit, used_up, start_s, cop_threshold_n, tare, notes) for plate in raw
-        ),
+        plates=tuple(readings),
         derived=derived,
-        analog=analog,
+        analog=analog_channels(content, parameters),
         events=events(content, parameters),
         up_axis=used_up,
         length_unit=used_unit,
@@ -99,14 +100,17 @@ def _load(path: Path) -> Any:
 def _check_complete(path: Path, layout: C3dLayout, parameters: Parameters, frames_read: int) -> None:
     """Compare what was read with what header and parameters promise (the header ends at 65535 frames)."""
     promised = layout.frames
+    counted = layout.first_frame + layout.frames <= LAST_FRAME_OF_HEADER
     actual = parameters.numbers("TRIAL", "ACTUAL_END_FIELD").ravel()
     first = parameters.numbers("TRIAL", "ACTUAL_START_FIELD").ravel()
-    if len(actual) == 2 and len(first) == 2:  # 32-bit numbers in two 16-bit words, low word first
+    if not counted and len(actual) == len(first) == 2:  # 32-bit numbers in two 16-bit words, low word first
         words = np.array([1, 65536])
         promised = max(promised, int((actual % 65536) @ words - (first % 65536) @ words) + 1)
     check_frames(path, layout, promised)
     if frames_read < layout.frames:
-        raise FileFormatError(path, f"only {frames_read} of {layout.frames} frames can be read; export it again")
+        raise FileFormatError(
+            path, f"only {frames_read} of {layout.frames} frames are readable; export it again"
+        )
 
 
 def _rate(path: Path, content: Any, parameters: Parameters) -> float:
@@ -148,7 +152,7 @@ def _up_axis(parameters: Parameters, plates: list[RawPlate], notes: list[str]) -
         notes.append(f"force plates face different axes ({', '.join(sorted(from_plates))})")
     if screen in WORLD_AXES:
         return screen
-    notes.append("neither force plates nor POINT:Y_SCREEN say which axis points up; taken as z (--up changes it)")
+    notes.append("neither plates nor POINT:Y_SCREEN say which axis points up; taken as z (--up changes it)")
     return "z"
 
 

@@ -177,7 +177,7 @@ def _doubts(name: str, wrench: Array, pressure: Array, corners: Array, threshold
         half = np.abs(corners - corners.mean(axis=0)).max(axis=0) + _OFF_PLATE_M
         off = (np.abs(seen - corners.mean(axis=0)) > half).any(axis=1).mean()
         if off > _OFF_PLATE_SHARE:
-            doubts.append(f"{name}: centre of pressure lies off the plate {off:.0%} of the time; check CORNERS")
+            doubts.append(f"{name}: centre of pressure is off the plate {off:.0%} of the time; check CORNERS")
     return doubts
 
 

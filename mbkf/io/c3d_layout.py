@@ -16,9 +16,9 @@ from mbkf.errors import FileFormatError
 _BLOCK = 512
 _KEY = 0x50
 _BYTE_ORDERS = {84: "<", 85: "<", 86: ">"}  # Intel, DEC, MIPS
-_DEC = 85
-_MOST_FRAMES = 65535
-"""The header cannot count further; longer files count in their parameters."""
+_INTEL = 84
+LAST_FRAME_OF_HEADER = 65535
+"""The header's 16-bit words cannot count further; longer files count in TRIAL:ACTUAL_END_FIELD."""
 
 
 @dataclass(frozen=True)
@@ -83,9 +83,9 @@ def check_layout(path: Path) -> C3dLayout:
     if len(header) < _BLOCK or start < _BLOCK or len(parameters) < 4:
         raise FileFormatError(path, f"cut short inside its header ({size} bytes); copy or export it again")
     if parameters[3] not in _BYTE_ORDERS:
-        raise FileFormatError(path, f"processor type {parameters[3]} is not one of C3D's (84, 85, 86)")
+        raise FileFormatError(path, f"not a C3D file (processor type {parameters[3]}); export it as C3D")
     if size < start + parameters[2] * _BLOCK:
-        raise FileFormatError(path, f"cut short inside its parameters ({size} bytes); copy or export it again")
+        raise FileFormatError(path, f"cut short inside its parameters ({size} bytes); export it again")
     layout = _layout(header, parameters[3], size)
     check_frames(path, layout, layout.frames)
     return layout
@@ -109,8 +109,8 @@ def check_frames(path: Path, layout: C3dLayout, frames: int) -> None:
 def _layout(header: bytes, processor: int, size: int) -> C3dLayout:
     order = _BYTE_ORDERS[processor]
     words = struct.unpack(f"{order}256H", header)
-    # The sign bit of the point scale: in the first word on DEC and MIPS, in the second on Intel.
-    scale_word = words[7] if processor not in (_DEC, 86) else words[6]
+    # The sign bit of the point scale stands in its second word on Intel, in its first on DEC and MIPS.
+    scale_word = words[7] if processor == _INTEL else words[6]
     first, last = words[3], words[4]
     return C3dLayout(
         points=words[1],

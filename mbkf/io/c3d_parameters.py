@@ -18,7 +18,7 @@ class Parameters:
 
     def __init__(self, groups: Mapping[str, Mapping[str, Any]]) -> None:
         self._groups = {
-            group.upper(): {name.upper(): entry["value"] for name, entry in members.items() if "value" in entry}
+            group.upper(): {name.upper(): item["value"] for name, item in members.items() if "value" in item}
             for group, members in groups.items()
         }
 

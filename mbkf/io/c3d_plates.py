@@ -86,12 +86,12 @@ def check_geometry(plate: RawPlate, path: str, unit: str) -> None:
     name = f"force plate {plate.number}"
     if plate.kind not in CHANNELS_OF_TYPE:
         raise FileFormatError(
-            path, f"{name} is of type {plate.kind}; types 1 to 4 can be read, so give its forces with --forces"
+            path, f"{name} is of type {plate.kind}; only 1 to 4 can be read; give its forces with --forces"
         )
     needed = CHANNELS_OF_TYPE[plate.kind]
     if plate.readings.shape[1] != needed:
         found = plate.readings.shape[1]
-        raise FileFormatError(path, f"{name} of type {plate.kind} needs {needed} channels, the file names {found}")
+        raise FileFormatError(path, f"{name} of type {plate.kind} needs {needed} channels, it has {found}")
     sides = np.diff(plate.corners[:, [0, 1, 2, 3, 0]], axis=1) * METRES_PER_UNIT[unit]
     area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1])) if np.isfinite(sides).all() else 0.0
     if area < _LEAST_SIDE_M**2:
@@ -99,7 +99,7 @@ def check_geometry(plate: RawPlate, path: str, unit: str) -> None:
             path, f"{name} has no usable CORNERS, so it is not calibrated; calibrate it or use --forces"
         )
     if plate.kind == 4 and (plate.calibration is None or not np.any(plate.calibration)):
-        raise FileFormatError(path, f"{name} is of type 4 but has no CAL_MATRIX; calibrate it or use --forces")
+        raise FileFormatError(path, f"{name} is of type 4 without CAL_MATRIX; calibrate it or use --forces")
     if plate.kind == 3 and not np.all(plate.origin[:2]):
         raise FileFormatError(path, f"{name} is of type 3 but ORIGIN lacks the places of its sensors")
 

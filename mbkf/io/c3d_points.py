@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.io.axes import positions_to_world
+from mbkf.io.axes import finite, positions_to_world
 from mbkf.io.c3d_parameters import Parameters
 from mbkf.io.derived import UNIT_PARAMETERS, classify, group_kinds
 from mbkf.io.records import DerivedPoint, MarkerTrajectories
@@ -102,7 +102,7 @@ def _unique(labels: list[str], notes: list[str]) -> list[str]:
 def _present(content: Any, points: Array) -> BoolArray:
     """(T, N) whether a point was seen: residual not negative, coordinates numbers and not all zero."""
     residuals = np.asarray(content["data"]["meta_points"]["residuals"], dtype=np.float64)
-    present = np.isfinite(points).all(axis=2)
+    present = finite(points)
     if residuals.shape == (1, points.shape[1], points.shape[0]):
         present &= residuals[0].T >= 0.0
     return present

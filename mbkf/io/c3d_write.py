@@ -10,7 +10,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.atomic import replacing
-from mbkf.io.axes import METRES_PER_UNIT, length_unit, rotation_to_world
+from mbkf.io.axes import METRES_PER_UNIT, finite, length_unit, rotation_to_world
 from mbkf.io.c3d_plates import plate_axes
 from mbkf.io.derived import GROUP_KINDS, UNIT_PARAMETERS
 from mbkf.io.records import Capture, DerivedPoint, PlateReadings
@@ -60,13 +60,15 @@ def _fill_points(content: Any, capture: Capture) -> None:
     values = [markers.positions_m * _MM]
     values += [_in_file_axes(point, capture)[:, None, :] for point in derived]
     points = np.concatenate(values, axis=1)
-    missing = ~np.isfinite(points).all(axis=2)
+    missing = ~finite(points)
     points = np.where(missing[:, :, None], 0.0, points)
     group = content["parameters"]["POINT"]
     group["LABELS"]["value"] = [*markers.names, *(point.name for point in derived)]
     group["UNITS"]["value"] = ["mm"]
     group["RATE"]["value"] = np.array([markers.rate_hz])
-    content["data"]["points"] = np.concatenate([points, np.ones_like(points[:, :, :1])], axis=2).transpose(2, 1, 0)
+    content["data"]["points"] = np.pad(points, ((0, 0), (0, 0), (0, 1)), constant_values=1.0).transpose(
+        2, 1, 0
+    )
     content["data"]["meta_points"]["residuals"] = np.where(missing, -1.0, 0.0).T[None]
     content.add_parameter("POINT", "X_SCREEN", ["+X"])
     content.add_parameter("POINT", "Y_SCREEN", ["+Z"])

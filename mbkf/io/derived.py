@@ -1,4 +1,4 @@
-"""Which points of a C3D file were measured, and which a laboratory's software computed and stored beside them.
+"""Which points of a C3D file were measured, and which some software computed and stored beside them.
 
 A file says so for angles, forces, moments, powers and scalars (POINT:ANGLES …, named by POINT:TYPE_GROUPS).
 Joint centres, segment axes and the like carry no sign but their names, so the names of Vicon Plug-in Gait and
@@ -10,7 +10,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 
-GROUP_KINDS = {"ANGLES": "angle", "FORCES": "force", "MOMENTS": "moment", "POWERS": "power", "SCALARS": "scalar"}
+GROUP_KINDS = {
+    "ANGLES": "angle",
+    "FORCES": "force",
+    "MOMENTS": "moment",
+    "POWERS": "power",
+    "SCALARS": "scalar",
+}
 """Parameters of the group POINT that list derived points, and the kind they list."""
 
 UNIT_PARAMETERS = {

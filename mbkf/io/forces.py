@@ -18,7 +18,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, InvalidInput, UnknownName
-from mbkf.io.axes import rotation_to_world
+from mbkf.io.axes import finite, rotation_to_world
 from mbkf.io.records import PlateReadings
 from mbkf.io.storage import Table, read_storage, write_storage
 from mbkf.io.wrench import (
@@ -35,6 +35,8 @@ UNNAMED_SET = "0"
 _FORCE_COLUMN = re.compile(r"(?P<before>.*?)_?ground_force_?(?P<within>\w*?)_?(?P<kind>[vp])x")
 _AXES = "xyz"
 _EVEN_TOLERANCE = 0.5
+_LEAST_OFFSET_N = 2.0
+_UP = np.array([0.0, 0.0, 1.0])
 
 
 def read_forces_mot(
@@ -49,7 +51,8 @@ def read_forces_mot(
         path: The file, in m, N and N m.
         up: Axis of the file that points up; OpenSim has y.
         cop_threshold_n: Vertical force in N below which no centre of pressure is given.
-        tare: Whether the offset of the unloaded set is removed (most exports have none).
+        tare: Whether an offset of the unloaded set is removed, if it is 2 N or more; most exports have none,
+            and what remains of a low-pass filter is not one.
 
     Returns:
         One set of readings per plate or foot, in the order of the columns.
@@ -66,23 +69,19 @@ def read_forces_mot(
     start_s = float(table.times_s[0])
     rotation = rotation_to_world(up)
     readings = []
-    for name, (force_columns, point_columns, torque_columns) in sets.items():
-        force, point, torque = (
-            _vectors(table, columns) @ rotation.T for columns in (force_columns, point_columns, torque_columns)
-        )
-        where = f"{path}, set '{name}'"
-        require_finite(np.hstack([force, point]), torque, rate_hz, start_s, where)
-        loaded = force[:, 2] >= cop_threshold_n
+    for name, columns_of_set in sets.items():
+        force, point, torque = (_vectors(table, columns) @ rotation.T for columns in columns_of_set)
+        loaded = np.asarray(force[:, 2] >= cop_threshold_n)
+        point[~loaded & ~finite(point)] = 0.0  # no force, so no point of application
+        require_finite(np.hstack([force, point]), torque, rate_hz, start_s, f"{path}, set '{name}'")
         origin = point[loaded].mean(axis=0) if loaded.any() else np.zeros(3)
         wrench = np.hstack([force, torque + np.cross(point - origin, force)])
         pressure = np.where(loaded[:, None], point, np.nan)
         offset = np.zeros(6)
-        if tare:
-            found = find_tare(wrench, rate_hz)
+        found = find_tare(wrench, rate_hz) if tare else None
+        if found is not None and abs(found.offset[2]) >= _LEAST_OFFSET_N:
             wrench, offset = remove_tare(wrench, found), found.offset
-            if offset.any():
-                up_axis = np.array([0.0, 0.0, 1.0])
-                pressure = centre_of_pressure(wrench[:, :3], wrench[:, 3:], origin, up_axis, cop_threshold_n)
+            pressure = centre_of_pressure(wrench[:, :3], wrench[:, 3:], origin, _UP, cop_threshold_n)
         readings.append(
             PlateReadings(
                 name=name,
@@ -174,5 +173,5 @@ def _rate(path: Path, times: Array) -> float:
     off = np.abs((times - times[0]) * rate_hz - np.arange(len(times)))
     if off.max() > _EVEN_TOLERANCE:
         worst = times[int(np.argmax(off))]
-        raise FileFormatError(path, f"times are not evenly spaced (near {worst:.4f} s); resample the forces first")
+        raise FileFormatError(path, f"times are not evenly spaced near {worst:.4f} s; resample them first")
     return round(rate_hz, 6)

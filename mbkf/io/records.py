@@ -45,7 +45,7 @@ class MarkerTrajectories:
     @property
     def present(self) -> BoolArray:
         """(T, M) whether a marker is seen in a frame."""
-        return ~np.isnan(self.positions_m).any(axis=2)
+        return np.logical_not(np.isnan(self.positions_m).any(axis=2))
 
     def select(self, names: tuple[str, ...]) -> MarkerTrajectories:
         """The trajectories of the named markers, in that order.

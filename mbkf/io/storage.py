@@ -87,7 +87,7 @@ def read_storage(path: str | Path) -> Table:
     rows = _rows(path, lines, start + 1, len(names))
     promised = header.get("nrows", header.get("datarows", ""))
     if promised.isdigit() and int(promised) > len(rows):
-        reason = f"cut short: the header promises {promised} rows, {len(rows)} are there; copy or export it again"
+        reason = f"cut short: {promised} rows promised, {len(rows)} present; copy or export it again"
         raise FileFormatError(path, reason)
     degrees = header.get("indegrees", "no").lower() in {"yes", "true", "1"}
     return Table(tuple(names[1:]), rows[:, 0], rows[:, 1:], degrees, title, header)
@@ -148,7 +148,7 @@ def _rows(path: Path, lines: list[str], start: int, width: int) -> Array:
         if not cells:
             continue
         if len(cells) != width:
-            raise FileFormatError(path, f"{len(cells)} values for {width} columns; export the file again", number)
+            raise FileFormatError(path, f"{len(cells)} values for {width} columns; export it again", number)
         table.append(cells)
     if not table:
         raise FileFormatError(path, "cut short: no rows after the column names", start)

@@ -11,9 +11,21 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.atomic import replacing
-from mbkf.io.axes import METRES_PER_UNIT, check_body_size, length_unit, positions_to_world, rotation_to_world, up_axis
+from mbkf.io.axes import (
+    METRES_PER_UNIT,
+    check_body_size,
+    finite,
+    length_unit,
+    positions_to_world,
+    rotation_to_world,
+    up_axis,
+)
 from mbkf.io.records import Capture, MarkerTrajectories
 
+_TITLES = (
+    "DataRate", "CameraRate", "NumFrames", "NumMarkers", "Units", "OrigDataRate", "OrigDataStartFrame",
+    "OrigNumFrames",
+)  # fmt: skip
 _HEADER_LINES = 5
 _RATE_TOLERANCE = 0.005
 _COLUMNS_BEFORE_MARKERS = 2
@@ -50,7 +62,7 @@ def read_trc(path: str | Path, *, up: str = "y", unit: str | None = None) -> Cap
         unit: Length unit; by default the one in the header.
 
     Returns:
-        A capture with markers only. The rate is the header's; the time of the first frame is its Time column's.
+        A capture with markers only, at the header's rate; the Time column gives the time of the first frame.
 
     Raises:
         FileFormatError: The file is missing or not a TRC file; names the line.
@@ -74,7 +86,7 @@ def read_trc(path: str | Path, *, up: str = "y", unit: str | None = None) -> Cap
         notes.append(f"the header counts {header.frames} frames, {len(times)} are there")
     notes += _compare_rate(header.rate_hz, times)
     used_unit = _unit(path, header.unit, unit, notes)
-    positions = positions_to_world(values, np.isfinite(values).all(axis=2), up, used_unit)
+    positions = positions_to_world(values, finite(values), up, used_unit)
     if unit is None:
         notes += check_body_size(positions, used_unit, str(path))
     markers = MarkerTrajectories(names, positions, header.rate_hz, float(times[0]))
@@ -96,7 +108,7 @@ def write_trc(markers: MarkerTrajectories, path: str | Path) -> None:
     table = values.reshape(frames, 3 * count)
     with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="\n") as file:
         file.write(f"PathFileType\t4\t(X/Y/Z)\t{Path(path).name}\n")
-        file.write("DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames\n")
+        file.write("\t".join(_TITLES) + "\n")
         file.write(f"{rate}\t{rate}\t{frames}\t{count}\tmm\t{rate}\t1\t{frames}\n")
         file.write("Frame#\tTime\t" + "\t\t\t".join(markers.names) + "\t\t\n")
         file.write("\t\t" + "\t".join(f"{axis}{i + 1}" for i in range(count) for axis in "XYZ") + "\n\n")
@@ -122,7 +134,7 @@ def _header(path: Path, lines: list[str]) -> TrcHeader:
     numbers = [number for word in words if (number := _number(word)) is not None]
     unit = next((word for word in words if _number(word) is None), "")
     if not numbers or not (math.isfinite(numbers[0]) and numbers[0] > 0.0):
-        raise FileFormatError(path, "the header gives no DataRate; write the frame rate first in this line", 3)
+        raise FileFormatError(path, "the header gives no DataRate; write it first in this line", 3)
     counts = [int(number) if number >= 0 and number == int(number) else None for number in numbers[2:4]]
     counts += [None] * (2 - len(counts))
     titles = [title.strip().lower() for title in lines[1].split("\t")]
@@ -161,7 +173,7 @@ def _rows(path: Path, lines: list[str], count: int) -> tuple[Array, Array]:
         try:
             row = [float(cell) if cell.strip() else math.nan for cell in cells[:width]]
         except ValueError as error:
-            raise FileFormatError(path, f"a cell is not a number ({error}); correct or blank it", number) from error
+            raise FileFormatError(path, f"not a number ({error}); correct or blank it", number) from error
         if len(row) < _COLUMNS_BEFORE_MARKERS or math.isnan(row[1]):
             raise FileFormatError(path, "the row has no time; export the file again", number)
         table.append(row + [math.nan] * (width - len(row)))
@@ -174,11 +186,13 @@ def _rows(path: Path, lines: list[str], count: int) -> tuple[Array, Array]:
 def _compare_rate(rate_hz: float, times: Array) -> list[str]:
     """A remark where header and Time column disagree."""
     span = times[-1] - times[0]
-    if len(times) < 2 or span <= 0.0:
-        return ["the Time column does not increase; times follow from the header's rate"] if len(times) > 1 else []
+    if len(times) < 2:
+        return []
+    if span <= 0.0:
+        return ["the Time column does not increase; times follow from the header's rate"]
     from_times = (len(times) - 1) / span
     if abs(from_times - rate_hz) > _RATE_TOLERANCE * rate_hz:
-        return [f"the header says {rate_hz:g} Hz, the Time column {from_times:.6g} Hz; the header's rate is used"]
+        return [f"the header says {rate_hz:g} Hz, the Time column {from_times:.6g} Hz; the header is used"]
     return []
 
 

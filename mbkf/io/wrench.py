@@ -8,6 +8,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
+from mbkf.io.axes import finite
 
 DEFAULT_COP_THRESHOLD_N = 20.0
 """Vertical force below which a centre of pressure is mostly noise, in N."""
@@ -70,7 +71,7 @@ def require_finite(force_n: Array, moment_nm: Array, rate_hz: float, start_time_
     Raises:
         InvalidInput: A force or moment is NaN or infinite; says where first and how many.
     """
-    bad = ~(np.isfinite(force_n).all(axis=1) & np.isfinite(moment_nm).all(axis=1))
+    bad = ~(finite(force_n) & finite(moment_nm))
     if bad.any():
         first = start_time_s + np.argmax(bad) / rate_hz
         raise InvalidInput(

@@ -19,7 +19,7 @@ from mbkf.synthesis.plan import MotionPlan
 STEP_S = 0.01
 """Grid on which balance is solved."""
 
-ROUNDS = 12
+LIFTS, ROUNDS = 3, 8
 CLOSE_M = 5e-4
 """Balance is found when the pressure lies this close to where the plan wants it, or cannot be improved."""
 
@@ -65,22 +65,22 @@ def compose(model: HumanModel, plan: MotionPlan) -> Composition:
     result = Composition(plan, Figure(model), HorizontalPath([(plan.start_s, plan.end_s)]), plan.angles["pelvis"])
     turning = np.zeros((len(times), 2))
     start: Jet | None = None
-    for _ in range(ROUNDS):
+    for k in range(LIFTS + ROUNDS):
         result.horizontal.solve(times, load.total_pressure, plan.height(times) + result.lift_m, turning)
         pose = result.pose(times, start)
         start = pose.origins["pelvis"]
+        raised = _lift(result, pose, times)
+        result.lift_m += raised
+        if k < LIFTS:
+            continue
         _, _, change = result.figure.momentum(pose)
         turning = np.column_stack([change[:, 1], -change[:, 0]]) / result.figure.total_mass
-        raised = _lift(result, pose)
-        result.lift_m += raised
-        missed = zero_moment_point(result.com(times), turning) - load.total_pressure
-        if abs(raised) < 1e-4 and np.abs(missed[load.grounded]).max() < CLOSE_M:
-            break
     return result
 
 
-def _lift(composition: Composition, pose: Pose) -> float:
+def _lift(composition: Composition, pose: Pose, times: Array) -> float:
     """How much higher the body may stand until its straightest knee has the planned flexion, m."""
-    figure = composition.figure
-    wanted = np.cos(composition.plan.straightest_rad / 2)
-    return 0.9 * (wanted - pose.reach) * figure.leg_length("r")
+    figure, plan = composition.figure, composition.plan
+    start, end = plan.recorded_s or (plan.start_s, plan.end_s)
+    reach = pose.reach[(times >= start - STEP_S) & (times <= end + STEP_S)].max()
+    return 0.9 * (np.cos(plan.straightest_rad / 2) - reach) * figure.leg_length("r")

@@ -14,14 +14,17 @@ Curve = Callable[[Array], Jet]
 """A quantity of time: (T,) times in s to a jet of shape (T,) or (T, n)."""
 
 
-def path(knots: Sequence[tuple]) -> Curve:
-    """A curve with continuous acceleration through knots (time, value[, velocity[, acceleration]]).
+def path(knots: Sequence[tuple], smooth: int = 2) -> Curve:
+    """A curve through knots (time, value[, velocity[, acceleration[, jerk]]]); what is not given is 0.
 
-    Quintic between knots; velocities and accelerations that are not given are 0; constant outside.
+    Args:
+        knots: In order of time; the curve is constant outside.
+        smooth: Number of continuous derivatives: 2 makes quintic pieces, 3 septic ones.
     """
     times = np.array([knot[0] for knot in knots], dtype=float)
     shape = np.shape(knots[0][1])
-    rows = [[np.broadcast_to(np.asarray(d, dtype=float), shape) for d in (*knot[1:], 0.0, 0.0)[:3]] for knot in knots]
+    rows = [[np.broadcast_to(np.asarray(d, dtype=float), shape) for d in (*knot[1:], 0.0, 0.0, 0.0)[: smooth + 1]]
+            for knot in knots]
     polynomial = PPoly.from_bernstein_basis(BPoly.from_derivatives(times, rows))
 
     def curve(at: Array) -> Jet:

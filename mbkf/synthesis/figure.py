@@ -43,14 +43,14 @@ class Pose:
         origins: Per segment the (T, 3) world origin, m.
         angles: Per dof of a hinge or universal joint, by segment, the (T,) angles, rad.
         knee: (T, 2) flexion of right and left knee, rad.
-        reach: Largest ratio of a hip–ankle distance to the length of the leg.
+        reach: (T,) largest ratio of a hip–ankle distance to the length of the leg.
     """
 
     rotations: dict[str, Jet]
     origins: dict[str, Jet]
     angles: dict[str, tuple[Jet, ...]]
     knee: Array
-    reach: float
+    reach: Array
 
 
 class Figure:
@@ -136,10 +136,10 @@ class Figure:
         return rotations, origins
 
     def _legs(self, pelvis: Jet, pelvis_rotation: Jet, angles: Mapping[str, tuple[Jet, ...]],
-              feet: Mapping[str, FootPose]) -> tuple[dict[str, Jet], dict[str, Jet], Array, float]:
+              feet: Mapping[str, FootPose]) -> tuple[dict[str, Jet], dict[str, Jet], Array, Array]:
         rotations: dict[str, Jet] = {}
         origins: dict[str, Jet] = {}
-        knees, reach = [], 0.0
+        knees, reach = [], np.zeros(len(pelvis.value))
         for side in SIDES:
             name, foot = SIDE_NAMES[side], feet[side]
             hip = pelvis + pelvis_rotation.apply(self.offset[f"{name}_thigh"])
@@ -152,10 +152,10 @@ class Figure:
             rotations[f"{name}_toes"] = foot_rotation @ jets.rotation(1, foot.toes)
             origins[f"{name}_toes"] = foot.ankle + foot_rotation.apply(self.offset[f"{name}_toes"])
             knees.append(knee)
-            reach = max(reach, used)
+            reach = np.maximum(reach, used)
         return rotations, origins, np.stack(knees, axis=-1), reach
 
-    def _leg(self, name: str, span: Jet, knee_xz: tuple[Jet, ...], yaw: Jet) -> tuple[Jet, Jet, Array, float]:
+    def _leg(self, name: str, span: Jet, knee_xz: tuple[Jet, ...], yaw: Jet) -> tuple[Jet, Jet, Array, Array]:
         """Thigh and shank rotations that put the ankle at ``span`` from the hip, knee axis across the foot."""
         upper, lower = -self.offset[f"{name}_shank"][2], -self.offset[f"{name}_foot"][2]
         square = jets.dot(span, span)
@@ -169,7 +169,7 @@ class Figure:
         across = jets.stack([-jets.sin(yaw), jets.cos(yaw), yaw * 0.0])
         side_axis = Jet.constant(np.zeros_like(span.value) + np.array([0.0, 1.0, 0.0]))
         thigh = _frame(span, across) @ _frame(local, side_axis).transposed()
-        used = float(np.sqrt(square.value.max())) / (upper + lower)
+        used = np.sqrt(square.value) / (upper + lower)
         return thigh, thigh @ knee, flexion.value, used
 
     def momentum(self, pose: Pose) -> tuple[Jet, Array, Array]:

@@ -43,7 +43,8 @@ class MotionPlan:
         feet: Poses of the feet.
         height: Height of the centre of mass over the floor, m; shifted as a whole until the legs fit.
         load: Load sharing and pressure.
-        straightest_rad: Knee flexion at the straightest moment of the motion.
+        straightest_rad: Knee flexion at the straightest moment of the recorded time.
+        recorded_s: The time that is recorded; all of it when None.
         flight: The spell in the air, if any.
     """
 
@@ -54,6 +55,7 @@ class MotionPlan:
     height: Curve
     load: LoadPlan
     straightest_rad: float
+    recorded_s: tuple[float, float] | None = None
     flight: Flight | None = None
     notes: dict[str, float] = field(default_factory=dict)
 

@@ -26,14 +26,14 @@ def squat_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> M
     """Repeated squats, one about every 2.4 s, to a knee flexion of about 100°."""
     depth = _depth(seconds, max(1, round(seconds / PERIOD_S)), rng)
     size = float(model.scale.mean())
-    feet = planted(model, rng.uniform(0.12, 0.15), rng.uniform(8, 16))
+    feet = planted(model, rng.uniform(0.12, 0.15), rng.uniform(8, 16), rng)
     return MotionPlan(
         start_s=0.0, end_s=seconds,
         angles=lively(posture(resting(), [(depth, BOTTOM_DEG)], rng), rng),
         feet=feet,
         height=added(ripple(0.0, 1.0, 0.0, 0.95 * size), scaled(-DROP_M * size, depth)),
         load=standing_load(feet, 0.05 * size, rng),
-        straightest_rad=np.deg2rad(7.0))
+        straightest_rad=np.deg2rad(10.0))
 
 
 def _depth(seconds: float, repetitions: int, rng: np.random.Generator) -> Curve:
@@ -42,7 +42,7 @@ def _depth(seconds: float, repetitions: int, rng: np.random.Generator) -> Curve:
     knots: list[tuple[float, float]] = [(0.0, 0.0)]
     for k in range(repetitions):
         deep = rng.uniform(0.93, 1.05)
-        for part, value in ((0.06, 0.0), (0.47, deep), (0.53, deep), (0.94, 0.0)):
+        for part, value in ((0.03, 0.0), (0.48, deep), (0.52, deep), (0.97, 0.0)):
             knots.append(((k + part) * period, value))
     knots.append((seconds, 0.0))
-    return path(knots)
+    return path(knots, smooth=3)

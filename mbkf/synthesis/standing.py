@@ -20,15 +20,18 @@ def constant(times: Array, value: float) -> Jet:
     return Jet.constant(np.full(len(times), value))
 
 
-def planted(model: HumanModel, half_width_m: float, toe_out_deg: float) -> FeetPlan:
-    """Both feet flat and still, ankles at x = 0 and y = ∓ half the width."""
+def planted(model: HumanModel, half_width_m: float, toe_out_deg: float, rng: np.random.Generator) -> FeetPlan:
+    """Both feet flat and still, ankles at x = 0 and y = ∓ half the width; the toes lift a little."""
+    lifting = {side: ripple(np.deg2rad(rng.uniform(0.5, 1.5)), rng.uniform(0.3, 0.6), rng.uniform(0, 6.28),
+                            np.deg2rad(-2.0)) for side in SIDES}
+
     def feet(times: Array) -> dict[str, FootPose]:
         poses = {}
         for side, sign in zip(SIDES, (-1.0, 1.0), strict=True):
             at = np.array([0.0, sign * half_width_m, -sole_outline(model, side).height])
             poses[side] = FootPose(Jet.constant(np.tile(at, (len(times), 1))),
                                    constant(times, sign * np.deg2rad(toe_out_deg)),
-                                   constant(times, 0.0), constant(times, 0.0))
+                                   constant(times, 0.0), lifting[side](times))
         return poses
 
     return feet

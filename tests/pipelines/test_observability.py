@@ -52,7 +52,7 @@ def test_computed_points_do_not_count():
     [
         (["RHAL"], {"right_toes"}),
         (["RHA2", "RHA5"], {"right_hand"}),
-        (["BHD"], {"neck", "head"}),
+        (["RFHD", "BHD"], {"neck", "head"}),
         (["RTHI"], set()),
     ],
 )

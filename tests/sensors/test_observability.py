@@ -31,12 +31,11 @@ def observed(model, markers, noise_m=0.005):
 
 
 def finite_difference_jacobian(model, sensor, q, step=1e-6):
-    columns = [
-        (sensor.positions(model.integrate(q, step * axis)) - sensor.positions(model.integrate(q, -step * axis)))
-        / (2 * step)
-        for axis in np.eye(model.nv)
-    ]
-    return np.stack([column.ravel() for column in columns], axis=1)
+    def moved(by):
+        return sensor.positions(model.integrate(q, by)).ravel()
+
+    steps = step * np.eye(model.nv)
+    return np.stack([(moved(by) - moved(-by)) / (2 * step) for by in steps], axis=1)
 
 
 def test_ranks_equal_those_of_the_finite_difference_jacobian(model):
@@ -70,7 +69,7 @@ def test_two_markers_in_line_with_the_hip_leave_the_turn_about_that_line(model):
 
 
 def test_a_bent_knee_shows_what_a_straight_one_hides(model):
-    """Markers on the thigh's axis and at the ankle: the thigh's turn moves the ankle only when the knee is bent."""
+    """With markers on the thigh's axis and the ankle, the thigh's turn shows only when the knee is bent."""
     markers = [*PELVIS, ("right_thigh", (0.0, 0.0, -0.3)), ("right_foot", (0.0, 0.0, 0.0))]
     found = observed(model, markers)
     i = found.dofs.index("right_thigh_z")

@@ -1,0 +1,106 @@
+"""A reconstruction as the four files OpenSim opens: angles.mot, torques.sto, reactions.mot, markers.trc.
+
+OpenSim's axes: x forward, y up, z right. Only the range from the first to the last tracked frame is written. OpenSim's
+reader of tables refuses NaN, so frames inside that range with a value missing are left out of the tables (their times
+tell; OpenSim interpolates), and columns that are never known are left out altogether; markers.trc keeps every frame.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from mbkf.conventions import SIDES, Array, BoolArray
+from mbkf.io.axes import rotation_to_world
+from mbkf.io.records import MarkerTrajectories
+from mbkf.io.results import Reconstruction
+from mbkf.io.storage import Table, write_storage
+from mbkf.io.trc import write_trc
+
+TRANSLATIONS = ("pelvis_tx", "pelvis_ty", "pelvis_tz")
+"""Coordinates that are lengths, not angles."""
+
+
+def write_opensim(reconstruction: Reconstruction, folder: Path) -> None:
+    """Writes the four files into a folder that exists.
+
+    Raises:
+        OSError: A file cannot be written.
+    """
+    write_storage(angles_table(reconstruction), folder / "angles.mot")
+    write_storage(torques_table(reconstruction), folder / "torques.sto")
+    write_storage(reactions_table(reconstruction), folder / "reactions.mot")
+    write_trc(reconstructed_markers(reconstruction), folder / "markers.trc")
+
+
+def angles_table(reconstruction: Reconstruction) -> Table:
+    """Clinical coordinates in degrees, the pelvis's translations in m."""
+    r = reconstruction
+    lengths = np.isin(r.coordinate_names, TRANSLATIONS)
+    values = np.where(lengths, r.angles, np.rad2deg(r.angles))
+    return _table(r, r.coordinate_names, values, "Coordinates", in_degrees=True)
+
+
+def torques_table(reconstruction: Reconstruction) -> Table:
+    """Moments named as OpenSim's inverse dynamics names them; the pelvis's columns are the residual."""
+    r = reconstruction
+    names = tuple(
+        f"{name}_{'force' if name in TRANSLATIONS else 'moment'}" for name in r.coordinate_names
+    )
+    return _table(r, names, r.moments, "Inverse Dynamics Generalized Forces")
+
+
+def reactions_table(reconstruction: Reconstruction) -> Table:
+    """Force, point and moment of the ground on each foot, in OpenSim's axes.
+
+    The point is the centre of pressure, and while the foot is not loaded the last one (the first one before the foot
+    was ever loaded), so that nothing jumps where OpenSim interpolates. The moment is that about the point, so that
+    force, point and moment together are the wrench exactly.
+    """
+    r = reconstruction
+    R = rotation_to_world("y")
+    names: list[str] = []
+    columns: list[Array] = []
+    for foot, side in enumerate(SIDES):
+        force, moment = r.foot_wrench[:, foot, :3], r.foot_wrench[:, foot, 3:]
+        point = _held(r.foot_cop_m[:, foot])
+        about_point = moment - np.cross(point, force)
+        for prefix, vectors in (("force_{}_v", force), ("force_{}_p", point), ("torque_{}_", about_point)):
+            names += [f"ground_{prefix.format(side)}{axis}" for axis in "xyz"]
+            columns.append(vectors @ R)
+    return _table(r, tuple(names), np.concatenate(columns, axis=1), "Ground reactions")
+
+
+def reconstructed_markers(reconstruction: Reconstruction) -> MarkerTrajectories:
+    """The reconstructed body's markers in the range of tracked frames, missing where the body is not followed."""
+    r = reconstruction
+    first, last = _tracked_range(r.tracked)
+    positions = np.where(r.tracked[:, None, None], r.predicted_m, np.nan)[first:last]
+    start = r.times_s[first] if last > first else 0.0
+    return MarkerTrajectories(r.marker_names, positions, r.rate_hz, float(start))
+
+
+def _table(
+    r: Reconstruction, names: tuple[str, ...], values: Array, title: str, in_degrees: bool = False
+) -> Table:
+    known = np.isfinite(values[r.tracked]).any(axis=0)
+    rows = r.tracked & np.isfinite(values[:, known]).all(axis=1)
+    kept = tuple(name for name, finite in zip(names, known, strict=True) if finite)
+    header = {"Trial": r.trial, "Software": f"mbkf {r.version}"}
+    return Table(kept, r.times_s[rows], values[rows][:, known], in_degrees, title, header)
+
+
+def _tracked_range(tracked: BoolArray) -> tuple[int, int]:
+    """First tracked frame and the one after the last; (0, 0) where there is none."""
+    found = np.flatnonzero(tracked)
+    return (int(found[0]), int(found[-1]) + 1) if len(found) else (0, 0)
+
+
+def _held(points: Array) -> Array:
+    """Points (T, 3) with gaps filled by the last one before, or the first one after; zero where there is none."""
+    seen = ~np.isnan(points).any(axis=1)
+    if not seen.any():
+        return np.zeros_like(points)
+    latest = np.maximum.accumulate(np.where(seen, np.arange(len(points)), -1))
+    return points[np.where(latest < 0, int(np.argmax(seen)), latest)]

@@ -1,0 +1,172 @@
+"""What does a capture hold? Markers and their gaps, plates and their offsets, channels, events, axes."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import BoolArray
+from mbkf.io.records import Capture, Event, PlateReadings
+
+
+@dataclass(frozen=True)
+class MarkerSummary:
+    """How completely one marker was seen.
+
+    Attributes:
+        name: Its name.
+        missing_fraction: Share of frames in which it is missing, 0 to 1.
+        pieces: Number of contiguous stretches in which it is seen.
+    """
+
+    name: str
+    missing_fraction: float
+    pieces: int
+
+
+@dataclass(frozen=True)
+class PlateSummary:
+    """What one force plate recorded.
+
+    Attributes:
+        name: Its name.
+        rate_hz: Sample rate in Hz.
+        duration_s: Length of its recording in s.
+        corners_m: Four world corners in m, or None where the file has no geometry.
+        offset_n: Vertical force removed as offset, in N.
+        loaded_fraction: Share of samples above the threshold, 0 to 1.
+        peak_n: Largest vertical force in N.
+        threshold_n: Vertical force in N from which the plate counts as loaded.
+    """
+
+    name: str
+    rate_hz: float
+    duration_s: float
+    corners_m: tuple[tuple[float, ...], ...] | None
+    offset_n: float
+    loaded_fraction: float
+    peak_n: float
+    threshold_n: float
+
+
+@dataclass(frozen=True)
+class ChannelSummary:
+    """One analog channel: name, unit, sample rate in Hz."""
+
+    name: str
+    unit: str
+    rate_hz: float
+
+
+@dataclass(frozen=True)
+class CaptureSummary:
+    """What a capture holds.
+
+    Attributes:
+        path: The file.
+        frames: Number of marker frames.
+        rate_hz: Frame rate in Hz.
+        start_time_s: Time of the first frame in s.
+        duration_s: Frames divided by rate, in s.
+        up_axis: Axis of the file that points up.
+        length_unit: Length unit of the file.
+        subject_mass_kg: Body mass the file states, or None.
+        labelled: Number of markers with a name of their own.
+        unlabelled: Number of trajectories called ``*0``, ``*1`` ….
+        missing_fraction: Share of missing samples over all markers, 0 to 1.
+        extent_m: Lowest and highest x, y, z of all markers in m (world axes), or None without markers.
+        markers: Each marker.
+        plates: Each force plate.
+        derived: Number of derived points by kind.
+        channels: Each analog channel.
+        events: Labelled instants.
+        notes: What the reader noticed.
+    """
+
+    path: str
+    frames: int
+    rate_hz: float
+    start_time_s: float
+    duration_s: float
+    up_axis: str
+    length_unit: str
+    subject_mass_kg: float | None
+    labelled: int
+    unlabelled: int
+    missing_fraction: float
+    extent_m: tuple[tuple[float, ...], tuple[float, ...]] | None
+    markers: tuple[MarkerSummary, ...]
+    plates: tuple[PlateSummary, ...]
+    derived: Mapping[str, int]
+    channels: tuple[ChannelSummary, ...]
+    events: tuple[Event, ...]
+    notes: tuple[str, ...]
+
+
+def describe(capture: Capture) -> CaptureSummary:
+    """Summarise a capture.
+
+    Args:
+        capture: What a reader returned.
+
+    Returns:
+        Counts, shares and ranges, with nothing left to compute for whoever shows them.
+    """
+    markers = capture.markers
+    present = markers.present
+    seen = markers.positions_m[present]
+    unlabelled = sum(name.startswith("*") for name in markers.names)
+    extent = (tuple(seen.min(axis=0).tolist()), tuple(seen.max(axis=0).tolist())) if len(seen) else None
+    return CaptureSummary(
+        path=capture.path,
+        frames=markers.frames,
+        rate_hz=markers.rate_hz,
+        start_time_s=markers.start_time_s,
+        duration_s=markers.frames / markers.rate_hz,
+        up_axis=capture.up_axis,
+        length_unit=capture.length_unit,
+        subject_mass_kg=capture.subject_mass_kg,
+        labelled=len(markers.names) - unlabelled,
+        unlabelled=unlabelled,
+        missing_fraction=float(1.0 - present.mean()) if present.size else 0.0,
+        extent_m=extent,
+        markers=tuple(
+            MarkerSummary(name, float(1.0 - column.mean()) if len(column) else 0.0, count_pieces(column))
+            for name, column in zip(markers.names, present.T, strict=True)
+        ),
+        plates=tuple(_plate(plate) for plate in capture.plates),
+        derived=dict(Counter(point.kind for point in capture.derived)),
+        channels=tuple(ChannelSummary(c.name, c.unit, c.rate_hz) for c in capture.analog),
+        events=capture.events,
+        notes=capture.notes,
+    )
+
+
+def count_pieces(present: BoolArray) -> int:
+    """Number of contiguous stretches in which something is seen.
+
+    Args:
+        present: (T,) whether it is seen in a frame.
+
+    Returns:
+        The number of stretches, 0 where it is never seen.
+    """
+    return int(np.count_nonzero(np.diff(np.concatenate([[False], present]).astype(int)) == 1))
+
+
+def _plate(plate: PlateReadings) -> PlateSummary:
+    vertical = plate.force_n[:, 2]
+    corners = plate.corners_m
+    return PlateSummary(
+        name=plate.name,
+        rate_hz=plate.rate_hz,
+        duration_s=len(vertical) / plate.rate_hz,
+        corners_m=None if corners is None else tuple(tuple(corner) for corner in corners.tolist()),
+        offset_n=float(plate.offset[2]),
+        loaded_fraction=float((vertical >= plate.threshold_n).mean()) if len(vertical) else 0.0,
+        peak_n=float(vertical.max()) if len(vertical) else 0.0,
+        threshold_n=plate.threshold_n,
+    )

@@ -1,0 +1,197 @@
+"""The key numbers of a reconstruction (summary.json): how well it fits, how consistent it is, how fast it ran."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.errors import InvalidInput
+from mbkf.io.results import Reconstruction
+from mbkf.model.clinical_table import load_clinical_joints
+from mbkf.model.human import HumanModel
+
+if TYPE_CHECKING:
+    from mbkf.io.truth import Truth
+
+SETTLING_S = 0.5
+"""The filter may settle for this long before its innovations are judged."""
+
+ROOT_DOFS = 6
+_MM = 1e3
+
+
+def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> dict[str, Any]:
+    """The contents of summary.json, as plain data; None where a number does not apply.
+
+    Marker errors are distances, over samples that were seen and not hidden on purpose, in frames in which the body was
+    followed; samples the innovation gate refused count, too. ``missing_fraction`` is what the filter did not get to see.
+
+    Args:
+        reconstruction: What was found.
+        truth: What the synthetic subject really did; adds the object ``truth``.
+
+    Returns:
+        The keys of the command line's contract.
+    """
+    r = reconstruction
+    missing = ~r.present
+    computing = float(r.step_seconds.sum())
+    return {
+        "trial": r.trial,
+        "protocol": r.protocol,
+        "filter": r.filter,
+        "smoothed": bool(r.smoothed),
+        "version": r.version,
+        "mass_kg": float(r.subject.mass_kg),
+        "frames": r.frames,
+        "rate_hz": float(r.rate_hz),
+        "duration_s": r.frames / float(r.rate_hz),
+        "markers_used": len(r.marker_names),
+        "missing_fraction": float(missing.mean()) if missing.size else None,
+        **_marker_errors(r),
+        "residual_force_rms_n": _rms_of_norm(r.residual_force_n[r.valid]),
+        "residual_moment_rms_nm": _rms_of_norm(r.residual_moment_nm[r.valid]),
+        "valid_frames": int(r.valid.sum()),
+        **_plate_changes(r),
+        **_torques(r),
+        "nis_per_dof": _nis_per_reading(r),
+        "step_seconds_median": _quantile(r.step_seconds, 50),
+        "step_seconds_p99": _quantile(r.step_seconds, 99),
+        "realtime_factor": r.frames / float(r.rate_hz) / computing if computing > 0 else None,
+        "truth": None if truth is None else compare_with_truth(r, truth),
+        "warnings": list(r.warnings),
+        "settings": dict(r.settings),
+    }
+
+
+def _marker_errors(r: Reconstruction) -> dict[str, Any]:
+    distance = _MM * np.linalg.norm(r.measured_m - r.predicted_m, axis=2)
+    counted = np.where(r.present & r.tracked[:, None], distance, np.nan)
+    hidden = np.where(r.hidden, distance, np.nan)
+    by_name = {name: _rms(counted[:, m]) for m, name in enumerate(r.marker_names)}
+    return {
+        "marker_rms_mm": _rms(counted),
+        "marker_max_mm": _largest(counted),
+        "marker_rms_mm_by_name": by_name,
+        "hidden_marker_rms_mm": _rms(hidden),
+        "hidden_marker_max_mm": _largest(hidden),
+    }
+
+
+def _plate_changes(r: Reconstruction) -> dict[str, Any]:
+    change = np.full((0, 1, 6), np.nan) if r.plate_change is None else r.plate_change
+    return {
+        "plate_force_change_rms_n": _rms(change[..., :3]),
+        "plate_moment_change_rms_nm": _rms(change[..., 3:]),
+    }
+
+
+def _torques(r: Reconstruction) -> dict[str, Any]:
+    """Flexion torque of every joint but the root, by the joint's name."""
+    main = {j.name: j.main for j in load_clinical_joints() if j.proximal != "world" and j.main in r.coordinate_names}
+    peaks = {joint: _largest(np.abs(r.moment(name)[r.tracked])) for joint, name in main.items()}
+    sd = {joint: _mean(r.moment_sd(name)[r.tracked]) for joint, name in main.items()}
+    per_kg = {joint: None if peak is None else peak / r.subject.mass_kg for joint, peak in peaks.items()}
+    return {"torque_peak_nm_per_kg": per_kg, "torque_sd_nm": sd}
+
+
+def _nis_per_reading(r: Reconstruction) -> float | None:
+    """Mean over frames after the first half second of the innovation squared per reading."""
+    settled = r.times_s >= (r.times_s[0] + SETTLING_S if r.frames else 0.0)
+    judged = settled & (r.nis_readings > 0) & np.isfinite(r.nis)
+    return _mean(r.nis[judged] / r.nis_readings[judged])
+
+
+def compare_with_truth(reconstruction: Reconstruction, truth: Truth) -> dict[str, float | None]:
+    """Errors against a synthetic subject's known motion, over tracked frames.
+
+    Errors of posture are tangent vectors (``HumanModel.difference``), so no angle convention enters. Angles, velocities
+    and torques are those of the joints, without the root's six dofs.
+
+    Args:
+        reconstruction: What was found.
+        truth: What really happened, with at least the reconstruction's frames.
+
+    Returns:
+        ``angle_rms_deg``, ``velocity_rms_rad_s``, ``torque_rms_nm``, ``reaction_rms_n`` (per component of the feet's
+        forces), ``nees_per_dof`` (of q and v together; None unless covariances were kept).
+
+    Raises:
+        InvalidInput: The truth does not cover the reconstruction's times, or belongs to another body.
+    """
+    r = reconstruction
+    model = HumanModel.scaled(r.subject.scale_factors, r.subject.mass_kg, r.subject.body)
+    if truth.q.shape[1] != model.nq or truth.v.shape[1] != model.nv:
+        raise InvalidInput(f"the truth has {truth.v.shape[1]} dofs, the subject's body {model.nv}")
+    rows = _matching_rows(r.times_s, truth.times_s, r.rate_hz)
+    error_q = np.full(r.v.shape, np.nan)
+    for t in np.flatnonzero(r.tracked & np.isfinite(r.q).all(axis=1)):
+        error_q[t] = model.difference(r.q[t], truth.q[rows[t]])
+    error_v = np.where(r.tracked[:, None], truth.v[rows] - r.v, np.nan)
+    error_tau = np.where(r.tracked[:, None], truth.tau[rows] - r.tau, np.nan)
+    error_force = np.where(r.tracked[:, None, None], (truth.foot_wrench[rows] - r.foot_wrench)[..., :3], np.nan)
+    angle = _rms(error_q[:, ROOT_DOFS:])
+    return {
+        "angle_rms_deg": None if angle is None else float(np.rad2deg(angle)),
+        "velocity_rms_rad_s": _rms(error_v[:, ROOT_DOFS:]),
+        "torque_rms_nm": _rms(error_tau[:, ROOT_DOFS:]),
+        "reaction_rms_n": _rms(error_force),
+        "nees_per_dof": _nees_per_dof(r, np.hstack([error_q, error_v])),
+    }
+
+
+def _matching_rows(times_s: Array, truth_s: Array, rate_hz: float) -> Array:
+    """(T,) row of the truth nearest to each time, at most half a frame away."""
+    if not len(truth_s):
+        raise InvalidInput("the truth holds no frames")
+    right = np.clip(np.searchsorted(truth_s, times_s), 1, max(len(truth_s) - 1, 1))
+    left = right - 1
+    right = np.minimum(right, len(truth_s) - 1)
+    rows = np.where(np.abs(truth_s[left] - times_s) <= np.abs(truth_s[right] - times_s), left, right)
+    far = np.abs(truth_s[rows] - times_s) > 0.5 / rate_hz
+    if far.any():
+        raise InvalidInput(f"the truth has no frame at {times_s[far][0]:.3f} s; it belongs to another capture")
+    return rows
+
+
+def _nees_per_dof(r: Reconstruction, error: Array) -> float | None:
+    """Mean of eᵀ P⁻¹ e / n over frames; 1 for a covariance that says the truth."""
+    if r.covariance is None:
+        return None
+    judged = np.flatnonzero(np.isfinite(error).all(axis=1) & np.isfinite(r.covariance).all(axis=(1, 2)))
+    e, P = error[judged], r.covariance[judged]
+    try:
+        weighted = np.linalg.solve(P, e[..., None])[..., 0]
+    except np.linalg.LinAlgError:  # a dof without any uncertainty
+        weighted = np.einsum("tij,tj->ti", np.linalg.pinv(P, hermitian=True), e)
+    return _mean((e * weighted).sum(axis=1) / error.shape[1])
+
+
+def _finite(values: Array) -> Array:
+    return values[np.isfinite(values)]
+
+
+def _rms(values: Array) -> float | None:
+    known = _finite(values)
+    return float(np.sqrt(np.mean(known**2))) if known.size else None
+
+
+def _rms_of_norm(vectors: Array) -> float | None:
+    return _rms(np.linalg.norm(vectors, axis=-1))
+
+
+def _largest(values: Array) -> float | None:
+    known = _finite(values)
+    return float(known.max()) if known.size else None
+
+
+def _mean(values: Array) -> float | None:
+    known = _finite(values)
+    return float(known.mean()) if known.size else None
+
+
+def _quantile(values: Array, percent: float) -> float | None:
+    known = _finite(values)
+    return float(np.percentile(known, percent)) if known.size else None

@@ -1,0 +1,201 @@
+"""Level walking: heel strike, roll-over, push-off over the toes and swing, arms against legs.
+
+The recorded time is a window of an endless walk; the walk is planned a few steps beyond both ends.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import SIDES, Array
+from mbkf.model.human import HumanModel
+from mbkf.synthesis import jets
+from mbkf.synthesis.contact import Load, LoadPlan, sole_outline
+from mbkf.synthesis.curves import Curve, added, path, ripple, scaled
+from mbkf.synthesis.figure import SIDE_NAMES, Figure, FootPose
+from mbkf.synthesis.jets import Jet
+from mbkf.synthesis.plan import FeetPlan, MotionPlan, lively, resting
+from mbkf.synthesis.standing import posture
+
+# Timing as parts of a stride, after Perry & Burnfield, Gait Analysis, 2nd ed. 2010 (stance 62 %, double support 12 %).
+DOUBLE_SUPPORT = 0.12
+FOOT_FLAT = 0.09
+HEEL_OFF = 0.33
+STRIKE_PITCH_DEG, STRIKE_RATE_DEG = -19.0, 0.0
+OFF_PITCH_DEG, OFF_RATE_DEG = 56.0, 330.0
+MARGIN_STEPS = 3
+
+
+@dataclass(frozen=True)
+class Step:
+    """One placement of a foot: side 0 right, 1 left; heel strike and toe-off times in s; ankle over the flat foot."""
+
+    side: int
+    strike_s: float
+    off_s: float
+    ankle_m: Array
+    yaw: float
+
+
+def walk_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    """Walking along +x at about 1.2 m/s, in the middle of its course at half time."""
+    size = float(model.scale.mean())
+    stride_s = rng.uniform(1.02, 1.08) * np.sqrt(size)
+    length = rng.uniform(0.60, 0.64) * size
+    steps = _steps(model, seconds, stride_s / 2, length, rng)
+    feet = {SIDES[k]: _Foot(model, k, [s for s in steps if s.side == k], stride_s) for k in (0, 1)}
+    phase_s = next(step.strike_s for step in steps if step.side == 0)
+    start, end = _middle(steps, 1, stride_s), _middle(steps, len(steps) - 2, stride_s)
+
+    def poses(times: Array) -> dict[str, FootPose]:
+        return {side: foot.pose(times) for side, foot in feet.items()}
+
+    bob = 0.022 * size * rng.uniform(0.9, 1.1)
+    step_hz = 2.0 / stride_s
+    height = ripple(bob, step_hz, -2 * np.pi * step_hz * (phase_s + 0.5 * DOUBLE_SUPPORT * stride_s) - np.pi / 2,
+                    0.97 * size)
+    return MotionPlan(start, end, lively(_angles(stride_s, phase_s, rng), rng, 0.6), poses, height,
+                      _load(model, steps, feet, stride_s), np.deg2rad(6.0), recorded_s=(0.0, seconds),
+                      notes={"speed_m_s": 2 * length / stride_s})
+
+
+def _steps(model: HumanModel, seconds: float, step_s: float, length: float, rng: np.random.Generator) -> list[Step]:
+    half_width = 0.055 * float(model.scale.mean()) * rng.uniform(0.85, 1.15)
+    yaw = np.deg2rad(rng.uniform(4, 9))
+    count = int(np.ceil(seconds / step_s)) + 2 * MARGIN_STEPS
+    begin = rng.uniform(-0.5, 0.5) * step_s - MARGIN_STEPS * step_s
+    first = int(rng.integers(2))
+    off = step_s * (1 + 2 * DOUBLE_SUPPORT)
+    steps = []
+    for k in range(count):
+        side = (first + k) % 2
+        sign = -1.0 if side == 0 else 1.0
+        ankle = np.array([(k - 0.5 * count) * length, sign * half_width, -sole_outline(model, SIDES[side]).height])
+        steps.append(Step(side, begin + k * step_s, begin + k * step_s + off, ankle, sign * yaw))
+    return steps
+
+
+def _middle(steps: list[Step], k: int, stride_s: float) -> float:
+    return steps[k].strike_s + 0.5 * DOUBLE_SUPPORT * stride_s
+
+
+class _Foot:
+    """One foot over all its steps: on the heel, flat, on the toes, in the air."""
+
+    def __init__(self, model: HumanModel, side: int, steps: list[Step], stride_s: float) -> None:
+        name = SIDE_NAMES[SIDES[side]]
+        outline = sole_outline(model, SIDES[side])
+        toes = Figure(model).offset[f"{name}_toes"]
+        self.steps, self.stride_s = steps, stride_s
+        self.heel = np.array([outline.heel_x + 0.015, 0.0, outline.height])
+        self.ball = np.array([toes[0], 0.0, toes[2]])
+        self.heading = constant_rotation(steps[0].yaw)
+        self.pitch = path([(step.strike_s + at * stride_s, *np.deg2rad(values)) for step in steps
+                           for at, *values in self._pitch_knots()])
+        self.toes = path([(step.strike_s + at * stride_s, np.deg2rad(value), np.deg2rad(rate)) for step in steps
+                          for at, value, rate in ((0.0, -6.0, 0.0), (FOOT_FLAT, 0.0, 0.0), (HEEL_OFF, 0.0, 0.0),
+                                                  (self.off, -OFF_PITCH_DEG, -OFF_RATE_DEG),
+                                                  (self.off + 0.16, -14.0, 0.0))])
+        self.swings = [self._swing(a, b) for a, b in zip(steps, steps[1:], strict=False)]
+
+    @property
+    def off(self) -> float:
+        """Toe-off as part of the stride."""
+        return 0.5 + DOUBLE_SUPPORT
+
+    def _pitch_knots(self) -> tuple[tuple[float, ...], ...]:
+        return ((0.0, STRIKE_PITCH_DEG, STRIKE_RATE_DEG), (FOOT_FLAT, 0.0), (HEEL_OFF, 0.0),
+                (self.off, OFF_PITCH_DEG, OFF_RATE_DEG, -1500.0), (self.off + 0.09, 66.0, -40.0),
+                (self.off + 0.27, -4.0, -200.0))
+
+    def _about(self, step: Step, pivot: Array, pitch: Jet) -> Jet:
+        """(T, 3) ankle of a foot that turns about a point of its own that rests on the floor."""
+        turned = jets.rotation(1, pitch).apply(-pivot) + pivot
+        return Jet(*(x @ self.heading.T for x in turned.orders)) + step.ankle_m
+
+    def _swing(self, last: Step, following: Step) -> Curve:
+        at_off, at_strike = np.array([last.off_s]), np.array([following.strike_s])
+        off = self._about(last, self.ball, self.pitch(at_off))
+        strike = self._about(following, self.heel, self.pitch(at_strike))
+        duration = following.strike_s - last.off_s
+        a, b = ([x[0] for x in end.orders] for end in (off, strike))
+        middle = 0.47 * a[0] + 0.53 * b[0]
+        middle[2] = last.ankle_m[2] + 0.065
+        velocity = 1.62 * (b[0] - a[0]) / duration
+        velocity[2] = -0.30
+        return path([(last.off_s, *a), (last.off_s + 0.5 * duration, middle, velocity), (following.strike_s, *b)])
+
+    def pose(self, times: Array) -> FootPose:
+        """The foot at times in s."""
+        pitch = self.pitch(times)
+        ankle = Jet.constant(np.zeros((len(times), 3)))
+        for step in self.steps:
+            on = (times >= step.strike_s) & (times <= step.off_s)
+            rolled = jets.where(pitch.value < 0, self._about(step, self.heel, pitch),
+                                self._about(step, self.ball, pitch))
+            ankle = jets.where(on, rolled, ankle)
+        for (a, b), swing in zip(zip(self.steps, self.steps[1:], strict=False), self.swings, strict=True):
+            ankle = jets.where((times > a.off_s) & (times < b.strike_s), swing(times), ankle)
+        yaw = Jet.constant(np.full(len(times), self.steps[0].yaw))
+        return FootPose(ankle, yaw, pitch, self.toes(times))
+
+
+def constant_rotation(yaw: float) -> Array:
+    """(3, 3) rotation about the vertical."""
+    c, s = np.cos(yaw), np.sin(yaw)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def _load(model: HumanModel, steps: list[Step], feet: dict[str, _Foot], stride_s: float) -> LoadPlan:
+    """Pressure from heel to toes under each foot, handed from foot to foot in double support."""
+    size = float(model.scale.mean())
+    share_knots, pressure_knots = [], {0: [], 1: []}
+    for step in steps:
+        share_knots += [(step.strike_s, float(step.side)), (step.strike_s + DOUBLE_SUPPORT * stride_s, 1.0 - step.side)]
+        heel, ball = feet[SIDES[step.side]].heel[0], feet[SIDES[step.side]].ball[0]
+        outward = -1.0 if step.side == 0 else 1.0
+        heading = constant_rotation(step.yaw)[:2, :2]
+        for at, x, y in ((0.0, heel + 0.01, 0.0), (FOOT_FLAT, heel + 0.035, 0.004),
+                         (HEEL_OFF, ball + 0.008 * size, 0.006), (0.5, ball + 0.03 * size, -0.003),
+                         (0.5 + DOUBLE_SUPPORT, ball + 0.045 * size, -0.012)):
+            local = heading @ np.array([x, outward * y * size])
+            pressure_knots[step.side].append((step.strike_s + at * stride_s, step.ankle_m[:2] + local))
+    share = path(share_knots)
+    pressure = [path(pressure_knots[side]) for side in (0, 1)]
+
+    def load(times: Array) -> Load:
+        return Load(share(times).value, np.stack([p(times).value for p in pressure], axis=1),
+                    np.ones(len(times), dtype=bool))
+
+    return load
+
+
+def _angles(stride_s: float, phase_s: float, rng: np.random.Generator) -> dict[str, tuple[Curve, Curve, Curve]]:
+    """Trunk and arms as sines of the stride, counted from right heel strike."""
+    def wave(amplitude: float, part: float, per_stride: int = 1) -> Curve:
+        """Largest at the part of the stride."""
+        hz = per_stride / stride_s
+        return ripple(amplitude * rng.uniform(0.9, 1.1), hz, np.pi / 2 - 2 * np.pi * hz * (phase_s + part * stride_s))
+
+    base = {**resting(), "pelvis": (0.0, 2.0, 0.0), "torso": (0.0, 2.0, 0.0),
+            "right_forearm": (0.0, -26.0, 10.0), "left_forearm": (0.0, -26.0, -10.0),
+            "right_upper_arm": (-8.0, 4.0, 6.0), "left_upper_arm": (8.0, 4.0, -6.0)}
+    one = {joint: [(wave(1.0, part, count), gains)] for joint, part, count, gains in ()}
+    del one
+    right, left = wave(1.0, 0.5), wave(1.0, 0.0)
+    twist, twice = wave(1.0, 0.0), wave(1.0, 0.06, 2)
+    lean = wave(1.0, 0.30)
+    gains = [
+        (right, {"right_upper_arm": (0.0, -19.0, 0.0), "right_forearm": (0.0, -11.0, 4.0), "right_hand": (2.0, -4.0, 1.0)}),
+        (left, {"left_upper_arm": (0.0, -19.0, 0.0), "left_forearm": (0.0, -11.0, -4.0), "left_hand": (-2.0, -4.0, -1.0)}),
+        (twist, {"pelvis": (0.0, 0.0, 4.5), "torso": (0.0, 0.0, -8.5), "head": (0.0, 0.0, 3.5)}),
+        (twice, {"pelvis": (0.0, 1.2, 0.0), "torso": (0.0, 1.0, 0.0), "neck": (0.0, -1.0, 0.0), "head": (0.0, -1.0, 0.0)}),
+        (wave(1.0, 0.12), {"pelvis": (-3.5, 0.0, 0.0), "torso": (4.5, 0.0, 0.0), "neck": (-0.7, 0.0, 0.0)}),
+        (lean, {"head": (1.0, 0.0, 0.0), "right_shank": (1.0, 0.0, 2.0), "left_shank": (1.0, 0.0, 2.0)}),
+    ]
+    return posture(base, gains, rng)
+
+
+__all__ = ["added", "scaled", "walk_plan"]

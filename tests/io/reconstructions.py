@@ -1,0 +1,40 @@
+"""A small made-up reconstruction for tests of what is done with one."""
+
+import numpy as np
+
+from mbkf.io.results import Reconstruction
+from mbkf.io.subject import Subject, SubjectMarker
+
+COORDINATES = ("pelvis_tilt", "pelvis_tx", "hip_flexion_r")
+
+
+def made_up(frames=12, seed=0, **changes):
+    """A reconstruction of random numbers with 7 configurations, 6 dofs, 3 coordinates and 2 markers."""
+    rng = np.random.default_rng(seed)
+    T, nq, nv, A, M = frames, 7, 6, len(COORDINATES), 2
+    markers = tuple(SubjectMarker(name, "pelvis", rng.normal(size=3), 0.005) for name in ("A", "B"))
+    force = np.abs(rng.normal(size=(T, 2, 3))) * 300
+    cop = np.concatenate([rng.normal(size=(T, 2, 2)), np.zeros((T, 2, 1))], axis=2)
+    free = rng.normal(size=(T, 2))
+    moment = np.cross(cop, force)
+    moment[..., 2] += free
+    values = {
+        "trial": "walk", "protocol": "reference36", "filter": "dynamic", "smoothed": False, "version": "0",
+        "subject": Subject("human18", 70.5, {"head": 1.1}, markers, "reference36", 1.8, {"rms": [0.1, None]}),
+        "rate_hz": 100.0, "times_s": 0.5 + np.arange(T) / 100.0,
+        "dof_names": tuple(f"pelvis_{i}" for i in range(nv)),
+        "q": rng.normal(size=(T, nq)), "coordinate_names": COORDINATES, "marker_names": ("A", "B"),
+        "measured_m": rng.normal(size=(T, M, 3)), "predicted_m": rng.normal(size=(T, M, 3)),
+        "singular": rng.random((T, A)) < 0.5, "hidden": np.zeros((T, M), bool),
+        "rejected": np.zeros((T, M), bool), "foot_wrench": np.concatenate([force, moment], axis=2),
+        "foot_cop_m": cop, "foot_free_moment_nm": free, "residual_force_n": rng.normal(size=(T, 3)),
+        "residual_moment_nm": rng.normal(size=(T, 3)), "tracked": np.ones(T, bool), "valid": np.ones(T, bool),
+        "held_dofs": ("pelvis_5",), "nis": rng.random(T), "nis_readings": np.full(T, 6),
+        "step_seconds": np.full(T, 1e-3), "warnings": ("a remark, ünicode",),
+        "settings": {"filter": "dynamic", "jerk": 200.0, "hide": ["A"]},
+    }  # fmt: skip
+    for name in ("v", "a", "tau", "sd_q", "sd_v", "sd_tau"):
+        values[name] = rng.normal(size=(T, nv))
+    for name in ("angles", "angle_rates", "moments", "angles_sd", "angle_rates_sd", "moments_sd"):
+        values[name] = rng.normal(size=(T, A))
+    return Reconstruction(**{**values, **changes})

@@ -1,0 +1,112 @@
+"""Each plate type against sensor signals derived from a force at a known place."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mbkf.errors import FileFormatError
+from mbkf.io.c3d_plates import RawPlate, check_geometry, plate_axes, wrench_at_surface
+from tests.io.c3d_builder import CORNERS_MM, PLATE_AXES
+
+A_MM, B_MM, DEPTH_MM = 120.0, 200.0, 55.0
+SENSORS = np.array([[A_MM, B_MM], [-A_MM, B_MM], [-A_MM, -B_MM], [A_MM, -B_MM]])
+CALIBRATION = np.random.default_rng(7).normal(0.0, 1.0, (6, 6)) + 20.0 * np.eye(6)
+
+forces = st.tuples(st.floats(-300, 300), st.floats(-300, 300), st.floats(50, 2000))
+places = st.tuples(st.floats(-150, 150), st.floats(-150, 150))
+
+
+def plate_of(kind: int, readings: np.ndarray, origin=(0.0, 0.0, 0.0), units=("N",) * 3 + ("Nmm",) * 3, **more):
+    corners = more.pop("corners", CORNERS_MM)
+    return RawPlate(1, kind, corners, np.array(origin), readings, tuple(units), 1000.0, more.pop("calibration", None))
+
+
+def signals(kind: int, F: np.ndarray, place: np.ndarray, torque: float, origin: np.ndarray) -> np.ndarray:
+    """Channels in N and N mm of a force F (plate axes) at a place (mm, about the surface's centre)."""
+    if kind == 1:
+        return np.array([[*F, place[0] + origin[0], place[1] + origin[1], torque]])
+    arm = np.array([*place, 0.0]) + origin  # from the transducers to the place
+    wrench = np.concatenate([F, np.cross(arm, F) + [0.0, 0.0, torque]])
+    if kind == 2:
+        return wrench[None]
+    if kind == 4:
+        return np.linalg.solve(CALIBRATION, wrench)[None]
+    # Type 3: eight readings at four places whose sum and moment are the wrench (smallest such readings).
+    columns = [np.concatenate([f, np.cross(r, f)]) for r, f in _unit_readings()]
+    return np.linalg.lstsq(np.array(columns).T, wrench, rcond=None)[0][None]
+
+
+def _unit_readings():
+    x, y, z = np.eye(3)
+    yield np.array([0.0, B_MM, 0.0]), x
+    yield np.array([0.0, -B_MM, 0.0]), x
+    yield np.array([A_MM, 0.0, 0.0]), y
+    yield np.array([-A_MM, 0.0, 0.0]), y
+    for place in SENSORS:
+        yield np.array([*place, 0.0]), z
+
+
+def arrangement(kind: int, flipped: bool) -> tuple[tuple[float, ...], np.ndarray]:
+    """ORIGIN as stored, and the vector from the transducers to the surface's centre in plate axes."""
+    if kind == 3:
+        return (A_MM, B_MM, DEPTH_MM if flipped else -DEPTH_MM), np.array([0.0, 0.0, -DEPTH_MM])
+    vector = np.array([3.0, -2.0, -DEPTH_MM])
+    return tuple(-vector if flipped else vector), vector
+
+
+@pytest.mark.parametrize("kind", [1, 2, 3, 4])
+@pytest.mark.parametrize("flipped", [False, True])
+@given(force=forces, place=places, torque=st.floats(-20000, 20000))
+def test_wrench_of_each_type(kind, flipped, force, place, torque):
+    world_force = np.array(force)
+    F = PLATE_AXES.T @ world_force
+    origin, vector = arrangement(kind, flipped)
+    units = ("N",) * 8 if kind == 3 else ("N",) * 3 + ("mm", "mm", "Nmm") if kind == 1 else ("V",) * 6
+    plate = plate_of(kind, signals(kind, F, np.array(place), torque, vector), origin, units, calibration=CALIBRATION)
+    arm = PLATE_AXES @ np.array([*place, 0.0]) * 1e-3
+    moment = np.cross(arm, world_force) + PLATE_AXES @ [0.0, 0.0, torque * 1e-3]
+    check_geometry(plate, "file", "mm")
+    found = wrench_at_surface(plate, "mm")
+    np.testing.assert_allclose(found, [np.concatenate([world_force, moment])], atol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("unit", "moment_unit", "factor"),
+    [("mm", "Nmm", 1e-3), ("mm", "Nm", 1.0), ("mm", "N.m", 1.0), ("mm", "", 1e-3), ("m", "", 1.0),
+     ("m", "N*mm", 1e-3), ("mm", "V", 1e-3), ("cm", "Ncm", 1e-2)],
+)  # fmt: skip
+def test_units_of_moments(unit, moment_unit, factor):
+    readings = np.array([[0.0, 0.0, -100.0, 7.0, 0.0, 0.0]])
+    plate = plate_of(2, readings, units=("N",) * 3 + (moment_unit,) * 3)
+    np.testing.assert_allclose(wrench_at_surface(plate, unit)[0, 3:], PLATE_AXES[:, 0] * 7.0 * factor, atol=1e-12)
+
+
+def test_kilonewtons_are_newtons_times_a_thousand():
+    plate = plate_of(2, np.array([[0.0, 0.0, -0.7, 0.0, 0.0, 0.0]]), units=("kN",) * 3 + ("kNm",) * 3)
+    np.testing.assert_allclose(wrench_at_surface(plate, "mm")[0, :3], [0.0, 0.0, 700.0])
+
+
+def test_axes_are_orthonormal_and_point_down_even_for_surveyed_corners():
+    noisy = CORNERS_MM + np.random.default_rng(0).normal(0.0, 2.0, (3, 4))
+    axes = plate_axes(noisy)
+    np.testing.assert_allclose(axes.T @ axes, np.eye(3), atol=1e-12)
+    np.testing.assert_allclose(axes, PLATE_AXES, atol=0.02)
+    np.testing.assert_array_equal(plate_axes(CORNERS_MM), PLATE_AXES)
+
+
+@pytest.mark.parametrize(
+    ("plate", "reason"),
+    [
+        (plate_of(5, np.zeros((3, 8))), "type 5"),
+        (plate_of(2, np.zeros((3, 5))), "needs 6 channels, it has 5"),
+        (plate_of(2, np.zeros((3, 6)), corners=np.zeros((3, 4))), "no usable CORNERS"),
+        (plate_of(2, np.zeros((3, 6)), corners=np.full((3, 4), np.nan)), "no usable CORNERS"),
+        (plate_of(4, np.zeros((3, 6))), "CAL_MATRIX"),
+        (plate_of(4, np.zeros((3, 6)), calibration=np.zeros((6, 6))), "CAL_MATRIX"),
+        (plate_of(3, np.zeros((3, 8))), "ORIGIN"),
+    ],
+)
+def test_unusable_plates_are_refused_with_what_is_missing(plate, reason):
+    with pytest.raises(FileFormatError, match=reason):
+        check_geometry(plate, "file", "mm")

@@ -1,0 +1,78 @@
+"""motion.h5: what is written is read back, with units; anything else is refused with one clear line."""
+
+import dataclasses
+
+import h5py
+import numpy as np
+import pytest
+from tests.io.reconstructions import made_up
+
+from mbkf.errors import FileFormatError
+from mbkf.io.results import ARRAYS, DTYPES, Reconstruction
+from mbkf.io.results_h5 import UNITS, read_h5, write_h5
+
+
+@pytest.mark.parametrize("frames", [0, 1, 40])
+def test_a_round_trip_keeps_everything_but_the_covariance(tmp_path, frames):
+    plates = np.full((frames, 2, 6), np.nan)
+    r = made_up(frames, plate_change=plates, covariance=np.zeros((frames, 12, 12)))
+    write_h5(r, tmp_path / "motion.h5")
+    back = read_h5(tmp_path / "motion.h5")
+    assert back.covariance is None
+    for f in dataclasses.fields(Reconstruction):
+        one, other = getattr(r, f.name), getattr(back, f.name)
+        if f.name in ("covariance", "subject"):
+            continue
+        if isinstance(one, np.ndarray):
+            np.testing.assert_array_equal(one, other, strict=True)
+        else:
+            assert one == other, f.name
+    mine, theirs = dataclasses.asdict(r.subject), dataclasses.asdict(back.subject)
+    np.testing.assert_equal(theirs, mine)
+
+
+def test_every_quantity_carries_its_unit(tmp_path):
+    write_h5(made_up(), tmp_path / "motion.h5")
+    assert set(UNITS) | set(DTYPES) | {"nis", "covariance"} == set(ARRAYS)
+    with h5py.File(tmp_path / "motion.h5") as file:
+        for name in ARRAYS:
+            if name in file:
+                assert file[name].attrs["unit"] == UNITS.get(name, "1")
+        assert "plate_change" not in file
+
+
+def test_settings_of_numpy_and_paths_are_plain_data(tmp_path):
+    settings = {"gain": np.float64(2.0), "names": {"b", "a"}, "folder": tmp_path, "grid": np.arange(3)}
+    write_h5(made_up(settings=settings), tmp_path / "motion.h5")
+    back = read_h5(tmp_path / "motion.h5").settings
+    assert back == {"gain": 2.0, "names": ["a", "b"], "folder": str(tmp_path), "grid": [0, 1, 2]}
+
+
+def test_other_files_are_refused(tmp_path):
+    with pytest.raises(FileFormatError, match="no such file"):
+        read_h5(tmp_path / "none.h5")
+    (tmp_path / "text.h5").write_text("hello")
+    with pytest.raises(FileFormatError, match="damaged"):
+        read_h5(tmp_path / "text.h5")
+    with h5py.File(tmp_path / "other.h5", "w") as file:
+        file["x"] = 1
+    with pytest.raises(FileFormatError, match="not a reconstruction"):
+        read_h5(tmp_path / "other.h5")
+
+
+@pytest.mark.parametrize(
+    ("damage", "message"),
+    [
+        (lambda file: file.__delitem__("q"), "damaged"),
+        (lambda file: file.attrs.__setitem__("format_version", 99), "newer"),
+        (lambda file: (file.__delitem__("q"), file.create_dataset("q", data=np.zeros((2, 7)))), "q must have"),
+        (lambda file: file.attrs.__setitem__("subject", "{}"), "damaged"),
+    ],
+)
+def test_damaged_files_are_refused(tmp_path, damage, message):
+    path = tmp_path / "motion.h5"
+    write_h5(made_up(), path)
+    with h5py.File(path, "a") as file:
+        damage(file)
+    with pytest.raises(FileFormatError, match=message):
+        read_h5(path)

@@ -1,0 +1,101 @@
+"""OpenSim's files: units, axes, names; the ground's wrench stays the same wrench."""
+
+import numpy as np
+from tests.io.reconstructions import made_up
+
+from mbkf.io.results_opensim import (
+    angles_table,
+    reactions_table,
+    reconstructed_markers,
+    torques_table,
+    write_opensim,
+)
+from mbkf.io.storage import read_storage
+from mbkf.io.trc import read_trc
+
+
+def to_world(vectors):
+    return np.stack([vectors[:, 0], -vectors[:, 2], vectors[:, 1]], axis=1)
+
+
+def vector(table, prefix):
+    return np.column_stack([table.column(prefix + axis) for axis in "xyz"])
+
+
+def wrench_of(table, side):
+    """(T, 6) the table's force, point and moment as one wrench about the world's origin."""
+    force, point = vector(table, f"ground_force_{side}_v"), vector(table, f"ground_force_{side}_p")
+    moment = vector(table, f"ground_torque_{side}_") + np.cross(point, force)
+    return np.hstack([to_world(force), to_world(moment)])
+
+
+def test_angles_are_in_degrees_and_translations_in_metres():
+    r = made_up()
+    table = angles_table(r)
+    assert table.in_degrees
+    np.testing.assert_allclose(table.column("hip_flexion_r"), np.rad2deg(r.angle("hip_flexion_r")))
+    np.testing.assert_array_equal(table.column("pelvis_tx"), r.angle("pelvis_tx"))
+
+
+def test_torques_are_named_as_inverse_dynamics_names_them():
+    table = torques_table(made_up())
+    assert table.names == ("pelvis_tilt_moment", "pelvis_tx_force", "hip_flexion_r_moment")
+    assert not table.in_degrees
+
+
+def test_reactions_are_the_same_wrench_whether_loaded_or_not():
+    cop = np.array(made_up().foot_cop_m)
+    cop[4:7, 0], cop[:2, 1] = np.nan, np.nan
+    r = made_up(foot_cop_m=cop)
+    table = reactions_table(r)
+    for foot, side in enumerate("rl"):
+        np.testing.assert_allclose(wrench_of(table, side), r.foot_wrench[:, foot], atol=1e-9)
+    points = vector(table, "ground_force_r_p")
+    np.testing.assert_array_equal(points[4:7], np.tile(points[3], (3, 1)))
+    up = table.column("ground_force_l_vy")
+    np.testing.assert_array_equal(up, r.foot_wrench[:, 1, 2])
+
+
+def test_a_loaded_foot_has_only_its_free_moment_about_the_vertical():
+    r = made_up()
+    torque = vector(reactions_table(r), "ground_torque_r_")
+    np.testing.assert_allclose(torque[:, 1], r.foot_free_moment_nm[:, 0], atol=1e-9)
+    np.testing.assert_allclose(torque[:, [0, 2]], 0.0, atol=1e-9)
+
+
+def test_a_foot_never_loaded_has_its_point_at_the_origin():
+    r = made_up(foot_cop_m=np.full((12, 2, 3), np.nan))
+    np.testing.assert_array_equal(vector(reactions_table(r), "ground_force_l_p"), 0.0)
+
+
+def test_frames_not_tracked_and_values_not_known_are_left_out_and_nothing_is_nan(tmp_path):
+    tracked = np.ones(12, bool)
+    tracked[[0, 1, 6, 11]] = False
+    moments = np.array(made_up().moments)
+    moments[2, 0], moments[:, 1] = np.nan, np.nan
+    r = made_up(tracked=tracked, moments=moments)
+    write_opensim(r, tmp_path)
+    angles, torques = read_storage(tmp_path / "angles.mot"), read_storage(tmp_path / "torques.sto")
+    np.testing.assert_allclose(angles.times_s, r.times_s[tracked])
+    assert "pelvis_tx_force" not in torques.names
+    np.testing.assert_allclose(torques.times_s, r.times_s[tracked][1:])
+    for name in ("angles.mot", "torques.sto", "reactions.mot"):
+        assert "nan" not in (tmp_path / name).read_text().split("endheader")[1].lower()
+    markers = read_trc(tmp_path / "markers.trc").markers
+    np.testing.assert_allclose(markers.times_s, r.times_s[2:11])
+    assert np.argwhere(~markers.present[:, 0]).ravel().tolist() == [4]
+
+
+def test_markers_come_back_from_the_file(tmp_path):
+    r = made_up()
+    write_opensim(r, tmp_path)
+    markers = read_trc(tmp_path / "markers.trc").markers
+    assert markers.names == r.marker_names
+    np.testing.assert_allclose(markers.positions_m, r.predicted_m, atol=1e-8)
+
+
+def test_nothing_tracked_writes_empty_files(tmp_path):
+    r = made_up(tracked=np.zeros(12, bool))
+    write_opensim(r, tmp_path)
+    assert reconstructed_markers(r).frames == 0
+    assert len(angles_table(r).times_s) == 0

@@ -1,0 +1,184 @@
+"""Every shipped protocol, the detection of a capture's protocol, and what is refused."""
+
+import numpy as np
+import pytest
+
+from mbkf.errors import FileFormatError, UnknownName
+from mbkf.io.capture import read_capture
+from mbkf.model.description import load_body, mirrored
+from mbkf.model.protocol import KINDS, detect_protocol, load_protocol, protocol_names
+
+SHIPPED = (
+    "autolabel62",
+    "gait2354",
+    "helen_hayes",
+    "opensim_fullbody2009",
+    "oxford_biomechzoo",
+    "plug_in_gait",
+    "rajagopal_run",
+    "rajagopal_walk",
+    "reference36",
+)
+
+CAPTURES = {
+    "gait2354_walk/subject01_static.trc": "gait2354",
+    "gait2354_walk/subject01_walk1.trc": "gait2354",
+    "rajagopal_walk_run/static_walk_1.trc": "rajagopal_walk",
+    "rajagopal_walk_run/motion_capture_walk.trc": "rajagopal_walk",
+    "rajagopal_walk_run/static_run.trc": "rajagopal_run",
+    "rajagopal_walk_run/motion_capture_run.trc": "rajagopal_run",
+    "synthetic_exact_truth/subject01_walk2_markers.trc": "rajagopal_run",
+    "biomechzoo_walk_turn/HC032A_Static_HC032A01.c3d": "oxford_biomechzoo",
+    "biomechzoo_walk_turn/HC044A_Straight_HC044A15.c3d": "oxford_biomechzoo",
+    "gaitalytics_walk/overground_fullbody_4plates.c3d": "plug_in_gait",
+    "opensim_gappy_walk/walking2.c3d": "opensim_fullbody2009",
+    "autolabel_unlabelled_fullbody/PronetoRun01_labelled.c3d": "autolabel62",
+}
+NOT_FOLLOWED = ("Ground", "Mid")
+"""Ends and beginnings of the points that no protocol takes over (projections and midpoints)."""
+
+NAME_LISTS = {
+    "plug_in_gait": (
+        "LFHD RFHD LBHD RBHD C7 T10 CLAV STRN LSHO LELB LWRA LWRB LFIN RSHO RELB RWRA RWRB RFIN LASI "
+        "RASI SACR LTHI LKNE LTIB LANK LHEE LTOE RTHI RKNE RTIB RANK RHEE RTOE"
+    ),
+    "helen_hayes": (
+        "Top.Head Front.Head Rear.Head R.Shoulder L.Shoulder R.Offset R.Elbow L.Elbow R.Wrist L.Wrist "
+        "R.Asis L.Asis V.Sacral R.Thigh L.Thigh R.Knee L.Knee R.Shank L.Shank R.Ankle L.Ankle R.Heel "
+        "L.Heel R.Toe L.Toe"
+    ),
+    "rajagopal_run": (
+        "LPSI RPSI RTH2 RTH3 LTH1 LTH2 LTH3 RTB1 RTB2 LTB1 LTB2 RCAL RTOE RMT5 LCAL LTOE LMT5 LACR "
+        "RACR CLAV C7 RUA1 RUA2 RUA3 RLEL LUA1 LUA2 LUA3 LLEL RASI LASI"
+    ),
+    "gait2354": (
+        "R.ASIS L.ASIS V.Sacral R.Thigh.Upper R.Thigh.Front R.Thigh.Rear L.Thigh.Upper L.Thigh.Front "
+        "R.Heel R.Midfoot.Sup R.Toe.Tip Sternum R.Acromium L.Acromium R.Wrist.Med Top.Head"
+    ),
+}
+
+
+@pytest.fixture
+def write(tmp_path):
+    def to_file(*entries):
+        path = tmp_path / "mine.toml"
+        markers = "\n".join(f"[[marker]]\n{entry}" for entry in entries)
+        path.write_text(f'name = "mine"\n{markers}\n', encoding="utf-8")
+        return str(path)
+
+    return to_file
+
+
+def test_these_protocols_are_shipped():
+    assert protocol_names() == SHIPPED
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_a_shipped_protocol_is_sound(name):
+    protocol = load_protocol(name)
+    segments = {segment.name for segment in load_body(protocol.body).segments}
+    labels = [alias for marker in protocol.markers for alias in (marker.name, *marker.aliases)]
+    assert protocol.name == name
+    assert len(labels) == len(set(labels)), "a name or alias stands twice"
+    for marker in protocol.markers:
+        assert marker.segment in segments
+        assert marker.kind in KINDS
+        assert np.linalg.norm(marker.position_m) < 0.5
+        assert 0.003 <= marker.noise_m <= 0.020
+        assert 0.005 <= marker.placement_sd_m <= 0.100
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_markers_lie_on_the_side_their_name_says(name):
+    for marker in load_protocol(name).markers:
+        side = {"R": "right_", "L": "left_"}.get(marker.name[0])
+        if marker.segment.startswith(("right_", "left_")):
+            assert marker.segment.startswith(side), marker.name
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_mirrored_markers_mirror(name):
+    markers = {marker.name: marker for marker in load_protocol(name).markers}
+    partners = {name: "L" + name[1:] for name in markers if name[0] == "R"}
+    pairs = [(markers[name], markers[other]) for name, other in partners.items() if other in markers]
+    asymmetric = 0
+    for right, left in pairs:
+        assert left.segment == mirrored(right.segment)
+        for attribute in ("kind", "noise_m", "placement_sd_m"):
+            assert getattr(left, attribute) == getattr(right, attribute)
+        asymmetric += not np.allclose(left.position_m, right.position_m * [1.0, -1.0, 1.0])
+    assert pairs
+    assert asymmetric == {"rajagopal_walk": 7}.get(name, 0), "only these clusters differ right and left"
+
+
+@pytest.mark.parametrize("name", NAME_LISTS)
+def test_detection_by_names(name):
+    names = NAME_LISTS[name].split()
+    assert detect_protocol([*names, "Angle1", "CentreOfMass"]).name == name
+    assert len(load_protocol(name).match(names)) == len(names)
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_a_protocol_is_found_by_its_own_names(name):
+    followed = [marker.name for marker in load_protocol(name).markers if marker.kind != "computed"]
+    assert detect_protocol(followed).name == name
+
+
+@pytest.mark.parametrize("file", CAPTURES)
+def test_detection_on_real_captures(real_data, file):
+    names = read_capture(real_data / file).markers.names
+    protocol = detect_protocol(names)
+    assert protocol.name == CAPTURES[file]
+    left = [name for name in names if name not in protocol.match(names)]
+    assert [n for n in left if not n.endswith(NOT_FOLLOWED) and not n.startswith(NOT_FOLLOWED)] == []
+
+
+def test_unknown_marker_sets_are_refused():
+    with pytest.raises(UnknownName, match="give --protocol"):
+        detect_protocol(["a", "b", "RASI"])
+    with pytest.raises(UnknownName, match=r"no markers"):
+        detect_protocol([])
+
+
+def test_each_marker_is_matched_once_by_name_or_alias():
+    protocol = load_protocol("helen_hayes")
+    found = protocol.match(["R.Asis", "R.ASIS", "V.Sacrum", "unknown"])
+    matched = {name: marker.name for name, marker in found.items()}
+    assert matched == {"R.Asis": "R.ASIS", "V.Sacrum": "V.Sacral"}
+
+
+def test_own_protocol_from_a_file(write):
+    path = write('name = "RK"\nlandmark = "right_knee_lateral"\nmirror = "LK"',
+                 'name = "X"\nsegment = "pelvis"\nposition_m = [0, 0.1, -0.2]\nnoise_mm = 7\naliases = ["Y"]')
+    right, left, technical = load_protocol(path).markers
+    landmark = load_body().landmark("right_knee_lateral")
+    np.testing.assert_array_equal(right.position_m, landmark.position_m)
+    assert (left.name, left.segment, right.kind) == ("LK", "left_thigh", "anatomical")
+    np.testing.assert_array_equal(left.position_m, right.position_m * [1.0, -1.0, 1.0])
+    assert (technical.kind, technical.noise_m, technical.placement_sd_m) == ("technical", 0.007, 0.060)
+    assert technical.aliases == ("Y",)
+
+
+@pytest.mark.parametrize(
+    ("entries", "error", "complaint"),
+    [
+        (['name = "X"\nsegment = "pelvic"\nposition_m = [0, 0, 0]'], UnknownName, "did you mean pelvis"),
+        (['name = "X"\nlandmark = "right_knee_laterl"'], UnknownName, "did you mean right_knee_lateral"),
+        (['name = "X"\nlandmark = "c7"\nnoise = 5'], UnknownName, "marker X: unknown key 'noise'"),
+        (['name = "X"\nlandmark = "c7"\nkind = "bone"'], UnknownName, "unknown marker kind 'bone'"),
+        (['name = "X"\nlandmark = "c7"', 'name = "X"\nlandmark = "t6"'], FileFormatError, "'X' stands twice"),
+        (['name = "X"\nlandmark = "right_heel"\nmirror = "X"'], FileFormatError, "'X' stands twice"),
+        (['name = "X"\nsegment = "pelvis"'], FileFormatError, "position_m"),
+        (['name = "X'], FileFormatError, "not a valid protocol"),
+    ],
+)
+def test_faulty_protocols_are_refused(write, entries, error, complaint):
+    with pytest.raises(error, match=complaint):
+        load_protocol(write(*entries))
+
+
+def test_unknown_and_missing_protocols():
+    with pytest.raises(UnknownName, match="did you mean plug_in_gait"):
+        load_protocol("plugin_gait")
+    with pytest.raises(FileFormatError, match="cannot be read"):
+        load_protocol("no/such/file.toml")
