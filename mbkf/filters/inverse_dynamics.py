@@ -1,4 +1,4 @@
-"""Joint torques after the kinematic filter: finite-difference accelerations and Newton–Euler (SPEC §5, FCDI)."""
+"""Joint torques after the kinematic filter: the plates' wrenches through Newton–Euler (SPEC §5, FCDI)."""
 
 from __future__ import annotations
 
@@ -14,30 +14,19 @@ from mbkf.sensors.contacts import FEET
 
 @dataclass(frozen=True)
 class InverseDynamics:
-    """Accelerations and generalised forces.
+    """Generalised forces of a followed trial; NaN where it is not followed.
 
     Attributes:
-        a: (T, nv) accelerations by eq. 3.7, NaN where untracked.
         tau: (T, nv) generalised forces by eq. 3.12; the first six are the pelvis residual in pelvis axes.
         sd_tau: (T, nv) standard deviation from that of the velocities.
         residual_force_n: (T, 3) residual force, world axes.
         residual_moment_nm: (T, 3) residual moment about the pelvis origin, world axes.
     """
 
-    a: Array
     tau: Array
     sd_tau: Array
     residual_force_n: Array
     residual_moment_nm: Array
-
-
-def accelerations(track: Track, dt_s: float) -> Array:
-    """(T, nv) (v_k − v_{k−1}) / Δt (eq. 3.7); the first frame after a start takes its successor's."""
-    a = np.full_like(track.v, np.nan)
-    a[1:] = np.diff(track.v, axis=0) / dt_s
-    for start in track.starts:
-        a[start] = a[start + 1] if start + 1 < len(a) else 0.0
-    return a
 
 
 def inverse_dynamics(model: HumanModel, track: Track, foot_wrench: Array, dt_s: float) -> InverseDynamics:
@@ -49,7 +38,7 @@ def inverse_dynamics(model: HumanModel, track: Track, foot_wrench: Array, dt_s: 
         foot_wrench: (T, 2, 6) force N and moment N m about the world's origin on right and left foot, world axes.
         dt_s: Frame period.
     """
-    a = accelerations(track, dt_s)
+    a = track.a
     tau, sd = np.full_like(a, np.nan), np.full_like(a, np.nan)
     force, moment = np.full((len(a), 3), np.nan), np.full((len(a), 3), np.nan)
     pelvis = model.joint("pelvis").joint_id
@@ -65,4 +54,4 @@ def inverse_dynamics(model: HumanModel, track: Track, foot_wrench: Array, dt_s: 
         sd[t] = np.sqrt(np.maximum(np.diag(spread), 0.0))
         force[t] = rotations[pelvis] @ tau[t, :3]
         moment[t] = rotations[pelvis] @ tau[t, 3:6]
-    return InverseDynamics(a, tau, sd, force, moment)
+    return InverseDynamics(tau, sd, force, moment)

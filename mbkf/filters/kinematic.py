@@ -13,8 +13,13 @@ from mbkf.filters.settings import KinematicSettings
 from mbkf.filters.state import FilterState
 from mbkf.numerics.kalman import Information, correct, information
 from mbkf.sensors.markers import MarkerSensor
-from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
+from mbkf.sensors.pose_fit import PoseFit, fit_pose, segment_by_segment
 from mbkf.sensors.posture import PostureSensor
+
+
+START_SPEED_SD_M_S = 2.0
+START_SPEED_SD_RAD_S = 5.0
+"""How fast a body may move when the filter starts knowing only its pose."""
 
 
 @dataclass(frozen=True)
@@ -61,25 +66,29 @@ class KinematicFilter:
         self._joint_dofs = self.posture.dofs[self._free]
 
     def start(self, measured_m: Array, guess: Array | None = None) -> FilterState | None:
-        """A state from one frame of markers (M, 3), or None where they do not fit the body.
+        """A state at rest from one frame of markers (M, 3), or None where they do not fit the body.
 
         Args:
             measured_m: Positions, NaN where missing.
             guess: (nq,) configuration to start the fit from besides the segment-by-segment one.
         """
+        fit = self._fit(measured_m, guess)
+        if fit is None:
+            return None
+        nv = self.sensor.model.nv
+        speed = np.where(np.arange(nv) < 3, START_SPEED_SD_M_S, START_SPEED_SD_RAD_S)
+        P = np.zeros((2 * nv, 2 * nv))
+        P[:nv, :nv] = fit.covariance
+        P[nv:, nv:] = np.diag(np.where(self.held, 1e-6, speed) ** 2)
+        return FilterState(fit.q, np.zeros(nv), P)
+
+    def _fit(self, measured_m: Array, guess: Array | None) -> PoseFit | None:
         if (~np.isnan(measured_m).any(axis=1)).sum() < self.settings.min_markers:
             return None
         guesses = [segment_by_segment(self.sensor, measured_m)] + ([] if guess is None else [guess])
         fits = [fit_pose(self.sensor, self.posture, measured_m, self.noise_m, q) for q in guesses]
-        fit = min(fits, key=lambda one: one.rms_m)
-        if fit.rms_m > self.settings.restart_rms_m:
-            return None
-        nv = self.sensor.model.nv
-        P = np.zeros((2 * nv, 2 * nv))
-        P[:nv, :nv] = fit.covariance
-        speed = np.where(np.arange(nv) < 3, 2.0, 5.0)
-        P[nv:, nv:] = np.diag(np.where(self.held, 1e-6, speed) ** 2)
-        return FilterState(fit.q, np.zeros(nv), P)
+        best = min(fits, key=lambda one: one.rms_m)
+        return best if best.rms_m <= self.settings.restart_rms_m else None
 
     def step(self, state: FilterState, measured_m: Array) -> StepResult:
         """Prediction and correction by one frame of markers (M, 3), NaN where missing."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from mbkf.conventions import Array
 
 
@@ -20,3 +22,9 @@ class FilterState:
     q: Array
     v: Array
     P: Array
+
+    def reversed_in_time(self) -> FilterState:
+        """The same instant of the motion played backwards: v changes sign, and its covariance with q."""
+        nv = len(self.v)
+        sign = np.concatenate([np.ones(nv), -np.ones(nv)])
+        return FilterState(self.q, -self.v, sign[:, None] * self.P * sign)

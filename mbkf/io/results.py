@@ -1,4 +1,4 @@
-"""The result of a reconstruction: motion, torques and reactions together, each with its standard deviation."""
+"""The result of a reconstruction: motion, torques and reactions, each with its standard deviation."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SHAPES: dict[str, str] = {
     "residual_force_n": "T 3", "residual_moment_nm": "T 3", "tracked": "T", "valid": "T",
     "nis": "T", "nis_readings": "T", "step_seconds": "T", "plate_change": "T P 6", "covariance": "T 2nv 2nv",
 }  # fmt: skip
-"""Dimensions of every array of a :class:`Reconstruction`: T frames, nv dofs, A coordinates, M markers, P plates."""
+"""Dimensions of every array: T frames, nv dofs, A coordinates, M markers, P plates."""
 
 DTYPES: dict[str, type] = {name: np.bool_ for name in ("singular", "hidden", "rejected", "tracked", "valid")}
 DTYPES["nis_readings"] = np.int64
@@ -47,8 +47,8 @@ class Reconstruction:
         tau: (T, nv) generalised forces; the first six are the residual at the pelvis in its axes.
         sd_q, sd_v, sd_tau: (T, nv) standard deviations in the tangent space, NaN where not known.
         coordinate_names: (A,) clinical coordinates, OpenSim's names where it has them.
-        angles, angle_rates, moments: (T, A) coordinates, their rates and conjugate moments: rad, rad/s, N m; the
-            pelvis's translations m, m/s, N.
+        angles, angle_rates, moments: (T, A) coordinates, their rates and conjugate moments: rad, rad/s, N m;
+            the pelvis's translations m, m/s, N.
         angles_sd, angle_rates_sd, moments_sd: (T, A) their standard deviations, NaN where not known.
         singular: (T, A) within 10° of the angles' singularity.
         marker_names: (M,) markers followed.
@@ -58,9 +58,10 @@ class Reconstruction:
         rejected: (T, M) refused by the innovation gate.
         foot_wrench: (T, 2, 6) ground on right and left foot: force N, moment N m about the world's origin.
         foot_cop_m: (T, 2, 3) centres of pressure, NaN where not loaded.
-        foot_free_moment_nm: (T, 2) moment about the vertical through the centre of pressure, NaN where not loaded.
-        residual_force_n, residual_moment_nm: (T, 3) residual at the pelvis from measured plates, world axes, moment
-            about the pelvis's origin.
+        foot_free_moment_nm: (T, 2) moment about the vertical through the centre of pressure, NaN where not
+            loaded.
+        residual_force_n, residual_moment_nm: (T, 3) residual at the pelvis from measured plates, world axes,
+            moment about the pelvis's origin.
         tracked: (T,) enough markers to follow the body.
         valid: (T,) every loaded foot stands on a measured plate.
         held_dofs: Names of dofs that nothing observes.
@@ -69,8 +70,8 @@ class Reconstruction:
         step_seconds: (T,) computing time of a frame.
         warnings: Remarks for the reader.
         settings: What the run was set to, as plain data.
-        plate_change: (T, P, 6) estimated minus measured plate wrench (N, N m), NaN where a plate is not compared;
-            None without plates.
+        plate_change: (T, P, 6) estimated minus measured plate wrench (N, N m), NaN where a plate is not
+            compared; None without plates.
         covariance: (T, 2nv, 2nv) of (q, v) in the tangent space; only kept on request and never written.
     """
 
@@ -137,7 +138,9 @@ class Reconstruction:
             if len(wanted) != array.ndim or any(
                 n not in (None, m) for n, m in zip(wanted, array.shape, strict=True)
             ):
-                known = ", ".join(str(n) if n is not None else d for n, d in zip(wanted, dimensions.split(), strict=True))
+                known = ", ".join(
+                    str(n) if n is not None else d for n, d in zip(wanted, dimensions.split(), strict=True)
+                )
                 raise ShapeError(name, f"({known})", array.shape)
             object.__setattr__(self, name, array)
 

@@ -24,8 +24,8 @@ def write_reconstruction(
 ) -> Path:
     """Writes a reconstruction and its summary.
 
-    Everything is first written beside the folder and moved into place at the end, summary.json last; other files of
-    an existing folder stay.
+    Everything is first written beside the folder and moved into place at the end, summary.json last; other
+    files of an existing folder stay.
 
     Args:
         reconstruction: What was found.
@@ -64,7 +64,9 @@ def prepare_folder(folder: str | Path) -> Path:
     target = Path(folder).absolute()
     for place in (target, *target.parents):
         if place.exists() and not place.is_dir():
-            raise FileFormatError(place, "a file stands where a folder is needed; name another folder with --out")
+            raise FileFormatError(
+                place, "a file stands where a folder is needed; name another folder with --out"
+            )
     target.mkdir(parents=True, exist_ok=True)
     return target
 

@@ -1,4 +1,4 @@
-"""A reconstruction as one HDF5 file, ``motion.h5``: everything but the covariance, with units; written and read."""
+"""A reconstruction as one HDF5 file, ``motion.h5``: everything but the covariance, with units."""
 
 from __future__ import annotations
 
@@ -19,16 +19,15 @@ from mbkf.io.subject import Subject, SubjectMarker
 FORMAT = "mbkf reconstruction"
 FORMAT_VERSION = 1
 
-_TANGENT = "{}; the pelvis's first three dofs {}"
+_ANGLE, _RATE, _FORCE = "rad; pelvis_t* m", "rad/s; pelvis_t* m/s", "N m; pelvis_t* N"
 UNITS = {
-    "times_s": "s", "q": "m, and unit quaternions (x, y, z, w), and rad",
-    "v": _TANGENT.format("rad/s", "m/s"), "a": _TANGENT.format("rad/s^2", "m/s^2"), "tau": _TANGENT.format("N m", "N"),
-    "sd_q": _TANGENT.format("rad", "m"), "sd_v": _TANGENT.format("rad/s", "m/s"),
-    "sd_tau": _TANGENT.format("N m", "N"),
-    "angles": "rad; pelvis_t* m", "angle_rates": "rad/s; pelvis_t* m/s", "moments": "N m; pelvis_t* N",
-    "angles_sd": "rad; pelvis_t* m", "angle_rates_sd": "rad/s; pelvis_t* m/s", "moments_sd": "N m; pelvis_t* N",
-    "measured_m": "m", "predicted_m": "m", "foot_wrench": "N, N m about the world's origin", "foot_cop_m": "m",
-    "foot_free_moment_nm": "N m", "residual_force_n": "N", "residual_moment_nm": "N m",
+    "times_s": "s", "q": "m; unit quaternions (x, y, z, w); hinges rad",
+    "v": _RATE, "a": "rad/s^2; pelvis_t* m/s^2", "tau": _FORCE,
+    "sd_q": _ANGLE, "sd_v": _RATE, "sd_tau": _FORCE,
+    "angles": _ANGLE, "angle_rates": _RATE, "moments": _FORCE,
+    "angles_sd": _ANGLE, "angle_rates_sd": _RATE, "moments_sd": _FORCE,
+    "measured_m": "m", "predicted_m": "m", "foot_wrench": "N, N m about the world's origin",
+    "foot_cop_m": "m", "foot_free_moment_nm": "N m", "residual_force_n": "N", "residual_moment_nm": "N m",
     "step_seconds": "s", "plate_change": "N, N m",
 }  # fmt: skip
 """Unit of each array; the others (flags, counts, the innovation statistic) have none and carry "1"."""
@@ -47,7 +46,9 @@ def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
     with replacing(path) as partial, h5py.File(partial, "w") as file:
         file.attrs["format"] = FORMAT
         file.attrs["format_version"] = FORMAT_VERSION
-        file.attrs["axes"] = "x forward, y left, z up; forces act on the body; moments in the conventions of mbkf"
+        file.attrs["axes"] = (
+            "x forward, y left, z up; forces act on the body; moments in the conventions of mbkf"
+        )
         for name in _TEXTS:
             file.attrs[name] = getattr(reconstruction, name)
         file.attrs["smoothed"] = reconstruction.smoothed
@@ -60,7 +61,9 @@ def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
             array = getattr(reconstruction, name)
             if array is None or name in _NEVER_WRITTEN:
                 continue
-            packed = {"compression": "gzip", "compression_opts": 1, "shuffle": True} if array.size > 256 else {}
+            packed = (
+                {"compression": "gzip", "compression_opts": 1, "shuffle": True} if array.size > 256 else {}
+            )
             dataset = file.create_dataset(name, data=array, **packed)
             dataset.attrs["unit"] = UNITS.get(name, "1")
 
@@ -101,7 +104,7 @@ def read_h5(path: str | Path) -> Reconstruction:
 
 def _subject(table: dict[str, Any]) -> Subject:
     markers = tuple(
-        SubjectMarker(m["name"], m["segment"], read_only(m["position_m"]), m["noise_m"]) for m in table["markers"]
+        SubjectMarker(**{**entry, "position_m": read_only(entry["position_m"])}) for entry in table["markers"]
     )
     return Subject(**{**table, "markers": markers})
 

@@ -1,8 +1,9 @@
 """A reconstruction as the four files OpenSim opens: angles.mot, torques.sto, reactions.mot, markers.trc.
 
-OpenSim's axes: x forward, y up, z right. Only the range from the first to the last tracked frame is written. OpenSim's
-reader of tables refuses NaN, so frames inside that range with a value missing are left out of the tables (their times
-tell; OpenSim interpolates), and columns that are never known are left out altogether; markers.trc keeps every frame.
+OpenSim's axes: x forward, y up, z right. Only the range from the first to the last tracked frame is written.
+OpenSim's reader of tables refuses NaN, so frames inside that range with a value missing are left out of the
+tables (their times tell; OpenSim interpolates), and columns that are never known are left out altogether;
+markers.trc keeps every frame.
 """
 
 from __future__ import annotations
@@ -45,18 +46,16 @@ def angles_table(reconstruction: Reconstruction) -> Table:
 def torques_table(reconstruction: Reconstruction) -> Table:
     """Moments named as OpenSim's inverse dynamics names them; the pelvis's columns are the residual."""
     r = reconstruction
-    names = tuple(
-        f"{name}_{'force' if name in TRANSLATIONS else 'moment'}" for name in r.coordinate_names
-    )
+    names = tuple(f"{name}_{'force' if name in TRANSLATIONS else 'moment'}" for name in r.coordinate_names)
     return _table(r, names, r.moments, "Inverse Dynamics Generalized Forces")
 
 
 def reactions_table(reconstruction: Reconstruction) -> Table:
     """Force, point and moment of the ground on each foot, in OpenSim's axes.
 
-    The point is the centre of pressure, and while the foot is not loaded the last one (the first one before the foot
-    was ever loaded), so that nothing jumps where OpenSim interpolates. The moment is that about the point, so that
-    force, point and moment together are the wrench exactly.
+    The point is the centre of pressure, and while the foot is not loaded the last one (the first one before
+    the foot was ever loaded), so that nothing jumps where OpenSim interpolates. The moment is that about the
+    point, so that force, point and moment together are the wrench exactly.
     """
     r = reconstruction
     R = rotation_to_world("y")
@@ -73,7 +72,7 @@ def reactions_table(reconstruction: Reconstruction) -> Table:
 
 
 def reconstructed_markers(reconstruction: Reconstruction) -> MarkerTrajectories:
-    """The reconstructed body's markers in the range of tracked frames, missing where the body is not followed."""
+    """The reconstructed body's markers in the range of tracked frames, missing where it is not followed."""
     r = reconstruction
     first, last = _tracked_range(r.tracked)
     positions = np.where(r.tracked[:, None, None], r.predicted_m, np.nan)[first:last]
@@ -84,7 +83,7 @@ def reconstructed_markers(reconstruction: Reconstruction) -> MarkerTrajectories:
 def _table(
     r: Reconstruction, names: tuple[str, ...], values: Array, title: str, in_degrees: bool = False
 ) -> Table:
-    known = np.isfinite(values[r.tracked]).any(axis=0)
+    known = np.logical_or.reduce(np.isfinite(values[r.tracked]), axis=0)
     rows = r.tracked & np.isfinite(values[:, known]).all(axis=1)
     kept = tuple(name for name, finite in zip(names, known, strict=True) if finite)
     header = {"Trial": r.trial, "Software": f"mbkf {r.version}"}
@@ -98,7 +97,7 @@ def _tracked_range(tracked: BoolArray) -> tuple[int, int]:
 
 
 def _held(points: Array) -> Array:
-    """Points (T, 3) with gaps filled by the last one before, or the first one after; zero where there is none."""
+    """Points (T, 3), gaps filled by the last one before, or the first one after; zero where there is none."""
     seen = ~np.isnan(points).any(axis=1)
     if not seen.any():
         return np.zeros_like(points)

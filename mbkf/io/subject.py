@@ -23,14 +23,14 @@ class SubjectMarker:
         segment: Segment that carries it.
         position_m: (3,) position in the segment's frame, m.
         noise_m: Measurement noise with skin movement, per coordinate, m.
-        placement_sd_m: How well its position is known, per coordinate, m; 0 when it was seen in scaling.
+        session_sd_m: How far it may sit from there in another trial, per coordinate, m.
     """
 
     name: str
     segment: str
     position_m: Array
     noise_m: float
-    placement_sd_m: float = 0.0
+    session_sd_m: float
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def write_subject(subject: Subject, path: str | Path) -> None:
             f"segment = {_text(marker.segment)}",
             f"position_m = [{position}]",
             f"noise_m = {marker.noise_m!r}",
-            f"placement_sd_m = {marker.placement_sd_m!r}",
+            f"session_sd_m = {marker.session_sd_m!r}",
         ]
     if subject.report:
         lines += ["", "# How it was found: one JSON object.", f"report = {_text(json.dumps(subject.report))}"]
@@ -124,7 +124,7 @@ def _marker(entry: dict[str, Any]) -> SubjectMarker:
     if position.shape != (3,) or not np.isfinite(position).all():
         raise ValueError(f"marker {entry['name']} needs three finite coordinates")
     return SubjectMarker(entry["name"], entry["segment"], position, float(entry["noise_m"]),
-                         float(entry.get("placement_sd_m", 0.0)))
+                         float(entry["session_sd_m"]))
 
 
 def _text(value: str) -> str:

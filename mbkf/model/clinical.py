@@ -12,18 +12,29 @@ from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.errors import InvalidInput, ShapeError
 from mbkf.model.clinical_table import Angle, ClinicalJoint, load_clinical_joints
 from mbkf.model.human import HumanModel
-from mbkf.numerics.cardan import cardan_angles, follow, near_singularity, quaternion_matrices, rate_map, velocity_map
+from mbkf.numerics.cardan import (
+    cardan_angles,
+    follow,
+    near_singularity,
+    quaternion_matrices,
+    rate_map,
+    velocity_map,
+)
 
 AXES = {"x": 0, "y": 1, "z": 2}
 
 
 def dof_names(model: HumanModel) -> tuple[str, ...]:
-    """Names of the nv tangent dofs: ``<segment>_<axis>`` turns about that axis, ``pelvis_t<axis>`` moves along it.
+    """Names of the nv tangent dofs: ``<segment>_<axis>`` turns about it, ``pelvis_t<axis>`` moves along it.
 
     Free and spherical joints: axes of the segment's own frame. Universal joint: x, then y.
     """
-    axes = {"free": ("tx", "ty", "tz", "x", "y", "z"), "spherical": ("x", "y", "z"), "universal": ("x", "y"),
-            "hinge": ("y",)}
+    axes = {
+        "free": ("tx", "ty", "tz", "x", "y", "z"),
+        "spherical": ("x", "y", "z"),
+        "universal": ("x", "y"),
+        "hinge": ("y",),
+    }
     return tuple(f"{joint.segment}_{axis}" for joint in model.joints.values() for axis in axes[joint.kind])
 
 
@@ -61,7 +72,9 @@ class ClinicalAngles:
         found = [(joint, self.model.joints[joint.distal]) for joint in self.joints if len(joint.order) == 3]
         self._order = np.array([[AXES[axis] for axis in joint.order] for joint, _ in found])
         self._parity = np.array([np.linalg.det(np.eye(3)[order]) for order in self._order]).round()
-        self._ball_sign = np.array([[angle.sign for angle in joint.angles] for joint, _ in found], dtype=float)
+        self._ball_sign = np.array(
+            [[angle.sign for angle in joint.angles] for joint, _ in found], dtype=float
+        )
         self._ball_column = np.array([[column[angle.name] for angle in joint.angles] for joint, _ in found])
         self._ball_q = np.array([np.arange(place.q.stop - 4, place.q.stop) for _, place in found])
         rows = np.array([np.arange(place.v.stop - 3, place.v.stop) for _, place in found])
@@ -74,8 +87,13 @@ class ClinicalAngles:
         for joint in self.joints:
             place = self.model.joints[joint.distal]
             if len(joint.order) < 3:
-                rows += [(place.q.start + i, place.v.start + i, column[a.name], a) for i, a in enumerate(joint.angles)]
-        self._dof_q, self._dof_v, self._dof_column = (np.array([row[i] for row in rows], int) for i in range(3))
+                rows += [
+                    (place.q.start + i, place.v.start + i, column[a.name], a)
+                    for i, a in enumerate(joint.angles)
+                ]
+        self._dof_q, self._dof_v, self._dof_column = (
+            np.array([row[i] for row in rows], int) for i in range(3)
+        )
         self._dof_sign = np.array([float(row[3].sign) for row in rows])
 
     def _place_root(self, column: dict[str, int]) -> None:
@@ -114,7 +132,7 @@ class ClinicalAngles:
         return coordinates
 
     def singular(self, angles: Array) -> BoolArray:
-        """(T, A) True for all angles of a joint within 10° of its singularity, where they are poorly determined.
+        """(T, A) True for all angles of a joint within 10° of its singularity (poorly determined there).
 
         Args:
             angles: (T, A) coordinates as :meth:`angles` gives them.
@@ -126,15 +144,17 @@ class ClinicalAngles:
 
     def rate_matrix(self, q: Array, angles: Array | None = None) -> Array:
         """E (A, nv) of θ̇ = E v at one configuration q (nq,); see :meth:`rate_matrices`."""
-        return self.rate_matrices(np.asarray(q)[None], None if angles is None else np.asarray(angles)[None])[0]
+        return self.rate_matrices(np.asarray(q)[None], None if angles is None else np.asarray(angles)[None])[
+            0
+        ]
 
     def rate_matrices(self, q: Array, angles: Array | None = None) -> Array:
         """Matrices that take the tangent velocity to the rates of the coordinates.
 
         Args:
             q: (T, nq) configurations.
-            angles: (T, A) their coordinates; computed from q as one motion when None. Beyond a singularity two sets
-                of angles describe one posture, and the rates must belong to the set that is shown.
+            angles: (T, A) their coordinates; computed from q as one motion when None. Beyond a singularity
+                two sets of angles describe one posture, and the rates must belong to the set that is shown.
 
         Returns:
             (T, A, nv) E of θ̇ = E v; very large at a singularity (see :meth:`singular`).
@@ -162,7 +182,9 @@ class ClinicalAngles:
         tau = self._checked("tau", tau, self.model.nv)
         conjugate = np.empty((len(q), len(self.names)))
         B = velocity_map(self._cardan(angles), self._parity)
-        conjugate[:, self._ball_column] = self._ball_sign * np.einsum("tnij,tni->tnj", B, tau[:, self._ball_v])
+        conjugate[:, self._ball_column] = self._ball_sign * np.einsum(
+            "tnij,tni->tnj", B, tau[:, self._ball_v]
+        )
         conjugate[:, self._dof_column] = self._dof_sign * tau[:, self._dof_v]
         world_force = np.einsum("tij,tj->ti", self._root_rotation(q), tau[:, self._root_v])
         conjugate[:, self._root_columns] = world_force @ self._root_axes.T

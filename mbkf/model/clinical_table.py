@@ -39,7 +39,8 @@ class ClinicalJoint:
     Attributes:
         name: Joint name, e.g. ``"hip_r"``.
         proximal, distal: Segments it joins; "world" for the root's proximal one.
-        order: Axes of the successive rotations, e.g. ``"yxz"``; one letter for a hinge, two for a universal joint.
+        order: Axes of the successive rotations, e.g. ``"yxz"``; one letter for a hinge, two for a universal
+            joint.
         main: Name of the angle that stands for the joint in summaries (flexion).
         angles: Its angles, in that order.
         translations: The root's position along three world axes; empty for other joints.
@@ -82,27 +83,49 @@ def _parse(path: Path) -> tuple[ClinicalJoint, ...]:
         raise FileFormatError(path, f"not a table of clinical angles ({error})") from error
     for joint in joints:
         if "".join(angle.axis for angle in joint.angles) != joint.order:
-            raise FileFormatError(path, f"joint {joint.name}: the angles' axes must follow its order {joint.order}")
+            raise FileFormatError(
+                path, f"joint {joint.name}: the angles' axes must follow its order {joint.order}"
+            )
         if joint.main not in {angle.name for angle in joint.angles}:
-            raise FileFormatError(path, f"joint {joint.name}: main angle {joint.main} is not among its angles")
+            raise FileFormatError(
+                path, f"joint {joint.name}: main angle {joint.main} is not among its angles"
+            )
     return tuple(joints)
 
 
 def _joint(entry: dict[str, Any]) -> ClinicalJoint:
     return ClinicalJoint(
-        name=entry["name"], proximal=entry["proximal"], distal=entry["distal"], order=entry["order"],
-        main=entry["main"], angles=tuple(Angle(**angle) for angle in entry["angle"]),
-        translations=tuple(Angle(**angle) for angle in entry.get("translation", ())))
+        name=entry["name"],
+        proximal=entry["proximal"],
+        distal=entry["distal"],
+        order=entry["order"],
+        main=entry["main"],
+        angles=tuple(Angle(**angle) for angle in entry["angle"]),
+        translations=tuple(Angle(**angle) for angle in entry.get("translation", ())),
+    )
 
 
 def _left(right: ClinicalJoint) -> ClinicalJoint:
     """The left joint: a mirror in y keeps the sense of rotations about y and reverses those about x and z."""
     angles = tuple(
-        Angle(_left_name(angle.name), angle.axis, angle.sign if angle.axis == "y" else -angle.sign, angle.positive,
-              _left_name(angle.opensim))
-        for angle in right.angles)
-    return ClinicalJoint(_left_name(right.name), mirrored(right.proximal), mirrored(right.distal), right.order,
-                         _left_name(right.main), angles, ())
+        Angle(
+            _left_name(angle.name),
+            angle.axis,
+            angle.sign if angle.axis == "y" else -angle.sign,
+            angle.positive,
+            _left_name(angle.opensim),
+        )
+        for angle in right.angles
+    )
+    return ClinicalJoint(
+        _left_name(right.name),
+        mirrored(right.proximal),
+        mirrored(right.distal),
+        right.order,
+        _left_name(right.main),
+        angles,
+        (),
+    )
 
 
 def _left_name(name: str) -> str:

@@ -1,10 +1,11 @@
 """The body as MJCF, for MuJoCo: the native joints themselves.
 
-A free joint carries the pelvis; spherical joints are balls, hinges are hinges, the universal joint of the neck is two
-hinges (x, then y). Ball and free joints are named after their segments, hinges after their dof. MuJoCo writes
-quaternions (w, x, y, z) and gives the free joint's linear velocity in world axes, mbkf in the pelvis's; everything else
-of q and v is the same, in the same order. Markers are sites. Bodies carry explicit inertias; the capsules are only for
-the eye: no mass, no contact, no limits, so that the body floats freely in standard gravity.
+A free joint carries the pelvis; spherical joints are balls, hinges are hinges, the universal joint of the
+neck is two hinges (x, then y). Ball and free joints are named after their segments, hinges after their dof.
+MuJoCo writes quaternions (w, x, y, z) and gives the free joint's linear velocity in world axes, mbkf in the
+pelvis's; everything else of q and v is the same, in the same order. Markers are sites. Bodies carry explicit
+inertias; the capsules are only for the eye: no mass, no contact, no limits, so that the body floats freely in
+standard gravity.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.io.subject import SubjectMarker
 from mbkf.model.human import HumanModel
+from mbkf.model.skeleton import joint_origin
 
 _CAPSULE_RADIUS_M = 0.025
 _SITE_RADIUS_M = 0.007
@@ -43,28 +45,31 @@ def to_mjcf(model: HumanModel, markers: Sequence[SubjectMarker] = ()) -> str:
     ET.SubElement(world, "light", pos="0 0 4", dir="0 0 -1", directional="true")
     bodies = {"world": world}
     for segment in model.description.segments:
-        body = ET.SubElement(bodies[segment.parent], "body", name=segment.name,
-                             pos=_numbers(joint_origin(model, segment.name)))
+        body = ET.SubElement(
+            bodies[segment.parent], "body", name=segment.name, pos=_numbers(joint_origin(model, segment.name))
+        )
         bodies[segment.name] = body
         _add_joints(body, segment.name, segment.joint)
         inertia = model.pin_model.inertias[model.joint(segment.name).joint_id]
-        ET.SubElement(body, "inertial", pos=_numbers(inertia.lever), mass=_number(inertia.mass),
-                      diaginertia=_numbers(np.diag(inertia.inertia)))
+        ET.SubElement(
+            body,
+            "inertial",
+            pos=_numbers(inertia.lever),
+            mass=_number(inertia.mass),
+            diaginertia=_numbers(np.diag(inertia.inertia)),
+        )
         _add_capsules(body, model, segment.name)
     for marker in markers:
         model.joint(marker.segment)
-        ET.SubElement(bodies[marker.segment], "site", name=marker.name, pos=_numbers(marker.position_m),
-                      size=_number(_SITE_RADIUS_M))
+        ET.SubElement(
+            bodies[marker.segment],
+            "site",
+            name=marker.name,
+            pos=_numbers(marker.position_m),
+            size=_number(_SITE_RADIUS_M),
+        )
     ET.indent(root)
     return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
-
-
-def joint_origin(model: HumanModel, segment: str) -> Array:
-    """(3,) where a segment's joint lies in its parent's frame, m; zero for the root."""
-    parent = model.description.segment(segment).parent
-    if parent == "world":
-        return np.zeros(3)
-    return model.axis_scale(model.description.segment(parent)) * model.description.segment(segment).origin_m
 
 
 def _add_joints(body: ET.Element, segment: str, kind: str) -> None:
@@ -79,13 +84,22 @@ def _add_joints(body: ET.Element, segment: str, kind: str) -> None:
 
 
 def _add_capsules(body: ET.Element, model: HumanModel, segment: str) -> None:
-    """Capsules from the segment's origin to the joints it carries; to twice its centre of mass where there are none."""
+    """Capsules from the segment's origin to the joints it carries, or to twice its centre of mass."""
     ends = [joint_origin(model, s.name) for s in model.description.segments if s.parent == segment]
     ends = ends or [2.0 * model.pin_model.inertias[model.joint(segment).joint_id].lever]
     for end in ends:
         if np.linalg.norm(end) > _LEAST_LENGTH_M:
-            ET.SubElement(body, "geom", type="capsule", fromto=f"0 0 0 {_numbers(end)}", mass="0", contype="0",
-                          size=_number(_CAPSULE_RADIUS_M), conaffinity="0", rgba="0.8 0.7 0.6 0.5")
+            ET.SubElement(
+                body,
+                "geom",
+                type="capsule",
+                fromto=f"0 0 0 {_numbers(end)}",
+                mass="0",
+                contype="0",
+                size=_number(_CAPSULE_RADIUS_M),
+                conaffinity="0",
+                rgba="0.8 0.7 0.6 0.5",
+            )
 
 
 def _number(value: float) -> str:

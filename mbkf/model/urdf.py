@@ -1,16 +1,18 @@
 """The body as URDF, for robotics tools: three hinges in place of every spherical joint.
 
-The root link (the pelvis) floats: URDF has no free joint, so the reader adds one. A spherical joint becomes three
-revolute joints in the order of ``models/clinical_angles.toml``, named after the clinical coordinates (hip_flexion_r,
-hip_adduction_r, hip_rotation_r …) and turning in their positive sense: the joint positions of a posture are
-:meth:`mbkf.model.clinical.ClinicalAngles.angles`. The links between the hinges have no mass. URDF demands limits; the
-ones written do not bind (±2π). Markers are massless links, fixed to their segments.
+The root link (the pelvis) floats: URDF has no free joint, so the reader adds one. A spherical joint becomes
+three revolute joints in the order of ``models/clinical_angles.toml``, named after the clinical coordinates
+(hip_flexion_r, hip_adduction_r, hip_rotation_r …) and turning in their positive sense: the joint positions of
+a posture are :meth:`mbkf.model.clinical.ClinicalAngles.angles`. The links between the hinges have no mass.
+URDF holds no gravity, and demands limits; the ones written do not bind (±2π). Markers are massless links,
+fixed to their segments.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
+from xml.etree import ElementTree as ET
 
 import numpy as np
 
@@ -19,6 +21,7 @@ from mbkf.io.subject import SubjectMarker
 from mbkf.model.clinical import AXES, ClinicalAngles
 from mbkf.model.clinical_table import Angle
 from mbkf.model.human import HumanModel
+from mbkf.model.skeleton import joint_origin
 
 if TYPE_CHECKING:
     import yourdfpy
@@ -41,31 +44,43 @@ def to_urdf(model: HumanModel, markers: Sequence[SubjectMarker] = ()) -> str:
         UnknownName: A marker names a segment the body does not have.
     """
     import yourdfpy
-    from lxml import etree
 
     links, joints = [], []
     for entry in ClinicalAngles(model).joints:
         links.append(_link(model, entry.distal))
         if entry.proximal != "world":
-            between, hinges = _hinges(entry.proximal, entry.distal, entry.angles, _joint_origin(model, entry.distal))
+            between, hinges = _hinges(
+                entry.proximal, entry.distal, entry.angles, joint_origin(model, entry.distal)
+            )
             links += between
             joints += hinges
     for marker in markers:
         model.joint(marker.segment)
         name = MARKER_PREFIX + marker.name
         links.append(yourdfpy.Link(name=name))
-        joints.append(yourdfpy.Joint(name=f"{name}_fixed", type="fixed", parent=marker.segment, child=name,
-                                     origin=_translation(marker.position_m)))
+        joints.append(
+            yourdfpy.Joint(
+                name=f"{name}_fixed",
+                type="fixed",
+                parent=marker.segment,
+                child=name,
+                origin=_translation(marker.position_m),
+            )
+        )
     robot = yourdfpy.Robot(name=model.description.name, links=links, joints=joints)
     urdf = yourdfpy.URDF(robot=robot, build_scene_graph=False, load_meshes=False)
-    return etree.tostring(urdf.write_xml(), pretty_print=True, xml_declaration=True, encoding="utf-8").decode()
+    root = ET.fromstring(urdf.write_xml_string())
+    ET.indent(root)
+    return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
 
 
 def _link(model: HumanModel, segment: str) -> yourdfpy.Link:
     import yourdfpy
 
     inertia = model.pin_model.inertias[model.joint(segment).joint_id]
-    inertial = yourdfpy.Inertial(origin=_translation(inertia.lever), mass=float(inertia.mass), inertia=inertia.inertia)
+    inertial = yourdfpy.Inertial(
+        origin=_translation(inertia.lever), mass=float(inertia.mass), inertia=inertia.inertia
+    )
     return yourdfpy.Link(name=segment, inertial=inertial)
 
 

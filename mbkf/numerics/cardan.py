@@ -1,8 +1,8 @@
 """Cardan (Tait–Bryan) angles of rotations, their rates and their continuation through the singularity.
 
 R = R_i(a) R_j(b) R_k(c) about three different axes i, j, k. Everything here is written in the basis (i, j, k)
-itself: R_ijk[m, n] = R[ijk[m], ijk[n]], and ε = +1 where (i, j, k) is an even permutation of (x, y, z), else −1.
-Many rotations are handled at once; their leading axes and ε broadcast.
+itself: R_ijk[m, n] = R[ijk[m], ijk[n]], and ε = +1 where (i, j, k) is an even permutation of (x, y, z), else
+    −1. Many rotations are handled at once; their leading axes and ε broadcast.
 """
 
 from __future__ import annotations
@@ -74,10 +74,11 @@ def near_singularity(angles: Array) -> BoolArray:
 
 
 def follow(principal: Array, winds: BoolArray, start: Array | None = None) -> Array:
-    """Angles that continue in time, of the two sets (a, b, c), (a + π, π − b, c + π) that give the same rotation.
+    """Angles that continue in time, of the two sets (a, b, c), (a + π, π − b, c + π) of the same rotation.
 
-    A joint that is lifted through b = 90° keeps all three angles continuous. Back near its rest posture (third axis
-    within 60° of it) the principal angles hold again, so that one bad frame at the singularity does no lasting harm.
+    A joint that is lifted through b = 90° keeps all three angles continuous. Back near its rest posture
+    (third axis within 60° of it) the principal angles hold again, so that one bad frame at the singularity
+    does no lasting harm.
 
     Args:
         principal: (T, n, 3) principal angles, rad; NaN where missing.

@@ -1,19 +1,17 @@
-"""The key numbers of a reconstruction (summary.json): how well it fits, how consistent it is, how fast it ran."""
+"""The key numbers of a reconstruction (summary.json): how well it fits, how consistent it is, how fast."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.results import Reconstruction
+from mbkf.io.truth import Truth
 from mbkf.model.clinical_table import load_clinical_joints
 from mbkf.model.human import HumanModel
-
-if TYPE_CHECKING:
-    from mbkf.io.truth import Truth
 
 SETTLING_S = 0.5
 """The filter may settle for this long before its innovations are judged."""
@@ -25,8 +23,9 @@ _MM = 1e3
 def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> dict[str, Any]:
     """The contents of summary.json, as plain data; None where a number does not apply.
 
-    Marker errors are distances, over samples that were seen and not hidden on purpose, in frames in which the body was
-    followed; samples the innovation gate refused count, too. ``missing_fraction`` is what the filter did not get to see.
+    Marker errors are distances, over samples that were seen and not hidden on purpose, in frames in which the
+    body was followed; samples the innovation gate refused count, too. ``missing_fraction`` is what the filter
+    did not get to see.
 
     Args:
         reconstruction: What was found.
@@ -37,7 +36,7 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> dic
     """
     r = reconstruction
     missing = ~r.present
-    computing = float(r.step_seconds.sum())
+    computing = float(np.nansum(r.step_seconds))
     return {
         "trial": r.trial,
         "protocol": r.protocol,
@@ -90,7 +89,11 @@ def _plate_changes(r: Reconstruction) -> dict[str, Any]:
 
 def _torques(r: Reconstruction) -> dict[str, Any]:
     """Flexion torque of every joint but the root, by the joint's name."""
-    main = {j.name: j.main for j in load_clinical_joints() if j.proximal != "world" and j.main in r.coordinate_names}
+    main = {
+        j.name: j.main
+        for j in load_clinical_joints()
+        if j.proximal != "world" and j.main in r.coordinate_names
+    }
     peaks = {joint: _largest(np.abs(r.moment(name)[r.tracked])) for joint, name in main.items()}
     sd = {joint: _mean(r.moment_sd(name)[r.tracked]) for joint, name in main.items()}
     per_kg = {joint: None if peak is None else peak / r.subject.mass_kg for joint, peak in peaks.items()}
@@ -107,16 +110,16 @@ def _nis_per_reading(r: Reconstruction) -> float | None:
 def compare_with_truth(reconstruction: Reconstruction, truth: Truth) -> dict[str, float | None]:
     """Errors against a synthetic subject's known motion, over tracked frames.
 
-    Errors of posture are tangent vectors (``HumanModel.difference``), so no angle convention enters. Angles, velocities
-    and torques are those of the joints, without the root's six dofs.
+    Errors of posture are tangent vectors (``HumanModel.difference``), so no angle convention enters. Angles,
+    velocities and torques are those of the joints, without the root's six dofs.
 
     Args:
         reconstruction: What was found.
         truth: What really happened, with at least the reconstruction's frames.
 
     Returns:
-        ``angle_rms_deg``, ``velocity_rms_rad_s``, ``torque_rms_nm``, ``reaction_rms_n`` (per component of the feet's
-        forces), ``nees_per_dof`` (of q and v together; None unless covariances were kept).
+        ``angle_rms_deg``, ``velocity_rms_rad_s``, ``torque_rms_nm``, ``reaction_rms_n`` (per component of the
+        feet's forces), ``nees_per_dof`` (of q and v together; None unless covariances were kept).
 
     Raises:
         InvalidInput: The truth does not cover the reconstruction's times, or belongs to another body.
@@ -131,7 +134,9 @@ def compare_with_truth(reconstruction: Reconstruction, truth: Truth) -> dict[str
         error_q[t] = model.difference(r.q[t], truth.q[rows[t]])
     error_v = np.where(r.tracked[:, None], truth.v[rows] - r.v, np.nan)
     error_tau = np.where(r.tracked[:, None], truth.tau[rows] - r.tau, np.nan)
-    error_force = np.where(r.tracked[:, None, None], (truth.foot_wrench[rows] - r.foot_wrench)[..., :3], np.nan)
+    error_force = np.where(
+        r.tracked[:, None, None], (truth.foot_wrench[rows] - r.foot_wrench)[..., :3], np.nan
+    )
     angle = _rms(error_q[:, ROOT_DOFS:])
     return {
         "angle_rms_deg": None if angle is None else float(np.rad2deg(angle)),
@@ -152,7 +157,9 @@ def _matching_rows(times_s: Array, truth_s: Array, rate_hz: float) -> Array:
     rows = np.where(np.abs(truth_s[left] - times_s) <= np.abs(truth_s[right] - times_s), left, right)
     far = np.abs(truth_s[rows] - times_s) > 0.5 / rate_hz
     if far.any():
-        raise InvalidInput(f"the truth has no frame at {times_s[far][0]:.3f} s; it belongs to another capture")
+        raise InvalidInput(
+            f"the truth has no frame at {times_s[far][0]:.3f} s; it belongs to another capture"
+        )
     return rows
 
 

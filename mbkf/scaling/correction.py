@@ -21,11 +21,10 @@ from mbkf.scaling.frames import choose_frames
 from mbkf.scaling.problem import ScalingPrior, ScalingProblem
 from mbkf.sensors.pose_fit import segment_by_segment
 
-SESSION_SD_M = 0.015
-"""How far a marker moves on its segment between sessions or postures, per coordinate, m."""
-
-POSTURE_FRAMES = 10.0
 FRAMES = 40
+LOOKS = 10.0
+"""How many independent looks at a marker and at the posture the frames of one trial are worth (skin moves slowly)."""
+
 FIXED_FACTOR_SD = 1e-5
 
 
@@ -53,7 +52,9 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
         placement_sd_m=np.array([m.placement_sd_m for m in markers]),
     )
     count = len(frames.measured_m)
-    problem = ScalingProblem(body, markers, frames.measured_m, np.full(count, min(1.0, POSTURE_FRAMES / count)), prior)
+    share = min(1.0, LOOKS / count)
+    markers = tuple(replace(m, noise_m=m.noise_m / np.sqrt(share)) for m in markers)
+    problem = ScalingProblem(body, markers, frames.measured_m, np.full(count, share), prior)
     sensor = problem.sensor(problem.start(np.zeros((0, problem.posture.model.nq))))
     start = problem.start(np.array([segment_by_segment(sensor, frame) for frame in frames.measured_m]))
     state = minimise(start, problem.linearise, problem.cost, problem.move, tolerance=1e-3).state
@@ -64,5 +65,4 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
 
 
 def _as_protocol_marker(marker: SubjectMarker) -> ProtocolMarker:
-    spread = float(np.hypot(SESSION_SD_M, marker.placement_sd_m))
-    return ProtocolMarker(marker.name, marker.segment, marker.position_m, "technical", spread, marker.noise_m)
+    return ProtocolMarker(marker.name, marker.segment, marker.position_m, "technical", marker.session_sd_m, marker.noise_m)

@@ -13,13 +13,15 @@ from mbkf.errors import InvalidInput, NotConverged
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.description import load_body
-from mbkf.model.protocol import Protocol
+from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.levenberg_marquardt import Solution, minimise
 from mbkf.scaling.frames import ScalingFrames, choose_frames
 from mbkf.scaling.problem import FACTOR_BOUNDS, ScalingPrior, ScalingProblem, ScalingSettings, ScalingState
 from mbkf.sensors.pose_fit import segment_by_segment
 
 MAX_ITERATIONS = 60
+SESSION_SHARE = 0.5
+MIN_SESSION_SD_M = 0.005
 _GIVE_UP_M = 0.15
 
 
@@ -128,7 +130,7 @@ def _subject(problem: ScalingProblem, solution: Solution[ScalingState], frames: 
         reference = (body.segment(marker.segment).scale_matrix @ state.factors) * marker.position_m
         seen = marker.name in found
         markers.append(SubjectMarker(marker.name, marker.segment, found[marker.name] if seen else reference,
-                                     marker.noise_m, 0.0 if seen else marker.placement_sd_m))
+                                     marker.noise_m, _session_sd_m(marker, seen)))
     return Subject(
         body=body.name,
         mass_kg=float(mass_kg),
@@ -138,6 +140,11 @@ def _subject(problem: ScalingProblem, solution: Solution[ScalingState], frames: 
         height_m=height_m,
         report=_report(problem, solution, frames, dropped, settings),
     )
+
+
+def _session_sd_m(marker: ProtocolMarker, seen: bool) -> float:
+    """How far a marker may sit elsewhere in the next trial: a share of the freedom its protocol gives it."""
+    return max(MIN_SESSION_SD_M, SESSION_SHARE * marker.placement_sd_m) if seen else marker.placement_sd_m
 
 
 def _report(problem: ScalingProblem, solution: Solution[ScalingState], frames: ScalingFrames, dropped: Array,

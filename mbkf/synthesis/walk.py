@@ -25,6 +25,7 @@ FOOT_FLAT = 0.09
 HEEL_OFF = 0.33
 STRIKE_PITCH_DEG, STRIKE_RATE_DEG = -19.0, 0.0
 OFF_PITCH_DEG, OFF_RATE_DEG = 56.0, 330.0
+LATE_SWING_S = 0.055
 MARGIN_STEPS = 3
 
 
@@ -121,11 +122,24 @@ class _Foot:
         strike = self._about(following, self.heel, self.pitch(at_strike))
         duration = following.strike_s - last.off_s
         a, b = ([x[0] for x in end.orders] for end in (off, strike))
-        middle = 0.47 * a[0] + 0.53 * b[0]
-        middle[2] = last.ankle_m[2] + 0.065
-        velocity = 1.62 * (b[0] - a[0]) / duration
-        velocity[2] = -0.30
-        return path([(last.off_s, *a), (last.off_s + 0.5 * duration, middle, velocity), (following.strike_s, *b)])
+        begin, end = last.off_s, following.strike_s
+        late = end - LATE_SWING_S
+        floor, size = last.ankle_m[2], (b[0] - a[0])[0] / 1.05
+        forward = path([(begin, *(x[:2] for x in a)),
+                        (begin + 0.46 * duration, a[0][:2] + 0.45 * (b[0] - a[0])[:2], 1.58 * (b[0] - a[0])[:2] / duration),
+                        (late, b[0][:2] - [0.040 * size, 0.0], [1.45 * size, 0.0], [-21.0 * size, 0.0]),
+                        (end, *(x[:2] for x in b))])
+        upward = path([(begin, *(x[2] for x in a)),
+                       (begin + 0.20 * duration, a[0][2] + 0.022 * size, 0.0, -3.0),
+                       (begin + 0.58 * duration, floor + 0.060 * size, -0.25 * size),
+                       (late, b[0][2] + 0.018 * size, -0.40 * size),
+                       (end, *(x[2] for x in b))])
+
+        def ankle(times: Array) -> Jet:
+            xy, z = forward(times), upward(times)
+            return Jet(*(np.column_stack(parts) for parts in zip(xy.orders, z.orders, strict=True)))
+
+        return ankle
 
     def pose(self, times: Array) -> FootPose:
         """The foot at times in s."""

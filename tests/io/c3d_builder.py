@@ -8,7 +8,9 @@ from pathlib import Path
 import ezc3d
 import numpy as np
 
-CORNERS_MM = np.array([[500.0, 100.0, 0.0], [500.0, -300.0, 0.0], [-100.0, -300.0, 0.0], [-100.0, 100.0, 0.0]]).T
+CORNERS_MM = np.array(
+    [[500.0, 100.0, 0.0], [500.0, -300.0, 0.0], [-100.0, -300.0, 0.0], [-100.0, 100.0, 0.0]]
+).T
 """(3, 4) corners of a plate 600 × 400 mm whose own x is world y, own y is world x and own z points down."""
 
 PLATE_AXES = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
@@ -57,7 +59,9 @@ def build_c3d(
     group["LABELS"]["value"] = labels or [f"M{i}" for i in range(count)]
     group["UNITS"]["value"] = [unit] if unit else []
     group["RATE"]["value"] = [rate_hz]
-    content["data"]["points"] = np.pad(points, ((0, 0), (0, 0), (0, 1)), constant_values=1.0).transpose(2, 1, 0)
+    content["data"]["points"] = np.pad(points, ((0, 0), (0, 0), (0, 1)), constant_values=1.0).transpose(
+        2, 1, 0
+    )
     if residuals is not None:
         content["data"]["meta_points"]["residuals"] = residuals.T[None].astype(float)
     if plates:

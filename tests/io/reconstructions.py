@@ -12,7 +12,7 @@ def made_up(frames=12, seed=0, **changes):
     """A reconstruction of random numbers with 7 configurations, 6 dofs, 3 coordinates and 2 markers."""
     rng = np.random.default_rng(seed)
     T, nq, nv, A, M = frames, 7, 6, len(COORDINATES), 2
-    markers = tuple(SubjectMarker(name, "pelvis", rng.normal(size=3), 0.005) for name in ("A", "B"))
+    markers = tuple(SubjectMarker(name, "pelvis", rng.normal(size=3), 0.005, 0.002) for name in ("A", "B"))
     force = np.abs(rng.normal(size=(T, 2, 3))) * 300
     cop = np.concatenate([rng.normal(size=(T, 2, 2)), np.zeros((T, 2, 1))], axis=2)
     free = rng.normal(size=(T, 2))

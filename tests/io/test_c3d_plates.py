@@ -17,9 +17,13 @@ forces = st.tuples(st.floats(-300, 300), st.floats(-300, 300), st.floats(50, 200
 places = st.tuples(st.floats(-150, 150), st.floats(-150, 150))
 
 
-def plate_of(kind: int, readings: np.ndarray, origin=(0.0, 0.0, 0.0), units=("N",) * 3 + ("Nmm",) * 3, **more):
+def plate_of(
+    kind: int, readings: np.ndarray, origin=(0.0, 0.0, 0.0), units=("N",) * 3 + ("Nmm",) * 3, **more
+):
     corners = more.pop("corners", CORNERS_MM)
-    return RawPlate(1, kind, corners, np.array(origin), readings, tuple(units), 1000.0, more.pop("calibration", None))
+    return RawPlate(
+        1, kind, corners, np.array(origin), readings, tuple(units), 1000.0, more.pop("calibration", None)
+    )
 
 
 def signals(kind: int, F: np.ndarray, place: np.ndarray, torque: float, origin: np.ndarray) -> np.ndarray:
@@ -63,7 +67,9 @@ def test_wrench_of_each_type(kind, flipped, force, place, torque):
     F = PLATE_AXES.T @ world_force
     origin, vector = arrangement(kind, flipped)
     units = ("N",) * 8 if kind == 3 else ("N",) * 3 + ("mm", "mm", "Nmm") if kind == 1 else ("V",) * 6
-    plate = plate_of(kind, signals(kind, F, np.array(place), torque, vector), origin, units, calibration=CALIBRATION)
+    plate = plate_of(
+        kind, signals(kind, F, np.array(place), torque, vector), origin, units, calibration=CALIBRATION
+    )
     arm = PLATE_AXES @ np.array([*place, 0.0]) * 1e-3
     moment = np.cross(arm, world_force) + PLATE_AXES @ [0.0, 0.0, torque * 1e-3]
     check_geometry(plate, "file", "mm")
@@ -79,7 +85,9 @@ def test_wrench_of_each_type(kind, flipped, force, place, torque):
 def test_units_of_moments(unit, moment_unit, factor):
     readings = np.array([[0.0, 0.0, -100.0, 7.0, 0.0, 0.0]])
     plate = plate_of(2, readings, units=("N",) * 3 + (moment_unit,) * 3)
-    np.testing.assert_allclose(wrench_at_surface(plate, unit)[0, 3:], PLATE_AXES[:, 0] * 7.0 * factor, atol=1e-12)
+    np.testing.assert_allclose(
+        wrench_at_surface(plate, unit)[0, 3:], PLATE_AXES[:, 0] * 7.0 * factor, atol=1e-12
+    )
 
 
 def test_kilonewtons_are_newtons_times_a_thousand():

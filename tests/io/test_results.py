@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from tests.io.reconstructions import made_up
 
 from mbkf.errors import ShapeError, UnknownName
 from mbkf.io.results import ARRAYS, SHAPES
+from tests.io.reconstructions import made_up
 
 
 def test_every_array_is_read_only_and_has_its_shape_documented():

@@ -4,11 +4,11 @@ import json
 
 import numpy as np
 import pytest
-from tests.io.reconstructions import made_up
 
 from mbkf.errors import FileFormatError
 from mbkf.io import results_folder
 from mbkf.io.results_folder import prepare_folder, read_reconstruction, read_summary, write_reconstruction
+from tests.io.reconstructions import made_up
 
 FILES = ["angles.mot", "markers.trc", "motion.h5", "reactions.mot", "summary.json", "torques.sto"]
 
@@ -27,7 +27,14 @@ def test_the_summary_holds_no_nan_and_only_plain_data(tmp_path):
     summary = {"a": float("nan"), "b": [np.float64(1.5), np.inf], "c": {"d": np.int64(3)}, "e": (True, None),
                "f": np.array([1.0, np.nan]), "g": tmp_path}  # fmt: skip
     folder = write_reconstruction(made_up(), summary, tmp_path / "out")
-    expected = {"a": None, "b": [1.5, None], "c": {"d": 3}, "e": [True, None], "f": [1.0, None], "g": str(tmp_path)}
+    expected = {
+        "a": None,
+        "b": [1.5, None],
+        "c": {"d": 3},
+        "e": [True, None],
+        "f": [1.0, None],
+        "g": str(tmp_path),
+    }
     assert json.loads((folder / "summary.json").read_text()) == expected
 
 

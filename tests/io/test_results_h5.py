@@ -5,11 +5,11 @@ import dataclasses
 import h5py
 import numpy as np
 import pytest
-from tests.io.reconstructions import made_up
 
 from mbkf.errors import FileFormatError
 from mbkf.io.results import ARRAYS, DTYPES, Reconstruction
 from mbkf.io.results_h5 import UNITS, read_h5, write_h5
+from tests.io.reconstructions import made_up
 
 
 @pytest.mark.parametrize("frames", [0, 1, 40])
@@ -65,7 +65,10 @@ def test_other_files_are_refused(tmp_path):
     [
         (lambda file: file.__delitem__("q"), "damaged"),
         (lambda file: file.attrs.__setitem__("format_version", 99), "newer"),
-        (lambda file: (file.__delitem__("q"), file.create_dataset("q", data=np.zeros((2, 7)))), "q must have"),
+        (
+            lambda file: (file.__delitem__("q"), file.create_dataset("q", data=np.zeros((2, 7)))),
+            "q must have",
+        ),
         (lambda file: file.attrs.__setitem__("subject", "{}"), "damaged"),
     ],
 )

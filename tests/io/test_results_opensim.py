@@ -1,7 +1,6 @@
 """OpenSim's files: units, axes, names; the ground's wrench stays the same wrench."""
 
 import numpy as np
-from tests.io.reconstructions import made_up
 
 from mbkf.io.results_opensim import (
     angles_table,
@@ -12,6 +11,7 @@ from mbkf.io.results_opensim import (
 )
 from mbkf.io.storage import read_storage
 from mbkf.io.trc import read_trc
+from tests.io.reconstructions import made_up
 
 
 def to_world(vectors):

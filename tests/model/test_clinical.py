@@ -1,4 +1,4 @@
-"""Clinical angles: what a positive angle does to the body, and rates and moments against their definitions."""
+"""Clinical angles: what a positive angle does to the body; rates and moments against their definitions."""
 
 import time
 
@@ -90,7 +90,9 @@ for coordinate, part, place, way in SIDED:
 
 
 @pytest.mark.parametrize(("name", "segment", "point", "direction"), MEANINGS, ids=[m[0] for m in MEANINGS])
-def test_a_positive_value_moves_the_body_as_its_meaning_says(model, clinical, name, segment, point, direction):
+def test_a_positive_value_moves_the_body_as_its_meaning_says(
+    model, clinical, name, segment, point, direction
+):
     q = pose(model, clinical, name, 0.3)
     moved = displacement(model, q, segment, point)
     assert moved @ direction > 0.9 * np.linalg.norm(moved) > 0.01

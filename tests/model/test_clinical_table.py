@@ -31,8 +31,8 @@ def test_left_signs_mirror_the_right_ones():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (("order = \"yxz\"", "order = \"xyz\""), "follow its order"),
-        (("main = \"lumbar_extension\"", "main = \"lumbar\""), "main angle lumbar"),
+        (('order = "yxz"', 'order = "xyz"'), "follow its order"),
+        (('main = "lumbar_extension"', 'main = "lumbar"'), "main angle lumbar"),
         (("[[joint]]", "[[joint"), "not a table"),
         (("distal =", "distant ="), "not a table"),
     ],

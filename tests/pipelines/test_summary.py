@@ -5,21 +5,21 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from tests.io.reconstructions import made_up
 
 from mbkf.errors import InvalidInput
 from mbkf.io.subject import Subject
 from mbkf.model.clinical import ClinicalAngles, dof_names
 from mbkf.model.human import HumanModel
 from mbkf.pipelines.summary import compare_with_truth, summarise
+from tests.io.reconstructions import made_up
 
 KEYS = {
     "trial", "protocol", "filter", "smoothed", "version", "mass_kg", "frames", "rate_hz", "duration_s",
     "markers_used", "missing_fraction", "marker_rms_mm", "marker_max_mm", "marker_rms_mm_by_name",
     "residual_force_rms_n", "residual_moment_rms_nm", "valid_frames", "plate_force_change_rms_n",
-    "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "nis_per_dof", "step_seconds_median",
-    "step_seconds_p99", "realtime_factor", "hidden_marker_rms_mm", "hidden_marker_max_mm", "truth", "warnings",
-    "settings",
+    "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "nis_per_dof",
+    "step_seconds_median", "step_seconds_p99", "realtime_factor", "hidden_marker_rms_mm",
+    "hidden_marker_max_mm", "truth", "warnings", "settings",
 }  # fmt: skip
 
 
@@ -39,7 +39,12 @@ def test_an_empty_or_untracked_reconstruction_has_no_numbers_but_no_error():
     empty = summarise(made_up(0))
     assert empty["marker_rms_mm"] is empty["nis_per_dof"] is empty["realtime_factor"] is None
     lost = summarise(made_up(tracked=np.zeros(12, bool), valid=np.zeros(12, bool)))
-    assert lost["marker_rms_mm"] is lost["residual_force_rms_n"] is lost["torque_peak_nm_per_kg"]["hip_r"] is None
+    assert (
+        lost["marker_rms_mm"]
+        is lost["residual_force_rms_n"]
+        is lost["torque_peak_nm_per_kg"]["hip_r"]
+        is None
+    )
     assert lost["valid_frames"] == 0
 
 
@@ -149,7 +154,9 @@ def test_a_dof_without_uncertainty_does_not_break_the_consistency(body):
     P[:, :52, :52] = np.eye(52)
     true_q = np.array([model.integrate(a, np.full(52, 0.01)) for a in q])
     r = on_body(body, q, np.zeros((3, 52)), P)
-    assert compare_with_truth(r, truth_of(r, model, q=true_q))["nees_per_dof"] == pytest.approx(0.5e-4, rel=1e-6)
+    assert compare_with_truth(r, truth_of(r, model, q=true_q))["nees_per_dof"] == pytest.approx(
+        0.5e-4, rel=1e-6
+    )
     assert compare_with_truth(on_body(body, q, np.zeros((3, 52))), truth_of(r, model))["nees_per_dof"] is None
 
 

@@ -1,0 +1,110 @@
+"""The exact truth behind a synthetic capture, as one HDF5 file, ``truth.h5``."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from mbkf.conventions import Array, read_only
+from mbkf.errors import FileFormatError, ShapeError
+from mbkf.io.atomic import replacing
+
+FORMAT = "mbkf truth"
+FORMAT_VERSION = 1
+
+UNITS = {
+    "times_s": "s", "q": "m, unit quaternions (x, y, z, w), rad", "v": "m/s, rad/s", "a": "m/s^2, rad/s^2",
+    "tau": "N, N m", "foot_wrench": "N, N m about the world origin, right then left", "centre_of_pressure": "m",
+    "markers_m": "m",
+}  # fmt: skip
+"""Unit of every array, also their list."""
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What really happened in a synthetic capture.
+
+    Attributes:
+        times_s: (T,) times of the camera frames, s.
+        q: (T, nq) configuration.
+        v: (T, nv) velocity in the tangent space.
+        a: (T, nv) acceleration.
+        tau: (T, nv) generalised forces; the pelvis's six are 0.
+        foot_wrench: (T, 2, 6) ground on right and left foot segment, N and N m about the world origin.
+        centre_of_pressure: (T, 2, 3) on the floor, m; NaN for a foot without load.
+        marker_names: M names.
+        markers_m: (T, M, 3) true marker positions without camera noise and skin artefact, m.
+        dof_names: nv names.
+        version: Version of mbkf that made it.
+        settings: Plain data: motion, seed and noise.
+    """
+
+    times_s: Array
+    q: Array
+    v: Array
+    a: Array
+    tau: Array
+    foot_wrench: Array
+    centre_of_pressure: Array
+    marker_names: tuple[str, ...]
+    markers_m: Array
+    dof_names: tuple[str, ...]
+    version: str = ""
+    settings: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name in UNITS:
+            object.__setattr__(self, name, read_only(getattr(self, name)))
+        frames = len(self.times_s)
+        expected = {
+            "q": (frames, *self.q.shape[1:2]), "v": (frames, len(self.dof_names)), "a": (frames, len(self.dof_names)),
+            "tau": (frames, len(self.dof_names)), "foot_wrench": (frames, 2, 6),
+            "centre_of_pressure": (frames, 2, 3), "markers_m": (frames, len(self.marker_names), 3),
+        }  # fmt: skip
+        for name, shape in expected.items():
+            if getattr(self, name).shape != shape:
+                raise ShapeError(name, str(shape), getattr(self, name).shape)
+
+
+def write_truth(truth: Truth, path: str | Path) -> None:
+    """Writes a truth, whole or not at all.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    with replacing(path) as partial, h5py.File(partial, "w") as file:
+        file.attrs["format"] = FORMAT
+        file.attrs["format_version"] = FORMAT_VERSION
+        file.attrs["axes"] = "x forward, y left, z up; forces are those of the ground on the body"
+        file.attrs["version"] = truth.version
+        file.attrs["settings"] = json.dumps(truth.settings)
+        for name in ("marker_names", "dof_names"):
+            file.create_dataset(name, data=list(getattr(truth, name)), dtype=h5py.string_dtype())
+        for name, unit in UNITS.items():
+            file.create_dataset(name, data=getattr(truth, name)).attrs["unit"] = unit
+
+
+def read_truth(path: str | Path) -> Truth:
+    """Reads what :func:`write_truth` wrote.
+
+    Raises:
+        FileFormatError: The file is missing, damaged or something else.
+    """
+    source = Path(path)
+    if not source.is_file():
+        raise FileFormatError(source, "no such file; make it with 'mbkf synth'")
+    try:
+        with h5py.File(source, "r") as file:
+            if file.attrs.get("format") != FORMAT:
+                raise FileFormatError(source, "not a truth file; make it with 'mbkf synth'")
+            arrays = {name: np.asarray(file[name]) for name in UNITS}
+            names = {name: tuple(text.decode() for text in file[name][:]) for name in ("marker_names", "dof_names")}
+            return Truth(**arrays, **names, version=str(file.attrs["version"]),
+                         settings=json.loads(file.attrs["settings"]))
+    except (OSError, KeyError, ValueError, ShapeError) as error:
+        raise FileFormatError(source, f"damaged ({error})") from error

@@ -1,0 +1,20 @@
+"""Where the joints of a scaled body lie: the lengths other programs need to build the same skeleton."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.model.human import HumanModel
+
+
+def joint_origin(model: HumanModel, segment: str) -> Array:
+    """(3,) a segment's proximal joint in its parent's frame, m; zero for the root.
+
+    Raises:
+        UnknownName: There is no such segment.
+    """
+    own = model.description.segment(segment)
+    if own.parent == "world":
+        return np.zeros(3)
+    return model.axis_scale(model.description.segment(own.parent)) * own.origin_m

@@ -1,0 +1,78 @@
+"""Makes a synthetic capture with exact truth and writes it to a folder, as a laboratory would have stored it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from mbkf.errors import FileFormatError
+from mbkf.io.atomic import replacing
+from mbkf.io.c3d_write import write_c3d
+from mbkf.io.subject import Subject, write_subject
+from mbkf.io.truth import write_truth
+from mbkf.synthesis.capture import CaptureSettings, SyntheticCapture, synthesise_capture
+from mbkf.synthesis.motion import synthesise_motion
+from mbkf.synthesis.person import body_of, synthesise_subject
+
+FILES = ("trial.c3d", "raw.c3d", "static.c3d", "subject.toml", "truth.h5")
+
+DEFAULT_SECONDS = {"squat": 5.0, "walk": 4.0, "jump": 3.0}
+
+
+def synthesise(motion: str, *, seconds: float | None = None, seed: int = 0, rate_hz: float = 100.0,
+               settings: CaptureSettings | None = None,
+               progress: Callable[[str, int, int], None] | None = None) -> tuple[Subject, SyntheticCapture]:
+    """A random subject performing a motion, and the capture of it.
+
+    Args:
+        motion: "squat", "walk" or "jump".
+        seconds: Duration; the motion's usual one when None.
+        seed: Chooses subject, motion and noise.
+        rate_hz: Camera rate.
+        settings: Errors of the instruments.
+        progress: Told of each stage (name, done, all).
+
+    Raises:
+        UnknownName: There is no such motion.
+        InvalidInput: Duration or rate make no sense.
+        NotConverged: This person cannot perform the motion; another seed can.
+    """
+    report = progress or (lambda *_: None)
+    subject = synthesise_subject(seed)
+    report("Moving", 0, 2)
+    true_motion = synthesise_motion(body_of(subject), motion, seconds or DEFAULT_SECONDS.get(motion, 5.0),
+                                    rate_hz, seed)
+    report("Moving", 1, 2)
+    capture = synthesise_capture(subject, true_motion, settings, seed)
+    report("Moving", 2, 2)
+    return subject, capture
+
+
+def write_folder(subject: Subject, capture: SyntheticCapture, folder: str | Path) -> tuple[Path, ...]:
+    """Writes trial.c3d, raw.c3d, static.c3d, subject.toml and truth.h5, each whole or not at all.
+
+    Raises:
+        FileFormatError: The folder is a file.
+        OSError: The folder cannot be written.
+    """
+    folder = Path(folder)
+    require_folder(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = tuple(folder / name for name in FILES)
+    for recorded, path in zip((capture.trial, capture.raw, capture.static), paths[:3], strict=True):
+        write_c3d(recorded, path)
+    with replacing(paths[3]) as partial:
+        write_subject(subject, partial)
+    write_truth(capture.truth, paths[4])
+    return paths
+
+
+def require_folder(folder: str | Path) -> None:
+    """Refuses an output folder whose name belongs to a file.
+
+    Raises:
+        FileFormatError: It does.
+    """
+    for part in (Path(folder), *Path(folder).parents):
+        if part.is_file():
+            raise FileFormatError(part, "is a file; --out names a folder")

@@ -1,0 +1,82 @@
+"""What cameras make of true markers: noise, moving skin, occlusions, ghost reflections, lost labels."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.signal import butter, lfilter
+
+from mbkf.conventions import Array
+from mbkf.io.subject import Subject
+from mbkf.model.human import HumanModel
+
+OCCLUSION_FRAMES = 20
+GHOST_SECONDS = (0.2, 1.0)
+
+
+def true_markers(model: HumanModel, subject: Subject, q: Array) -> Array:
+    """(T, M, 3) positions of the subject's markers at configurations q (T, nq), m."""
+    joints = np.array([model.joint(marker.segment).joint_id for marker in subject.markers])
+    local = np.array([marker.position_m for marker in subject.markers])
+    positions = np.empty((len(q), len(joints), 3))
+    for k, configuration in enumerate(q):
+        rotations, origins = model.placements(configuration)
+        positions[k] = origins[joints] + np.einsum("mij,mj->mi", rotations[joints], local)
+    return positions
+
+
+def skin_artefact(shape: tuple[int, ...], rate_hz: float, sd_m: float, cutoff_hz: float,
+                  rng: np.random.Generator) -> Array:
+    """Movement of the skin: low-passed white noise with a stationary standard deviation.
+
+    A causal second-order Butterworth filter runs over white noise along the first axis; its burn-in is dropped
+    and it is scaled by the root of its impulse response's energy.
+
+    Args:
+        shape: (T, ...) of the result.
+        rate_hz: Sample rate.
+        sd_m: Standard deviation per coordinate, m.
+        cutoff_hz: Cut-off frequency.
+        rng: Source of the noise.
+    """
+    b, a = butter(2, cutoff_hz, fs=rate_hz)
+    settled = int(np.ceil(5.0 / cutoff_hz * rate_hz))
+    impulse = lfilter(b, a, np.r_[1.0, np.zeros(2 * settled)])
+    noise = lfilter(b, a, rng.standard_normal((settled + shape[0], *shape[1:])), axis=0)[settled:]
+    return sd_m / np.linalg.norm(impulse) * noise
+
+
+def occlusions(frames: int, markers: int, fraction: float, rng: np.random.Generator) -> np.ndarray:
+    """(T, M) where markers are hidden: streaks of 20 frames until the fraction is reached."""
+    hidden = np.zeros((frames, markers), dtype=bool)
+    streak = min(OCCLUSION_FRAMES, frames)
+    while hidden.sum() < round(fraction * hidden.size):
+        first, marker = rng.integers(1 - streak, frames), rng.integers(markers)
+        hidden[max(first, 0) : first + streak, marker] = True
+    return hidden
+
+
+def ghosts(positions: Array, count: int, rate_hz: float, rng: np.random.Generator) -> Array:
+    """(T, count, 3) reflections that come and go near the body; NaN while absent."""
+    frames = len(positions)
+    found = np.full((frames, count, 3), np.nan)
+    times = np.arange(frames) / rate_hz
+    for ghost in range(count):
+        at = int(rng.uniform(0, 0.5) * rate_hz)
+        while at < frames:
+            end = min(frames, at + max(2, int(rng.uniform(*GHOST_SECONDS) * rate_hz)))
+            near = positions[at:end, rng.integers(positions.shape[1])]
+            away = rng.normal(size=3)
+            away *= rng.uniform(0.08, 0.35) / np.linalg.norm(away)
+            drift = rng.normal(0, 0.1, 3) * (times[at:end, None] - times[at])
+            found[at:end, ghost] = near + away + drift
+            at = end + int(rng.uniform(0.2, 1.0) * rate_hz)
+    return found
+
+
+def without_labels(positions: Array, rng: np.random.Generator) -> Array:
+    """(T, N, 3) the same points in a new random order in every frame, those present first."""
+    shuffled = np.full_like(positions, np.nan)
+    for k, points in enumerate(positions):
+        seen = points[~np.isnan(points).any(axis=1)]
+        shuffled[k, : len(seen)] = rng.permutation(seen)
+    return shuffled

@@ -1,0 +1,62 @@
+"""Random but plausible people: scale factors, mass, and where the markers really sit on them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import read_only
+from mbkf.io.subject import Subject, SubjectMarker
+from mbkf.model.description import load_body
+from mbkf.model.human import HumanModel
+from mbkf.model.protocol import load_protocol
+
+STATURE_RANGE = (0.92, 1.05)
+"""Common factor against the reference body: people of 1.66 to 1.89 m."""
+
+SPREAD, LIMIT = 0.03, 0.08
+"""Each factor's own deviation from the common one (1 sd, and at most)."""
+
+BODY_MASS_INDEX = (21.0, 27.0)
+
+PLACEMENT_SD_M = {"anatomical": 0.004, "technical": 0.015}
+"""How far markers are from where the protocol puts them, per coordinate."""
+
+SESSION_SD_M = 0.0005
+"""The markers stay where they are from trial to trial; what is left is the skin."""
+
+
+def synthesise_subject(seed: int = 0, protocol: str = "reference36", body: str = "human18") -> Subject:
+    """A person with exactly known factors, mass and marker positions, a different one for every seed.
+
+    Raises:
+        UnknownName: The body or the protocol is unknown.
+    """
+    rng = np.random.default_rng([seed, 1])
+    description = load_body(body)
+    stature = rng.uniform(*STATURE_RANGE)
+    shared: dict[str, float] = {}
+    factors = {}
+    for name in description.scale_factors:
+        both = name.removeprefix("right_").removeprefix("left_")
+        if both not in shared:
+            shared[both] = rng.normal(0.0, SPREAD)
+        own = shared[both] + rng.normal(0.0, 0.005)
+        factors[name] = float(stature * (1 + np.clip(own, -LIMIT, LIMIT)))
+    height = description.reference_height_m * stature
+    mass = rng.uniform(*BODY_MASS_INDEX) * height**2
+    model = HumanModel.scaled(factors, mass, body)
+    markers = []
+    for marker in load_protocol(protocol).markers:
+        if marker.kind == "computed":
+            continue
+        offset = np.clip(rng.normal(size=3), -2.5, 2.5) * PLACEMENT_SD_M[marker.kind]
+        position = model.axis_scale(description.segment(marker.segment)) * marker.position_m + offset
+        markers.append(SubjectMarker(marker.name, marker.segment, read_only(position), marker.noise_m,
+                                     SESSION_SD_M))
+    return Subject(body, float(mass), factors, tuple(markers), protocol, height_m=float(height),
+                   report={"synthetic": True, "seed": seed})
+
+
+def body_of(subject: Subject) -> HumanModel:
+    """The subject's scaled body."""
+    return HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)

@@ -1,0 +1,83 @@
+"""`mbkf info` shows what a capture holds, as tables and as JSON, and passes errors on."""
+
+import argparse
+import json
+
+import numpy as np
+import pytest
+
+from mbkf.cli import info
+from mbkf.errors import FileFormatError
+from mbkf.io.c3d import write_c3d
+from mbkf.io.forces import write_forces_mot
+from mbkf.io.records import Capture, Event, MarkerTrajectories, PlateReadings
+from mbkf.io.trc import write_trc
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A C3D file, and the same as TRC and MOT."""
+    heights = np.linspace(0.05, 1.7, 8)
+    positions = np.tile(np.column_stack([0.1 * heights, -0.2 * heights, heights]), (20, 1, 1))
+    positions[5:8, 2] = np.nan
+    markers = MarkerTrajectories(("HEAD", "[x]", "LASI", "RASI", "C7", "*5", "*6", "*7"), positions, 100.0)
+    force = np.zeros((200, 3))
+    force[:100, 2] = 650.0
+    point = np.where(force[:, 2:] > 0, [0.1, 0.1, 0.0], np.nan)
+    plate = PlateReadings("1", 1000.0, 0.0, np.array([0.1, 0.1, 0.0]), force, 0.0 * force, point, 20.0)
+    capture = Capture(
+        "", markers, (plate,), events=(Event("Foot Strike", "Left", 0.05),), subject_mass_kg=66.0
+    )
+    write_c3d(capture, tmp_path / "walk.c3d")
+    write_trc(markers, tmp_path / "walk.trc")
+    write_forces_mot([plate], tmp_path / "walk.mot")
+    return tmp_path
+
+
+def run(*words) -> int:
+    parser = argparse.ArgumentParser()
+    info.add_parser(parser.add_subparsers())
+    args = parser.parse_args(["info", *(str(word) for word in words)])
+    return args.run(args)
+
+
+def test_tables_name_what_there_is(folder, capsys):
+    assert run(folder / "walk.c3d") == 0
+    shown = capsys.readouterr().out
+    for text in ("walk.c3d", "20 at 100 Hz", "5 labelled, 3 unlabelled", "1.88 % of samples missing", "650 N",
+                 "50 %", "[x]", "Foot Strike", "66 kg", "15.0 %", "z up, mm"):  # fmt: skip
+        assert text in shown, text
+
+
+def test_json_holds_the_same(folder, capsys):
+    assert run(folder / "walk.c3d", "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["frames"], found["labelled"], found["unlabelled"], found["subject_mass_kg"]) == (
+        20,
+        5,
+        3,
+        66.0,
+    )
+    assert found["markers"][2] == {"name": "LASI", "missing_fraction": pytest.approx(0.15), "pieces": 2}
+    assert found["plates"][0]["peak_n"] == pytest.approx(650.0)
+    assert found["events"] == [{"label": "Foot Strike", "context": "Left", "time_s": 0.05}]
+
+
+def test_forces_of_another_file(folder, capsys):
+    assert run(folder / "walk.trc", "--forces", folder / "walk.mot", "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["plates"][0]["corners_m"] is None
+    assert found["plates"][0]["loaded_fraction"] == 0.5
+    assert run(folder / "walk.trc", "--forces", folder / "walk.mot") == 0
+    assert "not in the file" in capsys.readouterr().out
+
+
+def test_axis_and_unit_can_be_given(folder, capsys):
+    assert run(folder / "walk.trc", "--up", "z", "--unit", "cm", "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["up_axis"], found["length_unit"]) == ("z", "cm")
+
+
+def test_errors_are_left_to_the_caller(folder):
+    with pytest.raises(FileFormatError, match="no such file"):
+        run(folder / "none.c3d")

@@ -1,0 +1,76 @@
+"""A file's header tells whether all of it is there."""
+
+import struct
+
+import numpy as np
+import pytest
+
+from mbkf.errors import FileFormatError
+from mbkf.io.c3d import read_c3d
+from mbkf.io.c3d_layout import check_frames, check_layout
+from tests.io.c3d_builder import Plate, build_c3d, standing_points
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory) -> bytes:
+    channels = np.ones((120, 6))
+    path = tmp_path_factory.mktemp("whole") / "whole.c3d"
+    return build_c3d(path, standing_points(12, 9), plates=(Plate(2, channels),), first_frame=4).read_bytes()
+
+
+def test_sizes_are_those_written(whole, tmp_path):
+    path = tmp_path / "whole.c3d"
+    path.write_bytes(whole)
+    layout = check_layout(path)
+    assert (layout.points, layout.analog_per_frame, layout.frames, layout.first_frame) == (9, 60, 12, 5)
+    assert layout.bytes_per_frame == (4 * 9 + 60) * 4
+    assert layout.frames_present >= 12
+    with pytest.raises(FileFormatError, match="cut short: 100 frames promised"):
+        check_frames(path, layout, 100)
+    with pytest.raises(FileFormatError, match="no frames"):
+        check_frames(path, layout, 0)
+
+
+@pytest.mark.parametrize("share", [0.0, 1e-4, 0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97])
+def test_a_file_cut_anywhere_is_refused(whole, tmp_path, share):
+    path = tmp_path / "cut.c3d"
+    data_end = (check_start(whole) - 1) * 512 + 12 * (4 * 9 + 60) * 4
+    path.write_bytes(whole[: int(share * data_end)])
+    with pytest.raises(FileFormatError, match=r"cut short|empty|not a C3D"):
+        read_c3d(path)
+
+
+def check_start(content: bytes) -> int:
+    """Block of the data, from the ninth word of the header."""
+    return struct.unpack_from("<H", content, 16)[0]
+
+
+@pytest.mark.parametrize(
+    "content", [b"hello, no motion in here" * 50, b"\x02\x51" + bytes(2000), bytes(4000)]
+)
+def test_other_files_are_refused(content, tmp_path):
+    path = tmp_path / "other.c3d"
+    path.write_bytes(content)
+    with pytest.raises(FileFormatError, match="not a C3D file"):
+        read_c3d(path)
+
+
+def test_missing_files_and_folders_are_refused(tmp_path):
+    with pytest.raises(FileFormatError, match="no such file"):
+        read_c3d(tmp_path / "none.c3d")
+    with pytest.raises(FileFormatError, match="is a folder"):
+        read_c3d(tmp_path)
+
+
+@pytest.mark.parametrize(("processor", "order", "word"), [(84, "<", 7), (85, "<", 6), (86, ">", 6)])
+@pytest.mark.parametrize(("negative", "size"), [(True, 4), (False, 2)])
+def test_size_of_a_number_follows_the_sign_of_the_scale(tmp_path, processor, order, word, negative, size):
+    words = [0] * 256
+    words[1:5] = [3, 0, 1, 2]
+    words[8] = 3
+    words[word] = 0xC000 if negative else 0x4000
+    header = bytearray(struct.pack(f"{order}256H", *words))
+    header[:2] = bytes([2, 0x50])
+    path = tmp_path / "made.c3d"
+    path.write_bytes(bytes(header) + bytes([1, 0x50, 1, processor]) + bytes(508) + bytes(512))
+    assert check_layout(path).bytes_per_number == size

@@ -1,0 +1,125 @@
+"""What is written is what is read back."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from mbkf.errors import InvalidInput
+from mbkf.io.c3d import read_c3d, write_c3d
+from mbkf.io.records import AnalogChannel, Capture, DerivedPoint, Event, MarkerTrajectories, PlateReadings
+from tests.io.c3d_builder import standing_points
+
+UP = np.array([0.0, 0.0, 1.0])
+quick = settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+
+
+def markers_of(positions, names=None, rate_hz=100.0, start_time_s=0.0):
+    names = names or tuple(f"M{i}" for i in range(positions.shape[1]))
+    return MarkerTrajectories(tuple(names), positions, rate_hz, start_time_s)
+
+
+def plate_of(frames=50, per_frame=10, start_time_s=0.0, corners=True, rate_hz=100.0):
+    rng = np.random.default_rng(2)
+    origin = np.array([0.4, -0.3, 0.1])
+    outline = origin + np.array([[0.3, -0.2, 0.0], [-0.3, -0.2, 0.0], [-0.3, 0.2, 0.0], [0.3, 0.2, 0.0]])
+    samples = frames * per_frame
+    force = rng.normal([0, 0, 500], [30, 30, 100], (samples, 3))
+    moment = rng.normal(0.0, 40.0, (samples, 3))
+    pressure = origin + np.cross(UP, moment) / force[:, 2:]
+    return PlateReadings("1", rate_hz * per_frame, start_time_s, origin, force, moment, pressure, 20.0,
+                         outline if corners else None)  # fmt: skip
+
+
+@quick
+@given(
+    values=arrays(np.float64, (6, 5, 3), elements=st.floats(-3.0, 3.0, width=32)),
+    hidden=arrays(np.bool_, (6, 5)),
+    rate_hz=st.sampled_from([50.0, 59.94, 100.0, 119.88, 250.0]),
+    first=st.integers(0, 2000),
+    unlabelled=st.booleans(),
+)
+def test_markers_round_trip(tmp_path, values, hidden, rate_hz, first, unlabelled):
+    values = np.where(hidden[:, :, None] | (values == 0.0).all(axis=2, keepdims=True), np.nan, values)
+    names = tuple(f"*{i}" for i in range(5)) if unlabelled else ("LASI", "RASI", "T10", "Top.Head", "R MT5")
+    markers = markers_of(values, names, rate_hz, first / rate_hz)
+    path = tmp_path / "a.c3d"
+    write_c3d(Capture("", markers), path)
+    back = read_c3d(path, unit="mm").markers
+    assert (back.names, back.rate_hz, back.start_time_s) == (names, rate_hz, pytest.approx(first / rate_hz))
+    np.testing.assert_allclose(back.positions_m, values, atol=1e-6)
+
+
+@pytest.mark.parametrize("corners", [True, False])
+def test_everything_round_trips(tmp_path, corners):
+    positions = standing_points(50) / 1e3
+    plate = plate_of(start_time_s=0.5, corners=corners)
+    emg = np.sin(np.arange(500) / 7.0)
+    angle = DerivedPoint("LKneeAngles", "angle", np.arange(150.0).reshape(50, 3), "deg")
+    centre = DerivedPoint("LHJC", "point", positions[:, 0] * 1e3, "mm")
+    events = (Event("Foot Strike", "Left", 0.61), Event("Foot Off", "Right", 62.25))
+    capture = Capture(
+        "", markers_of(positions, start_time_s=0.5), (plate,), (angle, centre),
+        (AnalogChannel("EMG", emg, "V", 1000.0),), events, subject_mass_kg=71.5,
+    )  # fmt: skip
+    write_c3d(capture, tmp_path / "a.c3d")
+    back = read_c3d(tmp_path / "a.c3d", tare=False)
+    np.testing.assert_allclose(back.markers.positions_m, positions, atol=1e-6)
+    (again,) = back.plates
+    assert (again.rate_hz, again.start_time_s) == (1000.0, 0.5)
+    for name in ("origin_m", "force_n", "moment_nm", "centre_of_pressure_m"):
+        np.testing.assert_allclose(getattr(again, name), getattr(plate, name), atol=1e-4)
+    if corners:
+        np.testing.assert_allclose(again.corners_m, plate.corners_m, atol=1e-6)
+    assert back.events == events
+    assert back.subject_mass_kg == 71.5
+    assert [(d.name, d.kind, d.unit) for d in back.derived] == [
+        ("LKneeAngles", "angle", "deg"),
+        ("LHJC", "point", "mm"),
+    ]
+    for found, given_point in zip(back.derived, (angle, centre), strict=True):
+        np.testing.assert_allclose(found.values, given_point.values, atol=1e-3)
+    np.testing.assert_allclose(back.analog[-1].values, emg, atol=1e-6)
+    assert (back.analog[-1].name, back.analog[-1].unit) == ("EMG", "V")
+
+
+def test_places_among_derived_points_are_turned_into_world_axes(tmp_path):
+    positions = standing_points(5) / 1e3
+    centre = DerivedPoint("LHJC", "point", np.tile([1.0, 2.0, 3.0], (5, 1)), "cm")
+    write_c3d(Capture("", markers_of(positions), derived=(centre,), up_axis="y"), tmp_path / "a.c3d")
+    np.testing.assert_allclose(
+        read_c3d(tmp_path / "a.c3d").derived[0].values[0], [10.0, -30.0, 20.0], atol=1e-5
+    )
+
+
+def test_rates_that_do_not_divide_are_interpolated(tmp_path):
+    positions = standing_points(60) / 1e3
+    plate = plate_of(frames=100, per_frame=10, rate_hz=100.0)
+    ramp = np.arange(1000.0)[:, None] * np.ones(3)
+    plate = replace(
+        plate, force_n=ramp, moment_nm=0.0 * ramp, centre_of_pressure_m=np.full((1000, 3), np.nan)
+    )
+    write_c3d(Capture("", markers_of(positions, rate_hz=60.0), (plate,)), tmp_path / "a.c3d")
+    (back,) = read_c3d(tmp_path / "a.c3d", tare=False).plates
+    assert back.rate_hz == 17 * 60.0
+    inside = back.times_s < 0.99
+    np.testing.assert_allclose(back.force_n[inside, 2], 1000.0 * back.times_s[inside], atol=1e-2)
+
+
+def test_many_markers_round_trip(tmp_path):
+    positions = standing_points(2, 400) / 1e3
+    write_c3d(Capture("", markers_of(positions)), tmp_path / "a.c3d")
+    back = read_c3d(tmp_path / "a.c3d").markers
+    assert back.names == tuple(f"M{i}" for i in range(400))
+    np.testing.assert_allclose(back.positions_m, positions, atol=1e-6)
+
+
+def test_what_cannot_be_written_is_refused_and_leaves_nothing(tmp_path):
+    with pytest.raises(InvalidInput, match=r"named \.c3d"):
+        write_c3d(Capture("", markers_of(standing_points() / 1e3)), tmp_path / "a.txt")
+    with pytest.raises(InvalidInput, match="no frames"):
+        write_c3d(Capture("", markers_of(np.zeros((0, 3, 3)))), tmp_path / "a.c3d")
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,77 @@
+"""One call reads any capture and joins its forces."""
+
+import numpy as np
+import pytest
+
+from mbkf.errors import FileFormatError
+from mbkf.io.capture import read_capture
+from mbkf.io.forces import write_forces_mot
+from mbkf.io.records import MarkerTrajectories, PlateReadings
+from mbkf.io.trc import write_trc
+from tests.io.c3d_builder import Plate, build_c3d, standing_points
+
+
+def forces_file(path, start_s=0.0):
+    samples = 500
+    force = np.zeros((samples, 3))
+    force[100:400] = [10.0, 20.0, 600.0]
+    point = np.where(force[:, 2:] > 0, [0.3, -0.4, 0.0], np.nan)
+    plate = PlateReadings("r", 1000.0, start_s, np.array([0.3, -0.4, 0.0]), force, 0.0 * force, point, 20.0)
+    write_forces_mot([plate], path)
+    return path
+
+
+def trc_file(path):
+    write_trc(MarkerTrajectories(tuple("abcdefgh"), standing_points(50) / 1e3, 100.0), path)
+    return path
+
+
+def test_suffix_chooses_the_reader(tmp_path):
+    for path in (build_c3d(tmp_path / "a.c3d", standing_points(50)), trc_file(tmp_path / "A.TRC")):
+        capture = read_capture(path)
+        np.testing.assert_allclose(capture.markers.positions_m, standing_points(50) / 1e3, atol=1e-6)
+        assert capture.plates == ()
+
+
+@pytest.mark.parametrize("name", ["a.mot", "a.csv", "noend"])
+def test_other_files_are_refused_with_what_can_be_read(tmp_path, name):
+    (tmp_path / name).write_text("")
+    with pytest.raises(FileFormatError, match=r"\.c3d or \.trc"):
+        read_capture(tmp_path / name)
+
+
+@pytest.mark.parametrize("name", ["none.c3d", "none.trc"])
+def test_missing_files_are_refused(tmp_path, name):
+    with pytest.raises(FileFormatError, match="no such file"):
+        read_capture(tmp_path / name)
+
+
+def test_forces_join_markers_in_the_same_world(tmp_path):
+    capture = read_capture(trc_file(tmp_path / "a.trc"), forces=forces_file(tmp_path / "a.mot"))
+    (plate,) = capture.plates
+    np.testing.assert_allclose(plate.force_n[200], [10.0, 20.0, 600.0])
+    np.testing.assert_allclose(plate.centre_of_pressure_m[200], [0.3, -0.4, 0.0])
+    assert any("ground reactions from a.mot" in note for note in capture.notes)
+
+
+def test_forces_replace_unusable_plates_of_a_c3d_file(tmp_path):
+    path = build_c3d(tmp_path / "a.c3d", standing_points(50), plates=(Plate(4, np.zeros((500, 6))),))
+    with pytest.raises(FileFormatError, match="CAL_MATRIX"):
+        read_capture(path)
+    capture = read_capture(path, forces=forces_file(tmp_path / "a.mot"))
+    assert [plate.name for plate in capture.plates] == ["r"]
+    np.testing.assert_allclose(capture.plates[0].force_n[200], [10.0, 20.0, 600.0])
+
+
+def test_forces_keep_their_times_and_a_mismatch_is_remarked(tmp_path):
+    capture = read_capture(trc_file(tmp_path / "a.trc"), forces=forces_file(tmp_path / "a.mot", start_s=7.0))
+    assert capture.plates[0].start_time_s == 7.0
+    assert any("outside the time of the markers" in note for note in capture.notes)
+
+
+def test_options_reach_the_readers(tmp_path):
+    path, forces = trc_file(tmp_path / "a.trc"), forces_file(tmp_path / "a.mot")
+    capture = read_capture(path, forces=forces, up="z", unit="cm", cop_threshold_n=700.0, tare=False)
+    assert (capture.up_axis, capture.length_unit) == ("z", "cm")
+    np.testing.assert_allclose(capture.plates[0].force_n[200], [10.0, 600.0, -20.0])
+    assert np.isnan(capture.plates[0].centre_of_pressure_m).all()

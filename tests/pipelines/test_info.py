@@ -1,0 +1,61 @@
+"""The summary counts what was put in."""
+
+import numpy as np
+import pytest
+
+from mbkf.io.records import AnalogChannel, Capture, DerivedPoint, Event, MarkerTrajectories, PlateReadings
+from mbkf.pipelines.info import count_pieces, describe
+
+
+@pytest.mark.parametrize(
+    ("present", "pieces"),
+    [([], 0), ([0, 0], 0), ([1], 1), ([1, 1, 0, 1], 2), ([0, 1, 0, 1, 0, 1, 1], 3), ([1, 0, 0, 1], 2)],
+)
+def test_pieces(present, pieces):
+    assert count_pieces(np.array(present, dtype=bool)) == pieces
+
+
+def capture() -> Capture:
+    positions = np.ones((10, 3, 3)) * [[0.0, 0.1, 1.0], [0.2, -0.3, 1.5], [0.4, 0.0, 0.1]]
+    positions[2:5, 1] = np.nan
+    force = np.zeros((100, 3))
+    force[20:45, 2] = 100.0
+    force[30, 2] = 750.0
+    plate = PlateReadings("2", 1000.0, 1.0, np.zeros(3), force, 0 * force, 0 * force, 20.0,
+                          np.arange(12.0).reshape(4, 3), np.array([0, 0, -16.5, 0, 0, 0.0]))  # fmt: skip
+    nothing = np.zeros((10, 3))
+    return Capture(
+        "walk.c3d", MarkerTrajectories(("LASI", "RASI", "*2"), positions, 100.0, 1.0), (plate,),
+        (DerivedPoint("A", "angle", nothing, "deg"), DerivedPoint("B", "angle", nothing, "deg")),
+        (AnalogChannel("EMG", np.zeros(100), "V", 1000.0),), (Event("Foot Off", "Left", 1.05),),
+        notes=("remark",), subject_mass_kg=70.0,
+    )  # fmt: skip
+
+
+def test_counts_shares_and_ranges():
+    summary = describe(capture())
+    assert (summary.frames, summary.rate_hz, summary.start_time_s, summary.duration_s) == (
+        10,
+        100.0,
+        1.0,
+        0.1,
+    )
+    assert (summary.labelled, summary.unlabelled) == (2, 1)
+    assert summary.missing_fraction == pytest.approx(0.1)
+    assert summary.extent_m == ((0.0, -0.3, 0.1), (0.4, 0.1, 1.5))
+    assert [(m.name, m.pieces) for m in summary.markers] == [("LASI", 1), ("RASI", 2), ("*2", 1)]
+    np.testing.assert_allclose([m.missing_fraction for m in summary.markers], [0.0, 0.3, 0.0])
+    (plate,) = summary.plates
+    assert (plate.name, plate.offset_n, plate.peak_n, plate.loaded_fraction) == ("2", -16.5, 750.0, 0.25)
+    assert plate.corners_m[3] == (9.0, 10.0, 11.0)
+    assert (plate.rate_hz, plate.duration_s) == (1000.0, 0.1)
+    assert summary.derived == {"angle": 2}
+    assert [(c.name, c.unit, c.rate_hz) for c in summary.channels] == [("EMG", "V", 1000.0)]
+    assert (summary.events, summary.notes, summary.subject_mass_kg) == (capture().events, ("remark",), 70.0)
+
+
+def test_a_capture_in_which_nothing_was_seen():
+    summary = describe(Capture("", MarkerTrajectories(("A",), np.full((4, 1, 3), np.nan), 50.0)))
+    assert (summary.extent_m, summary.missing_fraction, summary.markers[0].pieces) == (None, 1.0, 0)
+    empty = describe(Capture("", MarkerTrajectories((), np.zeros((0, 0, 3)), 50.0)))
+    assert (empty.frames, empty.duration_s, empty.missing_fraction) == (0, 0.0, 0.0)
