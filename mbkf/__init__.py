@@ -1,0 +1,57 @@
+"""Human movement from optical markers and force plates: angles, torques and reactions with standard deviations.
+
+The public surface: read a capture, scale the body to a person, reconstruct a trial. Loading this module is quick;
+the libraries behind a name are loaded when it is first used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from mbkf.errors import MbkfError
+from mbkf.version import __version__
+
+if TYPE_CHECKING:
+    from mbkf.io.capture import read_capture
+    from mbkf.io.results_folder import read_reconstruction, write_reconstruction
+    from mbkf.io.subject import read_subject, write_subject
+    from mbkf.model.human import HumanModel
+    from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
+    from mbkf.pipelines.scale import scale
+    from mbkf.pipelines.summary import summarise
+
+_HOMES = {
+    "HumanModel": "mbkf.model.human",
+    "ReconstructSettings": "mbkf.pipelines.reconstruct",
+    "read_capture": "mbkf.io.capture",
+    "read_reconstruction": "mbkf.io.results_folder",
+    "read_subject": "mbkf.io.subject",
+    "reconstruct": "mbkf.pipelines.reconstruct",
+    "scale": "mbkf.pipelines.scale",
+    "summarise": "mbkf.pipelines.summary",
+    "write_reconstruction": "mbkf.io.results_folder",
+    "write_subject": "mbkf.io.subject",
+}
+
+__all__ = [
+    "HumanModel",
+    "MbkfError",
+    "ReconstructSettings",
+    "__version__",
+    "read_capture",
+    "read_reconstruction",
+    "read_subject",
+    "reconstruct",
+    "scale",
+    "summarise",
+    "write_reconstruction",
+    "write_subject",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Loads a public name's module on first use."""
+    if name not in _HOMES:
+        raise AttributeError(f"module 'mbkf' has no attribute '{name}'")
+    return getattr(import_module(_HOMES[name]), name)

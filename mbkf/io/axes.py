@@ -80,7 +80,7 @@ def length_unit(name: str) -> str:
 
 
 def finite(values: Array) -> BoolArray:
-    """Whether all components along the last axis are finite; has the shape of ``values`` without that axis."""
+    """Whether all components along the last axis are finite; shape of ``values`` without that axis."""
     return np.asarray(np.isfinite(values).all(axis=-1))
 
 

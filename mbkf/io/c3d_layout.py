@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
+from mbkf.io.c3d_records import DamagedParameters, first_integer, walk_parameters
 
 _BLOCK = 512
 _KEY = 0x50
@@ -28,6 +29,7 @@ class C3dLayout:
     Attributes:
         points: Points per frame.
         analog_per_frame: Analog numbers per frame, over all channels.
+        channels: Analog channels.
         first_frame: Number of the first frame, counted from 1.
         frames: Frames the header counts (at most 65535).
         data_block: 512-byte block at which the data start, counted from 1.
@@ -37,6 +39,7 @@ class C3dLayout:
 
     points: int
     analog_per_frame: int
+    channels: int
     first_frame: int
     frames: int
     data_block: int
@@ -87,6 +90,7 @@ def check_layout(path: Path) -> C3dLayout:
     if size < start + parameters[2] * _BLOCK:
         raise FileFormatError(path, f"cut short inside its parameters ({size} bytes); export it again")
     layout = _layout(header, parameters[3], size)
+    _check_parameters(path, layout, start, parameters[2], _BYTE_ORDERS[parameters[3]])
     check_frames(path, layout, layout.frames)
     return layout
 
@@ -106,6 +110,26 @@ def check_frames(path: Path, layout: C3dLayout, frames: int) -> None:
         )
 
 
+def _check_parameters(path: Path, layout: C3dLayout, start: int, blocks: int, order: str) -> None:
+    """Walk the parameters, and compare the numbers of points and channels with the header's."""
+    end = max(start + blocks * _BLOCK, (layout.data_block - 1) * _BLOCK)
+    with path.open("rb") as file:
+        file.seek(start + 4)
+        section = file.read(end - start - 4)
+    try:
+        groups, parameters = walk_parameters(section, order)
+    except DamagedParameters as error:
+        raise FileFormatError(path, f"its parameters are damaged ({error}); export it again") from error
+    used = {(groups[item.group], item.name): first_integer(item, order) for item in parameters}
+    for group, counted in (("POINT", layout.points), ("ANALOG", layout.channels)):
+        stated = used.get((group, "USED"))
+        if stated is not None and stated != counted:
+            reason = f"{group}:USED is {stated}, the header counts {counted}; export it again"
+            raise FileFormatError(path, reason)
+    if ("POINT", "USED") not in used or layout.data_block * _BLOCK < start + _BLOCK:
+        raise FileFormatError(path, "its parameters are damaged (no POINT:USED or no data); export it again")
+
+
 def _layout(header: bytes, processor: int, size: int) -> C3dLayout:
     order = _BYTE_ORDERS[processor]
     words = struct.unpack(f"{order}256H", header)
@@ -115,6 +139,7 @@ def _layout(header: bytes, processor: int, size: int) -> C3dLayout:
     return C3dLayout(
         points=words[1],
         analog_per_frame=words[2],
+        channels=words[2] // words[9] if words[9] else words[2],
         first_frame=first,
         frames=last - first + 1 if last >= first else 0,
         data_block=words[8],

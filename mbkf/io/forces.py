@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.errors import FileFormatError, InvalidInput, UnknownName
 from mbkf.io.axes import finite, rotation_to_world
 from mbkf.io.records import PlateReadings
@@ -71,7 +71,7 @@ def read_forces_mot(
     readings = []
     for name, columns_of_set in sets.items():
         force, point, torque = (_vectors(table, columns) @ rotation.T for columns in columns_of_set)
-        loaded = np.asarray(force[:, 2] >= cop_threshold_n)
+        loaded: BoolArray = np.greater_equal(force[:, 2], cop_threshold_n)
         point[~loaded & ~finite(point)] = 0.0  # no force, so no point of application
         require_finite(np.hstack([force, point]), torque, rate_hz, start_s, f"{path}, set '{name}'")
         origin = point[loaded].mean(axis=0) if loaded.any() else np.zeros(3)

@@ -24,6 +24,7 @@ class SubjectMarker:
         position_m: (3,) position in the segment's frame, m.
         noise_m: Measurement noise with skin movement, per coordinate, m.
         session_sd_m: How far it may sit from there in another trial, per coordinate, m.
+        aliases: Other names for it in captures.
     """
 
     name: str
@@ -31,6 +32,7 @@ class SubjectMarker:
     position_m: Array
     noise_m: float
     session_sd_m: float
+    aliases: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -81,6 +83,7 @@ def write_subject(subject: Subject, path: str | Path) -> None:
             f"position_m = [{position}]",
             f"noise_m = {marker.noise_m!r}",
             f"session_sd_m = {marker.session_sd_m!r}",
+            f"aliases = {json.dumps(list(marker.aliases), ensure_ascii=False)}",
         ]
     if subject.report:
         lines += ["", "# How it was found: one JSON object.", f"report = {_text(json.dumps(subject.report))}"]
@@ -106,7 +109,7 @@ def read_subject(path: str | Path) -> Subject:
             body=table["body"],
             mass_kg=float(table["mass_kg"]),
             scale_factors={name: float(value) for name, value in table["scale_factors"].items()},
-            markers=tuple(_marker(entry) for entry in table["marker"]),
+            markers=tuple(_marker(entry) for entry in table.get("marker", ())),
             protocol=table["protocol"],
             height_m=table.get("height_m"),
             report=json.loads(table.get("report", "{}")),
@@ -124,7 +127,7 @@ def _marker(entry: dict[str, Any]) -> SubjectMarker:
     if position.shape != (3,) or not np.isfinite(position).all():
         raise ValueError(f"marker {entry['name']} needs three finite coordinates")
     return SubjectMarker(entry["name"], entry["segment"], position, float(entry["noise_m"]),
-                         float(entry["session_sd_m"]))
+                         float(entry["session_sd_m"]), tuple(entry.get("aliases", ())))
 
 
 def _text(value: str) -> str:

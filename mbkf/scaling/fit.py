@@ -130,7 +130,7 @@ def _subject(problem: ScalingProblem, solution: Solution[ScalingState], frames: 
         reference = (body.segment(marker.segment).scale_matrix @ state.factors) * marker.position_m
         seen = marker.name in found
         markers.append(SubjectMarker(marker.name, marker.segment, found[marker.name] if seen else reference,
-                                     marker.noise_m, _session_sd_m(marker, seen)))
+                                     marker.noise_m, _session_sd_m(marker, seen), marker.aliases))
     return Subject(
         body=body.name,
         mass_kg=float(mass_kg),

@@ -10,9 +10,10 @@ from mbkf.conventions import Array
 from mbkf.errors import NotConverged
 from mbkf.model.human import HumanModel
 from mbkf.synthesis import jets
-from mbkf.synthesis.balance import HorizontalPath, zero_moment_point
+from mbkf.synthesis.balance import HorizontalPath
 from mbkf.synthesis.curves import Curve
 from mbkf.synthesis.figure import Figure, Pose
+from mbkf.synthesis.flight import SMALL, Tumbling
 from mbkf.synthesis.jets import Jet
 from mbkf.synthesis.plan import MotionPlan
 
@@ -20,8 +21,9 @@ STEP_S = 0.01
 """Grid on which balance is solved."""
 
 LIFTS, ROUNDS = 3, 8
-CLOSE_M = 5e-4
-"""Balance is found when the pressure lies this close to where the plan wants it, or cannot be improved."""
+"""Iterations that find the height alone, and all together."""
+
+FLIGHT_ROUNDS = 40
 
 
 @dataclass
@@ -39,10 +41,10 @@ class Composition:
         plane, height = self.horizontal(times), self.plan.height(times) + self.lift_m
         return Jet(*(np.column_stack([p, h]) for p, h in zip(plane.orders, height.orders, strict=True)))
 
-    def pose(self, times: Array, start: Jet | None = None) -> Pose:
-        """The body at times in s."""
-        curves = {**self.plan.angles, "pelvis": self.pelvis}
-        angles = {joint: tuple(curve(times) for curve in axes) for joint, axes in curves.items()}
+    def pose(self, times: Array, start: Jet | None = None, pelvis: tuple[Jet, ...] | None = None) -> Pose:
+        """The body at times in s; the search for the pelvis may start somewhere, its angles may be others."""
+        angles = {joint: tuple(curve(times) for curve in axes) for joint, axes in self.plan.angles.items()}
+        angles["pelvis"] = pelvis or tuple(curve(times) for curve in self.pelvis)
         return self.figure.pose(self.com(times), angles, self.plan.feet(times), start)
 
     def coordinates(self, times: Array) -> tuple[Array, Array, Array]:
@@ -55,27 +57,48 @@ class Composition:
 
 
 def compose(model: HumanModel, plan: MotionPlan) -> Composition:
-    """Solves balance for a plan.
+    """Solves balance and flight for a plan.
 
     Raises:
-        NotConverged: The legs do not reach, or the pressure stays away from where it must be.
+        NotConverged: The flight was not found.
     """
     times = np.linspace(plan.start_s, plan.end_s, round((plan.end_s - plan.start_s) / STEP_S) + 1)
     load = plan.load(times)
-    result = Composition(plan, Figure(model), HorizontalPath([(plan.start_s, plan.end_s)]), plan.angles["pelvis"])
+    tumbling = None if plan.flight is None else Tumbling(plan.flight)
+    spells = [(plan.start_s, plan.end_s)]
+    if plan.flight is not None:
+        spells = [(plan.start_s, plan.flight.take_off_s), (plan.flight.touch_down_s, plan.end_s)]
+    result = Composition(plan, Figure(model), HorizontalPath(spells),
+                         plan.angles["pelvis"] if tumbling is None else tumbling.curves())
     turning = np.zeros((len(times), 2))
     start: Jet | None = None
     for k in range(LIFTS + ROUNDS):
         result.horizontal.solve(times, load.total_pressure, plan.height(times) + result.lift_m, turning)
         pose = result.pose(times, start)
         start = pose.origins["pelvis"]
-        raised = _lift(result, pose, times)
-        result.lift_m += raised
+        result.lift_m += _lift(result, pose, times)
         if k < LIFTS:
             continue
+        if tumbling is not None:
+            _fly(result, tumbling, 3)
+            pose = result.pose(times, start)
         _, _, change = result.figure.momentum(pose)
         turning = np.column_stack([change[:, 1], -change[:, 0]]) / result.figure.total_mass
+    if tumbling is not None and _fly(result, tumbling, FLIGHT_ROUNDS) > 1e3 * SMALL:
+        raise NotConverged("the flight was not found; try another seed")
     return result
+
+
+def _fly(composition: Composition, tumbling: Tumbling, rounds: int) -> float:
+    """Turns the pelvis in the air; returns the last change of its rates in rad/s."""
+    start = composition.pose(tumbling.times).origins["pelvis"]
+
+    def momentum(angles: tuple[Jet, Jet, Jet]) -> Array:
+        return composition.figure.momentum(composition.pose(tumbling.times, start, angles))[1]
+
+    change = tumbling.refine(momentum, rounds)
+    composition.pelvis = tumbling.curves()
+    return change
 
 
 def _lift(composition: Composition, pose: Pose, times: Array) -> float:

@@ -12,6 +12,7 @@ from mbkf.model.human import HumanModel
 from mbkf.synthesis.composition import Composition, compose
 from mbkf.synthesis.contact import FRICTION, sole_outline, split
 from mbkf.synthesis.figure import SIDE_NAMES
+from mbkf.synthesis.jump import jump_plan
 from mbkf.synthesis.squat import squat_plan
 from mbkf.synthesis.stand import stand_plan
 from mbkf.synthesis.walk import walk_plan
@@ -19,7 +20,7 @@ from mbkf.synthesis.walk import walk_plan
 MOTIONS = ("squat", "walk", "jump")
 """Names of the motions a person may ask for."""
 
-PLANS = {"squat": squat_plan, "stand": stand_plan, "walk": walk_plan}
+PLANS = {"jump": jump_plan, "squat": squat_plan, "stand": stand_plan, "walk": walk_plan}
 """Plan of every motion by name; "stand" is for static captures."""
 
 MIN_SECONDS, MAX_SECONDS = 1.0, 120.0

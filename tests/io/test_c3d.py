@@ -39,7 +39,7 @@ def test_empty_unit_is_millimetre_with_a_remark_and_can_be_overruled(tmp_path):
 
 def test_unknown_unit_and_axis_are_refused(tmp_path):
     path = build_c3d(tmp_path / "a.c3d", unit="parsec")
-    with pytest.raises(FileFormatError, match="'parsec'.*--unit"):
+    with pytest.raises(FileFormatError, match=r"'parsec'.*--unit"):
         read_c3d(path)
     assert read_c3d(path, unit="mm").length_unit == "mm"
     with pytest.raises(UnknownName, match="axis 'q'"):

@@ -31,7 +31,8 @@ def signals(kind: int, F: np.ndarray, place: np.ndarray, torque: float, origin: 
     if kind == 1:
         return np.array([[*F, place[0] + origin[0], place[1] + origin[1], torque]])
     arm = np.array([*place, 0.0]) + origin  # from the transducers to the place
-    wrench = np.concatenate([F, np.cross(arm, F) + [0.0, 0.0, torque]])
+    wrench = np.concatenate([F, np.cross(arm, F)])
+    wrench[5] += torque
     if kind == 2:
         return wrench[None]
     if kind == 4:

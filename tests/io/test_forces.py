@@ -100,7 +100,7 @@ def test_an_unloaded_plate_needs_no_point_of_application(tmp_path):
 def test_unknown_and_incomplete_naming_is_refused(tmp_path):
     table = Table(("Fx", "Fy"), np.arange(3.0), np.zeros((3, 2)))
     write_storage(table, tmp_path / "a.mot")
-    with pytest.raises(UnknownName, match="Fx, Fy.*ground_force_r_vx"):
+    with pytest.raises(UnknownName, match=r"Fx, Fy.*ground_force_r_vx"):
         read_forces_mot(tmp_path / "a.mot")
     whole = read_storage(save(tmp_path / "b.mot", {"r": columns()}))
     write_storage(Table(whole.names[:-1], whole.times_s, whole.columns[:, :-1]), tmp_path / "c.mot")
@@ -115,7 +115,7 @@ def test_uneven_times_are_refused_and_rounded_ones_accepted(tmp_path):
     assert read_forces_mot(tmp_path / "b.mot")[0].rate_hz == pytest.approx(600.0, abs=0.05)
     for times in (np.where(np.arange(SAMPLES) > 500, whole.times_s + 0.1, whole.times_s), np.zeros(SAMPLES)):
         write_storage(Table(whole.names, times, whole.columns), tmp_path / "c.mot")
-        with pytest.raises(FileFormatError, match="evenly|increase"):
+        with pytest.raises(FileFormatError, match=r"evenly|increase"):
             read_forces_mot(tmp_path / "c.mot")
 
 

@@ -94,7 +94,7 @@ def test_units_come_from_the_header_or_the_caller(tmp_path):
     unstated = read(tmp_path, text("50\t50\t3\t2"))
     assert unstated.length_unit == "mm"
     assert any("no unit" in note for note in unstated.notes)
-    with pytest.raises(FileFormatError, match="'ells'.*--unit"):
+    with pytest.raises(FileFormatError, match=r"'ells'.*--unit"):
         read(tmp_path, text(TIDY.replace("mm", "ells")))
     many = "\t".join(str(i * 0.2) for i in range(12))
     four = "Frame#\tTime\tA\t\t\tB\t\t\tC\t\t\tD\t\t"

@@ -1,0 +1,136 @@
+"""`mbkf reconstruct`: motion, torques and reactions of a trial."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from mbkf.pipelines.reconstruct import Hidden
+
+_EPILOG = """\
+examples:
+  mbkf reconstruct walk.trc --subject subject.toml --forces grf.mot --out result
+  mbkf reconstruct walk.c3d --subject subject.toml --hide RKNE,RTIB@1.2:1.5 --without-plate 2 --out result
+
+writes summary.json, motion.h5, angles.mot, torques.sto, reactions.mot and markers.trc to the folder
+"""
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Adds the command to the command line."""
+    parser = subparsers.add_parser(
+        "reconstruct",
+        help="markers and plates to motion, torques and reactions",
+        description="Follow a scaled subject through a trial and solve for joint torques.",
+        epilog=_EPILOG,
+    )
+    parser.add_argument("trial", metavar="TRIAL", help="capture (.c3d or .trc)")
+    parser.add_argument("--subject", required=True, metavar="SUBJECT.toml", help="written by 'mbkf scale'")
+    parser.add_argument("--forces", metavar="FILE.mot", help="ground reactions; a C3D brings its own plates")
+    parser.add_argument("--filter", choices=("kinematic",), default="kinematic", help="which filter")
+    parser.add_argument("--hide", metavar="A,B@T0:T1", action="append", default=[],
+                        help="hide markers between two times in s; may be repeated")
+    parser.add_argument("--without-plate", metavar="N", action="append", default=[], help="withhold a plate")
+    parser.add_argument("--keep-markers", action="store_true",
+                        help="keep the subject's marker positions instead of correcting them on this trial")
+    parser.add_argument("--up", metavar="AXIS", help="axis of the files that points up: x, y, z, -x, -y or -z")
+    parser.add_argument("--unit", metavar="UNIT", help="length unit of the markers: mm, cm or m")
+    parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Reconstructs the trial, writes the folder and prints the key numbers.
+
+    Raises:
+        MbkfError: An input is unusable.
+    """
+    from mbkf.cli.progress import stages
+    from mbkf.io.capture import read_capture
+    from mbkf.io.results_folder import prepare_folder, write_reconstruction
+    from mbkf.io.subject import read_subject
+    from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
+    from mbkf.pipelines.summary import summarise
+    from mbkf.pipelines.truth import truth_beside
+
+    hide = tuple(parse_hide(text) for text in args.hide)
+    subject = read_subject(args.subject)
+    capture = read_capture(args.trial, forces=args.forces, up=args.up, unit=args.unit)
+    truth = truth_beside(args.trial)
+    folder = prepare_folder(args.out)
+    settings = ReconstructSettings(
+        filter=args.filter,
+        correct_markers=not args.keep_markers,
+        hide=hide,
+        without_plates=tuple(args.without_plate),
+        keep_covariance=truth is not None,
+    )
+    with stages() as report:
+        result = reconstruct(capture, subject, settings=settings, progress=report)
+    summary = summarise(result, truth)
+    write_reconstruction(result, summary, folder)
+    print_summary(summary, Path(folder))
+    return 0
+
+
+def parse_hide(text: str) -> Hidden:
+    """Reads ``A,B@T0:T1``.
+
+    Raises:
+        InvalidInput: The text is not of that form.
+    """
+    from mbkf.errors import InvalidInput
+    from mbkf.pipelines.reconstruct import Hidden
+
+    names, at, window = text.partition("@")
+    first, colon, last = window.partition(":")
+    markers = tuple(name.strip() for name in names.split(",") if name.strip())
+    try:
+        return Hidden(markers, float(first), float(last)) if at and colon and markers else _refuse(text)
+    except ValueError:
+        raise InvalidInput(f"--hide '{text}': write MARKER,MARKER@START:END with times in s") from None
+
+
+def _refuse(text: str) -> Hidden:
+    raise ValueError(text)
+
+
+def print_summary(summary: dict[str, Any], folder: Path) -> None:
+    """Prints the numbers a person looks at first."""
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(highlight=False)
+    table = Table(title=f"{summary['trial']} ({summary['filter']} filter)", title_justify="left", show_header=False)
+    table.add_column()
+    table.add_column(justify="right")
+    rows = [
+        ("frames", f"{summary['frames']} at {summary['rate_hz']:g} Hz"),
+        ("markers", f"{summary['markers_used']}, {100 * (summary['missing_fraction'] or 0):.1f} % missing"),
+        ("marker RMS / max", _pair(summary["marker_rms_mm"], summary["marker_max_mm"], "mm")),
+        ("frames with all reactions measured", str(summary["valid_frames"])),
+        ("residual at the pelvis", _pair(summary["residual_force_rms_n"], summary["residual_moment_rms_nm"], "N, N m")),
+        ("step median / 99 %", _pair(_ms(summary["step_seconds_median"]), _ms(summary["step_seconds_p99"]), "ms")),
+        ("times real time", "" if summary["realtime_factor"] is None else f"{summary['realtime_factor']:.1f}"),
+    ]
+    if summary["hidden_marker_rms_mm"] is not None:
+        rows.append(("hidden markers RMS / max",
+                     _pair(summary["hidden_marker_rms_mm"], summary["hidden_marker_max_mm"], "mm")))
+    for name, value in (summary["truth"] or {}).items():
+        rows.append((f"against the truth: {name.replace('_', ' ')}", "" if value is None else f"{value:.3f}"))
+    for name, text in rows:
+        table.add_row(name, text)
+    console.print(table)
+    for warning in summary["warnings"]:
+        console.print(f"note: {warning}")
+    console.print(str(folder))
+
+
+def _ms(seconds: float | None) -> float | None:
+    return None if seconds is None else 1e3 * seconds
+
+
+def _pair(first: float | None, second: float | None, unit: str) -> str:
+    return " / ".join("–" if x is None else f"{x:.1f}" for x in (first, second)) + f" {unit}"

@@ -1,0 +1,92 @@
+"""`mbkf scale`: fit the body to a person."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+_EPILOG = """\
+examples:
+  mbkf scale static.trc --mass 85.07 --out subject.toml
+  mbkf scale static.c3d --trial walk.c3d --mass 60 --height 1.72 --out subject.toml
+  mbkf scale --trial walk.c3d --mass 63.6 --out subject.toml       (no static trial)
+"""
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Adds the command to the command line."""
+    parser = subparsers.add_parser(
+        "scale",
+        help="fit the body to a person, with the person's mass",
+        description="Fit the body to a person: scale factors and marker positions from a standing trial, moving "
+        "trials or both.",
+        epilog=_EPILOG,
+    )
+    parser.add_argument("static", metavar="STATIC", nargs="?", help="standing trial (.c3d or .trc)")
+    parser.add_argument("--trial", metavar="TRIAL", action="append", default=[], help="moving trial; may be repeated")
+    parser.add_argument("--protocol", metavar="NAME|FILE", help="marker protocol; by default found from the names")
+    parser.add_argument("--mass", metavar="KG", type=float, help="body mass; by default what the capture states")
+    parser.add_argument("--height", metavar="M", type=float, help="body height, if known")
+    parser.add_argument("--up", metavar="AXIS", help="axis of the files that points up: x, y, z, -x, -y or -z")
+    parser.add_argument("--unit", metavar="UNIT", help="length unit of the files: mm, cm or m")
+    parser.add_argument("--out", required=True, metavar="SUBJECT.toml", help="file to write")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Scales and writes the subject, and prints how well it fits.
+
+    Raises:
+        MbkfError: An input is unusable.
+    """
+    from mbkf.cli.progress import stages
+    from mbkf.errors import FileFormatError, InvalidInput
+    from mbkf.io.capture import read_capture
+    from mbkf.io.subject import write_subject
+    from mbkf.pipelines.scale import scale
+
+    if args.mass is not None and not args.mass > 0:
+        raise InvalidInput(f"--mass must be positive, got {args.mass}")
+    out = Path(args.out)
+    if out.is_dir():
+        raise FileFormatError(out, "is a folder; name a file for --out")
+    static = None if args.static is None else read_capture(args.static, up=args.up, unit=args.unit)
+    trials = [read_capture(path, up=args.up, unit=args.unit) for path in args.trial]
+    with stages() as report:
+        subject = scale(static, trials, mass_kg=args.mass, height_m=args.height, protocol=args.protocol,
+                        progress=report)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    write_subject(subject, out)
+    _print(subject.report, subject.protocol, str(out))
+    return 0
+
+
+def _print(report: dict[str, Any], protocol: str, out: str) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(highlight=False)
+    factors = Table(title="Scale factors", title_justify="left")
+    for heading in ("factor", "value", "standard error"):
+        factors.add_column(heading, justify="left" if heading == "factor" else "right")
+    for name, entry in report["factors"].items():
+        note = "  at its bound" if entry["at_bound"] else ""
+        factors.add_row(name.replace("_", " "), f"{entry['value']:.3f}", f"{entry['standard_error']:.3f}{note}")
+    markers = Table(title="Markers that moved most from their reference place", title_justify="left")
+    for heading in ("marker", "kind", "moved mm", "RMS mm", "max mm"):
+        markers.add_column(heading, justify="left" if heading in ("marker", "kind") else "right")
+    ranked = sorted(report["markers"].items(), key=lambda item: -item[1]["moved_mm"])
+    for name, entry in [item for item in ranked if item[1]["kind"] == "anatomical"][:8]:
+        numbers = (entry["moved_mm"], entry["rms_mm"], entry["max_mm"])
+        markers.add_row(name, entry["kind"], *("" if x is None else f"{x:.1f}" for x in numbers))
+    console.print(factors)
+    console.print(markers)
+    left_out = report["left_out"]
+    if left_out:
+        names = ", ".join(list(left_out)[:10]) + (" …" if len(left_out) > 10 else "")
+        console.print(f"{len(left_out)} points of the captures left out: {names}")
+    if not report["converged"]:
+        console.print("the fit did not settle; look at the markers above")
+    console.print(f"{out}: protocol {protocol}, {report['frames']} frames, markers fit to "
+                  f"{report['marker_rms_mm']:.1f} mm RMS")

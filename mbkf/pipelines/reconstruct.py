@@ -1,0 +1,233 @@
+"""From a capture and a subject to motion, torques and reactions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.errors import InvalidInput, NotObservable, UnknownName
+from mbkf.filters.inverse_dynamics import inverse_dynamics
+from mbkf.filters.kinematic import KinematicFilter
+from mbkf.filters.settings import KinematicSettings
+from mbkf.filters.tracking import Track, track
+from mbkf.io.records import Capture, MarkerTrajectories
+from mbkf.io.results import Reconstruction
+from mbkf.io.subject import Subject, SubjectMarker
+from mbkf.model.clinical import dof_names
+from mbkf.model.human import HumanModel
+from mbkf.numerics.threads import single_threaded
+from mbkf.pipelines.clinical import clinical_motion
+from mbkf.scaling.correction import correct_markers
+from mbkf.sensors.contacts import FootLoads, assign_feet
+from mbkf.sensors.markers import MarkerSensor
+from mbkf.version import __version__
+
+StageCallback = Callable[[str, int, int], None]
+
+MIN_MARKERS = 6
+MIN_PRESENT = 0.02
+"""A marker seen in a smaller share of the frames than this does not count for what can be observed."""
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """Markers to take away between two times, s, to see what occlusion does."""
+
+    names: tuple[str, ...]
+    from_s: float
+    to_s: float
+
+
+@dataclass(frozen=True)
+class ReconstructSettings:
+    """How a trial is reconstructed.
+
+    Attributes:
+        filter: Which filter; "kinematic" is the marker filter followed by inverse dynamics.
+        kinematic: What that filter believes.
+        correct_markers: Whether marker positions are corrected on the trial first (thesis 4.1.1).
+        hide: Markers to hide.
+        without_plates: Names of plates to withhold.
+        keep_covariance: Whether full covariances are kept in memory.
+    """
+
+    filter: str = "kinematic"
+    kinematic: KinematicSettings = field(default_factory=KinematicSettings)
+    correct_markers: bool = True
+    hide: tuple[Hidden, ...] = ()
+    without_plates: tuple[str, ...] = ()
+    keep_covariance: bool = False
+
+
+FILTERS = ("kinematic",)
+
+
+def reconstruct(
+    capture: Capture,
+    subject: Subject,
+    *,
+    settings: ReconstructSettings | None = None,
+    progress: StageCallback | None = None,
+) -> Reconstruction:
+    """Follows the subject through a capture and solves for torques.
+
+    Args:
+        capture: Markers and plates.
+        subject: The scaled person.
+        settings: How; the defaults are the same for every capture.
+        progress: Called with the stage, items done and items in all.
+
+    Raises:
+        NotObservable: Too few of the subject's markers to follow any body.
+        UnknownName: A hidden marker, a withheld plate or the filter does not exist.
+    """
+    settings = settings or ReconstructSettings()
+    if settings.filter not in FILTERS:
+        raise UnknownName("filter", settings.filter, FILTERS)
+    with single_threaded():
+        measured = subject_markers(capture.markers, subject)
+        hidden = _hidden(measured, settings.hide)
+        shown = replace(measured, positions_m=np.where(hidden[:, :, None], np.nan, measured.positions_m))
+        plates = _plates(capture, settings.without_plates)
+        if settings.correct_markers:
+            subject = correct_markers(subject, shown)
+        model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
+        followed = [m for name in measured.names for m in subject.markers if m.name == name]
+        sensor = MarkerSensor(model, [m.segment for m in followed], np.array([m.position_m for m in followed]))
+        held = _held(sensor, shown)
+        kalman = KinematicFilter(sensor, np.array([m.noise_m for m in followed]), 1.0 / shown.rate_hz, held,
+                                 settings.kinematic)
+        report = None if progress is None else lambda done, total: progress("Filtering", done, total)
+        result = track(kalman, shown.positions_m, keep_covariance=settings.keep_covariance, progress=report)
+        loads = assign_feet(model, result.q, shown.times_s, shown.rate_hz, plates)
+        return _assemble(capture, subject, settings, measured, hidden, sensor, held, result, loads, bool(plates))
+
+
+def subject_markers(markers: MarkerTrajectories, subject: Subject) -> MarkerTrajectories:
+    """The capture's trajectories of the subject's markers, under the subject's names.
+
+    Raises:
+        NotObservable: There are too few of them.
+    """
+    own: dict[str, SubjectMarker] = {alias: m for m in subject.markers for alias in m.aliases}
+    own.update({m.name: m for m in subject.markers})
+    found: dict[str, str] = {}
+    for name in markers.names:
+        if name in own:
+            found.setdefault(own[name].name, name)
+    if len(found) < MIN_MARKERS:
+        raise NotObservable(f"the capture has {len(found)} of the subject's markers (protocol '{subject.protocol}'; "
+                            f"at least {MIN_MARKERS} are needed); its own are {', '.join(markers.names[:6]) or 'none'}")
+    chosen = markers.select(tuple(found.values()))
+    return replace(chosen, names=tuple(found))
+
+
+def _hidden(markers: MarkerTrajectories, hide: Sequence[Hidden]) -> BoolArray:
+    hidden = np.zeros(markers.present.shape, dtype=bool)
+    for one in hide:
+        if one.to_s < one.from_s:
+            raise InvalidInput(f"--hide: the time window {one.from_s}:{one.to_s} ends before it begins")
+        frames = (markers.times_s >= one.from_s) & (markers.times_s <= one.to_s)
+        for name in one.names:
+            if name not in markers.names:
+                raise UnknownName("marker", name, markers.names, "--hide")
+            hidden[frames, markers.names.index(name)] = True
+    return hidden & markers.present
+
+
+def _plates(capture: Capture, without: Sequence[str]) -> tuple:
+    names = [plate.name for plate in capture.plates]
+    for name in without:
+        if name not in names:
+            raise UnknownName("plate", name, names or ["(the capture has none)"], "--without-plate")
+    return tuple(plate for plate in capture.plates if plate.name not in without)
+
+
+def _held(sensor: MarkerSensor, markers: MarkerTrajectories) -> BoolArray:
+    """(nv,) dofs that move no marker of the trial."""
+    present = markers.present.mean(axis=0) >= MIN_PRESENT
+    return ~sensor.model.supports[sensor.joint_ids[present]].any(axis=0)
+
+
+def _assemble(capture: Capture, subject: Subject, settings: ReconstructSettings, measured: MarkerTrajectories,
+              hidden: BoolArray, sensor: MarkerSensor, held: BoolArray, result: Track, loads: FootLoads,
+              has_plates: bool) -> Reconstruction:
+    model = sensor.model
+    dynamics = inverse_dynamics(model, result, loads.wrench, 1.0 / measured.rate_hz)
+    known = np.where(has_plates, 1.0, np.nan)
+    tau, sd_tau = dynamics.tau * known, dynamics.sd_tau * known
+    clinical = clinical_motion(model, result, tau, sd_tau)
+    names = dof_names(model)
+    return Reconstruction(
+        trial=Path(capture.path).stem or "capture",
+        protocol=subject.protocol,
+        filter=settings.filter,
+        smoothed=False,
+        version=__version__,
+        subject=subject,
+        rate_hz=measured.rate_hz,
+        times_s=measured.times_s,
+        dof_names=names,
+        q=result.q,
+        v=result.v,
+        a=result.a,
+        tau=tau,
+        sd_q=np.sqrt(np.diagonal(result.position_covariance, axis1=1, axis2=2)),
+        sd_v=result.velocity_sd,
+        sd_tau=sd_tau,
+        coordinate_names=clinical.names,
+        angles=clinical.angles,
+        angle_rates=clinical.rates,
+        moments=clinical.moments,
+        angles_sd=clinical.angles_sd,
+        angle_rates_sd=clinical.rates_sd,
+        moments_sd=clinical.moments_sd,
+        singular=clinical.singular,
+        marker_names=measured.names,
+        measured_m=measured.positions_m,
+        predicted_m=_predicted(sensor, result.q),
+        hidden=hidden,
+        rejected=result.refused,
+        foot_wrench=loads.wrench,
+        foot_cop_m=loads.centre_of_pressure_m,
+        foot_free_moment_nm=loads.free_moment_nm,
+        residual_force_n=dynamics.residual_force_n * known,
+        residual_moment_nm=dynamics.residual_moment_nm * known,
+        tracked=result.tracked,
+        valid=loads.valid & result.tracked,
+        held_dofs=tuple(name for name, fixed in zip(names, held, strict=True) if fixed),
+        nis=result.nis,
+        nis_readings=result.readings,
+        step_seconds=result.step_seconds,
+        warnings=(*capture.notes, *loads.warnings, *_warnings(result, names, held)),
+        settings=asdict(settings),
+        covariance=result.covariance,
+    )
+
+
+def _predicted(sensor: MarkerSensor, q: Array) -> Array:
+    """(T, M, 3) markers of the reconstructed body; NaN where it is not followed."""
+    predicted = np.full((len(q), len(sensor.segments), 3), np.nan)
+    for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
+        predicted[t] = sensor.positions(q[t])
+    return predicted
+
+
+def _warnings(result: Track, names: tuple[str, ...], held: BoolArray) -> list[str]:
+    warnings = []
+    if held.any():
+        listed = ", ".join(name for name, fixed in zip(names, held, strict=True) if fixed)
+        warnings.append(f"{int(held.sum())} dofs move no marker and are held in the neutral posture: {listed}")
+    lost = int((~result.tracked).sum())
+    if lost:
+        warnings.append(f"{lost} of {len(result.tracked)} frames have too few believable markers to follow the body")
+    if len(result.starts) > 1:
+        warnings.append("the filter started anew at frames " + ", ".join(str(t) for t in result.starts[1:]))
+    refused = int(result.refused.sum())
+    if refused:
+        warnings.append(f"{refused} marker samples lay outside the innovation gate and were refused")
+    return warnings

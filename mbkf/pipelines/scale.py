@@ -1,0 +1,66 @@
+"""From captures to a scaled subject."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from mbkf.errors import InvalidInput
+from mbkf.io.records import Capture
+from mbkf.io.subject import Subject
+from mbkf.model.protocol import Protocol, detect_protocol, load_protocol
+from mbkf.numerics.threads import single_threaded
+from mbkf.scaling.fit import scale_subject
+from mbkf.scaling.problem import ScalingSettings
+
+StageCallback = Callable[[str, int, int], None]
+
+
+def scale(
+    static: Capture | None = None,
+    trials: Sequence[Capture] = (),
+    *,
+    mass_kg: float | None = None,
+    height_m: float | None = None,
+    protocol: str | Protocol | None = None,
+    settings: ScalingSettings | None = None,
+    progress: StageCallback | None = None,
+) -> Subject:
+    """Fits the body to a person (SPEC §4, eq. 4.1).
+
+    Args:
+        static: A standing trial, if there is one.
+        trials: Trials of any movement.
+        mass_kg: Body mass; by default what the captures state.
+        height_m: Body height, if known.
+        protocol: Protocol, its name or its file; by default the one the marker names belong to.
+        settings: Weights of the priors.
+        progress: Called with the stage, items done and items in all.
+
+    Raises:
+        InvalidInput: No trial, no mass, or a mass or height that cannot be.
+        UnknownName: No protocol knows the markers, or it names unknown segments.
+        NotObservable: Too few markers of the protocol.
+        NotConverged: The markers do not fit a person.
+    """
+    captures = ([] if static is None else [static]) + list(trials)
+    if not captures:
+        raise InvalidInput("scaling needs a static trial or at least one --trial")
+    if mass_kg is None:
+        mass_kg = next((c.subject_mass_kg for c in captures if c.subject_mass_kg is not None), None)
+    if mass_kg is None:
+        raise InvalidInput("the captures do not state the body mass; give --mass KG")
+    if protocol is None:
+        protocol = detect_protocol(captures[0].markers.names)
+    elif isinstance(protocol, str):
+        protocol = load_protocol(protocol)
+    report = None if progress is None else lambda done, total: progress("Scaling", done, total)
+    with single_threaded():
+        return scale_subject(
+            [] if static is None else [static.markers],
+            [trial.markers for trial in trials],
+            protocol,
+            mass_kg=mass_kg,
+            height_m=height_m,
+            settings=settings,
+            progress=report,
+        )

@@ -1,0 +1,104 @@
+"""The body in the air: the pelvis turns so that the angular momentum about the centre of mass stays what it is.
+
+The pelvis's three angles are Chebyshev polynomials between take-off and touch-down, where their values are given. The
+momentum L is linear in their rates; a quasi-Newton iteration on the rates makes it constant at the nodes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.polynomial import Chebyshev
+
+from mbkf.conventions import Array
+from mbkf.synthesis.curves import Curve, path
+from mbkf.synthesis.jets import Jet
+from mbkf.synthesis.plan import Flight
+
+NODES = 90
+SMALL = 1e-11
+"""Change of the pelvis's rates at which the iteration ends, rad/s."""
+
+
+class Tumbling:
+    """Pelvis angles around and during a flight.
+
+    Attributes:
+        plan: Times, and the angles on the ground.
+        times: (N,) nodes in the air, s.
+        turns: Chebyshev polynomials of the angles about x, y and z.
+    """
+
+    def __init__(self, plan: Flight) -> None:
+        self.plan = plan
+        domain = (plan.take_off_s, plan.touch_down_s)
+        self.times = Chebyshev.basis(NODES, domain=domain).roots().real
+        self.turns = []
+        for before, after in zip(plan.before, plan.after, strict=True):
+            first, last = before[-1][1], after[0][1]
+            self.turns.append(Chebyshev([0.5 * (first + last), 0.5 * (last - first)], domain=domain))
+        self._response: Array | None = None
+
+    def curves(self) -> tuple[Curve, Curve, Curve]:
+        """The pelvis's angles about x, y, z over the whole motion, with continuous acceleration."""
+        return tuple(self._curve(axis) for axis in range(3))  # type: ignore[return-value]
+
+    def _curve(self, axis: int) -> Curve:
+        turn, plan = self.turns[axis], self.plan
+        rate, acceleration = turn.deriv(), turn.deriv(2)
+        ends = [(t, turn(t), rate(t), acceleration(t)) for t in (plan.take_off_s, plan.touch_down_s)]
+        before = path([*plan.before[axis][:-1], ends[0]])
+        after = path([ends[1], *plan.after[axis][1:]])
+
+        def curve(at: Array) -> Jet:
+            rising, landed = before(at), after(at)
+            inside = np.clip(at, plan.take_off_s, plan.touch_down_s)
+            flying = (turn(inside), rate(inside), acceleration(inside))
+            return Jet(*(np.where(at < plan.take_off_s, b, np.where(at > plan.touch_down_s, a, f))
+                         for b, f, a in zip(rising.orders, flying, landed.orders, strict=True)))
+
+        return curve
+
+    def refine(self, momentum: Callable[[tuple[Jet, Jet, Jet]], Array], rounds: int) -> float:
+        """Makes the momentum more constant.
+
+        Args:
+            momentum: (N, 3) angular momentum about the centre of mass at the nodes, from the pelvis's angles.
+            rounds: Iterations.
+
+        Returns:
+            Largest change of a rate in the last iteration, rad/s.
+        """
+        change = np.inf
+        for _ in range(rounds):
+            angles = tuple(Jet(t(self.times), t.deriv()(self.times), t.deriv(2)(self.times)) for t in self.turns)
+            now = momentum(angles)
+            if self._response is None:
+                self._response = np.stack([momentum(_faster(angles, axis)) - now for axis in range(3)], axis=-1)
+            inverse = np.linalg.inv(self._response)
+            drift = self._mean(np.einsum("tij,tj->ti", inverse, now))
+            constant = np.linalg.solve(self._mean(inverse.reshape(-1, 9)).reshape(3, 3), drift)
+            delta = np.einsum("tij,tj->ti", inverse, constant - now)
+            domain = self.turns[0].domain
+            for axis in range(3):
+                rates = Chebyshev.fit(self.times, delta[:, axis], NODES - 1, domain=domain)
+                self.turns[axis] = self.turns[axis] + rates.integ(lbnd=domain[0])
+            change = float(np.abs(delta).max())
+            if change < SMALL:
+                break
+        return change
+
+    def refresh(self) -> None:
+        """Forgets the response of the momentum to the rates, so that it is measured again."""
+        self._response = None
+
+    def _mean(self, values: Array) -> Array:
+        domain = self.turns[0].domain
+        fits = [Chebyshev.fit(self.times, column, NODES - 1, domain=domain).integ(lbnd=domain[0]) for column in values.T]
+        return np.array([fit(domain[1]) for fit in fits]) / (domain[1] - domain[0])
+
+
+def _faster(angles: tuple[Jet, ...], axis: int) -> tuple[Jet, ...]:
+    """The same angles, one of them turning 1 rad/s faster."""
+    return tuple(Jet(a.value, a.first + (k == axis), a.second) for k, a in enumerate(angles))
