@@ -45,6 +45,6 @@ def data_folder(kind: str) -> Path:
 
 def read_only(array: object, dtype: type = np.float64) -> NDArray:
     """A contiguous copy of an array that cannot be written to."""
-    copy = np.array(array, dtype=dtype, copy=True, order="C")
+    copy: NDArray = np.array(array, dtype=dtype, copy=True, order="C")
     copy.setflags(write=False)
     return copy

@@ -63,7 +63,7 @@ class KinematicFilter:
         acceleration = np.where(held, 0.0, settings.acceleration_scale * model.acceleration_sd)
         self.plant = WhiteAccelerationPlant(model, dt_s, acceleration)
         self._free = np.flatnonzero(~held[self.posture.dofs])
-        self._joint_dofs = self.posture.dofs[self._free]
+        self._rest = model.nv + np.flatnonzero(~held)
 
     def start(self, measured_m: Array, guess: Array | None = None) -> FilterState | None:
         """A state at rest from one frame of markers (M, 3), or None where they do not fit the body.
@@ -114,7 +114,7 @@ class KinematicFilter:
         return information(innovation[trusted].ravel(), jacobian[trusted].reshape(len(sd), jacobian.shape[2]), sd)
 
     def _rest_information(self, state: FilterState) -> Information:
-        """The weak pulls of free joints towards neutral posture and rest."""
+        """The weak pulls towards neutral posture and rest."""
         nv = self.sensor.model.nv
         prior = self.posture.reading(state.q)
         sd = self.settings.posture_scale * self.posture.sd[self._free]
@@ -122,9 +122,8 @@ class KinematicFilter:
         matrix = np.zeros((2 * nv, 2 * nv))
         vector = np.zeros(2 * nv)
         matrix[:nv, :nv], vector[:nv] = pull.matrix, pull.vector
-        index = nv + self._joint_dofs
-        matrix[index, index] = self.settings.velocity_sd**-2
-        vector[index] = -state.v[self._joint_dofs] * self.settings.velocity_sd**-2
+        matrix[self._rest, self._rest] = self.settings.velocity_sd**-2
+        vector[self._rest] = -state.v[self._rest - nv] * self.settings.velocity_sd**-2
         return Information(matrix, vector, 0.0, 0)
 
     def _velocity_step(self, before: FilterState, after: FilterState, phi: Array, gain_effect: Array) -> Array:

@@ -15,7 +15,7 @@ class KinematicSettings:
         gate: Squared Mahalanobis distance (3 readings) above which a marker is not believed.
         gate_radius_m: Distance below which no marker is refused, m.
         posture_scale: The posture prior's spread is the body's table times this, per reading.
-        velocity_sd: Spread of a joint's velocity about rest, rad/s, per reading; keeps unseen joints from running off.
+        velocity_sd: Spread of a velocity about rest, rad/s or m/s, per reading; keeps what is not seen from running off.
         restart_rms_m: A pose fit better than this is accepted to start or restart the filter, m.
         restart_after_s: Time without enough believable markers after which the filter starts anew.
         min_markers: Fewer markers than this in a frame leave the body untracked.
@@ -25,7 +25,7 @@ class KinematicSettings:
     marker_noise_scale: float = 1.0
     gate: float = 60.0
     gate_radius_m: float = 0.03
-    posture_scale: float = 3.0
+    posture_scale: float = 10.0
     velocity_sd: float = 20.0
     restart_rms_m: float = 0.05
     restart_after_s: float = 0.2

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mbkf.conventions import Array, BoolArray
+from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, InvalidInput, UnknownName
 from mbkf.io.axes import finite, rotation_to_world
 from mbkf.io.records import PlateReadings
@@ -71,7 +71,7 @@ def read_forces_mot(
     readings = []
     for name, columns_of_set in sets.items():
         force, point, torque = (_vectors(table, columns) @ rotation.T for columns in columns_of_set)
-        loaded: BoolArray = np.greater_equal(force[:, 2], cop_threshold_n)
+        loaded = force[:, 2] >= cop_threshold_n
         point[~loaded & ~finite(point)] = 0.0  # no force, so no point of application
         require_finite(np.hstack([force, point]), torque, rate_hz, start_s, f"{path}, set '{name}'")
         origin = point[loaded].mean(axis=0) if loaded.any() else np.zeros(3)
@@ -121,8 +121,8 @@ def write_forces_mot(plates: Sequence[PlateReadings], path: str | Path) -> None:
     names: list[str] = []
     columns: list[Array] = []
     for plate in plates:
-        absent = np.isnan(plate.centre_of_pressure_m).any(axis=1)
-        point = np.where(absent[:, None], plate.origin_m, plate.centre_of_pressure_m)
+        given = finite(plate.centre_of_pressure_m)
+        point = np.where(given[:, None], plate.centre_of_pressure_m, plate.origin_m)
         torque = plate.moment_nm - np.cross(point - plate.origin_m, plate.force_n)
         names += [f"ground_force_{plate.name}_{kind}{axis}" for kind in "vp" for axis in _AXES]
         names += [f"ground_torque_{plate.name}_{axis}" for axis in _AXES]

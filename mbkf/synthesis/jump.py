@@ -17,15 +17,15 @@ from mbkf.synthesis.standing import constant, posture
 
 CROUCH_S, PUSH_S, FLIGHT_S, ABSORB_S, RECOVER_S = 0.55, 0.32, 0.34, 0.31, 0.85
 HEEL_OFF_S, HEEL_DOWN_S = 0.17, 0.10
-CROUCH_M, TAKE_OFF_M, TOUCH_DOWN_M, ABSORB_M = -0.22, 0.065, 0.065, -0.19
+CROUCH_M, TAKE_OFF_M, TOUCH_DOWN_M, ABSORB_M = -0.228, 0.057, 0.045, -0.225
 """Height of the centre of mass against standing, for a body of the reference size."""
 
-TAKE_OFF_PITCH = (36.0, 330.0, 0.0)
-TOUCH_DOWN_PITCH = (30.0, -230.0, 0.0)
+TAKE_OFF_PITCH = (27.5, 425.0, 0.0)
+TOUCH_DOWN_PITCH = (24.0, -395.0, 0.0)
 """Pitch of the foot (heel up), deg, deg/s, deg/s²."""
 
-CLEARANCE_M = 0.085
-STEEPNESS = 0.17
+CLEARANCE_M = 0.096
+STEEPNESS = 0.255
 
 CROUCH_DEG = {
     "torso": (0.0, 16.0, 0.0), "neck": (0.0, -8.0, 0.0), "head": (0.0, -10.0, 0.0),
@@ -70,7 +70,7 @@ def jump_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> Mo
     half_width, toe_out = rng.uniform(0.10, 0.13) * size, np.deg2rad(rng.uniform(4, 9))
     feet = _feet(model, half_width, toe_out, off, down)
     return MotionPlan(0.0, seconds, angles, feet, height, _load(model, feet, pelvis, begin, absorbed, rng),
-                      np.deg2rad(9.0), flight=pelvis)
+                      np.deg2rad(10.0), flight=pelvis)
 
 
 def _pelvis(begin: float, bottom: float, off: float, down: float, absorbed: float, end: float,

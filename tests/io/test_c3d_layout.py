@@ -72,5 +72,34 @@ def test_size_of_a_number_follows_the_sign_of_the_scale(tmp_path, processor, ord
     header = bytearray(struct.pack(f"{order}256H", *words))
     header[:2] = bytes([2, 0x50])
     path = tmp_path / "made.c3d"
-    path.write_bytes(bytes(header) + bytes([1, 0x50, 1, processor]) + bytes(508) + bytes(512))
+    group = struct.pack(f"{order}bb5sHB", 5, -1, b"POINT", 3, 0)
+    used = struct.pack(f"{order}bb4sHbBHB", 4, 1, b"USED", 0, 2, 0, 3, 0)
+    section = bytes([1, 0x50, 1, processor]) + group + used
+    path.write_bytes(bytes(header) + section.ljust(512, b"\0") + bytes(512))
     assert check_layout(path).bytes_per_number == size
+
+
+@pytest.mark.parametrize("word", [1, 2, 9])
+def test_header_and_parameters_must_agree(whole, tmp_path, word):
+    content = bytearray(whole)
+    struct.pack_into("<H", content, 2 * word, 5)
+    path = tmp_path / "odd.c3d"
+    path.write_bytes(content)
+    with pytest.raises(FileFormatError, match="header counts"):
+        read_c3d(path)
+
+
+def test_random_bytes_in_the_parameters_are_harmless_or_refused(whole, tmp_path):
+    rng = np.random.default_rng(11)
+    refused = 0
+    for trial in range(60):
+        content = bytearray(whole)
+        for at in rng.integers(512, (check_start(whole) - 1) * 512, 5):
+            content[at] = rng.integers(256)
+        path = tmp_path / f"{trial}.c3d"
+        path.write_bytes(content)
+        try:
+            assert check_layout(path).frames == 12
+        except FileFormatError:
+            refused += 1
+    assert 0 < refused < 60
