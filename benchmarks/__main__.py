@@ -25,7 +25,8 @@ from benchmarks.checks import Check, Context
 from mbkf.errors import InvalidInput, MbkfError, UnknownName
 
 DATA_VARIABLE = "MBKF_DATA"
-NOT_BENCHMARKS = {"__main__", "checks"}
+_PIPED_WIDTH = 120
+NOT_BENCHMARKS = {"__main__", "checks", "commands", "references"}
 
 
 def names() -> tuple[str, ...]:
@@ -87,6 +88,8 @@ def _run(args: argparse.Namespace) -> list[Check]:
     if args.data is not None and not args.data.is_dir():
         raise InvalidInput(f"{args.data}: no such folder; give the reference captures with --data DIR")
     console = Console()
+    if not console.is_terminal:
+        console = Console(width=_PIPED_WIDTH)
     results: dict[str, list[Check]] = {}
     for name in args.names or known:
         out = args.out / name
@@ -108,6 +111,8 @@ def _table(name: str, checks: Sequence[Check], seconds: float) -> Table:
     for check in checks:
         verdict = "[green]pass[/green]" if check.passed else "[bold red]FAIL[/bold red]"
         value, bound = f"{check.value:.4g}", f"{check.relation} {check.bound:.4g}"
+        if not check.bounded:
+            verdict, bound = "", "for information"
         table.add_row(check.name, value, bound, check.unit, verdict)
     return table
 
@@ -118,6 +123,7 @@ def _write(path: Path, results: dict[str, list[Check]], quick: bool) -> None:
             "benchmark": name,
             **asdict(check),
             "value": float(check.value) if math.isfinite(check.value) else None,
+            "bound": float(check.bound) if check.bounded else None,
             "passed": check.passed,
         }
         for name, checks in results.items()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -16,7 +17,7 @@ class Check:
     Attributes:
         name: What is measured, and on which trial.
         value: The measured number; NaN never passes.
-        bound: The number it is compared with.
+        bound: The number it is compared with; infinite where the value is shown for information only.
         relation: "<=" where the value may not exceed the bound, ">=" where it must reach it.
         unit: Unit of value and bound, "" for pure numbers.
     """
@@ -32,8 +33,15 @@ class Check:
             raise InvalidInput(f"check '{self.name}': relation must be '<=' or '>=', got '{self.relation}'")
 
     @property
+    def bounded(self) -> bool:
+        """Whether there is a bound to keep."""
+        return math.isfinite(self.bound)
+
+    @property
     def passed(self) -> bool:
-        """Whether the value keeps its bound."""
+        """Whether the value keeps its bound, or there is none."""
+        if not self.bounded:
+            return True
         return bool(self.value <= self.bound if self.relation == "<=" else self.value >= self.bound)
 
 

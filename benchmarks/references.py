@@ -86,7 +86,8 @@ def low_passed(table: Table) -> Table:
     steps = np.diff(table.times_s)
     if len(steps) == 0 or np.ptp(steps) > 0.01 * steps.mean():
         raise InvalidInput(f"'{table.title}': times are not evenly spaced, so no low-pass can be applied")
-    return Table(table.names, table.times_s, low_pass(table.columns, 1.0 / float(steps.mean())), title=table.title)
+    smooth = low_pass(table.columns, 1.0 / float(steps.mean()))
+    return Table(table.names, table.times_s, smooth, title=table.title)
 
 
 def agreement(ours: Curve, theirs: Curve) -> Agreement:
@@ -122,7 +123,8 @@ def worst_side(ours: Table, theirs: Table, coordinate: str, *, suffix: str = "",
         name = f"{coordinate}_{side}{suffix}"
         own = Curve(ours.times_s, factor * ours.column(name))
         found.append(agreement(own, Curve(theirs.times_s, sign * factor * theirs.column(name))))
-    return Agreement(min(a.r for a in found), max(a.rms for a in found), max(a.rms_without_mean for a in found))
+    largest = (max(a.rms for a in found), max(a.rms_without_mean for a in found))
+    return Agreement(min(a.r for a in found), *largest)
 
 
 def in_degrees(table: Table) -> Table:
@@ -153,9 +155,9 @@ def plug_in_gait_angles(capture: Capture) -> Table:
 def plates_against_export(c3d: Path, mot: Path) -> tuple[float, float]:
     """RMS difference of force in N and of centre of pressure in mm between a C3D's plates and their export.
 
-    The offset found in the C3D is taken off the export's forces and points, too. The export's torques are left
-    aside, since it writes them with the opposite sign (its unloaded plate shows it), and so are its samples
-    below the threshold, where it names the middle of the plate.
+    The offset found in the C3D is taken off the export's forces and points, too. The export's torques are
+    left aside, since it writes them with the opposite sign (its unloaded plate shows it), and so are its
+    samples below the threshold, where it names the middle of the plate.
     """
     exported = {plate.name: plate for plate in read_forces_mot(mot)}
     force, pressure = [], []
@@ -173,7 +175,7 @@ def plates_against_export(c3d: Path, mot: Path) -> tuple[float, float]:
 
 
 def stored_markers(c3d: Path, trc: Path) -> float:
-    """Largest difference in mm to the markers OpenSim read, beyond the digits it printed; ∞ where a gap differs."""
+    """Largest difference in mm to the markers OpenSim read, beyond its rounding; ∞ where a gap differs."""
     capture, theirs = read_c3d(c3d), read_trc(trc, up="z").markers
     rows = np.rint((_trc_times(trc) - capture.markers.start_time_s) * capture.markers.rate_hz).astype(int)
     names = tuple(name for name in theirs.names if name in capture.markers.names)

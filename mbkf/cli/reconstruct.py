@@ -30,12 +30,22 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("--subject", required=True, metavar="SUBJECT.toml", help="written by 'mbkf scale'")
     parser.add_argument("--forces", metavar="FILE.mot", help="ground reactions; a C3D brings its own plates")
     parser.add_argument("--filter", choices=("kinematic",), default="kinematic", help="which filter")
-    parser.add_argument("--hide", metavar="A,B@T0:T1", action="append", default=[],
-                        help="hide markers between two times in s; may be repeated")
+    parser.add_argument(
+        "--hide",
+        metavar="A,B@T0:T1",
+        action="append",
+        default=[],
+        help="hide markers between two times in s; may be repeated",
+    )
     parser.add_argument("--without-plate", metavar="N", action="append", default=[], help="withhold a plate")
-    parser.add_argument("--keep-markers", action="store_true",
-                        help="keep the subject's marker positions instead of correcting them on this trial")
-    parser.add_argument("--up", metavar="AXIS", help="axis of the files that points up: x, y, z, -x, -y or -z")
+    parser.add_argument(
+        "--keep-markers",
+        action="store_true",
+        help="keep the subject's marker positions instead of correcting them on this trial",
+    )
+    parser.add_argument(
+        "--up", metavar="AXIS", help="axis of the files that points up: x, y, z, -x, -y or -z"
+    )
     parser.add_argument("--unit", metavar="UNIT", help="length unit of the markers: mm, cm or m")
     parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
     parser.set_defaults(run=run)
@@ -103,7 +113,9 @@ def print_summary(summary: dict[str, Any], folder: Path) -> None:
     from rich.table import Table
 
     console = Console(highlight=False)
-    table = Table(title=f"{summary['trial']} ({summary['filter']} filter)", title_justify="left", show_header=False)
+    table = Table(
+        title=f"{summary['trial']} ({summary['filter']} filter)", title_justify="left", show_header=False
+    )
     table.add_column()
     table.add_column(justify="right")
     rows = [
@@ -111,13 +123,26 @@ def print_summary(summary: dict[str, Any], folder: Path) -> None:
         ("markers", f"{summary['markers_used']}, {100 * (summary['missing_fraction'] or 0):.1f} % missing"),
         ("marker RMS / max", _pair(summary["marker_rms_mm"], summary["marker_max_mm"], "mm")),
         ("frames with all reactions measured", str(summary["valid_frames"])),
-        ("residual at the pelvis", _pair(summary["residual_force_rms_n"], summary["residual_moment_rms_nm"], "N, N m")),
-        ("step median / 99 %", _pair(_ms(summary["step_seconds_median"]), _ms(summary["step_seconds_p99"]), "ms")),
-        ("times real time", "" if summary["realtime_factor"] is None else f"{summary['realtime_factor']:.1f}"),
+        (
+            "residual at the pelvis",
+            _pair(summary["residual_force_rms_n"], summary["residual_moment_rms_nm"], "N, N m"),
+        ),
+        (
+            "step median / 99 %",
+            _pair(_ms(summary["step_seconds_median"]), _ms(summary["step_seconds_p99"]), "ms"),
+        ),
+        (
+            "times real time",
+            "" if summary["realtime_factor"] is None else f"{summary['realtime_factor']:.1f}",
+        ),
     ]
     if summary["hidden_marker_rms_mm"] is not None:
-        rows.append(("hidden markers RMS / max",
-                     _pair(summary["hidden_marker_rms_mm"], summary["hidden_marker_max_mm"], "mm")))
+        rows.append(
+            (
+                "hidden markers RMS / max",
+                _pair(summary["hidden_marker_rms_mm"], summary["hidden_marker_max_mm"], "mm"),
+            )
+        )
     for name, value in (summary["truth"] or {}).items():
         rows.append((f"against the truth: {name.replace('_', ' ')}", "" if value is None else f"{value:.3f}"))
     for name, text in rows:

@@ -24,11 +24,19 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         epilog=_EPILOG,
     )
     parser.add_argument("static", metavar="STATIC", nargs="?", help="standing trial (.c3d or .trc)")
-    parser.add_argument("--trial", metavar="TRIAL", action="append", default=[], help="moving trial; may be repeated")
-    parser.add_argument("--protocol", metavar="NAME|FILE", help="marker protocol; by default found from the names")
-    parser.add_argument("--mass", metavar="KG", type=float, help="body mass; by default what the capture states")
+    parser.add_argument(
+        "--trial", metavar="TRIAL", action="append", default=[], help="moving trial; may be repeated"
+    )
+    parser.add_argument(
+        "--protocol", metavar="NAME|FILE", help="marker protocol; by default found from the names"
+    )
+    parser.add_argument(
+        "--mass", metavar="KG", type=float, help="body mass; by default what the capture states"
+    )
     parser.add_argument("--height", metavar="M", type=float, help="body height, if known")
-    parser.add_argument("--up", metavar="AXIS", help="axis of the files that points up: x, y, z, -x, -y or -z")
+    parser.add_argument(
+        "--up", metavar="AXIS", help="axis of the files that points up: x, y, z, -x, -y or -z"
+    )
     parser.add_argument("--unit", metavar="UNIT", help="length unit of the files: mm, cm or m")
     parser.add_argument("--out", required=True, metavar="SUBJECT.toml", help="file to write")
     parser.set_defaults(run=run)
@@ -54,8 +62,9 @@ def run(args: argparse.Namespace) -> int:
     static = None if args.static is None else read_capture(args.static, up=args.up, unit=args.unit)
     trials = [read_capture(path, up=args.up, unit=args.unit) for path in args.trial]
     with stages() as report:
-        subject = scale(static, trials, mass_kg=args.mass, height_m=args.height, protocol=args.protocol,
-                        progress=report)
+        subject = scale(
+            static, trials, mass_kg=args.mass, height_m=args.height, protocol=args.protocol, progress=report
+        )
     out.parent.mkdir(parents=True, exist_ok=True)
     write_subject(subject, out)
     _print(subject.report, subject.protocol, str(out))
@@ -72,7 +81,9 @@ def _print(report: dict[str, Any], protocol: str, out: str) -> None:
         factors.add_column(heading, justify="left" if heading == "factor" else "right")
     for name, entry in report["factors"].items():
         note = "  at its bound" if entry["at_bound"] else ""
-        factors.add_row(name.replace("_", " "), f"{entry['value']:.3f}", f"{entry['standard_error']:.3f}{note}")
+        factors.add_row(
+            name.replace("_", " "), f"{entry['value']:.3f}", f"{entry['standard_error']:.3f}{note}"
+        )
     markers = Table(title="Markers that moved most from their reference place", title_justify="left")
     for heading in ("marker", "kind", "moved mm", "RMS mm", "max mm"):
         markers.add_column(heading, justify="left" if heading in ("marker", "kind") else "right")
@@ -88,5 +99,7 @@ def _print(report: dict[str, Any], protocol: str, out: str) -> None:
         console.print(f"{len(left_out)} points of the captures left out: {names}")
     if not report["converged"]:
         console.print("the fit did not settle; look at the markers above")
-    console.print(f"{out}: protocol {protocol}, {report['frames']} frames, markers fit to "
-                  f"{report['marker_rms_mm']:.1f} mm RMS")
+    console.print(
+        f"{out}: protocol {protocol}, {report['frames']} frames, markers fit to "
+        f"{report['marker_rms_mm']:.1f} mm RMS"
+    )

@@ -8,9 +8,10 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.filters.settings import KinematicSettings
 
 
-def believable(innovation_m: Array, jacobian: Array, covariance: Array, noise_m: Array,
-               settings: KinematicSettings) -> BoolArray:
-    """(M,) whether each marker is seen and lies inside its gate: yᵀ S⁻¹ y ≤ gate, S = H P Hᵀ + R, or within the radius.
+def believable(
+    innovation_m: Array, jacobian: Array, covariance: Array, noise_m: Array, settings: KinematicSettings
+) -> BoolArray:
+    """(M,) whether each marker is seen and inside its gate: yᵀ S⁻¹ y ≤ gate, S = H P Hᵀ + R, or near enough.
 
     When more than half of the markers fall outside, the state is wrong and not the markers, and all are believed.
 

@@ -16,7 +16,6 @@ from mbkf.sensors.markers import MarkerSensor
 from mbkf.sensors.pose_fit import PoseFit, fit_pose, segment_by_segment
 from mbkf.sensors.posture import PostureSensor
 
-
 START_SPEED_SD_M_S = 2.0
 START_SPEED_SD_RAD_S = 5.0
 """How fast a body may move when the filter starts knowing only its pose."""
@@ -54,8 +53,9 @@ class KinematicFilter:
         settings: What it believes.
     """
 
-    def __init__(self, sensor: MarkerSensor, noise_m: Array, dt_s: float, held: BoolArray,
-                 settings: KinematicSettings) -> None:
+    def __init__(
+        self, sensor: MarkerSensor, noise_m: Array, dt_s: float, held: BoolArray, settings: KinematicSettings
+    ) -> None:
         self.sensor, self.settings, self.held = sensor, settings, held
         self.noise_m = noise_m * settings.marker_noise_scale
         model = sensor.model
@@ -106,12 +106,20 @@ class KinematicFilter:
         q = self.sensor.model.integrate(predicted.q, correction.step[:nv])
         posterior = FilterState(q, predicted.v + correction.step[nv:], correction.covariance)
         nis = correct(predicted.P[:nv, :nv], markers).nis
-        return StepResult(posterior, seen & ~trusted, nis, markers.readings, tracked,
-                          self._velocity_step(state, posterior, phi, correction.gain_effect))
+        return StepResult(
+            posterior,
+            seen & ~trusted,
+            nis,
+            markers.readings,
+            tracked,
+            self._velocity_step(state, posterior, phi, correction.gain_effect),
+        )
 
     def _marker_information(self, innovation: Array, jacobian: Array, trusted: BoolArray) -> Information:
         sd = np.repeat(self.noise_m[trusted], 3)
-        return information(innovation[trusted].ravel(), jacobian[trusted].reshape(len(sd), jacobian.shape[2]), sd)
+        return information(
+            innovation[trusted].ravel(), jacobian[trusted].reshape(len(sd), jacobian.shape[2]), sd
+        )
 
     def _rest_information(self, state: FilterState) -> Information:
         """The weak pulls towards neutral posture and rest."""
@@ -126,7 +134,9 @@ class KinematicFilter:
         vector[self._rest] = -state.v[self._rest - nv] * self.settings.velocity_sd**-2
         return Information(matrix, vector, 0.0, 0)
 
-    def _velocity_step(self, before: FilterState, after: FilterState, phi: Array, gain_effect: Array) -> Array:
+    def _velocity_step(
+        self, before: FilterState, after: FilterState, phi: Array, gain_effect: Array
+    ) -> Array:
         """Cov(v_k − v_{k−1}) = P_k + P_{k−1} − C − Cᵀ with C = (I − K H) Φ P_{k−1}."""
         nv = self.sensor.model.nv
         carried = phi @ before.P[:, nv:]

@@ -13,7 +13,6 @@ from mbkf.errors import NotObservable
 from mbkf.filters.kinematic import KinematicFilter
 from mbkf.filters.state import FilterState
 
-
 WARM_UP_S = 0.25
 """Stretch of a trial that is first run through backwards to start with a velocity."""
 
@@ -56,8 +55,13 @@ class Track:
     covariance: Array | None
 
 
-def track(kalman: KinematicFilter, measured_m: Array, *, keep_covariance: bool = False,
-          progress: Callable[[int, int], None] | None = None) -> Track:
+def track(
+    kalman: KinematicFilter,
+    measured_m: Array,
+    *,
+    keep_covariance: bool = False,
+    progress: Callable[[int, int], None] | None = None,
+) -> Track:
     """Runs the filter over all frames.
 
     Args:
@@ -101,8 +105,10 @@ def track(kalman: KinematicFilter, measured_m: Array, *, keep_covariance: bool =
         if progress is not None and (t % 20 == 0 or t == frames - 1):
             progress(t + 1, frames)
     if not starts:
-        raise NotObservable("in no frame do the markers fit the scaled body; is this the subject's protocol, "
-                            "and is the unit right?")
+        raise NotObservable(
+            "in no frame do the markers fit the scaled body; is this the subject's protocol, "
+            "and is the unit right?"
+        )
     return Track(**{**out.__dict__, "starts": tuple(starts)})
 
 
@@ -139,10 +145,19 @@ def _empty(frames: int, markers: int, kalman: KinematicFilter, keep: bool) -> Tr
         return np.full((frames, *shape), np.nan)
 
     return Track(
-        q=nan(nq), v=nan(nv), a=nan(nv), position_covariance=nan(nv, nv), velocity_sd=nan(nv),
-        velocity_step_covariance=nan(nv, nv), refused=np.zeros((frames, markers), dtype=bool),
-        tracked=np.zeros(frames, dtype=bool), nis=nan(), readings=np.zeros(frames, dtype=int),
-        step_seconds=nan(), starts=(), covariance=nan(2 * nv, 2 * nv) if keep else None,
+        q=nan(nq),
+        v=nan(nv),
+        a=nan(nv),
+        position_covariance=nan(nv, nv),
+        velocity_sd=nan(nv),
+        velocity_step_covariance=nan(nv, nv),
+        refused=np.zeros((frames, markers), dtype=bool),
+        tracked=np.zeros(frames, dtype=bool),
+        nis=nan(),
+        readings=np.zeros(frames, dtype=int),
+        step_seconds=nan(),
+        starts=(),
+        covariance=nan(2 * nv, 2 * nv) if keep else None,
     )
 
 

@@ -67,10 +67,10 @@ def write_subject(subject: Subject, path: str | Path) -> None:
     lines = [
         "# A scaled subject, written by mbkf. Lengths in m, mass in kg; positions in the segment's frame.",
         f"body = {_text(subject.body)}",
-        f"mass_kg = {subject.mass_kg!r}",
+        f"mass_kg = {float(subject.mass_kg)!r}",
     ]
     if subject.height_m is not None:
-        lines.append(f"height_m = {subject.height_m!r}")
+        lines.append(f"height_m = {float(subject.height_m)!r}")
     lines += [f"protocol = {_text(subject.protocol)}", "", "[scale_factors]"]
     lines += [f"{name} = {float(value)!r}" for name, value in subject.scale_factors.items()]
     for marker in subject.markers:
@@ -81,9 +81,9 @@ def write_subject(subject: Subject, path: str | Path) -> None:
             f"name = {_text(marker.name)}",
             f"segment = {_text(marker.segment)}",
             f"position_m = [{position}]",
-            f"noise_m = {marker.noise_m!r}",
-            f"session_sd_m = {marker.session_sd_m!r}",
-            f"aliases = {json.dumps(list(marker.aliases), ensure_ascii=False)}",
+            f"noise_m = {float(marker.noise_m)!r}",
+            f"session_sd_m = {float(marker.session_sd_m)!r}",
+            f"aliases = [{', '.join(_text(alias) for alias in marker.aliases)}]",
         ]
     if subject.report:
         lines += ["", "# How it was found: one JSON object.", f"report = {_text(json.dumps(subject.report))}"]
@@ -118,7 +118,7 @@ def read_subject(path: str | Path) -> Subject:
         raise FileFormatError(source, "no such file; make it with 'mbkf scale'") from error
     except (OSError, UnicodeDecodeError) as error:
         raise FileFormatError(source, f"cannot be read ({error})") from error
-    except (tomllib.TOMLDecodeError, KeyError, TypeError, ValueError) as error:
+    except (tomllib.TOMLDecodeError, AttributeError, KeyError, TypeError, ValueError) as error:
         raise FileFormatError(source, f"not a subject file ({error}); make it with 'mbkf scale'") from error
 
 
@@ -126,9 +126,16 @@ def _marker(entry: dict[str, Any]) -> SubjectMarker:
     position = read_only(entry["position_m"])
     if position.shape != (3,) or not np.isfinite(position).all():
         raise ValueError(f"marker {entry['name']} needs three finite coordinates")
-    return SubjectMarker(entry["name"], entry["segment"], position, float(entry["noise_m"]),
-                         float(entry["session_sd_m"]), tuple(entry.get("aliases", ())))
+    return SubjectMarker(
+        entry["name"],
+        entry["segment"],
+        position,
+        float(entry["noise_m"]),
+        float(entry["session_sd_m"]),
+        tuple(entry.get("aliases", ())),
+    )
 
 
 def _text(value: str) -> str:
-    return json.dumps(value, ensure_ascii=False)
+    """A TOML basic string: JSON's, with DEL escaped, too."""
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

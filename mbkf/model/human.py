@@ -77,8 +77,9 @@ class HumanModel:
         self.supports = self._supports()
 
     @classmethod
-    def scaled(cls, factors: Mapping[str, float] | None = None, mass_kg: float | None = None,
-               body: str = "human18") -> HumanModel:
+    def scaled(
+        cls, factors: Mapping[str, float] | None = None, mass_kg: float | None = None, body: str = "human18"
+    ) -> HumanModel:
         """A body from named scale factors (all 1 when None) and mass (the reference mass when None).
 
         Raises:
@@ -104,12 +105,17 @@ class HumanModel:
         if segment.joint == "universal":
             parent_id = model.addJoint(parent_id, pin.JointModelRX(), placement, f"{segment.name}_x")
             placement = pin.SE3.Identity()
-        kinds = {"free": pin.JointModelFreeFlyer, "spherical": pin.JointModelSpherical,
-                 "universal": pin.JointModelRY, "hinge": pin.JointModelRY}
+        kinds = {
+            "free": pin.JointModelFreeFlyer,
+            "spherical": pin.JointModelSpherical,
+            "universal": pin.JointModelRY,
+            "hinge": pin.JointModelRY,
+        }
         joint_id = model.addJoint(parent_id, kinds[segment.joint](), placement, segment.name)
         model.appendBodyToJoint(joint_id, self._inertia(segment), pin.SE3.Identity())
-        return SegmentJoint(segment.name, segment.joint, joint_id,
-                            slice(first_q, model.nq), slice(first_v, model.nv))
+        return SegmentJoint(
+            segment.name, segment.joint, joint_id, slice(first_q, model.nq), slice(first_v, model.nv)
+        )
 
     def axis_scale(self, segment: Segment) -> Array:
         """(3,) scale factors of a segment's x, y, z axes."""

@@ -17,7 +17,7 @@ KINDS = ("anatomical", "technical", "computed")
 """Anatomical: on a landmark, stays near it. Technical: anywhere on the segment, its position comes from the data.
 Computed: a point that software stored (a joint centre); used for scaling, never followed."""
 
-DEFAULT_PLACEMENT_SD_M = {"anatomical": 0.010, "technical": 0.060, "computed": 0.010}
+DEFAULT_PLACEMENT_SD_M = {"anatomical": 0.010, "technical": 0.060, "computed": 0.006}
 DEFAULT_NOISE_M = 0.005
 
 
@@ -109,8 +109,12 @@ def detect_protocol(names: Iterable[str]) -> Protocol:
         if (known, -tracked) > best_score:
             best, best_score = protocol, (known, -tracked)
     if best is None or best_score[0] < 6:
-        raise UnknownName("marker set", ", ".join(present[:6]) or "(no markers)", protocol_names(),
-                          "no protocol knows these markers, give --protocol")
+        raise UnknownName(
+            "marker set",
+            ", ".join(present[:6]) or "(no markers)",
+            protocol_names(),
+            "no protocol knows these markers, give --protocol",
+        )
     return best
 
 
@@ -139,13 +143,33 @@ def _markers(entry: dict[str, Any], body: BodyDescription, path: Path) -> list[P
         return [own]
     other = mirrored(own.segment)
     position = own.position_m * [1.0, -1.0, 1.0]
-    return [own, ProtocolMarker(entry["mirror"], other, read_only(position), own.kind, own.placement_sd_m,
-                                own.noise_m, tuple(entry.get("mirror_aliases", ())))]
+    return [
+        own,
+        ProtocolMarker(
+            entry["mirror"],
+            other,
+            read_only(position),
+            own.kind,
+            own.placement_sd_m,
+            own.noise_m,
+            tuple(entry.get("mirror_aliases", ())),
+        ),
+    ]
 
 
 def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> ProtocolMarker:
-    known = {"name", "landmark", "segment", "position_m", "kind", "placement_sd_mm", "noise_mm", "aliases",
-             "mirror", "mirror_aliases"}
+    known = {
+        "name",
+        "landmark",
+        "segment",
+        "position_m",
+        "kind",
+        "placement_sd_mm",
+        "noise_mm",
+        "aliases",
+        "mirror",
+        "mirror_aliases",
+    }
     for key in entry:
         if key not in known:
             raise UnknownName("key", key, sorted(known), f"{path}, marker {entry.get('name', '?')}")
@@ -156,7 +180,9 @@ def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> Protoco
         segment = entry["segment"]
         position = read_only(entry["position_m"])
     if segment not in {s.name for s in body.segments}:
-        raise UnknownName("segment", segment, [s.name for s in body.segments], f"{path}, marker {entry['name']}")
+        raise UnknownName(
+            "segment", segment, [s.name for s in body.segments], f"{path}, marker {entry['name']}"
+        )
     kind = entry.get("kind", "anatomical" if "landmark" in entry else "technical")
     if kind not in KINDS:
         raise UnknownName("marker kind", kind, KINDS, f"{path}, marker {entry['name']}")

@@ -1,0 +1,1 @@
+"""Pure array mathematics: Kalman updates, Levenberg–Marquardt, rotations, Cardan angles."""

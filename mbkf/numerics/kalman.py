@@ -25,8 +25,12 @@ class Information:
 
     def __add__(self, other: Information) -> Information:
         """Both sets of readings together."""
-        return Information(self.matrix + other.matrix, self.vector + other.vector,
-                           self.innovation + other.innovation, self.readings + other.readings)
+        return Information(
+            self.matrix + other.matrix,
+            self.vector + other.vector,
+            self.innovation + other.innovation,
+            self.readings + other.readings,
+        )
 
 
 @dataclass(frozen=True)

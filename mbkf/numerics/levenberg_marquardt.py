@@ -51,11 +51,11 @@ class ArrowEquations:
         corner[np.diag_indices_from(corner)] *= 1.0 + damping
         count = self.border.shape[2]
         right = np.concatenate([self.border, self.frame_gradient[:, :, None]], axis=2)
-        eliminated = np.linalg.solve(frames, right)
+        eliminated: Array = np.linalg.solve(frames, right)
         flat = self.border.reshape(frames.shape[0] * frames.shape[1], count)
         reduced = corner - flat.T @ eliminated[:, :, :-1].reshape(flat.shape)
         gradient = self.corner_gradient - flat.T @ eliminated[:, :, -1].reshape(-1)
-        shared = np.linalg.solve(reduced, -gradient) if count else np.zeros(0)
+        shared = np.asarray(np.linalg.solve(reduced, -gradient), dtype=np.float64) if count else np.zeros(0)
         return -eliminated[:, :, -1] - eliminated[:, :, :-1] @ shared, shared
 
 

@@ -11,7 +11,9 @@ def skew(vectors: Array) -> Array:
     """(…, 3, 3) matrices [v]× of vectors (…, 3)."""
     x, y, z = np.moveaxis(vectors, -1, 0)
     zero = np.zeros_like(x)
-    return np.stack([np.stack([zero, -z, y], -1), np.stack([z, zero, -x], -1), np.stack([-y, x, zero], -1)], -2)
+    return np.stack(
+        [np.stack([zero, -z, y], -1), np.stack([z, zero, -x], -1), np.stack([-y, x, zero], -1)], -2
+    )
 
 
 def quaternion_log(quaternions: Array) -> Array:

@@ -1,0 +1,1 @@
+"""One question of a user per file: scale, reconstruct, synthesise, describe, export."""

@@ -50,10 +50,15 @@ def clinical_motion(model: HumanModel, track: Track, tau: Array, sd_tau: Array) 
     variance[known] = _moment_variance(clinical, q, sd_tau[known], theta)
     singular = np.zeros(shape, dtype=bool)
     singular[known] = clinical.singular(theta)
-    return ClinicalMotion(clinical.names, angles, rates, moments, angles_sd, rates_sd, np.sqrt(variance), singular)
+    return ClinicalMotion(
+        clinical.names, angles, rates, moments, angles_sd, rates_sd, np.sqrt(variance), singular
+    )
 
 
 def _moment_variance(clinical: ClinicalAngles, q: Array, sd_tau: Array, angles: Array) -> Array:
     """Σ B² sd² per joint, one axis of every joint at a time (no coordinate mixes two joints)."""
-    axis = np.concatenate([np.arange(joint.v.stop - joint.v.start) % 3 for joint in clinical.model.joints.values()])
-    return sum(clinical.moments(q, np.where(axis == one, sd_tau, 0.0), angles) ** 2 for one in range(3))
+    axis = np.concatenate(
+        [np.arange(joint.v.stop - joint.v.start) % 3 for joint in clinical.model.joints.values()]
+    )
+    by_axis = [clinical.moments(q, np.where(axis == one, sd_tau, 0.0), angles) for one in range(3)]
+    return np.square(by_axis).sum(axis=0)

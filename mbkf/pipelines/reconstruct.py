@@ -97,14 +97,19 @@ def reconstruct(
             subject = correct_markers(subject, shown)
         model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
         followed = [m for name in measured.names for m in subject.markers if m.name == name]
-        sensor = MarkerSensor(model, [m.segment for m in followed], np.array([m.position_m for m in followed]))
+        sensor = MarkerSensor(
+            model, [m.segment for m in followed], np.array([m.position_m for m in followed])
+        )
         held = _held(sensor, shown)
-        kalman = KinematicFilter(sensor, np.array([m.noise_m for m in followed]), 1.0 / shown.rate_hz, held,
-                                 settings.kinematic)
+        kalman = KinematicFilter(
+            sensor, np.array([m.noise_m for m in followed]), 1.0 / shown.rate_hz, held, settings.kinematic
+        )
         report = None if progress is None else lambda done, total: progress("Filtering", done, total)
         result = track(kalman, shown.positions_m, keep_covariance=settings.keep_covariance, progress=report)
         loads = assign_feet(model, result.q, shown.times_s, shown.rate_hz, plates)
-        return _assemble(capture, subject, settings, measured, hidden, sensor, held, result, loads, bool(plates))
+        return _assemble(
+            capture, subject, settings, measured, hidden, sensor, held, result, loads, bool(plates)
+        )
 
 
 def subject_markers(markers: MarkerTrajectories, subject: Subject) -> MarkerTrajectories:
@@ -120,8 +125,10 @@ def subject_markers(markers: MarkerTrajectories, subject: Subject) -> MarkerTraj
         if name in own:
             found.setdefault(own[name].name, name)
     if len(found) < MIN_MARKERS:
-        raise NotObservable(f"the capture has {len(found)} of the subject's markers (protocol '{subject.protocol}'; "
-                            f"at least {MIN_MARKERS} are needed); its own are {', '.join(markers.names[:6]) or 'none'}")
+        raise NotObservable(
+            f"the capture has {len(found)} of the subject's markers (protocol '{subject.protocol}'; "
+            f"at least {MIN_MARKERS} are needed); its own are {', '.join(markers.names[:6]) or 'none'}"
+        )
     chosen = markers.select(tuple(found.values()))
     return replace(chosen, names=tuple(found))
 
@@ -153,9 +160,18 @@ def _held(sensor: MarkerSensor, markers: MarkerTrajectories) -> BoolArray:
     return ~sensor.model.supports[sensor.joint_ids[present]].any(axis=0)
 
 
-def _assemble(capture: Capture, subject: Subject, settings: ReconstructSettings, measured: MarkerTrajectories,
-              hidden: BoolArray, sensor: MarkerSensor, held: BoolArray, result: Track, loads: FootLoads,
-              has_plates: bool) -> Reconstruction:
+def _assemble(
+    capture: Capture,
+    subject: Subject,
+    settings: ReconstructSettings,
+    measured: MarkerTrajectories,
+    hidden: BoolArray,
+    sensor: MarkerSensor,
+    held: BoolArray,
+    result: Track,
+    loads: FootLoads,
+    has_plates: bool,
+) -> Reconstruction:
     model = sensor.model
     dynamics = inverse_dynamics(model, result, loads.wrench, 1.0 / measured.rate_hz)
     known = np.where(has_plates, 1.0, np.nan)
@@ -221,10 +237,14 @@ def _warnings(result: Track, names: tuple[str, ...], held: BoolArray) -> list[st
     warnings = []
     if held.any():
         listed = ", ".join(name for name, fixed in zip(names, held, strict=True) if fixed)
-        warnings.append(f"{int(held.sum())} dofs move no marker and are held in the neutral posture: {listed}")
+        warnings.append(
+            f"{int(held.sum())} dofs move no marker and are held in the neutral posture: {listed}"
+        )
     lost = int((~result.tracked).sum())
     if lost:
-        warnings.append(f"{lost} of {len(result.tracked)} frames have too few believable markers to follow the body")
+        warnings.append(
+            f"{lost} of {len(result.tracked)} frames have too few believable markers to follow the body"
+        )
     if len(result.starts) > 1:
         warnings.append("the filter started anew at frames " + ", ".join(str(t) for t in result.starts[1:]))
     refused = int(result.refused.sum())

@@ -44,7 +44,9 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
     frames = choose_frames([trial], Protocol(subject.protocol, subject.protocol, body.name, own), FRAMES)
     local = np.array([m.position_m for m in frames.markers])
     scaled = np.array([body.segment(m.segment).scale_matrix @ factors for m in frames.markers])
-    markers = tuple(replace(m, position_m=p / s) for m, p, s in zip(frames.markers, local, scaled, strict=True))
+    markers = tuple(
+        replace(m, position_m=p / s) for m, p, s in zip(frames.markers, local, scaled, strict=True)
+    )
     prior = ScalingPrior(
         factors=factors,
         factor_covariance=FIXED_FACTOR_SD**2 * np.eye(len(factors)),
@@ -58,11 +60,16 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
     sensor = problem.sensor(problem.start(np.zeros((0, problem.posture.model.nq))))
     start = problem.start(np.array([segment_by_segment(sensor, frame) for frame in frames.measured_m]))
     state = minimise(start, problem.linearise, problem.cost, problem.move, tolerance=1e-3).state
-    moved: dict[str, Array] = {m.name: problem.local_m(state.factors, state.offsets_m)[i]
-                               for i, m in enumerate(markers)}
-    return replace(subject, markers=tuple(
-        replace(m, position_m=moved.get(m.name, m.position_m)) for m in subject.markers))
+    moved: dict[str, Array] = {
+        m.name: problem.local_m(state.factors, state.offsets_m)[i] for i, m in enumerate(markers)
+    }
+    return replace(
+        subject,
+        markers=tuple(replace(m, position_m=moved.get(m.name, m.position_m)) for m in subject.markers),
+    )
 
 
 def _as_protocol_marker(marker: SubjectMarker) -> ProtocolMarker:
-    return ProtocolMarker(marker.name, marker.segment, marker.position_m, "technical", marker.session_sd_m, marker.noise_m)
+    return ProtocolMarker(
+        marker.name, marker.segment, marker.position_m, "technical", marker.session_sd_m, marker.noise_m
+    )

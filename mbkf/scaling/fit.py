@@ -69,16 +69,27 @@ def scale_subject(
     errors = np.linalg.norm(problem.errors_m(solution.state), axis=2)
     rms = float(np.sqrt(np.nanmean(errors**2)))
     if rms > _GIVE_UP_M / 3:
-        raise NotConverged(f"markers fit the body only to {1e3 * rms:.0f} mm; is '{protocol.name}' their protocol?")
+        raise NotConverged(
+            f"markers fit the body only to {1e3 * rms:.0f} mm; is '{protocol.name}' their protocol?"
+        )
     return _subject(problem, solution, frames, dropped, protocol, mass_kg, height_m, settings)
 
 
-def _problem(frames: ScalingFrames, static_trials: int, protocol: Protocol, height_m: float | None,
-             settings: ScalingSettings, measured_m: Array) -> ScalingProblem:
+def _problem(
+    frames: ScalingFrames,
+    static_trials: int,
+    protocol: Protocol,
+    height_m: float | None,
+    settings: ScalingSettings,
+    measured_m: Array,
+) -> ScalingProblem:
     body = load_body(protocol.body)
     counts = np.bincount(frames.trial)
-    looks = np.where(np.arange(len(counts)) < static_trials, settings.static_posture_frames,
-                     settings.dynamic_posture_frames)
+    looks = np.where(
+        np.arange(len(counts)) < static_trials,
+        settings.static_posture_frames,
+        settings.dynamic_posture_frames,
+    )
     weight = np.minimum(looks / counts, 1.0)[frames.trial]
     expected = 1.0 if height_m is None else height_m / body.reference_height_m
     stature = settings.stature_sd if height_m is None else settings.known_stature_sd
@@ -98,16 +109,29 @@ def _first_poses(problem: ScalingProblem) -> Array:
     anatomical = np.array([m.kind != "technical" for m in problem.markers])
     tracked = {m.segment for m in problem.markers if m.kind != "technical"}
     usable = anatomical | np.array([m.segment not in tracked for m in problem.markers])
-    return np.array([segment_by_segment(sensor, np.where(usable[:, None], frame, np.nan))
-                     if (~np.isnan(frame[usable]).any(axis=1)).sum() >= 6 else segment_by_segment(sensor, frame)
-                     for frame in problem.measured_m])
+    return np.array(
+        [
+            segment_by_segment(sensor, np.where(usable[:, None], frame, np.nan))
+            if (~np.isnan(frame[usable]).any(axis=1)).sum() >= 6
+            else segment_by_segment(sensor, frame)
+            for frame in problem.measured_m
+        ]
+    )
 
 
-def _minimise(problem: ScalingProblem, start: ScalingState,
-              progress: Callable[[int, int], None] | None) -> Solution[ScalingState]:
+def _minimise(
+    problem: ScalingProblem, start: ScalingState, progress: Callable[[int, int], None] | None
+) -> Solution[ScalingState]:
     report = None if progress is None else lambda done: progress(done, MAX_ITERATIONS)
-    return minimise(start, problem.linearise, problem.cost, problem.move, tolerance=1e-4,
-                    max_iterations=MAX_ITERATIONS, on_iteration=report)
+    return minimise(
+        start,
+        problem.linearise,
+        problem.cost,
+        problem.move,
+        tolerance=1e-4,
+        max_iterations=MAX_ITERATIONS,
+        on_iteration=report,
+    )
 
 
 def _without_outliers(problem: ScalingProblem, state: ScalingState, limit_m: float) -> tuple[Array, Array]:
@@ -117,8 +141,16 @@ def _without_outliers(problem: ScalingProblem, state: ScalingState, limit_m: flo
     return np.where(far[:, :, None], np.nan, problem.measured_m), far
 
 
-def _subject(problem: ScalingProblem, solution: Solution[ScalingState], frames: ScalingFrames, dropped: Array,
-             protocol: Protocol, mass_kg: float, height_m: float | None, settings: ScalingSettings) -> Subject:
+def _subject(
+    problem: ScalingProblem,
+    solution: Solution[ScalingState],
+    frames: ScalingFrames,
+    dropped: Array,
+    protocol: Protocol,
+    mass_kg: float,
+    height_m: float | None,
+    settings: ScalingSettings,
+) -> Subject:
     state = solution.state
     local = problem.local_m(state.factors, state.offsets_m)
     found = {m.name: position for m, position in zip(problem.markers, local, strict=True)}
@@ -129,8 +161,16 @@ def _subject(problem: ScalingProblem, solution: Solution[ScalingState], frames: 
             continue
         reference = (body.segment(marker.segment).scale_matrix @ state.factors) * marker.position_m
         seen = marker.name in found
-        markers.append(SubjectMarker(marker.name, marker.segment, found[marker.name] if seen else reference,
-                                     marker.noise_m, _session_sd_m(marker, seen), marker.aliases))
+        markers.append(
+            SubjectMarker(
+                marker.name,
+                marker.segment,
+                found[marker.name] if seen else reference,
+                marker.noise_m,
+                _session_sd_m(marker, seen),
+                marker.aliases,
+            )
+        )
     return Subject(
         body=body.name,
         mass_kg=float(mass_kg),
@@ -147,8 +187,13 @@ def _session_sd_m(marker: ProtocolMarker, seen: bool) -> float:
     return max(MIN_SESSION_SD_M, SESSION_SHARE * marker.placement_sd_m) if seen else marker.placement_sd_m
 
 
-def _report(problem: ScalingProblem, solution: Solution[ScalingState], frames: ScalingFrames, dropped: Array,
-            settings: ScalingSettings) -> dict[str, Any]:
+def _report(
+    problem: ScalingProblem,
+    solution: Solution[ScalingState],
+    frames: ScalingFrames,
+    dropped: Array,
+    settings: ScalingSettings,
+) -> dict[str, Any]:
     """Plain numbers: fit per marker (mm), factors with standard errors and active bounds, what was left out."""
     state, body = solution.state, problem.body
     errors_mm = 1e3 * np.linalg.norm(problem.errors_m(state), axis=2)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.errors import NotObservable
@@ -50,8 +51,10 @@ def choose_frames(trials: Sequence[MarkerTrajectories], protocol: Protocol, per_
     markers = tuple(m for m in protocol.markers if m.name in present)
     if len(markers) < MIN_MARKERS:
         names = ", ".join(trials[0].names[:6]) or "none"
-        raise NotObservable(f"the trial has {len(markers)} markers of protocol '{protocol.name}' (its own: {names}); "
-                            "give --protocol")
+        raise NotObservable(
+            f"the trial has {len(markers)} markers of protocol '{protocol.name}' (its own: {names}); "
+            "give --protocol"
+        )
     column = {marker.name: i for i, marker in enumerate(markers)}
     blocks, sources = [], []
     for index, (trial, match) in enumerate(zip(trials, matches, strict=True)):
@@ -67,13 +70,18 @@ def choose_frames(trials: Sequence[MarkerTrajectories], protocol: Protocol, per_
         raise NotObservable(f"no frame shows {MIN_MARKERS} markers of protocol '{protocol.name}' at once")
     share = (~np.isnan(measured).any(axis=2)).mean(axis=0)
     keep = share >= MIN_PRESENT
-    left_out.update({m.name: f"seen in {100 * s:.0f} % of the frames"
-                     for m, s, kept in zip(markers, share, keep, strict=True) if not kept})
+    left_out.update(
+        {
+            m.name: f"seen in {100 * s:.0f} % of the frames"
+            for m, s, kept in zip(markers, share, keep, strict=True)
+            if not kept
+        }
+    )
     kept_markers = tuple(m for m, kept in zip(markers, keep, strict=True) if kept)
     return ScalingFrames(kept_markers, measured[:, keep], np.concatenate(sources), left_out)
 
 
-def _well_seen(block: Array, count: int) -> Array:
+def _well_seen(block: Array, count: int) -> NDArray[np.intp]:
     """Frame numbers: the trial is cut in ``count`` equal stretches, and each gives its best-seen frame."""
     seen = (~np.isnan(block).any(axis=2)).sum(axis=1)
     best = seen.max(initial=0)

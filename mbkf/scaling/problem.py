@@ -88,8 +88,14 @@ class ScalingProblem:
         seen: (N, M) whether a marker is there.
     """
 
-    def __init__(self, body: BodyDescription, markers: tuple[ProtocolMarker, ...], measured_m: Array,
-                 posture_weight: Array, prior: ScalingPrior) -> None:
+    def __init__(
+        self,
+        body: BodyDescription,
+        markers: tuple[ProtocolMarker, ...],
+        measured_m: Array,
+        posture_weight: Array,
+        prior: ScalingPrior,
+    ) -> None:
         self.body, self.markers, self.prior = body, markers, prior
         self.measured_m = read_only(measured_m)
         self.posture_weight = read_only(posture_weight)

@@ -56,9 +56,13 @@ def sole_points(model: HumanModel, q: Array) -> Array:
     local = np.empty((2, 3, 3))
     for side, (segment, sign) in enumerate(zip(FEET, (1.0, -1.0), strict=True)):
         toes = model.description.segment(segment.replace("foot", "toes"))
-        ends = np.array([[sole.heel_x_m, sign * middle, sole.height_m],
-                         [toes.origin_m[0], sign * middle, sole.height_m],
-                         [sole.toe_x_m, sign * middle, sole.height_m]])
+        ends = np.array(
+            [
+                [sole.heel_x_m, sign * middle, sole.height_m],
+                [toes.origin_m[0], sign * middle, sole.height_m],
+                [sole.toe_x_m, sign * middle, sole.height_m],
+            ]
+        )
         local[side] = ends * model.axis_scale(model.description.segment(segment))
     ids = [model.joint(segment).joint_id for segment in FEET]
     points = np.full((len(q), 2, 3, 3), np.nan)
@@ -68,8 +72,9 @@ def sole_points(model: HumanModel, q: Array) -> Array:
     return points
 
 
-def assign_feet(model: HumanModel, q: Array, times_s: Array, rate_hz: float,
-                plates: tuple[PlateReadings, ...]) -> FootLoads:
+def assign_feet(
+    model: HumanModel, q: Array, times_s: Array, rate_hz: float, plates: tuple[PlateReadings, ...]
+) -> FootLoads:
     """Sorts plate readings to feet by the distance of the centre of pressure to each sole.
 
     Args:
@@ -106,7 +111,9 @@ def centre_of_pressure(wrench: Array, surface_m: float, threshold_n: float) -> A
     fx, fy, fz, mx, my = wrench[:, :5].T
     loaded = fz >= threshold_n
     safe = np.where(loaded, fz, 1.0)
-    point = np.stack([(surface_m * fx - my) / safe, (mx + surface_m * fy) / safe, np.full_like(fz, surface_m)], axis=1)
+    point = np.stack(
+        [(surface_m * fx - my) / safe, (mx + surface_m * fy) / safe, np.full_like(fz, surface_m)], axis=1
+    )
     return np.where(loaded[:, None], point, np.nan)
 
 
@@ -122,14 +129,16 @@ def _nearest_foot(pressure: Array, soles: Array, vertical_n: Array, rate_hz: flo
     """(T,) foot on one plate: the nearer sole, decided per stretch of loading."""
     foot = np.full(len(pressure), -1)
     distance = np.stack([_distance_to_sole(pressure, soles[:, side]) for side in range(2)], axis=1)
-    usable = ~np.isnan(distance).any(axis=1)
+    usable = np.asarray(~np.isnan(distance).any(axis=1))
     for stretch in stretches(~np.isnan(pressure[:, 0])):
         frames = stretch[usable[stretch]]
         if len(frames) == 0:
             continue
         weight = vertical_n[frames]
         near = (distance[frames] * weight[:, None]).sum(axis=0) / weight.sum()
-        per_frame = median_filter(np.argmin(distance[frames], axis=1), size=2 * int(0.05 * rate_hz) + 1, mode="nearest")
+        per_frame = median_filter(
+            np.argmin(distance[frames], axis=1), size=2 * int(0.05 * rate_hz) + 1, mode="nearest"
+        )
         best = int(np.argmin(near))
         changes = (per_frame != best).mean() > 0.2
         foot[frames] = np.where(distance[frames].min(axis=1) <= REACH_M, per_frame, -1) if changes else best
@@ -186,8 +195,9 @@ def _touching(soles: Array, foot: Array, rate_hz: float) -> BoolArray:
     return touching
 
 
-def _validity(model: HumanModel, touching: BoolArray, foot: Array, wrench: Array, pressure: Array,
-              recorded: BoolArray) -> tuple[BoolArray, tuple[str, ...]]:
+def _validity(
+    model: HumanModel, touching: BoolArray, foot: Array, wrench: Array, pressure: Array, recorded: BoolArray
+) -> tuple[BoolArray, tuple[str, ...]]:
     on_plate = np.stack([(foot == side).any(axis=1) for side in range(2)], axis=1)
     measured = (~touching | on_plate).all(axis=1)
     weight = -model.pin_model.gravity.linear[2] * model.mass_kg

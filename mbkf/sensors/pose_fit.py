@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from mbkf.conventions import Array, BoolArray
+from mbkf.conventions import Array
 from mbkf.numerics.levenberg_marquardt import ArrowEquations, minimise
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.sensors.posture import PostureSensor
@@ -47,7 +47,7 @@ def segment_by_segment(sensor: MarkerSensor, measured_m: Array) -> Array:
         (nq,) configuration.
     """
     model = sensor.model
-    seen = ~np.isnan(measured_m).any(axis=1)
+    seen = np.asarray(~np.isnan(measured_m).any(axis=1))
     q = model.neutral()
     placed = sensor.positions(q)
     names = np.array(sensor.segments)
@@ -74,8 +74,14 @@ def segment_by_segment(sensor: MarkerSensor, measured_m: Array) -> Array:
     return q
 
 
-def fit_pose(sensor: MarkerSensor, posture: PostureSensor, measured_m: Array, noise_m: Array, start: Array,
-             max_iterations: int = 30) -> PoseFit:
+def fit_pose(
+    sensor: MarkerSensor,
+    posture: PostureSensor,
+    measured_m: Array,
+    noise_m: Array,
+    start: Array,
+    max_iterations: int = 30,
+) -> PoseFit:
     """The most likely pose given one frame of markers and the weak posture prior.
 
     Args:
@@ -86,7 +92,7 @@ def fit_pose(sensor: MarkerSensor, posture: PostureSensor, measured_m: Array, no
         start: (nq,) first guess.
         max_iterations: Most iterations.
     """
-    seen: BoolArray = ~np.isnan(measured_m).any(axis=1)
+    seen = np.asarray(~np.isnan(measured_m).any(axis=1))
     weights = 1.0 / noise_m[seen]
     target = measured_m[seen]
     nv = sensor.model.nv
@@ -105,11 +111,18 @@ def fit_pose(sensor: MarkerSensor, posture: PostureSensor, measured_m: Array, no
         hessian = jacobian.T @ jacobian + pull.T @ pull + 1e-9 * np.eye(nv)
         gradient = jacobian.T @ errors + pull.T @ deviation
         total = float((errors**2).sum() + (deviation**2).sum())
-        return ArrowEquations(hessian[None], np.zeros((1, nv, 0)), np.zeros((0, 0)), gradient[None], np.zeros(0),
-                              total)
+        return ArrowEquations(
+            hessian[None], np.zeros((1, nv, 0)), np.zeros((0, 0)), gradient[None], np.zeros(0), total
+        )
 
-    solution = minimise(start, linearise, cost, lambda q, own, _: sensor.model.integrate(q, own[0]),
-                        tolerance=1e-4, max_iterations=max_iterations)
+    solution = minimise(
+        start,
+        linearise,
+        cost,
+        lambda q, own, _: sensor.model.integrate(q, own[0]),
+        tolerance=1e-4,
+        max_iterations=max_iterations,
+    )
     q = solution.state
     distance = np.linalg.norm(sensor.positions(q)[seen] - target, axis=1)
     rms = float(np.sqrt((distance**2).mean())) if seen.any() else np.inf

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from scipy.interpolate import BPoly, PPoly
+from scipy.interpolate import BPoly, PPoly, make_interp_spline
 
 from mbkf.conventions import Array
 from mbkf.synthesis.jets import Jet
@@ -32,6 +32,19 @@ def path(knots: Sequence[tuple], smooth: int = 2) -> Curve:
         moving = ((at >= times[0]) & (at <= times[-1])).reshape(at.shape + (1,) * len(shape))
         return Jet(polynomial(inside), np.where(moving, polynomial(inside, 1), 0.0),
                    np.where(moving, polynomial(inside, 2), 0.0))
+
+    return curve
+
+
+def spline(times: Sequence[float], values: Sequence[float], start: tuple[float, float],
+           end: tuple[float, float]) -> Curve:
+    """The quintic spline through values at times, with (rate, acceleration) given at both ends."""
+    bends = ([(1, start[0]), (2, start[1])], [(1, end[0]), (2, end[1])])
+    polynomial = make_interp_spline(times, values, k=5, bc_type=bends)
+
+    def curve(at: Array) -> Jet:
+        inside = np.clip(at, times[0], times[-1])
+        return Jet(polynomial(inside), polynomial(inside, 1), polynomial(inside, 2))
 
     return curve
 

@@ -9,7 +9,7 @@ from mbkf.errors import InvalidInput
 from mbkf.model.human import HumanModel
 from mbkf.synthesis import jets
 from mbkf.synthesis.contact import Load, LoadPlan, sole_outline
-from mbkf.synthesis.curves import added, path, ripple
+from mbkf.synthesis.curves import path, ripple
 from mbkf.synthesis.figure import SIDE_NAMES, Figure, FootPose
 from mbkf.synthesis.jets import Jet
 from mbkf.synthesis.plan import FeetPlan, Flight, MotionPlan, lively, resting
@@ -20,11 +20,11 @@ HEEL_OFF_S, HEEL_DOWN_S = 0.17, 0.10
 CROUCH_M, TAKE_OFF_M, TOUCH_DOWN_M, ABSORB_M = -0.228, 0.057, 0.045, -0.225
 """Height of the centre of mass against standing, for a body of the reference size."""
 
-TAKE_OFF_PITCH = (27.5, 425.0, 0.0)
-TOUCH_DOWN_PITCH = (24.0, -395.0, 0.0)
+TAKE_OFF_PITCH = (27.5, 425.0, -2500.0)
+TOUCH_DOWN_PITCH = (24.0, -395.0, -2500.0)
 """Pitch of the foot (heel up), deg, deg/s, deg/s²."""
 
-CLEARANCE_M = 0.096
+CLEARANCE_M = 0.108
 STEEPNESS = 0.255
 
 CROUCH_DEG = {
@@ -57,10 +57,10 @@ def jump_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> Mo
     end = absorbed + RECOVER_S
     speed = GRAVITY_M_S2 * flight_s / 2
     height = path([
-        (begin, 0.95 * size), (bottom, (0.95 + CROUCH_M) * size, 0.0, 2.5),
+        (begin, 0.95 * size), (bottom, (0.95 + CROUCH_M) * size, 0.0, 4.5),
         (off, (0.95 + TAKE_OFF_M) * size, speed, -GRAVITY_M_S2),
         (down, (0.95 + TOUCH_DOWN_M) * size, -speed, -GRAVITY_M_S2),
-        (absorbed, (0.95 + ABSORB_M) * size, 0.0, 2.5), (end, 0.95 * size)])
+        (absorbed, (0.95 + ABSORB_M) * size, 0.0, 4.0), (end, 0.95 * size)])
     crouch = path([(begin, 0.0), (bottom, 1.0), (off, 0.12, -2.0), (down, 0.15, 1.5), (absorbed, 0.8), (end, 0.0)])
     swing = path([(begin, 0.0), (bottom - 0.08, -0.45), (off, 0.85, 2.0), (down, 0.8, -1.5), (absorbed + 0.1, 0.25),
                   (end, 0.0)])
@@ -145,5 +145,3 @@ def _load(model: HumanModel, feet: FeetPlan, flight: Flight, begin: float, absor
 
     return load
 
-
-__all__ = ["added", "jump_plan"]

@@ -13,7 +13,7 @@ from mbkf.conventions import SIDES, Array
 from mbkf.model.human import HumanModel
 from mbkf.synthesis import jets
 from mbkf.synthesis.contact import Load, LoadPlan, sole_outline
-from mbkf.synthesis.curves import Curve, added, path, ripple, scaled
+from mbkf.synthesis.curves import Curve, path, ripple, spline
 from mbkf.synthesis.figure import SIDE_NAMES, Figure, FootPose
 from mbkf.synthesis.jets import Jet
 from mbkf.synthesis.plan import FeetPlan, MotionPlan, lively, resting
@@ -21,11 +21,22 @@ from mbkf.synthesis.standing import posture
 
 # Timing as parts of a stride, after Perry & Burnfield, Gait Analysis, 2nd ed. 2010 (stance 62 %, double support 12 %).
 DOUBLE_SUPPORT = 0.12
-FOOT_FLAT = 0.09
-HEEL_OFF = 0.33
-STRIKE_PITCH_DEG, STRIKE_RATE_DEG = -19.0, 0.0
-OFF_PITCH_DEG, OFF_RATE_DEG = 56.0, 330.0
-LATE_SWING_S = 0.055
+FOOT_FLAT = 0.1014
+HEEL_OFF = 0.3327
+STRIKE_PITCH_DEG = (-13.45, 517.2, -14909.0)
+TOE_OFF_PITCH_DEG = (58.46, 738.9, 5394.0)
+"""Pitch of the foot (heel up) at heel strike and toe-off, deg, deg/s, deg/s²."""
+
+# The swing, as values at parts of its time: fraction of the way forward, height of the ankle over its height on the
+# flat foot (m, body of the reference size), pitch of the foot (deg). Found by least squares against the mean knee and
+# ankle angles of natural walking (Winter 2009, Table A.3), with the toes at least 12 mm over the floor.
+SWING_PARTS = (0.22, 0.45, 0.68, 0.88)
+SWING_FORWARD = (0.1534, 0.4297, 0.7583, 0.9452)
+SWING_HEIGHT_M = (0.1739, 0.1276, 0.0364, 0.0180)
+SWING_PITCH_DEG = (66.84, 38.50, 2.27, -10.80)
+BOB_M, BOB_LATE = 0.0214, 0.487
+"""Half the rise of the centre of mass, and when in double support it is lowest (0 heel strike … 1 toe-off)."""
+
 MARGIN_STEPS = 3
 
 
@@ -53,9 +64,9 @@ def walk_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> Mo
     def poses(times: Array) -> dict[str, FootPose]:
         return {side: foot.pose(times) for side, foot in feet.items()}
 
-    bob = 0.022 * size * rng.uniform(0.9, 1.1)
+    bob = BOB_M * size * rng.uniform(0.95, 1.05)
     step_hz = 2.0 / stride_s
-    height = ripple(bob, step_hz, -2 * np.pi * step_hz * (phase_s + 0.5 * DOUBLE_SUPPORT * stride_s) - np.pi / 2,
+    height = ripple(bob, step_hz, -2 * np.pi * step_hz * (phase_s + BOB_LATE * DOUBLE_SUPPORT * stride_s) - np.pi / 2,
                     0.97 * size)
     return MotionPlan(start, end, lively(_angles(stride_s, phase_s, rng), rng, 0.6), poses, height,
                       _load(model, steps, feet, stride_s), np.deg2rad(6.0), recorded_s=(0.0, seconds),
@@ -89,27 +100,31 @@ class _Foot:
         name = SIDE_NAMES[SIDES[side]]
         outline = sole_outline(model, SIDES[side])
         toes = Figure(model).offset[f"{name}_toes"]
-        self.steps, self.stride_s = steps, stride_s
+        self.steps, self.stride_s, self.size = steps, stride_s, float(model.scale.mean())
         self.heel = np.array([outline.heel_x + 0.015, 0.0, outline.height])
         self.ball = np.array([toes[0], 0.0, toes[2]])
         self.heading = constant_rotation(steps[0].yaw)
-        self.pitch = path([(step.strike_s + at * stride_s, *np.deg2rad(values)) for step in steps
-                           for at, *values in self._pitch_knots()])
-        self.toes = path([(step.strike_s + at * stride_s, np.deg2rad(value), np.deg2rad(rate)) for step in steps
-                          for at, value, rate in ((0.0, -6.0, 0.0), (FOOT_FLAT, 0.0, 0.0), (HEEL_OFF, 0.0, 0.0),
-                                                  (self.off, -OFF_PITCH_DEG, -OFF_RATE_DEG),
-                                                  (self.off + 0.16, -14.0, 0.0))])
+        stance = path([(0.0, *np.deg2rad(STRIKE_PITCH_DEG)), (FOOT_FLAT * stride_s, 0.0), (HEEL_OFF * stride_s, 0.0),
+                       (self.off * stride_s, *np.deg2rad(TOE_OFF_PITCH_DEG))])
+        times = [self.off * stride_s, *(stride_s * (self.off + part * (1 - self.off)) for part in SWING_PARTS), stride_s]
+        angles = np.deg2rad([TOE_OFF_PITCH_DEG[0], *SWING_PITCH_DEG, STRIKE_PITCH_DEG[0]])
+        bends = [tuple(np.deg2rad(pitch[1:])) for pitch in (TOE_OFF_PITCH_DEG, STRIKE_PITCH_DEG)]
+        swing = spline(times, angles, bends[0], bends[1])
+        relaxed = path([(0.0, np.deg2rad(-6.0)), (FOOT_FLAT * stride_s, 0.0), (HEEL_OFF * stride_s, 0.0),
+                        (self.off * stride_s, *-np.deg2rad(TOE_OFF_PITCH_DEG)),
+                        ((self.off + 0.18) * stride_s, np.deg2rad(-14.0)), (stride_s, np.deg2rad(-6.0))])
+        self.pitch = self._repeated(lambda t: jets.where(t < self.off * stride_s, stance(t), swing(t)))
+        self.toes = self._repeated(relaxed)
         self.swings = [self._swing(a, b) for a, b in zip(steps, steps[1:], strict=False)]
+
+    def _repeated(self, curve: Curve) -> Curve:
+        """A curve of the time since heel strike, over all strides."""
+        return lambda times: curve(np.mod(times - self.steps[0].strike_s, self.stride_s))
 
     @property
     def off(self) -> float:
         """Toe-off as part of the stride."""
         return 0.5 + DOUBLE_SUPPORT
-
-    def _pitch_knots(self) -> tuple[tuple[float, ...], ...]:
-        return ((0.0, STRIKE_PITCH_DEG, STRIKE_RATE_DEG), (FOOT_FLAT, 0.0), (HEEL_OFF, 0.0),
-                (self.off, OFF_PITCH_DEG, OFF_RATE_DEG, -1500.0), (self.off + 0.09, 66.0, -40.0),
-                (self.off + 0.27, -4.0, -200.0))
 
     def _about(self, step: Step, pivot: Array, pitch: Jet) -> Jet:
         """(T, 3) ankle of a foot that turns about a point of its own that rests on the floor."""
@@ -122,24 +137,13 @@ class _Foot:
         strike = self._about(following, self.heel, self.pitch(at_strike))
         duration = following.strike_s - last.off_s
         a, b = ([x[0] for x in end.orders] for end in (off, strike))
-        begin, end = last.off_s, following.strike_s
-        late = end - LATE_SWING_S
-        floor, size = last.ankle_m[2], (b[0] - a[0])[0] / 1.05
-        forward = path([(begin, *(x[:2] for x in a)),
-                        (begin + 0.46 * duration, a[0][:2] + 0.45 * (b[0] - a[0])[:2], 1.58 * (b[0] - a[0])[:2] / duration),
-                        (late, b[0][:2] - [0.040 * size, 0.0], [1.45 * size, 0.0], [-21.0 * size, 0.0]),
-                        (end, *(x[:2] for x in b))])
-        upward = path([(begin, *(x[2] for x in a)),
-                       (begin + 0.20 * duration, a[0][2] + 0.022 * size, 0.0, -3.0),
-                       (begin + 0.58 * duration, floor + 0.060 * size, -0.25 * size),
-                       (late, b[0][2] + 0.018 * size, -0.40 * size),
-                       (end, *(x[2] for x in b))])
-
-        def ankle(times: Array) -> Jet:
-            xy, z = forward(times), upward(times)
-            return Jet(*(np.column_stack(parts) for parts in zip(xy.orders, z.orders, strict=True)))
-
-        return ankle
+        times = [last.off_s, *(last.off_s + part * duration for part in SWING_PARTS), following.strike_s]
+        way = b[0] - a[0]
+        planar = [spline(times, [a[0][k], *(a[0][k] + part * way[k] for part in SWING_FORWARD), b[0][k]],
+                         (a[1][k], a[2][k]), (b[1][k], b[2][k])) for k in (0, 1)]
+        raised = [last.ankle_m[2] + self.size * height for height in SWING_HEIGHT_M]
+        upward = spline(times, [a[0][2], *raised, b[0][2]], (a[1][2], a[2][2]), (b[1][2], b[2][2]))
+        return lambda at: jets.stack([planar[0](at), planar[1](at), upward(at)])
 
     def pose(self, times: Array) -> FootPose:
         """The foot at times in s."""
@@ -196,8 +200,6 @@ def _angles(stride_s: float, phase_s: float, rng: np.random.Generator) -> dict[s
     base = {**resting(), "pelvis": (0.0, 2.0, 0.0), "torso": (0.0, 2.0, 0.0),
             "right_forearm": (0.0, -26.0, 10.0), "left_forearm": (0.0, -26.0, -10.0),
             "right_upper_arm": (-8.0, 4.0, 6.0), "left_upper_arm": (8.0, 4.0, -6.0)}
-    one = {joint: [(wave(1.0, part, count), gains)] for joint, part, count, gains in ()}
-    del one
     right, left = wave(1.0, 0.5), wave(1.0, 0.0)
     twist, twice = wave(1.0, 0.0), wave(1.0, 0.06, 2)
     lean = wave(1.0, 0.30)
@@ -211,5 +213,3 @@ def _angles(stride_s: float, phase_s: float, rng: np.random.Generator) -> dict[s
     ]
     return posture(base, gains, rng)
 
-
-__all__ = ["added", "scaled", "walk_plan"]

@@ -1,0 +1,89 @@
+"""Calls `mbkf` as a person would and reads what it wrote."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+from mbkf.cli.main import main
+from mbkf.errors import MbkfError
+from mbkf.io.results_folder import read_summary
+from mbkf.io.storage import Table, read_storage
+
+
+@dataclass(frozen=True)
+class Written:
+    """What `mbkf reconstruct` wrote: ``summary`` and the tables, none where nothing is known; ``seconds`` taken."""
+
+    summary: dict[str, Any]
+    angles: Table
+    torques: Table
+    seconds: float
+
+
+def mbkf(*words: str | Path, fresh: bool = False) -> float:
+    """Runs one command quietly.
+
+    Args:
+        words: What follows ``mbkf``.
+        fresh: Whether in a process of its own, with its start counted in the time.
+
+    Returns:
+        Wall time in s.
+
+    Raises:
+        MbkfError: The command did not end with 0; its message.
+    """
+    arguments = [str(word) for word in words]
+    start = perf_counter()
+    code, message = _in_process_of_its_own(arguments) if fresh else _here(arguments)
+    if code:
+        raise MbkfError(f"mbkf {arguments[0]} ended with {code}: {message.strip()}")
+    return perf_counter() - start
+
+
+def read_folder(folder: Path, seconds: float = 0.0) -> Written:
+    """What a reconstruction's folder holds."""
+    tables = [read_storage(folder / name) for name in ("angles.mot", "torques.sto")]
+    return Written(read_summary(folder), *tables, seconds)
+
+
+def scale_and_reconstruct(trial: Path, scaling: Sequence[str | Path], folder: Path, *, forces: Path | None = None,
+                          fresh: bool = False) -> Written:
+    """The main job with default settings: scale, then reconstruct.
+
+    Args:
+        trial: The capture to follow.
+        scaling: Words for ``mbkf scale`` but ``--out``.
+        folder: Where everything goes.
+        forces: Ground reactions that are no part of the trial.
+        fresh: Whether each command gets a process of its own.
+    """
+    subject = folder / "subject.toml"
+    seconds = mbkf("scale", *scaling, "--out", subject, fresh=fresh)
+    with_forces = () if forces is None else ("--forces", forces)
+    seconds += mbkf("reconstruct", trial, "--subject", subject, *with_forces, "--out", folder, fresh=fresh)
+    return read_folder(folder, seconds)
+
+
+def _here(arguments: list[str]) -> tuple[int, str]:
+    errors = io.StringIO()
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(errors):
+        try:
+            code = main(arguments)
+        except SystemExit as end:
+            code = int(end.code or 0)
+    return code, errors.getvalue()
+
+
+def _in_process_of_its_own(arguments: list[str]) -> tuple[int, str]:
+    words = [sys.executable, "-m", "mbkf", *arguments]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    return done.returncode, done.stderr

@@ -1,0 +1,122 @@
+"""The whole chain on a synthetic capture with known truth: scale from standing, reconstruct, compare."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mbkf.io.capture import read_capture
+from mbkf.io.results import Reconstruction
+from mbkf.io.results_folder import prepare_folder, write_reconstruction
+from mbkf.io.subject import write_subject
+from mbkf.io.truth import Truth
+from mbkf.model.clinical import ClinicalAngles
+from mbkf.model.human import HumanModel
+from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
+from mbkf.pipelines.scale import scale
+from mbkf.pipelines.summary import summarise
+from mbkf.pipelines.synth import synthesise, write_folder
+
+COORDINATES = (
+    "hip_flexion_r", "knee_angle_r", "ankle_angle_r", "hip_flexion_l", "knee_angle_l", "ankle_angle_l",
+    "lumbar_extension", "arm_flex_r", "elbow_flex_r",
+)  # fmt: skip
+"""The coordinates whose errors the demo lists."""
+
+
+@dataclass(frozen=True)
+class CoordinateError:
+    """Error of one coordinate against the truth: angles in rad, moments in N m.
+
+    Attributes:
+        name: Clinical coordinate.
+        angle_offset: Mean difference of the angle (where the scaled segment's axes point elsewhere).
+        angle_rms: RMS of the angle without that offset.
+        moment_rms: RMS of the torque.
+        moment_range: Range of the true torque.
+    """
+
+    name: str
+    angle_offset: float
+    angle_rms: float
+    moment_rms: float
+    moment_range: float
+
+
+@dataclass(frozen=True)
+class Demo:
+    """What the demo made: the folder, the result, its summary and the errors of a few coordinates."""
+
+    folder: Path
+    result: Reconstruction
+    summary: dict[str, Any]
+    errors: tuple[CoordinateError, ...]
+
+
+def run_demo(
+    motion: str,
+    folder: str | Path,
+    *,
+    seconds: float | None = None,
+    seed: int = 0,
+    filter_name: str = "kinematic",
+    progress: Callable[[str, int, int], None] | None = None,
+) -> Demo:
+    """Synthetic capture → subject scaled from the standing trial → reconstruction → errors.
+
+    Args:
+        motion: "squat", "walk" or "jump".
+        folder: Where the capture goes, and the result into its subfolder ``result``.
+        seconds: Duration; the motion's usual one when None.
+        seed: Chooses person, motion and noise.
+        filter_name: Which filter.
+        progress: Called with the stage, items done and items in all.
+
+    Raises:
+        MbkfError: The folder is a file, or motion, duration or filter make no sense.
+    """
+    folder = prepare_folder(folder)
+    person, capture = synthesise(motion, seconds=seconds, seed=seed, progress=progress)
+    write_folder(person, capture, folder)
+    static = read_capture(folder / "static.c3d")
+    subject = scale(static, mass_kg=person.mass_kg, progress=progress)
+    write_subject(subject, folder / "scaled.toml")
+    settings = ReconstructSettings(filter=filter_name, keep_covariance=True)
+    result = reconstruct(read_capture(folder / "trial.c3d"), subject, settings=settings, progress=progress)
+    summary = summarise(result, capture.truth)
+    target = prepare_folder(folder / "result")
+    write_reconstruction(result, summary, target)
+    body = HumanModel.scaled(person.scale_factors, person.mass_kg, person.body)
+    return Demo(folder, result, summary, coordinate_errors(result, capture.truth, body))
+
+
+def coordinate_errors(result: Reconstruction, truth: Truth, body: HumanModel) -> tuple[CoordinateError, ...]:
+    """Errors of the listed coordinates over tracked frames.
+
+    Args:
+        result: The reconstruction, on the truth's frames.
+        truth: What really happened.
+        body: The true body.
+    """
+    clinical = ClinicalAngles(body)
+    angles = clinical.angles(truth.q)
+    moments = clinical.moments(truth.q, truth.tau, angles)
+    errors = []
+    for name in COORDINATES:
+        column = clinical.names.index(name)
+        angle = (result.angle(name) - angles[:, column])[result.tracked]
+        moment = (result.moment(name) - moments[:, column])[result.tracked & result.valid]
+        errors.append(
+            CoordinateError(
+                name=name,
+                angle_offset=float(np.nanmean(angle)),
+                angle_rms=float(np.nanstd(angle)),
+                moment_rms=float(np.sqrt(np.nanmean(moment**2))) if len(moment) else float("nan"),
+                moment_range=float(np.ptp(moments[:, column])),
+            )
+        )
+    return tuple(errors)

@@ -1,0 +1,142 @@
+"""The subject file: what is written is read back exactly, and a bad file says why in one line."""
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.io.subject import Subject, SubjectMarker, read_subject, write_subject
+
+# TOML cannot hold lone surrogates, nor can UTF-8.
+TEXT = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=12)
+LENGTH = st.floats(-2, 2)
+POSITIVE = st.floats(1e-6, 1e3)
+FACTOR_NAMES = st.sampled_from(["head", "right_thigh", "trunk_depth", "left_foot_width"])
+PLAIN = st.recursive(
+    st.none() | st.booleans() | st.integers(-(2**50), 2**50) | st.floats(allow_nan=False, allow_infinity=False) | TEXT,
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(TEXT, inner, max_size=3),
+    max_leaves=8,
+)
+MARKERS = st.builds(
+    SubjectMarker,
+    name=TEXT,
+    segment=TEXT,
+    position_m=st.lists(LENGTH, min_size=3, max_size=3).map(np.array),
+    noise_m=POSITIVE,
+    session_sd_m=POSITIVE,
+    aliases=st.lists(TEXT, max_size=3).map(tuple),
+)
+SUBJECTS = st.builds(
+    Subject,
+    body=TEXT,
+    mass_kg=POSITIVE,
+    scale_factors=st.dictionaries(FACTOR_NAMES, st.floats(0.5, 1.6)),
+    markers=st.lists(MARKERS, max_size=4).map(tuple),
+    protocol=TEXT,
+    height_m=st.none() | st.floats(0.5, 2.6),
+    report=st.dictionaries(TEXT, PLAIN, max_size=3),
+)
+
+
+def plain(subject):
+    """All fields as comparable values."""
+    markers = [replace(m, position_m=tuple(map(float, m.position_m))) for m in subject.markers]
+    return replace(subject, markers=tuple(markers))
+
+
+@pytest.fixture
+def subject():
+    marker = SubjectMarker("RKNE", "right_thigh", np.array([0.01, -0.05, -0.4]), 0.005, 0.005, ("R.Knee",))
+    return Subject("human18", 70.0, {"head": 1.05}, (marker,), "reference36", 1.75, {"marker_rms_mm": 3.1})
+
+
+@given(SUBJECTS)
+@settings(max_examples=80, deadline=None)
+def test_what_is_written_is_read_back(written):
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "subject.toml"
+        write_subject(written, path)
+        assert plain(read_subject(path)) == plain(written)
+
+
+@pytest.mark.parametrize("name", ['a "b" \\ c', "línea\nnueva", "マーカー", "\t\x7f\x85\u2028", "# no comment", "🦵"])
+def test_odd_names_survive(subject, tmp_path, name):
+    odd = replace(subject, protocol=name, markers=(replace(subject.markers[0], name=name, aliases=(name, "x")),))
+    write_subject(odd, tmp_path / "s.toml")
+    assert plain(read_subject(tmp_path / "s.toml")) == plain(odd)
+
+
+def test_positions_cannot_be_written_to(subject, tmp_path):
+    write_subject(subject, tmp_path / "s.toml")
+    assert not read_subject(tmp_path / "s.toml").markers[0].position_m.flags.writeable
+
+
+def test_writing_leaves_one_whole_file(subject, tmp_path):
+    write_subject(subject, tmp_path / "s.toml")
+    write_subject(replace(subject, mass_kg=80.0), tmp_path / "s.toml")
+    assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
+    assert read_subject(tmp_path / "s.toml").mass_kg == 80.0
+
+
+@pytest.mark.parametrize("numpy_mass", [np.float64(70.5), np.float32(70.5)])
+def test_numpy_numbers_are_written_as_numbers(subject, tmp_path, numpy_mass):
+    write_subject(replace(subject, mass_kg=numpy_mass, height_m=np.float64(1.7)), tmp_path / "s.toml")
+    assert read_subject(tmp_path / "s.toml").mass_kg == 70.5
+
+
+@pytest.mark.parametrize("mass", [0.0, -1.0, np.nan, np.inf])
+def test_impossible_masses_are_refused(subject, mass):
+    with pytest.raises(InvalidInput, match="mass must be positive"):
+        replace(subject, mass_kg=mass)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "complaint"),
+    [
+        ("body =", "bod =", "'body'"),
+        ("mass_kg = 70.0", 'mass_kg = "heavy"', "heavy"),
+        ("mass_kg = 70.0", "mass_kg = [70.0]", "not a subject file"),
+        ("[scale_factors]", "[scale_factor]", "scale_factors"),
+        ("head = 1.05", 'head = "big"', "big"),
+        ("[scale_factors]\nhead = 1.05", "scale_factors = 1.05", "not a subject file"),
+        ("position_m = [0.01, -0.05, -0.4]", "position_m = [0.01, -0.05]", "marker RKNE needs three"),
+        ("position_m = [0.01, -0.05, -0.4]", "position_m = [0.01, nan, 0.2]", "marker RKNE needs three"),
+        ("noise_m = 0.005", "", "noise_m"),
+        ("[[marker]]", "[marker]", "not a subject file"),
+        ("report = ", "report = 'x' # ", "not a subject file"),
+        ('segment = "right_thigh"', "segment = right_thigh", "not a subject file"),
+    ],
+)
+def test_faulty_files_are_refused_in_one_line(subject, tmp_path, old, new, complaint):
+    path = tmp_path / "s.toml"
+    write_subject(subject, path)
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(FileFormatError, match=complaint) as caught:
+        read_subject(path)
+    assert "\n" not in str(caught.value)
+    assert "make it with 'mbkf scale'" in str(caught.value)
+
+
+def test_a_missing_file_a_folder_and_binary_data_are_refused(tmp_path):
+    with pytest.raises(FileFormatError, match="no such file; make it with 'mbkf scale'"):
+        read_subject(tmp_path / "none.toml")
+    with pytest.raises(FileFormatError, match="cannot be read"):
+        read_subject(tmp_path)
+    (tmp_path / "b.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(FileFormatError, match="cannot be read"):
+        read_subject(tmp_path / "b.toml")
+
+
+def test_a_file_with_no_mass_for_a_body_is_refused(subject, tmp_path):
+    path = tmp_path / "s.toml"
+    write_subject(subject, path)
+    path.write_text(path.read_text(encoding="utf-8").replace("mass_kg = 70.0", "mass_kg = 0.0"), encoding="utf-8")
+    with pytest.raises(InvalidInput, match="mass must be positive"):
+        read_subject(path)

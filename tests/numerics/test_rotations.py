@@ -1,0 +1,86 @@
+"""Rotation vectors of quaternions against SciPy, and the inverse right Jacobian against finite differences."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from mbkf.numerics.rotations import log_and_inverse_jacobian, quaternion_log, skew
+
+VECTORS = st.tuples(*[st.floats(-1, 1)] * 3).map(np.array).filter(lambda v: np.linalg.norm(v) > 1e-3)
+ANGLES = st.floats(0, np.pi - 1e-6)
+MANY_ANGLES = [0.0, 1e-12, 1e-9, 1e-6, 0.9e-4, 1.1e-4, 0.01, 1.0, 2.5, 3.1, 3.14]
+
+
+def rotation_vector(direction, angle):
+    return angle * direction / np.linalg.norm(direction)
+
+
+@given(VECTORS, VECTORS)
+def test_skew_is_the_cross_product(a, b):
+    np.testing.assert_allclose(skew(a) @ b, np.cross(a, b), rtol=0, atol=1e-15)
+
+
+def test_skew_of_many():
+    vectors = np.random.default_rng(1).normal(size=(4, 2, 3))
+    np.testing.assert_array_equal(skew(vectors)[2, 1], skew(vectors[2, 1]))
+    np.testing.assert_array_equal(skew(vectors), -skew(vectors).swapaxes(-1, -2))
+
+
+@given(VECTORS, ANGLES)
+def test_log_undoes_the_rotation_vector(direction, angle):
+    phi = rotation_vector(direction, angle)
+    np.testing.assert_allclose(quaternion_log(Rotation.from_rotvec(phi).as_quat()), phi, rtol=0, atol=1e-14)
+
+
+@given(VECTORS, ANGLES)
+def test_a_quaternion_and_its_negative_are_one_rotation(direction, angle):
+    quaternion = Rotation.from_rotvec(rotation_vector(direction, angle)).as_quat()
+    np.testing.assert_array_equal(quaternion_log(-quaternion), quaternion_log(quaternion))
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-300, 1e-15, 1e-9, 2e-8, 1e-7])
+def test_log_keeps_tiny_angles(angle):
+    quaternion = np.array([0.0, np.sin(angle / 2), 0.0, np.cos(angle / 2)])
+    np.testing.assert_allclose(quaternion_log(quaternion), [0.0, angle, 0.0], rtol=1e-15)
+
+
+def test_half_a_turn_has_angle_pi():
+    assert np.linalg.norm(quaternion_log(np.array([0.6, 0.0, 0.8, 0.0]))) == pytest.approx(np.pi, rel=1e-15)
+
+
+@pytest.mark.parametrize("angle", MANY_ANGLES)
+def test_inverse_jacobian_is_the_derivative_of_the_log(angle):
+    """φ(R exp ω) by central differences in ω."""
+    rng, h = np.random.default_rng(2), 1e-5
+    phi = rotation_vector(rng.normal(size=3), angle)
+    R = Rotation.from_rotvec(phi)
+    numeric = np.stack(
+        [(_log(R * Rotation.from_rotvec(h * e)) - _log(R * Rotation.from_rotvec(-h * e))) / (2 * h) for e in np.eye(3)],
+        axis=1,
+    )
+    found, jacobian = log_and_inverse_jacobian(R.as_quat()[None])
+    np.testing.assert_allclose(found[0], phi, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(jacobian[0], numeric, rtol=0, atol=2e-9 if angle < 3.12 else 2e-5)
+
+
+def _log(rotation):
+    return quaternion_log(rotation.as_quat())
+
+
+@given(VECTORS, ANGLES)
+def test_inverse_jacobian_leaves_the_axis_alone(direction, angle):
+    """J_r⁻¹(φ) φ = φ: turning further about one's own axis only adds to the angle."""
+    phi = rotation_vector(direction, angle)
+    _, jacobian = log_and_inverse_jacobian(Rotation.from_rotvec(phi).as_quat()[None])
+    np.testing.assert_allclose(jacobian[0] @ phi, phi, rtol=0, atol=1e-13)
+
+
+def test_many_at_once_are_each_alone():
+    quaternions = Rotation.random(6, random_state=np.random.default_rng(3)).as_quat()
+    phi, jacobians = log_and_inverse_jacobian(quaternions)
+    for i in range(6):
+        one, jacobian = log_and_inverse_jacobian(quaternions[i : i + 1])
+        np.testing.assert_array_equal(phi[i], one[0])
+        np.testing.assert_array_equal(jacobians[i], jacobian[0])

@@ -1,0 +1,51 @@
+"""The posture prior: what it calls deviation, and for which dofs."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from mbkf.sensors.posture import PostureSensor
+from tests.motions import assert_near, moderate_pose, reference_model
+
+MODEL = reference_model()
+SENSOR = PostureSensor(MODEL)
+
+
+def test_standing_straight_is_no_deviation():
+    np.testing.assert_array_equal(SENSOR.reading(MODEL.neutral()).deviation, 0.0)
+
+
+def test_all_joints_have_a_prior_and_the_pelvis_has_none():
+    np.testing.assert_array_equal(SENSOR.dofs, np.arange(6, MODEL.nv))
+    np.testing.assert_array_equal(SENSOR.sd, MODEL.posture_sd[6:])
+    assert (SENSOR.sd > 0).all()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_deviation_is_each_joints_rotation_vector(seed):
+    q = moderate_pose(MODEL, np.random.default_rng(seed))
+    deviation = np.zeros(MODEL.nv)
+    deviation[SENSOR.dofs] = SENSOR.reading(q).deviation
+    for joint in MODEL.joints.values():
+        if joint.kind == "spherical":
+            assert_near(deviation[joint.v], Rotation.from_quat(q[joint.q]).as_rotvec(), 1e-15)
+        elif joint.kind != "free":
+            np.testing.assert_array_equal(deviation[joint.v], q[joint.q])
+
+
+def test_each_joint_deviates_by_itself():
+    """The Jacobian is block-diagonal over joints and blind to the pelvis."""
+    jacobian = SENSOR.reading(moderate_pose(MODEL, np.random.default_rng(4))).jacobian
+    owner = np.concatenate([np.full(j.v.stop - j.v.start, i) for i, j in enumerate(MODEL.joints.values())])
+    same_joint = owner[SENSOR.dofs][:, None] == owner
+    universal = MODEL.joint("neck").v
+    same_joint[np.ix_(np.isin(SENSOR.dofs, [universal.start]), [universal.start + 1])] = False
+    same_joint[np.ix_(np.isin(SENSOR.dofs, [universal.start + 1]), [universal.start])] = False
+    np.testing.assert_array_equal(jacobian != 0, same_joint)
+
+
+def test_where_and_how_the_body_stands_does_not_matter():
+    rng = np.random.default_rng(5)
+    q = moderate_pose(MODEL, rng)
+    elsewhere = MODEL.integrate(q, np.concatenate([rng.normal(size=6), np.zeros(MODEL.nv - 6)]))
+    np.testing.assert_array_equal(SENSOR.reading(elsewhere).deviation, SENSOR.reading(q).deviation)
