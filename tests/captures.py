@@ -79,6 +79,7 @@ def only(markers: MarkerTrajectories, segments: tuple[str, ...]) -> MarkerTrajec
 
 def write_person(folder: Path) -> Person:
     """Writes the captures and scales the subject from the static one."""
+    folder.mkdir(parents=True, exist_ok=True)
     person = Person(*(folder / name for name in ("static.c3d", "trial.c3d", "trial.trc", "grf.mot", "person.toml")))
     write_c3d(made_capture(30, 0.0), person.static)
     moving = made_capture()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -59,7 +60,7 @@ def run(args: argparse.Namespace) -> int:
     """
     from mbkf.cli.progress import stages
     from mbkf.io.capture import read_capture
-    from mbkf.io.results_folder import prepare_folder, write_reconstruction
+    from mbkf.io.results_folder import check_folder, write_reconstruction
     from mbkf.io.subject import read_subject
     from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
     from mbkf.pipelines.summary import summarise
@@ -69,7 +70,7 @@ def run(args: argparse.Namespace) -> int:
     subject = read_subject(args.subject)
     capture = read_capture(args.trial, forces=args.forces, up=args.up, unit=args.unit)
     truth = truth_beside(args.trial)
-    folder = prepare_folder(args.out)
+    folder = check_folder(args.out)
     settings = ReconstructSettings(
         filter=args.filter,
         correct_markers=not args.keep_markers,
@@ -81,7 +82,7 @@ def run(args: argparse.Namespace) -> int:
         result = reconstruct(capture, subject, settings=settings, progress=report)
     summary = summarise(result, truth)
     write_reconstruction(result, summary, folder)
-    print_summary(summary, Path(folder))
+    print_summary(summary, folder)
     return 0
 
 
@@ -98,13 +99,12 @@ def parse_hide(text: str) -> Hidden:
     first, colon, last = window.partition(":")
     markers = tuple(name.strip() for name in names.split(",") if name.strip())
     try:
-        return Hidden(markers, float(first), float(last)) if at and colon and markers else _refuse(text)
+        times = float(first), float(last)
     except ValueError:
-        raise InvalidInput(f"--hide '{text}': write MARKER,MARKER@START:END with times in s") from None
-
-
-def _refuse(text: str) -> Hidden:
-    raise ValueError(text)
+        times = math.nan, math.nan
+    if not (at and colon and markers and math.isfinite(times[0]) and math.isfinite(times[1])):
+        raise InvalidInput(f"--hide '{text}': write MARKER,MARKER@START:END with times in s")
+    return Hidden(markers, *times)
 
 
 def print_summary(summary: dict[str, Any], folder: Path) -> None:

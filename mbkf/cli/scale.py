@@ -51,21 +51,22 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.cli.progress import stages
     from mbkf.errors import FileFormatError, InvalidInput
     from mbkf.io.capture import read_capture
+    from mbkf.io.results_folder import check_folder
     from mbkf.io.subject import write_subject
     from mbkf.pipelines.scale import scale
 
     if args.mass is not None and not args.mass > 0:
-        raise InvalidInput(f"--mass must be positive, got {args.mass}")
+        raise InvalidInput(f"--mass must be positive, got {args.mass:g}; give the body mass in kg")
     out = Path(args.out)
     if out.is_dir():
         raise FileFormatError(out, "is a folder; name a file for --out")
+    check_folder(out.parent)
     static = None if args.static is None else read_capture(args.static, up=args.up, unit=args.unit)
     trials = [read_capture(path, up=args.up, unit=args.unit) for path in args.trial]
     with stages() as report:
         subject = scale(
             static, trials, mass_kg=args.mass, height_m=args.height, protocol=args.protocol, progress=report
         )
-    out.parent.mkdir(parents=True, exist_ok=True)
     write_subject(subject, out)
     _print(subject.report, subject.protocol, str(out))
     return 0

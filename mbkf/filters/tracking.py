@@ -107,7 +107,7 @@ def track(
     if not starts:
         raise NotObservable(
             "in no frame do the markers fit the scaled body; is this the subject's protocol, "
-            "and is the unit right?"
+            "and are unit and axes right (--unit, --up)?"
         )
     return Track(**{**out.__dict__, "starts": tuple(starts)})
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import math
+import os
 import shutil
 import uuid
 from collections.abc import Mapping
@@ -39,14 +41,15 @@ def write_reconstruction(
         FileFormatError: A file stands where the folder is needed.
         OSError: The folder cannot be written to.
     """
-    target = prepare_folder(folder)
+    target = check_folder(folder)
     partial = target.with_name(f".{target.name}-{uuid.uuid4().hex}")
-    partial.mkdir()
+    partial.mkdir(parents=True)
     try:
         write_h5(reconstruction, partial / MOTION_FILE)
         write_opensim(reconstruction, partial)
         text = json.dumps(_without_nan(summary), indent=2, allow_nan=False, ensure_ascii=False)
         (partial / SUMMARY_FILE).write_text(text + "\n", encoding="utf-8")
+        target.mkdir(exist_ok=True)
         for file in sorted(partial.iterdir(), key=lambda path: path.name == SUMMARY_FILE):
             file.replace(target / file.name)
     finally:
@@ -54,12 +57,14 @@ def write_reconstruction(
     return target
 
 
-def prepare_folder(folder: str | Path) -> Path:
-    """The folder to write to, made where missing; commands call it before long work, to fail early.
+def check_folder(folder: str | Path) -> Path:
+    """The absolute path of a folder that can be written to; commands call it before long work, to fail early.
+
+    Nothing is made, so that a command that fails later leaves no empty folder behind.
 
     Raises:
         FileFormatError: A file stands there or on the way.
-        OSError: It cannot be made.
+        PermissionError: It may not be written to, or not be made.
     """
     target = Path(folder).absolute()
     for place in (target, *target.parents):
@@ -67,6 +72,20 @@ def prepare_folder(folder: str | Path) -> Path:
             raise FileFormatError(
                 place, "a file stands where a folder is needed; name another folder with --out"
             )
+    nearest = next(place for place in (target, *target.parents) if place.exists())
+    if not os.access(nearest, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(nearest))
+    return target
+
+
+def prepare_folder(folder: str | Path) -> Path:
+    """The folder, checked and made where missing.
+
+    Raises:
+        FileFormatError: A file stands there or on the way.
+        OSError: It cannot be made.
+    """
+    target = check_folder(folder)
     target.mkdir(parents=True, exist_ok=True)
     return target
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from mbkf.conventions import Array, read_only
 from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.io.atomic import replacing
 
 
 @dataclass(frozen=True)
@@ -89,10 +90,8 @@ def write_subject(subject: Subject, path: str | Path) -> None:
         lines += ["", "# How it was found: one JSON object.", f"report = {_text(json.dumps(subject.report))}"]
         lines.insert(1, lines.pop())
         lines.insert(1, lines.pop())
-    target = Path(path)
-    partial = target.with_name(target.name + ".partial")
-    partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    partial.replace(target)
+    with replacing(path) as partial:
+        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def read_subject(path: str | Path) -> Subject:
@@ -116,6 +115,10 @@ def read_subject(path: str | Path) -> Subject:
         )
     except FileNotFoundError as error:
         raise FileFormatError(source, "no such file; make it with 'mbkf scale'") from error
+    except IsADirectoryError as error:
+        raise FileFormatError(source, "cannot be read, it is a folder; name a file that 'mbkf scale' wrote") from error
+    except InvalidInput as error:
+        raise InvalidInput(f"{source}: {error}") from error
     except (OSError, UnicodeDecodeError) as error:
         raise FileFormatError(source, f"cannot be read ({error})") from error
     except (tomllib.TOMLDecodeError, AttributeError, KeyError, TypeError, ValueError) as error:

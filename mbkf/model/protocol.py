@@ -9,6 +9,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from mbkf.conventions import Array, data_folder, read_only
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.model.description import BodyDescription, load_body, mirrored
@@ -125,15 +127,16 @@ def _parse(path: Path) -> Protocol:
         markers: list[ProtocolMarker] = []
         for entry in table["marker"]:
             markers += _markers(entry, body, path)
+        name = table["name"]
     except OSError as error:
         raise FileFormatError(path, f"cannot be read ({error.strerror})") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, KeyError, TypeError, ValueError) as error:
         raise FileFormatError(path, f"not a valid protocol ({error})") from error
     names = [marker.name for marker in markers]
-    for name in names:
-        if names.count(name) > 1:
-            raise FileFormatError(path, f"marker '{name}' stands twice")
-    return Protocol(table["name"], table.get("title", table["name"]), body.name, tuple(markers))
+    for marker in names:
+        if names.count(marker) > 1:
+            raise FileFormatError(path, f"marker '{marker}' stands twice")
+    return Protocol(name, table.get("title", name), body.name, tuple(markers))
 
 
 def _markers(entry: dict[str, Any], body: BodyDescription, path: Path) -> list[ProtocolMarker]:
@@ -173,19 +176,22 @@ def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> Protoco
     for key in entry:
         if key not in known:
             raise UnknownName("key", key, sorted(known), f"{path}, marker {entry.get('name', '?')}")
+    where = f"{path}, marker {entry['name']}"
     if "landmark" in entry:
+        if entry["landmark"] not in body.landmarks:
+            raise UnknownName("landmark", entry["landmark"], body.landmarks, where)
         landmark = body.landmark(entry["landmark"])
         segment, position = landmark.segment, landmark.position_m
     else:
         segment = entry["segment"]
         position = read_only(entry["position_m"])
+        if position.shape != (3,) or not np.isfinite(position).all():
+            raise FileFormatError(path, f"marker {entry['name']} needs three finite coordinates in position_m")
     if segment not in {s.name for s in body.segments}:
-        raise UnknownName(
-            "segment", segment, [s.name for s in body.segments], f"{path}, marker {entry['name']}"
-        )
+        raise UnknownName("segment", segment, [s.name for s in body.segments], where)
     kind = entry.get("kind", "anatomical" if "landmark" in entry else "technical")
     if kind not in KINDS:
-        raise UnknownName("marker kind", kind, KINDS, f"{path}, marker {entry['name']}")
+        raise UnknownName("marker kind", kind, KINDS, where)
     return ProtocolMarker(
         name=entry["name"],
         segment=segment,

@@ -22,7 +22,7 @@ from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.clinical import clinical_motion
 from mbkf.scaling.correction import correct_markers
-from mbkf.sensors.contacts import FootLoads, assign_feet
+from mbkf.sensors.contacts import FootLoads, assign_feet, feet_located
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.version import __version__
 
@@ -214,7 +214,7 @@ def _assemble(
         residual_force_n=dynamics.residual_force_n * known,
         residual_moment_nm=dynamics.residual_moment_nm * known,
         tracked=result.tracked,
-        valid=loads.valid & result.tracked,
+        valid=loads.valid & result.tracked & feet_located(model, result.q, result.position_covariance),
         held_dofs=tuple(name for name, fixed in zip(names, held, strict=True) if fixed),
         nis=result.nis,
         nis_readings=result.readings,

@@ -39,7 +39,7 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
         NotObservable: Too few of the subject's markers are in the trial.
     """
     body = load_body(subject.body)
-    factors = np.array([subject.scale_factors[name] for name in body.scale_factors])
+    factors = np.array([subject.scale_factors.get(name, 1.0) for name in body.scale_factors])
     own = tuple(_as_protocol_marker(marker) for marker in subject.markers)
     frames = choose_frames([trial], Protocol(subject.protocol, subject.protocol, body.name, own), FRAMES)
     local = np.array([m.position_m for m in frames.markers])

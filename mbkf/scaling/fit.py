@@ -63,6 +63,11 @@ def scale_subject(
     start = problem.start(_first_poses(problem))
     solution = _minimise(problem, start, progress)
     cleaned, dropped = _without_outliers(problem, solution.state, settings.outlier_m)
+    if dropped.sum() > 0.5 * (~np.isnan(problem.measured_m).any(axis=2)).sum():
+        raise NotConverged(
+            f"most markers lie further than {1e3 * settings.outlier_m:.0f} mm from the fitted body; is "
+            f"'{protocol.name}' their protocol (--protocol) and are their unit and axes right (--unit, --up)?"
+        )
     if dropped.any():
         problem = _problem(frames, len(static), protocol, height_m, settings, cleaned)
         solution = _minimise(problem, solution.state, progress)

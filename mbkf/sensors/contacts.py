@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import median_filter
+from scipy.ndimage import binary_dilation, median_filter
+from scipy.signal import savgol_filter
 
-from mbkf.conventions import Array, BoolArray
+from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.io.records import PlateReadings
 from mbkf.io.resample import average_over_frames
+from mbkf.io.wrench import centre_of_pressure
 from mbkf.model.human import HumanModel
 
 FEET = ("right_foot", "left_foot")
@@ -24,6 +26,15 @@ TOUCH_SPEED_M_S = 0.4
 
 STANDING_SHARE = 0.05
 """Share of body weight that the plates must carry when someone stands on the floor."""
+
+
+FOOT_SD_M = 0.03
+"""A foot whose height is known no better than this may or may not touch the floor."""
+
+FALL_SHARE = 0.4
+FALL_WINDOW_S = 0.07
+FALL_EDGE_S = 0.02
+"""Flight: the pelvis falls with this share of gravity, judged over a short window, give or take an edge."""
 
 
 @dataclass(frozen=True)
@@ -92,29 +103,33 @@ def assign_feet(
     for p, plate in enumerate(plates):
         wrench[:, p], recorded[:, p] = _about_world_origin(plate, times_s, rate_hz)
         surface = plate.origin_m[2] if plate.corners_m is None else plate.corners_m[:, 2].mean()
-        pressure[:, p] = centre_of_pressure(wrench[:, p], float(surface), plate.threshold_n)
+        pressure[:, p] = _pressure(wrench[:, p], float(surface), plate.threshold_n)
         foot[:, p] = _nearest_foot(pressure[:, p], soles, wrench[:, p, 2], rate_hz)
     total = np.zeros((len(q), 2, 6))
     for side in range(2):
         total[:, side] = (wrench * (foot == side)[:, :, None]).sum(axis=1)
     at_feet, free = _per_foot_pressure(pressure, wrench, foot)
     touching = _touching(soles, foot, rate_hz)
-    valid, warnings = _validity(model, touching, foot, wrench, pressure, recorded)
+    flight = ~touching.any(axis=1) & _falling(q[:, 2], rate_hz)
+    valid, warnings = _validity(model, touching, flight, foot, wrench, pressure, recorded)
     return FootLoads(total, at_feet, free, wrench, foot, valid, warnings)
 
 
-def centre_of_pressure(wrench: Array, surface_m: float, threshold_n: float) -> Array:
-    """(T, 3) centre of pressure on a horizontal surface from wrenches about the world's origin (eq. 4.9).
+def feet_located(model: HumanModel, q: Array, position_covariance: Array) -> BoolArray:
+    """(T,) whether the height of both feet is known to within FOOT_SD_M, so that contact can be told.
 
-    NaN where the vertical force is below the threshold.
+    Args:
+        model: The body.
+        q: (T, nq) configurations, NaN where untracked.
+        position_covariance: (T, nv, nv) their covariance.
     """
-    fx, fy, fz, mx, my = wrench[:, :5].T
-    loaded = fz >= threshold_n
-    safe = np.where(loaded, fz, 1.0)
-    point = np.stack(
-        [(surface_m * fx - my) / safe, (mx + surface_m * fy) / safe, np.full_like(fz, surface_m)], axis=1
-    )
-    return np.where(loaded[:, None], point, np.nan)
+    located = np.zeros(len(q), dtype=bool)
+    ids = [model.joint(segment).joint_id for segment in FEET]
+    for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
+        _, origins = model.placements(q[t])
+        rows = [model.segment_jacobian(q[t], s, origins[i])[2] for s, i in zip(FEET, ids, strict=True)]
+        located[t] = all(row @ position_covariance[t] @ row <= FOOT_SD_M**2 for row in rows)
+    return located
 
 
 def _about_world_origin(plate: PlateReadings, times_s: Array, rate_hz: float) -> tuple[Array, BoolArray]:
@@ -123,6 +138,13 @@ def _about_world_origin(plate: PlateReadings, times_s: Array, rate_hz: float) ->
     force = np.nan_to_num(loads.force_n)
     moment = np.nan_to_num(loads.moment_nm) + np.cross(plate.origin_m, force)
     return np.concatenate([force, moment], axis=1), recorded
+
+
+def _pressure(wrench: Array, surface_m: float, threshold_n: float) -> Array:
+    """(T, 3) centre of pressure on a horizontal surface from wrenches about the world's origin (eq. 4.9)."""
+    below = np.array([0.0, 0.0, surface_m])
+    moment = wrench[:, 3:] - np.cross(below, wrench[:, :3])
+    return centre_of_pressure(wrench[:, :3], moment, below, np.array([0.0, 0.0, 1.0]), threshold_n)
 
 
 def _nearest_foot(pressure: Array, soles: Array, vertical_n: Array, rate_hz: float) -> Array:
@@ -195,14 +217,30 @@ def _touching(soles: Array, foot: Array, rate_hz: float) -> BoolArray:
     return touching
 
 
+def _falling(height_m: Array, rate_hz: float) -> BoolArray:
+    """(T,) the pelvis accelerates downwards as nobody does whom a floor carries."""
+    falling = np.zeros(len(height_m), dtype=bool)
+    window = 2 * round(0.5 * FALL_WINDOW_S * rate_hz) + 1
+    for stretch in stretches(~np.isnan(height_m)):
+        if len(stretch) > max(window, 5):
+            curve = savgol_filter(height_m[stretch], max(window, 5), 2, deriv=2, delta=1.0 / rate_hz)
+            falling[stretch] = curve < -FALL_SHARE * GRAVITY_M_S2
+    return np.asarray(binary_dilation(falling, iterations=max(1, round(FALL_EDGE_S * rate_hz))))
+
+
 def _validity(
-    model: HumanModel, touching: BoolArray, foot: Array, wrench: Array, pressure: Array, recorded: BoolArray
+    model: HumanModel,
+    touching: BoolArray,
+    flight: BoolArray,
+    foot: Array,
+    wrench: Array,
+    pressure: Array,
+    recorded: BoolArray,
 ) -> tuple[BoolArray, tuple[str, ...]]:
     on_plate = np.stack([(foot == side).any(axis=1) for side in range(2)], axis=1)
     measured = (~touching | on_plate).all(axis=1)
     weight = -model.pin_model.gravity.linear[2] * model.mass_kg
     carried = np.where(foot >= 0, wrench[:, :, 2], 0.0).sum(axis=1) > STANDING_SHARE * weight
-    flight = ~touching.any(axis=1)
     stray = (~np.isnan(pressure[:, :, 0]) & (foot < 0)).any(axis=1)
     valid = measured & (carried | flight) & ~stray & recorded.any(axis=1)
     warnings = []

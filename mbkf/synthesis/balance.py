@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy.interpolate import BSpline
-from scipy.linalg import lstsq, null_space
+from scipy.linalg import cho_factor, cho_solve, null_space
 
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.synthesis.jets import Jet
@@ -26,7 +26,7 @@ class HorizontalPath:
         spells: (start, end) of each spell on the ground, s.
     """
 
-    def __init__(self, spells: Sequence[tuple[float, float]], knot_s: float = 0.04) -> None:
+    def __init__(self, spells: Sequence[tuple[float, float]], knot_s: float = 0.02) -> None:
         self.spells = list(spells)
         self.knots: list[Array] = []
         for start, end in self.spells:
@@ -95,8 +95,10 @@ class HorizontalPath:
             rows.append(3.0 * self.rows(k, np.array([self.spells[k][at]]), 0))
             wanted.append(3.0 * target[[at]])
         free = null_space(self._ties()) if len(self.spells) > 1 else np.eye(self.first[-1])
-        solution = lstsq(np.vstack(rows) @ free, np.vstack(wanted), lapack_driver="gelsy")[0]
-        self.coefficients = free @ solution
+        design = np.vstack(rows) @ free
+        normal = design.T @ design
+        normal[np.diag_indices_from(normal)] += 1e-12 * np.trace(normal) / len(normal)
+        self.coefficients = free @ cho_solve(cho_factor(normal), design.T @ np.vstack(wanted))
 
 
 def zero_moment_point(com: Jet, turning: Array) -> Array:

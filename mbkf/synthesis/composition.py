@@ -17,7 +17,7 @@ from mbkf.synthesis.flight import SMALL, Tumbling
 from mbkf.synthesis.jets import Jet
 from mbkf.synthesis.plan import MotionPlan
 
-STEP_S = 0.01
+STEP_S = 0.005
 """Grid on which balance is solved."""
 
 LIFTS, ROUNDS = 3, 8

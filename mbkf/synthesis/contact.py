@@ -13,6 +13,9 @@ from mbkf.model.human import HumanModel
 FRICTION = 0.8
 """Coefficient of friction of a shoe on a dry laboratory floor; horizontal force stays below this times vertical."""
 
+NOTHING = 1e-9
+"""Part of the load that counts as none."""
+
 
 @dataclass(frozen=True)
 class SoleOutline:
@@ -55,10 +58,16 @@ class Load:
     grounded: np.ndarray
 
     @property
+    def shares(self) -> Array:
+        """(T, 2) parts of the load on right and left foot, rounded to 0 and 1 where they come that close."""
+        right = np.clip(self.share, 0.0, 1.0)
+        right = np.where(right < NOTHING, 0.0, np.where(right > 1 - NOTHING, 1.0, right))
+        return np.column_stack([right, 1 - right])
+
+    @property
     def total_pressure(self) -> Array:
         """(T, 2) wanted point of zero moment of both feet together, m."""
-        share = self.share[:, None]
-        return share * self.pressure[:, 0] + (1 - share) * self.pressure[:, 1]
+        return np.einsum("tf,tfi->ti", self.shares, self.pressure)
 
 
 LoadPlan = Callable[[Array], Load]
@@ -73,7 +82,8 @@ def split(wrench: Array, load: Load, height: Array) -> tuple[Array, Array]:
 
     Args:
         wrench: (T, 6) total force N and moment N m about the world origin.
-        load: The intended load; what the motion misses of it shifts both centres of pressure alike.
+        load: The intended load; what the motion misses of it shifts both centres of pressure, that of the foot
+            with more load more.
         height: (T,) height of the centre of mass, m.
 
     Returns:
@@ -87,8 +97,11 @@ def split(wrench: Array, load: Load, height: Array) -> tuple[Array, Array]:
     zero_moment = np.stack([-moment[:, 1], moment[:, 0]], axis=-1) / force[:, 2:]
     missed = zero_moment - load.total_pressure[on]
     twist = moment[:, 2] - (zero_moment[:, 0] * force[:, 1] - zero_moment[:, 1] * force[:, 0])
-    for foot, share in enumerate((load.share[on], 1 - load.share[on])):
-        at = np.column_stack([load.pressure[on, foot] + missed, np.zeros(on.sum())])
+    shares = load.shares[on]
+    for foot in range(2):
+        share = shares[:, foot]
+        own = share / (shares**2).sum(axis=1)
+        at = np.column_stack([load.pressure[on, foot] + own[:, None] * missed, np.zeros(on.sum())])
         part = share[:, None] * force
         part[:, :2] += (share * force[:, 2] / height[on])[:, None] * (zero_moment - at[:, :2])
         turned = np.cross(at, part)

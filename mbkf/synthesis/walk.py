@@ -37,7 +37,7 @@ SWING_PITCH_DEG = (66.84, 38.50, 2.27, -10.80)
 BOB_M, BOB_LATE = 0.0214, 0.487
 """Half the rise of the centre of mass, and when in double support it is lowest (0 heel strike … 1 toe-off)."""
 
-MARGIN_STEPS = 3
+MARGIN_STEPS = 4
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ def walk_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> Mo
     height = ripple(bob, step_hz, -2 * np.pi * step_hz * (phase_s + BOB_LATE * DOUBLE_SUPPORT * stride_s) - np.pi / 2,
                     0.97 * size)
     return MotionPlan(start, end, lively(_angles(stride_s, phase_s, rng), rng, 0.6), poses, height,
-                      _load(model, steps, feet, stride_s), np.deg2rad(6.0), recorded_s=(0.0, seconds),
+                      _load(model, steps, feet, stride_s), np.deg2rad(7.0), recorded_s=(0.0, seconds),
                       notes={"speed_m_s": 2 * length / stride_s})
 
 
@@ -176,8 +176,8 @@ def _load(model: HumanModel, steps: list[Step], feet: dict[str, _Foot], stride_s
         outward = -1.0 if step.side == 0 else 1.0
         heading = constant_rotation(step.yaw)[:2, :2]
         for at, x, y in ((0.0, heel + 0.01, 0.0), (FOOT_FLAT, heel + 0.035, 0.004),
-                         (HEEL_OFF, ball + 0.008 * size, 0.006), (0.5, ball + 0.03 * size, -0.003),
-                         (0.5 + DOUBLE_SUPPORT, ball + 0.045 * size, -0.012)):
+                         (HEEL_OFF, ball + 0.008 * size, 0.006), (0.5, ball + 0.024 * size, -0.003),
+                         (0.5 + DOUBLE_SUPPORT, ball + 0.032 * size, -0.012)):
             local = heading @ np.array([x, outward * y * size])
             pressure_knots[step.side].append((step.strike_s + at * stride_s, step.ankle_m[:2] + local))
     share = path(share_knots)

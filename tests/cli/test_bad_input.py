@@ -151,8 +151,8 @@ def test_markers_in_the_wrong_unit(factor, unit, tmp_path, everywhere):
 
 
 def test_unit_given_wrongly(person, scale, reconstruct):
-    scale([person.static, "--mass", "75", "--unit", "m"], "m", "--unit")
-    reconstruct([person.trial, "--unit", "m"], "--unit")
+    scale([person.static, "--mass", "75", "--unit", "m"], "from the fitted body", "--unit")
+    reconstruct([person.trial, "--unit", "m"], "fit", "--unit")
     reconstruct([person.trial, "--unit", "inch"], "unknown", "'inch'", "mm")
     reconstruct([person.trial, "--up", "w"], "unknown", "'w'", "z")
 
@@ -229,7 +229,7 @@ def test_unknown_protocol(person, scale):
 
 
 def test_nothing_to_scale_on(scale):
-    scale(["--mass", "75"], "STATIC", "--trial")
+    scale(["--mass", "75"], "static trial", "--trial")
 
 
 def test_output_folder_that_is_a_file(person, tmp_path, refused):
@@ -329,7 +329,7 @@ def test_legs_alone_are_followed(person, tmp_path, capsys):
     assert "right_upper_arm_x" in found.held_dofs
     assert any("held" in warning and "right_upper_arm_x" in warning for warning in summary["warnings"])
     held = np.isin(found.dof_names, found.held_dofs)
-    assert found.sd_q[-1][held].min() > 5.0 * np.median(found.sd_q[-1][~held])
+    assert found.sd_q[-1][held].min() > np.deg2rad(4.9)  # as far as people's postures differ
     assert summary["marker_rms_mm"] < 3.0
     assert np.isfinite(found.q[found.tracked]).all()
     assert main(["scale", str(tmp_path / "legs.c3d"), "--out", str(tmp_path / "legs.toml")]) == 0

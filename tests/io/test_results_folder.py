@@ -7,7 +7,13 @@ import pytest
 
 from mbkf.errors import FileFormatError
 from mbkf.io import results_folder
-from mbkf.io.results_folder import prepare_folder, read_reconstruction, read_summary, write_reconstruction
+from mbkf.io.results_folder import (
+    check_folder,
+    prepare_folder,
+    read_reconstruction,
+    read_summary,
+    write_reconstruction,
+)
 from tests.io.reconstructions import made_up
 
 FILES = ["angles.mot", "markers.trc", "motion.h5", "reactions.mot", "summary.json", "torques.sto"]
@@ -55,16 +61,24 @@ def test_a_failure_leaves_nothing_behind(tmp_path, monkeypatch):
     monkeypatch.setattr(results_folder, "write_opensim", fail)
     with pytest.raises(OSError, match="disk full"):
         write_reconstruction(made_up(), {}, tmp_path / "out")
-    assert [path.name for path in tmp_path.iterdir()] == ["out"]
-    assert list((tmp_path / "out").iterdir()) == []
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_file_in_the_way_is_refused(tmp_path):
     (tmp_path / "out").write_text("a file")
     with pytest.raises(FileFormatError, match="a file stands where a folder is needed"):
         write_reconstruction(made_up(), {}, tmp_path / "out")
-    with pytest.raises(FileFormatError, match="name another folder"):
-        prepare_folder(tmp_path / "out" / "deeper")
+    for look in (check_folder, prepare_folder):
+        with pytest.raises(FileFormatError, match="name another folder"):
+            look(tmp_path / "out" / "deeper")
+
+
+def test_a_folder_is_made_only_when_prepared(tmp_path):
+    target = tmp_path / "a" / "b"
+    assert check_folder(target) == target
+    assert list(tmp_path.iterdir()) == []
+    assert prepare_folder(target) == target
+    assert target.is_dir()
 
 
 def test_missing_results_are_refused(tmp_path):

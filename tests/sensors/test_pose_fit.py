@@ -57,8 +57,8 @@ def test_the_fit_turns_with_the_markers(body):
     c, s = np.cos(2.1), np.sin(2.1)
     turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
     here, there = (fitted(sensor, m).q for m in (measured, measured @ turn.T))
-    assert_near(there[:3], turn @ here[:3], 1e-7)
-    assert_near(there[7:], here[7:], 1e-6)
+    assert_near(there[:3], turn @ here[:3], 1e-12)
+    assert_near(there[7:], here[7:], 1e-13)
 
 
 def test_missing_markers_of_a_well_covered_segment_do_not_matter(body):
@@ -84,8 +84,8 @@ def test_unseen_joints_stay_neutral_with_the_priors_spread(body):
     found = fitted(sensor, measured)
     for segment in ("right_upper_arm", "right_forearm", "right_hand"):
         joint = model.joint(segment)
-        assert_near(found.q[joint.q], [0, 0, 0, 1], 1e-6)
-        assert_near(np.sqrt(np.diag(found.covariance))[joint.v], model.posture_sd[joint.v], 1e-6)
+        assert_near(found.q[joint.q], [0, 0, 0, 1], 1e-12)
+        assert_near(np.sqrt(np.diag(found.covariance))[joint.v], model.posture_sd[joint.v], 1e-8)
 
 
 def test_no_markers_at_all_give_the_neutral_pose(body):
@@ -94,7 +94,7 @@ def test_no_markers_at_all_give_the_neutral_pose(body):
     np.testing.assert_array_equal(segment_by_segment(sensor, measured), model.neutral())
     found = fitted(sensor, measured)
     assert found.rms_m == np.inf
-    assert_near(found.q, model.neutral(), 1e-12)
+    assert_near(found.q, model.neutral(), 1e-15)
 
 
 def test_covariance_is_the_inverse_of_the_information(body):
@@ -105,7 +105,7 @@ def test_covariance_is_the_inverse_of_the_information(body):
     found = fit_pose(sensor, posture, measured, noise(sensor, 0.005), segment_by_segment(sensor, measured))
     H = sensor.reading(found.q).jacobian.reshape(-1, model.nv) / 0.005
     B = posture.reading(found.q).jacobian / posture.sd[:, None]
-    np.testing.assert_allclose(np.linalg.inv(found.covariance), H.T @ H + B.T @ B, rtol=1e-6, atol=1e-5)
+    np.testing.assert_allclose(np.linalg.inv(found.covariance), H.T @ H + B.T @ B, rtol=1e-8, atol=1e-7)
 
 
 def test_scatter_of_fits_is_what_the_covariance_says():

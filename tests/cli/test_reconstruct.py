@@ -1,0 +1,128 @@
+"""`mbkf reconstruct` writes its six files with the promised keys: with plates, gaps or a MOT file, and again."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from mbkf.cli.main import main
+from mbkf.cli.reconstruct import parse_hide
+from mbkf.io.c3d import read_c3d
+from mbkf.io.results_folder import read_reconstruction, read_summary
+from mbkf.io.storage import read_storage
+from mbkf.io.trc import read_trc
+from mbkf.pipelines.reconstruct import Hidden
+
+FILES = {"summary.json", "motion.h5", "angles.mot", "torques.sto", "reactions.mot", "markers.trc"}
+
+KEYS = {
+    "trial", "protocol", "filter", "smoothed", "version", "mass_kg", "frames", "rate_hz", "duration_s",
+    "markers_used", "missing_fraction", "marker_rms_mm", "marker_max_mm", "marker_rms_mm_by_name",
+    "residual_force_rms_n", "residual_moment_rms_nm", "valid_frames", "plate_force_change_rms_n",
+    "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "nis_per_dof", "step_seconds_median",
+    "step_seconds_p99", "realtime_factor", "hidden_marker_rms_mm", "hidden_marker_max_mm", "truth", "warnings",
+    "settings",
+}  # fmt: skip
+"""Keys of summary.json, as the contract of the command line names them."""
+
+
+@pytest.fixture
+def reconstruct(person, tmp_path):
+    """Runs the command on a trial of the made person and returns the folder."""
+
+    def run(trial, *words):
+        out = tmp_path / "out"
+        subject = ["--subject", str(person.subject), "--out", str(out)]
+        assert main(["reconstruct", str(trial), *(str(word) for word in words), *subject]) == 0
+        return out
+
+    return run
+
+
+def refuse_constant(word):
+    raise AssertionError(f"{word} in summary.json")
+
+
+def test_files_keys_and_numbers(person, reconstruct, capsys):
+    out = reconstruct(person.trial)
+    assert {path.name for path in out.iterdir()} == FILES
+    summary = json.loads((out / "summary.json").read_text(), parse_constant=refuse_constant)
+    assert set(summary) == KEYS
+    assert (summary["trial"], summary["protocol"], summary["filter"]) == ("trial", "reference36", "kinematic")
+    assert (summary["frames"], summary["rate_hz"], summary["markers_used"]) == (60, 100.0, 36)
+    assert summary["missing_fraction"] == 0.0
+    assert 0.1 < summary["marker_rms_mm"] < 2.0
+    assert summary["marker_rms_mm"] < summary["marker_max_mm"] < 10.0
+    assert len(summary["marker_rms_mm_by_name"]) == 36
+    assert summary["valid_frames"] == 60
+    assert summary["truth"] is None
+    assert summary["hidden_marker_rms_mm"] is None
+    shown = capsys.readouterr().out
+    assert "60 at 100 Hz" in shown
+    assert str(out) in shown.replace("\n", "")
+
+
+def test_opensim_files_agree_with_the_motion(person, reconstruct):
+    out = reconstruct(person.trial)
+    motion = read_reconstruction(out)
+    angles, torques = read_storage(out / "angles.mot"), read_storage(out / "torques.sto")
+    assert angles.in_degrees
+    column = motion.coordinate_names.index("knee_angle_r")
+    np.testing.assert_allclose(angles.column("knee_angle_r"), np.rad2deg(motion.angles[:, column]), atol=1e-8)
+    np.testing.assert_allclose(torques.column("knee_angle_r_moment"), motion.moments[:, column], atol=1e-8)
+    reactions = read_storage(out / "reactions.mot")
+    total = reactions.column("ground_force_r_vy") + reactions.column("ground_force_l_vy")
+    assert total == pytest.approx(sum(p.force_n[0, 2] for p in read_c3d(person.trial).plates), rel=1e-6)
+    markers = read_trc(out / "markers.trc").markers
+    np.testing.assert_allclose(markers.positions_m, motion.predicted_m, atol=1e-8)
+
+
+def test_a_second_run_replaces_the_first_and_keeps_other_files(person, reconstruct):
+    out = reconstruct(person.trial, "--hide", "RASI@0.1:0.3")
+    (out / "notes.txt").write_text("mine")
+    again = reconstruct(person.trial)
+    assert {path.name for path in again.iterdir()} == FILES | {"notes.txt"}
+    assert read_summary(again)["hidden_marker_rms_mm"] is None
+    assert [path.name for path in again.parent.iterdir()] == ["out"]
+
+
+def test_hidden_markers_are_predicted(person, reconstruct):
+    summary = read_summary(reconstruct(person.trial, "--hide", "RASI,RELB@0.2:0.4", "--hide", "C7@0:0.1"))
+    assert summary["missing_fraction"] == pytest.approx((2 * 21 + 11) / (60 * 36))
+    assert 0.0 < summary["hidden_marker_rms_mm"] <= summary["hidden_marker_max_mm"] < 20.0
+
+
+def test_withheld_plate(person, reconstruct):
+    whole = read_reconstruction(reconstruct(person.trial))
+    part = read_reconstruction(reconstruct(person.trial, "--without-plate", "2"))
+    assert whole.foot_wrench[:, :, 2].min() > 300.0
+    assert part.foot_wrench[:, 1].any() == np.False_
+    assert not part.valid.any()
+
+
+def test_forces_of_another_file(person, reconstruct):
+    plates = read_reconstruction(reconstruct(person.trial))
+    forces = read_reconstruction(reconstruct(person.trial_trc, "--forces", person.forces))
+    np.testing.assert_allclose(forces.foot_wrench, plates.foot_wrench, atol=0.05)
+    assert read_summary(reconstruct(person.trial_trc, "--forces", person.forces))["valid_frames"] == 60
+
+
+def test_without_forces_nothing_is_said_about_torques(person, reconstruct):
+    out = reconstruct(person.trial_trc)
+    summary = json.loads((out / "summary.json").read_text(), parse_constant=refuse_constant)
+    assert set(summary) == KEYS
+    assert summary["valid_frames"] == 0
+    assert summary["residual_force_rms_n"] is None
+    assert set(summary["torque_peak_nm_per_kg"].values()) == {None}
+
+
+def test_kept_markers_are_those_of_the_subject(person, reconstruct):
+    summary = read_summary(reconstruct(person.trial, "--keep-markers"))
+    assert summary["settings"]["correct_markers"] is False
+    assert summary["marker_rms_mm"] < 2.0
+
+
+def test_hide_is_read():
+    assert parse_hide("RASI, LASI@0.5:1e0") == Hidden(("RASI", "LASI"), 0.5, 1.0)
+    assert math.isclose(parse_hide("A@-1:2").from_s, -1.0)

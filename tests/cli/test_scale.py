@@ -1,0 +1,69 @@
+"""`mbkf scale` finds the body and the mass of a made person and writes one readable subject file."""
+
+import numpy as np
+import pytest
+
+from mbkf.cli.main import main
+from mbkf.io.subject import read_subject
+from mbkf.model.protocol import load_protocol
+from tests.captures import MASS_KG, snapshot
+
+
+def scale(*words) -> int:
+    return main(["scale", *(str(word) for word in words)])
+
+
+@pytest.fixture
+def reference():
+    return {m.name: m for m in load_protocol("reference36").markers}
+
+
+@pytest.mark.parametrize("source", ["static", "trial", "both"])
+def test_the_made_body_is_found(source, person, reference, tmp_path, capsys):
+    words = {"static": [person.static], "trial": ["--trial", person.trial],
+             "both": [person.static, "--trial", person.trial]}[source]  # fmt: skip
+    assert scale(*words, "--mass", "71.5", "--out", tmp_path / "s.toml") == 0
+    subject = read_subject(tmp_path / "s.toml")
+    assert (subject.protocol, subject.body, subject.mass_kg) == ("reference36", "human18", 71.5)
+    assert list(subject.scale_factors.values()) == pytest.approx([1.0] * 17, abs=0.05)
+    assert {m.name for m in subject.markers} == set(reference)
+    moved = [np.linalg.norm(m.position_m - reference[m.name].position_m) for m in subject.markers]
+    assert max(moved) < 0.03
+    shown = capsys.readouterr().out
+    assert "Scale factors" in shown
+    assert "right thigh" in shown
+    assert "protocol reference36" in shown
+    assert "s.toml" in shown.replace("\n", "")
+
+
+def test_mass_comes_from_the_capture_where_it_is_stated(person, tmp_path):
+    assert scale(person.static, "--out", tmp_path / "s.toml") == 0
+    assert read_subject(tmp_path / "s.toml").mass_kg == MASS_KG
+
+
+def test_report_is_kept_with_the_subject(person, tmp_path):
+    assert scale(person.static, "--out", tmp_path / "s.toml", "--height", "1.75") == 0
+    subject = read_subject(tmp_path / "s.toml")
+    assert subject.height_m == 1.75
+    assert subject.report["converged"]
+    assert subject.report["marker_rms_mm"] < 2.0
+    factor = subject.report["factors"]["right_thigh"]
+    assert factor["standard_error"] > 0.0
+    assert not factor["at_bound"]
+    assert set(subject.report["markers"]["RASI"]) >= {"rms_mm", "max_mm", "moved_mm", "kind"}
+
+
+def test_a_second_run_replaces_the_file_and_leaves_nothing_else(person, tmp_path):
+    path = tmp_path / "s.toml"
+    path.write_text("old")
+    assert scale(person.static, "--out", path) == 0
+    first = path.read_bytes()
+    assert scale(person.static, "--out", path) == 0
+    assert snapshot(tmp_path) == {"s.toml": first}
+
+
+def test_trc_and_c3d_give_the_same_subject(person, tmp_path):
+    for name, trial in (("c3d", person.trial), ("trc", person.trial_trc)):
+        assert scale("--trial", trial, "--mass", "75", "--out", tmp_path / name) == 0
+    a, b = (read_subject(tmp_path / name) for name in ("c3d", "trc"))
+    assert list(a.scale_factors.values()) == pytest.approx(list(b.scale_factors.values()), abs=1e-4)

@@ -1,0 +1,223 @@
+"""Scaling a made-up person whose size and marker places are known."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mbkf.errors import InvalidInput, NotConverged, NotObservable
+from mbkf.io.records import MarkerTrajectories
+from mbkf.model.human import HumanModel
+from mbkf.model.protocol import load_protocol
+from mbkf.scaling.fit import scale_subject
+from mbkf.scaling.problem import ScalingSettings
+from mbkf.sensors.markers import MarkerSensor
+from tests.motions import marker_positions, moderate_pose, reference_model
+
+PROTOCOL = load_protocol("reference36")
+BODY = reference_model().description
+NAMES = tuple(m.name for m in PROTOCOL.markers)
+
+
+class Person:
+    """Known factors, anatomical markers exactly in place, technical ones up to 3 cm off."""
+
+    def __init__(self, seed, spread=0.08, offset_m=0.03):
+        rng = np.random.default_rng(seed)
+        self.factors = rng.uniform(0.95, 1.08) * rng.uniform(1 - spread / 2, 1 + spread / 2, 17)
+        self.model = HumanModel(BODY, self.factors, 72.0)
+        technical = np.array([[m.kind == "technical"] for m in PROTOCOL.markers])
+        self.offsets_m = technical * rng.uniform(-offset_m, offset_m, (len(NAMES), 3))
+        scale = [self.model.axis_scale(BODY.segment(m.segment)) for m in PROTOCOL.markers]
+        places = np.array(scale) * np.array([m.position_m for m in PROTOCOL.markers]) + self.offsets_m
+        self.sensor = MarkerSensor(self.model, [m.segment for m in PROTOCOL.markers], places)
+        self.rng = rng
+
+    def moving(self, frames=20, noise_m=0.0):
+        poses = [moderate_pose(self.model, self.rng, spread=0.6) for _ in range(frames)]
+        return self.trial(poses, noise_m)
+
+    def standing(self, frames=5, noise_m=0.0):
+        return self.trial([self.model.neutral()] * frames, noise_m)
+
+    def trial(self, poses, noise_m):
+        positions = marker_positions(self.sensor, poses)
+        return MarkerTrajectories(NAMES, positions + noise_m * self.rng.normal(size=positions.shape), 100.0)
+
+
+def found_factors(subject):
+    table = subject.report["factors"].values()
+    return np.array([one["value"] for one in table]), np.array([one["standard_error"] for one in table])
+
+
+@pytest.fixture(scope="module")
+def person():
+    return Person(1)
+
+
+@pytest.fixture(scope="module")
+def subject(person):
+    return scale_subject([person.standing()], [person.moving()], PROTOCOL, mass_kg=72.0)
+
+
+@pytest.fixture
+def without(person):
+    """A trial of the person in which some markers are not there at all."""
+
+    def make(*lost):
+        one = person.moving(8)
+        return one.select(tuple(name for name in NAMES if name not in lost))
+
+    return make
+
+
+def test_markers_fit_within_a_millimetre(subject):
+    assert subject.report["converged"]
+    assert subject.report["marker_rms_mm"] < 1.0
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_factors_are_recovered_within_three_standard_errors(seed):
+    one = Person(seed)
+    result = scale_subject([one.standing()], [one.moving()], PROTOCOL, mass_kg=72.0)
+    found, errors = found_factors(result)
+    print(seed, np.abs(found - one.factors).max(), (np.abs(found - one.factors) / errors).max(), errors.max(), result.report["marker_rms_mm"], result.report["frames"])
+    assert (np.abs(found - one.factors) < 3 * errors).all()
+    assert np.abs(found - one.factors).max() < 0.03
+    assert (errors < 0.05).all()
+    assert list(result.scale_factors) == list(BODY.scale_factors)
+    np.testing.assert_allclose(list(result.scale_factors.values()), found, atol=1e-5)
+
+
+def test_technical_markers_are_found_where_they_sit(person, subject):
+    sensor_places = dict(zip(NAMES, person.sensor.local_m, strict=True))
+    technical = [m.name for m in PROTOCOL.markers if m.kind == "technical"]
+    assert technical
+    by_name = {m.name: m for m in subject.markers}
+    off = [np.linalg.norm(by_name[name].position_m - sensor_places[name]) for name in technical]
+    print(off)
+    assert max(off) < 0.012
+
+
+def test_the_report_counts_samples_and_displacements(person, subject):
+    report = subject.report
+    assert set(report["markers"]) == set(NAMES)
+    assert report["frames"] == 25
+    assert report["left_out"] == {}
+    for one in report["markers"].values():
+        assert one["samples"] == 25
+        assert one["samples_left_out"] == 0
+        assert 0 <= one["rms_mm"] <= one["max_mm"]
+    assert not any(one["at_bound"] for one in report["factors"].values())
+
+
+def test_errors_of_noisy_fits_match_their_standard_errors():
+    """Normalised errors of all factors over several noisy trials: within a factor of the standard errors."""
+    squared = []
+    for seed in range(4):
+        one = Person(10 + seed, spread=0.06)
+        result = scale_subject([one.standing(noise_m=0.005)], [one.moving(noise_m=0.005)], PROTOCOL, mass_kg=72.0)
+        found, errors = found_factors(result)
+        squared.append(((found - one.factors) / errors) ** 2)
+    print(np.mean(squared))
+    assert 0.2 < np.mean(squared) < 1.6
+
+
+def test_more_frames_make_smaller_standard_errors(person):
+    few, many = (scale_subject([], [person.moving(n)], PROTOCOL, mass_kg=72.0) for n in (4, 20))
+    assert (found_factors(many)[1] < found_factors(few)[1]).all()
+
+
+def test_a_known_height_sets_the_overall_size():
+    """Standing still with a few pelvis and trunk markers, the stated height decides about the limbs."""
+    one = Person(4, spread=0.0)
+    tall = one.factors.mean() * BODY.reference_height_m
+    names = ("RASI", "LASI", "SACR", "C7", "CLAV", "RFHD", "LFHD")
+    static = one.standing().select(names)
+    known = scale_subject([static], [], PROTOCOL, mass_kg=72.0, height_m=tall)
+    assert known.height_m == tall
+    assert known.scale_factors["right_shank"] == pytest.approx(one.factors[0], rel=0.02)
+    left_out = [m.name for m in PROTOCOL.markers if m.name not in names]
+    assert all(m.session_sd_m == p.placement_sd_m
+               for m, p in zip(known.markers, PROTOCOL.markers, strict=True) if m.name in left_out)
+
+
+def test_static_with_few_markers_scales_what_it_sees(person):
+    names = ("RASI", "LASI", "SACR", "RKNE", "LKNE", "RANK", "LANK", "RHEE")
+    result = scale_subject([person.standing().select(names)], [], PROTOCOL, mass_kg=72.0)
+    assert result.report["marker_rms_mm"] < 5.0
+    assert len(result.markers) == len(NAMES)
+    factors = result.report["factors"]
+    assert factors["right_shank"]["standard_error"] < 0.7 * factors["right_forearm"]["standard_error"]
+
+
+def test_active_bounds_are_reported():
+    """A giant twice as large as the reference: what is seen of every limb ends at the upper bound."""
+    giant = Person(5, spread=0.0)
+    huge = giant.standing(3)
+    trial = MarkerTrajectories(NAMES, 1.75 * huge.positions_m, 100.0)
+    wide = ScalingSettings(proportion_sd=2.0, stature_sd=2.0, outlier_m=1.0)
+    report = scale_subject([trial], [], PROTOCOL, mass_kg=120.0, settings=wide).report
+    at_bound = {name for name, one in report["factors"].items() if one["at_bound"]}
+    assert {"right_thigh", "left_thigh", "right_shank", "left_shank"} <= at_bound
+    for name in at_bound:
+        assert report["factors"][name]["value"] in (0.5, 1.6)
+
+
+def test_markers_left_out_come_with_reasons(person, without):
+    one = without("RTUB")
+    strange = MarkerTrajectories((*one.names, "Foo"), np.concatenate([one.positions_m, one.positions_m[:, :1]], 1), 100.0)
+    result = scale_subject([], [strange], PROTOCOL, mass_kg=72.0)
+    assert result.report["left_out"] == {"Foo": "not a marker of the protocol"}
+    assert "RTUB" not in result.report["markers"]
+    lost = next(m for m in result.markers if m.name == "RTUB")
+    reference = next(m for m in PROTOCOL.markers if m.name == "RTUB")
+    expected = result.scale_factors["right_shank"] * reference.position_m
+    np.testing.assert_allclose(lost.position_m, expected, rtol=1e-12)
+    assert lost.session_sd_m == reference.placement_sd_m
+
+
+def test_a_wild_sample_is_dropped_and_counted(person):
+    trial = person.moving(10)
+    positions = trial.positions_m.copy()
+    positions[3, NAMES.index("RKNE")] += [0.4, 0.0, 0.0]
+    result = scale_subject([], [replace(trial, positions_m=positions)], PROTOCOL, mass_kg=72.0)
+    dropped = {name: one["samples_left_out"] for name, one in result.report["markers"].items() if one["samples_left_out"]}
+    assert dropped == {"RKNE": 1}
+    assert result.report["markers"]["RKNE"]["samples"] == 9
+    assert result.report["marker_rms_mm"] < 1.5
+
+
+@pytest.mark.parametrize("mass", [0.0, -70.0, np.nan, np.inf])
+def test_impossible_masses_are_refused(person, mass):
+    with pytest.raises(InvalidInput, match="mass must be positive.*give --mass KG"):
+        scale_subject([person.standing(1)], [], PROTOCOL, mass_kg=mass)
+
+
+@pytest.mark.parametrize("height", [0.4, 175.0, -1.8, np.nan])
+def test_impossible_heights_are_refused(person, height):
+    with pytest.raises(InvalidInput, match="height must be between"):
+        scale_subject([person.standing(1)], [], PROTOCOL, mass_kg=72.0, height_m=height)
+
+
+def test_no_trial_is_refused():
+    with pytest.raises(InvalidInput, match="static trial or at least one --trial"):
+        scale_subject([], [], PROTOCOL, mass_kg=72.0)
+
+
+def test_too_few_markers_are_refused(person):
+    with pytest.raises(NotObservable, match="5 markers of protocol"):
+        scale_subject([person.standing().select(NAMES[:5])], [], PROTOCOL, mass_kg=72.0)
+
+
+def test_markers_that_are_no_person_are_refused(person):
+    nonsense = MarkerTrajectories(NAMES, np.random.default_rng(6).uniform(-2, 2, (4, len(NAMES), 3)), 100.0)
+    with pytest.raises(NotConverged, match="protocol"):
+        scale_subject([nonsense], [], PROTOCOL, mass_kg=72.0)
+
+
+def test_progress_is_told(person):
+    told = []
+    scale_subject([person.standing(2)], [], PROTOCOL, mass_kg=72.0, progress=lambda *step: told.append(step))
+    assert told[0][0] == 1
+    assert all(done <= total for done, total in told)

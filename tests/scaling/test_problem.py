@@ -1,0 +1,142 @@
+"""The scaling problem: every derivative against finite differences of residuals written out here."""
+
+import numpy as np
+import pytest
+
+from mbkf.model.human import HumanModel
+from mbkf.model.protocol import load_protocol
+from mbkf.scaling.problem import FACTOR_BOUNDS, ScalingPrior, ScalingProblem, ScalingState
+from tests.motions import assert_near, moderate_pose, protocol_sensor, random_scale, reference_model
+
+MODEL = reference_model()
+BODY = MODEL.description
+MARKERS = load_protocol("reference36").markers[:20]
+FRAMES = 3
+
+
+def random_covariance(rng, size):
+    A = rng.normal(size=(size, size))
+    return 0.01 * (A @ A.T / size + 0.3 * np.eye(size))
+
+
+@pytest.fixture(scope="module")
+def problem():
+    """Some markers in some frames, one not at all, correlated prior, unequal posture weights."""
+    rng = np.random.default_rng(1)
+    measured = rng.uniform(-1, 1, (FRAMES, len(MARKERS), 3))
+    measured[rng.random((FRAMES, len(MARKERS))) < 0.3] = np.nan
+    measured[:, 4] = np.nan
+    prior = ScalingPrior(
+        factors=random_scale(rng),
+        factor_covariance=random_covariance(rng, 17),
+        offsets_m=rng.uniform(-0.02, 0.02, (len(MARKERS), 3)),
+        placement_sd_m=rng.uniform(0.005, 0.05, len(MARKERS)),
+    )
+    return ScalingProblem(BODY, MARKERS, measured, np.array([0.0, 0.3, 1.0]), prior)
+
+
+@pytest.fixture(scope="module")
+def state():
+    rng = np.random.default_rng(2)
+    poses = np.array([moderate_pose(MODEL, rng) for _ in range(FRAMES)])
+    return ScalingState(poses, random_scale(rng), rng.uniform(-0.03, 0.03, (len(MARKERS), 3)))
+
+
+def residuals(problem, state):
+    """All whitened residuals in one vector, from the module's description and not its code."""
+    model = HumanModel(BODY, state.factors, 80.0)
+    rows = []
+    for t, q in enumerate(state.poses):
+        rotations, origins = model.placements(q)
+        for i, marker in enumerate(MARKERS):
+            if not np.isnan(problem.measured_m[t, i]).any():
+                joint = model.joint(marker.segment).joint_id
+                local = model.axis_scale(BODY.segment(marker.segment)) * marker.position_m + state.offsets_m[i]
+                at = origins[joint] + rotations[joint] @ local
+                rows.append((at - problem.measured_m[t, i]) / marker.noise_m)
+        deviation = problem.posture.reading(q).deviation / problem.posture.sd
+        rows.append(np.sqrt(problem.posture_weight[t]) * deviation)
+    whiten = np.linalg.inv(np.linalg.cholesky(problem.prior.factor_covariance))
+    rows.append(whiten @ (state.factors - problem.prior.factors))
+    rows += list((state.offsets_m - problem.prior.offsets_m) / problem.prior.placement_sd_m[:, None])
+    return np.concatenate(rows)
+
+
+def numeric_jacobian(problem, state, h=1e-6):
+    """Of :func:`residuals` by (poses, factors, offsets)."""
+    own, shared = FRAMES * MODEL.nv, 17 + 3 * len(MARKERS)
+    columns = []
+    for i in range(own + shared):
+        step = np.zeros(own + shared)
+        step[i] = h
+        ends = [problem.move(state, s * step[:own].reshape(FRAMES, -1), s * step[own:]) for s in (1, -1)]
+        columns.append((residuals(problem, ends[0]) - residuals(problem, ends[1])) / (2 * h))
+    return np.stack(columns, axis=1)
+
+
+@pytest.fixture(scope="module")
+def jacobian(problem, state):
+    return numeric_jacobian(problem, state)
+
+
+def test_cost_is_the_sum_of_squared_residuals(problem, state):
+    total = (residuals(problem, state) ** 2).sum()
+    assert problem.cost(state) == pytest.approx(total, rel=1e-12)
+    assert problem.linearise(state).cost == pytest.approx(total, rel=1e-12)
+
+
+def test_gradient_by_poses_factors_and_offsets(problem, state, jacobian):
+    equations = problem.linearise(state)
+    found = np.concatenate([equations.frame_gradient.ravel(), equations.corner_gradient])
+    expected = jacobian.T @ residuals(problem, state)
+    assert_near(found / np.abs(expected).max(), expected / np.abs(expected).max(), 1e-9)
+
+
+def test_gradient_is_half_the_slope_of_the_cost(problem, state):
+    rng, h = np.random.default_rng(3), 1e-6
+    equations = problem.linearise(state)
+    for _ in range(5):
+        own, shared = rng.normal(size=(FRAMES, MODEL.nv)), rng.normal(size=17 + 3 * len(MARKERS))
+        ahead, behind = (problem.cost(problem.move(state, s * h * own, s * h * shared)) for s in (1, -1))
+        slope = 2 * ((equations.frame_gradient * own).sum() + equations.corner_gradient @ shared)
+        assert slope == pytest.approx((ahead - behind) / (2 * h), rel=1e-6)
+
+
+def test_the_arrow_is_the_gauss_newton_matrix(problem, state, jacobian):
+    equations, nv = problem.linearise(state), MODEL.nv
+    dense = jacobian.T @ jacobian
+    size = np.abs(dense).max()
+    for t in range(FRAMES):
+        own = slice(t * nv, (t + 1) * nv)
+        assert_near(equations.frames[t] / size, dense[own, own] / size, 1e-9)
+        assert_near(equations.border[t] / size, dense[own, FRAMES * nv :] / size, 1e-9)
+    assert_near(equations.corner / size, dense[FRAMES * nv :, FRAMES * nv :] / size, 1e-9)
+
+
+def test_missing_markers_say_nothing(problem, state):
+    errors = problem.errors_m(state)
+    np.testing.assert_array_equal(np.isnan(errors), np.isnan(problem.measured_m))
+    columns = 17 + 3 * 4 + np.arange(3)  # the marker never seen
+    assert (problem.linearise(state).border[:, :, columns] == 0).all()
+
+
+def test_at_the_expected_state_only_the_markers_cost(problem, state):
+    start = problem.start(np.repeat(MODEL.neutral()[None], FRAMES, axis=0))
+    noise = np.array([m.noise_m for m in MARKERS])
+    assert problem.cost(start) == pytest.approx(np.nansum((problem.errors_m(start) / noise[:, None]) ** 2), rel=1e-12)
+
+
+def test_with_unit_factors_and_no_offsets_markers_are_the_protocols():
+    sensor, names = protocol_sensor(MODEL)
+    prior = ScalingPrior(np.ones(17), np.eye(17), np.zeros((len(names), 3)), np.ones(len(names)))
+    markers = load_protocol("reference36").markers
+    problem = ScalingProblem(BODY, markers, np.full((1, len(names), 3), np.nan), np.ones(1), prior)
+    own = problem.sensor(problem.start(np.zeros((0, 67))))
+    q = moderate_pose(MODEL, np.random.default_rng(4))
+    assert_near(own.positions(q), sensor.positions(q), 1e-15)
+
+
+def test_factors_stay_inside_their_bounds(problem, state):
+    far = np.concatenate([np.where(np.arange(17) % 2, 5.0, -5.0), np.zeros(3 * len(MARKERS))])
+    factors = problem.move(state, np.zeros((FRAMES, MODEL.nv)), far).factors
+    assert set(factors) == set(FACTOR_BOUNDS)

@@ -1,0 +1,204 @@
+"""Feet on force plates: centres of pressure from r × F, who stands where, and which frames are fully measured."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from mbkf.conventions import GRAVITY_M_S2
+from mbkf.io.records import PlateReadings
+from mbkf.sensors.contacts import assign_feet, sole_points, stretches
+from tests.motions import assert_near, moderate_pose, random_model, reference_model
+
+MODEL = reference_model()
+RATE_HZ, PLATE_RATE_HZ = 100.0, 1000.0
+WEIGHT_N = MODEL.mass_kg * GRAVITY_M_S2
+RIGHT, LEFT, NOBODY = 0, 1, -1
+
+
+def standing(yaw=0.0, lifted=None, z=0.0, at=(0.0, 0.0)):
+    """Neutral posture with the soles on the floor; one foot lifted by bending hip and knee."""
+    q = MODEL.neutral()
+    if lifted is not None:
+        for segment, degrees in ((f"{lifted}_thigh", -40), (f"{lifted}_shank", 80)):
+            q[MODEL.joint(segment).q] = Rotation.from_euler("y", degrees, degrees=True).as_quat()
+    ground = sole_points(MODEL, MODEL.neutral()[None])[0, :, :, 2].min()
+    q[:3] = [*at, z - ground]
+    q[3:7] = Rotation.from_euler("z", yaw).as_quat()
+    return q
+
+
+def on_the_right_foot(frames):
+    """Stands on both feet for the first six frames, which shows where the floor is, then on the right one."""
+    return np.array([standing()] * 6 + [standing(lifted="left")] * (frames - 6))
+
+
+def ball(q, side):
+    return sole_points(MODEL, q[None])[0, side, 1]
+
+
+def plate(at, vertical_n, frames, start_s=0.0, free_nm=0.0, height_m=0.0):
+    """A plate whose load acts at ``at`` (x, y, …), with a vertical force given per frame (or one for all)."""
+    fz = np.repeat(np.broadcast_to(np.asarray(vertical_n, float), frames), int(PLATE_RATE_HZ / RATE_HZ))
+    force = np.stack([0.1 * fz, -0.05 * fz, fz], axis=1)
+    origin = np.array([at[0] + 0.1, at[1] - 0.05, height_m])
+    point = np.array([at[0], at[1], height_m])
+    moment = np.cross(point - origin, force) + np.outer(fz > 0, [0.0, 0.0, free_nm])
+    pressure = np.where((fz > 20)[:, None], point, np.nan)
+    corners = origin + np.array([[0.3, 0.2, 0], [0.3, -0.2, 0], [-0.3, -0.2, 0], [-0.3, 0.2, 0]])
+    return PlateReadings("1", PLATE_RATE_HZ, start_s, origin, force, moment, pressure, 20.0, corners)
+
+
+def assigned(q, plates):
+    return assign_feet(MODEL, q, np.arange(len(q)) / RATE_HZ, RATE_HZ, tuple(plates))
+
+
+def test_soles_lie_under_the_feet_and_mirror():
+    heel, ball_of_foot, toe = sole_points(MODEL, standing()[None])[0].swapaxes(0, 1)
+    assert_near(np.stack([heel, ball_of_foot, toe])[:, :, 2], 0.0, 1e-15)
+    assert (heel[:, 0] < ball_of_foot[:, 0]).all()
+    assert (ball_of_foot[:, 0] < toe[:, 0]).all()
+    for points in (heel, ball_of_foot, toe):
+        assert points[RIGHT, 1] < 0
+        assert_near(points[LEFT], points[RIGHT] * [1, -1, 1], 1e-15)
+
+
+def test_soles_scale_and_move_with_the_foot():
+    rng = np.random.default_rng(1)
+    model = random_model(rng)
+    q = moderate_pose(model, rng)
+    points = sole_points(model, np.stack([q, np.full(model.nq, np.nan)]))
+    assert np.isnan(points[1]).all()
+    sole = model.description.sole
+    for side, foot in enumerate(("right_foot", "left_foot")):
+        along = model.axis_scale(model.description.segment(foot))[0] * (sole.toe_x_m - sole.heel_x_m)
+        assert np.linalg.norm(points[0, side, 2] - points[0, side, 0]) == pytest.approx(along, rel=1e-12)
+
+
+@pytest.mark.parametrize("yaw", [0.0, 1.0, np.pi, -2.0])
+def test_each_foot_has_its_own_plate_whichever_way_it_faces(yaw):
+    q = np.repeat(standing(yaw)[None], 20, axis=0)
+    loads = assigned(q, [plate(ball(q[0], LEFT), 0.6 * WEIGHT_N, 20, free_nm=3.0), plate(ball(q[0], RIGHT), 0.4 * WEIGHT_N, 20)])
+    assert (loads.foot_of_plate == [LEFT, RIGHT]).all()
+    assert loads.valid.all()
+    assert loads.warnings == ()
+    for side, share, free in ((RIGHT, 0.4, 0.0), (LEFT, 0.6, 3.0)):
+        force, at = share * WEIGHT_N * np.array([0.1, -0.05, 1.0]), ball(q[0], side) * [1, 1, 0]
+        moment = np.cross(at, force) + [0, 0, free]
+        assert_near(loads.wrench[:, side], np.tile(np.hstack([force, moment]), (20, 1)), 1e-10)
+        assert_near(loads.centre_of_pressure_m[:, side], np.tile(at, (20, 1)), 1e-13)
+        assert_near(loads.free_moment_nm[:, side], free, 1e-12)
+
+
+def test_wrenches_of_the_feet_are_those_of_the_plates():
+    q = np.repeat(standing()[None], 10, axis=0)
+    loads = assigned(q, [plate(ball(q[0], RIGHT), 300.0, 10), plate(ball(q[0], RIGHT) + [0.03, 0, 0], 250.0, 10),
+                         plate(ball(q[0], LEFT), 250.0, 10)])
+    assert (loads.foot_of_plate == [RIGHT, RIGHT, LEFT]).all()
+    assert_near(loads.wrench.sum(axis=1), loads.plate_wrench.sum(axis=1), 1e-12)
+    assert_near(loads.centre_of_pressure_m[:, RIGHT, :2], np.tile(ball(q[0], RIGHT)[:2], (10, 1)), 1e-13)  # the stronger
+
+
+def test_two_feet_one_after_the_other_on_one_plate():
+    """Right foot, nothing, then the left foot on the same spot: each stretch of loading has its own foot."""
+    right_first = standing(lifted="left")
+    spot = ball(right_first, RIGHT)
+    shift = spot - ball(standing(lifted="right"), LEFT)
+    left_next = standing(lifted="right", at=shift[:2])
+    q = np.array([right_first] * 40 + [left_next] * 40)
+    load = np.r_[np.full(35, WEIGHT_N), np.zeros(10), np.full(35, WEIGHT_N)]
+    foot = assigned(q, [plate(spot, load, 80)]).foot_of_plate[:, 0]
+    assert (foot[:34] == RIGHT).all()
+    assert (foot[36:44] == NOBODY).all()
+    assert (foot[46:] == LEFT).all()
+
+
+def test_two_feet_on_one_plate_are_not_measured_apart():
+    q = np.repeat(standing()[None], 20, axis=0)
+    middle = 0.5 * (ball(q[0], RIGHT) + ball(q[0], LEFT))
+    assert not assigned(q, [plate(middle, WEIGHT_N, 20)]).valid.any()
+
+
+def test_a_foot_beside_the_plates_makes_a_frame_invalid():
+    q = np.repeat(standing()[None], 20, axis=0)
+    loads = assigned(q, [plate(ball(q[0], RIGHT), 0.5 * WEIGHT_N, 20)])
+    assert (loads.foot_of_plate == RIGHT).all()
+    assert not loads.valid.any()
+    assert loads.warnings == ("no frame has every loaded foot on a measured plate",)
+
+
+def test_standing_on_one_foot_is_measured_by_one_plate():
+    q = on_the_right_foot(30)
+    loads = assigned(q, [plate(ball(q[0], RIGHT), WEIGHT_N, 30)])
+    assert not loads.valid[:5].any()
+    assert loads.valid[7:].all()
+
+
+def test_a_load_with_no_foot_near_is_stray():
+    q = on_the_right_foot(30)
+    far = plate([1.5, 0.0], np.r_[np.zeros(20), np.full(10, 300.0)], 30)
+    loads = assigned(q, [plate(ball(q[0], RIGHT), WEIGHT_N, 30), far])
+    assert (loads.foot_of_plate == [RIGHT, NOBODY]).all()
+    assert loads.valid[7:20].all()
+    assert not loads.valid[20:].any()
+    assert_near(loads.wrench[:, :, 2].sum(axis=1), WEIGHT_N, 1e-10)
+    assert loads.warnings == ("10 frames have a loaded plate with no foot within 0.20 m",)
+
+
+def test_a_plate_recorded_only_partly_is_valid_only_there():
+    q = on_the_right_foot(60)
+    loads = assigned(q, [plate(ball(q[0], RIGHT), WEIGHT_N, 20, start_s=0.2)])
+    recorded = np.arange(20, 40)
+    assert loads.valid[recorded].all()
+    assert not np.delete(loads.valid, recorded).any()
+    np.testing.assert_array_equal(np.delete(loads.plate_wrench, recorded, axis=0), 0.0)
+
+
+def test_a_raised_plate_has_its_pressure_on_its_own_surface():
+    """r × F plus a free moment about the vertical is the whole moment (eq. 4.9)."""
+    q = np.repeat(standing(z=0.15)[None], 10, axis=0)
+    loads = assigned(q, [plate(ball(q[0], side), 0.5 * WEIGHT_N, 10, height_m=0.15) for side in (RIGHT, LEFT)])
+    assert loads.valid.all()
+    assert_near(loads.centre_of_pressure_m[..., 2], 0.15, 1e-15)
+    force, moment = loads.wrench[..., :3], loads.wrench[..., 3:]
+    free = loads.free_moment_nm[..., None] * [0, 0, 1]
+    assert_near(np.cross(loads.centre_of_pressure_m, force) + free, moment, 1e-12)
+
+
+def test_flight_is_fully_measured_and_single_support_too():
+    time = np.arange(60) / RATE_HZ
+    height = np.maximum(0.0, 2.0 * (time - 0.1) - GRAVITY_M_S2 / 2 * (time - 0.1) ** 2)  # off the floor for 0.41 s
+    q = np.array([standing(z=z) for z in height])
+    load = np.where(height > 0, 0.0, 0.5 * WEIGHT_N)
+    loads = assigned(q, [plate(ball(q[0], side), load, 60) for side in (RIGHT, LEFT)])
+    assert loads.valid[height > 0.03].all()
+    assert loads.valid[:9].all()
+    np.testing.assert_array_equal(loads.wrench[height > 0.03], 0.0)
+    assert np.isnan(loads.centre_of_pressure_m[height > 0.03]).all()
+
+
+def test_without_plates_nothing_is_measured():
+    q = np.repeat(standing()[None], 5, axis=0)
+    loads = assigned(q, [])
+    assert not loads.valid.any()
+    assert loads.warnings == ("no force plates: torques and residuals are not computed",)
+    assert loads.plate_wrench.shape == (5, 0, 6)
+    np.testing.assert_array_equal(loads.wrench, 0.0)
+
+
+def test_untracked_frames_assign_no_load():
+    q = on_the_right_foot(30)
+    at, lost = ball(q[0], RIGHT), np.arange(15, 22)
+    q[lost] = np.nan
+    loads = assigned(q, [plate(at, WEIGHT_N, 30)])
+    assert (loads.foot_of_plate[lost] == NOBODY).all()
+    assert (np.delete(loads.foot_of_plate, lost) == RIGHT).all()
+    assert not loads.valid[lost].any()
+    assert loads.valid[7:14].all()
+    assert loads.valid[23:].all()
+
+
+def test_stretches_are_the_unbroken_runs():
+    mask = np.array([1, 1, 0, 0, 1, 0, 1, 1, 1], bool)
+    assert [run.tolist() for run in stretches(mask)] == [[0, 1], [4], [6, 7, 8]]
+    assert stretches(np.zeros(3, bool)) == []
+    assert [run.tolist() for run in stretches(np.ones(2, bool))] == [[0, 1]]

@@ -1,0 +1,88 @@
+"""Public captures through scaling and reconstruction with default settings, against what others found in them."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks.references import (
+    low_passed,
+    plates_against_export,
+    plug_in_gait_angles,
+    stored_forces,
+    stored_markers,
+    worst_side,
+)
+from mbkf.io.capture import read_capture
+from mbkf.io.results import Reconstruction
+from mbkf.io.results_opensim import angles_table, torques_table
+from mbkf.io.storage import read_storage
+from mbkf.pipelines.reconstruct import reconstruct
+from mbkf.pipelines.scale import scale
+from mbkf.pipelines.summary import summarise
+
+
+def followed(trial: Path, mass_kg: float, static: Path | None = None, forces: Path | None = None) -> Reconstruction:
+    """The trial of a person scaled from the static, or from the trial itself where there is none."""
+    capture = read_capture(trial, forces=forces)
+    subject = scale(None if static is None else read_capture(static), [] if static else [capture], mass_kg=mass_kg)
+    return reconstruct(capture, subject)
+
+
+def marker_rms_mm(found: Reconstruction) -> float:
+    return summarise(found)["marker_rms_mm"]
+
+
+def test_rajagopal_walk(real_data):
+    folder = real_data / "rajagopal_walk_run"
+    static, forces = folder / "static_walk_1.trc", folder / "grf_walk.mot"
+    found = followed(folder / "motion_capture_walk.trc", 85.07, static, forces)
+    assert marker_rms_mm(found) <= 6.0
+    ours, theirs = low_passed(torques_table(found)), read_storage(folder / "reference_walk" / "id_walk.sto")
+    for coordinate, r, rms in (("ankle_angle", 0.98, 0.1), ("knee_angle", 0.88, 0.21), ("hip_flexion", 0.88, 0.21)):
+        agree = worst_side(ours, theirs, coordinate, suffix="_moment", factor=1 / 85.07)
+        assert agree.r >= r, coordinate
+        assert agree.rms <= rms, coordinate
+
+
+def test_gaitalytics_overground(real_data):
+    folder = real_data / "gaitalytics_walk"
+    trial = folder / "overground_fullbody_4plates.c3d"
+    assert marker_rms_mm(followed(trial, 63.6)) <= 7.0
+    force_n, pressure_mm = plates_against_export(trial, folder / "overground_fullbody_4plates_grf.mot")
+    assert force_n <= 2.0
+    assert pressure_mm <= 3.0
+
+
+def test_opensim_walk_with_large_gaps(real_data):
+    folder = real_data / "opensim_gappy_walk"
+    trial, stored = folder / "walking2.c3d", folder / "reference"
+    found = followed(trial, 75.0)
+    assert np.isfinite(found.q[found.tracked]).all()
+    assert found.tracked.mean() > 0.6
+    assert summarise(found)["marker_max_mm"] <= 100.0
+    assert stored_markers(trial, stored / "std_walking2_markers.trc") <= 0.01
+    forces = stored_forces(trial, stored / "std_walking2_grfs.sto", stored / "std_cop_walking2_grfs.sto")
+    assert max(forces) <= 0.001
+
+
+def test_biomechzoo_walk_against_plug_in_gait(real_data):
+    folder = real_data / "biomechzoo_walk_turn"
+    trial, static = folder / "HC032A_Straight_HC032A03.c3d", folder / "HC032A_Static_HC032A01.c3d"
+    found = followed(trial, 60.3, static)
+    assert marker_rms_mm(found) <= 6.0
+    theirs = plug_in_gait_angles(read_capture(trial))
+    for coordinate in ("hip_flexion", "knee_angle", "ankle_angle"):
+        agree = worst_side(angles_table(found), theirs, coordinate)
+        assert agree.r >= 0.97, coordinate
+        assert agree.rms_without_mean <= 5.0, coordinate
+
+
+@pytest.mark.parametrize(
+    ("name", "markers"), [("rajagopal_walk_run/motion_capture_run.trc", 42), ("gait2354_walk/subject01_walk1.trc", 41)]
+)
+def test_other_captures_are_understood_without_a_word(name, markers, real_data):
+    from mbkf.model.protocol import detect_protocol
+
+    capture = read_capture(real_data / name)
+    assert len(detect_protocol(capture.markers.names).match(capture.markers.names)) == markers
