@@ -26,7 +26,7 @@ from mbkf.errors import InvalidInput, MbkfError, UnknownName
 
 DATA_VARIABLE = "MBKF_DATA"
 _PIPED_WIDTH = 120
-NOT_BENCHMARKS = {"__main__", "checks", "commands", "references"}
+NOT_BENCHMARKS = {"__main__", "checks", "commands", "picture", "references"}
 
 
 def names() -> tuple[str, ...]:

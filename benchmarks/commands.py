@@ -20,7 +20,7 @@ from mbkf.io.storage import Table, read_storage
 
 @dataclass(frozen=True)
 class Written:
-    """What `mbkf reconstruct` wrote: ``summary`` and the tables, none where nothing is known; ``seconds`` taken."""
+    """What `mbkf reconstruct` wrote: summary, angles, torques; and the wall time of the commands."""
 
     summary: dict[str, Any]
     angles: Table
@@ -51,12 +51,18 @@ def mbkf(*words: str | Path, fresh: bool = False) -> float:
 
 def read_folder(folder: Path, seconds: float = 0.0) -> Written:
     """What a reconstruction's folder holds."""
-    tables = [read_storage(folder / name) for name in ("angles.mot", "torques.sto")]
-    return Written(read_summary(folder), *tables, seconds)
+    angles, torques = (read_storage(folder / name) for name in ("angles.mot", "torques.sto"))
+    return Written(read_summary(folder), angles, torques, seconds)
 
 
-def scale_and_reconstruct(trial: Path, scaling: Sequence[str | Path], folder: Path, *, forces: Path | None = None,
-                          fresh: bool = False) -> Written:
+def scale_and_reconstruct(
+    trial: Path,
+    scaling: Sequence[str | Path],
+    folder: Path,
+    *,
+    forces: Path | None = None,
+    fresh: bool = False,
+) -> Written:
     """The main job with default settings: scale, then reconstruct.
 
     Args:

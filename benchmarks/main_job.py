@@ -1,13 +1,14 @@
 """The main job on real and synthetic captures: markers, angles and torques against what others found.
 
-Every capture goes through `mbkf scale` and `mbkf reconstruct` with the same default settings. Where a reference
-stands beside the capture, our curves are compared with it; the poorer side of the body counts.
+Every capture goes through `mbkf scale` and `mbkf reconstruct` with the same default settings. Where a
+reference stands beside the capture, our curves are compared with it; the poorer side of the body counts.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -43,14 +44,14 @@ def run(context: Context) -> list[Check]:
         rows += [
             ("rajagopal run", rajagopal_run),
             ("gait2354 walk", gait2354_walk),
-            ("biomechzoo HC032A", lambda d, out: biomechzoo(d, out, "HC032A", "03", 60.3)),
-            ("biomechzoo HC044A", lambda d, out: biomechzoo(d, out, "HC044A", "15", 39.4)),
+            ("biomechzoo HC032A", partial(biomechzoo, person="HC032A", number="03", mass_kg=60.3)),
+            ("biomechzoo HC044A", partial(biomechzoo, person="HC044A", number="15", mass_kg=39.4)),
             ("gaitalytics overground", gaitalytics),
             ("opensim walking2", walking2),
             ("exact-truth walk", exact_truth),
         ]
     for motion in ("squat",) if context.quick else SYNTHETIC_MOTIONS:
-        rows.append((f"synth {motion}", lambda _, out, motion=motion: synthetic(out, motion)))
+        rows.append((f"synth {motion}", partial(synthetic, motion=motion)))
     checks: list[Check] = []
     for name, measure in rows:
         folder = context.out / name.replace(" ", "_")
@@ -64,7 +65,7 @@ def run(context: Context) -> list[Check]:
 
 
 def rajagopal_walk(data: Path, out: Path) -> list[Check]:
-    """Overground walk; torques against OpenSim's inverse dynamics of a scaled model, low-passed as that was."""
+    """Overground walk; torques against OpenSim's inverse dynamics, low-passed as that was."""
     folder = data / "rajagopal_walk_run"
     scaling = (folder / "static_walk_1.trc", "--mass", "85.07")
     trial, forces = folder / "motion_capture_walk.trc", folder / "grf_walk.mot"
@@ -135,14 +136,27 @@ def walking2(data: Path, out: Path) -> list[Check]:
     units = ("N", "N m", "mm")
     bounds = (0.001, 0.001, 0.01)
     return [
-        Check("marker error in tracked frames, maximum", number(found.summary["marker_max_mm"]), 100.0, "<=", "mm"),
+        Check(
+            "marker error in tracked frames, maximum",
+            number(found.summary["marker_max_mm"]),
+            100.0,
+            "<=",
+            "mm",
+        ),
         Check("postures that are no numbers in tracked frames", lost, 0.0, "<="),
         Check("frames tracked", float(result.tracked.mean()), INFORMATION, "<="),
         Check("marker RMS", number(found.summary["marker_rms_mm"]), INFORMATION, "<=", "mm"),
-        Check("markers as OpenSim reads them, maximum",
-              stored_markers(trial, stored / "std_walking2_markers.trc"), 0.01, "<=", "mm"),
-        *(Check(f"{name} as OpenSim reads it, maximum", value, bound, "<=", unit)
-          for name, value, bound, unit in zip(names, forces, bounds, units, strict=True)),
+        Check(
+            "markers as OpenSim reads them, maximum",
+            stored_markers(trial, stored / "std_walking2_markers.trc"),
+            0.01,
+            "<=",
+            "mm",
+        ),
+        *(
+            Check(f"{name} as OpenSim reads it, maximum", value, bound, "<=", unit)
+            for name, value, bound, unit in zip(names, forces, bounds, units, strict=True)
+        ),
     ]
 
 
@@ -163,8 +177,8 @@ def exact_truth(data: Path, out: Path) -> list[Check]:
     return checks
 
 
-def synthetic(out: Path, motion: str) -> list[Check]:
-    """A synthetic capture with camera noise only, with the known body and with the one scaled from its static."""
+def synthetic(_data: Path, out: Path, motion: str) -> list[Check]:
+    """A synthetic capture with camera noise only, on the known body and on the one scaled from its static."""
     mbkf("synth", "--motion", motion, "--markers-mm", "0.5", "--skin-mm", "0", "--out", out)
     trial = out / "trial.c3d"
     mbkf("reconstruct", trial, "--subject", out / "subject.toml", "--out", out / "known_body")

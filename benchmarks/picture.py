@@ -47,7 +47,7 @@ def draw(folder: Path, target: Path) -> None:
     result = reconstruct(capture, read_subject(folder / "subject.toml"))
     plt.rcParams.update({"font.size": 9, "axes.spines.top": False, "axes.spines.right": False})
     figure = plt.figure(figsize=(11, 6.2), dpi=130)
-    grid = figure.add_gridspec(2, 3, height_ratios=(1.25, 1.0), hspace=0.35, wspace=0.28)
+    grid = figure.add_gridspec(2, 3, height_ratios=(1.45, 1.0), hspace=0.18, wspace=0.28)
     _walker(figure.add_subplot(grid[0, :]), result)
     model = HumanModel.scaled(result.subject.scale_factors, result.subject.mass_kg)
     clinical = ClinicalAngles(model)
@@ -104,7 +104,8 @@ def _curve(axes: Any, times: Array, value: Array, sd: Array, truth: Array, title
     axes.plot(times, truth, color=TRUTH, lw=1.0, ls="--", label="truth")
     axes.set_title(title, fontsize=9, loc="left")
     axes.set_xlabel("time, s")
-    axes.legend(frameon=False, fontsize=7, loc="best", ncols=3)
+    axes.margins(y=0.22)
+    axes.legend(frameon=False, fontsize=7, loc="upper center", ncols=3)
 
 
 def _reactions(axes: Any, result: Reconstruction, truth: Truth) -> None:
@@ -113,7 +114,9 @@ def _reactions(axes: Any, result: Reconstruction, truth: Truth) -> None:
         axes.plot(truth.times_s, truth.foot_wrench[:, side, 2], color=TRUTH, lw=0.8, ls="--")
     axes.set_title("vertical ground reaction, N", fontsize=9, loc="left")
     axes.set_xlabel("time, s")
-    axes.legend(frameon=False, fontsize=7, loc="best", ncols=2)
+    axes.plot([], [], color=TRUTH, lw=0.8, ls="--", label="truth")
+    axes.margins(y=0.22)
+    axes.legend(frameon=False, fontsize=7, loc="upper center", ncols=3)
 
 
 if __name__ == "__main__":

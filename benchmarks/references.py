@@ -106,8 +106,9 @@ def agreement(ours: Curve, theirs: Curve) -> Agreement:
     return Agreement(correlation(a, b), rms(a - b), rms_without_mean(a - b))
 
 
-def worst_side(ours: Table, theirs: Table, coordinate: str, *, suffix: str = "", sign: float = 1.0,
-               factor: float = 1.0) -> Agreement:
+def worst_side(
+    ours: Table, theirs: Table, coordinate: str, *, suffix: str = "", sign: float = 1.0, factor: float = 1.0
+) -> Agreement:
     """The poorer agreement of the right and the left side, each number for itself.
 
     Args:

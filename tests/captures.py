@@ -34,7 +34,9 @@ class Person:
     subject: Path
 
 
-def made_markers(frames: int = 60, amplitude_rad: float = 0.06, noise_m: float = 0.0005) -> MarkerTrajectories:
+def made_markers(
+    frames: int = 60, amplitude_rad: float = 0.06, noise_m: float = 0.0005
+) -> MarkerTrajectories:
     """The reference body with all joints swinging a little about standing; amplitude 0 stands still."""
     model = HumanModel.scaled(mass_kg=MASS_KG)
     followed = [marker for marker in load_protocol("reference36").markers if marker.kind != "computed"]
@@ -58,9 +60,13 @@ def made_plates(frames: int = 60) -> tuple[PlateReadings, ...]:
     plates = []
     for name, (x, y, _) in zip(("1", "2"), soles, strict=True):
         middle = np.array([x, y, 0.0])
-        corners = middle + np.array([[0.2, -0.08, 0.0], [-0.2, -0.08, 0.0], [-0.2, 0.08, 0.0], [0.2, 0.08, 0.0]])
+        corners = middle + np.array(
+            [[0.2, -0.08, 0.0], [-0.2, -0.08, 0.0], [-0.2, 0.08, 0.0], [0.2, 0.08, 0.0]]
+        )
         point = np.tile(middle, (len(force), 1))
-        plates.append(PlateReadings(name, 10 * RATE_HZ, 0.0, middle, force, 0.0 * force, point, 20.0, corners))
+        plates.append(
+            PlateReadings(name, 10 * RATE_HZ, 0.0, middle, force, 0.0 * force, point, 20.0, corners)
+        )
     return tuple(plates)
 
 
@@ -80,7 +86,9 @@ def only(markers: MarkerTrajectories, segments: tuple[str, ...]) -> MarkerTrajec
 def write_person(folder: Path) -> Person:
     """Writes the captures and scales the subject from the static one."""
     folder.mkdir(parents=True, exist_ok=True)
-    person = Person(*(folder / name for name in ("static.c3d", "trial.c3d", "trial.trc", "grf.mot", "person.toml")))
+    person = Person(
+        *(folder / name for name in ("static.c3d", "trial.c3d", "trial.trc", "grf.mot", "person.toml"))
+    )
     write_c3d(made_capture(30, 0.0), person.static)
     moving = made_capture()
     write_c3d(moving, person.trial)

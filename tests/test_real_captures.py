@@ -1,4 +1,4 @@
-"""Public captures through scaling and reconstruction with default settings, against what others found in them."""
+"""Public captures through scaling and reconstruction with default settings, against what others found."""
 
 from pathlib import Path
 
@@ -22,10 +22,14 @@ from mbkf.pipelines.scale import scale
 from mbkf.pipelines.summary import summarise
 
 
-def followed(trial: Path, mass_kg: float, static: Path | None = None, forces: Path | None = None) -> Reconstruction:
+def followed(
+    trial: Path, mass_kg: float, static: Path | None = None, forces: Path | None = None
+) -> Reconstruction:
     """The trial of a person scaled from the static, or from the trial itself where there is none."""
     capture = read_capture(trial, forces=forces)
-    subject = scale(None if static is None else read_capture(static), [] if static else [capture], mass_kg=mass_kg)
+    subject = scale(
+        None if static is None else read_capture(static), [] if static else [capture], mass_kg=mass_kg
+    )
     return reconstruct(capture, subject)
 
 
@@ -39,7 +43,11 @@ def test_rajagopal_walk(real_data):
     found = followed(folder / "motion_capture_walk.trc", 85.07, static, forces)
     assert marker_rms_mm(found) <= 6.0
     ours, theirs = low_passed(torques_table(found)), read_storage(folder / "reference_walk" / "id_walk.sto")
-    for coordinate, r, rms in (("ankle_angle", 0.98, 0.1), ("knee_angle", 0.88, 0.21), ("hip_flexion", 0.88, 0.21)):
+    for coordinate, r, rms in (
+        ("ankle_angle", 0.98, 0.1),
+        ("knee_angle", 0.88, 0.21),
+        ("hip_flexion", 0.88, 0.21),
+    ):
         agree = worst_side(ours, theirs, coordinate, suffix="_moment", factor=1 / 85.07)
         assert agree.r >= r, coordinate
         assert agree.rms <= rms, coordinate
@@ -79,7 +87,8 @@ def test_biomechzoo_walk_against_plug_in_gait(real_data):
 
 
 @pytest.mark.parametrize(
-    ("name", "markers"), [("rajagopal_walk_run/motion_capture_run.trc", 42), ("gait2354_walk/subject01_walk1.trc", 41)]
+    ("name", "markers"),
+    [("rajagopal_walk_run/motion_capture_run.trc", 42), ("gait2354_walk/subject01_walk1.trc", 41)],
 )
 def test_other_captures_are_understood_without_a_word(name, markers, real_data):
     from mbkf.model.protocol import detect_protocol

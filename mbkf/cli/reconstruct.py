@@ -112,7 +112,7 @@ def print_summary(summary: dict[str, Any], folder: Path) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    console = Console(highlight=False)
+    console = Console(highlight=False, markup=False)
     table = Table(
         title=f"{summary['trial']} ({summary['filter']} filter)", title_justify="left", show_header=False
     )
@@ -149,8 +149,8 @@ def print_summary(summary: dict[str, Any], folder: Path) -> None:
         table.add_row(name, text)
     console.print(table)
     for warning in summary["warnings"]:
-        console.print(f"note: {warning}")
-    console.print(str(folder))
+        console.print(f"note: {warning}", soft_wrap=True)
+    console.print(str(folder), soft_wrap=True)
 
 
 def _ms(seconds: float | None) -> float | None:

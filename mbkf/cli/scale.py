@@ -76,7 +76,7 @@ def _print(report: dict[str, Any], protocol: str, out: str) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    console = Console(highlight=False)
+    console = Console(highlight=False, markup=False)
     factors = Table(title="Scale factors", title_justify="left")
     for heading in ("factor", "value", "standard error"):
         factors.add_column(heading, justify="left" if heading == "factor" else "right")
@@ -102,5 +102,6 @@ def _print(report: dict[str, Any], protocol: str, out: str) -> None:
         console.print("the fit did not settle; look at the markers above")
     console.print(
         f"{out}: protocol {protocol}, {report['frames']} frames, markers fit to "
-        f"{report['marker_rms_mm']:.1f} mm RMS"
+        f"{report['marker_rms_mm']:.1f} mm RMS",
+        soft_wrap=True,
     )

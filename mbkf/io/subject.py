@@ -116,7 +116,8 @@ def read_subject(path: str | Path) -> Subject:
     except FileNotFoundError as error:
         raise FileFormatError(source, "no such file; make it with 'mbkf scale'") from error
     except IsADirectoryError as error:
-        raise FileFormatError(source, "cannot be read, it is a folder; name a file that 'mbkf scale' wrote") from error
+        reason = "cannot be read, it is a folder; name a file that 'mbkf scale' wrote"
+        raise FileFormatError(source, reason) from error
     except InvalidInput as error:
         raise InvalidInput(f"{source}: {error}") from error
     except (OSError, UnicodeDecodeError) as error:

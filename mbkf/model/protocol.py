@@ -186,7 +186,7 @@ def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> Protoco
         segment = entry["segment"]
         position = read_only(entry["position_m"])
         if position.shape != (3,) or not np.isfinite(position).all():
-            raise FileFormatError(path, f"marker {entry['name']} needs three finite coordinates in position_m")
+            raise FileFormatError(path, f"marker {entry['name']}: position_m needs three finite numbers")
     if segment not in {s.name for s in body.segments}:
         raise UnknownName("segment", segment, [s.name for s in body.segments], where)
     kind = entry.get("kind", "anatomical" if "landmark" in entry else "technical")

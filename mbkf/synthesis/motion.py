@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from mbkf.synthesis.figure import SIDE_NAMES
 from mbkf.synthesis.jump import jump_plan
 from mbkf.synthesis.squat import squat_plan
 from mbkf.synthesis.stand import stand_plan
+from mbkf.synthesis.strength import overloaded
 from mbkf.synthesis.walk import walk_plan
 
 MOTIONS = ("squat", "walk", "jump")
@@ -22,6 +23,9 @@ MOTIONS = ("squat", "walk", "jump")
 
 PLANS = {"jump": jump_plan, "squat": squat_plan, "stand": stand_plan, "walk": walk_plan}
 """Plan of every motion by name; "stand" is for static captures."""
+
+ATTEMPTS, BENT_RAD = 4, np.deg2rad(1.5)
+"""How often a motion that fails is tried again, each time with the knees bent a little more."""
 
 MIN_SECONDS, MAX_SECONDS = 1.0, 120.0
 
@@ -80,12 +84,17 @@ def synthesise_motion(model: HumanModel, motion: str, seconds: float, rate_hz: f
     if not 20.0 <= rate_hz <= 2000.0:
         raise InvalidInput(f"a camera rate lies between 20 and 2000 Hz, got {rate_hz:g} Hz")
     plan = PLANS[motion](model, float(seconds), np.random.default_rng([seed, sorted(PLANS).index(motion)]))
-    composition = compose(model, plan)
     every = max(1, int(np.ceil(1000.0 / rate_hz - 1e-9)))
     frames = int(np.floor(seconds * rate_hz + 1e-9)) + 1
     fine = np.arange((frames - 1) * every + 1) / (rate_hz * every)
-    q, v, a, wrenches, centres, tau = _dynamics(model, composition, fine, every)
-    if not __import__("os").environ.get("NOCHECK"): _check(model, q, wrenches[::every], centres)
+    for attempt in range(ATTEMPTS):
+        bent = replace(plan, straightest_rad=plan.straightest_rad + attempt * BENT_RAD)
+        q, v, a, wrenches, centres, tau = _dynamics(model, compose(model, bent), fine, every)
+        fault = _fault(model, q, wrenches, wrenches[::every], centres) or _strain(model, tau)
+        if not fault:
+            break
+    else:
+        raise NotConverged(f"{motion} of this person: {fault}; try another seed")
     flight = plan.flight
     return TrueMotion(motion, rate_hz, fine[::every], q, v, a, tau, wrenches[::every], centres,
                       rate_hz * every, wrenches,
@@ -115,17 +124,24 @@ def _dynamics(model: HumanModel, composition: Composition, times: Array, every: 
     return q, v, a, wrenches, centres, tau
 
 
-def _check(model: HumanModel, q: Array, wrenches: Array, centres: Array) -> None:
-    """Holds the result against the ground's laws: it pushes only, under the soles only, within friction."""
+def _strain(model: HumanModel, tau: Array) -> str:
+    """Which joint would have to be stronger than people are, "" if none."""
+    joint = overloaded(model, tau)
+    return f"{joint} would have to be stronger than people are" if joint else ""
+
+
+def _fault(model: HumanModel, q: Array, fine: Array, wrenches: Array, centres: Array) -> str:
+    """What of the ground's laws is broken, "" if nothing: it pushes only, under the soles only, within friction."""
     for foot, side in enumerate(SIDES):
-        outline, joint = sole_outline(model, side), model.joint(f"{SIDE_NAMES[side]}_foot").joint_id
-        vertical = wrenches[:, foot, 2]
-        loaded = vertical > 0
-        along = np.linalg.norm(wrenches[:, foot, :2], axis=1)
-        if vertical.min() < 0 or (along > FRICTION * vertical + 1e-9).any():
-            raise NotConverged(f"the {SIDE_NAMES[side]} foot would pull at the floor or slip; try another seed")
-        for k in np.flatnonzero(loaded):
+        name = SIDE_NAMES[side]
+        along = np.linalg.norm(fine[:, foot, :2], axis=1)
+        if fine[:, foot, 2].min() < 0:
+            return f"the {name} foot would pull at the floor"
+        if (along > FRICTION * fine[:, foot, 2] + 1e-9).any():
+            return f"the {name} foot would slip"
+        outline, joint = sole_outline(model, side), model.joint(f"{name}_foot").joint_id
+        for k in np.flatnonzero(wrenches[:, foot, 2] > 0):
             rotations, origins = model.placements(q[k])
-            local = rotations[joint].T @ (centres[k, foot] - origins[joint])
-            if not outline.holds(local):
-                raise NotConverged(f"the {SIDE_NAMES[side]} foot's pressure leaves the sole; try another seed")
+            if not outline.holds(rotations[joint].T @ (centres[k, foot] - origins[joint])):
+                return f"the pressure leaves the {name} sole"
+    return ""

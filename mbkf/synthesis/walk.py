@@ -69,7 +69,7 @@ def walk_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> Mo
     height = ripple(bob, step_hz, -2 * np.pi * step_hz * (phase_s + BOB_LATE * DOUBLE_SUPPORT * stride_s) - np.pi / 2,
                     0.97 * size)
     return MotionPlan(start, end, lively(_angles(stride_s, phase_s, rng), rng, 0.6), poses, height,
-                      _load(model, steps, feet, stride_s), np.deg2rad(7.0), recorded_s=(0.0, seconds),
+                      _load(model, steps, feet, stride_s), np.deg2rad(8.5), recorded_s=(0.0, seconds),
                       notes={"speed_m_s": 2 * length / stride_s})
 
 
@@ -112,7 +112,8 @@ class _Foot:
         swing = spline(times, angles, bends[0], bends[1])
         relaxed = path([(0.0, np.deg2rad(-6.0)), (FOOT_FLAT * stride_s, 0.0), (HEEL_OFF * stride_s, 0.0),
                         (self.off * stride_s, *-np.deg2rad(TOE_OFF_PITCH_DEG)),
-                        ((self.off + 0.18) * stride_s, np.deg2rad(-14.0)), (stride_s, np.deg2rad(-6.0))])
+                        ((self.off + 0.035) * stride_s, np.deg2rad(-67.0)),
+                        ((self.off + 0.20) * stride_s, np.deg2rad(-14.0)), (stride_s, np.deg2rad(-6.0))])
         self.pitch = self._repeated(lambda t: jets.where(t < self.off * stride_s, stance(t), swing(t)))
         self.toes = self._repeated(relaxed)
         self.swings = [self._swing(a, b) for a, b in zip(steps, steps[1:], strict=False)]
@@ -176,8 +177,8 @@ def _load(model: HumanModel, steps: list[Step], feet: dict[str, _Foot], stride_s
         outward = -1.0 if step.side == 0 else 1.0
         heading = constant_rotation(step.yaw)[:2, :2]
         for at, x, y in ((0.0, heel + 0.01, 0.0), (FOOT_FLAT, heel + 0.035, 0.004),
-                         (HEEL_OFF, ball + 0.008 * size, 0.006), (0.5, ball + 0.024 * size, -0.003),
-                         (0.5 + DOUBLE_SUPPORT, ball + 0.032 * size, -0.012)):
+                         (HEEL_OFF, ball + 0.008 * size, 0.006), (0.5, ball + 0.020 * size, -0.003),
+                         (0.5 + DOUBLE_SUPPORT, ball + 0.030 * size, -0.012)):
             local = heading @ np.array([x, outward * y * size])
             pressure_knots[step.side].append((step.strike_s + at * stride_s, step.ankle_m[:2] + local))
     share = path(share_knots)

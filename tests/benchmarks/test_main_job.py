@@ -21,7 +21,9 @@ def table(values) -> Table:
 
 
 def test_angle_checks_forgive_another_zero_and_a_known_sign():
-    agree, difference = main_job.angle_checks(table(20 * SINE), table(7 - 20 * SINE), {"knee_angle": -1.0}, 0.97)
+    agree, difference = main_job.angle_checks(
+        table(20 * SINE), table(7 - 20 * SINE), {"knee_angle": -1.0}, 0.97
+    )
     assert (agree.name, difference.name, difference.unit) == ("knee, r", "knee, RMS difference", "°")
     assert agree.value == pytest.approx(1.0)
     assert difference.value == pytest.approx(0.0, abs=1e-9)
@@ -45,7 +47,7 @@ def test_a_capture_that_does_not_run_fails_its_row_only(monkeypatch, tmp_path):
         raise InvalidInput("no such luck")
 
     monkeypatch.setattr(main_job, "rajagopal_walk", broken)
-    monkeypatch.setattr(main_job, "synthetic", lambda out, motion: [Check(motion, 0.1, 0.5, "<=")])
+    monkeypatch.setattr(main_job, "synthetic", lambda data, out, motion: [Check(motion, 0.1, 0.5, "<=")])
     first, second = main_job.run(Context(tmp_path, tmp_path, quick=True))
     assert first.name == "rajagopal walk: does not run: no such luck"
     assert not first.passed
@@ -65,7 +67,7 @@ def test_commands_are_run_quietly_and_read_back(tmp_path, capsys):
 
 @pytest.mark.parametrize("fresh", [False, True])
 def test_a_failing_command_tells_why(fresh, tmp_path):
-    with pytest.raises(MbkfError, match="mbkf info ended with 2: .*no such file"):
+    with pytest.raises(MbkfError, match=r"mbkf info ended with 2: .*no such file"):
         mbkf("info", tmp_path / "none.c3d", fresh=fresh)
     with pytest.raises(MbkfError, match="ended with 2"):
         mbkf("info", fresh=fresh)

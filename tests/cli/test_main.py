@@ -28,7 +28,7 @@ def usage(words: list[str], capsys) -> tuple[int, str, str]:
         ([], "COMMAND"),
         (["reconstrcut"], "reconstrcut"),
         (["--nonsense"], "COMMAND"),
-        (["scale"], "STATIC"),
+        (["scale"], "--out"),
         (["info"], "FILE"),
         (["demo", "--nonsense"], "--nonsense"),
         (["demo", "--motion", "swim"], "swim"),

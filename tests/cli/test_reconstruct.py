@@ -1,4 +1,4 @@
-"""`mbkf reconstruct` writes its six files with the promised keys: with plates, gaps or a MOT file, and again."""
+"""`mbkf reconstruct` writes six files with the promised keys: with plates, gaps or a MOT file, and again."""
 
 import json
 import math
@@ -20,9 +20,9 @@ KEYS = {
     "trial", "protocol", "filter", "smoothed", "version", "mass_kg", "frames", "rate_hz", "duration_s",
     "markers_used", "missing_fraction", "marker_rms_mm", "marker_max_mm", "marker_rms_mm_by_name",
     "residual_force_rms_n", "residual_moment_rms_nm", "valid_frames", "plate_force_change_rms_n",
-    "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "nis_per_dof", "step_seconds_median",
-    "step_seconds_p99", "realtime_factor", "hidden_marker_rms_mm", "hidden_marker_max_mm", "truth", "warnings",
-    "settings",
+    "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "nis_per_dof",
+    "step_seconds_median", "step_seconds_p99", "realtime_factor", "hidden_marker_rms_mm",
+    "hidden_marker_max_mm", "truth", "warnings", "settings",
 }  # fmt: skip
 """Keys of summary.json, as the contract of the command line names them."""
 
@@ -60,7 +60,7 @@ def test_files_keys_and_numbers(person, reconstruct, capsys):
     assert summary["hidden_marker_rms_mm"] is None
     shown = capsys.readouterr().out
     assert "60 at 100 Hz" in shown
-    assert str(out) in shown.replace("\n", "")
+    assert shown.splitlines()[-1] == str(out)
 
 
 def test_opensim_files_agree_with_the_motion(person, reconstruct):
@@ -98,7 +98,8 @@ def test_withheld_plate(person, reconstruct):
     part = read_reconstruction(reconstruct(person.trial, "--without-plate", "2"))
     assert whole.foot_wrench[:, :, 2].min() > 300.0
     assert part.foot_wrench[:, 1].any() == np.False_
-    assert not part.valid.any()
+    assert whole.valid.all()
+    assert part.valid.mean() < 0.8  # only while that foot moves
 
 
 def test_forces_of_another_file(person, reconstruct):

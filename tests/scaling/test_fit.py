@@ -20,14 +20,17 @@ NAMES = tuple(m.name for m in PROTOCOL.markers)
 
 
 class Person:
-    """Known factors, anatomical markers exactly in place, technical ones up to 3 cm off."""
+    """Known factors; anatomical markers exactly in place and technical ones up to 3 cm off, or all as expected."""
 
-    def __init__(self, seed, spread=0.08, offset_m=0.03):
-        rng = np.random.default_rng(seed)
+    def __init__(self, seed, spread=0.08, drawn_from_prior=False):
+        rng, prior = np.random.default_rng(seed), ScalingSettings()
         self.factors = rng.uniform(0.95, 1.08) * rng.uniform(1 - spread / 2, 1 + spread / 2, 17)
-        self.model = HumanModel(BODY, self.factors, 72.0)
         technical = np.array([[m.kind == "technical"] for m in PROTOCOL.markers])
-        self.offsets_m = technical * rng.uniform(-offset_m, offset_m, (len(NAMES), 3))
+        self.offsets_m = technical * rng.uniform(-0.03, 0.03, (len(NAMES), 3))
+        if drawn_from_prior:
+            self.factors = 1.0 + 0.3 * prior.stature_sd * rng.normal() + prior.proportion_sd * rng.normal(size=17)
+            self.offsets_m = np.array([[m.placement_sd_m] for m in PROTOCOL.markers]) * rng.normal(size=(len(NAMES), 3))
+        self.model = HumanModel(BODY, self.factors, 72.0)
         scale = [self.model.axis_scale(BODY.segment(m.segment)) for m in PROTOCOL.markers]
         places = np.array(scale) * np.array([m.position_m for m in PROTOCOL.markers]) + self.offsets_m
         self.sensor = MarkerSensor(self.model, [m.segment for m in PROTOCOL.markers], places)
@@ -73,7 +76,7 @@ def without(person):
 
 def test_markers_fit_within_a_millimetre(subject):
     assert subject.report["converged"]
-    assert subject.report["marker_rms_mm"] < 1.0
+    assert subject.report["marker_rms_mm"] < 0.5
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
@@ -81,10 +84,9 @@ def test_factors_are_recovered_within_three_standard_errors(seed):
     one = Person(seed)
     result = scale_subject([one.standing()], [one.moving()], PROTOCOL, mass_kg=72.0)
     found, errors = found_factors(result)
-    print(seed, np.abs(found - one.factors).max(), (np.abs(found - one.factors) / errors).max(), errors.max(), result.report["marker_rms_mm"], result.report["frames"])
-    assert (np.abs(found - one.factors) < 3 * errors).all()
+    assert (np.abs(found - one.factors) < errors).all()  # noise-free, hence well within 3 standard errors
     assert np.abs(found - one.factors).max() < 0.03
-    assert (errors < 0.05).all()
+    assert (errors < 0.06).all()  # 0.06 is what one knows before
     assert list(result.scale_factors) == list(BODY.scale_factors)
     np.testing.assert_allclose(list(result.scale_factors.values()), found, atol=1e-5)
 
@@ -95,8 +97,7 @@ def test_technical_markers_are_found_where_they_sit(person, subject):
     assert technical
     by_name = {m.name: m for m in subject.markers}
     off = [np.linalg.norm(by_name[name].position_m - sensor_places[name]) for name in technical]
-    print(off)
-    assert max(off) < 0.012
+    assert max(off) < 0.006
 
 
 def test_the_report_counts_samples_and_displacements(person, subject):
@@ -111,16 +112,15 @@ def test_the_report_counts_samples_and_displacements(person, subject):
     assert not any(one["at_bound"] for one in report["factors"].values())
 
 
-def test_errors_of_noisy_fits_match_their_standard_errors():
-    """Normalised errors of all factors over several noisy trials: within a factor of the standard errors."""
+def test_errors_are_as_large_as_their_standard_errors_say():
+    """People drawn from the prior, with the noise that is assumed: normalised errors have about unit variance."""
     squared = []
-    for seed in range(4):
-        one = Person(10 + seed, spread=0.06)
-        result = scale_subject([one.standing(noise_m=0.005)], [one.moving(noise_m=0.005)], PROTOCOL, mass_kg=72.0)
+    for seed in range(3):
+        one = Person(20 + seed, drawn_from_prior=True)
+        result = scale_subject([], [one.moving(10, noise_m=0.005)], PROTOCOL, mass_kg=72.0)
         found, errors = found_factors(result)
         squared.append(((found - one.factors) / errors) ** 2)
-    print(np.mean(squared))
-    assert 0.2 < np.mean(squared) < 1.6
+    assert 0.6 < np.mean(squared) < 1.6  # 51 correlated numbers
 
 
 def test_more_frames_make_smaller_standard_errors(person):
@@ -154,7 +154,7 @@ def test_static_with_few_markers_scales_what_it_sees(person):
 def test_active_bounds_are_reported():
     """A giant twice as large as the reference: what is seen of every limb ends at the upper bound."""
     giant = Person(5, spread=0.0)
-    huge = giant.standing(3)
+    huge = giant.standing(1)
     trial = MarkerTrajectories(NAMES, 1.75 * huge.positions_m, 100.0)
     wide = ScalingSettings(proportion_sd=2.0, stature_sd=2.0, outlier_m=1.0)
     report = scale_subject([trial], [], PROTOCOL, mass_kg=120.0, settings=wide).report
@@ -180,12 +180,12 @@ def test_markers_left_out_come_with_reasons(person, without):
 def test_a_wild_sample_is_dropped_and_counted(person):
     trial = person.moving(10)
     positions = trial.positions_m.copy()
-    positions[3, NAMES.index("RKNE")] += [0.4, 0.0, 0.0]
+    positions[3, NAMES.index("RMID")] += [0.0, 0.2, 0.0]
     result = scale_subject([], [replace(trial, positions_m=positions)], PROTOCOL, mass_kg=72.0)
-    dropped = {name: one["samples_left_out"] for name, one in result.report["markers"].items() if one["samples_left_out"]}
-    assert dropped == {"RKNE": 1}
-    assert result.report["markers"]["RKNE"]["samples"] == 9
-    assert result.report["marker_rms_mm"] < 1.5
+    samples = {name: (one["samples"], one["samples_left_out"]) for name, one in result.report["markers"].items()}
+    assert samples.pop("RMID") == (9, 1)
+    assert set(samples.values()) == {(10, 0)}
+    assert result.report["marker_rms_mm"] < 1.0
 
 
 @pytest.mark.parametrize("mass", [0.0, -70.0, np.nan, np.inf])
@@ -211,7 +211,7 @@ def test_too_few_markers_are_refused(person):
 
 
 def test_markers_that_are_no_person_are_refused(person):
-    nonsense = MarkerTrajectories(NAMES, np.random.default_rng(6).uniform(-2, 2, (4, len(NAMES), 3)), 100.0)
+    nonsense = MarkerTrajectories(NAMES, np.random.default_rng(6).uniform(-2, 2, (1, len(NAMES), 3)), 100.0)
     with pytest.raises(NotConverged, match="protocol"):
         scale_subject([nonsense], [], PROTOCOL, mass_kg=72.0)
 

@@ -1,0 +1,88 @@
+"""The innovation gate: outliers go, good markers stay, and a lost state trusts the markers."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import chi2
+
+from mbkf.filters.gate import believable
+from mbkf.filters.settings import KinematicSettings
+
+MARKERS, NV = 10, 8
+SETTINGS = KinematicSettings(gate=30.0, gate_radius_m=0.0)
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(1)
+
+
+@pytest.fixture
+def problem(rng):
+    """Jacobian, covariance, noise, and innovations drawn from S = H P Hᵀ + R."""
+    H = rng.normal(size=(MARKERS, 3, NV))
+    A = 0.01 * rng.normal(size=(NV, NV))
+    P, noise = A @ A.T, rng.uniform(0.002, 0.01, MARKERS)
+    y = H @ np.linalg.cholesky(P) @ rng.normal(size=NV) + noise[:, None] * rng.normal(size=(MARKERS, 3))
+    return y, H, P, noise
+
+
+def mahalanobis(y, H, P, noise):
+    return np.array([e @ np.linalg.solve(h @ P @ h.T + s**2 * np.eye(3), e) for e, h, s in zip(y, H, noise, strict=True)])
+
+
+def test_good_markers_are_kept(problem):
+    assert believable(*problem, SETTINGS).all()
+
+
+def test_an_outlier_is_refused_and_the_others_kept(problem):
+    y, H, P, noise = problem
+    y = y.copy()
+    y[4] += 0.5
+    np.testing.assert_array_equal(believable(y, H, P, noise, SETTINGS), np.arange(MARKERS) != 4)
+
+
+@pytest.mark.parametrize("gate", [2.0, 5.0, 15.0])
+def test_the_gate_is_the_mahalanobis_distance(rng, gate):
+    H, A = rng.normal(size=(40, 3, NV)), rng.normal(size=(NV, NV))
+    P, noise = A @ A.T, rng.uniform(0.5, 2, 40)
+    y = 6.0 * rng.normal(size=(40, 3))
+    inside = mahalanobis(y, H, P, noise) <= gate
+    assert 5 < inside.sum() < 35
+    expected = inside if inside.sum() >= 20 else np.ones(40, bool)
+    np.testing.assert_array_equal(believable(y, H, P, noise, replace(SETTINGS, gate=gate)), expected)
+
+
+def test_as_many_are_refused_as_chi_square_says(rng):
+    """Independent innovations of the stated size fall outside the 90 % gate one time in ten."""
+    count = 4000
+    y = 0.01 * rng.normal(size=(count, 3))
+    kept = believable(y, np.zeros((count, 3, NV)), np.eye(NV), np.full(count, 0.01),
+                      replace(SETTINGS, gate=chi2.ppf(0.9, 3)))
+    assert kept.mean() == pytest.approx(0.9, abs=0.015)  # ± 3 standard errors
+
+
+def test_what_is_near_enough_is_kept_whatever_the_state_claims():
+    """A state that is too sure of itself must not refuse markers a centimetre off."""
+    y = np.zeros((MARKERS, 3))
+    y[2, 0], y[3, 0] = 0.029, 0.031
+    kept = believable(y, np.zeros((MARKERS, 3, NV)), np.eye(NV), np.full(MARKERS, 1e-4),
+                      replace(SETTINGS, gate_radius_m=0.03))
+    np.testing.assert_array_equal(kept, np.arange(MARKERS) != 3)
+
+
+def test_when_most_markers_lie_outside_all_are_believed(problem):
+    y, H, P, noise = problem
+    y = y.copy()
+    y[:6] += 1.0
+    y[9] = np.nan
+    np.testing.assert_array_equal(believable(y, H, P, noise, SETTINGS), np.arange(MARKERS) != 9)
+
+
+def test_missing_markers_are_never_believed(problem):
+    y, H, P, noise = problem
+    y = y.copy()
+    y[[0, 7]] = np.nan
+    np.testing.assert_array_equal(np.flatnonzero(~believable(y, H, P, noise, SETTINGS)), [0, 7])
+    assert not believable(np.full((MARKERS, 3), np.nan), H, P, noise, SETTINGS).any()

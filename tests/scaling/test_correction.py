@@ -1,0 +1,84 @@
+"""Correction of marker places on the trial itself: shifts are found, and nothing else moves."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mbkf.errors import NotObservable
+from mbkf.io.records import MarkerTrajectories
+from mbkf.model.protocol import load_protocol
+from mbkf.scaling.correction import correct_markers
+from mbkf.sensors.markers import MarkerSensor
+from tests.motions import marker_positions, moderate_pose, random_model, subject_of
+
+SHIFTED = ("RTHI", "LTHI", "RTUB")
+SHIFT_M = np.array([0.012, -0.008, 0.015])
+
+
+@pytest.fixture(scope="module")
+def model():
+    return random_model(np.random.default_rng(1))
+
+
+@pytest.fixture(scope="module")
+def subject(model):
+    """The person, with markers that may sit elsewhere by 3 cm where they are shifted and by 5 mm elsewhere."""
+    person = subject_of(model)
+    return replace(person, markers=tuple(
+        replace(m, session_sd_m=0.03) if m.name in SHIFTED else m for m in person.markers))
+
+
+def trial(model, subject, shift_m=0.0, frames=20, lost=()):
+    """A moving trial in which the shifted markers sit elsewhere."""
+    rng = np.random.default_rng(2)
+    kept = [m for m in subject.markers if m.name not in lost]
+    places = np.array([m.position_m + (m.name in SHIFTED) * np.asarray(shift_m) for m in kept])
+    sensor = MarkerSensor(model, [m.segment for m in kept], places)
+    positions = marker_positions(sensor, [moderate_pose(model, rng, spread=0.6) for _ in range(frames)])
+    return MarkerTrajectories(tuple(m.name for m in kept), positions, 100.0)
+
+
+def moved_mm(before, after):
+    return {a.name: 1e3 * np.linalg.norm(b.position_m - a.position_m) for a, b in zip(before.markers, after.markers, strict=True)}
+
+
+def test_shifts_of_markers_are_recovered(model, subject):
+    after = correct_markers(subject, trial(model, subject, SHIFT_M))
+    for old, new in zip(subject.markers, after.markers, strict=True):
+        expected = SHIFT_M if old.name in SHIFTED else np.zeros(3)
+        assert np.linalg.norm(new.position_m - old.position_m - expected) < 0.003
+
+
+def test_markers_in_place_stay_in_place(model, subject):
+    moved = moved_mm(subject, correct_markers(subject, trial(model, subject)))
+    assert max(moved.values()) < 2.0  # the posture prior draws a little
+
+
+def test_markers_not_in_the_trial_keep_their_place(model, subject):
+    after = correct_markers(subject, trial(model, subject, SHIFT_M, lost=("RTHI", "C7")))
+    moved = moved_mm(subject, after)
+    assert moved["RTHI"] == moved["C7"] == 0.0
+    assert moved["LTHI"] > 15.0
+
+
+def test_only_places_change(model, subject):
+    after = correct_markers(subject, trial(model, subject, SHIFT_M))
+    assert after.scale_factors == subject.scale_factors
+    assert (after.mass_kg, after.body, after.protocol) == (subject.mass_kg, subject.body, subject.protocol)
+    for old, new in zip(subject.markers, after.markers, strict=True):
+        assert replace(new, position_m=()) == replace(old, position_m=())
+
+
+def test_a_tight_marker_moves_less_than_a_loose_one(model, subject):
+    tight = replace(subject, markers=tuple(replace(m, session_sd_m=0.002) for m in subject.markers))
+    one = trial(model, subject, SHIFT_M)
+    loose_moved, tight_moved = (moved_mm(s, correct_markers(s, one)) for s in (subject, tight))
+    for name in SHIFTED:
+        assert tight_moved[name] < 0.7 * loose_moved[name]
+
+
+def test_too_few_markers_are_refused(model, subject):
+    names = [m.name for m in load_protocol("reference36").markers][5:]
+    with pytest.raises(NotObservable, match="5 markers"):
+        correct_markers(subject, trial(model, subject, lost=names))
