@@ -104,13 +104,13 @@ def _fill_analog(content: Any, capture: Capture) -> None:
         outline = _corners(plate)
         corners.append(outline)
         wrench = _plate_channels(plate, outline)
-        rows += [np.interp(times, plate.times_s, row, left=0.0, right=0.0) for row in wrench.T]
+        rows += [_sampled(times, plate.times_s, row, per_frame) for row in wrench.T]
         names += [f"{channel}{number}" for channel in _CHANNELS]
         units += ["N"] * 3 + ["Nmm"] * 3
     for channel in capture.analog:
         if channel.name not in names:
             stamps = markers.start_time_s + np.arange(len(channel.values)) / channel.rate_hz
-            rows.append(np.interp(times, stamps, channel.values, left=0.0, right=0.0))
+            rows.append(_sampled(times, stamps, channel.values, per_frame))
             names.append(channel.name)
             units.append(channel.unit)
     group = content["parameters"]["ANALOG"]
@@ -120,6 +120,14 @@ def _fill_analog(content: Any, capture: Capture) -> None:
     content["data"]["analogs"] = np.array(rows)[None]
     if corners:
         _declare_plates(content, corners)
+
+
+def _sampled(times_s: Array, stamps_s: Array, values: Array, per_frame: int) -> Array:
+    """Values at the file's sample times: 0 outside the recording, whose last frame is filled with its last value."""
+    sampled = np.interp(times_s, stamps_s, values, left=0.0, right=0.0)
+    after = np.flatnonzero(times_s > stamps_s[-1])[: per_frame - 1]
+    sampled[after] = values[-1]
+    return sampled
 
 
 def _declare_plates(content: Any, corners: list[Array]) -> None:

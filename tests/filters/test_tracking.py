@@ -56,7 +56,7 @@ def test_the_first_frame_already_knows_its_velocity(motion, followed):
 def test_accelerations_are_differences_of_velocities(followed):
     """Eq. 3.7 once the filter has settled."""
     expected = np.diff(followed.v, axis=0) * RATE_HZ
-    np.testing.assert_allclose(followed.a[SETTLED + 1 :], expected[SETTLED:], rtol=1e-12, atol=1e-10)
+    np.testing.assert_allclose(followed.a[SETTLED + 1 :], expected[SETTLED:], rtol=1e-13, atol=1e-12)
     assert np.isfinite(followed.a).all()
 
 
@@ -96,7 +96,7 @@ def test_after_a_total_loss_the_filter_starts_anew(motion):
     result = track(kalman(), measured)
     assert result.starts == (0, 60)
     np.testing.assert_array_equal(np.flatnonzero(~result.tracked), np.arange(20, 60))
-    assert worst(angle_errors(MODEL, result.q[60:], motion[0][60:])) < 0.03
+    assert worst(angle_errors(MODEL, result.q[60:], motion[0][60:])) < 0.1
     assert np.isnan(result.nis[60])
 
 
@@ -149,8 +149,8 @@ def test_the_result_does_not_depend_on_where_and_which_way_the_body_moves(motion
     c, s = np.cos(2.0), np.sin(2.0)
     turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
     result = track(kalman(), motion[3] @ turn.T + [3.0, -2.0, 0.5])
-    np.testing.assert_allclose(result.q[:, 7:], followed.q[:, 7:], rtol=0, atol=1e-6)
-    np.testing.assert_allclose(result.v, followed.v, rtol=0, atol=1e-5)
+    np.testing.assert_allclose(result.q[:, 7:], followed.q[:, 7:], rtol=0, atol=1e-11)
+    np.testing.assert_allclose(result.v, followed.v, rtol=0, atol=2e-10)
 
 
 def test_progress_reaches_the_last_frame(motion):
