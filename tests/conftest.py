@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from mbkf.numerics.threads import single_threaded
+
 
 @pytest.fixture(scope="session")
 def real_data() -> Path:
@@ -19,3 +21,10 @@ def real_data() -> Path:
     if not folder.is_dir():
         pytest.fail(f"no folder of reference captures: {folder}")
     return folder
+
+
+@pytest.fixture(scope="session", autouse=True)
+def one_thread():
+    """Small matrices on one thread, as the pipelines run them."""
+    with single_threaded():
+        yield

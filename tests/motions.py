@@ -41,7 +41,8 @@ def moderate_pose(model, rng, spread=0.5, heading=None):
 def central_difference(model, function: Callable, q, step=1e-6):
     """Derivative of function(q) along every tangent direction, appended as the last axis."""
     columns = [
-        (np.asarray(function(model.integrate(q, step * e))) - function(model.integrate(q, -step * e))) / (2 * step)
+        (np.asarray(function(model.integrate(q, step * e))) - function(model.integrate(q, -step * e)))
+        / (2 * step)
         for e in np.eye(model.nv)
     ]
     return np.stack(columns, axis=-1)

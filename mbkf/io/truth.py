@@ -102,8 +102,9 @@ def read_truth(path: str | Path) -> Truth:
         with h5py.File(source, "r") as file:
             if file.attrs.get("format") != FORMAT:
                 raise FileFormatError(source, "not a truth file; make it with 'mbkf synth'")
-            arrays = {name: np.asarray(file[name]) for name in UNITS}
-            names = {name: tuple(text.decode() for text in file[name][:]) for name in ("marker_names", "dof_names")}
+            arrays: dict[str, Any] = {name: np.asarray(file[name]) for name in UNITS}
+            names: dict[str, Any] = {name: tuple(text.decode() for text in file[name][:])
+                                     for name in ("marker_names", "dof_names")}
             return Truth(**arrays, **names, version=str(file.attrs["version"]),
                          settings=json.loads(file.attrs["settings"]))
     except (OSError, KeyError, ValueError, ShapeError) as error:

@@ -11,7 +11,7 @@ import numpy as np
 
 from mbkf.io.capture import read_capture
 from mbkf.io.results import Reconstruction
-from mbkf.io.results_folder import prepare_folder, write_reconstruction
+from mbkf.io.results_folder import check_folder, write_reconstruction
 from mbkf.io.subject import write_subject
 from mbkf.io.truth import Truth
 from mbkf.model.clinical import ClinicalAngles
@@ -79,7 +79,7 @@ def run_demo(
     Raises:
         MbkfError: The folder is a file, or motion, duration or filter make no sense.
     """
-    folder = prepare_folder(folder)
+    folder = check_folder(folder)
     person, capture = synthesise(motion, seconds=seconds, seed=seed, progress=progress)
     write_folder(person, capture, folder)
     static = read_capture(folder / "static.c3d")
@@ -88,8 +88,7 @@ def run_demo(
     settings = ReconstructSettings(filter=filter_name, keep_covariance=True)
     result = reconstruct(read_capture(folder / "trial.c3d"), subject, settings=settings, progress=progress)
     summary = summarise(result, capture.truth)
-    target = prepare_folder(folder / "result")
-    write_reconstruction(result, summary, target)
+    write_reconstruction(result, summary, folder / "result")
     body = HumanModel.scaled(person.scale_factors, person.mass_kg, person.body)
     return Demo(folder, result, summary, coordinate_errors(result, capture.truth, body))
 

@@ -40,8 +40,8 @@ def synthesise(motion: str, *, seconds: float | None = None, seed: int = 0, rate
     report = progress or (lambda *_: None)
     subject = synthesise_subject(seed)
     report("Moving", 0, 2)
-    true_motion = synthesise_motion(body_of(subject), motion, seconds or DEFAULT_SECONDS.get(motion, 5.0),
-                                    rate_hz, seed)
+    duration = DEFAULT_SECONDS.get(motion, 5.0) if seconds is None else seconds
+    true_motion = synthesise_motion(body_of(subject), motion, duration, rate_hz, seed)
     report("Moving", 1, 2)
     capture = synthesise_capture(subject, true_motion, settings, seed)
     report("Moving", 2, 2)

@@ -204,15 +204,17 @@ def _per_foot_pressure(pressure: Array, wrench: Array, foot: Array) -> tuple[Arr
 def _touching(soles: Array, foot: Array, rate_hz: float) -> BoolArray:
     """(T, 2) feet that touch the floor: a sole point is low and slow."""
     touching = np.zeros((len(soles), 2), dtype=bool)
+    known = ~np.isnan(soles[:, 0, 0, 0])
+    if not known.any():
+        return touching
+    lowest = soles[:, :, :, 2].min(axis=2)
+    loaded = np.stack([(foot == side).any(axis=1) & known for side in range(2)], axis=1)
+    stood_on = {side: np.median(lowest[loaded[:, side], side]) for side in range(2) if loaded[:, side].any()}
     for side in range(2):
-        points = soles[:, side]
-        if np.isnan(points).all():
-            continue
-        loaded = (foot == side).any(axis=1)
-        lowest = np.nanmin(points[:, :, 2], axis=1, initial=np.inf, where=~np.isnan(points[:, :, 2]))
-        floor = np.median(lowest[loaded]) if loaded.any() else np.percentile(lowest[np.isfinite(lowest)], 5)
-        speed = np.linalg.norm(np.gradient(points, axis=0), axis=2) * rate_hz
-        low = points[:, :, 2] < floor + TOUCH_HEIGHT_M
+        lowest_ever = np.percentile(lowest[known, side], 5)
+        floor = stood_on.get(side, min([lowest_ever, *stood_on.values()]))
+        speed = np.linalg.norm(np.gradient(soles[:, side], axis=0), axis=2) * rate_hz
+        low = soles[:, side, :, 2] < floor + TOUCH_HEIGHT_M
         touching[:, side] = (low & (speed < TOUCH_SPEED_M_S)).any(axis=1)
     return touching
 

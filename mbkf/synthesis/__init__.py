@@ -1,1 +1,1 @@
-"""Synthetic captures with exact truth: motions of the body that obey Newton's law, and what a laboratory measures of them."""
+"""Synthetic captures with exact truth: motions that obey Newton's law, and their measurement."""

@@ -103,7 +103,7 @@ def _record(model: HumanModel, subject: Subject, motion: TrueMotion, settings: C
     exact = cameras.true_markers(model, subject, motion.q)
     seen = exact + settings.markers_sd_m * rng.standard_normal(exact.shape)
     seen += cameras.skin_artefact(exact.shape, motion.rate_hz, settings.skin_sd_m, settings.skin_cutoff_hz, rng)
-    seen[cameras.occlusions(*exact.shape[:2], settings.occlusion, rng)] = np.nan
+    seen[cameras.occlusions(exact.shape[0], exact.shape[1], settings.occlusion, rng)] = np.nan
     names = tuple(marker.name for marker in subject.markers)
     stored = plates.readings(motion.plate_wrench, motion.plate_rate_hz, settings.force_sd_n, settings.moment_sd_nm,
                              settings.offset_n, rng)

@@ -53,7 +53,7 @@ class Composition:
 
     def pelvis_rotations(self, times: Array) -> Array:
         """(T, 3, 3) world rotations of the pelvis."""
-        return jets.euler(*(curve(times) for curve in self.pelvis), order="zyx").value
+        return jets.euler((curve(times) for curve in self.pelvis), order="zyx").value
 
 
 def compose(model: HumanModel, plan: MotionPlan) -> Composition:

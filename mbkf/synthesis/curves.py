@@ -50,7 +50,7 @@ def spline(times: Sequence[float], values: Sequence[float], start: tuple[float, 
 
 
 def ripple(amplitude: float, frequency_hz: float, phase: float, offset: float = 0.0) -> Curve:
-    """offset + amplitude · sin(2π f t + phase)."""
+    """The curve offset + amplitude · sin(2π f t + phase)."""
     w = 2 * np.pi * frequency_hz
 
     def curve(at: Array) -> Jet:

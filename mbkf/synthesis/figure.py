@@ -95,7 +95,7 @@ class Figure:
         Args:
             com: Whole-body centre of mass.
             angles: Joint angles (x, y, z) of pelvis, torso, neck (x, y), head, arms, and the knees' small
-                rotations ``{side}_shank`` (x, z), rad.
+                rotations ``{side}_shank`` (x, z; y is not used), rad.
             feet: The feet by side.
             start: Pelvis position to start from.
         """
@@ -121,7 +121,7 @@ class Figure:
 
     def _upper(self, angles: Mapping[str, tuple[Jet, ...]]) -> tuple[dict[str, Jet], dict[str, Jet]]:
         """World rotations and origins relative to the pelvis's origin, of pelvis, trunk, head and arms."""
-        rotations = {"pelvis": jets.euler(*angles["pelvis"], order="zyx")}
+        rotations = {"pelvis": jets.euler(angles["pelvis"], order="zyx")}
         origins = {"pelvis": Jet.constant(np.zeros_like(angles["pelvis"][0].value)[:, None] + np.zeros(3))}
         for name, parent in self.parent.items():
             if parent == "world" or name.endswith(("thigh", "shank", "foot", "toes")):
@@ -130,7 +130,7 @@ class Figure:
                 x, y = angles[name][:2]
                 relative = jets.rotation(0, x) @ jets.rotation(1, y)
             else:
-                relative = jets.euler(*angles[name])
+                relative = jets.euler(angles[name])
             rotations[name] = rotations[parent] @ relative
             origins[name] = origins[parent] + rotations[parent].apply(self.offset[name])
         return rotations, origins
@@ -164,7 +164,7 @@ class Figure:
         cosine = jets.where((cosine.value < limit) & (cosine.value > -limit), cosine,
                             Jet.constant(np.clip(cosine.value, -limit, limit)))
         flexion = jets.arccos(cosine)
-        knee = jets.euler(knee_xz[0], flexion, knee_xz[1])
+        knee = jets.euler((knee_xz[0], flexion, knee_xz[2]))
         local = knee.apply(np.array([0.0, 0.0, -lower])) + np.array([0.0, 0.0, -upper])
         across = jets.stack([-jets.sin(yaw), jets.cos(yaw), yaw * 0.0])
         side_axis = Jet.constant(np.zeros_like(span.value) + np.array([0.0, 1.0, 0.0]))
@@ -186,7 +186,7 @@ class Figure:
         return com, spin, change
 
     def coordinates(self, pose: Pose) -> tuple[Array, Array, Array]:
-        """q (T, nq), v (T, nv), a (T, nv) of a pose, in Pinocchio's coordinates; quaternions do not jump."""
+        """Arrays q (T, nq), v (T, nv), a (T, nv) of a pose, in Pinocchio's coordinates; quaternions do not jump."""
         frames = len(pose.knee)
         q = np.zeros((frames, self.model.nq))
         v, a = np.zeros((frames, self.model.nv)), np.zeros((frames, self.model.nv))

@@ -6,7 +6,7 @@ momentum L is linear in their rates; a quasi-Newton iteration on the rates makes
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 from numpy.polynomial import Chebyshev
@@ -16,7 +16,7 @@ from mbkf.synthesis.curves import Curve, path
 from mbkf.synthesis.jets import Jet
 from mbkf.synthesis.plan import Flight
 
-NODES = 90
+NODES = 150
 SMALL = 1e-11
 """Change of the pelvis's rates at which the iteration ends, rad/s."""
 
@@ -72,13 +72,14 @@ class Tumbling:
         """
         change = np.inf
         for _ in range(rounds):
-            angles = tuple(Jet(t(self.times), t.deriv()(self.times), t.deriv(2)(self.times)) for t in self.turns)
+            angles = _angles(Jet(t(self.times), t.deriv()(self.times), t.deriv(2)(self.times)) for t in self.turns)
             now = momentum(angles)
             if self._response is None:
                 self._response = np.stack([momentum(_faster(angles, axis)) - now for axis in range(3)], axis=-1)
-            inverse = np.linalg.inv(self._response)
+            inverse: Array = np.asarray(np.linalg.inv(self._response), dtype=np.float64)
             drift = self._mean(np.einsum("tij,tj->ti", inverse, now))
-            constant = np.linalg.solve(self._mean(inverse.reshape(-1, 9)).reshape(3, 3), drift)
+            average: Array = self._mean(inverse.reshape(-1, 9)).reshape(3, 3)
+            constant = np.linalg.inv(average) @ drift
             delta = np.einsum("tij,tj->ti", inverse, constant - now)
             domain = self.turns[0].domain
             for axis in range(3):
@@ -95,10 +96,16 @@ class Tumbling:
 
     def _mean(self, values: Array) -> Array:
         domain = self.turns[0].domain
-        fits = [Chebyshev.fit(self.times, column, NODES - 1, domain=domain).integ(lbnd=domain[0]) for column in values.T]
+        fits = [Chebyshev.fit(self.times, column, NODES - 1, domain=domain).integ(lbnd=domain[0])
+                for column in values.T]
         return np.array([fit(domain[1]) for fit in fits]) / (domain[1] - domain[0])
 
 
-def _faster(angles: tuple[Jet, ...], axis: int) -> tuple[Jet, ...]:
+def _angles(three: Iterable[Jet]) -> tuple[Jet, Jet, Jet]:
+    x, y, z = three
+    return x, y, z
+
+
+def _faster(angles: tuple[Jet, Jet, Jet], axis: int) -> tuple[Jet, Jet, Jet]:
     """The same angles, one of them turning 1 rad/s faster."""
-    return tuple(Jet(a.value, a.first + (k == axis), a.second) for k, a in enumerate(angles))
+    return _angles(Jet(a.value, a.first + (k == axis), a.second) for k, a in enumerate(angles))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -35,8 +36,8 @@ class Jet:
         """x, ẋ, ẍ."""
         return self.value, self.first, self.second
 
-    def __getitem__(self, index: object) -> Jet:
-        return Jet(*(x[index] for x in self.orders))  # type: ignore[index]
+    def __getitem__(self, index: Any) -> Jet:
+        return Jet(*(x[index] for x in self.orders))
 
     def __neg__(self) -> Jet:
         return Jet(*(-x for x in self.orders))
@@ -161,9 +162,9 @@ def rotation(axis: int, angle: Jet) -> Jet:
     return cos(angle)[..., None, None] * _TURNED[axis] + sin(angle)[..., None, None] * _SKEW[axis] + _FIXED[axis]
 
 
-def euler(x: Jet, y: Jet, z: Jet, order: str = "yxz") -> Jet:
+def euler(about_xyz: Iterable[Jet], order: str = "yxz") -> Jet:
     """(T, 3, 3) product of elementary rotations by the angles about x, y and z, in the given order."""
-    angles = {"x": x, "y": y, "z": z}
+    angles = dict(zip("xyz", about_xyz, strict=True))
     product = rotation("xyz".index(order[0]), angles[order[0]])
     for axis in order[1:]:
         product = product @ rotation("xyz".index(axis), angles[axis])

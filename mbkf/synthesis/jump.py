@@ -16,16 +16,17 @@ from mbkf.synthesis.plan import FeetPlan, Flight, MotionPlan, lively, resting
 from mbkf.synthesis.standing import constant, posture
 
 CROUCH_S, PUSH_S, FLIGHT_S, ABSORB_S, RECOVER_S = 0.55, 0.32, 0.34, 0.31, 0.85
-HEEL_OFF_S, HEEL_DOWN_S = 0.17, 0.10
-CROUCH_M, TAKE_OFF_M, TOUCH_DOWN_M, ABSORB_M = -0.228, 0.057, 0.045, -0.225
+HEEL_OFF_S, HEEL_DOWN_S = 0.15, 0.10
+CROUCH_M, TAKE_OFF_M, TOUCH_DOWN_M, ABSORB_M = -0.230, 0.047, 0.035, -0.225
 """Height of the centre of mass against standing, for a body of the reference size."""
 
-TAKE_OFF_PITCH = (27.5, 425.0, -2500.0)
-TOUCH_DOWN_PITCH = (24.0, -395.0, -2500.0)
+TAKE_OFF_PITCH = (32.0, 450.0, -5000.0)
+TOUCH_DOWN_PITCH = (29.0, -425.0, -5000.0)
 """Pitch of the foot (heel up), deg, deg/s, deg/s²."""
 
-CLEARANCE_M = 0.108
-STEEPNESS = 0.255
+CLEARANCE_M = 0.150
+STEEPNESS = 0.36
+"""How high the balls of the feet rise (times 0.53 in the middle), and how gently; 0.36 keeps hip torques small."""
 
 CROUCH_DEG = {
     "torso": (0.0, 16.0, 0.0), "neck": (0.0, -8.0, 0.0), "head": (0.0, -10.0, 0.0),
@@ -55,11 +56,12 @@ def jump_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> Mo
     down = off + flight_s
     absorbed = down + ABSORB_S
     end = absorbed + RECOVER_S
-    speed = GRAVITY_M_S2 * flight_s / 2
+    speed = (TOUCH_DOWN_M - TAKE_OFF_M) * size / flight_s + GRAVITY_M_S2 * flight_s / 2
+    fall = speed - GRAVITY_M_S2 * flight_s
     height = path([
         (begin, 0.95 * size), (bottom, (0.95 + CROUCH_M) * size, 0.0, 4.5),
         (off, (0.95 + TAKE_OFF_M) * size, speed, -GRAVITY_M_S2),
-        (down, (0.95 + TOUCH_DOWN_M) * size, -speed, -GRAVITY_M_S2),
+        (down, (0.95 + TOUCH_DOWN_M) * size, fall, -GRAVITY_M_S2),
         (absorbed, (0.95 + ABSORB_M) * size, 0.0, 4.0), (end, 0.95 * size)])
     crouch = path([(begin, 0.0), (bottom, 1.0), (off, 0.12, -2.0), (down, 0.15, 1.5), (absorbed, 0.8), (end, 0.0)])
     swing = path([(begin, 0.0), (bottom - 0.08, -0.45), (off, 0.85, 2.0), (down, 0.8, -1.5), (absorbed + 0.1, 0.25),

@@ -106,7 +106,7 @@ def _dynamics(model: HumanModel, composition: Composition, times: Array, every: 
     q, v, a = composition.coordinates(times)
     load = composition.plan.load(times)
     needed = np.array([model.inverse_dynamics(*state)[:6] for state in zip(q, v, a, strict=True)])
-    for k in np.flatnonzero(~load.grounded):
+    for k in np.flatnonzero(~load.grounded).tolist():
         a[k, :6] -= np.linalg.solve(model.mass_matrix(q[k])[:6, :6], needed[k])
     rotations = composition.pelvis_rotations(times)
     force = np.einsum("tij,tj->ti", rotations, needed[:, :3])
@@ -116,7 +116,7 @@ def _dynamics(model: HumanModel, composition: Composition, times: Array, every: 
     q, v, a, centres, own = q[::every], v[::every], a[::every], centres[::every], wrenches[::every]
     tau = np.empty_like(v)
     feet = [model.joint(f"{SIDE_NAMES[side]}_foot").joint_id for side in SIDES]
-    for k in range(len(q)):
+    for k in range(len(tau)):
         tau[k] = model.inverse_dynamics(q[k], v[k], a[k])
         jacobian = model.placements_and_jacobian(q[k])[2]
         for foot, joint in enumerate(feet):
@@ -141,7 +141,7 @@ def _fault(model: HumanModel, q: Array, fine: Array, wrenches: Array, centres: A
             return f"the {name} foot would slip"
         outline, joint = sole_outline(model, side), model.joint(f"{name}_foot").joint_id
         for k in np.flatnonzero(wrenches[:, foot, 2] > 0):
-            rotations, origins = model.placements(q[k])
+            rotations, origins = model.placements(q[int(k)])
             if not outline.holds(rotations[joint].T @ (centres[k, foot] - origins[joint])):
                 return f"the pressure leaves the {name} sole"
     return ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -57,7 +57,6 @@ class MotionPlan:
     straightest_rad: float
     recorded_s: tuple[float, float] | None = None
     flight: Flight | None = None
-    notes: dict[str, float] = field(default_factory=dict)
 
 
 def degrees(*knots: tuple[float, ...]) -> Curve:
@@ -73,10 +72,11 @@ def lively(curves: dict[str, tuple[Curve, Curve, Curve]], rng: np.random.Generat
         if joint not in curves:
             continue
         small = 0.5 if joint.endswith("shank") or joint == "pelvis" else 1.0
-        moving[joint] = tuple(
+        axes = [
             added(curve, ripple(np.deg2rad(small * amplitude_deg * rng.uniform(0.5, 1.0)),
                                 rng.uniform(0.3, 0.8), rng.uniform(0, 2 * np.pi)))
-            for curve in curves[joint])
+            for curve in curves[joint]]
+        moving[joint] = (axes[0], axes[1], axes[2])
     return moving
 
 

@@ -52,7 +52,6 @@ def spells(on: np.ndarray) -> list[tuple[int, int]]:
 
 def outlines(placed: list[Placement]) -> list[Array]:
     """(4, 3) corners of one plate per placement, not overlapping: from above, x and −y to the quadrants."""
-    middles = np.array([p.middle for p in placed])
     corners = []
     for p in placed:
         low, high = p.middle - np.array(SIZE_M) / 2, p.middle + np.array(SIZE_M) / 2
@@ -65,8 +64,6 @@ def outlines(placed: list[Placement]) -> list[Array]:
                     low[1], high[1] = between - GAP_M / 2 - SIZE_M[1], between - GAP_M / 2
         corners.append(np.array([[high[0], low[1], 0], [low[0], low[1], 0], [low[0], high[1], 0],
                                  [high[0], high[1], 0]]))
-    if len(middles) != len(corners):
-        raise AssertionError
     return corners
 
 
@@ -93,7 +90,7 @@ def readings(wrench: Array, rate_hz: float, force_sd_n: float, moment_sd_nm: flo
             loaded[start:end] = True
         force = np.where(loaded[:, None], wrench[:, place.side, :3], 0.0)
         moment = np.where(loaded[:, None], wrench[:, place.side, 3:], 0.0) - np.cross(origin, force)
-        offset = np.r_[rng.uniform(-2, 2, 2), rng.uniform(*sorted(offset_n)), rng.uniform(-1, 1, 3)]
+        offset = np.r_[rng.uniform(-2, 2, 2), rng.uniform(min(offset_n), max(offset_n)), rng.uniform(-1, 1, 3)]
         if loaded.all() or not any(offset_n):
             offset = np.zeros(6)
         force = force + offset[:3] + force_sd_n * rng.standard_normal(force.shape)

@@ -10,6 +10,9 @@ from mbkf.synthesis.plan import MotionPlan, lively, resting
 from mbkf.synthesis.standing import planted, posture, standing_load
 
 PERIOD_S = 2.4
+COMFORTABLE_S = 1.9
+"""Shorter squats are shallower."""
+
 DROP_M = 0.27
 """Fall of the centre of mass of a body of the reference size."""
 
@@ -41,7 +44,7 @@ def _depth(seconds: float, repetitions: int, rng: np.random.Generator) -> Curve:
     period = seconds / repetitions
     knots: list[tuple[float, float]] = [(0.0, 0.0)]
     for k in range(repetitions):
-        deep = rng.uniform(0.93, 1.05)
+        deep = rng.uniform(0.93, 1.05) * min(1.0, (period / COMFORTABLE_S) ** 2)
         for part, value in ((0.03, 0.0), (0.48, deep), (0.52, deep), (0.97, 0.0)):
             knots.append(((k + part) * period, value))
     knots.append((seconds, 0.0))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from mbkf.synthesis.curves import Curve, added, ripple, scaled
 from mbkf.synthesis.figure import FootPose
 from mbkf.synthesis.jets import Jet
 from mbkf.synthesis.plan import JOINTS, FeetPlan
+
+Angles = Mapping[str, tuple[float, float, float]]
+"""Angles about x, y and z in degrees, by joint."""
 
 
 def constant(times: Array, value: float) -> Jet:
@@ -57,7 +60,7 @@ def pressed(foot: FootPose, forward_m: Array, left_m: Array | float = 0.0) -> Ar
     return foot.ankle.value[:, :2] + np.stack([c * forward_m - s * left_m, s * forward_m + c * left_m], axis=-1)
 
 
-def posture(base_deg: Mapping[str, tuple[float, float, float]], gains: list[tuple[Curve, Mapping]],
+def posture(base_deg: Angles, gains: Sequence[tuple[Curve, Angles]],
             rng: np.random.Generator, spread: float = 0.08) -> dict[str, tuple[Curve, Curve, Curve]]:
     """Joint angles: a base posture plus curves (0…1) times what each adds, each person a little different.
 

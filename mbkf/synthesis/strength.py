@@ -8,9 +8,9 @@ from mbkf.conventions import Array
 from mbkf.model.human import HumanModel
 
 PEAK_NM_PER_KG: dict[str, tuple[tuple[float, float], ...]] = {
-    "torso": ((2.5, 2.5), (2.5, 4.0), (1.8, 1.8)),
-    "neck": ((0.8, 0.8), (0.6, 1.0)),
-    "head": ((0.6, 0.6), (0.5, 0.8), (0.4, 0.4)),
+    "torso": ((2.5, 2.5), (4.0, 2.5), (1.8, 1.8)),
+    "neck": ((0.8, 0.8), (1.0, 0.6)),
+    "head": ((0.6, 0.6), (0.8, 0.5), (0.4, 0.4)),
     "upper_arm": ((1.2, 1.2), (1.3, 1.3), (0.8, 0.8)),
     "forearm": ((0.6, 0.6), (1.0, 1.0), (0.4, 0.4)),
     "hand": ((0.3, 0.3), (0.3, 0.3), (0.2, 0.2)),
@@ -19,10 +19,13 @@ PEAK_NM_PER_KG: dict[str, tuple[tuple[float, float], ...]] = {
     "foot": ((0.8, 0.8), (0.8, 3.0), (0.8, 0.8)),
     "toes": ((0.5, 0.5),),
 }
-"""Peak torque (negative, positive) about x, y, z in N m per kg of body mass. About y: positive is extension of trunk and
-hip, flexion of the knee, plantarflexion of the ankle. Legs: an active person's maximum, above the isometric dynamometer
-averages of D. E. Anderson et al., J. Biomech. 40 (2007) 3105-3113, which jumping and running exceed; trunk: about 300 N m
-of extension. Knee and ankle about x and z are carried by ligaments. The rest: safe upper bounds of our own choice."""
+"""Peak torque (negative, positive) about x, y, z in N m per kg of body mass.
+
+About y positive is flexion of trunk and neck, extension of the hip, flexion of the knee, plantarflexion of the ankle.
+Legs: what an active person reaches at most, above the isometric averages of D. E. Anderson et al., J. Biomech. 40
+(2007) 3105-3113, which running and jumping exceed. Trunk: about 300 N m of extension. Knee and ankle about x and z
+are carried by ligaments. The rest are safe upper bounds of our own choice.
+"""
 
 
 def overloaded(model: HumanModel, tau: Array) -> str:

@@ -6,6 +6,7 @@ The recorded time is a window of an endless walk; the walk is planned a few step
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from mbkf.synthesis.contact import Load, LoadPlan, sole_outline
 from mbkf.synthesis.curves import Curve, path, ripple, spline
 from mbkf.synthesis.figure import SIDE_NAMES, Figure, FootPose
 from mbkf.synthesis.jets import Jet
-from mbkf.synthesis.plan import FeetPlan, MotionPlan, lively, resting
+from mbkf.synthesis.plan import MotionPlan, lively, resting
 from mbkf.synthesis.standing import posture
 
 # Timing as parts of a stride, after Perry & Burnfield, Gait Analysis, 2nd ed. 2010 (stance 62 %, double support 12 %).
@@ -28,8 +29,8 @@ TOE_OFF_PITCH_DEG = (58.46, 738.9, 5394.0)
 """Pitch of the foot (heel up) at heel strike and toe-off, deg, deg/s, deg/s²."""
 
 # The swing, as values at parts of its time: fraction of the way forward, height of the ankle over its height on the
-# flat foot (m, body of the reference size), pitch of the foot (deg). Found by least squares against the mean knee and
-# ankle angles of natural walking (Winter 2009, Table A.3), with the toes at least 12 mm over the floor.
+# flat foot (m, body of the reference size), pitch of the foot (deg). Found by least squares against typical knee and
+# ankle angles of natural walking, small changes of angular momentum, and toes clear of the floor.
 SWING_PARTS = (0.22, 0.45, 0.68, 0.88)
 SWING_FORWARD = (0.1534, 0.4297, 0.7583, 0.9452)
 SWING_HEIGHT_M = (0.1739, 0.1276, 0.0364, 0.0180)
@@ -69,8 +70,7 @@ def walk_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> Mo
     height = ripple(bob, step_hz, -2 * np.pi * step_hz * (phase_s + BOB_LATE * DOUBLE_SUPPORT * stride_s) - np.pi / 2,
                     0.97 * size)
     return MotionPlan(start, end, lively(_angles(stride_s, phase_s, rng), rng, 0.6), poses, height,
-                      _load(model, steps, feet, stride_s), np.deg2rad(8.5), recorded_s=(0.0, seconds),
-                      notes={"speed_m_s": 2 * length / stride_s})
+                      _load(model, steps, feet, stride_s), np.deg2rad(8.5), recorded_s=(0.0, seconds))
 
 
 def _steps(model: HumanModel, seconds: float, step_s: float, length: float, rng: np.random.Generator) -> list[Step]:
@@ -106,17 +106,18 @@ class _Foot:
         self.heading = constant_rotation(steps[0].yaw)
         stance = path([(0.0, *np.deg2rad(STRIKE_PITCH_DEG)), (FOOT_FLAT * stride_s, 0.0), (HEEL_OFF * stride_s, 0.0),
                        (self.off * stride_s, *np.deg2rad(TOE_OFF_PITCH_DEG))])
-        times = [self.off * stride_s, *(stride_s * (self.off + part * (1 - self.off)) for part in SWING_PARTS), stride_s]
+        times = [self.off * stride_s, *(stride_s * (self.off + part * (1 - self.off)) for part in SWING_PARTS),
+                 stride_s]
         angles = np.deg2rad([TOE_OFF_PITCH_DEG[0], *SWING_PITCH_DEG, STRIKE_PITCH_DEG[0]])
         bends = [tuple(np.deg2rad(pitch[1:])) for pitch in (TOE_OFF_PITCH_DEG, STRIKE_PITCH_DEG)]
-        swing = spline(times, angles, bends[0], bends[1])
+        swing = spline(times, angles.tolist(), bends[0], bends[1])
         relaxed = path([(0.0, np.deg2rad(-6.0)), (FOOT_FLAT * stride_s, 0.0), (HEEL_OFF * stride_s, 0.0),
                         (self.off * stride_s, *-np.deg2rad(TOE_OFF_PITCH_DEG)),
                         ((self.off + 0.035) * stride_s, np.deg2rad(-67.0)),
                         ((self.off + 0.20) * stride_s, np.deg2rad(-14.0)), (stride_s, np.deg2rad(-6.0))])
         self.pitch = self._repeated(lambda t: jets.where(t < self.off * stride_s, stance(t), swing(t)))
         self.toes = self._repeated(relaxed)
-        self.swings = [self._swing(a, b) for a, b in zip(steps, steps[1:], strict=False)]
+        self.swings = [self._swing(a, b) for a, b in pairwise(steps)]
 
     def _repeated(self, curve: Curve) -> Curve:
         """A curve of the time since heel strike, over all strides."""
@@ -155,7 +156,7 @@ class _Foot:
             rolled = jets.where(pitch.value < 0, self._about(step, self.heel, pitch),
                                 self._about(step, self.ball, pitch))
             ankle = jets.where(on, rolled, ankle)
-        for (a, b), swing in zip(zip(self.steps, self.steps[1:], strict=False), self.swings, strict=True):
+        for (a, b), swing in zip(pairwise(self.steps), self.swings, strict=True):
             ankle = jets.where((times > a.off_s) & (times < b.strike_s), swing(times), ankle)
         yaw = Jet.constant(np.full(len(times), self.steps[0].yaw))
         return FootPose(ankle, yaw, pitch, self.toes(times))
@@ -170,7 +171,8 @@ def constant_rotation(yaw: float) -> Array:
 def _load(model: HumanModel, steps: list[Step], feet: dict[str, _Foot], stride_s: float) -> LoadPlan:
     """Pressure from heel to toes under each foot, handed from foot to foot in double support."""
     size = float(model.scale.mean())
-    share_knots, pressure_knots = [], {0: [], 1: []}
+    share_knots: list[tuple] = []
+    pressure_knots: dict[int, list[tuple]] = {0: [], 1: []}
     for step in steps:
         share_knots += [(step.strike_s, float(step.side)), (step.strike_s + DOUBLE_SUPPORT * stride_s, 1.0 - step.side)]
         heel, ball = feet[SIDES[step.side]].heel[0], feet[SIDES[step.side]].ball[0]
@@ -205,10 +207,13 @@ def _angles(stride_s: float, phase_s: float, rng: np.random.Generator) -> dict[s
     twist, twice = wave(1.0, 0.0), wave(1.0, 0.06, 2)
     lean = wave(1.0, 0.30)
     gains = [
-        (right, {"right_upper_arm": (0.0, -19.0, 0.0), "right_forearm": (0.0, -11.0, 4.0), "right_hand": (2.0, -4.0, 1.0)}),
-        (left, {"left_upper_arm": (0.0, -19.0, 0.0), "left_forearm": (0.0, -11.0, -4.0), "left_hand": (-2.0, -4.0, -1.0)}),
+        (right, {"right_upper_arm": (0.0, -19.0, 0.0), "right_forearm": (0.0, -11.0, 4.0),
+                 "right_hand": (2.0, -4.0, 1.0)}),
+        (left, {"left_upper_arm": (0.0, -19.0, 0.0), "left_forearm": (0.0, -11.0, -4.0),
+                "left_hand": (-2.0, -4.0, -1.0)}),
         (twist, {"pelvis": (0.0, 0.0, 4.5), "torso": (0.0, 0.0, -8.5), "head": (0.0, 0.0, 3.5)}),
-        (twice, {"pelvis": (0.0, 1.2, 0.0), "torso": (0.0, 1.0, 0.0), "neck": (0.0, -1.0, 0.0), "head": (0.0, -1.0, 0.0)}),
+        (twice, {"pelvis": (0.0, 1.2, 0.0), "torso": (0.0, 1.0, 0.0), "neck": (0.0, -1.0, 0.0),
+                 "head": (0.0, -1.0, 0.0)}),
         (wave(1.0, 0.12), {"pelvis": (-3.5, 0.0, 0.0), "torso": (4.5, 0.0, 0.0), "neck": (-0.7, 0.0, 0.0)}),
         (lean, {"head": (1.0, 0.0, 0.0), "right_shank": (1.0, 0.0, 2.0), "left_shank": (1.0, 0.0, 2.0)}),
     ]

@@ -29,7 +29,8 @@ def problem(rng):
 
 
 def mahalanobis(y, H, P, noise):
-    return np.array([e @ np.linalg.solve(h @ P @ h.T + s**2 * np.eye(3), e) for e, h, s in zip(y, H, noise, strict=True)])
+    triples = zip(y, H, noise, strict=True)
+    return np.array([e @ np.linalg.solve(h @ P @ h.T + s**2 * np.eye(3), e) for e, h, s in triples])
 
 
 def test_good_markers_are_kept(problem):
@@ -58,8 +59,13 @@ def test_as_many_are_refused_as_chi_square_says(rng):
     """Independent innovations of the stated size fall outside the 90 % gate one time in ten."""
     count = 4000
     y = 0.01 * rng.normal(size=(count, 3))
-    kept = believable(y, np.zeros((count, 3, NV)), np.eye(NV), np.full(count, 0.01),
-                      replace(SETTINGS, gate=chi2.ppf(0.9, 3)))
+    kept = believable(
+        y,
+        np.zeros((count, 3, NV)),
+        np.eye(NV),
+        np.full(count, 0.01),
+        replace(SETTINGS, gate=chi2.ppf(0.9, 3)),
+    )
     assert kept.mean() == pytest.approx(0.9, abs=0.015)  # ± 3 standard errors
 
 
@@ -67,8 +73,13 @@ def test_what_is_near_enough_is_kept_whatever_the_state_claims():
     """A state that is too sure of itself must not refuse markers a centimetre off."""
     y = np.zeros((MARKERS, 3))
     y[2, 0], y[3, 0] = 0.029, 0.031
-    kept = believable(y, np.zeros((MARKERS, 3, NV)), np.eye(NV), np.full(MARKERS, 1e-4),
-                      replace(SETTINGS, gate_radius_m=0.03))
+    kept = believable(
+        y,
+        np.zeros((MARKERS, 3, NV)),
+        np.eye(NV),
+        np.full(MARKERS, 1e-4),
+        replace(SETTINGS, gate_radius_m=0.03),
+    )
     np.testing.assert_array_equal(kept, np.arange(MARKERS) != 3)
 
 

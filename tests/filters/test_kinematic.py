@@ -9,7 +9,15 @@ from mbkf.filters.kinematic import KinematicFilter
 from mbkf.filters.settings import KinematicSettings
 from mbkf.filters.state import FilterState
 from mbkf.sensors.markers import MarkerSensor
-from tests.motions import assert_near, moderate_pose, protocol_sensor, random_model, reference_model, smooth_motion, worst
+from tests.motions import (
+    assert_near,
+    moderate_pose,
+    protocol_sensor,
+    random_model,
+    reference_model,
+    smooth_motion,
+    worst,
+)
 
 MODEL = reference_model()
 NV = MODEL.nv
@@ -76,7 +84,9 @@ def test_the_covariance_of_a_velocity_step_is_that_of_the_error_of_eq_3_7():
     """Errors obey e' = (I − K H)(Φ e + Γ a) − K n; Cov(e' − e) written out for each axis of the linear problem."""
     noise, sd = 0.004, MODEL.acceleration_sd[0]
     sensor = MarkerSensor(MODEL, ["pelvis"] * 4, PELVIS_MARKERS)
-    kalman = KinematicFilter(sensor, np.full(4, noise), DT, held_except(0, 1, 2), KinematicSettings(**NO_PRIORS))
+    kalman = KinematicFilter(
+        sensor, np.full(4, noise), DT, held_except(0, 1, 2), KinematicSettings(**NO_PRIORS)
+    )
     P = np.zeros((2 * NV, 2 * NV))
     one = np.array([[1e-4, 2e-4], [2e-4, 0.3]])
     for axis in range(3):

@@ -25,7 +25,9 @@ SETTLED = round(SETTLING_S * RATE_HZ)
 
 def kalman(**settings):
     sensor, _ = protocol_sensor(MODEL)
-    return KinematicFilter(sensor, np.full(36, 0.005), 1 / RATE_HZ, np.zeros(NV, bool), KinematicSettings(**settings))
+    return KinematicFilter(
+        sensor, np.full(36, 0.005), 1 / RATE_HZ, np.zeros(NV, bool), KinematicSettings(**settings)
+    )
 
 
 @pytest.fixture(scope="module")

@@ -18,7 +18,11 @@ LENGTH = st.floats(-2, 2)
 POSITIVE = st.floats(1e-6, 1e3)
 FACTOR_NAMES = st.sampled_from(["head", "right_thigh", "trunk_depth", "left_foot_width"])
 PLAIN = st.recursive(
-    st.none() | st.booleans() | st.integers(-(2**50), 2**50) | st.floats(allow_nan=False, allow_infinity=False) | TEXT,
+    st.none()
+    | st.booleans()
+    | st.integers(-(2**50), 2**50)
+    | st.floats(allow_nan=False, allow_infinity=False)
+    | TEXT,
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(TEXT, inner, max_size=3),
     max_leaves=8,
 )
@@ -64,9 +68,13 @@ def test_what_is_written_is_read_back(written):
         assert plain(read_subject(path)) == plain(written)
 
 
-@pytest.mark.parametrize("name", ['a "b" \\ c', "línea\nnueva", "マーカー", "\t\x7f\x85\u2028", "# no comment", "🦵"])
+@pytest.mark.parametrize(
+    "name", ['a "b" \\ c', "línea\nnueva", "マーカー", "\t\x7f\x85\u2028", "# no comment", "🦵"]
+)
 def test_odd_names_survive(subject, tmp_path, name):
-    odd = replace(subject, protocol=name, markers=(replace(subject.markers[0], name=name, aliases=(name, "x")),))
+    odd = replace(
+        subject, protocol=name, markers=(replace(subject.markers[0], name=name, aliases=(name, "x")),)
+    )
     write_subject(odd, tmp_path / "s.toml")
     assert plain(read_subject(tmp_path / "s.toml")) == plain(odd)
 
@@ -137,6 +145,8 @@ def test_a_missing_file_a_folder_and_binary_data_are_refused(tmp_path):
 def test_a_file_with_no_mass_for_a_body_is_refused(subject, tmp_path):
     path = tmp_path / "s.toml"
     write_subject(subject, path)
-    path.write_text(path.read_text(encoding="utf-8").replace("mass_kg = 70.0", "mass_kg = 0.0"), encoding="utf-8")
+    path.write_text(
+        path.read_text(encoding="utf-8").replace("mass_kg = 70.0", "mass_kg = 0.0"), encoding="utf-8"
+    )
     with pytest.raises(InvalidInput, match="mass must be positive"):
         read_subject(path)

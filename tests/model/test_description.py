@@ -30,7 +30,14 @@ def load_changed(tmp_path, monkeypatch):
 def test_a_body_is_read_once_and_cannot_be_changed():
     assert load_body() is BODY
     for segment in BODY.segments:
-        for name in ("origin_m", "com_m", "inertia_kg_m2", "scale_matrix", "posture_sd_rad", "acceleration_sd"):
+        for name in (
+            "origin_m",
+            "com_m",
+            "inertia_kg_m2",
+            "scale_matrix",
+            "posture_sd_rad",
+            "acceleration_sd",
+        ):
             assert not getattr(segment, name).flags.writeable
     assert all(not landmark.position_m.flags.writeable for landmark in BODY.landmarks.values())
 
@@ -54,7 +61,9 @@ def test_each_segment_has_values_for_each_dof_of_its_joint():
 
 
 def test_posture_spreads_are_read_in_degrees():
-    np.testing.assert_allclose(BODY.segment("right_shank").posture_sd_rad, np.array([5, 60, 10]) * np.pi / 180)
+    np.testing.assert_allclose(
+        BODY.segment("right_shank").posture_sd_rad, np.array([5, 60, 10]) * np.pi / 180
+    )
 
 
 def test_every_axis_is_an_average_of_factors():
@@ -66,7 +75,10 @@ def test_every_axis_is_an_average_of_factors():
 
 def test_the_reference_body_is_as_tall_as_it_says():
     """Sole to vertex: the neutral joints' heights add up to the stated stature within a head's roundness."""
-    down = sum(BODY.segment(s).origin_m[2] for s in ("right_thigh", "right_shank", "right_foot")) + BODY.sole.height_m
+    down = (
+        sum(BODY.segment(s).origin_m[2] for s in ("right_thigh", "right_shank", "right_foot"))
+        + BODY.sole.height_m
+    )
     up = sum(BODY.segment(s).origin_m[2] for s in ("torso", "neck", "head"))
     top = max(m.position_m[2] for m in BODY.landmarks.values() if m.segment == "head")
     assert up + top - down == pytest.approx(BODY.reference_height_m, abs=0.05)
@@ -79,7 +91,9 @@ def test_paired_landmarks_have_two_sides_and_midline_ones_one():
         assert landmark.name == name
         if mirrored(name) == name:
             assert landmark.position_m[1] == 0.0
-    sided = [m for m in BODY.landmarks.values() if m.segment in ("pelvis", "torso", "head") and m.position_m[1]]
+    sided = [
+        m for m in BODY.landmarks.values() if m.segment in ("pelvis", "torso", "head") and m.position_m[1]
+    ]
     assert sided
     assert all((m.position_m[1] < 0) == m.name.startswith("right_") for m in sided)
 
@@ -94,7 +108,8 @@ def test_the_sole_spans_the_foot_to_the_tip_of_the_toes():
 
 
 @pytest.mark.parametrize(
-    ("name", "other"), [("right_foot", "left_foot"), ("left_toes", "right_toes"), ("head", "head"), ("right", "right")]
+    ("name", "other"),
+    [("right_foot", "left_foot"), ("left_toes", "right_toes"), ("head", "head"), ("right", "right")],
 )
 def test_mirrored_names(name, other):
     assert mirrored(name) == other

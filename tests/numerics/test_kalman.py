@@ -100,7 +100,10 @@ def test_one_after_the_other_equals_both_at_once(seed, cut):
 
 def test_information_adds_like_stacked_readings():
     _, H, sd, y = random_problem(1)
-    whole, parts = information(y, H, sd), information(y[:3], H[:3], sd[:3]) + information(y[3:], H[3:], sd[3:])
+    whole, parts = (
+        information(y, H, sd),
+        information(y[:3], H[:3], sd[:3]) + information(y[3:], H[3:], sd[3:]),
+    )
     np.testing.assert_allclose(parts.matrix, whole.matrix, rtol=1e-13)
     np.testing.assert_allclose(parts.vector, whole.vector, rtol=1e-12)
     assert parts.innovation == pytest.approx(whole.innovation)

@@ -72,8 +72,13 @@ def solve(residuals, jacobian, start, **options):
         r, J = residuals(x), jacobian(x)
         return arrow(J[None], np.zeros((1, len(r), 0)), r[None])
 
-    return minimise(np.array(start, float), linearise, lambda x: float((residuals(x) ** 2).sum()),
-                    lambda x, own, _: x + own[0], **options)
+    return minimise(
+        np.array(start, float),
+        linearise,
+        lambda x: float((residuals(x) ** 2).sum()),
+        lambda x, own, _: x + own[0],
+        **options,
+    )
 
 
 def rosenbrock(x):
@@ -95,7 +100,8 @@ def test_powells_singular_function():
     """The Jacobian is singular at the minimum; the cost still falls to nothing."""
 
     def residuals(x):
-        return np.array([x[0] + 10 * x[1], 5**0.5 * (x[2] - x[3]), (x[1] - 2 * x[2]) ** 2, 10**0.5 * (x[0] - x[3]) ** 2])
+        b, d = x[1] - 2 * x[2], x[0] - x[3]
+        return np.array([x[0] + 10 * x[1], 5**0.5 * (x[2] - x[3]), b**2, 10**0.5 * d**2])
 
     def jacobian(x):
         b, d = 2 * (x[1] - 2 * x[2]), 2 * 10**0.5 * (x[0] - x[3])
@@ -124,7 +130,9 @@ def test_the_returned_equations_belong_to_the_returned_state():
 
 def test_running_out_of_iterations_is_reported():
     counted = []
-    solution = solve(rosenbrock, rosenbrock_jacobian, (-1.2, 1.0), max_iterations=3, on_iteration=counted.append)
+    solution = solve(
+        rosenbrock, rosenbrock_jacobian, (-1.2, 1.0), max_iterations=3, on_iteration=counted.append
+    )
     assert not solution.converged
     assert solution.iterations == 3
     assert counted == [1, 2, 3]
@@ -157,8 +165,13 @@ def fit_curves(x, y):
         by_shared = np.stack([-amplitudes[:, None] * x * decay, np.ones_like(y)], axis=2)
         return arrow(by_own, by_shared, residual(state))
 
-    return minimise((np.ones(6), np.array([0.2, 0.0])), linearise, lambda s: float((residual(s) ** 2).sum()),
-                    lambda s, own, shared: (s[0] + own[:, 0], s[1] + shared), tolerance=1e-12)
+    return minimise(
+        (np.ones(6), np.array([0.2, 0.0])),
+        linearise,
+        lambda s: float((residual(s) ** 2).sum()),
+        lambda s, own, shared: (s[0] + own[:, 0], s[1] + shared),
+        tolerance=1e-12,
+    )
 
 
 def test_curves_with_shared_parameters_recover_the_truth():

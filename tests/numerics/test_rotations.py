@@ -57,7 +57,10 @@ def test_inverse_jacobian_is_the_derivative_of_the_log(angle):
     phi = rotation_vector(rng.normal(size=3), angle)
     R = Rotation.from_rotvec(phi)
     numeric = np.stack(
-        [(_log(R * Rotation.from_rotvec(h * e)) - _log(R * Rotation.from_rotvec(-h * e))) / (2 * h) for e in np.eye(3)],
+        [
+            (_log(R * Rotation.from_rotvec(h * e)) - _log(R * Rotation.from_rotvec(-h * e))) / (2 * h)
+            for e in np.eye(3)
+        ],
         axis=1,
     )
     found, jacobian = log_and_inverse_jacobian(R.as_quat()[None])
@@ -84,3 +87,13 @@ def test_many_at_once_are_each_alone():
         one, jacobian = log_and_inverse_jacobian(quaternions[i : i + 1])
         np.testing.assert_array_equal(phi[i], one[0])
         np.testing.assert_array_equal(jacobians[i], jacobian[0])
+
+
+@pytest.mark.parametrize("angle", [2e-5, 0.99e-4, 1.01e-4, 1e-3])
+def test_inverse_jacobian_has_its_series_at_small_angles(angle):
+    """J_r⁻¹ = I + ½[φ]× + [φ]×²/12 + O(φ⁴), on both sides of the switch to the closed form."""
+    phi = rotation_vector(np.array([0.2, -0.5, 0.8]), angle)
+    _, jacobian = log_and_inverse_jacobian(Rotation.from_rotvec(phi).as_quat()[None])
+    cross = skew(phi)
+    second = jacobian[0] - np.eye(3) - 0.5 * cross
+    np.testing.assert_allclose(second, cross @ cross / 12, rtol=0, atol=1e-15 + 1e-3 * angle**4)

@@ -25,8 +25,10 @@ def model():
 def subject(model):
     """The person, with markers that may sit elsewhere by 3 cm where they are shifted and by 5 mm elsewhere."""
     person = subject_of(model)
-    return replace(person, markers=tuple(
-        replace(m, session_sd_m=0.03) if m.name in SHIFTED else m for m in person.markers))
+    return replace(
+        person,
+        markers=tuple(replace(m, session_sd_m=0.03) if m.name in SHIFTED else m for m in person.markers),
+    )
 
 
 def trial(model, subject, shift_m=0.0, frames=20, lost=()):
@@ -40,7 +42,8 @@ def trial(model, subject, shift_m=0.0, frames=20, lost=()):
 
 
 def moved_mm(before, after):
-    return {a.name: 1e3 * np.linalg.norm(b.position_m - a.position_m) for a, b in zip(before.markers, after.markers, strict=True)}
+    pairs = zip(before.markers, after.markers, strict=True)
+    return {a.name: 1e3 * np.linalg.norm(b.position_m - a.position_m) for a, b in pairs}
 
 
 def test_shifts_of_markers_are_recovered(model, subject):

@@ -28,8 +28,12 @@ class Person:
         technical = np.array([[m.kind == "technical"] for m in PROTOCOL.markers])
         self.offsets_m = technical * rng.uniform(-0.03, 0.03, (len(NAMES), 3))
         if drawn_from_prior:
-            self.factors = 1.0 + 0.3 * prior.stature_sd * rng.normal() + prior.proportion_sd * rng.normal(size=17)
-            self.offsets_m = np.array([[m.placement_sd_m] for m in PROTOCOL.markers]) * rng.normal(size=(len(NAMES), 3))
+            self.factors = (
+                1.0 + 0.3 * prior.stature_sd * rng.normal() + prior.proportion_sd * rng.normal(size=17)
+            )
+            self.offsets_m = np.array([[m.placement_sd_m] for m in PROTOCOL.markers]) * rng.normal(
+                size=(len(NAMES), 3)
+            )
         self.model = HumanModel(BODY, self.factors, 72.0)
         scale = [self.model.axis_scale(BODY.segment(m.segment)) for m in PROTOCOL.markers]
         places = np.array(scale) * np.array([m.position_m for m in PROTOCOL.markers]) + self.offsets_m
@@ -138,8 +142,11 @@ def test_a_known_height_sets_the_overall_size():
     assert known.height_m == tall
     assert known.scale_factors["right_shank"] == pytest.approx(one.factors[0], rel=0.02)
     left_out = [m.name for m in PROTOCOL.markers if m.name not in names]
-    assert all(m.session_sd_m == p.placement_sd_m
-               for m, p in zip(known.markers, PROTOCOL.markers, strict=True) if m.name in left_out)
+    assert all(
+        m.session_sd_m == p.placement_sd_m
+        for m, p in zip(known.markers, PROTOCOL.markers, strict=True)
+        if m.name in left_out
+    )
 
 
 def test_static_with_few_markers_scales_what_it_sees(person):
@@ -166,7 +173,8 @@ def test_active_bounds_are_reported():
 
 def test_markers_left_out_come_with_reasons(person, without):
     one = without("RTUB")
-    strange = MarkerTrajectories((*one.names, "Foo"), np.concatenate([one.positions_m, one.positions_m[:, :1]], 1), 100.0)
+    with_foo = np.concatenate([one.positions_m, one.positions_m[:, :1]], axis=1)
+    strange = MarkerTrajectories((*one.names, "Foo"), with_foo, 100.0)
     result = scale_subject([], [strange], PROTOCOL, mass_kg=72.0)
     assert result.report["left_out"] == {"Foo": "not a marker of the protocol"}
     assert "RTUB" not in result.report["markers"]
@@ -182,7 +190,9 @@ def test_a_wild_sample_is_dropped_and_counted(person):
     positions = trial.positions_m.copy()
     positions[3, NAMES.index("RMID")] += [0.0, 0.2, 0.0]
     result = scale_subject([], [replace(trial, positions_m=positions)], PROTOCOL, mass_kg=72.0)
-    samples = {name: (one["samples"], one["samples_left_out"]) for name, one in result.report["markers"].items()}
+    samples = {
+        name: (one["samples"], one["samples_left_out"]) for name, one in result.report["markers"].items()
+    }
     assert samples.pop("RMID") == (9, 1)
     assert set(samples.values()) == {(10, 0)}
     assert result.report["marker_rms_mm"] < 1.0
@@ -190,7 +200,7 @@ def test_a_wild_sample_is_dropped_and_counted(person):
 
 @pytest.mark.parametrize("mass", [0.0, -70.0, np.nan, np.inf])
 def test_impossible_masses_are_refused(person, mass):
-    with pytest.raises(InvalidInput, match="mass must be positive.*give --mass KG"):
+    with pytest.raises(InvalidInput, match=r"mass must be positive.*give --mass KG"):
         scale_subject([person.standing(1)], [], PROTOCOL, mass_kg=mass)
 
 

@@ -61,7 +61,9 @@ def test_trials_stand_one_after_the_other_on_common_columns():
     assert np.isnan(frames.measured_m[:5, 8:]).all()
     assert np.isnan(frames.measured_m[5:, :2]).all()
     np.testing.assert_array_equal(frames.measured_m[7, 2:, 0], 102.0)
-    np.testing.assert_array_equal(frames.measured_m[7, 2:, 1], np.arange(8)[::-1])  # as the second trial has them
+    np.testing.assert_array_equal(
+        frames.measured_m[7, 2:, 1], np.arange(8)[::-1]
+    )  # as the second trial has them
 
 
 def test_aliases_find_their_column():
@@ -75,7 +77,10 @@ def test_aliases_find_their_column():
 def test_what_is_left_out_is_named_with_its_reason():
     one = with_gaps(trial(100, (*NAMES, "Angle7")), (np.arange(3, 100), 6))
     frames = choose_frames([one], PROTOCOL, 100)
-    assert frames.left_out == {"Angle7": "not a marker of the protocol", NAMES[6]: "seen in 3 % of the frames"}
+    assert frames.left_out == {
+        "Angle7": "not a marker of the protocol",
+        NAMES[6]: "seen in 3 % of the frames",
+    }
     assert NAMES[6] not in [m.name for m in frames.markers]
     assert frames.measured_m.shape == (100, 9, 3)
 

@@ -51,7 +51,9 @@ def residuals(problem, state):
         for i, marker in enumerate(MARKERS):
             if not np.isnan(problem.measured_m[t, i]).any():
                 joint = model.joint(marker.segment).joint_id
-                local = model.axis_scale(BODY.segment(marker.segment)) * marker.position_m + state.offsets_m[i]
+                local = (
+                    model.axis_scale(BODY.segment(marker.segment)) * marker.position_m + state.offsets_m[i]
+                )
                 at = origins[joint] + rotations[joint] @ local
                 rows.append((at - problem.measured_m[t, i]) / marker.noise_m)
         deviation = problem.posture.reading(q).deviation / problem.posture.sd
@@ -123,7 +125,9 @@ def test_missing_markers_say_nothing(problem, state):
 def test_at_the_expected_state_only_the_markers_cost(problem, state):
     start = problem.start(np.repeat(MODEL.neutral()[None], FRAMES, axis=0))
     noise = np.array([m.noise_m for m in MARKERS])
-    assert problem.cost(start) == pytest.approx(np.nansum((problem.errors_m(start) / noise[:, None]) ** 2), rel=1e-12)
+    assert problem.cost(start) == pytest.approx(
+        np.nansum((problem.errors_m(start) / noise[:, None]) ** 2), rel=1e-12
+    )
 
 
 def test_with_unit_factors_and_no_offsets_markers_are_the_protocols():

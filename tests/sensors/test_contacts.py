@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.io.records import PlateReadings
-from mbkf.sensors.contacts import assign_feet, sole_points, stretches
+from mbkf.sensors.contacts import FOOT_SD_M, assign_feet, feet_located, sole_points, stretches
 from tests.motions import assert_near, moderate_pose, random_model, reference_model
 
 MODEL = reference_model()
@@ -77,13 +77,14 @@ def test_soles_scale_and_move_with_the_foot():
 @pytest.mark.parametrize("yaw", [0.0, 1.0, np.pi, -2.0])
 def test_each_foot_has_its_own_plate_whichever_way_it_faces(yaw):
     q = np.repeat(standing(yaw)[None], 20, axis=0)
-    loads = assigned(q, [plate(ball(q[0], LEFT), 0.6 * WEIGHT_N, 20, free_nm=3.0), plate(ball(q[0], RIGHT), 0.4 * WEIGHT_N, 20)])
+    left = plate(ball(q[0], LEFT), 0.6 * WEIGHT_N, 20, free_nm=3.0)
+    loads = assigned(q, [left, plate(ball(q[0], RIGHT), 0.4 * WEIGHT_N, 20)])
     assert (loads.foot_of_plate == [LEFT, RIGHT]).all()
     assert loads.valid.all()
     assert loads.warnings == ()
     for side, share, free in ((RIGHT, 0.4, 0.0), (LEFT, 0.6, 3.0)):
         force, at = share * WEIGHT_N * np.array([0.1, -0.05, 1.0]), ball(q[0], side) * [1, 1, 0]
-        moment = np.cross(at, force) + [0, 0, free]
+        moment = np.cross(at, force) + np.array([0, 0, free])
         assert_near(loads.wrench[:, side], np.tile(np.hstack([force, moment]), (20, 1)), 1e-10)
         assert_near(loads.centre_of_pressure_m[:, side], np.tile(at, (20, 1)), 1e-13)
         assert_near(loads.free_moment_nm[:, side], free, 1e-12)
@@ -91,11 +92,12 @@ def test_each_foot_has_its_own_plate_whichever_way_it_faces(yaw):
 
 def test_wrenches_of_the_feet_are_those_of_the_plates():
     q = np.repeat(standing()[None], 10, axis=0)
-    loads = assigned(q, [plate(ball(q[0], RIGHT), 300.0, 10), plate(ball(q[0], RIGHT) + [0.03, 0, 0], 250.0, 10),
-                         plate(ball(q[0], LEFT), 250.0, 10)])
+    strong, left = ball(q[0], RIGHT), ball(q[0], LEFT)
+    weak = strong + np.array([0.03, 0, 0])
+    loads = assigned(q, [plate(strong, 300.0, 10), plate(weak, 250.0, 10), plate(left, 250.0, 10)])
     assert (loads.foot_of_plate == [RIGHT, RIGHT, LEFT]).all()
     assert_near(loads.wrench.sum(axis=1), loads.plate_wrench.sum(axis=1), 1e-12)
-    assert_near(loads.centre_of_pressure_m[:, RIGHT, :2], np.tile(ball(q[0], RIGHT)[:2], (10, 1)), 1e-13)  # the stronger
+    assert_near(loads.centre_of_pressure_m[:, RIGHT, :2], np.tile(strong[:2], (10, 1)), 1e-13)
 
 
 def test_two_feet_one_after_the_other_on_one_plate():
@@ -156,7 +158,9 @@ def test_a_plate_recorded_only_partly_is_valid_only_there():
 def test_a_raised_plate_has_its_pressure_on_its_own_surface():
     """r × F plus a free moment about the vertical is the whole moment (eq. 4.9)."""
     q = np.repeat(standing(z=0.15)[None], 10, axis=0)
-    loads = assigned(q, [plate(ball(q[0], side), 0.5 * WEIGHT_N, 10, height_m=0.15) for side in (RIGHT, LEFT)])
+    loads = assigned(
+        q, [plate(ball(q[0], side), 0.5 * WEIGHT_N, 10, height_m=0.15) for side in (RIGHT, LEFT)]
+    )
     assert loads.valid.all()
     assert_near(loads.centre_of_pressure_m[..., 2], 0.15, 1e-15)
     force, moment = loads.wrench[..., :3], loads.wrench[..., 3:]
@@ -166,7 +170,9 @@ def test_a_raised_plate_has_its_pressure_on_its_own_surface():
 
 def test_flight_is_fully_measured_and_single_support_too():
     time = np.arange(60) / RATE_HZ
-    height = np.maximum(0.0, 2.0 * (time - 0.1) - GRAVITY_M_S2 / 2 * (time - 0.1) ** 2)  # off the floor for 0.41 s
+    height = np.maximum(
+        0.0, 2.0 * (time - 0.1) - GRAVITY_M_S2 / 2 * (time - 0.1) ** 2
+    )  # off the floor for 0.41 s
     q = np.array([standing(z=z) for z in height])
     load = np.where(height > 0, 0.0, 0.5 * WEIGHT_N)
     loads = assigned(q, [plate(ball(q[0], side), load, 60) for side in (RIGHT, LEFT)])
@@ -174,6 +180,37 @@ def test_flight_is_fully_measured_and_single_support_too():
     assert loads.valid[:9].all()
     np.testing.assert_array_equal(loads.wrench[height > 0.03], 0.0)
     assert np.isnan(loads.centre_of_pressure_m[height > 0.03]).all()
+
+
+def test_hanging_without_falling_is_not_flight():
+    """Somebody holds on to a bar: no foot touches, no plate is loaded, and yet something carries the body."""
+    rise = 0.1 * (1 - np.cos(np.linspace(0, np.pi, 60)))  # at most 2.8 m/s²
+    height = np.r_[np.zeros(20), rise, np.full(30, 0.2)]
+    q = np.array([standing(z=z) for z in height])
+    load = np.where(height > 0, 0.0, 0.5 * WEIGHT_N)
+    loads = assigned(q, [plate(ball(q[0], side), load, 110) for side in (RIGHT, LEFT)])
+    assert loads.valid[:19].all()
+    assert not loads.valid[45:].any()
+
+
+@pytest.mark.parametrize(("sd_m", "known"), [(0.9 * FOOT_SD_M, True), (1.1 * FOOT_SD_M, False)])
+def test_feet_are_located_where_their_height_is_known(sd_m, known):
+    """The whole body's height is uncertain by sd_m, so both feet's are."""
+    P = np.zeros((2, MODEL.nv, MODEL.nv))
+    P[:, 2, 2] = sd_m**2
+    q = np.stack([standing(), np.full(MODEL.nq, np.nan)])
+    assert feet_located(MODEL, q, P).tolist() == [known, False]
+
+
+def test_a_leg_without_markers_has_no_located_foot():
+    P = np.zeros((1, MODEL.nv, MODEL.nv))
+    bent = standing(lifted="right")[None]
+    assert feet_located(MODEL, bent, P).all()
+    dof = MODEL.joint("right_shank").v.start + 1
+    lever = np.linalg.norm(MODEL.description.segment("right_foot").origin_m) * np.sin(np.deg2rad(40))
+    for share, known in ((0.9, True), (1.1, False)):  # height of the ankle = lever × knee angle
+        P[0, dof, dof] = (share * FOOT_SD_M / lever) ** 2
+        assert feet_located(MODEL, bent, P).tolist() == [known]
 
 
 def test_without_plates_nothing_is_measured():

@@ -46,14 +46,19 @@ def test_markers_of_one_segment_keep_their_distances(rng):
     sensor = MarkerSensor(model, ["left_hand"] * 4, local)
     placed = sensor.positions(moderate_pose(model, rng))
     for i in range(4):
-        assert_near(np.linalg.norm(placed - placed[i], axis=1), np.linalg.norm(local - local[i], axis=1), 2e-15)
+        assert_near(
+            np.linalg.norm(placed - placed[i], axis=1), np.linalg.norm(local - local[i], axis=1), 2e-15
+        )
 
 
 def test_a_marker_moves_only_with_the_dofs_below_it(rng):
     model = reference_model()
     sensor = MarkerSensor(model, ["head", "right_shank"], np.array([[0.1, 0.02, 0.1], [0.05, 0.03, -0.2]]))
     jacobian = sensor.reading(moderate_pose(model, rng)).jacobian
-    for row, chain in ((0, ["pelvis", "torso", "neck", "head"]), (1, ["pelvis", "right_thigh", "right_shank"])):
+    for row, chain in (
+        (0, ["pelvis", "torso", "neck", "head"]),
+        (1, ["pelvis", "right_thigh", "right_shank"]),
+    ):
         moving = np.concatenate([np.arange(model.nv)[model.joint(name).v] for name in chain])
         assert set(np.flatnonzero(np.abs(jacobian[row]).sum(axis=0))) == set(moving)
 

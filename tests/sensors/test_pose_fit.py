@@ -75,7 +75,7 @@ def test_missing_markers_of_a_well_covered_segment_do_not_matter(body):
 
 
 def test_unseen_joints_stay_neutral_with_the_priors_spread(body):
-    model, sensor, names = body
+    model, sensor, _ = body
     truth = moderate_pose(model, np.random.default_rng(5))
     measured = sensor.positions(truth)
     for i, segment in enumerate(sensor.segments):
@@ -111,13 +111,17 @@ def test_covariance_is_the_inverse_of_the_information(body):
 def test_scatter_of_fits_is_what_the_covariance_says():
     """Poses fitted to noisy markers scatter with the stated covariance (pelvis only: 5 rigid markers, 6 dofs)."""
     model, rng, sigma = reference_model(), np.random.default_rng(7), 0.003
-    local = np.array([[0.1, 0.1, -0.2], [0.1, -0.1, -0.2], [-0.1, 0.05, -0.18], [-0.1, -0.05, -0.18], [0, 0.15, -0.1]])
+    local = np.array(
+        [[0.1, 0.1, -0.2], [0.1, -0.1, -0.2], [-0.1, 0.05, -0.18], [-0.1, -0.05, -0.18], [0, 0.15, -0.1]]
+    )
     sensor, posture = MarkerSensor(model, ["pelvis"] * 5, local), PostureSensor(model)
     truth, squared = moderate_pose(model, rng, spread=0.0), []
     exact = sensor.positions(truth)
     for _ in range(60):
         measured = exact + sigma * rng.normal(size=exact.shape)
-        found = fit_pose(sensor, posture, measured, noise(sensor, sigma), segment_by_segment(sensor, measured))
+        found = fit_pose(
+            sensor, posture, measured, noise(sensor, sigma), segment_by_segment(sensor, measured)
+        )
         error = model.difference(found.q, truth)[:6]
         squared.append(error @ np.linalg.solve(found.covariance[:6, :6], error))
     assert 0.75 < np.mean(squared) / 6 < 1.3  # 360 degrees of freedom: 1 ± 0.075

@@ -1,0 +1,31 @@
+"""`mbkf demo` prints the errors against the truth and writes its folder."""
+
+from pathlib import Path
+
+import pytest
+
+from mbkf.cli.demo import run
+from mbkf.cli.main import build_parser, main
+
+
+def test_demo_prints_errors_and_writes_the_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A second of squat through the whole chain."""
+    words = ["demo", "--motion", "squat", "--seconds", "1.5", "--seed", "1", "--out", str(tmp_path / "demo")]
+    args = build_parser(["demo"]).parse_args(words)
+    assert run(args) == 0
+    printed = capsys.readouterr().out
+    assert "Against the known truth" in printed
+    assert "knee_angle_r" in printed
+    assert (tmp_path / "demo" / "result" / "summary.json").is_file()
+
+
+@pytest.mark.parametrize("words", [["--seed", "-1"], ["--motion", "dance"], ["--seconds", "-3"]])
+def test_wrong_options_are_one_line(words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Exit code 2 and nothing written."""
+    try:
+        code = main(["demo", *words, "--out", str(tmp_path / "demo")])
+    except SystemExit as left:
+        code = left.code
+    assert code == 2
+    assert len(capsys.readouterr().err.strip().splitlines()) == 1
+    assert not (tmp_path / "demo").exists()

@@ -1,0 +1,32 @@
+"""The folder of a synthetic capture: complete, repeatable, told of as it goes."""
+
+import pytest
+
+from mbkf.errors import FileFormatError, UnknownName
+from mbkf.io.subject import read_subject
+from mbkf.pipelines.synth import FILES, require_folder, synthesise, write_folder
+
+
+def test_folder_is_complete_and_the_subject_exact(tmp_path):
+    told = []
+    subject, capture = synthesise("squat", seconds=1.2, seed=2, progress=lambda *stage: told.append(stage))
+    paths = write_folder(subject, capture, tmp_path / "out")
+    assert [path.name for path in paths] == list(FILES)
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == sorted(FILES)
+    back = read_subject(tmp_path / "out" / "subject.toml")
+    assert back.scale_factors == subject.scale_factors
+    assert back.mass_kg == subject.mass_kg
+    assert told[-1][1] == told[-1][2]
+
+
+def test_unknown_motion_is_refused():
+    with pytest.raises(UnknownName, match="dance"):
+        synthesise("dance")
+
+
+def test_a_file_is_no_folder(tmp_path):
+    (tmp_path / "file").write_text("x")
+    for path in (tmp_path / "file", tmp_path / "file" / "below"):
+        with pytest.raises(FileFormatError, match="names a folder"):
+            require_folder(path)
+    require_folder(tmp_path / "new")

@@ -1,0 +1,34 @@
+"""Motions and a capture that several tests look at; nobody changes them."""
+
+import pytest
+
+from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
+from mbkf.synthesis.motion import MOTIONS, synthesise_motion
+from mbkf.synthesis.person import body_of, synthesise_subject
+
+SECONDS = {"squat": 3.0, "walk": 2.5, "jump": 2.5}
+
+
+@pytest.fixture(scope="session")
+def person():
+    return synthesise_subject(5)
+
+
+@pytest.fixture(scope="session")
+def body(person):
+    return body_of(person)
+
+
+@pytest.fixture(scope="session")
+def motions(body):
+    return {name: synthesise_motion(body, name, SECONDS[name], seed=5) for name in MOTIONS}
+
+
+@pytest.fixture(scope="session", params=MOTIONS)
+def motion(request, motions):
+    return motions[request.param]
+
+
+@pytest.fixture(scope="session")
+def capture(person, motions):
+    return synthesise_capture(person, motions["jump"], CaptureSettings(occlusion=0.05), seed=5)
