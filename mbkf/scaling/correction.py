@@ -23,7 +23,10 @@ from mbkf.sensors.pose_fit import segment_by_segment
 
 FRAMES = 40
 LOOKS = 10.0
-"""How many independent looks at a marker and at the posture the frames of one trial are worth (skin moves slowly)."""
+"""How many independent looks at a marker the frames of one trial are worth (skin moves slowly)."""
+
+POSTURE_LOOKS = 20.0
+"""The same for the posture; it keeps a knee from taking the skin's sideways movement for its own."""
 
 FIXED_FACTOR_SD = 1e-5
 
@@ -56,7 +59,8 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
     count = len(frames.measured_m)
     share = min(1.0, LOOKS / count)
     markers = tuple(replace(m, noise_m=m.noise_m / np.sqrt(share)) for m in markers)
-    problem = ScalingProblem(body, markers, frames.measured_m, np.full(count, share), prior)
+    weight = np.full(count, min(1.0, POSTURE_LOOKS / count))
+    problem = ScalingProblem(body, markers, frames.measured_m, weight, prior)
     sensor = problem.sensor(problem.start(np.zeros((0, problem.posture.model.nq))))
     start = problem.start(np.array([segment_by_segment(sensor, frame) for frame in frames.measured_m]))
     state = minimise(start, problem.linearise, problem.cost, problem.move, tolerance=1e-3).state
