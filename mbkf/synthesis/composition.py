@@ -9,6 +9,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import NotConverged
 from mbkf.model.human import HumanModel
+from mbkf.numerics.threads import single_threaded
 from mbkf.synthesis import jets
 from mbkf.synthesis.balance import HorizontalPath
 from mbkf.synthesis.curves import Curve
@@ -56,6 +57,7 @@ class Composition:
         return jets.euler((curve(times) for curve in self.pelvis), order="zyx").value
 
 
+@single_threaded()
 def compose(model: HumanModel, plan: MotionPlan) -> Composition:
     """Solves balance and flight for a plan.
 

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 from numpy.polynomial import Chebyshev
+from numpy.polynomial.chebyshev import chebvander
 
 from mbkf.conventions import Array
 from mbkf.synthesis.curves import Curve, path
@@ -83,8 +84,7 @@ class Tumbling:
             delta = np.einsum("tij,tj->ti", inverse, constant - now)
             domain = self.turns[0].domain
             for axis in range(3):
-                rates = Chebyshev.fit(self.times, delta[:, axis], NODES - 1, domain=domain)
-                self.turns[axis] = self.turns[axis] + rates.integ(lbnd=domain[0])
+                self.turns[axis] = self.turns[axis] + self._through(delta[:, axis]).integ(lbnd=domain[0])
             change = float(np.abs(delta).max())
             if change < SMALL:
                 break
@@ -94,10 +94,17 @@ class Tumbling:
         """Forgets the response of the momentum to the rates, so that it is measured again."""
         self._response = None
 
+    def _through(self, values: Array) -> Chebyshev:
+        """The polynomial through (N,) values at the nodes; Chebyshev polynomials are orthogonal there."""
+        domain = self.turns[0].domain
+        basis = chebvander(2 * (self.times - domain[0]) / (domain[1] - domain[0]) - 1, NODES - 1)
+        coefficients = 2 / NODES * basis.T @ values
+        coefficients[0] /= 2
+        return Chebyshev(coefficients, domain=domain)
+
     def _mean(self, values: Array) -> Array:
         domain = self.turns[0].domain
-        fits = [Chebyshev.fit(self.times, column, NODES - 1, domain=domain).integ(lbnd=domain[0])
-                for column in values.T]
+        fits = [self._through(column).integ(lbnd=domain[0]) for column in values.T]
         return np.array([fit(domain[1]) for fit in fits]) / (domain[1] - domain[0])
 
 
