@@ -59,8 +59,9 @@ def run(args: argparse.Namespace) -> int:
         MbkfError: An input is unusable.
     """
     from mbkf.cli.progress import stages
+    from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
-    from mbkf.io.results_folder import check_folder, write_reconstruction
+    from mbkf.io.results_folder import write_reconstruction
     from mbkf.io.subject import read_subject
     from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
     from mbkf.pipelines.summary import summarise

@@ -50,8 +50,8 @@ def run(args: argparse.Namespace) -> int:
     """
     from mbkf.cli.progress import stages
     from mbkf.errors import FileFormatError, InvalidInput
+    from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
-    from mbkf.io.results_folder import check_folder
     from mbkf.io.subject import write_subject
     from mbkf.pipelines.scale import scale
 

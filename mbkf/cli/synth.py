@@ -40,12 +40,13 @@ def add_motion_options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Make the capture and write its folder."""
     from mbkf.cli.progress import stages
-    from mbkf.pipelines.synth import require_folder, synthesise, write_folder
+    from mbkf.io.atomic import check_folder
+    from mbkf.pipelines.synth import synthesise, write_folder
     from mbkf.synthesis.capture import CaptureSettings
 
     if args.seed < 0:
         raise InvalidInput(f"--seed must be 0 or more, got {args.seed}")
-    require_folder(args.out)
+    check_folder(args.out)
     settings = CaptureSettings(markers_sd_m=args.markers_mm / 1e3, skin_sd_m=args.skin_mm / 1e3,
                                ghosts=args.ghosts, occlusion=args.occlusion)
     with stages() as report:

@@ -1,11 +1,15 @@
-"""Writing files so that a reader sees the old one or the whole new one, never half of it."""
+"""Writing so that a reader sees the old file or the whole new one, and a wrong place is refused early."""
 
 from __future__ import annotations
 
+import errno
+import os
 import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+from mbkf.errors import FileFormatError
 
 
 @contextmanager
@@ -31,3 +35,24 @@ def replacing(path: str | Path) -> Iterator[Path]:
         temporary.replace(target)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def check_folder(folder: str | Path) -> Path:
+    """The absolute path of a folder that can be written to; commands call it before long work, to fail early.
+
+    Nothing is made, so that a command that fails later leaves no empty folder behind.
+
+    Raises:
+        FileFormatError: A file stands there or on the way.
+        PermissionError: It may not be written to, or not be made.
+    """
+    target = Path(folder).absolute()
+    for place in (target, *target.parents):
+        if place.exists() and not place.is_dir():
+            raise FileFormatError(
+                place, "a file stands where a folder is needed; name another folder with --out"
+            )
+    nearest = next(place for place in (target, *target.parents) if place.exists())
+    if not os.access(nearest, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(nearest))
+    return target

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import errno
 import json
 import math
-import os
 import shutil
 import uuid
 from collections.abc import Mapping
@@ -13,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from mbkf.errors import FileFormatError
+from mbkf.io.atomic import check_folder
 from mbkf.io.results import Reconstruction
 from mbkf.io.results_h5 import read_h5, write_h5
 from mbkf.io.results_opensim import write_opensim
@@ -54,39 +53,6 @@ def write_reconstruction(
             file.replace(target / file.name)
     finally:
         shutil.rmtree(partial, ignore_errors=True)
-    return target
-
-
-def check_folder(folder: str | Path) -> Path:
-    """The absolute path of a folder that can be written to; commands call it before long work, to fail early.
-
-    Nothing is made, so that a command that fails later leaves no empty folder behind.
-
-    Raises:
-        FileFormatError: A file stands there or on the way.
-        PermissionError: It may not be written to, or not be made.
-    """
-    target = Path(folder).absolute()
-    for place in (target, *target.parents):
-        if place.exists() and not place.is_dir():
-            raise FileFormatError(
-                place, "a file stands where a folder is needed; name another folder with --out"
-            )
-    nearest = next(place for place in (target, *target.parents) if place.exists())
-    if not os.access(nearest, os.W_OK):
-        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(nearest))
-    return target
-
-
-def prepare_folder(folder: str | Path) -> Path:
-    """The folder, checked and made where missing.
-
-    Raises:
-        FileFormatError: A file stands there or on the way.
-        OSError: It cannot be made.
-    """
-    target = check_folder(folder)
-    target.mkdir(parents=True, exist_ok=True)
     return target
 
 

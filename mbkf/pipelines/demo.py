@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from mbkf.io.atomic import check_folder
 from mbkf.io.capture import read_capture
 from mbkf.io.results import Reconstruction
-from mbkf.io.results_folder import check_folder, write_reconstruction
+from mbkf.io.results_folder import write_reconstruction
 from mbkf.io.subject import write_subject
 from mbkf.io.truth import Truth
 from mbkf.model.clinical import ClinicalAngles

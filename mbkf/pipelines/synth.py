@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from mbkf.errors import FileFormatError
-from mbkf.io.atomic import replacing
+from mbkf.io.atomic import check_folder, replacing
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.subject import Subject, write_subject
 from mbkf.io.truth import write_truth
@@ -55,8 +54,7 @@ def write_folder(subject: Subject, capture: SyntheticCapture, folder: str | Path
         FileFormatError: The folder is a file.
         OSError: The folder cannot be written.
     """
-    folder = Path(folder)
-    require_folder(folder)
+    folder = check_folder(folder)
     folder.mkdir(parents=True, exist_ok=True)
     paths = tuple(folder / name for name in FILES)
     for recorded, path in zip((capture.trial, capture.raw, capture.static), paths[:3], strict=True):
@@ -65,14 +63,3 @@ def write_folder(subject: Subject, capture: SyntheticCapture, folder: str | Path
         write_subject(subject, partial)
     write_truth(capture.truth, paths[4])
     return paths
-
-
-def require_folder(folder: str | Path) -> None:
-    """Refuses an output folder whose name belongs to a file.
-
-    Raises:
-        FileFormatError: It does.
-    """
-    for part in (Path(folder), *Path(folder).parents):
-        if part.is_file():
-            raise FileFormatError(part, "is a file; --out names a folder")

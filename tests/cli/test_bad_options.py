@@ -144,7 +144,7 @@ def test_unusable_forces_file(person, tmp_path, refuse_reconstruct):
 
 def test_places_without_permission(person, tmp_path, refused, monkeypatch):
     """As the operating system would answer; root, who may write everywhere, could not test it otherwise."""
-    monkeypatch.setattr("mbkf.io.results_folder.os.access", lambda place, mode: False)
+    monkeypatch.setattr("mbkf.io.atomic.os.access", lambda place, mode: False)
     out = tmp_path / "out"
     words = ["reconstruct", person.trial, "--subject", person.subject, "--out", out]
     refused(words, tmp_path, "permission denied", "name a place")

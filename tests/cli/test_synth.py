@@ -35,7 +35,7 @@ def test_help_has_an_example(capsys):
 
 def test_out_that_is_a_file_is_refused(tmp_path, refused):
     (tmp_path / "file").write_text("x")
-    refused(["synth", "--motion", "squat", "--out", tmp_path / "file"], "names a folder")
+    refused(["synth", "--motion", "squat", "--out", tmp_path / "file"], "name another folder")
 
 
 @pytest.mark.parametrize("words", [["--motion", "dance"], ["--seconds", "0"], ["--seconds", "nan"], ["--rate", "0"],

@@ -2,7 +2,8 @@
 
 import pytest
 
-from mbkf.io.atomic import replacing
+from mbkf.errors import FileFormatError
+from mbkf.io.atomic import check_folder, replacing
 
 
 def test_new_content_takes_the_place_of_the_old_and_folders_are_made(tmp_path):
@@ -23,3 +24,16 @@ def test_a_failure_leaves_the_old_file_and_nothing_else(tmp_path):
         raise ValueError("halfway")
     assert target.read_text() == "old"
     assert list(tmp_path.iterdir()) == [target]
+
+
+def test_a_folder_is_checked_and_not_made(tmp_path):
+    target = tmp_path / "a" / "b"
+    assert check_folder(target) == target
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_on_the_way_is_refused(tmp_path):
+    (tmp_path / "out").write_text("a file")
+    for place in (tmp_path / "out", tmp_path / "out" / "deeper"):
+        with pytest.raises(FileFormatError, match="name another folder"):
+            check_folder(place)

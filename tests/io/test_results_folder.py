@@ -8,8 +8,6 @@ import pytest
 from mbkf.errors import FileFormatError
 from mbkf.io import results_folder
 from mbkf.io.results_folder import (
-    check_folder,
-    prepare_folder,
     read_reconstruction,
     read_summary,
     write_reconstruction,
@@ -68,17 +66,8 @@ def test_a_file_in_the_way_is_refused(tmp_path):
     (tmp_path / "out").write_text("a file")
     with pytest.raises(FileFormatError, match="a file stands where a folder is needed"):
         write_reconstruction(made_up(), {}, tmp_path / "out")
-    for look in (check_folder, prepare_folder):
-        with pytest.raises(FileFormatError, match="name another folder"):
-            look(tmp_path / "out" / "deeper")
-
-
-def test_a_folder_is_made_only_when_prepared(tmp_path):
-    target = tmp_path / "a" / "b"
-    assert check_folder(target) == target
-    assert list(tmp_path.iterdir()) == []
-    assert prepare_folder(target) == target
-    assert target.is_dir()
+    with pytest.raises(FileFormatError, match="name another folder"):
+        write_reconstruction(made_up(), {}, tmp_path / "out" / "deeper")
 
 
 def test_missing_results_are_refused(tmp_path):

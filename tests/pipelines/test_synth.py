@@ -4,7 +4,7 @@ import pytest
 
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.subject import read_subject
-from mbkf.pipelines.synth import FILES, require_folder, synthesise, write_folder
+from mbkf.pipelines.synth import FILES, synthesise, write_folder
 
 
 def test_folder_is_complete_and_the_subject_exact(tmp_path):
@@ -25,8 +25,9 @@ def test_unknown_motion_is_refused():
 
 
 def test_a_file_is_no_folder(tmp_path):
+    subject, capture = synthesise("squat", seconds=1.2, seed=2)
     (tmp_path / "file").write_text("x")
     for path in (tmp_path / "file", tmp_path / "file" / "below"):
-        with pytest.raises(FileFormatError, match="names a folder"):
-            require_folder(path)
-    require_folder(tmp_path / "new")
+        with pytest.raises(FileFormatError, match="name another folder"):
+            write_folder(subject, capture, path)
+    assert (tmp_path / "file").read_text() == "x"
