@@ -55,10 +55,22 @@ def draw(folder: Path, target: Path) -> None:
     moments = clinical.moments(truth.q, truth.tau, angles)
     knee, ankle = clinical.names.index("knee_angle_r"), clinical.names.index("ankle_angle_r")
     times = result.times_s
-    _curve(figure.add_subplot(grid[1, 0]), times, np.rad2deg(result.angle("knee_angle_r")),
-           np.rad2deg(result.angle_sd("knee_angle_r")), np.rad2deg(angles[:, knee]), "right knee flexion, °")
-    _curve(figure.add_subplot(grid[1, 1]), times, result.moment("ankle_angle_r"), result.moment_sd("ankle_angle_r"),
-           moments[:, ankle], "right ankle torque, N m")
+    _curve(
+        figure.add_subplot(grid[1, 0]),
+        times,
+        np.rad2deg(result.angle("knee_angle_r")),
+        np.rad2deg(result.angle_sd("knee_angle_r")),
+        np.rad2deg(angles[:, knee]),
+        "right knee flexion, °",
+    )
+    _curve(
+        figure.add_subplot(grid[1, 1]),
+        times,
+        result.moment("ankle_angle_r"),
+        result.moment_sd("ankle_angle_r"),
+        moments[:, ankle],
+        "right ankle torque, N m",
+    )
     _reactions(figure.add_subplot(grid[1, 2]), result, truth)
     figure.savefig(target, bbox_inches="tight", facecolor="white")
     plt.close(figure)
@@ -84,8 +96,12 @@ def _walker(axes: Any, result: Reconstruction) -> None:
         for side in range(2):
             point, force = result.foot_cop_m[frame, side], result.foot_wrench[frame, side, :3]
             if np.isfinite(point).all():
-                axes.annotate("", (point[0] + force[0] / NEWTON_PER_METRE, force[2] / NEWTON_PER_METRE),
-                              (point[0], 0.0), arrowprops={"arrowstyle": "-|>", "color": FORCE, "lw": 1.6})
+                axes.annotate(
+                    "",
+                    (point[0] + force[0] / NEWTON_PER_METRE, force[2] / NEWTON_PER_METRE),
+                    (point[0], 0.0),
+                    arrowprops={"arrowstyle": "-|>", "color": FORCE, "lw": 1.6},
+                )
     axes.axhline(0.0, color="#cccccc", lw=1)
     axes.set_aspect("equal")
     axes.set_axis_off()
@@ -110,7 +126,9 @@ def _curve(axes: Any, times: Array, value: Array, sd: Array, truth: Array, title
 
 def _reactions(axes: Any, result: Reconstruction, truth: Truth) -> None:
     for side, (label, shade) in enumerate((("right", 1.0), ("left", 0.5))):
-        axes.plot(result.times_s, result.foot_wrench[:, side, 2], color=FORCE, alpha=shade, lw=1.3, label=label)
+        axes.plot(
+            result.times_s, result.foot_wrench[:, side, 2], color=FORCE, alpha=shade, lw=1.3, label=label
+        )
         axes.plot(truth.times_s, truth.foot_wrench[:, side, 2], color=TRUTH, lw=0.8, ls="--")
     axes.set_title("vertical ground reaction, N", fontsize=9, loc="left")
     axes.set_xlabel("time, s")

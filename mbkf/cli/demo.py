@@ -42,7 +42,12 @@ def run(args: argparse.Namespace) -> int:
         raise InvalidInput(f"--seed must be 0 or more, got {args.seed}")
     with stages() as report:
         demo = run_demo(
-            args.motion, args.out, seconds=args.seconds, seed=args.seed, filter_name=args.filter, progress=report
+            args.motion,
+            args.out,
+            seconds=args.seconds,
+            seed=args.seed,
+            filter_name=args.filter,
+            progress=report,
         )
     print_summary(demo.summary, demo.folder / "result")
     _print_errors(demo)

@@ -91,8 +91,11 @@ def _ranks(found: Observability) -> Table:
     nv = len(found.dofs)
     table = Table("", "standing straight", "joints bent (least)")
     table.add_row("rank of H", f"{found.ranks[0]} of {nv}", f"{found.ranks[1:].min()} of {nv}")
-    table.add_row("rank of [H; HF; HF²; …]", f"{found.state_ranks[0]} of {2 * nv}",
-                  f"{found.state_ranks[1:].min()} of {2 * nv}")
+    table.add_row(
+        "rank of [H; HF; HF²; …]",
+        f"{found.state_ranks[0]} of {2 * nv}",
+        f"{found.state_ranks[1:].min()} of {2 * nv}",
+    )
     return table
 
 

@@ -21,11 +21,20 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     add_motion_options(parser)
     parser.add_argument("--rate", metavar="HZ", type=float, default=100.0, help="camera rate (100)")
-    parser.add_argument("--markers-mm", metavar="SD", type=float, default=0.5, help="camera noise in mm (0.5)")
-    parser.add_argument("--skin-mm", metavar="SD", type=float, default=3.0, help="movement of the skin in mm (3)")
+    parser.add_argument(
+        "--markers-mm", metavar="SD", type=float, default=0.5, help="camera noise in mm (0.5)"
+    )
+    parser.add_argument(
+        "--skin-mm", metavar="SD", type=float, default=3.0, help="movement of the skin in mm (3)"
+    )
     parser.add_argument("--ghosts", metavar="N", type=int, default=2, help="ghost reflections in raw.c3d (2)")
-    parser.add_argument("--occlusion", metavar="FRACTION", type=float, default=0.02,
-                        help="fraction of marker samples hidden (0.02)")
+    parser.add_argument(
+        "--occlusion",
+        metavar="FRACTION",
+        type=float,
+        default=0.02,
+        help="fraction of marker samples hidden (0.02)",
+    )
     parser.add_argument("--out", metavar="DIR", required=True, help="folder for the files")
     parser.set_defaults(run=run)
 
@@ -34,7 +43,9 @@ def add_motion_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that choose the motion, shared with ``mbkf demo``."""
     parser.add_argument("--motion", choices=MOTIONS, default="squat", help="what the person does (squat)")
     parser.add_argument("--seconds", metavar="S", type=float, help="duration (squat 5, walk 4, jump 3)")
-    parser.add_argument("--seed", metavar="N", type=int, default=0, help="another person, motion and noise (0)")
+    parser.add_argument(
+        "--seed", metavar="N", type=int, default=0, help="another person, motion and noise (0)"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -47,15 +58,27 @@ def run(args: argparse.Namespace) -> int:
     if args.seed < 0:
         raise InvalidInput(f"--seed must be 0 or more, got {args.seed}")
     check_folder(args.out)
-    settings = CaptureSettings(markers_sd_m=args.markers_mm / 1e3, skin_sd_m=args.skin_mm / 1e3,
-                               ghosts=args.ghosts, occlusion=args.occlusion)
+    settings = CaptureSettings(
+        markers_sd_m=args.markers_mm / 1e3,
+        skin_sd_m=args.skin_mm / 1e3,
+        ghosts=args.ghosts,
+        occlusion=args.occlusion,
+    )
     with stages() as report:
-        subject, capture = synthesise(args.motion, seconds=args.seconds, seed=args.seed, rate_hz=args.rate,
-                                      settings=settings, progress=report)
+        subject, capture = synthesise(
+            args.motion,
+            seconds=args.seconds,
+            seed=args.seed,
+            rate_hz=args.rate,
+            settings=settings,
+            progress=report,
+        )
     paths = write_folder(subject, capture, args.out)
     frames = capture.trial.markers.frames
-    print(f"{args.motion}: {frames} frames at {args.rate:g} Hz, {subject.mass_kg:.1f} kg, "
-          f"{len(capture.trial.plates)} plates, seed {args.seed}")
+    print(
+        f"{args.motion}: {frames} frames at {args.rate:g} Hz, {subject.mass_kg:.1f} kg, "
+        f"{len(capture.trial.plates)} plates, seed {args.seed}"
+    )
     for path in paths:
         print(f"  {path}")
     return 0

@@ -103,9 +103,14 @@ def read_truth(path: str | Path) -> Truth:
             if file.attrs.get("format") != FORMAT:
                 raise FileFormatError(source, "not a truth file; make it with 'mbkf synth'")
             arrays: dict[str, Any] = {name: np.asarray(file[name]) for name in UNITS}
-            names: dict[str, Any] = {name: tuple(text.decode() for text in file[name][:])
-                                     for name in ("marker_names", "dof_names")}
-            return Truth(**arrays, **names, version=str(file.attrs["version"]),
-                         settings=json.loads(file.attrs["settings"]))
+            names: dict[str, Any] = {
+                name: tuple(text.decode() for text in file[name][:]) for name in ("marker_names", "dof_names")
+            }
+            return Truth(
+                **arrays,
+                **names,
+                version=str(file.attrs["version"]),
+                settings=json.loads(file.attrs["settings"]),
+            )
     except (OSError, KeyError, ValueError, ShapeError) as error:
         raise FileFormatError(source, f"damaged ({error})") from error

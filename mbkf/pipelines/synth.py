@@ -18,9 +18,15 @@ FILES = ("trial.c3d", "raw.c3d", "static.c3d", "subject.toml", "truth.h5")
 DEFAULT_SECONDS = {"squat": 5.0, "walk": 4.0, "jump": 3.0}
 
 
-def synthesise(motion: str, *, seconds: float | None = None, seed: int = 0, rate_hz: float = 100.0,
-               settings: CaptureSettings | None = None,
-               progress: Callable[[str, int, int], None] | None = None) -> tuple[Subject, SyntheticCapture]:
+def synthesise(
+    motion: str,
+    *,
+    seconds: float | None = None,
+    seed: int = 0,
+    rate_hz: float = 100.0,
+    settings: CaptureSettings | None = None,
+    progress: Callable[[str, int, int], None] | None = None,
+) -> tuple[Subject, SyntheticCapture]:
     """A random subject performing a motion, and the capture of it.
 
     Args:

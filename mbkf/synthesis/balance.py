@@ -51,8 +51,9 @@ class HorizontalPath:
             own = self.coefficients[self.first[k] : self.first[k + 1]]
             spline = BSpline(self.knots[k], own, DEGREE)
             last = k + 1 == len(self.spells)
-            inside = (times >= start if k else np.ones_like(times, bool)) & (np.ones_like(times, bool) if last
-                                                                            else times <= end)
+            inside = (times >= start if k else np.ones_like(times, bool)) & (
+                np.ones_like(times, bool) if last else times <= end
+            )
             for order in range(3):
                 orders[order][inside] = spline(times[inside], nu=order)
             if not last:
@@ -67,9 +68,12 @@ class HorizontalPath:
         ties = []
         for k in range(len(self.spells) - 1):
             end, start = np.array([self.spells[k][1]]), np.array([self.spells[k + 1][0]])
-            ties += [self.rows(k, end, 2), self.rows(k + 1, start, 2),
-                     self.rows(k, end, 1) - self.rows(k + 1, start, 1),
-                     self.rows(k, end, 0) + (start - end) * self.rows(k, end, 1) - self.rows(k + 1, start, 0)]
+            ties += [
+                self.rows(k, end, 2),
+                self.rows(k + 1, start, 2),
+                self.rows(k, end, 1) - self.rows(k + 1, start, 1),
+                self.rows(k, end, 0) + (start - end) * self.rows(k, end, 1) - self.rows(k + 1, start, 0),
+            ]
         return np.vstack(ties) if ties else np.zeros((0, self.first[-1]))
 
     def solve(self, times: Array, target: Array, height: Jet, turning: Array) -> None:
@@ -88,8 +92,9 @@ class HorizontalPath:
             weight = np.clip(lift, 0.0, None) / (np.clip(lift, 0.0, None) + 0.03 * GRAVITY_M_S2)
             safe = np.maximum(lift, 1e-3)
             ratio = height.value[use] / safe
-            rows.append((self.rows(k, times[use], 0) - ratio[:, None] * self.rows(k, times[use], 2))
-                        * weight[:, None])
+            rows.append(
+                (self.rows(k, times[use], 0) - ratio[:, None] * self.rows(k, times[use], 2)) * weight[:, None]
+            )
             wanted.append((target[use] + turning[use] / safe[:, None]) * weight[:, None])
         for k, at in ((0, 0), (len(self.spells) - 1, -1)):
             rows.append(3.0 * self.rows(k, np.array([self.spells[k][at]]), 0))

@@ -24,8 +24,9 @@ def true_markers(model: HumanModel, subject: Subject, q: Array) -> Array:
     return positions
 
 
-def skin_artefact(shape: tuple[int, ...], rate_hz: float, sd_m: float, cutoff_hz: float,
-                  rng: np.random.Generator) -> Array:
+def skin_artefact(
+    shape: tuple[int, ...], rate_hz: float, sd_m: float, cutoff_hz: float, rng: np.random.Generator
+) -> Array:
     """Movement of the skin: low-passed white noise with a stationary standard deviation.
 
     A causal second-order Butterworth filter runs over white noise along the first axis; its burn-in is dropped

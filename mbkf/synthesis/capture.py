@@ -10,14 +10,13 @@ from mbkf.errors import InvalidInput
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject
 from mbkf.io.truth import Truth
+from mbkf.model.clinical import dof_names
 from mbkf.model.human import HumanModel
 from mbkf.synthesis import cameras, plates
 from mbkf.synthesis.motion import TrueMotion, synthesise_motion
 from mbkf.synthesis.person import body_of
 from mbkf.version import __version__
 
-DOFS = {"free": ("tx", "ty", "tz", "rx", "ry", "rz"), "spherical": ("rx", "ry", "rz"), "universal": ("rx", "ry"),
-        "hinge": ("ry",)}
 STATIC_SECONDS = 1.5
 
 
@@ -72,8 +71,9 @@ class SyntheticCapture:
     truth: Truth
 
 
-def synthesise_capture(subject: Subject, motion: TrueMotion, settings: CaptureSettings | None = None,
-                       seed: int = 0) -> SyntheticCapture:
+def synthesise_capture(
+    subject: Subject, motion: TrueMotion, settings: CaptureSettings | None = None, seed: int = 0
+) -> SyntheticCapture:
     """Records a true motion of a subject with imperfect instruments, differently for every seed.
 
     Raises:
@@ -86,32 +86,59 @@ def synthesise_capture(subject: Subject, motion: TrueMotion, settings: CaptureSe
     positions = trial.markers.positions_m
     points = np.concatenate([positions, cameras.ghosts(exact, chosen.ghosts, motion.rate_hz, rng)], axis=1)
     names = tuple(f"*{k}" for k in range(points.shape[1]))
-    raw = Capture("", MarkerTrajectories(names, cameras.without_labels(points, rng), motion.rate_hz), trial.plates,
-                  subject_mass_kg=subject.mass_kg)
+    raw = Capture(
+        "",
+        MarkerTrajectories(names, cameras.without_labels(points, rng), motion.rate_hz),
+        trial.plates,
+        subject_mass_kg=subject.mass_kg,
+    )
     standing = synthesise_motion(model, "stand", STATIC_SECONDS, motion.rate_hz, seed)
     still = CaptureSettings(**{**asdict(chosen), "skin_sd_m": 0.0, "occlusion": 0.0})
     static, _ = _record(model, subject, standing, still, rng)
-    truth = Truth(motion.times_s, motion.q, motion.v, motion.a, motion.tau, motion.foot_wrench,
-                  motion.centre_of_pressure, trial.markers.names, exact, dof_names(model), __version__,
-                  {"motion": motion.name, "rate_hz": motion.rate_hz, "seed": seed, **asdict(chosen)})
+    truth = Truth(
+        motion.times_s,
+        motion.q,
+        motion.v,
+        motion.a,
+        motion.tau,
+        motion.foot_wrench,
+        motion.centre_of_pressure,
+        trial.markers.names,
+        exact,
+        dof_names(model),
+        __version__,
+        {"motion": motion.name, "rate_hz": motion.rate_hz, "seed": seed, **asdict(chosen)},
+    )
     return SyntheticCapture(trial, raw, static, truth)
 
 
-def _record(model: HumanModel, subject: Subject, motion: TrueMotion, settings: CaptureSettings,
-            rng: np.random.Generator) -> tuple[Capture, np.ndarray]:
+def _record(
+    model: HumanModel,
+    subject: Subject,
+    motion: TrueMotion,
+    settings: CaptureSettings,
+    rng: np.random.Generator,
+) -> tuple[Capture, np.ndarray]:
     """A labelled capture, and the exact (T, M, 3) positions of its markers."""
     exact = cameras.true_markers(model, subject, motion.q)
     seen = exact + settings.markers_sd_m * rng.standard_normal(exact.shape)
-    seen += cameras.skin_artefact(exact.shape, motion.rate_hz, settings.skin_sd_m, settings.skin_cutoff_hz, rng)
+    seen += cameras.skin_artefact(
+        exact.shape, motion.rate_hz, settings.skin_sd_m, settings.skin_cutoff_hz, rng
+    )
     seen[cameras.occlusions(exact.shape[0], exact.shape[1], settings.occlusion, rng)] = np.nan
     names = tuple(marker.name for marker in subject.markers)
-    stored = plates.readings(motion.plate_wrench, motion.plate_rate_hz, settings.force_sd_n, settings.moment_sd_nm,
-                             settings.offset_n, rng)
-    return Capture("", MarkerTrajectories(names, seen, motion.rate_hz), stored,
-                   events=plates.contact_events(motion.plate_wrench, motion.plate_rate_hz),
-                   subject_mass_kg=subject.mass_kg), exact
-
-
-def dof_names(model: HumanModel) -> tuple[str, ...]:
-    """(nv) names such as ``right_thigh_ry``, in the order of v."""
-    return tuple(f"{name}_{axis}" for name, joint in model.joints.items() for axis in DOFS[joint.kind])
+    stored = plates.readings(
+        motion.plate_wrench,
+        motion.plate_rate_hz,
+        settings.force_sd_n,
+        settings.moment_sd_nm,
+        settings.offset_n,
+        rng,
+    )
+    return Capture(
+        "",
+        MarkerTrajectories(names, seen, motion.rate_hz),
+        stored,
+        events=plates.contact_events(motion.plate_wrench, motion.plate_rate_hz),
+        subject_mass_kg=subject.mass_kg,
+    ), exact

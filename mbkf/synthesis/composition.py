@@ -70,8 +70,12 @@ def compose(model: HumanModel, plan: MotionPlan) -> Composition:
     spells = [(plan.start_s, plan.end_s)]
     if plan.flight is not None:
         spells = [(plan.start_s, plan.flight.take_off_s), (plan.flight.touch_down_s, plan.end_s)]
-    result = Composition(plan, Figure(model), HorizontalPath(spells),
-                         plan.angles["pelvis"] if tumbling is None else tumbling.curves())
+    result = Composition(
+        plan,
+        Figure(model),
+        HorizontalPath(spells),
+        plan.angles["pelvis"] if tumbling is None else tumbling.curves(),
+    )
     turning = np.zeros((len(times), 2))
     start: Jet | None = None
     for k in range(LIFTS + ROUNDS):

@@ -30,8 +30,12 @@ class SoleOutline:
     def holds(self, points: Array, tolerance_m: float = 1e-9) -> np.ndarray:
         """(...) whether points (..., 3) of the foot's frame lie over the rectangle."""
         x, y = points[..., 0], points[..., 1]
-        return ((x >= self.heel_x - tolerance_m) & (x <= self.toe_x + tolerance_m)
-                & (y >= self.low_y - tolerance_m) & (y <= self.high_y + tolerance_m))
+        return (
+            (x >= self.heel_x - tolerance_m)
+            & (x <= self.toe_x + tolerance_m)
+            & (y >= self.low_y - tolerance_m)
+            & (y <= self.high_y + tolerance_m)
+        )
 
 
 def sole_outline(model: HumanModel, side: str) -> SoleOutline:

@@ -23,21 +23,27 @@ def path(knots: Sequence[tuple], smooth: int = 2) -> Curve:
     """
     times = np.array([knot[0] for knot in knots], dtype=float)
     shape = np.shape(knots[0][1])
-    rows = [[np.broadcast_to(np.asarray(d, dtype=float), shape) for d in (*knot[1:], 0.0, 0.0, 0.0)[: smooth + 1]]
-            for knot in knots]
+    rows = [
+        [np.broadcast_to(np.asarray(d, dtype=float), shape) for d in (*knot[1:], 0.0, 0.0, 0.0)[: smooth + 1]]
+        for knot in knots
+    ]
     polynomial = PPoly.from_bernstein_basis(BPoly.from_derivatives(times, rows))
 
     def curve(at: Array) -> Jet:
         inside = np.clip(at, times[0], times[-1])
         moving = ((at >= times[0]) & (at <= times[-1])).reshape(at.shape + (1,) * len(shape))
-        return Jet(polynomial(inside), np.where(moving, polynomial(inside, 1), 0.0),
-                   np.where(moving, polynomial(inside, 2), 0.0))
+        return Jet(
+            polynomial(inside),
+            np.where(moving, polynomial(inside, 1), 0.0),
+            np.where(moving, polynomial(inside, 2), 0.0),
+        )
 
     return curve
 
 
-def spline(times: Sequence[float], values: Sequence[float], start: tuple[float, float],
-           end: tuple[float, float]) -> Curve:
+def spline(
+    times: Sequence[float], values: Sequence[float], start: tuple[float, float], end: tuple[float, float]
+) -> Curve:
     """The quintic spline through values at times, with (rate, acceleration) given at both ends."""
     bends = ([(1, start[0]), (2, start[1])], [(1, end[0]), (2, end[1])])
     polynomial = make_interp_spline(times, values, k=5, bc_type=bends)
@@ -55,14 +61,18 @@ def ripple(amplitude: float, frequency_hz: float, phase: float, offset: float = 
 
     def curve(at: Array) -> Jet:
         angle = w * at + phase
-        return Jet(offset + amplitude * np.sin(angle), amplitude * w * np.cos(angle),
-                   -amplitude * w**2 * np.sin(angle))
+        return Jet(
+            offset + amplitude * np.sin(angle),
+            amplitude * w * np.cos(angle),
+            -amplitude * w**2 * np.sin(angle),
+        )
 
     return curve
 
 
 def added(*curves: Curve) -> Curve:
     """The sum of curves."""
+
     def curve(at: Array) -> Jet:
         total = curves[0](at)
         for other in curves[1:]:

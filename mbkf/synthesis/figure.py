@@ -86,10 +86,17 @@ class Figure:
     def leg_length(self, side: str) -> float:
         """Hip to ankle with a straight knee, m; side "r" or "l"."""
         name = SIDE_NAMES[side]
-        return float(np.linalg.norm(self.offset[f"{name}_shank"]) + np.linalg.norm(self.offset[f"{name}_foot"]))
+        return float(
+            np.linalg.norm(self.offset[f"{name}_shank"]) + np.linalg.norm(self.offset[f"{name}_foot"])
+        )
 
-    def pose(self, com: Jet, angles: Mapping[str, tuple[Jet, ...]], feet: Mapping[str, FootPose],
-             start: Jet | None = None) -> Pose:
+    def pose(
+        self,
+        com: Jet,
+        angles: Mapping[str, tuple[Jet, ...]],
+        feet: Mapping[str, FootPose],
+        start: Jet | None = None,
+    ) -> Pose:
         """The pose with a given (T, 3) centre of mass, m.
 
         Args:
@@ -105,7 +112,9 @@ class Figure:
         pelvis = com if start is None else start
         for _ in range(60):
             legs = self._legs(pelvis, upper[0]["pelvis"], angles, feet)
-            below = sum((self._weighted(name, *legs[:2]) for name in legs[0]), start=Jet.constant(np.zeros(3)))
+            below = sum(
+                (self._weighted(name, *legs[:2]) for name in legs[0]), start=Jet.constant(np.zeros(3))
+            )
             error = com - (rest + below + pelvis * upper_mass) / self.total_mass
             pelvis = pelvis + error * np.array([1.2, 1.2, 1.1])
             if all(np.abs(e).max() < tol for e, tol in zip(error.orders, (1e-13, 1e-11, 1e-9), strict=True)):
@@ -135,8 +144,13 @@ class Figure:
             origins[name] = origins[parent] + rotations[parent].apply(self.offset[name])
         return rotations, origins
 
-    def _legs(self, pelvis: Jet, pelvis_rotation: Jet, angles: Mapping[str, tuple[Jet, ...]],
-              feet: Mapping[str, FootPose]) -> tuple[dict[str, Jet], dict[str, Jet], Array, Array]:
+    def _legs(
+        self,
+        pelvis: Jet,
+        pelvis_rotation: Jet,
+        angles: Mapping[str, tuple[Jet, ...]],
+        feet: Mapping[str, FootPose],
+    ) -> tuple[dict[str, Jet], dict[str, Jet], Array, Array]:
         rotations: dict[str, Jet] = {}
         origins: dict[str, Jet] = {}
         knees, reach = [], np.zeros(len(pelvis.value))
@@ -161,8 +175,11 @@ class Figure:
         square = jets.dot(span, span)
         cosine = (square - upper**2 - lower**2) / (jets.cos(knee_xz[0]) * (2 * upper * lower))
         limit = float(np.cos(STRAIGHT_RAD))
-        cosine = jets.where((cosine.value < limit) & (cosine.value > -limit), cosine,
-                            Jet.constant(np.clip(cosine.value, -limit, limit)))
+        cosine = jets.where(
+            (cosine.value < limit) & (cosine.value > -limit),
+            cosine,
+            Jet.constant(np.clip(cosine.value, -limit, limit)),
+        )
         flexion = jets.arccos(cosine)
         knee = jets.euler((knee_xz[0], flexion, knee_xz[2]))
         local = knee.apply(np.array([0.0, 0.0, -lower])) + np.array([0.0, 0.0, -upper])
@@ -174,8 +191,13 @@ class Figure:
 
     def momentum(self, pose: Pose) -> tuple[Jet, Array, Array]:
         """Centre of mass (T, 3), angular momentum about it (T, 3) in N m s and its derivative (T, 3) in N m."""
-        com = sum((self._weighted(name, pose.rotations, pose.origins) for name in self.mass),
-                  start=Jet.constant(np.zeros(3))) / self.total_mass
+        com = (
+            sum(
+                (self._weighted(name, pose.rotations, pose.origins) for name in self.mass),
+                start=Jet.constant(np.zeros(3)),
+            )
+            / self.total_mass
+        )
         spin, change = np.zeros_like(com.value), np.zeros_like(com.value)
         for name, mass in self.mass.items():
             R = pose.rotations[name]
@@ -201,8 +223,9 @@ class Figure:
                 to_body, origin = rotation.transposed(), pose.origins[name]
                 q[:, first_q : first_q + 3] = origin.value
                 v[:, first_v : first_v + 3] = _apply(to_body.value, origin.first)
-                a[:, first_v : first_v + 3] = (_apply(to_body.value, origin.second)
-                                               + _apply(to_body.first, origin.first))
+                a[:, first_v : first_v + 3] = _apply(to_body.value, origin.second) + _apply(
+                    to_body.first, origin.first
+                )
                 first_q, first_v = first_q + 3, first_v + 3
             else:
                 rotation = pose.rotations[self.parent[name]].transposed() @ rotation

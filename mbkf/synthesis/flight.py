@@ -56,8 +56,12 @@ class Tumbling:
             rising, landed = before(at), after(at)
             inside = np.clip(at, plan.take_off_s, plan.touch_down_s)
             flying = (turn(inside), rate(inside), acceleration(inside))
-            return Jet(*(np.where(at < plan.take_off_s, b, np.where(at > plan.touch_down_s, a, f))
-                         for b, f, a in zip(rising.orders, flying, landed.orders, strict=True)))
+            return Jet(
+                *(
+                    np.where(at < plan.take_off_s, b, np.where(at > plan.touch_down_s, a, f))
+                    for b, f, a in zip(rising.orders, flying, landed.orders, strict=True)
+                )
+            )
 
         return curve
 
@@ -73,10 +77,14 @@ class Tumbling:
         """
         change = np.inf
         for _ in range(rounds):
-            angles = _angles(Jet(t(self.times), t.deriv()(self.times), t.deriv(2)(self.times)) for t in self.turns)
+            angles = _angles(
+                Jet(t(self.times), t.deriv()(self.times), t.deriv(2)(self.times)) for t in self.turns
+            )
             now = momentum(angles)
             if self._response is None:
-                self._response = np.stack([momentum(_faster(angles, axis)) - now for axis in range(3)], axis=-1)
+                self._response = np.stack(
+                    [momentum(_faster(angles, axis)) - now for axis in range(3)], axis=-1
+                )
             inverse: Array = np.asarray(np.linalg.inv(self._response), dtype=np.float64)
             drift = self._mean(np.einsum("tij,tj->ti", inverse, now))
             average: Array = self._mean(inverse.reshape(-1, 9)).reshape(3, 3)

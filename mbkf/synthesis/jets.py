@@ -57,9 +57,11 @@ class Jet:
 
     def __mul__(self, other: Jet | Array | float) -> Jet:
         if isinstance(other, Jet):
-            return Jet(self.value * other.value,
-                       self.first * other.value + self.value * other.first,
-                       self.second * other.value + 2 * self.first * other.first + self.value * other.second)
+            return Jet(
+                self.value * other.value,
+                self.first * other.value + self.value * other.first,
+                self.second * other.value + 2 * self.first * other.first + self.value * other.second,
+            )
         return Jet(*(x * other for x in self.orders))
 
     __rmul__ = __mul__
@@ -73,9 +75,11 @@ class Jet:
     def __matmul__(self, other: Jet | Array) -> Jet:
         """Matrix product of (T, m, n) and (T, n, p)."""
         if isinstance(other, Jet):
-            return Jet(self.value @ other.value,
-                       self.first @ other.value + self.value @ other.first,
-                       self.second @ other.value + 2 * (self.first @ other.first) + self.value @ other.second)
+            return Jet(
+                self.value @ other.value,
+                self.first @ other.value + self.value @ other.first,
+                self.second @ other.value + 2 * (self.first @ other.first) + self.value @ other.second,
+            )
         return Jet(*(x @ other for x in self.orders))
 
     def chain(self, f: Array, df: Array, ddf: Array) -> Jet:
@@ -128,9 +132,11 @@ def dot(a: Jet, b: Jet) -> Jet:
 
 def cross(a: Jet, b: Jet) -> Jet:
     """(T, 3) vector product of two (T, 3) jets."""
-    return Jet(np.cross(a.value, b.value),
-               np.cross(a.first, b.value) + np.cross(a.value, b.first),
-               np.cross(a.second, b.value) + 2 * np.cross(a.first, b.first) + np.cross(a.value, b.second))
+    return Jet(
+        np.cross(a.value, b.value),
+        np.cross(a.first, b.value) + np.cross(a.value, b.first),
+        np.cross(a.second, b.value) + 2 * np.cross(a.first, b.first) + np.cross(a.value, b.second),
+    )
 
 
 def unit(a: Jet) -> Jet:
@@ -152,14 +158,18 @@ def where(condition: np.ndarray, a: Jet, b: Jet) -> Jet:
 
 _FIXED = [np.diag(row).astype(float) for row in np.eye(3)]
 _TURNED = [np.eye(3) - fixed for fixed in _FIXED]
-_SKEW = [np.array([[0, 0, 0], [0, 0, -1], [0, 1, 0]], dtype=float),
-         np.array([[0, 0, 1], [0, 0, 0], [-1, 0, 0]], dtype=float),
-         np.array([[0, -1, 0], [1, 0, 0], [0, 0, 0]], dtype=float)]
+_SKEW = [
+    np.array([[0, 0, 0], [0, 0, -1], [0, 1, 0]], dtype=float),
+    np.array([[0, 0, 1], [0, 0, 0], [-1, 0, 0]], dtype=float),
+    np.array([[0, -1, 0], [1, 0, 0], [0, 0, 0]], dtype=float),
+]
 
 
 def rotation(axis: int, angle: Jet) -> Jet:
     """(T, 3, 3) rotation by a (T,) angle in rad about axis 0, 1 or 2."""
-    return cos(angle)[..., None, None] * _TURNED[axis] + sin(angle)[..., None, None] * _SKEW[axis] + _FIXED[axis]
+    return (
+        cos(angle)[..., None, None] * _TURNED[axis] + sin(angle)[..., None, None] * _SKEW[axis] + _FIXED[axis]
+    )
 
 
 def euler(about_xyz: Iterable[Jet], order: str = "yxz") -> Jet:
@@ -179,5 +189,11 @@ def local_rates(rotations: Jet) -> tuple[Array, Array]:
 
 def axial(matrix: Array) -> Array:
     """(..., 3) vector of the antisymmetric part of (..., 3, 3) matrices."""
-    return 0.5 * np.stack([matrix[..., 2, 1] - matrix[..., 1, 2], matrix[..., 0, 2] - matrix[..., 2, 0],
-                           matrix[..., 1, 0] - matrix[..., 0, 1]], axis=-1)
+    return 0.5 * np.stack(
+        [
+            matrix[..., 2, 1] - matrix[..., 1, 2],
+            matrix[..., 0, 2] - matrix[..., 2, 0],
+            matrix[..., 1, 0] - matrix[..., 0, 1],
+        ],
+        axis=-1,
+    )

@@ -29,12 +29,17 @@ STEEPNESS = 0.36
 """How high the balls of the feet rise (times 0.53 in the middle), and how gently; 0.36 keeps hip torques small."""
 
 CROUCH_DEG = {
-    "torso": (0.0, 16.0, 0.0), "neck": (0.0, -8.0, 0.0), "head": (0.0, -10.0, 0.0),
-    "right_hand": (0.0, 6.0, 2.0), "left_hand": (0.0, 6.0, -2.0),
+    "torso": (0.0, 16.0, 0.0),
+    "neck": (0.0, -8.0, 0.0),
+    "head": (0.0, -10.0, 0.0),
+    "right_hand": (0.0, 6.0, 2.0),
+    "left_hand": (0.0, 6.0, -2.0),
 }
 SWING_DEG = {
-    "right_upper_arm": (-3.0, -100.0, 0.0), "left_upper_arm": (3.0, -100.0, 0.0),
-    "right_forearm": (0.0, -30.0, 12.0), "left_forearm": (0.0, -30.0, -12.0),
+    "right_upper_arm": (-3.0, -100.0, 0.0),
+    "left_upper_arm": (3.0, -100.0, 0.0),
+    "right_forearm": (0.0, -30.0, 12.0),
+    "left_forearm": (0.0, -30.0, -12.0),
 }
 """What the joint angles (x, y, z) gain in the crouch, and when the arms are swung up."""
 
@@ -58,25 +63,55 @@ def jump_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> Mo
     end = absorbed + RECOVER_S
     speed = (TOUCH_DOWN_M - TAKE_OFF_M) * size / flight_s + GRAVITY_M_S2 * flight_s / 2
     fall = speed - GRAVITY_M_S2 * flight_s
-    height = path([
-        (begin, 0.95 * size), (bottom, (0.95 + CROUCH_M) * size, 0.0, 4.5),
-        (off, (0.95 + TAKE_OFF_M) * size, speed, -GRAVITY_M_S2),
-        (down, (0.95 + TOUCH_DOWN_M) * size, fall, -GRAVITY_M_S2),
-        (absorbed, (0.95 + ABSORB_M) * size, 0.0, 4.0), (end, 0.95 * size)])
-    crouch = path([(begin, 0.0), (bottom, 1.0), (off, 0.12, -2.0), (down, 0.15, 1.5), (absorbed, 0.8), (end, 0.0)])
-    swing = path([(begin, 0.0), (bottom - 0.08, -0.45), (off, 0.85, 2.0), (down, 0.8, -1.5), (absorbed + 0.1, 0.25),
-                  (end, 0.0)])
+    height = path(
+        [
+            (begin, 0.95 * size),
+            (bottom, (0.95 + CROUCH_M) * size, 0.0, 4.5),
+            (off, (0.95 + TAKE_OFF_M) * size, speed, -GRAVITY_M_S2),
+            (down, (0.95 + TOUCH_DOWN_M) * size, fall, -GRAVITY_M_S2),
+            (absorbed, (0.95 + ABSORB_M) * size, 0.0, 4.0),
+            (end, 0.95 * size),
+        ]
+    )
+    crouch = path(
+        [(begin, 0.0), (bottom, 1.0), (off, 0.12, -2.0), (down, 0.15, 1.5), (absorbed, 0.8), (end, 0.0)]
+    )
+    swing = path(
+        [
+            (begin, 0.0),
+            (bottom - 0.08, -0.45),
+            (off, 0.85, 2.0),
+            (down, 0.8, -1.5),
+            (absorbed + 0.1, 0.25),
+            (end, 0.0),
+        ]
+    )
     angles = lively(posture(resting(), [(crouch, CROUCH_DEG), (swing, SWING_DEG)], rng), rng)
     del angles["pelvis"]
     pelvis = Flight(off, down, *_pelvis(begin, bottom, off, down, absorbed, end, rng))
     half_width, toe_out = rng.uniform(0.10, 0.13) * size, np.deg2rad(rng.uniform(4, 9))
     feet = _feet(model, half_width, toe_out, off, down)
-    return MotionPlan(0.0, seconds, angles, feet, height, _load(model, feet, pelvis, begin, absorbed, rng),
-                      np.deg2rad(10.0), flight=pelvis)
+    return MotionPlan(
+        0.0,
+        seconds,
+        angles,
+        feet,
+        height,
+        _load(model, feet, pelvis, begin, absorbed, rng),
+        np.deg2rad(10.0),
+        flight=pelvis,
+    )
 
 
-def _pelvis(begin: float, bottom: float, off: float, down: float, absorbed: float, end: float,
-            rng: np.random.Generator) -> tuple[tuple[list, ...], tuple[list, ...]]:
+def _pelvis(
+    begin: float,
+    bottom: float,
+    off: float,
+    down: float,
+    absorbed: float,
+    end: float,
+    rng: np.random.Generator,
+) -> tuple[tuple[list, ...], tuple[list, ...]]:
     """Knots of the pelvis's angles before and after flight."""
     stand, lean = np.deg2rad(rng.normal(2.0, 1.0)), np.deg2rad(rng.uniform(26, 32))
     rise, land = np.deg2rad(rng.uniform(5, 9)), np.deg2rad(rng.uniform(8, 12))
@@ -94,8 +129,14 @@ def _pelvis(begin: float, bottom: float, off: float, down: float, absorbed: floa
 
 def _feet(model: HumanModel, half_width: float, toe_out: float, off: float, down: float) -> FeetPlan:
     """Feet that turn over the balls of the feet before take-off and after touch-down, and lift in between."""
-    pitch = path([(off - HEEL_OFF_S, 0.0), (off, *np.deg2rad(TAKE_OFF_PITCH)), (down, *np.deg2rad(TOUCH_DOWN_PITCH)),
-                  (down + HEEL_DOWN_S, 0.0)])
+    pitch = path(
+        [
+            (off - HEEL_OFF_S, 0.0),
+            (off, *np.deg2rad(TAKE_OFF_PITCH)),
+            (down, *np.deg2rad(TOUCH_DOWN_PITCH)),
+            (down + HEEL_DOWN_S, 0.0),
+        ]
+    )
     size = float(model.scale.mean())
     figure = Figure(model)
 
@@ -125,15 +166,24 @@ def _rise(part: Jet) -> Jet:
     return cube / (cube + STEEPNESS**3)
 
 
-def _load(model: HumanModel, feet: FeetPlan, flight: Flight, begin: float, absorbed: float,
-          rng: np.random.Generator) -> LoadPlan:
+def _load(
+    model: HumanModel, feet: FeetPlan, flight: Flight, begin: float, absorbed: float, rng: np.random.Generator
+) -> LoadPlan:
     """Pressure under the middle of the feet, moving under the toes while the heels are up."""
     size = float(model.scale.mean())
     ball = Figure(model).offset["right_toes"][0]
     off, down = flight.take_off_s, flight.touch_down_s
-    forward = path([(begin, 0.055 * size), (off - HEEL_OFF_S, ball + 0.012 * size), (off, ball + 0.030 * size),
-                    (down, ball + 0.030 * size), (down + HEEL_DOWN_S, ball - 0.005 * size), (absorbed, 0.06 * size),
-                    (absorbed + 0.4, 0.055 * size)])
+    forward = path(
+        [
+            (begin, 0.055 * size),
+            (off - HEEL_OFF_S, ball + 0.012 * size),
+            (off, ball + 0.030 * size),
+            (down, ball + 0.030 * size),
+            (down + HEEL_DOWN_S, ball - 0.005 * size),
+            (absorbed, 0.06 * size),
+            (absorbed + 0.4, 0.055 * size),
+        ]
+    )
     sway = ripple(0.03 * rng.uniform(0.5, 1), rng.uniform(0.2, 0.4), rng.uniform(0, 6.28), 0.5)
     flat = {side: pose for side, pose in feet(np.array([begin])).items()}
 
@@ -146,4 +196,3 @@ def _load(model: HumanModel, feet: FeetPlan, flight: Flight, begin: float, absor
         return Load(sway(times).value, np.stack(pressure, axis=1), (times < off) | (times > down))
 
     return load
-

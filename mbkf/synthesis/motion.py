@@ -68,8 +68,9 @@ class TrueMotion:
             object.__setattr__(self, name, read_only(getattr(self, name)))
 
 
-def synthesise_motion(model: HumanModel, motion: str, seconds: float, rate_hz: float = 100.0,
-                      seed: int = 0) -> TrueMotion:
+def synthesise_motion(
+    model: HumanModel, motion: str, seconds: float, rate_hz: float = 100.0, seed: int = 0
+) -> TrueMotion:
     """Makes a motion of a body, a different one for every seed.
 
     Raises:
@@ -96,9 +97,20 @@ def synthesise_motion(model: HumanModel, motion: str, seconds: float, rate_hz: f
     else:
         raise NotConverged(f"{motion} of this person: {fault}; try another seed")
     flight = plan.flight
-    return TrueMotion(motion, rate_hz, fine[::every], q, v, a, tau, wrenches[::every], centres,
-                      rate_hz * every, wrenches,
-                      None if flight is None else (flight.take_off_s, flight.touch_down_s))
+    return TrueMotion(
+        motion,
+        rate_hz,
+        fine[::every],
+        q,
+        v,
+        a,
+        tau,
+        wrenches[::every],
+        centres,
+        rate_hz * every,
+        wrenches,
+        None if flight is None else (flight.take_off_s, flight.touch_down_s),
+    )
 
 
 def _dynamics(model: HumanModel, composition: Composition, times: Array, every: int) -> tuple[Array, ...]:

@@ -51,10 +51,18 @@ def synthesise_subject(seed: int = 0, protocol: str = "reference36", body: str =
             continue
         offset = np.clip(rng.normal(size=3), -2.5, 2.5) * PLACEMENT_SD_M[marker.kind]
         position = model.axis_scale(description.segment(marker.segment)) * marker.position_m + offset
-        markers.append(SubjectMarker(marker.name, marker.segment, read_only(position), marker.noise_m,
-                                     SESSION_SD_M))
-    return Subject(body, float(mass), factors, tuple(markers), protocol, height_m=float(height),
-                   report={"synthetic": True, "seed": seed})
+        markers.append(
+            SubjectMarker(marker.name, marker.segment, read_only(position), marker.noise_m, SESSION_SD_M)
+        )
+    return Subject(
+        body,
+        float(mass),
+        factors,
+        tuple(markers),
+        protocol,
+        height_m=float(height),
+        report={"synthetic": True, "seed": seed},
+    )
 
 
 def body_of(subject: Subject) -> HumanModel:

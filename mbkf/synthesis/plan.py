@@ -15,8 +15,19 @@ from mbkf.synthesis.figure import FootPose
 FeetPlan = Callable[[Array], dict[str, FootPose]]
 """(T,) times in s to the feet by side."""
 
-JOINTS = ("torso", "neck", "head", "right_upper_arm", "right_forearm", "right_hand", "left_upper_arm",
-          "left_forearm", "left_hand", "right_shank", "left_shank")
+JOINTS = (
+    "torso",
+    "neck",
+    "head",
+    "right_upper_arm",
+    "right_forearm",
+    "right_hand",
+    "left_upper_arm",
+    "left_forearm",
+    "left_hand",
+    "right_shank",
+    "left_shank",
+)
 """Joints whose angles (x, y, z) are given; of the shanks only x and z, as the knee's flexion follows from the leg."""
 
 
@@ -64,8 +75,9 @@ def degrees(*knots: tuple[float, ...]) -> Curve:
     return path([(knot[0], *np.deg2rad(knot[1:])) for knot in knots])
 
 
-def lively(curves: dict[str, tuple[Curve, Curve, Curve]], rng: np.random.Generator,
-           amplitude_deg: float = 1.0) -> dict[str, tuple[Curve, Curve, Curve]]:
+def lively(
+    curves: dict[str, tuple[Curve, Curve, Curve]], rng: np.random.Generator, amplitude_deg: float = 1.0
+) -> dict[str, tuple[Curve, Curve, Curve]]:
     """Every angle with a slow ripple of about the amplitude on top, so that no joint is ever quite still."""
     moving = {}
     for joint in ("pelvis", *JOINTS):
@@ -73,9 +85,16 @@ def lively(curves: dict[str, tuple[Curve, Curve, Curve]], rng: np.random.Generat
             continue
         small = 0.5 if joint.endswith("shank") or joint == "pelvis" else 1.0
         axes = [
-            added(curve, ripple(np.deg2rad(small * amplitude_deg * rng.uniform(0.5, 1.0)),
-                                rng.uniform(0.3, 0.8), rng.uniform(0, 2 * np.pi)))
-            for curve in curves[joint]]
+            added(
+                curve,
+                ripple(
+                    np.deg2rad(small * amplitude_deg * rng.uniform(0.5, 1.0)),
+                    rng.uniform(0.3, 0.8),
+                    rng.uniform(0, 2 * np.pi),
+                ),
+            )
+            for curve in curves[joint]
+        ]
         moving[joint] = (axes[0], axes[1], axes[2])
     return moving
 
@@ -83,10 +102,16 @@ def lively(curves: dict[str, tuple[Curve, Curve, Curve]], rng: np.random.Generat
 def resting(**changes: tuple[float, float, float]) -> dict[str, tuple[float, float, float]]:
     """Joint angles (x, y, z) in degrees of a relaxed standing person, with changes."""
     posture = {
-        "torso": (0.0, 0.0, 0.0), "neck": (0.0, 8.0, 0.0), "head": (0.0, -8.0, 0.0),
-        "right_upper_arm": (-8.0, 0.0, 8.0), "left_upper_arm": (8.0, 0.0, -8.0),
-        "right_forearm": (0.0, -14.0, 10.0), "left_forearm": (0.0, -14.0, -10.0),
-        "right_hand": (2.0, -3.0, 0.0), "left_hand": (-2.0, -3.0, 0.0),
-        "right_shank": (0.5, 0.0, -1.5), "left_shank": (-0.5, 0.0, 1.5),
+        "torso": (0.0, 0.0, 0.0),
+        "neck": (0.0, 8.0, 0.0),
+        "head": (0.0, -8.0, 0.0),
+        "right_upper_arm": (-8.0, 0.0, 8.0),
+        "left_upper_arm": (8.0, 0.0, -8.0),
+        "right_forearm": (0.0, -14.0, 10.0),
+        "left_forearm": (0.0, -14.0, -10.0),
+        "right_hand": (2.0, -3.0, 0.0),
+        "left_hand": (-2.0, -3.0, 0.0),
+        "right_shank": (0.5, 0.0, -1.5),
+        "left_shank": (-0.5, 0.0, 1.5),
     }
     return {**posture, **changes}

@@ -62,13 +62,20 @@ def outlines(placed: list[Placement]) -> list[Array]:
                     low[1], high[1] = between + GAP_M / 2, between + GAP_M / 2 + SIZE_M[1]
                 else:
                     low[1], high[1] = between - GAP_M / 2 - SIZE_M[1], between - GAP_M / 2
-        corners.append(np.array([[high[0], low[1], 0], [low[0], low[1], 0], [low[0], high[1], 0],
-                                 [high[0], high[1], 0]]))
+        corners.append(
+            np.array([[high[0], low[1], 0], [low[0], low[1], 0], [low[0], high[1], 0], [high[0], high[1], 0]])
+        )
     return corners
 
 
-def readings(wrench: Array, rate_hz: float, force_sd_n: float, moment_sd_nm: float, offset_n: tuple[float, float],
-             rng: np.random.Generator) -> tuple[PlateReadings, ...]:
+def readings(
+    wrench: Array,
+    rate_hz: float,
+    force_sd_n: float,
+    moment_sd_nm: float,
+    offset_n: tuple[float, float],
+    rng: np.random.Generator,
+) -> tuple[PlateReadings, ...]:
     """What the plates store, offset included.
 
     Plates on which someone stands all the time were zeroed before and have no offset.
@@ -90,14 +97,21 @@ def readings(wrench: Array, rate_hz: float, force_sd_n: float, moment_sd_nm: flo
             loaded[start:end] = True
         force = np.where(loaded[:, None], wrench[:, place.side, :3], 0.0)
         moment = np.where(loaded[:, None], wrench[:, place.side, 3:], 0.0) - np.cross(origin, force)
-        offset = np.r_[rng.uniform(-2, 2, 2), rng.uniform(min(offset_n), max(offset_n)), rng.uniform(-1, 1, 3)]
+        offset = np.r_[
+            rng.uniform(-2, 2, 2), rng.uniform(min(offset_n), max(offset_n)), rng.uniform(-1, 1, 3)
+        ]
         if loaded.all() or not any(offset_n):
             offset = np.zeros(6)
         force = force + offset[:3] + force_sd_n * rng.standard_normal(force.shape)
         moment = moment + offset[3:] + moment_sd_nm * rng.standard_normal(moment.shape)
-        pressed = centre_of_pressure(force, moment, origin, np.array([0.0, 0.0, 1.0]), DEFAULT_COP_THRESHOLD_N)
-        found.append(PlateReadings(str(number), rate_hz, 0.0, origin, force, moment, pressed,
-                                   DEFAULT_COP_THRESHOLD_N, corners))
+        pressed = centre_of_pressure(
+            force, moment, origin, np.array([0.0, 0.0, 1.0]), DEFAULT_COP_THRESHOLD_N
+        )
+        found.append(
+            PlateReadings(
+                str(number), rate_hz, 0.0, origin, force, moment, pressed, DEFAULT_COP_THRESHOLD_N, corners
+            )
+        )
     return tuple(found)
 
 

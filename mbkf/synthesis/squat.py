@@ -17,10 +17,16 @@ DROP_M = 0.27
 """Fall of the centre of mass of a body of the reference size."""
 
 BOTTOM_DEG = {
-    "pelvis": (0.0, 26.0, 0.0), "torso": (0.0, 14.0, 0.0), "neck": (0.0, -10.0, 0.0), "head": (0.0, -12.0, 0.0),
-    "right_upper_arm": (2.0, -85.0, 0.0), "left_upper_arm": (-2.0, -85.0, 0.0),
-    "right_forearm": (0.0, -8.0, 15.0), "left_forearm": (0.0, -8.0, -15.0),
-    "right_hand": (0.0, 6.0, 0.0), "left_hand": (0.0, 6.0, 0.0),
+    "pelvis": (0.0, 26.0, 0.0),
+    "torso": (0.0, 14.0, 0.0),
+    "neck": (0.0, -10.0, 0.0),
+    "head": (0.0, -12.0, 0.0),
+    "right_upper_arm": (2.0, -85.0, 0.0),
+    "left_upper_arm": (-2.0, -85.0, 0.0),
+    "right_forearm": (0.0, -8.0, 15.0),
+    "left_forearm": (0.0, -8.0, -15.0),
+    "right_hand": (0.0, 6.0, 0.0),
+    "left_hand": (0.0, 6.0, 0.0),
 }
 """What the angles (x, y, z) gain from standing to the bottom of the squat."""
 
@@ -31,12 +37,14 @@ def squat_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> M
     size = float(model.scale.mean())
     feet = planted(model, rng.uniform(0.12, 0.15), rng.uniform(8, 16), rng)
     return MotionPlan(
-        start_s=0.0, end_s=seconds,
+        start_s=0.0,
+        end_s=seconds,
         angles=lively(posture(resting(), [(depth, BOTTOM_DEG)], rng), rng),
         feet=feet,
         height=added(ripple(0.0, 1.0, 0.0, 0.95 * size), scaled(-DROP_M * size, depth)),
         load=standing_load(feet, 0.05 * size, rng),
-        straightest_rad=np.deg2rad(10.0))
+        straightest_rad=np.deg2rad(10.0),
+    )
 
 
 def _depth(seconds: float, repetitions: int, rng: np.random.Generator) -> Curve:

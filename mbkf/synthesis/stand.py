@@ -16,18 +16,31 @@ DEVIATION_DEG = 2.5
 def stand_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
     """Standing with the feet 0.2 m apart and nearly parallel."""
     size = float(model.scale.mean())
-    lean = {"right_upper_arm": (-6.0, 0.0, 0.0), "left_upper_arm": (6.0, 0.0, 0.0),
-            "right_forearm": (0.0, -6.0, 0.0), "left_forearm": (0.0, -6.0, 0.0)}
+    lean = {
+        "right_upper_arm": (-6.0, 0.0, 0.0),
+        "left_upper_arm": (6.0, 0.0, 0.0),
+        "right_forearm": (0.0, -6.0, 0.0),
+        "left_forearm": (0.0, -6.0, 0.0),
+    }
     angles: dict[str, tuple[Curve, Curve, Curve]] = {}
     for joint in ("pelvis", *JOINTS):
         spread = DEVIATION_DEG if joint not in ("pelvis", "right_shank", "left_shank") else 1.0
-        axes = [_still(lean.get(joint, (0.0, 0.0, 0.0))[axis] + np.clip(rng.normal(0, spread), -5, 5), rng)
-                for axis in range(3)]
+        axes = [
+            _still(lean.get(joint, (0.0, 0.0, 0.0))[axis] + np.clip(rng.normal(0, spread), -5, 5), rng)
+            for axis in range(3)
+        ]
         angles[joint] = (axes[0], axes[1], axes[2])
     feet = planted(model, 0.10, rng.uniform(0, 6), rng)
     sway = ripple(0.0005, 0.3, rng.uniform(0, 6.28), 0.95 * size)
-    return MotionPlan(0.0, seconds, angles, feet, sway, standing_load(feet, 0.045 * size, rng),
-                      np.deg2rad(rng.uniform(4, 6)))
+    return MotionPlan(
+        0.0,
+        seconds,
+        angles,
+        feet,
+        sway,
+        standing_load(feet, 0.045 * size, rng),
+        np.deg2rad(rng.uniform(4, 6)),
+    )
 
 
 def _still(angle_deg: float, rng: np.random.Generator) -> Curve:

@@ -25,16 +25,23 @@ def constant(times: Array, value: float) -> Jet:
 
 def planted(model: HumanModel, half_width_m: float, toe_out_deg: float, rng: np.random.Generator) -> FeetPlan:
     """Both feet flat and still, ankles at x = 0 and y = ∓ half the width; the toes lift a little."""
-    lifting = {side: ripple(np.deg2rad(rng.uniform(0.5, 1.5)), rng.uniform(0.3, 0.6), rng.uniform(0, 6.28),
-                            np.deg2rad(-2.0)) for side in SIDES}
+    lifting = {
+        side: ripple(
+            np.deg2rad(rng.uniform(0.5, 1.5)), rng.uniform(0.3, 0.6), rng.uniform(0, 6.28), np.deg2rad(-2.0)
+        )
+        for side in SIDES
+    }
 
     def feet(times: Array) -> dict[str, FootPose]:
         poses = {}
         for side, sign in zip(SIDES, (-1.0, 1.0), strict=True):
             at = np.array([0.0, sign * half_width_m, -sole_outline(model, side).height])
-            poses[side] = FootPose(Jet.constant(np.tile(at, (len(times), 1))),
-                                   constant(times, sign * np.deg2rad(toe_out_deg)),
-                                   constant(times, 0.0), lifting[side](times))
+            poses[side] = FootPose(
+                Jet.constant(np.tile(at, (len(times), 1))),
+                constant(times, sign * np.deg2rad(toe_out_deg)),
+                constant(times, 0.0),
+                lifting[side](times),
+            )
         return poses
 
     return feet
@@ -42,8 +49,12 @@ def planted(model: HumanModel, half_width_m: float, toe_out_deg: float, rng: np.
 
 def standing_load(feet: FeetPlan, forward_m: float, rng: np.random.Generator) -> LoadPlan:
     """About half the load on each foot, pressure under the middle of the feet, both swaying a little."""
-    sway = ripple(0.03 * rng.uniform(0.5, 1), rng.uniform(0.2, 0.5), rng.uniform(0, 6.28),
-                  0.5 + 0.03 * rng.uniform(-1, 1))
+    sway = ripple(
+        0.03 * rng.uniform(0.5, 1),
+        rng.uniform(0.2, 0.5),
+        rng.uniform(0, 6.28),
+        0.5 + 0.03 * rng.uniform(-1, 1),
+    )
     forth = ripple(0.006, rng.uniform(0.2, 0.5), rng.uniform(0, 6.28), forward_m)
 
     def load(times: Array) -> Load:
@@ -57,11 +68,14 @@ def standing_load(feet: FeetPlan, forward_m: float, rng: np.random.Generator) ->
 def pressed(foot: FootPose, forward_m: Array, left_m: Array | float = 0.0) -> Array:
     """(T, 2) floor point ahead and to the left of the ankle, along the foot's heading."""
     c, s = np.cos(foot.yaw.value), np.sin(foot.yaw.value)
-    return foot.ankle.value[:, :2] + np.stack([c * forward_m - s * left_m, s * forward_m + c * left_m], axis=-1)
+    return foot.ankle.value[:, :2] + np.stack(
+        [c * forward_m - s * left_m, s * forward_m + c * left_m], axis=-1
+    )
 
 
-def posture(base_deg: Angles, gains: Sequence[tuple[Curve, Angles]],
-            rng: np.random.Generator, spread: float = 0.08) -> dict[str, tuple[Curve, Curve, Curve]]:
+def posture(
+    base_deg: Angles, gains: Sequence[tuple[Curve, Angles]], rng: np.random.Generator, spread: float = 0.08
+) -> dict[str, tuple[Curve, Curve, Curve]]:
     """Joint angles: a base posture plus curves (0…1) times what each adds, each person a little different.
 
     Args:

@@ -67,13 +67,27 @@ def walk_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> Mo
 
     bob = BOB_M * size * rng.uniform(0.95, 1.05)
     step_hz = 2.0 / stride_s
-    height = ripple(bob, step_hz, -2 * np.pi * step_hz * (phase_s + BOB_LATE * DOUBLE_SUPPORT * stride_s) - np.pi / 2,
-                    0.97 * size)
-    return MotionPlan(start, end, lively(_angles(stride_s, phase_s, rng), rng, 0.6), poses, height,
-                      _load(model, steps, feet, stride_s), np.deg2rad(8.5), recorded_s=(0.0, seconds))
+    height = ripple(
+        bob,
+        step_hz,
+        -2 * np.pi * step_hz * (phase_s + BOB_LATE * DOUBLE_SUPPORT * stride_s) - np.pi / 2,
+        0.97 * size,
+    )
+    return MotionPlan(
+        start,
+        end,
+        lively(_angles(stride_s, phase_s, rng), rng, 0.6),
+        poses,
+        height,
+        _load(model, steps, feet, stride_s),
+        np.deg2rad(8.5),
+        recorded_s=(0.0, seconds),
+    )
 
 
-def _steps(model: HumanModel, seconds: float, step_s: float, length: float, rng: np.random.Generator) -> list[Step]:
+def _steps(
+    model: HumanModel, seconds: float, step_s: float, length: float, rng: np.random.Generator
+) -> list[Step]:
     half_width = 0.055 * float(model.scale.mean()) * rng.uniform(0.85, 1.15)
     yaw = np.deg2rad(rng.uniform(4, 9))
     count = int(np.ceil(seconds / step_s)) + 2 * MARGIN_STEPS
@@ -84,7 +98,9 @@ def _steps(model: HumanModel, seconds: float, step_s: float, length: float, rng:
     for k in range(count):
         side = (first + k) % 2
         sign = -1.0 if side == 0 else 1.0
-        ankle = np.array([(k - 0.5 * count) * length, sign * half_width, -sole_outline(model, SIDES[side]).height])
+        ankle = np.array(
+            [(k - 0.5 * count) * length, sign * half_width, -sole_outline(model, SIDES[side]).height]
+        )
         steps.append(Step(side, begin + k * step_s, begin + k * step_s + off, ankle, sign * yaw))
     return steps
 
@@ -104,17 +120,33 @@ class _Foot:
         self.heel = np.array([outline.heel_x + 0.015, 0.0, outline.height])
         self.ball = np.array([toes[0], 0.0, toes[2]])
         self.heading = constant_rotation(steps[0].yaw)
-        stance = path([(0.0, *np.deg2rad(STRIKE_PITCH_DEG)), (FOOT_FLAT * stride_s, 0.0), (HEEL_OFF * stride_s, 0.0),
-                       (self.off * stride_s, *np.deg2rad(TOE_OFF_PITCH_DEG))])
-        times = [self.off * stride_s, *(stride_s * (self.off + part * (1 - self.off)) for part in SWING_PARTS),
-                 stride_s]
+        stance = path(
+            [
+                (0.0, *np.deg2rad(STRIKE_PITCH_DEG)),
+                (FOOT_FLAT * stride_s, 0.0),
+                (HEEL_OFF * stride_s, 0.0),
+                (self.off * stride_s, *np.deg2rad(TOE_OFF_PITCH_DEG)),
+            ]
+        )
+        times = [
+            self.off * stride_s,
+            *(stride_s * (self.off + part * (1 - self.off)) for part in SWING_PARTS),
+            stride_s,
+        ]
         angles = np.deg2rad([TOE_OFF_PITCH_DEG[0], *SWING_PITCH_DEG, STRIKE_PITCH_DEG[0]])
         bends = [tuple(np.deg2rad(pitch[1:])) for pitch in (TOE_OFF_PITCH_DEG, STRIKE_PITCH_DEG)]
         swing = spline(times, angles.tolist(), bends[0], bends[1])
-        relaxed = path([(0.0, np.deg2rad(-6.0)), (FOOT_FLAT * stride_s, 0.0), (HEEL_OFF * stride_s, 0.0),
-                        (self.off * stride_s, *-np.deg2rad(TOE_OFF_PITCH_DEG)),
-                        ((self.off + 0.035) * stride_s, np.deg2rad(-67.0)),
-                        ((self.off + 0.20) * stride_s, np.deg2rad(-14.0)), (stride_s, np.deg2rad(-6.0))])
+        relaxed = path(
+            [
+                (0.0, np.deg2rad(-6.0)),
+                (FOOT_FLAT * stride_s, 0.0),
+                (HEEL_OFF * stride_s, 0.0),
+                (self.off * stride_s, *-np.deg2rad(TOE_OFF_PITCH_DEG)),
+                ((self.off + 0.035) * stride_s, np.deg2rad(-67.0)),
+                ((self.off + 0.20) * stride_s, np.deg2rad(-14.0)),
+                (stride_s, np.deg2rad(-6.0)),
+            ]
+        )
         self.pitch = self._repeated(lambda t: jets.where(t < self.off * stride_s, stance(t), swing(t)))
         self.toes = self._repeated(relaxed)
         self.swings = [self._swing(a, b) for a, b in pairwise(steps)]
@@ -141,8 +173,15 @@ class _Foot:
         a, b = ([x[0] for x in end.orders] for end in (off, strike))
         times = [last.off_s, *(last.off_s + part * duration for part in SWING_PARTS), following.strike_s]
         way = b[0] - a[0]
-        planar = [spline(times, [a[0][k], *(a[0][k] + part * way[k] for part in SWING_FORWARD), b[0][k]],
-                         (a[1][k], a[2][k]), (b[1][k], b[2][k])) for k in (0, 1)]
+        planar = [
+            spline(
+                times,
+                [a[0][k], *(a[0][k] + part * way[k] for part in SWING_FORWARD), b[0][k]],
+                (a[1][k], a[2][k]),
+                (b[1][k], b[2][k]),
+            )
+            for k in (0, 1)
+        ]
         raised = [last.ankle_m[2] + self.size * height for height in SWING_HEIGHT_M]
         upward = spline(times, [a[0][2], *raised, b[0][2]], (a[1][2], a[2][2]), (b[1][2], b[2][2]))
         return lambda at: jets.stack([planar[0](at), planar[1](at), upward(at)])
@@ -153,8 +192,9 @@ class _Foot:
         ankle = Jet.constant(np.zeros((len(times), 3)))
         for step in self.steps:
             on = (times >= step.strike_s) & (times <= step.off_s)
-            rolled = jets.where(pitch.value < 0, self._about(step, self.heel, pitch),
-                                self._about(step, self.ball, pitch))
+            rolled = jets.where(
+                pitch.value < 0, self._about(step, self.heel, pitch), self._about(step, self.ball, pitch)
+            )
             ankle = jets.where(on, rolled, ankle)
         for (a, b), swing in zip(pairwise(self.steps), self.swings, strict=True):
             ankle = jets.where((times > a.off_s) & (times < b.strike_s), swing(times), ankle)
@@ -174,48 +214,87 @@ def _load(model: HumanModel, steps: list[Step], feet: dict[str, _Foot], stride_s
     share_knots: list[tuple] = []
     pressure_knots: dict[int, list[tuple]] = {0: [], 1: []}
     for step in steps:
-        share_knots += [(step.strike_s, float(step.side)), (step.strike_s + DOUBLE_SUPPORT * stride_s, 1.0 - step.side)]
+        share_knots += [
+            (step.strike_s, float(step.side)),
+            (step.strike_s + DOUBLE_SUPPORT * stride_s, 1.0 - step.side),
+        ]
         heel, ball = feet[SIDES[step.side]].heel[0], feet[SIDES[step.side]].ball[0]
         outward = -1.0 if step.side == 0 else 1.0
         heading = constant_rotation(step.yaw)[:2, :2]
-        for at, x, y in ((0.0, heel + 0.01, 0.0), (FOOT_FLAT, heel + 0.035, 0.004),
-                         (HEEL_OFF, ball + 0.008 * size, 0.006), (0.5, ball + 0.020 * size, -0.003),
-                         (0.5 + DOUBLE_SUPPORT, ball + 0.030 * size, -0.012)):
+        for at, x, y in (
+            (0.0, heel + 0.01, 0.0),
+            (FOOT_FLAT, heel + 0.035, 0.004),
+            (HEEL_OFF, ball + 0.008 * size, 0.006),
+            (0.5, ball + 0.020 * size, -0.003),
+            (0.5 + DOUBLE_SUPPORT, ball + 0.030 * size, -0.012),
+        ):
             local = heading @ np.array([x, outward * y * size])
             pressure_knots[step.side].append((step.strike_s + at * stride_s, step.ankle_m[:2] + local))
     share = path(share_knots)
     pressure = [path(pressure_knots[side]) for side in (0, 1)]
 
     def load(times: Array) -> Load:
-        return Load(share(times).value, np.stack([p(times).value for p in pressure], axis=1),
-                    np.ones(len(times), dtype=bool))
+        return Load(
+            share(times).value,
+            np.stack([p(times).value for p in pressure], axis=1),
+            np.ones(len(times), dtype=bool),
+        )
 
     return load
 
 
-def _angles(stride_s: float, phase_s: float, rng: np.random.Generator) -> dict[str, tuple[Curve, Curve, Curve]]:
+def _angles(
+    stride_s: float, phase_s: float, rng: np.random.Generator
+) -> dict[str, tuple[Curve, Curve, Curve]]:
     """Trunk and arms as sines of the stride, counted from right heel strike."""
+
     def wave(amplitude: float, part: float, per_stride: int = 1) -> Curve:
         """Largest at the part of the stride."""
         hz = per_stride / stride_s
-        return ripple(amplitude * rng.uniform(0.9, 1.1), hz, np.pi / 2 - 2 * np.pi * hz * (phase_s + part * stride_s))
+        return ripple(
+            amplitude * rng.uniform(0.9, 1.1), hz, np.pi / 2 - 2 * np.pi * hz * (phase_s + part * stride_s)
+        )
 
-    base = {**resting(), "pelvis": (0.0, 2.0, 0.0), "torso": (0.0, 2.0, 0.0),
-            "right_forearm": (0.0, -26.0, 10.0), "left_forearm": (0.0, -26.0, -10.0),
-            "right_upper_arm": (-8.0, 4.0, 6.0), "left_upper_arm": (8.0, 4.0, -6.0)}
+    base = {
+        **resting(),
+        "pelvis": (0.0, 2.0, 0.0),
+        "torso": (0.0, 2.0, 0.0),
+        "right_forearm": (0.0, -26.0, 10.0),
+        "left_forearm": (0.0, -26.0, -10.0),
+        "right_upper_arm": (-8.0, 4.0, 6.0),
+        "left_upper_arm": (8.0, 4.0, -6.0),
+    }
     right, left = wave(1.0, 0.5), wave(1.0, 0.0)
     twist, twice = wave(1.0, 0.0), wave(1.0, 0.06, 2)
     lean = wave(1.0, 0.30)
     gains = [
-        (right, {"right_upper_arm": (0.0, -19.0, 0.0), "right_forearm": (0.0, -11.0, 4.0),
-                 "right_hand": (2.0, -4.0, 1.0)}),
-        (left, {"left_upper_arm": (0.0, -19.0, 0.0), "left_forearm": (0.0, -11.0, -4.0),
-                "left_hand": (-2.0, -4.0, -1.0)}),
+        (
+            right,
+            {
+                "right_upper_arm": (0.0, -19.0, 0.0),
+                "right_forearm": (0.0, -11.0, 4.0),
+                "right_hand": (2.0, -4.0, 1.0),
+            },
+        ),
+        (
+            left,
+            {
+                "left_upper_arm": (0.0, -19.0, 0.0),
+                "left_forearm": (0.0, -11.0, -4.0),
+                "left_hand": (-2.0, -4.0, -1.0),
+            },
+        ),
         (twist, {"pelvis": (0.0, 0.0, 4.5), "torso": (0.0, 0.0, -8.5), "head": (0.0, 0.0, 3.5)}),
-        (twice, {"pelvis": (0.0, 1.2, 0.0), "torso": (0.0, 1.0, 0.0), "neck": (0.0, -1.0, 0.0),
-                 "head": (0.0, -1.0, 0.0)}),
+        (
+            twice,
+            {
+                "pelvis": (0.0, 1.2, 0.0),
+                "torso": (0.0, 1.0, 0.0),
+                "neck": (0.0, -1.0, 0.0),
+                "head": (0.0, -1.0, 0.0),
+            },
+        ),
         (wave(1.0, 0.12), {"pelvis": (-3.5, 0.0, 0.0), "torso": (4.5, 0.0, 0.0), "neck": (-0.7, 0.0, 0.0)}),
         (lean, {"head": (1.0, 0.0, 0.0), "right_shank": (1.0, 0.0, 2.0), "left_shank": (1.0, 0.0, 2.0)}),
     ]
     return posture(base, gains, rng)
-

@@ -20,7 +20,9 @@ def test_demo_prints_errors_and_writes_the_folder(tmp_path: Path, capsys: pytest
 
 
 @pytest.mark.parametrize("words", [["--seed", "-1"], ["--motion", "dance"], ["--seconds", "-3"]])
-def test_wrong_options_are_one_line(words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_options_are_one_line(
+    words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """Exit code 2 and nothing written."""
     try:
         code = main(["demo", *words, "--out", str(tmp_path / "demo")])

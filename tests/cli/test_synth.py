@@ -13,8 +13,26 @@ from mbkf.synthesis.motion import MOTIONS
 
 def test_writes_a_folder(tmp_path, capsys):
     out = tmp_path / "made" / "squat"
-    assert main(["synth", "--motion", "squat", "--seconds", "1.5", "--seed", "4", "--ghosts", "1", "--rate", "60",
-                 "--out", str(out)]) == 0
+    assert (
+        main(
+            [
+                "synth",
+                "--motion",
+                "squat",
+                "--seconds",
+                "1.5",
+                "--seed",
+                "4",
+                "--ghosts",
+                "1",
+                "--rate",
+                "60",
+                "--out",
+                str(out),
+            ]
+        )
+        == 0
+    )
     assert sorted(path.name for path in out.iterdir()) == sorted(FILES)
     assert "squat" in capsys.readouterr().out
     truth, trial = read_truth(out / "truth.h5"), read_c3d(out / "trial.c3d")
@@ -38,8 +56,19 @@ def test_out_that_is_a_file_is_refused(tmp_path, refused):
     refused(["synth", "--motion", "squat", "--out", tmp_path / "file"], "name another folder")
 
 
-@pytest.mark.parametrize("words", [["--motion", "dance"], ["--seconds", "0"], ["--seconds", "nan"], ["--rate", "0"],
-                                   ["--seed", "-1"], ["--occlusion", "2"], ["--markers-mm", "-1"], ["--ghosts", "-1"]])
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["--motion", "dance"],
+        ["--seconds", "0"],
+        ["--seconds", "nan"],
+        ["--rate", "0"],
+        ["--seed", "-1"],
+        ["--occlusion", "2"],
+        ["--markers-mm", "-1"],
+        ["--ghosts", "-1"],
+    ],
+)
 def test_nonsense_is_refused(words, tmp_path, refused):
     refused(["synth", *words, "--out", tmp_path / "out"])
 

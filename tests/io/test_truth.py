@@ -27,7 +27,11 @@ def test_round_trip(tmp_path):
     for name in UNITS:
         assert np.array_equal(getattr(back, name), getattr(truth, name), equal_nan=True)
     assert (back.marker_names, back.dof_names, back.version, back.settings) == (
-        truth.marker_names, truth.dof_names, truth.version, truth.settings)
+        truth.marker_names,
+        truth.dof_names,
+        truth.version,
+        truth.settings,
+    )
 
 
 def test_arrays_carry_their_unit(tmp_path):

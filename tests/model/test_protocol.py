@@ -148,8 +148,10 @@ def test_each_marker_is_matched_once_by_name_or_alias():
 
 
 def test_own_protocol_from_a_file(write):
-    path = write('name = "RK"\nlandmark = "right_knee_lateral"\nmirror = "LK"',
-                 'name = "X"\nsegment = "pelvis"\nposition_m = [0, 0.1, -0.2]\nnoise_mm = 7\naliases = ["Y"]')
+    path = write(
+        'name = "RK"\nlandmark = "right_knee_lateral"\nmirror = "LK"',
+        'name = "X"\nsegment = "pelvis"\nposition_m = [0, 0.1, -0.2]\nnoise_mm = 7\naliases = ["Y"]',
+    )
     right, left, technical = load_protocol(path).markers
     landmark = load_body().landmark("right_knee_lateral")
     np.testing.assert_array_equal(right.position_m, landmark.position_m)

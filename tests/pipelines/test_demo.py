@@ -20,7 +20,14 @@ def test_the_capture_and_the_result_are_on_disk(demo: Demo) -> None:
     capture = {path.name for path in demo.folder.iterdir()}
     result = {path.name for path in (demo.folder / "result").iterdir()}
     assert {"trial.c3d", "raw.c3d", "static.c3d", "subject.toml", "truth.h5"} <= capture
-    assert result == {"summary.json", "motion.h5", "angles.mot", "torques.sto", "reactions.mot", "markers.trc"}
+    assert result == {
+        "summary.json",
+        "motion.h5",
+        "angles.mot",
+        "torques.sto",
+        "reactions.mot",
+        "markers.trc",
+    }
 
 
 def test_leg_angles_follow_the_truth(demo: Demo) -> None:

@@ -25,8 +25,12 @@ def test_pressure_follows_its_target():
 def test_between_spells_the_path_is_straight_and_uniform():
     times = np.linspace(0, 2, 201)
     path = HorizontalPath([(0.0, 0.8), (1.1, 2.0)])
-    path.solve(times, np.zeros((201, 2)) + 0.05 * times[:, None], Jet(0.9 + 0 * times, 0 * times, 0 * times),
-               np.zeros((201, 2)))
+    path.solve(
+        times,
+        np.zeros((201, 2)) + 0.05 * times[:, None],
+        Jet(0.9 + 0 * times, 0 * times, 0 * times),
+        np.zeros((201, 2)),
+    )
     for edge in (0.8, 1.1):
         before, after = path(np.array([edge - 1e-9])), path(np.array([edge + 1e-9]))
         for x, y in zip(before.orders, after.orders, strict=True):
@@ -49,8 +53,14 @@ def test_the_feet_together_give_the_ground_s_wrench():
 
 def test_a_spinning_box_keeps_its_momentum():
     """Momentum = inertia · rate, with an inertia that changes: the rate must change against it."""
-    plan = Flight(1.0, 1.4, *(tuple([(0.0, 0.0), (1.0, 0.1)] for _ in range(3)),
-                              tuple([(1.4, 0.3), (2.0, 0.0)] for _ in range(3))))
+    plan = Flight(
+        1.0,
+        1.4,
+        *(
+            tuple([(0.0, 0.0), (1.0, 0.1)] for _ in range(3)),
+            tuple([(1.4, 0.3), (2.0, 0.0)] for _ in range(3)),
+        ),
+    )
     tumbling = Tumbling(plan)
 
     def momentum(angles):

@@ -34,7 +34,9 @@ def test_skin_artefact_is_slow_and_has_the_stated_size():
 def test_occlusions_reach_the_fraction_in_streaks():
     hidden = cameras.occlusions(2000, 36, 0.1, np.random.default_rng(0))
     assert hidden.mean() == pytest.approx(0.1, abs=0.001)
-    lengths = [end - start for column in hidden.T for start, end in plates.spells(column) if start > 0 and end < 2000]
+    lengths = [
+        end - start for column in hidden.T for start, end in plates.spells(column) if start > 0 and end < 2000
+    ]
     assert min(lengths) >= cameras.OCCLUSION_FRAMES
 
 
@@ -84,7 +86,11 @@ def test_unloaded_plates_show_their_offset(capture, motions):
 def test_events_are_where_contact_begins_and_ends(capture, motions):
     off, down = motions["jump"].flight_s
     assert sorted({(e.label, e.context) for e in capture.trial.events}) == [
-        ("Foot Off", "Left"), ("Foot Off", "Right"), ("Foot Strike", "Left"), ("Foot Strike", "Right")]
+        ("Foot Off", "Left"),
+        ("Foot Off", "Right"),
+        ("Foot Strike", "Left"),
+        ("Foot Strike", "Right"),
+    ]
     for event in capture.trial.events:
         assert event.time_s == pytest.approx(off if event.label == "Foot Off" else down, abs=0.002)
 
@@ -113,8 +119,9 @@ def test_c3d_round_trip(capture, tmp_path):
 
 
 def test_seeds_repeat_and_differ(person, motions):
-    first, again, other = (synthesise_capture(person, motions["squat"], seed=s).trial.markers.positions_m
-                           for s in (1, 1, 2))
+    first, again, other = (
+        synthesise_capture(person, motions["squat"], seed=s).trial.markers.positions_m for s in (1, 1, 2)
+    )
     assert np.array_equal(first, again, equal_nan=True)
     assert not np.array_equal(first, other, equal_nan=True)
 
@@ -129,8 +136,16 @@ def test_people_differ_plausibly():
         assert 20 < p.mass_kg / p.height_m**2 < 28
 
 
-@pytest.mark.parametrize("wrong", [{"markers_sd_m": -1.0}, {"occlusion": 2.0}, {"skin_sd_m": float("nan")},
-                                   {"ghosts": -1}, {"skin_cutoff_hz": 0.0}])
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"markers_sd_m": -1.0},
+        {"occlusion": 2.0},
+        {"skin_sd_m": float("nan")},
+        {"ghosts": -1},
+        {"skin_cutoff_hz": 0.0},
+    ],
+)
 def test_wrong_settings_are_refused(wrong):
     with pytest.raises(InvalidInput):
         CaptureSettings(**wrong)

@@ -31,8 +31,10 @@ def test_momentum_is_pinocchios(body, standing):
     pose = composition.pose(times)
     q, v, _ = composition.coordinates(times)
     data = body.pin_model.createData()
-    expected = [pin.computeCentroidalMomentum(body.pin_model, data, *state).angular.copy()
-                for state in zip(q, v, strict=True)]
+    expected = [
+        pin.computeCentroidalMomentum(body.pin_model, data, *state).angular.copy()
+        for state in zip(q, v, strict=True)
+    ]
     com, spin, _ = composition.figure.momentum(pose)
     assert np.abs(spin - expected).max() < 1e-10
     assert np.abs(com.value[0] - body.centre_of_mass(q[0])).max() < 1e-10

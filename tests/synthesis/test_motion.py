@@ -15,8 +15,12 @@ from mbkf.synthesis.strength import overloaded
 def momentum(body, motion):
     """(T, 6) linear momentum and angular momentum about the centre of mass."""
     data = body.pin_model.createData()
-    return np.array([pin.computeCentroidalMomentum(body.pin_model, data, q, v).vector.copy()
-                     for q, v in zip(motion.q, motion.v, strict=True)])
+    return np.array(
+        [
+            pin.computeCentroidalMomentum(body.pin_model, data, q, v).vector.copy()
+            for q, v in zip(motion.q, motion.v, strict=True)
+        ]
+    )
 
 
 def slopes(values, step, rate_hz):
@@ -34,7 +38,9 @@ def test_newton_and_euler_hold_at_every_frame(body, motion):
 
 
 def test_acceleration_is_the_derivative_of_velocity_to_second_order(motion):
-    errors = [np.abs(slopes(motion.v, step, motion.rate_hz) - motion.a[step:-step:step]) for step in (4, 2, 1)]
+    errors = [
+        np.abs(slopes(motion.v, step, motion.rate_hz) - motion.a[step:-step:step]) for step in (4, 2, 1)
+    ]
     typical = [np.median(error[error > 0]) for error in errors]
     assert typical[0] / typical[1] == pytest.approx(4.0, rel=0.3)
     assert typical[1] / typical[2] == pytest.approx(4.0, rel=0.3)
@@ -44,7 +50,9 @@ def test_acceleration_is_the_derivative_of_velocity_to_second_order(motion):
 def test_velocity_is_the_derivative_of_configuration_to_second_order(body, motion):
     def error(step):
         q, v = motion.q, motion.v
-        moved = np.array([body.difference(q[k - step], q[k + step]) for k in range(step, len(q) - step, step)])
+        moved = np.array(
+            [body.difference(q[k - step], q[k + step]) for k in range(step, len(q) - step, step)]
+        )
         return np.abs(moved * motion.rate_hz / (2 * step) - v[step:-step:step])
 
     coarse, fine = error(2), error(1)
@@ -125,10 +133,16 @@ def test_seeds_repeat_and_differ(body, motions):
     assert np.abs(other.q - again.q).max() > 0.01
 
 
-@pytest.mark.parametrize(("name", "seconds", "rate_hz", "error"), [
-    ("dance", 3.0, 100.0, UnknownName), ("squat", 0.0, 100.0, InvalidInput),
-    ("squat", float("nan"), 100.0, InvalidInput),
-    ("squat", 3.0, 5.0, InvalidInput), ("jump", 1.5, 100.0, InvalidInput)])
+@pytest.mark.parametrize(
+    ("name", "seconds", "rate_hz", "error"),
+    [
+        ("dance", 3.0, 100.0, UnknownName),
+        ("squat", 0.0, 100.0, InvalidInput),
+        ("squat", float("nan"), 100.0, InvalidInput),
+        ("squat", 3.0, 5.0, InvalidInput),
+        ("jump", 1.5, 100.0, InvalidInput),
+    ],
+)
 def test_wrong_requests_are_refused(body, name, seconds, rate_hz, error):
     with pytest.raises(error):
         synthesise_motion(body, name, seconds, rate_hz)
