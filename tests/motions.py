@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from mbkf.filters.tracking import Track
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.human import HumanModel
@@ -144,3 +145,23 @@ def worst(values):
 def assert_near(found, expected, tolerance):
     """Equal within an absolute tolerance and nothing else."""
     np.testing.assert_allclose(found, expected, rtol=0, atol=tolerance)
+
+
+def track_of(q, v, a, **known):
+    """A followed trial with this motion; what is not given is 0, as if everything were known exactly."""
+    frames, nv = a.shape
+    fields = {
+        name: np.zeros((frames, nv))
+        for name in ("position_sd", "velocity_sd", "angle_sd", "rate_sd", "torque_sd")
+    }
+    fields |= {
+        "foot_height_sd": np.zeros((frames, 2)),
+        "refused": np.zeros((frames, 0), bool),
+        "tracked": np.ones(frames, bool),
+        "nis": np.zeros(frames),
+        "readings": np.zeros(frames, int),
+        "step_seconds": np.zeros(frames),
+        "starts": (0,),
+        "covariance": None,
+    }
+    return Track(q=q, v=v, a=a, **(fields | known))

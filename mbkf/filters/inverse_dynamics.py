@@ -18,28 +18,25 @@ class InverseDynamics:
 
     Attributes:
         tau: (T, nv) generalised forces by eq. 3.12; the first six are the pelvis residual in pelvis axes.
-        sd_tau: (T, nv) standard deviation from that of the velocities.
         residual_force_n: (T, 3) residual force, world axes.
         residual_moment_nm: (T, 3) residual moment about the pelvis origin, world axes.
     """
 
     tau: Array
-    sd_tau: Array
     residual_force_n: Array
     residual_moment_nm: Array
 
 
-def inverse_dynamics(model: HumanModel, track: Track, foot_wrench: Array, dt_s: float) -> InverseDynamics:
+def inverse_dynamics(model: HumanModel, track: Track, foot_wrench: Array) -> InverseDynamics:
     """B_dᵀ T_d = M a − Q_g − B_pᵀ p with the plates' wrenches p on the feet (eq. 3.12).
 
     Args:
         model: The body.
         track: The followed trial.
         foot_wrench: (T, 2, 6) force N and moment N m about the world's origin on right and left foot, world axes.
-        dt_s: Frame period.
     """
     a = track.a
-    tau, sd = np.full_like(a, np.nan), np.full_like(a, np.nan)
+    tau = np.full_like(a, np.nan)
     force, moment = np.full((len(a), 3), np.nan), np.full((len(a), 3), np.nan)
     pelvis = model.joint("pelvis").joint_id
     supports = [model.supports[model.joint(segment).joint_id] for segment in FEET]
@@ -49,9 +46,6 @@ def inverse_dynamics(model: HumanModel, track: Track, foot_wrench: Array, dt_s: 
         rotations, _, jacobian = model.placements_and_jacobian(q)
         for moves, wrench in zip(supports, foot_wrench[t], strict=True):
             tau[t] -= np.where(moves, wrench @ jacobian, 0.0)
-        M = model.mass_matrix(q)
-        spread = M @ track.velocity_step_covariance[t] @ M / dt_s**2
-        sd[t] = np.sqrt(np.maximum(np.diag(spread), 0.0))
         force[t] = rotations[pelvis] @ tau[t, :3]
         moment[t] = rotations[pelvis] @ tau[t, 3:6]
-    return InverseDynamics(tau, sd, force, moment)
+    return InverseDynamics(tau, force, moment)

@@ -10,7 +10,8 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import NotObservable
-from mbkf.filters.kinematic import KinematicFilter
+from mbkf.filters.kinematic import KinematicFilter, StepResult
+from mbkf.filters.spread import SpreadReader
 from mbkf.filters.state import FilterState
 
 WARM_UP_S = 0.25
@@ -28,9 +29,10 @@ class Track:
         q: (T, nq) configurations.
         v: (T, nv) velocities.
         a: (T, nv) accelerations (v_k − v_{k−1}) / Δt (eq. 3.7).
-        position_covariance: (T, nv, nv) covariance of q.
-        velocity_sd: (T, nv).
-        velocity_step_covariance: (T, nv, nv) covariance of v_k − v_{k−1}; NaN at a start.
+        position_sd, velocity_sd: (T, nv) standard deviations in the tangent space.
+        angle_sd, rate_sd: (T, A) of the clinical coordinates and their rates.
+        torque_sd: (T, nv) of generalised forces, as far as accelerations cause it; NaN at a start.
+        foot_height_sd: (T, 2) of the height of right and left foot, m.
         refused: (T, M) markers seen but not believed.
         tracked: (T,) whether enough markers were believed.
         nis: (T,) normalised innovation squared; NaN at a start.
@@ -43,9 +45,12 @@ class Track:
     q: Array
     v: Array
     a: Array
-    position_covariance: Array
+    position_sd: Array
     velocity_sd: Array
-    velocity_step_covariance: Array
+    angle_sd: Array
+    rate_sd: Array
+    torque_sd: Array
+    foot_height_sd: Array
     refused: BoolArray
     tracked: BoolArray
     nis: Array
@@ -73,43 +78,37 @@ def track(
     Raises:
         NotObservable: In no frame do the markers fit the body.
     """
-    frames, nv = len(measured_m), kalman.sensor.model.nv
-    out = _empty(frames, measured_m.shape[1], kalman, keep_covariance)
+    frames = len(measured_m)
+    record = _Recorder(kalman, frames, measured_m.shape[1], keep_covariance)
     state: FilterState | None = None
-    starts: list[int] = []
-    lost_for, early = 0, np.zeros((0, nv))
+    start: _Start | None = None
+    lost_for = 0
     for t in range(frames):
         begin = time.perf_counter()
+        fresh = None
         if state is None or lost_for * kalman.plant.dt_s > kalman.settings.restart_after_s:
             fresh = _warm_start(kalman, measured_m, t, None if state is None else state.q)
-            if fresh is not None:
-                state, lost_for = fresh.state, 0
-                starts.append(t)
-                early = fresh.accelerations
-                out.tracked[t], out.a[t] = True, early[0]
-                _store(out, t, state, nv)
-                out.step_seconds[t] = time.perf_counter() - begin
-                continue
-        if state is None:
-            continue
-        result = kalman.step(state, measured_m[t])
-        since = t - starts[-1]
-        out.a[t] = early[since] if since < len(early) else (result.state.v - state.v) / kalman.plant.dt_s
-        state = result.state
-        lost_for = 0 if result.tracked else lost_for + 1
-        out.refused[t], out.tracked[t] = result.refused, result.tracked
-        out.nis[t], out.readings[t] = result.nis, result.readings
-        out.velocity_step_covariance[t] = result.velocity_step_covariance
-        _store(out, t, state, nv)
-        out.step_seconds[t] = time.perf_counter() - begin
+        if fresh is not None:
+            start, state, lost_for = fresh, fresh.state, 0
+            seconds = time.perf_counter() - begin
+            record.start(t, fresh, seconds)
+        elif state is not None and start is not None:
+            result = kalman.step(state, measured_m[t])
+            since = t - record.starts[-1]
+            difference = (result.state.v - state.v) / kalman.plant.dt_s
+            acceleration = start.accelerations[since] if since < len(start.accelerations) else difference
+            state = result.state
+            lost_for = 0 if result.tracked else lost_for + 1
+            seconds = time.perf_counter() - begin
+            record.step(t, result, acceleration, seconds)
         if progress is not None and (t % 20 == 0 or t == frames - 1):
             progress(t + 1, frames)
-    if not starts:
+    if not record.starts:
         raise NotObservable(
             "in no frame do the markers fit the scaled body; is this the subject's protocol, "
             "and are unit and axes right (--unit, --up)?"
         )
-    return Track(**{**out.__dict__, "starts": tuple(starts)})
+    return record.track()
 
 
 @dataclass(frozen=True)
@@ -138,32 +137,55 @@ def _warm_start(kalman: KinematicFilter, measured_m: Array, t: int, guess: Array
     return _Start(state.reversed_in_time(), accelerations[: max(1, round(SETTLING_S / dt))])
 
 
-def _empty(frames: int, markers: int, kalman: KinematicFilter, keep: bool) -> Track:
-    nq, nv = kalman.sensor.model.nq, kalman.sensor.model.nv
+class _Recorder:
+    """Fills the arrays of a track, frame by frame."""
 
-    def nan(*shape: int) -> Array:
-        return np.full((frames, *shape), np.nan)
+    def __init__(self, kalman: KinematicFilter, frames: int, markers: int, keep_covariance: bool) -> None:
+        model = kalman.sensor.model
+        self._spread = SpreadReader(model, kalman.plant.dt_s)
+        self.starts: list[int] = []
+        widths = {
+            "q": (model.nq,),
+            "v": (model.nv,),
+            "a": (model.nv,),
+            "position_sd": (model.nv,),
+            "velocity_sd": (model.nv,),
+            "angle_sd": (self._spread.coordinates,),
+            "rate_sd": (self._spread.coordinates,),
+            "torque_sd": (model.nv,),
+            "foot_height_sd": (2,),
+            "nis": (),
+            "step_seconds": (),
+        }
+        self._arrays: dict[str, np.ndarray] = {n: np.full((frames, *w), np.nan) for n, w in widths.items()}
+        self._arrays["refused"] = np.zeros((frames, markers), dtype=bool)
+        self._arrays["tracked"] = np.zeros(frames, dtype=bool)
+        self._arrays["readings"] = np.zeros(frames, dtype=int)
+        self._covariance = np.full((frames, 2 * model.nv, 2 * model.nv), np.nan) if keep_covariance else None
 
-    return Track(
-        q=nan(nq),
-        v=nan(nv),
-        a=nan(nv),
-        position_covariance=nan(nv, nv),
-        velocity_sd=nan(nv),
-        velocity_step_covariance=nan(nv, nv),
-        refused=np.zeros((frames, markers), dtype=bool),
-        tracked=np.zeros(frames, dtype=bool),
-        nis=nan(),
-        readings=np.zeros(frames, dtype=int),
-        step_seconds=nan(),
-        starts=(),
-        covariance=nan(2 * nv, 2 * nv) if keep else None,
-    )
+    def start(self, t: int, start: _Start, seconds: float) -> None:
+        """A frame at which the filter was started."""
+        self.starts.append(t)
+        self._state(t, start.state, start.accelerations[0], seconds, None)
+        self._arrays["tracked"][t] = True
 
+    def step(self, t: int, result: StepResult, acceleration: Array, seconds: float) -> None:
+        """A frame the filter stepped to."""
+        self._state(t, result.state, acceleration, seconds, result.velocity_step_covariance)
+        for name in ("refused", "tracked", "nis", "readings"):
+            self._arrays[name][t] = getattr(result, name)
 
-def _store(out: Track, t: int, state: FilterState, nv: int) -> None:
-    out.q[t], out.v[t] = state.q, state.v
-    out.position_covariance[t] = state.P[:nv, :nv]
-    out.velocity_sd[t] = np.sqrt(np.diag(state.P)[nv:])
-    if out.covariance is not None:
-        out.covariance[t] = state.P
+    def _state(
+        self, t: int, state: FilterState, acceleration: Array, seconds: float, step_covariance: Array | None
+    ) -> None:
+        spread = self._spread.at(state, step_covariance)
+        values = {"q": state.q, "v": state.v, "a": acceleration, "step_seconds": seconds}
+        values |= {f"{name}_sd": value for name, value in vars(spread).items()}
+        for name, value in values.items():
+            self._arrays[name][t] = value
+        if self._covariance is not None:
+            self._covariance[t] = state.P
+
+    def track(self) -> Track:
+        """What was recorded."""
+        return Track(**self._arrays, starts=tuple(self.starts), covariance=self._covariance)

@@ -11,6 +11,9 @@ from mbkf.filters.tracking import Track
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 
+BLOCK = 1000
+"""Frames treated at once."""
+
 
 @dataclass(frozen=True)
 class ClinicalMotion:
@@ -26,39 +29,43 @@ class ClinicalMotion:
     singular: BoolArray
 
 
-def clinical_motion(model: HumanModel, track: Track, tau: Array, sd_tau: Array) -> ClinicalMotion:
+def clinical_motion(model: HumanModel, track: Track, tau: Array, tau_sd: Array) -> ClinicalMotion:
     """Coordinates θ, rates E v, moments Bᵀτ, and their spreads by the same linear maps.
 
     Args:
         model: The body.
         track: The followed trial.
         tau: (T, nv) generalised forces.
-        sd_tau: (T, nv) their standard deviations.
+        tau_sd: (T, nv) their standard deviations.
     """
     clinical = ClinicalAngles(model)
     angles = clinical.angles(track.q)
     known = ~np.isnan(track.q).any(axis=1)
     shape = angles.shape
-    rates, angles_sd, rates_sd, moments, variance = (np.full(shape, np.nan) for _ in range(5))
+    rates, moments, variance = (np.full(shape, np.nan) for _ in range(3))
     q, theta = track.q[known], angles[known]
-    E = clinical.rate_matrices(q, theta)
-    rates[known] = np.einsum("tai,ti->ta", E, track.v[known])
-    spread = np.einsum("tai,tij,taj->ta", E, track.position_covariance[known], E, optimize=True)
-    angles_sd[known] = np.sqrt(np.maximum(spread, 0.0))
-    rates_sd[known] = np.sqrt(np.einsum("tai,ti->ta", E**2, track.velocity_sd[known] ** 2))
+    rates[known] = _rates(clinical, q, theta, track.v[known])
     moments[known] = clinical.moments(q, tau[known], theta)
-    variance[known] = _moment_variance(clinical, q, sd_tau[known], theta)
+    variance[known] = _moment_variance(clinical, q, tau_sd[known], theta)
     singular = np.zeros(shape, dtype=bool)
     singular[known] = clinical.singular(theta)
     return ClinicalMotion(
-        clinical.names, angles, rates, moments, angles_sd, rates_sd, np.sqrt(variance), singular
+        clinical.names, angles, rates, moments, track.angle_sd, track.rate_sd, np.sqrt(variance), singular
     )
 
 
-def _moment_variance(clinical: ClinicalAngles, q: Array, sd_tau: Array, angles: Array) -> Array:
+def _rates(clinical: ClinicalAngles, q: Array, angles: Array, v: Array) -> Array:
+    """(T, A) E v, some frames at a time, because E has (A, nv) numbers per frame."""
+    blocks = [slice(first, first + BLOCK) for first in range(0, len(q), BLOCK)]
+    return np.concatenate(
+        [np.einsum("tai,ti->ta", clinical.rate_matrices(q[b], angles[b]), v[b]) for b in blocks]
+    )
+
+
+def _moment_variance(clinical: ClinicalAngles, q: Array, tau_sd: Array, angles: Array) -> Array:
     """Σ B² sd² per joint, one axis of every joint at a time (no coordinate mixes two joints)."""
     axis = np.concatenate(
         [np.arange(joint.v.stop - joint.v.start) % 3 for joint in clinical.model.joints.values()]
     )
-    by_axis = [clinical.moments(q, np.where(axis == one, sd_tau, 0.0), angles) for one in range(3)]
+    by_axis = [clinical.moments(q, np.where(axis == one, tau_sd, 0.0), angles) for one in range(3)]
     return np.square(by_axis).sum(axis=0)

@@ -22,7 +22,7 @@ from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.clinical import clinical_motion
 from mbkf.scaling.correction import correct_markers
-from mbkf.sensors.contacts import FootLoads, assign_feet, feet_located
+from mbkf.sensors.contacts import FootLoads, assign_feet
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.version import __version__
 
@@ -31,6 +31,10 @@ StageCallback = Callable[[str, int, int], None]
 MIN_MARKERS = 6
 MIN_PRESENT = 0.02
 """A marker seen in a smaller share of the frames than this does not count for what can be observed."""
+
+
+FOOT_SD_M = 0.03
+"""A foot whose height is known no better than this may or may not touch the floor."""
 
 
 @dataclass(frozen=True)
@@ -173,10 +177,11 @@ def _assemble(
     has_plates: bool,
 ) -> Reconstruction:
     model = sensor.model
-    dynamics = inverse_dynamics(model, result, loads.wrench, 1.0 / measured.rate_hz)
+    dynamics = inverse_dynamics(model, result, loads.wrench)
     known = np.where(has_plates, 1.0, np.nan)
-    tau, sd_tau = dynamics.tau * known, dynamics.sd_tau * known
-    clinical = clinical_motion(model, result, tau, sd_tau)
+    tau, tau_sd = dynamics.tau * known, result.torque_sd * known
+    clinical = clinical_motion(model, result, tau, tau_sd)
+    located = (result.foot_height_sd <= FOOT_SD_M).all(axis=1)
     names = dof_names(model)
     return Reconstruction(
         trial=Path(capture.path).stem or "capture",
@@ -192,9 +197,9 @@ def _assemble(
         v=result.v,
         a=result.a,
         tau=tau,
-        sd_q=np.sqrt(np.diagonal(result.position_covariance, axis1=1, axis2=2)),
+        sd_q=result.position_sd,
         sd_v=result.velocity_sd,
-        sd_tau=sd_tau,
+        sd_tau=tau_sd,
         coordinate_names=clinical.names,
         angles=clinical.angles,
         angle_rates=clinical.rates,
@@ -214,7 +219,7 @@ def _assemble(
         residual_force_n=dynamics.residual_force_n * known,
         residual_moment_nm=dynamics.residual_moment_nm * known,
         tracked=result.tracked,
-        valid=loads.valid & result.tracked & feet_located(model, result.q, result.position_covariance),
+        valid=loads.valid & result.tracked & located,
         held_dofs=tuple(name for name, fixed in zip(names, held, strict=True) if fixed),
         nis=result.nis,
         nis_readings=result.readings,

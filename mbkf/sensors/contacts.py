@@ -28,9 +28,6 @@ STANDING_SHARE = 0.05
 """Share of body weight that the plates must carry when someone stands on the floor."""
 
 
-FOOT_SD_M = 0.03
-"""A foot whose height is known no better than this may or may not touch the floor."""
-
 FALL_SHARE = 0.4
 FALL_WINDOW_S = 0.07
 FALL_EDGE_S = 0.02
@@ -113,23 +110,6 @@ def assign_feet(
     flight = ~touching.any(axis=1) & _falling(q[:, 2], rate_hz)
     valid, warnings = _validity(model, touching, flight, foot, wrench, pressure, recorded)
     return FootLoads(total, at_feet, free, wrench, foot, valid, warnings)
-
-
-def feet_located(model: HumanModel, q: Array, position_covariance: Array) -> BoolArray:
-    """(T,) whether the height of both feet is known to within FOOT_SD_M, so that contact can be told.
-
-    Args:
-        model: The body.
-        q: (T, nq) configurations, NaN where untracked.
-        position_covariance: (T, nv, nv) their covariance.
-    """
-    located = np.zeros(len(q), dtype=bool)
-    ids = [model.joint(segment).joint_id for segment in FEET]
-    for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
-        _, origins = model.placements(q[t])
-        rows = [model.segment_jacobian(q[t], s, origins[i])[2] for s, i in zip(FEET, ids, strict=True)]
-        located[t] = all(row @ position_covariance[t] @ row <= FOOT_SD_M**2 for row in rows)
-    return located
 
 
 def _about_world_origin(plate: PlateReadings, times_s: Array, rate_hz: float) -> tuple[Array, BoolArray]:

@@ -6,8 +6,7 @@ import pytest
 
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.filters.inverse_dynamics import inverse_dynamics
-from mbkf.filters.tracking import Track
-from tests.motions import assert_near, moderate_pose, random_model, smooth_motion, worst
+from tests.motions import assert_near, moderate_pose, random_model, smooth_motion, track_of, worst
 
 DOWN = np.array([0.0, 0.0, -GRAVITY_M_S2])
 
@@ -20,26 +19,6 @@ def rng():
 @pytest.fixture
 def model(rng):
     return random_model(rng)
-
-
-def track_of(q, v, a, step_covariance=None):
-    frames, nv = a.shape
-    nothing = np.zeros((frames, nv, nv))
-    return Track(
-        q,
-        v,
-        a,
-        nothing,
-        np.zeros((frames, nv)),
-        nothing if step_covariance is None else step_covariance,
-        np.zeros((frames, 0), bool),
-        np.ones(frames, bool),
-        np.zeros(frames),
-        np.zeros(frames, int),
-        np.zeros(frames),
-        (0,),
-        None,
-    )
 
 
 def pelvis_axes(model, q):
@@ -75,14 +54,14 @@ def test_free_fall_needs_no_torque(model, rng):
     q = moderate_pose(model, rng)
     a = np.zeros((1, model.nv))
     a[0, :3] = pelvis_axes(model, q).T @ DOWN
-    found = inverse_dynamics(model, track_of(q[None], 0 * a, a), np.zeros((1, 2, 6)), 0.01)
+    found = inverse_dynamics(model, track_of(q[None], 0 * a, a), np.zeros((1, 2, 6)))
     assert_near(found.tau, 0.0, 1e-12)
     assert_near(found.residual_force_n, 0.0, 1e-12)
 
 
 def test_without_reactions_the_residual_carries_the_weight(model, rng):
     q = moderate_pose(model, rng)
-    found = inverse_dynamics(model, still(model, q), np.zeros((1, 2, 6)), 0.01)
+    found = inverse_dynamics(model, still(model, q), np.zeros((1, 2, 6)))
     weight = model.mass_kg * DOWN
     assert_near(found.residual_force_n[0], -weight, 2e-12)
     assert_near(found.residual_moment_nm[0], -np.cross(model.centre_of_mass(q) - q[:3], weight), 2e-12)
@@ -95,7 +74,7 @@ def test_standing_still_the_feet_balance_the_weight(model, rng):
     wrench = np.zeros((1, 2, 6))
     for side, share in enumerate((0.3, 0.7)):
         wrench[0, side] = np.r_[-share * weight, np.cross(centre, -share * weight)]
-    found = inverse_dynamics(model, still(model, q), wrench, 0.01)
+    found = inverse_dynamics(model, still(model, q), wrench)
     assert_near(found.residual_force_n, 0.0, 1e-12)
     assert_near(found.residual_moment_nm, 0.0, 1e-12)
     assert_near(found.tau[0, :6], 0.0, 1e-12)
@@ -106,7 +85,7 @@ def test_standing_still_the_feet_balance_the_weight(model, rng):
 
 def test_with_the_exact_reactions_there_is_no_residual(model, rng):
     motion = moving(model, rng)
-    found = inverse_dynamics(model, motion, exact_foot_wrenches(model, motion, rng), 0.01)
+    found = inverse_dynamics(model, motion, exact_foot_wrenches(model, motion, rng))
     assert_near(found.tau[:, :6], 0.0, 1e-11)
     assert_near(found.residual_force_n, 0.0, 1e-11)
     assert_near(found.residual_moment_nm, 0.0, 1e-11)
@@ -117,7 +96,7 @@ def test_torques_equal_newton_euler_with_forces_on_the_feet(model, rng):
     """Pinocchio's recursive algorithm with external forces in the feet's own frames is the reference."""
     motion = moving(model, rng)
     wrench = exact_foot_wrenches(model, motion, rng)
-    found = inverse_dynamics(model, motion, wrench, 0.01)
+    found = inverse_dynamics(model, motion, wrench)
     data = model.pin_model.createData()
     for t in range(len(motion.q)):
         pin.forwardKinematics(model.pin_model, data, motion.q[t])
@@ -142,7 +121,7 @@ def test_the_power_of_torques_and_reactions_changes_the_energy(model, rng):
             source.q(at)
         )
 
-    power = inverse_dynamics(model, motion, wrench, 0.01).tau[0] @ v
+    power = inverse_dynamics(model, motion, wrench).tau[0] @ v
     for side, foot in enumerate(("right_foot", "left_foot")):
         power += wrench[0, side] @ model.segment_jacobian(q, foot, np.zeros(3)) @ v
     assert power == pytest.approx((energy(t + h) - energy(t - h)) / (2 * h), abs=3e-7)
@@ -150,28 +129,17 @@ def test_the_power_of_torques_and_reactions_changes_the_energy(model, rng):
 
 def test_residual_is_the_first_six_torques_in_world_axes(model, rng):
     motion = moving(model, rng, frames=2)
-    found = inverse_dynamics(model, motion, np.zeros((2, 2, 6)), 0.01)
+    found = inverse_dynamics(model, motion, np.zeros((2, 2, 6)))
     for t in range(2):
         R = pelvis_axes(model, motion.q[t])
         assert_near(found.residual_force_n[t], R @ found.tau[t, :3], 1e-10)
         assert_near(found.residual_moment_nm[t], R @ found.tau[t, 3:6], 1e-10)
 
 
-def test_spread_is_that_of_the_velocity_difference_through_the_mass_matrix(model, rng):
-    """Var τ = M Cov(v_k − v_{k−1}) Mᵀ / Δt²: the same for samples drawn from it."""
-    motion = moving(model, rng, frames=1)
-    A = 0.01 * rng.normal(size=(model.nv, model.nv))
-    noisy = track_of(motion.q, motion.v, motion.a, (A @ A.T)[None])
-    found = inverse_dynamics(model, noisy, np.zeros((1, 2, 6)), 0.01)
-    changes = (A @ rng.normal(size=(model.nv, 4000))) / 0.01
-    tau = model.mass_matrix(motion.q[0]) @ changes
-    np.testing.assert_allclose(found.sd_tau[0], tau.std(axis=1), rtol=0.05)
-
-
 def test_frames_not_followed_stay_nan(model, rng):
     motion = moving(model, rng, frames=3)
     motion.a[1] = np.nan
-    found = inverse_dynamics(model, motion, np.zeros((3, 2, 6)), 0.01)
-    for values in (found.tau, found.sd_tau, found.residual_force_n, found.residual_moment_nm):
+    found = inverse_dynamics(model, motion, np.zeros((3, 2, 6)))
+    for values in (found.tau, found.residual_force_n, found.residual_moment_nm):
         assert np.isnan(values[1]).all()
         assert np.isfinite(values[[0, 2]]).all()

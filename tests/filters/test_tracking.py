@@ -63,12 +63,12 @@ def test_accelerations_are_differences_of_velocities(followed):
 
 
 def test_spreads_are_those_of_the_covariance(followed):
-    np.testing.assert_array_equal(followed.position_covariance, followed.covariance[:, :NV, :NV])
     variance = np.diagonal(followed.covariance, axis1=1, axis2=2)
+    np.testing.assert_allclose(followed.position_sd**2, variance[:, :NV], rtol=1e-12)
     np.testing.assert_allclose(followed.velocity_sd**2, variance[:, NV:], rtol=1e-12)
     started = np.arange(FRAMES) == 0
-    assert np.isnan(followed.velocity_step_covariance[started]).all()
-    assert np.isfinite(followed.velocity_step_covariance[~started]).all()
+    assert np.isnan(followed.torque_sd[started]).all()
+    assert np.isfinite(followed.torque_sd[~started]).all()
 
 
 def test_covariances_are_kept_only_on_request(motion):
@@ -88,7 +88,7 @@ def test_a_short_loss_is_bridged(motion, followed):
     assert result.starts == (0,)
     np.testing.assert_array_equal(np.flatnonzero(~result.tracked), np.arange(30, 40))
     assert np.isfinite(result.q).all()
-    before, after = (np.sqrt(result.position_covariance[t, 0, 0]) for t in (29, 39))
+    before, after = (result.position_sd[t, 0] for t in (29, 39))
     assert after > 5 * before
 
 
@@ -108,7 +108,7 @@ def test_frames_before_the_first_markers_are_nan(motion):
     result = track(kalman(), measured)
     assert result.starts == (12,)
     assert not result.tracked[:12].any()
-    for name in ("q", "v", "a", "position_covariance", "velocity_sd", "nis", "step_seconds"):
+    for name in ("q", "v", "a", "position_sd", "velocity_sd", "angle_sd", "nis", "step_seconds"):
         assert np.isnan(getattr(result, name)[:12]).all(), name
     assert np.isfinite(result.q[12:]).all()
     assert worst(angle_errors(MODEL, result.q[12:], motion[0][12:])) < 0.03

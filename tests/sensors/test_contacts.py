@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.io.records import PlateReadings
-from mbkf.sensors.contacts import FOOT_SD_M, assign_feet, feet_located, sole_points, stretches
+from mbkf.sensors.contacts import assign_feet, sole_points, stretches
 from tests.motions import assert_near, moderate_pose, random_model, reference_model
 
 MODEL = reference_model()
@@ -191,26 +191,6 @@ def test_hanging_without_falling_is_not_flight():
     loads = assigned(q, [plate(ball(q[0], side), load, 110) for side in (RIGHT, LEFT)])
     assert loads.valid[:19].all()
     assert not loads.valid[45:].any()
-
-
-@pytest.mark.parametrize(("sd_m", "known"), [(0.9 * FOOT_SD_M, True), (1.1 * FOOT_SD_M, False)])
-def test_feet_are_located_where_their_height_is_known(sd_m, known):
-    """The whole body's height is uncertain by sd_m, so both feet's are."""
-    P = np.zeros((2, MODEL.nv, MODEL.nv))
-    P[:, 2, 2] = sd_m**2
-    q = np.stack([standing(), np.full(MODEL.nq, np.nan)])
-    assert feet_located(MODEL, q, P).tolist() == [known, False]
-
-
-def test_a_leg_without_markers_has_no_located_foot():
-    P = np.zeros((1, MODEL.nv, MODEL.nv))
-    bent = standing(lifted="right")[None]
-    assert feet_located(MODEL, bent, P).all()
-    dof = MODEL.joint("right_shank").v.start + 1
-    lever = np.linalg.norm(MODEL.description.segment("right_foot").origin_m) * np.sin(np.deg2rad(40))
-    for share, known in ((0.9, True), (1.1, False)):  # height of the ankle = lever × knee angle
-        P[0, dof, dof] = (share * FOOT_SD_M / lever) ** 2
-        assert feet_located(MODEL, bent, P).tolist() == [known]
 
 
 def test_without_plates_nothing_is_measured():

@@ -1,0 +1,73 @@
+"""Standard deviations of angles, rates, torques and foot heights from a filter's covariance."""
+
+import numpy as np
+import pytest
+
+from mbkf.filters.spread import SpreadReader
+from mbkf.filters.state import FilterState
+from mbkf.model.clinical import ClinicalAngles
+from tests.motions import random_model, smooth_motion
+
+DT_S = 0.01
+
+
+@pytest.fixture(scope="module")
+def case():
+    """Body, a state in motion with a random covariance, the covariance of its last velocity step, and the spread."""
+    rng = np.random.default_rng(3)
+    model = random_model(rng)
+    source = smooth_motion(model, rng)
+    A = 1e-3 * rng.normal(size=(2 * model.nv, 2 * model.nv))
+    B = 0.01 * rng.normal(size=(model.nv, model.nv))
+    state = FilterState(source.q(0.4), source.v(0.4), A @ A.T)
+    return model, state, B, SpreadReader(model, DT_S).at(state, B @ B.T)
+
+
+def slopes(model, q, read):
+    """(n, nv) derivative of a reading along the manifold, by central differences."""
+    h = 1e-6
+    ends = [[read(model.integrate(q, s * h * e)) for s in (-1, 1)] for e in np.eye(model.nv)]
+    return np.array([(after - before) / (2 * h) for before, after in ends]).T
+
+
+def test_dofs_are_the_diagonal(case):
+    model, state, _, spread = case
+    np.testing.assert_allclose(np.r_[spread.position, spread.velocity] ** 2, np.diag(state.P), rtol=1e-12)
+    assert len(spread.angle) == SpreadReader(model, DT_S).coordinates
+
+
+def test_angles_by_finite_differences(case):
+    """Var θ = J P Jᵀ with J the derivative of the clinical angles."""
+    model, state, _, spread = case
+    clinical, P = ClinicalAngles(model), state.P[: model.nv, : model.nv]
+    J = slopes(model, state.q, lambda q: clinical.angles(q[None])[0])
+    np.testing.assert_allclose(spread.angle, np.sqrt(np.diag(J @ P @ J.T)), rtol=1e-7)
+
+
+def test_rates_of_independent_dofs(case):
+    """Var θ̇ = Σ E² sd_v²."""
+    model, state, _, spread = case
+    E = ClinicalAngles(model).rate_matrix(state.q)
+    np.testing.assert_allclose(spread.rate**2, E**2 @ spread.velocity**2, rtol=1e-10)
+
+
+def test_foot_heights_by_finite_differences(case):
+    """Var z = J P Jᵀ with J the derivative of the ankles' heights."""
+    model, state, _, spread = case
+    P = state.P[: model.nv, : model.nv]
+    ids = [model.joint(foot).joint_id for foot in ("right_foot", "left_foot")]
+    J = slopes(model, state.q, lambda q: model.placements(q)[1][ids, 2])
+    np.testing.assert_allclose(spread.foot_height, np.sqrt(np.diag(J @ P @ J.T)), rtol=1e-7)
+
+
+def test_torques_are_the_velocity_difference_through_the_mass_matrix(case):
+    """Var τ = M Cov(v_k − v_{k−1}) Mᵀ / Δt²: the same for samples drawn from it."""
+    model, state, B, spread = case
+    changes = (B @ np.random.default_rng(0).normal(size=(model.nv, 4000))) / DT_S
+    tau = model.mass_matrix(state.q) @ changes
+    np.testing.assert_allclose(spread.torque, tau.std(axis=1), rtol=0.05)
+
+
+def test_a_start_has_no_torque(case):
+    model, state, _, _ = case
+    assert np.isnan(SpreadReader(model, DT_S).at(state).torque).all()
