@@ -20,9 +20,11 @@ from mbkf.scaling.problem import FACTOR_BOUNDS, ScalingPrior, ScalingProblem, Sc
 from mbkf.sensors.pose_fit import segment_by_segment
 
 MAX_ITERATIONS = 60
+MAX_STANDING_TILT_DEG = 50.0
 SESSION_SHARE = 0.5
 MIN_SESSION_SD_M = 0.005
-_GIVE_UP_M = 0.15
+MAX_RMS_M = 0.05
+"""Markers that fit worse than this are not this protocol on a person."""
 
 
 def scale_subject(
@@ -47,7 +49,7 @@ def scale_subject(
         progress: Called with accepted iterations and the most there can be.
 
     Raises:
-        InvalidInput: Mass or height is not positive, or no trial is given.
+        InvalidInput: Mass or height is not positive, no trial is given, or nobody stands in the static trial.
         NotObservable: Too few markers of the protocol.
         NotConverged: The fit is so poor that the markers cannot be this protocol on a person.
     """
@@ -73,11 +75,23 @@ def scale_subject(
         solution = _minimise(problem, solution.state, progress)
     errors = np.linalg.norm(problem.errors_m(solution.state), axis=2)
     rms = float(np.sqrt(np.nanmean(errors**2)))
-    if rms > _GIVE_UP_M / 3:
+    if rms > MAX_RMS_M:
         raise NotConverged(
             f"markers fit the body only to {1e3 * rms:.0f} mm; is '{protocol.name}' their protocol?"
         )
+    _require_upright(solution.state.poses[frames.trial < len(static)])
     return _subject(problem, solution, frames, dropped, protocol, mass_kg, height_m, settings)
+
+
+def _require_upright(standing: Array) -> None:
+    """Refuses standing poses (N, nq) whose pelvis lies: the up axis of the file was mistaken."""
+    x, y = standing[:, 3], standing[:, 4]
+    tilt = np.degrees(np.arccos(np.clip(1.0 - 2.0 * (x**2 + y**2), -1.0, 1.0)))
+    if len(tilt) and np.median(tilt) > MAX_STANDING_TILT_DEG:
+        raise InvalidInput(
+            f"in the static trial the pelvis is tilted by {np.median(tilt):.0f}° from upright; "
+            "which axis points up? give --up"
+        )
 
 
 def _problem(

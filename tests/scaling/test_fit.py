@@ -231,3 +231,13 @@ def test_progress_is_told(person):
     scale_subject([person.standing(2)], [], PROTOCOL, mass_kg=72.0, progress=lambda *step: told.append(step))
     assert told[0][0] == 1
     assert all(done <= total for done, total in told)
+
+
+@pytest.mark.parametrize("turn", ["x", "y"])
+def test_a_static_trial_that_lies_is_refused(turn):
+    """The up axis of the file was mistaken: everything is turned by a right angle."""
+    standing = Person(3).standing()
+    x, y, z = np.moveaxis(standing.positions_m, -1, 0)
+    lying = np.stack([x, -z, y] if turn == "x" else [z, y, -x], axis=-1)
+    with pytest.raises(InvalidInput, match="tilted by 90.*--up"):
+        scale_subject([replace(standing, positions_m=lying)], [], PROTOCOL, mass_kg=70.0)
