@@ -239,5 +239,5 @@ def test_a_static_trial_that_lies_is_refused(turn):
     standing = Person(3).standing()
     x, y, z = np.moveaxis(standing.positions_m, -1, 0)
     lying = np.stack([x, -z, y] if turn == "x" else [z, y, -x], axis=-1)
-    with pytest.raises(InvalidInput, match="tilted by 90.*--up"):
+    with pytest.raises(InvalidInput, match=r"tilted by 90.*--up"):
         scale_subject([replace(standing, positions_m=lying)], [], PROTOCOL, mass_kg=70.0)
