@@ -30,6 +30,10 @@ def kalman(**settings):
     )
 
 
+LAG_S = 0.05
+"""A constant-velocity plant trails a changing velocity by its acceleration times the filter's memory."""
+
+
 @pytest.fixture(scope="module")
 def motion():
     q, v, a = smooth_motion(MODEL, np.random.default_rng(1)).frames(FRAMES, RATE_HZ)
@@ -46,13 +50,14 @@ def test_a_clean_trial_is_followed_from_the_first_frame(motion, followed):
     assert followed.tracked.all()
     assert not followed.refused.any()
     assert worst(angle_errors(MODEL, followed.q, motion[0])) < 0.03
-    assert worst(followed.v - motion[1]) < 0.5
+    assert worst(followed.v - motion[1]) < LAG_S * worst(motion[2])
 
 
 def test_the_first_frame_already_knows_its_velocity(motion, followed):
     """The warm start's backward run: no transient from rest."""
-    assert worst(motion[1][0]) > 0.5
-    assert worst(followed.v[0] - motion[1][0]) < 0.5
+    error = worst(followed.v[0] - motion[1][0])
+    assert error < LAG_S * worst(motion[2])
+    assert error < 0.6 * worst(motion[1][0])
 
 
 def test_accelerations_are_differences_of_velocities(followed):
@@ -152,7 +157,7 @@ def test_the_result_does_not_depend_on_where_and_which_way_the_body_moves(motion
     turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
     result = track(kalman(), motion[3] @ turn.T + [3.0, -2.0, 0.5])
     np.testing.assert_allclose(result.q[:, 7:], followed.q[:, 7:], rtol=0, atol=1e-11)
-    np.testing.assert_allclose(result.v, followed.v, rtol=0, atol=2e-10)
+    np.testing.assert_allclose(result.v, followed.v, rtol=0, atol=2e-9)
 
 
 def test_progress_reaches_the_last_frame(motion):
