@@ -11,7 +11,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from mbkf.conventions import Array
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.description import load_body
@@ -28,6 +27,9 @@ LOOKS = 10.0
 POSTURE_LOOKS = 20.0
 """The same for the posture; it keeps a knee from taking the skin's sideways movement for its own."""
 
+OUTLIER_M = 0.06
+"""A sample further than this from the fitted body is a wrong point and left out."""
+
 FIXED_FACTOR_SD = 1e-5
 
 
@@ -41,36 +43,46 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
     Raises:
         NotObservable: Too few of the subject's markers are in the trial.
     """
-    body = load_body(subject.body)
-    factors = np.array([subject.scale_factors.get(name, 1.0) for name in body.scale_factors])
-    own = tuple(_as_protocol_marker(marker) for marker in subject.markers)
-    frames = choose_frames([trial], Protocol(subject.protocol, subject.protocol, body.name, own), FRAMES)
-    local = np.array([m.position_m for m in frames.markers])
-    scaled = np.array([body.segment(m.segment).scale_matrix @ factors for m in frames.markers])
-    markers = tuple(
-        replace(m, position_m=p / s) for m, p, s in zip(frames.markers, local, scaled, strict=True)
-    )
-    prior = ScalingPrior(
-        factors=factors,
-        factor_covariance=FIXED_FACTOR_SD**2 * np.eye(len(factors)),
-        offsets_m=np.zeros_like(local),
-        placement_sd_m=np.array([m.placement_sd_m for m in markers]),
-    )
-    count = len(frames.measured_m)
-    share = min(1.0, LOOKS / count)
-    markers = tuple(replace(m, noise_m=m.noise_m / np.sqrt(share)) for m in markers)
-    weight = np.full(count, min(1.0, POSTURE_LOOKS / count))
-    problem = ScalingProblem(body, markers, frames.measured_m, weight, prior)
+    problem = _problem(subject, trial)
     sensor = problem.sensor(problem.start(np.zeros((0, problem.posture.model.nq))))
-    start = problem.start(np.array([segment_by_segment(sensor, frame) for frame in frames.measured_m]))
-    state = minimise(start, problem.linearise, problem.cost, problem.move, tolerance=1e-3).state
-    moved: dict[str, Array] = {
-        m.name: problem.local_m(state.factors, state.offsets_m)[i] for i, m in enumerate(markers)
-    }
+    state = problem.start(np.array([segment_by_segment(sensor, frame) for frame in problem.measured_m]))
+    state = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3).state
+    outliers = problem.outliers(state, OUTLIER_M)
+    if outliers.any():
+        problem = problem.without(outliers)
+        state = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3).state
+    local = problem.local_m(state.factors, state.offsets_m)
+    moved = {marker.name: position for marker, position in zip(problem.markers, local, strict=True)}
     return replace(
         subject,
         markers=tuple(replace(m, position_m=moved.get(m.name, m.position_m)) for m in subject.markers),
     )
+
+
+def _problem(subject: Subject, trial: MarkerTrajectories) -> ScalingProblem:
+    """Scaling with fixed factors: poses and offsets only, each marker near its place in the subject file."""
+    body = load_body(subject.body)
+    factors = np.array([subject.scale_factors.get(name, 1.0) for name in body.scale_factors])
+    own = tuple(_as_protocol_marker(marker) for marker in subject.markers)
+    frames = choose_frames([trial], Protocol(subject.protocol, subject.protocol, body.name, own), FRAMES)
+    count = len(frames.measured_m)
+    blur = np.sqrt(max(1.0, count / LOOKS))
+    markers = tuple(
+        replace(
+            m,
+            position_m=m.position_m / (body.segment(m.segment).scale_matrix @ factors),
+            noise_m=m.noise_m * blur,
+        )
+        for m in frames.markers
+    )
+    prior = ScalingPrior(
+        factors=factors,
+        factor_covariance=FIXED_FACTOR_SD**2 * np.eye(len(factors)),
+        offsets_m=np.zeros((len(markers), 3)),
+        placement_sd_m=np.array([m.placement_sd_m for m in markers]),
+    )
+    weight = np.full(count, min(1.0, POSTURE_LOOKS / count))
+    return ScalingProblem(body, markers, frames.measured_m, weight, prior)
 
 
 def _as_protocol_marker(marker: SubjectMarker) -> ProtocolMarker:

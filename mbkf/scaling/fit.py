@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput, NotConverged
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.description import load_body
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.levenberg_marquardt import Solution, minimise
-from mbkf.scaling.frames import ScalingFrames, choose_frames
+from mbkf.scaling.frames import MIN_MARKERS, ScalingFrames, choose_frames
 from mbkf.scaling.problem import FACTOR_BOUNDS, ScalingPrior, ScalingProblem, ScalingSettings, ScalingState
 from mbkf.sensors.pose_fit import segment_by_segment
 
@@ -61,17 +61,17 @@ def scale_subject(
     if not static and not dynamic:
         raise InvalidInput("scaling needs a static trial or at least one --trial")
     frames = choose_frames([*static, *dynamic], protocol, settings.frames_per_trial)
-    problem = _problem(frames, len(static), protocol, height_m, settings, frames.measured_m)
+    problem = _problem(frames, len(static), protocol, height_m, settings)
     start = problem.start(_first_poses(problem))
     solution = _minimise(problem, start, progress)
-    cleaned, dropped = _without_outliers(problem, solution.state, settings.outlier_m)
-    if dropped.sum() > 0.5 * (~np.isnan(problem.measured_m).any(axis=2)).sum():
+    dropped = problem.outliers(solution.state, settings.outlier_m)
+    if dropped.sum() > 0.5 * problem.seen.sum():
         raise NotConverged(
             f"most markers lie further than {1e3 * settings.outlier_m:.0f} mm from the fitted body; is "
             f"'{protocol.name}' their protocol (--protocol) and are their unit and axes right (--unit, --up)?"
         )
     if dropped.any():
-        problem = _problem(frames, len(static), protocol, height_m, settings, cleaned)
+        problem = problem.without(dropped)
         solution = _minimise(problem, solution.state, progress)
     errors = np.linalg.norm(problem.errors_m(solution.state), axis=2)
     rms = float(np.sqrt(np.nanmean(errors**2)))
@@ -100,7 +100,6 @@ def _problem(
     protocol: Protocol,
     height_m: float | None,
     settings: ScalingSettings,
-    measured_m: Array,
 ) -> ScalingProblem:
     body = load_body(protocol.body)
     counts = np.bincount(frames.trial)
@@ -119,23 +118,23 @@ def _problem(
         offsets_m=np.zeros((len(frames.markers), 3)),
         placement_sd_m=np.array([m.placement_sd_m for m in frames.markers]),
     )
-    return ScalingProblem(body, frames.markers, measured_m, weight, prior)
+    return ScalingProblem(body, frames.markers, frames.measured_m, weight, prior)
 
 
 def _first_poses(problem: ScalingProblem) -> Array:
+    """(N, nq) poses from the markers whose place is known beforehand, and all of a segment that has none."""
     state = problem.start(np.zeros((0, problem.posture.model.nq)))
     sensor = problem.sensor(state)
     anatomical = np.array([m.kind != "technical" for m in problem.markers])
     tracked = {m.segment for m in problem.markers if m.kind != "technical"}
-    usable = anatomical | np.array([m.segment not in tracked for m in problem.markers])
-    return np.array(
-        [
-            segment_by_segment(sensor, np.where(usable[:, None], frame, np.nan))
-            if (~np.isnan(frame[usable]).any(axis=1)).sum() >= 6
-            else segment_by_segment(sensor, frame)
-            for frame in problem.measured_m
-        ]
-    )
+    placed = anatomical | np.array([m.segment not in tracked for m in problem.markers])
+    poses = []
+    for frame, seen in zip(problem.measured_m, problem.seen, strict=True):
+        enough = (placed & seen).sum() >= MIN_MARKERS
+        poses.append(
+            segment_by_segment(sensor, np.where(placed[:, None], frame, np.nan) if enough else frame)
+        )
+    return np.array(poses)
 
 
 def _minimise(
@@ -153,18 +152,11 @@ def _minimise(
     )
 
 
-def _without_outliers(problem: ScalingProblem, state: ScalingState, limit_m: float) -> tuple[Array, Array]:
-    """Measured positions with samples too far from the body removed, and which (N, M) those are."""
-    distance = np.nan_to_num(np.linalg.norm(problem.errors_m(state), axis=2))
-    far = distance > limit_m
-    return np.where(far[:, :, None], np.nan, problem.measured_m), far
-
-
 def _subject(
     problem: ScalingProblem,
     solution: Solution[ScalingState],
     frames: ScalingFrames,
-    dropped: Array,
+    dropped: BoolArray,
     protocol: Protocol,
     mass_kg: float,
     height_m: float | None,
@@ -210,7 +202,7 @@ def _report(
     problem: ScalingProblem,
     solution: Solution[ScalingState],
     frames: ScalingFrames,
-    dropped: Array,
+    dropped: BoolArray,
     settings: ScalingSettings,
 ) -> dict[str, Any]:
     """Plain numbers: fit per marker (mm), factors with standard errors and active bounds, what was left out."""

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbkf.conventions import Array, read_only
+from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.model.description import BodyDescription
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import ProtocolMarker
@@ -124,6 +124,15 @@ class ScalingProblem:
         """(N, M, 3) modelled minus measured, NaN where a marker is missing."""
         sensor = self.sensor(state)
         return np.array([sensor.positions(q) for q in state.poses]) - self.measured_m
+
+    def outliers(self, state: ScalingState, limit_m: float) -> BoolArray:
+        """(N, M) samples further than a limit from the fitted body."""
+        return np.nan_to_num(np.linalg.norm(self.errors_m(state), axis=2)) > limit_m
+
+    def without(self, samples: BoolArray) -> ScalingProblem:
+        """The same problem without some samples (N, M)."""
+        kept = np.where(samples[:, :, None], np.nan, self.measured_m)
+        return ScalingProblem(self.body, self.markers, kept, self.posture_weight, self.prior)
 
     def cost(self, state: ScalingState) -> float:
         """Sum of squared residuals."""

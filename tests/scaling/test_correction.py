@@ -85,3 +85,13 @@ def test_too_few_markers_are_refused(model, subject):
     names = [m.name for m in load_protocol("reference36").markers][5:]
     with pytest.raises(NotObservable, match="5 markers"):
         correct_markers(subject, trial(model, subject, lost=names))
+
+
+def test_wrong_points_do_not_move_a_marker(model, subject):
+    """A wrong point under the name of a knee marker in a fifth of the frames, half a metre off."""
+    clean = trial(model, subject)
+    positions = clean.positions_m.copy()
+    positions[::5, clean.names.index("RKNE")] += [0.4, 0.3, 0.0]
+    wrong = replace(clean, positions_m=positions)
+    found, expected = correct_markers(subject, wrong), correct_markers(subject, clean)
+    assert max(moved_mm(expected, found).values()) < 1.0
