@@ -87,6 +87,7 @@ def reconstruct(
 
     Raises:
         NotObservable: Too few of the subject's markers to follow any body.
+        NotConverged: The markers do not fit the subject's body.
         UnknownName: A hidden marker, a withheld plate or the filter does not exist.
     """
     settings = settings or ReconstructSettings()

@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from mbkf.errors import NotConverged
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.description import load_body
@@ -42,12 +43,18 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
 
     Raises:
         NotObservable: Too few of the subject's markers are in the trial.
+        NotConverged: Most of them do not fit the body.
     """
     problem = _problem(subject, trial)
     sensor = problem.sensor(problem.start(np.zeros((0, problem.posture.model.nq))))
     state = problem.start(np.array([segment_by_segment(sensor, frame) for frame in problem.measured_m]))
     state = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3).state
     outliers = problem.outliers(state, OUTLIER_M)
+    if outliers.sum() > 0.5 * problem.seen.sum():
+        raise NotConverged(
+            f"most markers do not fit the subject's body within {1e3 * OUTLIER_M:.0f} mm; is it this subject, "
+            "and are unit and axes right (--unit, --up)?"
+        )
     if outliers.any():
         problem = problem.without(outliers)
         state = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3).state

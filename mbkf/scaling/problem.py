@@ -205,7 +205,11 @@ class ScalingProblem:
         for column in range(3):
             by_shared[np.arange(len(seen)), :, count + 3 * seen + column] = axes[:, :, column]
         size = 3 * len(seen)
-        return errors.ravel(), by_pose.reshape(size, -1), by_shared.reshape(size, -1)
+        return (
+            errors.ravel(),
+            by_pose.reshape(size, by_pose.shape[2]),
+            by_shared.reshape(size, by_shared.shape[2]),
+        )
 
     def _origin_derivatives(self, model: HumanModel, rotations: Array) -> Array:
         """(J, 3, K) derivative of every joint's world origin by the scale factors, along the chain."""

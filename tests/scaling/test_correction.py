@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.errors import NotObservable
+from mbkf.errors import NotConverged, NotObservable
 from mbkf.io.records import MarkerTrajectories
 from mbkf.model.protocol import load_protocol
 from mbkf.scaling.correction import correct_markers
@@ -95,3 +95,10 @@ def test_wrong_points_do_not_move_a_marker(model, subject):
     wrong = replace(clean, positions_m=positions)
     found, expected = correct_markers(subject, wrong), correct_markers(subject, clean)
     assert max(moved_mm(expected, found).values()) < 1.0
+
+
+def test_a_wrong_unit_is_refused(model, subject):
+    """Millimetres taken for metres."""
+    large = trial(model, subject)
+    with pytest.raises(NotConverged, match="--unit"):
+        correct_markers(subject, replace(large, positions_m=1e3 * large.positions_m))
