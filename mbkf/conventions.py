@@ -12,6 +12,7 @@ k scale factors, P covariance, H measurement Jacobian, R measurement covariance.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +28,9 @@ Array = NDArray[np.float64]
 """Floating-point array; its shape stands in the docstring of whoever uses it."""
 
 BoolArray = NDArray[np.bool_]
+
+StageCallback = Callable[[str, int, int], None]
+"""What a pipeline calls as it goes: name of the stage, items done, items in all."""
 
 
 def data_folder(kind: str) -> Path:

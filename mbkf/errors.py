@@ -50,11 +50,3 @@ class NotObservable(MbkfError):
 
 class NotConverged(MbkfError):
     """An optimisation ended without reaching its tolerance."""
-
-
-class MissingDependency(MbkfError):
-    """An optional package is needed for what was asked."""
-
-    def __init__(self, package: str, needed_for: str) -> None:
-        self.package, self.needed_for = package, needed_for
-        super().__init__(f"{needed_for} needs the package '{package}': pip install {package}")

@@ -9,11 +9,10 @@ from contextlib import contextmanager
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
+from mbkf.conventions import StageCallback
+
 Advance = Callable[[int], None]
 """Tells how many more items are done."""
-
-StageCallback = Callable[[str, int, int], None]
-"""What a pipeline calls as it goes: name of the stage, items done, items in all."""
 
 
 @contextmanager

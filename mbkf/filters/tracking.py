@@ -28,7 +28,7 @@ class Track:
     Attributes:
         q: (T, nq) configurations.
         v: (T, nv) velocities.
-        a: (T, nv) accelerations (v_k − v_{k−1}) / Δt (eq. 3.7).
+        a: (T, nv) accelerations (v_k − v_{k−1}) / Δt (eq. 3.7), of the backward run while a start settles.
         position_sd, velocity_sd: (T, nv) standard deviations in the tangent space.
         angle_sd, rate_sd: (T, A) of the clinical coordinates and their rates.
         torque_sd: (T, nv) of generalised forces, as far as accelerations cause it; NaN at a start.

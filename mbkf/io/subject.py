@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import tomllib
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
@@ -61,6 +62,46 @@ class Subject:
     def __post_init__(self) -> None:
         if not (np.isfinite(self.mass_kg) and self.mass_kg > 0):
             raise InvalidInput(f"mass must be positive, got {self.mass_kg} kg; give --mass KG")
+
+
+class Named(Protocol):
+    """Anything with a ``name`` and ``aliases``: a marker of a protocol or of a subject."""
+
+    @property
+    def name(self) -> str:
+        """Its own name."""
+
+    @property
+    def aliases(self) -> tuple[str, ...]:
+        """Other names for it."""
+
+
+Marker = TypeVar("Marker", bound=Named)
+
+
+def match_names(names: Iterable[str], markers: Iterable[Marker]) -> dict[str, Marker]:
+    """Which of a capture's names belong to which marker, each marker once: by its own name, else by an alias.
+
+    Args:
+        names: Names in the capture.
+        markers: Markers to look for.
+
+    Returns:
+        The marker of each name that has one, in the order of the names.
+    """
+    present, known = tuple(names), tuple(markers)
+    own = {marker.name: marker for marker in known}
+    taken = {name for name in present if name in own}
+    by_alias = {alias: marker for marker in known if marker.name not in taken for alias in marker.aliases}
+    found: dict[str, Marker] = {}
+    for name in present:
+        marker = own.get(name)
+        if marker is None and name in by_alias and by_alias[name].name not in taken:
+            marker = by_alias[name]
+            taken.add(marker.name)
+        if marker is not None:
+            found[name] = marker
+    return found
 
 
 def write_subject(subject: Subject, path: str | Path) -> None:

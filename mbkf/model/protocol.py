@@ -13,6 +13,7 @@ import numpy as np
 
 from mbkf.conventions import Array, data_folder, read_only
 from mbkf.errors import FileFormatError, UnknownName
+from mbkf.io.subject import match_names
 from mbkf.model.description import BodyDescription, load_body, mirrored
 
 KINDS = ("anatomical", "technical", "computed")
@@ -57,16 +58,7 @@ class Protocol:
 
     def match(self, names: Iterable[str]) -> dict[str, ProtocolMarker]:
         """Which of the given capture names belong to which protocol marker (by name, then alias)."""
-        by_name = {alias: marker for marker in self.markers for alias in marker.aliases}
-        by_name.update({marker.name: marker for marker in self.markers})
-        found: dict[str, ProtocolMarker] = {}
-        taken: set[str] = set()
-        for name in names:
-            marker = by_name.get(name)
-            if marker is not None and marker.name not in taken:
-                found[name] = marker
-                taken.add(marker.name)
-        return found
+        return match_names(names, self.markers)
 
 
 def protocol_names() -> tuple[str, ...]:

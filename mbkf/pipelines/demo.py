@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from mbkf.conventions import StageCallback
 from mbkf.io.atomic import check_folder
 from mbkf.io.capture import read_capture
 from mbkf.io.results import Reconstruction
@@ -65,7 +65,7 @@ def run_demo(
     seconds: float | None = None,
     seed: int = 0,
     filter_name: str = "kinematic",
-    progress: Callable[[str, int, int], None] | None = None,
+    progress: StageCallback | None = None,
 ) -> Demo:
     """Synthetic capture → subject scaled from the standing trial → reconstruction → errors.
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
-from mbkf.conventions import Array, BoolArray
+from mbkf.conventions import Array, BoolArray, StageCallback
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
 from mbkf.filters.inverse_dynamics import inverse_dynamics
 from mbkf.filters.kinematic import KinematicFilter
@@ -16,22 +16,19 @@ from mbkf.filters.settings import KinematicSettings
 from mbkf.filters.tracking import Track, track
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results import Reconstruction
-from mbkf.io.subject import Subject, SubjectMarker
+from mbkf.io.subject import Subject, match_names
 from mbkf.model.clinical import dof_names
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.clinical import clinical_motion
 from mbkf.scaling.correction import correct_markers
+from mbkf.scaling.frames import MIN_MARKERS
 from mbkf.sensors.contacts import FootLoads, assign_feet
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.version import __version__
 
-StageCallback = Callable[[str, int, int], None]
-
-MIN_MARKERS = 6
 MIN_PRESENT = 0.02
 """A marker seen in a smaller share of the frames than this does not count for what can be observed."""
-
 
 FOOT_SD_M = 0.03
 """A foot whose height is known no better than this may or may not touch the floor."""
@@ -123,19 +120,13 @@ def subject_markers(markers: MarkerTrajectories, subject: Subject) -> MarkerTraj
     Raises:
         NotObservable: There are too few of them.
     """
-    own: dict[str, SubjectMarker] = {alias: m for m in subject.markers for alias in m.aliases}
-    own.update({m.name: m for m in subject.markers})
-    found: dict[str, str] = {}
-    for name in markers.names:
-        if name in own:
-            found.setdefault(own[name].name, name)
+    found = match_names(markers.names, subject.markers)
     if len(found) < MIN_MARKERS:
         raise NotObservable(
             f"the capture has {len(found)} of the subject's markers (protocol '{subject.protocol}'; "
             f"at least {MIN_MARKERS} are needed); its own are {', '.join(markers.names[:6]) or 'none'}"
         )
-    chosen = markers.select(tuple(found.values()))
-    return replace(chosen, names=tuple(found))
+    return replace(markers.select(tuple(found)), names=tuple(marker.name for marker in found.values()))
 
 
 def _hidden(markers: MarkerTrajectories, hide: Sequence[Hidden]) -> BoolArray:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
+from mbkf.conventions import StageCallback
 from mbkf.errors import InvalidInput
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
@@ -11,8 +12,6 @@ from mbkf.model.protocol import Protocol, detect_protocol, load_protocol
 from mbkf.numerics.threads import single_threaded
 from mbkf.scaling.fit import scale_subject
 from mbkf.scaling.problem import ScalingSettings
-
-StageCallback = Callable[[str, int, int], None]
 
 
 def scale(

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
+from mbkf.conventions import StageCallback
 from mbkf.io.atomic import check_folder, replacing
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.subject import Subject, write_subject
@@ -25,7 +25,7 @@ def synthesise(
     seed: int = 0,
     rate_hz: float = 100.0,
     settings: CaptureSettings | None = None,
-    progress: Callable[[str, int, int], None] | None = None,
+    progress: StageCallback | None = None,
 ) -> tuple[Subject, SyntheticCapture]:
     """A random subject performing a motion, and the capture of it.
 

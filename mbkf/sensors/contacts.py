@@ -27,7 +27,6 @@ TOUCH_SPEED_M_S = 0.4
 STANDING_SHARE = 0.05
 """Share of body weight that the plates must carry when someone stands on the floor."""
 
-
 FALL_SHARE = 0.4
 FALL_WINDOW_S = 0.07
 FALL_EDGE_S = 0.02

@@ -105,7 +105,7 @@ def fit_pose(
     def linearise(q: Array) -> ArrowEquations:
         reading, prior = sensor.reading(q), posture.reading(q)
         errors = ((reading.positions_m[seen] - target) * weights[:, None]).ravel()
-        jacobian = (reading.jacobian[seen] * weights[:, None, None]).reshape(-1, nv)
+        jacobian = (reading.jacobian[seen] * weights[:, None, None]).reshape(len(errors), nv)
         deviation = prior.deviation / posture.sd
         pull = prior.jacobian / posture.sd[:, None]
         hessian = jacobian.T @ jacobian + pull.T @ pull + 1e-9 * np.eye(nv)

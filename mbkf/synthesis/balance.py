@@ -104,14 +104,3 @@ class HorizontalPath:
         normal = design.T @ design
         normal[np.diag_indices_from(normal)] += 1e-12 * np.trace(normal) / len(normal)
         self.coefficients = free @ cho_solve(cho_factor(normal), design.T @ np.vstack(wanted))
-
-
-def zero_moment_point(com: Jet, turning: Array) -> Array:
-    """(T, 2) point of the ground about which the ground's force has no horizontal moment.
-
-    Args:
-        com: (T, 3) centre of mass, m.
-        turning: (T, 2) L̇_y / m and −L̇_x / m, m²/s².
-    """
-    lift = GRAVITY_M_S2 + com.second[:, 2]
-    return com.value[:, :2] - (com.value[:, 2:] * com.second[:, :2] + turning) / lift[:, None]

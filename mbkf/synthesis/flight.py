@@ -98,10 +98,6 @@ class Tumbling:
                 break
         return change
 
-    def refresh(self) -> None:
-        """Forgets the response of the momentum to the rates, so that it is measured again."""
-        self._response = None
-
     def _through(self, values: Array) -> Chebyshev:
         """The polynomial through (N,) values at the nodes; Chebyshev polynomials are orthogonal there."""
         domain = self.turns[0].domain

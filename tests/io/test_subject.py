@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbkf.errors import FileFormatError, InvalidInput
-from mbkf.io.subject import Subject, SubjectMarker, read_subject, write_subject
+from mbkf.io.subject import Subject, SubjectMarker, match_names, read_subject, write_subject
 
 # TOML cannot hold lone surrogates, nor can UTF-8.
 TEXT = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=12)
@@ -150,3 +150,13 @@ def test_a_file_with_no_mass_for_a_body_is_refused(subject, tmp_path):
     )
     with pytest.raises(InvalidInput, match="mass must be positive"):
         read_subject(path)
+
+
+def test_names_are_matched_once_and_own_names_come_first():
+    """A capture may hold a marker under its own name and an alias, in any order."""
+    markers = [
+        SubjectMarker("RASI", "pelvis", np.zeros(3), 0.005, 0.005, aliases=("R.ASIS",)),
+        SubjectMarker("SACR", "pelvis", np.zeros(3), 0.005, 0.005, aliases=("S2", "V.Sacral")),
+    ]
+    found = match_names(["S2", "R.ASIS", "V.Sacral", "RASI", "other"], markers)
+    assert {name: marker.name for name, marker in found.items()} == {"S2": "SACR", "RASI": "RASI"}

@@ -3,11 +3,21 @@
 import numpy as np
 import pytest
 
-from mbkf.synthesis.balance import HorizontalPath, zero_moment_point
+from mbkf.conventions import GRAVITY_M_S2
+from mbkf.synthesis.balance import HorizontalPath
 from mbkf.synthesis.contact import Load, split
 from mbkf.synthesis.flight import Tumbling
 from mbkf.synthesis.jets import Jet
 from mbkf.synthesis.plan import Flight
+
+
+def zero_moment_point(com, turning):
+    """(T, 2) point of the floor about which the ground's force has no horizontal moment.
+
+    ``turning`` is L̇_y / m and −L̇_x / m.
+    """
+    lift = GRAVITY_M_S2 + com.second[:, 2]
+    return com.value[:, :2] - (com.value[:, 2:] * com.second[:, :2] + turning) / lift[:, None]
 
 
 def test_pressure_follows_its_target():
