@@ -140,11 +140,11 @@ def test_unknown_marker_sets_are_refused():
         detect_protocol([])
 
 
-def test_each_marker_is_matched_once_by_name_or_alias():
+def test_each_marker_is_matched_once_by_its_own_name_before_an_alias():
     protocol = load_protocol("helen_hayes")
     found = protocol.match(["R.Asis", "R.ASIS", "V.Sacrum", "unknown"])
     matched = {name: marker.name for name, marker in found.items()}
-    assert matched == {"R.Asis": "R.ASIS", "V.Sacrum": "V.Sacral"}
+    assert matched == {"R.ASIS": "R.ASIS", "V.Sacrum": "V.Sacral"}
 
 
 def test_own_protocol_from_a_file(write):
