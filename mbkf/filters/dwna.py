@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pinocchio as pin
+from scipy.linalg import blas
 
 from mbkf.conventions import Array
 from mbkf.filters.state import FilterState
@@ -13,36 +13,53 @@ from mbkf.model.human import HumanModel
 class WhiteAccelerationPlant:
     """q' = q ⊕ (v Δt + a Δt²/2), v' = v + a Δt with a white, constant over the step.
 
-    Φ is exact on the manifold: its position rows are the derivatives of the retraction, which reduce to
-    [[1, Δt], [0, 1]] for a translation.
+    Φ = [[A, B Δt], [0, 1]] is exact on the manifold: A and B are the derivatives of the retraction, which reduce to 1
+    for a translation.
 
     Attributes:
         model: The body.
         dt_s: Time step Δt.
         acceleration_sd: (nv,) σ_a of each dof; 0 holds a dof where it is.
+        position_noise, cross_noise, velocity_noise: (nv,) diagonals of the three blocks of the noise covariance.
     """
 
     def __init__(self, model: HumanModel, dt_s: float, acceleration_sd: Array) -> None:
         self.model, self.dt_s = model, dt_s
         self.acceleration_sd = acceleration_sd
         variance = acceleration_sd**2
-        nv = model.nv
-        self._noise = np.zeros((2 * nv, 2 * nv))
-        index = np.arange(nv)
-        self._noise[index, index] = variance * dt_s**4 / 4.0
-        self._noise[index, nv + index] = self._noise[nv + index, index] = variance * dt_s**3 / 2.0
-        self._noise[nv + index, nv + index] = variance * dt_s**2
+        self.position_noise = variance * dt_s**4 / 4.0
+        self.cross_noise = variance * dt_s**3 / 2.0
+        self.velocity_noise = variance * dt_s**2
 
     def transition(self, state: FilterState) -> Array:
         """(2 nv, 2 nv) Φ at a state."""
-        nv, model = self.model.nv, self.model.pin_model
-        step = state.v * self.dt_s
+        nv = self.model.nv
         phi = np.eye(2 * nv)
-        phi[:nv, :nv] = pin.dIntegrate(model, state.q, step, pin.ARG0)
-        phi[:nv, nv:] = pin.dIntegrate(model, state.q, step, pin.ARG1) * self.dt_s
+        phi[:nv, :nv], phi[:nv, nv:] = self.model.integration_derivatives(state.q, state.v * self.dt_s)
+        phi[:nv, nv:] *= self.dt_s
         return phi
 
-    def predict(self, state: FilterState, phi: Array) -> FilterState:
-        """The state one step later; ``phi`` is :meth:`transition` at ``state``."""
-        q = self.model.integrate(state.q, state.v * self.dt_s)
-        return FilterState(q, state.v, phi @ state.P @ phi.T + self._noise)
+    def predict(self, state: FilterState) -> FilterState:
+        """The state one step later; its P = Φ P Φᵀ + Q is exactly symmetric and in Fortran order."""
+        nv, step = self.model.nv, state.v * self.dt_s
+        A, B = self.model.integration_derivatives(state.q, step)
+        rows = np.empty((nv, 2 * nv))
+        rows[:, :nv] = A
+        np.multiply(B, self.dt_s, out=rows[:, nv:])
+        P = np.empty((2 * nv, 2 * nv))
+        carried = np.matmul(rows, state.P.T, out=P[:nv])
+        P[nv:, :nv] = carried[:, nv:].T
+        half = blas.dgemm(0.5, rows.T, carried.T, trans_a=1)
+        np.add(half, half.T, out=P[:nv, :nv])
+        P[nv:, nv:] = state.P[nv:, nv:]
+        self._add_noise(P)
+        return FilterState(self.model.integrate(state.q, step), state.v, P.T)
+
+    def _add_noise(self, P: Array) -> None:
+        """Adds Q along the diagonals of P's four blocks."""
+        nv, every = self.model.nv, P.ravel()
+        stride, half = 2 * nv + 1, 2 * nv * nv
+        every[:half:stride] += self.position_noise
+        every[nv:half:stride] += self.cross_noise
+        every[half:-nv:stride] += self.cross_noise
+        every[half + nv :: stride] += self.velocity_noise

@@ -27,25 +27,41 @@ class InverseDynamics:
     residual_moment_nm: Array
 
 
+class TorqueSolver:
+    """Generalised forces of one instant: B_dᵀ T_d = M a − Q_g − B_pᵀ p (eq. 3.12)."""
+
+    def __init__(self, model: HumanModel) -> None:
+        self.model = model
+        self._root = model.joint("pelvis").v
+        self._moves = model.supports[[model.joint(segment).joint_id for segment in FEET]].astype(float)
+
+    def torques(self, q: Array, v: Array, a: Array, foot_wrench: Array) -> Array:
+        """(nv,) forces for q (nq,), v (nv,), a (nv,) and the wrenches p (2, 6) on right and left foot.
+
+        Wrenches are force N and moment N m about the world's origin, world axes.
+        """
+        tau = self.model.inverse_dynamics(q, v, a)
+        tau -= np.einsum("fk,fk->k", self._moves, foot_wrench @ self.model.spatial_jacobian(q))
+        return tau
+
+    def residual(self, q: Array, tau: Array) -> tuple[Array, Array]:
+        """Force (3,) and moment (3,) of the pelvis residual in world axes: the pelvis's own axes turn with it."""
+        R = self.model.spatial_jacobian(q)[:3, self._root][:, :3]
+        return R @ tau[self._root][:3], R @ tau[self._root][3:]
+
+
 def inverse_dynamics(model: HumanModel, track: Track, foot_wrench: Array) -> InverseDynamics:
-    """B_dᵀ T_d = M a − Q_g − B_pᵀ p with the plates' wrenches p on the feet (eq. 3.12).
+    """Generalised forces and residual of every followed frame.
 
     Args:
         model: The body.
         track: The followed trial.
-        foot_wrench: (T, 2, 6) force N and moment N m about the world's origin on right and left foot, world axes.
+        foot_wrench: (T, 2, 6) wrenches p as :class:`TorqueSolver` takes them.
     """
-    a = track.a
+    a, solver = track.a, TorqueSolver(model)
     tau = np.full_like(a, np.nan)
     force, moment = np.full((len(a), 3), np.nan), np.full((len(a), 3), np.nan)
-    pelvis = model.joint("pelvis").joint_id
-    supports = [model.supports[model.joint(segment).joint_id] for segment in FEET]
     for t in np.flatnonzero(~np.isnan(a).any(axis=1)):
-        q = track.q[t]
-        tau[t] = model.inverse_dynamics(q, track.v[t], a[t])
-        rotations, _, jacobian = model.placements_and_jacobian(q)
-        for moves, wrench in zip(supports, foot_wrench[t], strict=True):
-            tau[t] -= np.where(moves, wrench @ jacobian, 0.0)
-        force[t] = rotations[pelvis] @ tau[t, :3]
-        moment[t] = rotations[pelvis] @ tau[t, 3:6]
+        tau[t] = solver.torques(track.q[t], track.v[t], a[t], foot_wrench[t])
+        force[t], moment[t] = solver.residual(track.q[t], tau[t])
     return InverseDynamics(tau, force, moment)

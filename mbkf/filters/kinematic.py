@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.dwna import WhiteAccelerationPlant
-from mbkf.filters.gate import believable
+from mbkf.filters.gate import Sight, judged
 from mbkf.filters.settings import KinematicSettings
 from mbkf.filters.state import FilterState
-from mbkf.numerics.kalman import Information, correct, information
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.numerics.kalman import Information, correct, informed, read_directly
+from mbkf.sensors.markers import MarkerInformation, MarkerSensor
 from mbkf.sensors.pose_fit import PoseFit, fit_pose, segment_by_segment
 from mbkf.sensors.posture import PostureSensor
 
@@ -22,24 +23,66 @@ START_SPEED_SD_RAD_S = 5.0
 
 
 @dataclass(frozen=True)
+class Evidence:
+    """What a step went through, kept for what only a report needs.
+
+    Attributes:
+        before, predicted: State of the frame before, and what the plant made of it.
+        plant: The plant.
+        markers: Information of the believed markers on the configuration.
+        position_matrix: (nv, nv) all information on the configuration.
+        velocity_matrix: (nv,) diagonal of that on velocities; 0 but for dofs of segments out of sight.
+        vector: (2 nv,) Hᵀ R⁻¹ y of all of it.
+    """
+
+    before: FilterState
+    predicted: FilterState
+    plant: WhiteAccelerationPlant
+    markers: Information
+    position_matrix: Array
+    velocity_matrix: Array
+    vector: Array
+
+
+@dataclass(frozen=True)
 class StepResult:
     """One step of the filter.
 
     Attributes:
         state: Posterior.
         refused: (M,) markers seen but not believed.
-        nis: Normalised innovation squared of the believed markers.
-        readings: How many coordinates those are.
+        readings: How many coordinates of markers were believed.
         tracked: Whether enough markers were believed.
-        velocity_step_covariance: (nv, nv) covariance of v_k − v_{k−1}, for accelerations by eq. 3.7.
+        evidence: What ``nis`` and ``velocity_step_covariance`` are worked out from when asked for.
     """
 
     state: FilterState
     refused: BoolArray
-    nis: float
     readings: int
     tracked: bool
-    velocity_step_covariance: Array
+    evidence: Evidence
+
+    @cached_property
+    def nis(self) -> float:
+        """Normalised innovation squared of the believed markers."""
+        nv = len(self.state.v)
+        return correct(self.evidence.predicted.P[:nv, :nv], self.evidence.markers).nis
+
+    @cached_property
+    def velocity_step_covariance(self) -> Array:
+        """(nv, nv) covariance of v_k − v_{k−1}, for accelerations by eq. 3.7.
+
+        P_k + P_{k−1} − C − Cᵀ, velocities' blocks, with C = (I − K H) Φ P_{k−1} and K H = P_k Λ. Since velocities are
+        predicted to stay, the columns of Φ P_{k−1} for velocities are those of the prediction without its noise.
+        """
+        nv, P, known = len(self.state.v), self.state.P, self.evidence
+        carried = known.predicted.P[:, nv:].copy()
+        np.einsum("ii->i", carried[:nv])[:] -= known.plant.cross_noise
+        np.einsum("ii->i", carried[nv:])[:] -= known.plant.velocity_noise
+        learnt = P[nv:, :nv] @ (known.position_matrix @ carried[:nv])
+        learnt += P[nv:, nv:] @ (known.velocity_matrix[:, None] * carried[nv:])
+        cross = carried[nv:] - learnt
+        return P[nv:, nv:] + known.before.P[nv:, nv:] - cross - cross.T
 
 
 class KinematicFilter:
@@ -62,8 +105,9 @@ class KinematicFilter:
         self.posture = PostureSensor(model)
         acceleration = np.where(held, 0.0, settings.acceleration_scale * model.acceleration_sd)
         self.plant = WhiteAccelerationPlant(model, dt_s, acceleration)
-        self._free = np.flatnonzero(~held[self.posture.dofs])
-        self._rest = model.nv + np.flatnonzero(~held)
+        self._markers = MarkerInformation(sensor, self.noise_m)
+        self._lean = self.posture.weights(settings.posture_scale, held)
+        self._sight = Sight(sensor, held)
 
     def start(self, measured_m: Array, guess: Array | None = None) -> FilterState | None:
         """A state at rest from one frame of markers (M, 3), or None where they do not fit the body.
@@ -92,60 +136,25 @@ class KinematicFilter:
 
     def step(self, state: FilterState, measured_m: Array) -> StepResult:
         """Prediction and correction by one frame of markers (M, 3), NaN where missing."""
-        phi = self.plant.transition(state)
-        predicted = self.plant.predict(state, phi)
-        reading = self.sensor.reading(predicted.q)
-        nv = self.sensor.model.nv
+        predicted = self.plant.predict(state)
+        q, v, nv = predicted.q, predicted.v, self.sensor.model.nv
+        reading = self.sensor.reading(q)
         innovation = measured_m - reading.positions_m
-        seen = np.asarray(~np.isnan(innovation).any(axis=1))
-        trusted = believable(innovation, reading.jacobian, predicted.P[:nv, :nv], self.noise_m, self.settings)
-        tracked = bool(trusted.sum() >= self.settings.min_markers)
-        markers = self._marker_information(innovation, reading.jacobian, trusted)
-        total = _on_state(markers, nv) + self._rest_information(predicted)
-        correction = correct(predicted.P, total)
-        q = self.sensor.model.integrate(predicted.q, correction.step[:nv])
-        posterior = FilterState(q, predicted.v + correction.step[nv:], correction.covariance)
-        nis = correct(predicted.P[:nv, :nv], markers).nis
-        return StepResult(
-            posterior,
-            seen & ~trusted,
-            nis,
-            markers.readings,
-            tracked,
-            self._velocity_step(state, posterior, phi, correction.gain_effect),
-        )
-
-    def _marker_information(self, innovation: Array, jacobian: Array, trusted: BoolArray) -> Information:
-        sd = np.repeat(self.noise_m[trusted], 3)
-        return information(
-            innovation[trusted].ravel(), jacobian[trusted].reshape(len(sd), jacobian.shape[2]), sd
-        )
-
-    def _rest_information(self, state: FilterState) -> Information:
-        """The weak pulls towards neutral posture and rest."""
-        nv = self.sensor.model.nv
-        prior = self.posture.reading(state.q)
-        sd = self.settings.posture_scale * self.posture.sd[self._free]
-        pull = information(-prior.deviation[self._free], prior.jacobian[self._free], sd)
-        matrix = np.zeros((2 * nv, 2 * nv))
-        vector = np.zeros(2 * nv)
-        matrix[:nv, :nv], vector[:nv] = pull.matrix, pull.vector
-        matrix[self._rest, self._rest] = self.settings.velocity_sd**-2
-        vector[self._rest] = -state.v[self._rest - nv] * self.settings.velocity_sd**-2
-        return Information(matrix, vector, 0.0, 0)
-
-    def _velocity_step(
-        self, before: FilterState, after: FilterState, phi: Array, gain_effect: Array
-    ) -> Array:
-        """Cov(v_k − v_{k−1}) = P_k + P_{k−1} − C − Cᵀ with C = (I − K H) Φ P_{k−1}."""
-        nv = self.sensor.model.nv
-        carried = phi @ before.P[:, nv:]
-        cross = carried[nv:] - gain_effect[nv:] @ carried
-        return after.P[nv:, nv:] + before.P[nv:, nv:] - cross - cross.T
-
-
-def _on_state(positions: Information, nv: int) -> Information:
-    """Information on positions only, as information on (q, v)."""
-    matrix, vector = np.zeros((2 * nv, 2 * nv)), np.zeros(2 * nv)
-    matrix[:nv, :nv], vector[:nv] = positions.matrix, positions.vector
-    return Information(matrix, vector, positions.innovation, positions.readings)
+        seen, trusted, _ = judged(innovation, reading, predicted.P[:nv, :nv], self.noise_m, self.settings)
+        markers = self._markers.at(q, reading, innovation, trusted)
+        pull = self.posture.information(q, self._lean)
+        matrix = markers.matrix + pull.matrix
+        vector, rest = np.zeros(2 * nv), np.zeros(nv)
+        np.add(markers.vector, pull.vector, out=vector[:nv])
+        P, unseen = predicted.P, self._sight.unseen(trusted)
+        if len(unseen):
+            certainty = np.full(len(unseen), 1.0 / self.settings.velocity_sd)
+            P = read_directly(P, nv + unseen, certainty)
+            rest[unseen] = certainty**2
+            vector[nv:] = -rest * v
+        P = informed(P, matrix)
+        step = P @ vector
+        posterior = FilterState(self.sensor.model.integrate(q, step[:nv]), v + step[nv:], P)
+        tracked = markers.readings >= 3 * self.settings.min_markers
+        evidence = Evidence(state, predicted, self.plant, markers, matrix, rest, vector)
+        return StepResult(posterior, seen & ~trusted, markers.readings, tracked, evidence)

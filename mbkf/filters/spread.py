@@ -65,9 +65,7 @@ class SpreadReader:
         torque = np.full(nv, np.nan)
         if velocity_step_covariance is not None:
             M = self.model.mass_matrix(q)
-            torque = (
-                _root(np.einsum("ij,jk,ik->i", M, velocity_step_covariance, M, optimize=True)) / self.dt_s
-            )
+            torque = _root(((M @ velocity_step_covariance) * M).sum(axis=1)) / self.dt_s
         return Spread(
             position=_root(variance[:nv]),
             velocity=_root(variance[nv:]),
@@ -79,12 +77,8 @@ class SpreadReader:
 
     def _foot_height(self, q: Array, P: Array) -> Array:
         _, origins, jacobian = self.model.placements_and_jacobian(q)
-        rows = []
-        for joint in self._feet:
-            x, y, _ = origins[joint]
-            moved = jacobian[2] + jacobian[3] * y - jacobian[4] * x
-            rows.append(np.where(self.model.supports[joint], moved, 0.0))
-        rise = np.array(rows)
+        x, y, _ = origins[self._feet].T[:, :, None]
+        rise = (jacobian[2] + jacobian[3] * y - jacobian[4] * x) * self.model.supports[self._feet]
         return _root(((rise @ P) * rise).sum(axis=1))
 
 

@@ -48,6 +48,8 @@ class HumanModel:
         nq, nv: Dimensions of configuration and tangent space.
         posture_sd: (nv,) spread of each dof about the neutral posture, rad; 0 where there is no prior.
         acceleration_sd: (nv,) typical acceleration of each dof, m/s² or rad/s².
+        movement_sd: (nv,) standard deviation of each dof's acceleration over a movement, m/s² or rad/s².
+        limits: (nv, 2) least and greatest rotation from neutral, rad; ±inf where there is no limit.
         supports: (joints, nv) True where a dof moves a joint's segment.
     """
 
@@ -74,7 +76,12 @@ class HumanModel:
         segments = description.segments
         self.posture_sd = read_only(np.concatenate([_per_dof(s.posture_sd_rad, s) for s in segments]))
         self.acceleration_sd = read_only(np.concatenate([_per_dof(s.acceleration_sd, s) for s in segments]))
+        self.movement_sd = read_only(np.concatenate([_per_dof(s.movement_sd, s) for s in segments]))
+        self.limits = read_only(np.concatenate([s.limits_rad for s in segments]))
         self.supports = self._supports()
+        self._placement_views = [
+            part for place in self._data.oMi for part in (place.rotation.T, place.translation[None])
+        ]
 
     @classmethod
     def scaled(
@@ -159,23 +166,47 @@ class HumanModel:
         """(nv,) tangent vector that takes q0 to q1."""
         return pin.difference(self.pin_model, q0, q1)
 
+    def integration_derivatives(self, q: Array, dv: Array) -> tuple[Array, Array]:
+        """(nv, nv) derivatives of :meth:`integrate` by q and by dv, block-diagonal over joints."""
+        return pin.dIntegrate(self.pin_model, q, dv)
+
+    def difference_derivative(self, q0: Array, q1: Array) -> Array:
+        """(nv, nv) derivative of :meth:`difference` by q1, block-diagonal over joints."""
+        return pin.dDifference(self.pin_model, q0, q1, pin.ARG1)
+
     def placements(self, q: Array) -> tuple[Array, Array]:
         """World rotations (J, 3, 3) and origins (J, 3) of all Pinocchio joints at q (index 0 is the world)."""
         pin.forwardKinematics(self.pin_model, self._data, q)
-        return self._read_placements()
+        return _rotations_and_origins(self._read_frames())
 
     def placements_and_jacobian(self, q: Array) -> tuple[Array, Array, Array]:
         """Placements as :meth:`placements`, and J (6, nv): each dof's spatial velocity at the world origin.
 
         Rows are (linear, angular) in world axes; a column counts for a joint only where ``supports`` says so.
         """
-        jacobian = pin.computeJointJacobians(self.pin_model, self._data, q)
-        rotations, origins = self._read_placements()
-        return rotations, origins, jacobian
+        jacobian = self.spatial_jacobian(q)
+        return (*_rotations_and_origins(self._read_frames()), jacobian)
 
-    def _read_placements(self) -> tuple[Array, Array]:
-        homogeneous = np.array([placement.homogeneous for placement in self._data.oMi])
-        return homogeneous[:, :3, :3], homogeneous[:, :3, 3]
+    def frames(self, q: Array) -> Array:
+        """(4 J, 3): of every Pinocchio joint its world x, y, z axes and its origin, one below the other.
+
+        A point m̄ of joint j lies at [m̄, 1] · (rows 4 j to 4 j + 3).
+        """
+        pin.forwardKinematics(self.pin_model, self._data, q)
+        return self._read_frames()
+
+    def frames_and_jacobian(self, q: Array) -> tuple[Array, Array]:
+        """:meth:`frames` and :meth:`spatial_jacobian` in one pass."""
+        jacobian = self.spatial_jacobian(q)
+        return self._read_frames(), jacobian
+
+    def spatial_jacobian(self, q: Array) -> Array:
+        """J (6, nv) of :meth:`placements_and_jacobian` alone."""
+        return pin.computeJointJacobians(self.pin_model, self._data, q)
+
+    def _read_frames(self) -> Array:
+        """A copy of what Pinocchio's data holds; asking it for each placement anew costs four times as much."""
+        return np.concatenate(self._placement_views)
 
     def inverse_dynamics(self, q: Array, v: Array, a: Array) -> Array:
         """(nv,) generalised forces M a − Q_g for given motion, without contact (eq. 3.12)."""
@@ -183,8 +214,7 @@ class HumanModel:
 
     def mass_matrix(self, q: Array) -> Array:
         """(nv, nv) symmetric mass matrix."""
-        upper = pin.crba(self.pin_model, self._data, q)
-        return np.triu(upper) + np.triu(upper, 1).T
+        return pin.crba(self.pin_model, self._data, q)
 
     def gravity_torques(self, q: Array) -> Array:
         """(nv,) generalised forces that hold the body still at q."""
@@ -200,6 +230,11 @@ class HumanModel:
         jacobian = np.where(self.supports[self.joint(segment).joint_id], jacobian, 0.0)
         jacobian[:3] += np.cross(jacobian[3:].T, point_m).T
         return jacobian
+
+
+def _rotations_and_origins(frames: Array) -> tuple[Array, Array]:
+    by_joint = frames.reshape(-1, 4, 3)
+    return by_joint[:, :3].transpose(0, 2, 1), by_joint[:, 3]
 
 
 def _per_dof(values: Array, segment: Segment) -> Array:

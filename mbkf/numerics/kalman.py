@@ -1,11 +1,16 @@
-"""Kalman updates in compressed form: any number of readings enters as n×n information and an n-vector."""
+"""Kalman updates in compressed form: any number of readings enters as n×n information and an n-vector.
+
+At these sizes every call and copy counts, so BLAS and LAPACK are called directly; covariances come out in Fortran
+order, which those take without a copy. All results are new arrays.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
+from numpy.typing import NDArray
+from scipy.linalg import blas, lapack
 
 from mbkf.conventions import Array
 
@@ -32,18 +37,26 @@ class Information:
             self.readings + other.readings,
         )
 
+    def scaled(self, certainty: float) -> Information:
+        """The same readings with their R divided by ``certainty``."""
+        return Information(
+            self.matrix * certainty, self.vector * certainty, self.innovation * certainty, self.readings
+        )
+
 
 @dataclass(frozen=True)
 class Correction:
-    """Result of an update: ``step`` (N,), ``covariance`` (N, N), ``gain_effect`` (N, n) and normalised innovation.
-
-    ``gain_effect`` is K H restricted to the n observed components, so that I − K H can be formed.
-    """
+    """Result of an update: ``step`` (N,), ``covariance`` (N, N), normalised innovation, and the readings used."""
 
     step: Array
     covariance: Array
-    gain_effect: Array
     nis: float
+    readings: Information
+
+    @property
+    def gain_effect(self) -> Array:
+        """(N, n) K H restricted to the n observed components, so that I − K H can be formed."""
+        return self.covariance[:, : len(self.readings.vector)] @ self.readings.matrix
 
 
 def information(innovation: Array, jacobian: Array, sd: Array) -> Information:
@@ -56,34 +69,99 @@ def information(innovation: Array, jacobian: Array, sd: Array) -> Information:
 def correct(covariance: Array, readings: Information) -> Correction:
     """Kalman update of a state whose first n of N components are observed.
 
-    With Λ = HᵀR⁻¹H, b = HᵀR⁻¹y and Λ = G Gᵀ: P⁺ = P − W S⁻¹ Wᵀ, W = P G, S = I + Gᵀ P G, which equals the textbook
-    update for every R (matrix inversion lemma) and keeps P symmetric positive.
+    The step is P⁺ Hᵀ R⁻¹ y, with P⁺ by :func:`informed`, here made exactly symmetric whatever rounding did to P.
 
     Args:
         covariance: (N, N) prior covariance P.
         readings: Information on the first n components.
     """
     n = len(readings.vector)
-    root = _square_root(readings.matrix)
-    columns = covariance[:, :n]
-    W = columns @ root
-    S = root.T @ W[:n]
-    S[np.diag_indices_from(S)] += 1.0
-    factor = scipy.linalg.cholesky(S, lower=True, check_finite=False)
-    half = scipy.linalg.solve_triangular(factor, W.T, lower=True, check_finite=False)
-    posterior = covariance - half.T @ half
+    posterior = informed(covariance, readings.matrix)
     posterior = 0.5 * (posterior + posterior.T)
     step = posterior[:, :n] @ readings.vector
     nis = readings.innovation - float(readings.vector @ step[:n])
-    return Correction(step, posterior, posterior[:, :n] @ readings.matrix, nis)
+    return Correction(step, posterior, nis, readings)
+
+
+def informed(covariance: Array, matrix: Array) -> Array:
+    """(N, N) posterior covariance after information Λ (n, n) on the first n of N components.
+
+    With Λ = HᵀR⁻¹H = G Gᵀ and S = I + Gᵀ P G: P⁺ = P − P G S⁻¹ Gᵀ P, which equals the textbook update for every R
+    (matrix inversion lemma) and keeps P symmetric positive.
+    """
+    return _reduced(covariance, _informed_half(covariance, matrix))
+
+
+def with_rows(covariance: Array, rows: Array) -> Array:
+    """(N, N) posterior covariance after readings with whitened Jacobian R^(-1/2) H (m, N), whatever was read."""
+    W = blas.dgemm(1.0, covariance, rows.T)
+    return _reduced(covariance, _half(W, blas.dgemm(1.0, rows.T, W, trans_a=1)))
+
+
+def informed_with_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
+    """(N, N) :func:`with_rows` of :func:`informed`: P − h₁ h₁ᵀ − h₂ h₂ᵀ in one product."""
+    N, n, m = len(covariance), len(matrix), len(rows)
+    halves = np.empty((N, n + m), order="F")
+    first = halves[:, :n]
+    np.copyto(first, _informed_half(covariance, matrix))
+    W = blas.dgemm(1.0, covariance, rows.T)
+    seen = blas.dgemm(1.0, first, rows.T, trans_a=1)
+    W = blas.dgemm(-1.0, first, seen, beta=1.0, c=W, overwrite_c=1)
+    halves[:, n:] = _half(W, blas.dgemm(1.0, rows.T, W, trans_a=1))
+    return _reduced(covariance, halves)
+
+
+def read_directly(covariance: Array, components: NDArray[np.intp], sd_inverse: Array) -> Array:
+    """(N, N) posterior covariance after one reading of each of k components, whatever was read.
+
+    Args:
+        covariance: (N, N) prior covariance P.
+        components: (k,) indices of what is read.
+        sd_inverse: (k,) 1/sd of each reading.
+    """
+    W = np.asfortranarray(covariance[:, components] * sd_inverse)
+    return _reduced(covariance, _half(W, np.asfortranarray(W[components] * sd_inverse[:, None])))
+
+
+def _informed_half(covariance: Array, matrix: Array) -> Array:
+    """(N, n) h with h hᵀ = P G S⁻¹ Gᵀ P, see :func:`informed`; the solve is done on G, which is smaller than P G."""
+    n = len(matrix)
+    root = _square_root(matrix)
+    S = blas.dgemm(1.0, root, blas.dgemm(1.0, covariance[:n, :n], root), trans_a=1)
+    return blas.dgemm(1.0, covariance[:, :n], _half(root, S))
+
+
+def _half(W: Array, S: Array) -> Array:
+    """W C⁻ᵀ with C Cᵀ = I + S; overwrites S (m, m) and W (N, m), both in Fortran order."""
+    S.ravel(order="K")[:: len(S) + 1] += 1.0
+    factor, failed = lapack.dpotrf(S, lower=1, clean=0, overwrite_a=1)
+    if failed:
+        raise np.linalg.LinAlgError("the covariance is not positive")
+    return blas.dtrsm(1.0, factor, W, side=1, lower=1, trans_a=1, overwrite_b=1)
+
+
+def _reduced(covariance: Array, half: Array) -> Array:
+    """P − h hᵀ, exactly symmetric if P is, in Fortran order."""
+    reduction = (half @ half.T).T
+    return np.subtract(covariance, reduction, out=reduction)
 
 
 def _square_root(matrix: Array) -> Array:
-    """(n, n) G with G Gᵀ = matrix, for a symmetric positive semidefinite matrix."""
-    scale = float(np.trace(matrix)) / len(matrix)
-    regular = matrix + (1e-13 * scale + 1e-300) * np.eye(len(matrix))
-    try:
-        return scipy.linalg.cholesky(regular, lower=True, check_finite=False)
-    except scipy.linalg.LinAlgError:
-        values, vectors = np.linalg.eigh(matrix)
-        return vectors * np.sqrt(np.maximum(values, 0.0))
+    """(n, n) G with G Gᵀ = matrix, for a symmetric positive semidefinite matrix.
+
+    Where some directions carry no information the Cholesky factor fails: components that nothing informs about are
+    then set aside, and if that is not enough the matrix is raised by its rounding.
+    """
+    root, failed = lapack.dpotrf(matrix, lower=1, clean=1)
+    if not failed:
+        return root
+    diagonal = np.diagonal(matrix)
+    silent = diagonal == 0.0
+    for rounding in (0.0, 1e-13 * float(diagonal.mean())):
+        regular = matrix + np.diag(np.where(silent, 1.0, rounding))
+        root, failed = lapack.dpotrf(regular, lower=1, clean=1)
+        if not failed:
+            root[silent] = 0.0
+            return root
+    values, vectors = np.linalg.eigh(matrix)
+    return vectors * np.sqrt(np.maximum(values, 0.0))

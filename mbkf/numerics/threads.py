@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+import scipy.linalg  # noqa: F401, a BLAS loaded later would not be limited
 from threadpoolctl import threadpool_limits
 
 

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.model.human import HumanModel
-from mbkf.numerics.rotations import log_and_inverse_jacobian
+from mbkf.numerics.kalman import Information
 
 
 @dataclass(frozen=True)
@@ -35,20 +35,40 @@ class PostureSensor:
         self.model = model
         self.dofs = np.flatnonzero(model.posture_sd > 0)
         self.sd = model.posture_sd[self.dofs]
-        spherical = [joint for joint in model.joints.values() if joint.kind == "spherical"]
-        self._q3 = np.array([np.arange(j.q.start, j.q.stop) for j in spherical])
-        self._v3 = np.array([np.arange(j.v.start, j.v.stop) for j in spherical])
-        hinges = [j for j in model.joints.values() if j.kind in ("hinge", "universal")]
-        self._q1 = np.concatenate([np.arange(j.q.start, j.q.stop) for j in hinges])
-        self._v1 = np.concatenate([np.arange(j.v.start, j.v.stop) for j in hinges])
+        self._neutral = model.neutral()
+        root = next(joint for joint in model.joints.values() if joint.kind == "free")
+        self._root, self._root_dofs = root.q, root.v
 
     def reading(self, q: Array) -> PostureReading:
         """Deviation and Jacobian at q (nq,)."""
-        nv = self.model.nv
-        deviation, jacobian = np.zeros(nv), np.zeros((nv, nv))
-        vectors, derivatives = log_and_inverse_jacobian(q[self._q3])
-        deviation[self._v3] = vectors
-        jacobian[self._v3[:, :, None], self._v3[:, None, :]] = derivatives
-        deviation[self._v1] = q[self._q1]
-        jacobian[self._v1, self._v1] = 1.0
+        deviation, jacobian = self.deviation(q)
         return PostureReading(deviation[self.dofs], jacobian[self.dofs])
+
+    def weights(self, scale: float, held: BoolArray) -> Array:
+        """(nv,) 1/sd of each dof's reading, 0 where there is none: for :meth:`information`."""
+        weights = np.zeros(self.model.nv)
+        weights[self.dofs] = 1.0 / (scale * self.sd)
+        weights[held] = 0.0
+        return weights
+
+    def information(self, q: Array, weights: Array) -> Information:
+        """What reading zero deviation says about the configuration (nv) at q (nq,); counts as no readings.
+
+        Args:
+            q: Configuration.
+            weights: (nv,) 1/sd of each dof's reading, see :meth:`weights`.
+        """
+        deviation, jacobian = self.deviation(q)
+        scaled = jacobian * weights[:, None]
+        return Information(scaled.T @ scaled, -(deviation * weights) @ scaled, 0.0, 0)
+
+    def deviation(self, q: Array) -> tuple[Array, Array]:
+        """Deviation (nv,) of every dof, rad, and its Jacobian (nv, nv).
+
+        The root is set aside, for its turn may be far from neutral.
+        """
+        posture = q.copy()
+        posture[self._root] = self._neutral[self._root]
+        jacobian = self.model.difference_derivative(self._neutral, posture)
+        jacobian[self._root_dofs, self._root_dofs] = 0.0
+        return self.model.difference(self._neutral, posture), jacobian

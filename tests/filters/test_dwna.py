@@ -33,7 +33,7 @@ def test_transition_is_the_derivative_of_the_prediction(rng):
     still = np.zeros_like(state.P)
 
     def predicted(step):
-        return plant.predict(moved(model, FilterState(state.q, state.v, still), step), phi)
+        return plant.predict(moved(model, FilterState(state.q, state.v, still), step))
 
     centre, columns = predicted(np.zeros(2 * model.nv)), []
     for e in np.eye(2 * model.nv):
@@ -63,7 +63,7 @@ def test_noise_is_gamma_gamma_transposed(rng):
     sd, nv = rng.uniform(1, 300, model.nv), model.nv
     state = FilterState(moderate_pose(model, rng), np.zeros(nv), np.zeros((2 * nv, 2 * nv)))
     plant = WhiteAccelerationPlant(model, DT, sd)
-    Q = plant.predict(state, plant.transition(state)).P
+    Q = plant.predict(state).P
     gamma = np.array([DT**2 / 2, DT])
     for dof in range(nv):
         own = np.ix_([dof, nv + dof], [dof, nv + dof])
@@ -76,7 +76,7 @@ def test_covariance_is_carried_by_the_transition(rng):
     model = random_model(rng)
     plant, state = WhiteAccelerationPlant(model, DT, np.zeros(model.nv)), random_state(model, rng)
     phi = plant.transition(state)
-    after = plant.predict(state, phi)
+    after = plant.predict(state)
     np.testing.assert_allclose(after.P, phi @ state.P @ phi.T, rtol=1e-14)
     np.testing.assert_array_equal(after.v, state.v)
     assert_near(model.difference(state.q, after.q), state.v * DT, 1e-15)
@@ -87,7 +87,7 @@ def test_a_held_dof_gets_no_noise(rng):
     held = np.arange(model.nv) % 3 == 0
     plant = WhiteAccelerationPlant(model, DT, np.where(held, 0.0, model.acceleration_sd))
     state = FilterState(model.neutral(), np.zeros(model.nv), np.zeros((2 * model.nv, 2 * model.nv)))
-    P = plant.predict(state, plant.transition(state)).P
+    P = plant.predict(state).P
     both = np.r_[held, held]
     assert not P[both].any()
     assert (np.diag(P)[~both] > 0).all()
@@ -101,7 +101,7 @@ def test_the_plant_knows_no_masses(rng):
     after = []
     for model in (light, heavy):
         plant = WhiteAccelerationPlant(model, DT, model.acceleration_sd)
-        after.append(plant.predict(state, plant.transition(state)))
+        after.append(plant.predict(state))
     np.testing.assert_array_equal(after[0].q, after[1].q)
     np.testing.assert_array_equal(after[0].P, after[1].P)
 
@@ -110,8 +110,8 @@ def test_playing_backwards_returns_to_the_start(rng):
     """Prediction, time reversal, prediction: the mean comes back."""
     model = random_model(rng)
     plant, state = WhiteAccelerationPlant(model, DT, model.acceleration_sd), random_state(model, rng)
-    there = plant.predict(state, plant.transition(state)).reversed_in_time()
-    back = plant.predict(there, plant.transition(there)).reversed_in_time()
+    there = plant.predict(state).reversed_in_time()
+    back = plant.predict(there).reversed_in_time()
     assert_near(model.difference(state.q, back.q), 0.0, 2e-15)
     np.testing.assert_array_equal(back.v, state.v)
 

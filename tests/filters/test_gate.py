@@ -1,12 +1,13 @@
 """The innovation gate: outliers go, good markers stay, and a lost state trusts the markers."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from mbkf.filters.gate import believable
+from mbkf.filters.gate import believable, judged
 from mbkf.filters.settings import KinematicSettings
 
 MARKERS, NV = 10, 8
@@ -97,3 +98,45 @@ def test_missing_markers_are_never_believed(problem):
     y[[0, 7]] = np.nan
     np.testing.assert_array_equal(np.flatnonzero(~believable(y, H, P, noise, SETTINGS)), [0, 7])
     assert not believable(np.full((MARKERS, 3), np.nan), H, P, noise, SETTINGS).any()
+
+
+class Reading:
+    """Predicted markers that remember for which of them the Jacobian was asked."""
+
+    def __init__(self, H):
+        self.H, self.asked = H, np.zeros(len(H), dtype=bool)
+        self.moves = np.eye(len(H))
+
+    def only(self, markers):
+        self.asked |= markers
+        return SimpleNamespace(jacobian=self.H[markers])
+
+
+def test_the_jacobian_is_asked_for_only_of_far_markers(problem):
+    y, H, P, noise = problem
+    y = y.copy()
+    y[3] = np.nan
+    reach = float(np.sqrt(np.nanmax((y**2).sum(axis=1))))
+    for radius in (reach + 1e-9, 0.9 * reach, 0.0):
+        settings, reading = replace(SETTINGS, gate_radius_m=radius), Reading(H)
+        seen, trusted, _ = judged(y, reading, P, noise, settings)
+        np.testing.assert_array_equal(seen, np.arange(MARKERS) != 3)
+        np.testing.assert_array_equal(trusted, believable(y, H, P, noise, settings))
+        np.testing.assert_array_equal(reading.asked, (y**2).sum(axis=1) > radius**2)
+
+
+def test_a_segment_all_of_whose_markers_are_off_has_moved():
+    """Two markers of one segment far off together are displaced and believed; one of two is refused."""
+    rng = np.random.default_rng(8)
+    y = 0.001 * rng.normal(size=(6, 3))
+    reading = Reading(rng.normal(size=(6, 3, 4)))
+    reading.moves = np.array([[1.0, 0.0], [1.0, 0.0], [1.0, 1.0], [1.0, 1.0], [0.0, 1.0], [0.0, 1.0]])
+    P, noise = 1e-8 * np.eye(4), np.full(6, 0.005)
+    y[2:4, 0] = 0.5
+    together = judged(y, reading, P, noise, SETTINGS)
+    np.testing.assert_array_equal(np.flatnonzero(together.displaced), [2, 3])
+    assert together.trusted.all()
+    y[3] = 0.0
+    alone = judged(y, reading, P, noise, SETTINGS)
+    np.testing.assert_array_equal(np.flatnonzero(~alone.trusted), [2])
+    assert alone.displaced is None

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbkf.numerics.kalman import correct, information
+from mbkf.numerics.kalman import correct, information, informed, informed_with_rows, read_directly, with_rows
 from tests.motions import worst
 
 
@@ -141,3 +141,69 @@ def test_a_steady_filter_reaches_the_riccati_solution():
     for _ in range(200):
         P = correct(P + q, information(np.zeros(1), np.ones((1, 1)), np.array([np.sqrt(r)]))).covariance
     assert P[0, 0] == pytest.approx((-q + np.sqrt(q**2 + 4 * q * r)) / 2, rel=1e-12)
+
+
+@given(st.integers(0, 10**6), st.integers(0, 8))
+@settings(max_examples=50, deadline=None)
+def test_reading_components_directly_is_the_textbook_update(seed, readings):
+    """One reading each of some components; exactly symmetric in, exactly symmetric out."""
+    rng = np.random.default_rng(seed)
+    P = random_covariance(rng, 8)
+    P = 0.5 * (P + P.T)
+    sd, read = rng.uniform(0.1, 3.0, readings), rng.permutation(8)[:readings]
+    found = read_directly(P, read, 1.0 / sd)
+    H = np.eye(8)[read]
+    S = H @ P @ H.T + np.diag(sd**2)
+    np.testing.assert_allclose(found, P - P @ H.T @ np.linalg.inv(S) @ H @ P, rtol=0, atol=1e-13)
+    np.testing.assert_array_equal(found, found.T)
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+def test_covariances_of_either_order_are_left_alone(order):
+    P, H, sd, y = random_problem(4)
+    P = np.array(0.5 * (P + P.T), order=order)
+    kept, matrix = P.copy(), information(y, H, sd).matrix
+    found = informed(P, matrix)
+    read_directly(P, np.array([1, 6, 7]), np.ones(3))
+    np.testing.assert_array_equal(P, kept)
+    np.testing.assert_array_equal(found, found.T)
+    np.testing.assert_allclose(found, correct(P, information(y, H, sd)).covariance, rtol=0, atol=1e-15)
+
+
+def test_information_may_leave_components_out():
+    """A row of zeros has no Cholesky factor of its own."""
+    P, H, sd, y = random_problem(5)
+    H[:, 2] = 0.0
+    assert_is_textbook((P, H, sd, y), 1e-9)
+
+
+def test_a_covariance_that_is_none_is_refused():
+    with pytest.raises(np.linalg.LinAlgError, match="not positive"):
+        informed(-10.0 * np.eye(4), np.eye(2))
+
+
+@given(st.integers(0, 10**6), st.integers(1, 12), st.integers(1, 9))
+@settings(max_examples=50, deadline=None)
+def test_rows_on_the_whole_state_are_the_textbook_update(seed, readings, size):
+    """Any number of whitened rows R^(-1/2) H; exactly symmetric in, exactly symmetric out."""
+    rng = np.random.default_rng(seed)
+    P = random_covariance(rng, size)
+    P = 0.5 * (P + P.T)
+    rows = rng.normal(size=(readings, size)) * 10 ** rng.uniform(-2, 1, (readings, 1))
+    found = with_rows(P, rows)
+    K = np.linalg.solve(rows @ P @ rows.T + np.eye(readings), rows @ P).T
+    np.testing.assert_allclose(found, P - K @ rows @ P, rtol=0, atol=1e-11 * worst(P))
+    np.testing.assert_array_equal(found, found.T)
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+@pytest.mark.parametrize("rank", [None, 2])
+def test_information_and_rows_together_are_one_after_the_other(order, rank):
+    P, H, sd, y = random_problem(6, size=9, rank=rank)
+    P = np.array(0.5 * (P + P.T), order=order)
+    kept, rows = P.copy(), np.random.default_rng(6).normal(size=(4, 9))
+    matrix = information(y, H, sd).matrix
+    found = informed_with_rows(P, matrix, rows)
+    np.testing.assert_allclose(found, with_rows(informed(P, matrix), rows), rtol=0, atol=1e-13)
+    np.testing.assert_array_equal(found, found.T)
+    np.testing.assert_array_equal(P, kept)

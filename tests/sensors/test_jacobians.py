@@ -38,8 +38,9 @@ each_sensor = pytest.mark.parametrize("name", SENSORS)
 
 
 def value_of(reading):
-    """The one array of a reading that is not its Jacobian."""
-    (name,) = [field.name for field in fields(reading) if field.name != "jacobian"]
+    """The one array of a reading that is neither its Jacobian nor private to it."""
+    public = [field.name for field in fields(reading) if not field.name.startswith("_")]
+    (name,) = [name for name in public if name != "jacobian"]
     return getattr(reading, name)
 
 

@@ -5,7 +5,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from mbkf.errors import ShapeError, UnknownName
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.numerics.kalman import information
+from mbkf.sensors.markers import MarkerInformation, MarkerSensor
 from tests.motions import assert_near, moderate_pose, protocol_sensor, random_model, reference_model
 
 
@@ -61,6 +62,40 @@ def test_a_marker_moves_only_with_the_dofs_below_it(rng):
     ):
         moving = np.concatenate([np.arange(model.nv)[model.joint(name).v] for name in chain])
         assert set(np.flatnonzero(np.abs(jacobian[row]).sum(axis=0))) == set(moving)
+
+
+def test_pull_is_the_transposed_jacobian_times_forces(rng):
+    model = random_model(rng)
+    sensor, _ = protocol_sensor(model)
+    reading, forces = sensor.reading(moderate_pose(model, rng)), rng.normal(size=(36, 3))
+    assert_near(reading.pull(forces), np.einsum("mij,mi->j", reading.jacobian, forces), 1e-13)
+
+
+@pytest.mark.parametrize("lost", [0, 5, 36])
+def test_information_without_jacobian_is_that_of_the_stacked_readings(rng, lost):
+    model = random_model(rng)
+    sensor, _ = protocol_sensor(model)
+    noise, q = rng.uniform(0.002, 0.01, 36), moderate_pose(model, rng)
+    reading, y, trusted = sensor.reading(q), 0.01 * rng.normal(size=(36, 3)), np.arange(36) >= lost
+    y[~trusted] = np.nan
+    found = MarkerInformation(sensor, noise).at(q, reading, y, trusted)
+    sd = np.repeat(noise[trusted], 3)
+    stacked = information(y[trusted].ravel(), reading.jacobian[trusted].reshape(-1, model.nv), sd)
+    assert_near(found.matrix, stacked.matrix, 1e-8)  # entries up to 1e7
+    assert_near(found.vector, stacked.vector, 1e-9)
+    assert found.innovation == pytest.approx(stacked.innovation, rel=1e-12)
+    assert found.readings == stacked.readings == 3 * (36 - lost)
+
+
+def test_a_reading_keeps_its_numbers_when_the_next_is_made(rng):
+    """The Jacobian is built when asked for, and is still that of its own configuration."""
+    model = random_model(rng)
+    sensor, _ = protocol_sensor(model)
+    q, elsewhere = moderate_pose(model, rng), moderate_pose(model, rng)
+    reading, expected = sensor.reading(q), sensor.reading(q).jacobian
+    sensor.reading(elsewhere)
+    np.testing.assert_array_equal(reading.jacobian, expected)
+    np.testing.assert_array_equal(reading.positions_m, sensor.positions(q))
 
 
 def test_no_markers_are_no_markers():

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from mbkf.numerics.kalman import information
 from mbkf.sensors.posture import PostureSensor
 from tests.motions import assert_near, moderate_pose, reference_model
 
@@ -49,3 +50,23 @@ def test_where_and_how_the_body_stands_does_not_matter():
     q = moderate_pose(MODEL, rng)
     elsewhere = MODEL.integrate(q, np.concatenate([rng.normal(size=6), np.zeros(MODEL.nv - 6)]))
     np.testing.assert_array_equal(SENSOR.reading(elsewhere).deviation, SENSOR.reading(q).deviation)
+
+
+def test_information_is_that_of_the_stacked_readings():
+    """Held dofs have no reading; each deviation is read as zero."""
+    q = moderate_pose(MODEL, np.random.default_rng(6))
+    held = np.arange(MODEL.nv) % 7 == 0
+    found = SENSOR.information(q, SENSOR.weights(10.0, held))
+    reading, free = SENSOR.reading(q), np.flatnonzero(~held[SENSOR.dofs])
+    stacked = information(-reading.deviation[free], reading.jacobian[free], 10.0 * SENSOR.sd[free])
+    assert_near(found.matrix, stacked.matrix, 1e-14)
+    assert_near(found.vector, stacked.vector, 1e-14)
+    assert found.readings == 0
+
+
+def test_a_body_on_its_head_is_read_like_one_on_its_feet():
+    """The pelvis may be turned by π, where its own rotation vector has no derivative."""
+    q = moderate_pose(MODEL, np.random.default_rng(7))
+    upside_down = q.copy()
+    upside_down[3:7] = [1.0, 0.0, 0.0, 0.0]
+    np.testing.assert_array_equal(SENSOR.reading(upside_down).jacobian, SENSOR.reading(q).jacobian)
