@@ -1,0 +1,99 @@
+"""How the forces of the whole body wander: each by itself as in the thesis, or together, as Newton–Euler demands.
+
+Forces that follow free accelerations and loads change by δτ = M δa − Jᵀ δw, or by M δa alone where loads are taken
+off ("inertial"). Noise that is independent instead leaves a foot of 1e-3 kg m² with the difference of two moments of
+many N m. Where the residual is itself part of the random walk ("torque"), it has to stay small: there (δa, δw) are
+drawn on condition that the pelvis's six rows of δτ are the residual's own small noise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+
+from mbkf.conventions import Array
+from mbkf.filters.torque_plant import ForcedState
+from mbkf.filters.torque_settings import MASS_OF_TABLE_KG, TorqueSettings
+from mbkf.model.human_dynamics import HumanDynamics
+from mbkf.numerics.discretisation import symmetric
+
+
+@dataclass(frozen=True)
+class Conditioned:
+    """A Gaussian made to obey linear readings: ``shift`` (n,) of its mean and its new ``covariance`` (n, n)."""
+
+    shift: Array
+    covariance: Array
+
+
+def condition(covariance: Array, rows: Array, variance: Array, missing: Array) -> Conditioned:
+    """Conditions x ~ N(·, C) on A x + r = y, r of independent ``variance`` (m,), where y − A x̄ = ``missing`` (m,)."""
+    carried = covariance @ rows.T
+    S = rows @ carried + np.diag(variance)
+    factor = scipy.linalg.cho_factor(S, check_finite=False)
+    gain = scipy.linalg.cho_solve(factor, carried.T, check_finite=False).T
+    return Conditioned(gain @ missing, symmetric(covariance - gain @ carried.T))
+
+
+def residual_variance(settings: TorqueSettings, mass_kg: float) -> Array:
+    """(6,) variance per second of the residual."""
+    scale = mass_kg / MASS_OF_TABLE_KG
+    force, moment = settings.residual_force_n * scale, settings.residual_moment_nm * scale
+    return np.repeat([force**2, moment**2], 3)
+
+
+def load_variance(settings: TorqueSettings, mass_kg: float) -> Array:
+    """(12,) variance per second of the foot wrenches."""
+    scale = mass_kg / MASS_OF_TABLE_KG
+    force, moment = settings.load_force_n * scale, settings.load_moment_nm * scale
+    return np.tile(np.repeat([force**2, moment**2], 3), 2)
+
+
+class ForceNoise:
+    """Spectral density of the plant noise w̃ on (δq, δv, δT_e) (eqs. 2.42, 2.46).
+
+    Attributes:
+        body: The body.
+        settings: How much, and whether "consistent" or "independent".
+    """
+
+    def __init__(self, body: HumanDynamics, dt_s: float, settings: TorqueSettings) -> None:
+        self.body, self.settings = body, settings
+        mass = body.model.mass_kg
+        toes = body.model.acceleration_sd if settings.toe_acceleration is None else settings.toe_acceleration
+        self._toes = np.where(body.kinematic & ~body.held, toes, 0.0) ** 2 * dt_s
+        jerk = settings.jerk_scale * body.model.acceleration_sd
+        self._jerk = np.where(body.kinematic, 0.0, jerk**2)
+        self._residual, self._load = residual_variance(settings, mass), load_variance(settings, mass)
+        self._independent = self._own() * (1.0 / dt_s if settings.per_frame else 1.0)
+
+    def __call__(self, state: ForcedState) -> Array:
+        """(n, n) at a state."""
+        nv, n = self.body.nv, 2 * self.body.nv + self.body.nu
+        density = np.zeros((n, n))
+        density[np.arange(nv, 2 * nv), np.arange(nv, 2 * nv)] = self._toes
+        if self.settings.noise == "independent":
+            density[2 * nv :, 2 * nv :] = np.diag(self._independent)
+        else:
+            density[2 * nv :, 2 * nv :] = self._together(state)
+        return density
+
+    def _together(self, state: ForcedState) -> Array:
+        rows = self.body.force_rows(state.q)
+        free = np.diag(np.concatenate([self._jerk, self._load]))
+        if self.body.force_state == "torque":
+            free = condition(free, rows[:6], self._residual, np.zeros(6)).covariance
+        return symmetric(rows @ free @ rows.T)
+
+    def _own(self) -> Array:
+        """(nu,) the thesis's variances (Table 4.3)."""
+        body, scale = self.body, self.body.model.mass_kg / MASS_OF_TABLE_KG
+        legs = np.zeros(body.nv, dtype=bool)
+        for name, joint in body.model.joints.items():
+            legs[joint.v] = name.endswith(("thigh", "shank", "foot"))
+        torque = scale * np.where(legs, self.settings.lower_torque_nm, self.settings.upper_torque_nm)
+        variance = np.where(body.kinematic, 0.0, torque**2)
+        variance[:6] = self._residual
+        return np.concatenate([variance[body.torque_dofs], self._load])

@@ -1,0 +1,293 @@
+"""The whole body as a forced one: residual, joint torques and two foot wrenches move it (thesis 3.2, 4.1.4).
+
+Dofs that follow a kinematic plant (the toes, and what no marker shows) have a prescribed acceleration of 0, so that
+a toe's mass moves with its foot and its stiff dynamics stay out (thesis 4.1.4).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+import scipy.linalg
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.errors import UnknownName
+from mbkf.model.forced_body import LinearAcceleration
+from mbkf.model.human import HumanModel
+
+FEET = ("right_foot", "left_foot")
+"""Segments that take wrenches, in the order of every paired array."""
+
+WRENCH_FRAMES = ("ankle", "foot", "thesis")
+"""Where a wrench state lives; the moment is in the foot's axes in each.
+
+"ankle": force in world axes on the ankle. A turn of the foot changes nothing, a turn of the leg little.
+"foot": force in the foot's axes on the ankle; a turn of the foot swings the whole load about.
+"thesis": force in world axes on the foot's centre of mass (thesis 4.1.4.1), below the ankle, where it topples the foot.
+"""
+
+
+FORCE_STATES = ("inertial", "torque")
+"""What stands for residual and joint torques T_d in u, and so stays constant between frames.
+
+"torque": T_d itself, as in the thesis. A loaded leg is a column: under torques that do not answer, its errors grow
+at 50 to 100 per second, and every movement needs changes of torque that the plant did not expect.
+"inertial": the part of it that accelerates, M z̈ = T_d + B_pᵀ T_p + Q_g; T_d follows by subtracting what loads,
+gravity and velocity ask for. A limb then goes on as it moves. Reactions and motion meet in the residual, which is to
+be read as nearly zero. Accelerations and T_e of a frame are the same either way; u is only another coordinate of it.
+"""
+
+
+@dataclass(frozen=True)
+class JointForces:
+    """Residual and joint torques T_d (50,) of a state, with derivatives by q and v (50, nv) and by u (50, nu)."""
+
+    torque: Array
+    by_q: Array
+    by_v: Array
+    by_u: Array
+
+
+class HumanDynamics:
+    """A body of :class:`HumanModel` moved by u = [for residual and joint torques (50), right (6) and left wrench (6)].
+
+    Attributes:
+        model: The body.
+        held: (nv,) dofs that do not move.
+        kinematic: (nv,) dofs with prescribed acceleration: the toes and the held ones.
+        torque_dofs: The dofs that u's first entries act on: the pelvis's six, then the joints but for the toes.
+        wrench_frame: Where u's wrenches live, see :data:`WRENCH_FRAMES`.
+        force_state: What its first entries are, see :data:`FORCE_STATES`.
+        nv, nu: Degrees of freedom, forces (62 for the reference body).
+    """
+
+    def __init__(
+        self,
+        model: HumanModel,
+        held: BoolArray | None = None,
+        wrench_frame: str = "ankle",
+        force_state: str = "inertial",
+    ) -> None:
+        if wrench_frame not in WRENCH_FRAMES:
+            raise UnknownName("wrench frame", wrench_frame, WRENCH_FRAMES)
+        if force_state not in FORCE_STATES:
+            raise UnknownName("force state", force_state, FORCE_STATES)
+        self.model, self.wrench_frame, self.force_state = model, wrench_frame, force_state
+        self.nv = model.nv
+        toes = np.zeros(model.nv, dtype=bool)
+        for name in FEET:
+            toes[model.joint(name.replace("foot", "toes")).v] = True
+        self.held = np.zeros(model.nv, dtype=bool) if held is None else held
+        self.kinematic = toes | self.held
+        self.torque_dofs = np.flatnonzero(~toes)
+        self.nu = len(self.torque_dofs) + 12
+        self._free = np.flatnonzero(~self.kinematic)
+        self._foot_ids = [model.joint(name).joint_id for name in FEET]
+        on_com = 1.0 if wrench_frame == "thesis" else 0.0
+        self._points = [on_com * model.pin_model.inertias[k].lever for k in self._foot_ids]
+        self._data = model.pin_model.createData()
+        self._weightless = model.pin_model.copy()
+        self._weightless.gravity.linear = np.zeros(3)
+        self._loads = _no_forces(model.pin_model)
+        # Whether loads, gravity and velocity act themselves, or u has taken them off.
+        self._acting = force_state == "torque"
+        self._selector = np.zeros((model.nv, len(self.torque_dofs)))
+        self._selector[self.torque_dofs, np.arange(len(self.torque_dofs))] = 1.0
+        self._turning = [joint.v for joint in model.joints.values() if joint.kind == "spherical"]
+
+    # The manifold.
+
+    def integrate(self, q: Array, dv: Array) -> Array:
+        """(nq,) configuration q ⊕ dv."""
+        return self.model.integrate(q, dv)
+
+    def difference(self, q0: Array, q1: Array) -> Array:
+        """(nv,) the tangent vector from q0 to q1."""
+        return self.model.difference(q0, q1)
+
+    def retraction(self, q: Array, dv: Array) -> tuple[Array, Array]:
+        """Derivatives (nv, nv) of q ⊕ dv by q and by dv."""
+        model = self.model.pin_model
+        return pin.dIntegrate(model, q, dv, pin.ARG0), pin.dIntegrate(model, q, dv, pin.ARG1)
+
+    def transport(self, v: Array) -> Array:
+        """(nv, nv) −ad(v) of each joint: δ̇ = −v × δ + δv for errors in the joints' own axes."""
+        T = np.zeros((self.nv, self.nv))
+        root = -cross_matrix(v[3:6])
+        T[:3, :3] = T[3:6, 3:6] = root
+        T[:3, 3:6] = -cross_matrix(v[:3])
+        for dofs in self._turning:
+            T[dofs, dofs] = -cross_matrix(v[dofs])
+        return T
+
+    # Forces.
+
+    def acceleration(self, q: Array, v: Array, u: Array) -> Array:
+        """(nv,) M⁻¹ (Q_g + Bᵀ T_e) of the free dofs (eq. 3.38), 0 of the kinematic ones."""
+        dofs = len(self.torque_dofs)
+        push = self._selector @ u[:dofs]
+        if self._acting:
+            local = self.local_wrench(q, u[dofs:])[0]
+            push += self._pull() @ local - pin.nonLinearEffects(self.model.pin_model, self._data, q, v)
+        return self._accelerate(q, push)[0]
+
+    def linearise(self, q: Array, v: Array, u: Array) -> LinearAcceleration:
+        """The acceleration with its complete analytic derivatives (eqs. 3.42–3.44).
+
+        ∂z̈/∂q = M⁻¹ (∂(Bᵀ T_e + Q_g)/∂q − ∂(M a)/∂q), a held in the last term.
+        """
+        nv, rows, dofs = self.nv, self._free, len(self.torque_dofs)
+        given = self._given(q, v, u[dofs:]) if self._acting else _Given.nothing(nv)
+        a, factor = self._accelerate(q, self._selector @ u[:dofs] + given.force)
+        right = np.concatenate(
+            [given.by_q - self._inertia_slope(q, a), given.by_v, self._selector, given.by_state], axis=1
+        )
+        slope = np.zeros((nv, right.shape[1]))
+        slope[rows] = scipy.linalg.cho_solve(factor, right[rows], check_finite=False)
+        return LinearAcceleration(a, slope[:, :nv], slope[:, nv : 2 * nv], slope[:, 2 * nv :])
+
+    def forces(self, q: Array, v: Array, a: Array, foot_wrench: Array) -> Array:
+        """(nu,) forces u that cause a motion under given reactions (eq. 3.12).
+
+        Args:
+            q: Configuration.
+            v: Velocity.
+            a: (nv,) acceleration.
+            foot_wrench: (2, 6) force N and moment N m about the world's origin on right and left foot.
+        """
+        state = self.wrench_state(q, foot_wrench)
+        u = self.model.mass_matrix(q) @ a
+        if self._acting:
+            u -= self._given(q, v, state).force
+        return np.concatenate([u[self.torque_dofs], state])
+
+    def generalised(self, q: Array, v: Array, a: Array, u: Array) -> Array:
+        """(nv,) generalised forces M a − Q_g − Jᵀ w of all dofs, kinematic ones too, under u's wrenches."""
+        local = self.local_wrench(q, u[len(self.torque_dofs) :])[0]
+        load = self._pull() @ local
+        return self.model.inverse_dynamics(q, v, a) - load
+
+    def joint_forces(self, q: Array, v: Array, u: Array) -> JointForces:
+        """Residual and joint torques T_d of a state."""
+        dofs, nv = len(self.torque_dofs), self.nv
+        if self._acting:
+            none = np.zeros((dofs, nv))
+            return JointForces(u[:dofs].copy(), none, none, np.eye(dofs, self.nu))
+        given = self._given(q, v, u[dofs:])
+        by_u = np.eye(dofs, self.nu)
+        by_u[:, dofs:] = -given.by_state[self.torque_dofs]
+        rows = self.torque_dofs
+        return JointForces(u[:dofs] - given.force[rows], -given.by_q[rows], -given.by_v[rows], by_u)
+
+    def force_rows(self, q: Array) -> Array:
+        """(nu, nv + 12) how u follows from accelerations and wrench states, δu = rows (δa, δw)."""
+        dofs = len(self.torque_dofs)
+        rows = np.zeros((self.nu, self.nv + 12))
+        rows[:dofs, : self.nv] = self.model.mass_matrix(q)[self.torque_dofs]
+        if self._acting:
+            _, by_state, _ = self.local_wrench(q, np.zeros(12))
+            rows[:dofs, self.nv :] = -(self._pull() @ by_state)[self.torque_dofs]
+        rows[dofs:, self.nv :] = np.eye(12)
+        return rows
+
+    # Wrenches.
+
+    def wrench_state(self, q: Array, foot_wrench: Array) -> Array:
+        """(12,) u's wrenches from those (2, 6) about the world's origin in world axes."""
+        pin.forwardKinematics(self.model.pin_model, self._data, q)
+        state = np.empty(12)
+        for side, (joint, point) in enumerate(zip(self._foot_ids, self._points, strict=True)):
+            place = self._data.oMi[joint]
+            force, moment = foot_wrench[side, :3], foot_wrench[side, 3:]
+            local = place.rotation.T @ (moment - np.cross(place.translation, force))
+            turned = place.rotation.T @ force
+            if self.wrench_frame == "foot":
+                state[6 * side : 6 * side + 6] = np.concatenate([turned, local])
+            else:
+                state[6 * side : 6 * side + 6] = np.concatenate([force, local - np.cross(point, turned)])
+        return state
+
+    def local_wrench(self, q: Array, state: Array) -> tuple[Array, Array, Array]:
+        """(12,) wrenches in the feet's axes about the ankles, and derivatives by state (12, 12) and q (12, nv)."""
+        pin.computeJointJacobians(self.model.pin_model, self._data, q)
+        return self._local(state)
+
+    def _local(self, state: Array) -> tuple[Array, Array, Array]:
+        if self.wrench_frame == "foot":
+            return state, np.eye(12), np.zeros((12, self.nv))
+        local, by_state, by_q = np.empty(12), np.zeros((12, 12)), np.zeros((12, self.nv))
+        turns = [jacobian[3:] for jacobian in self._foot_jacobians()]
+        for side, (joint, point) in enumerate(zip(self._foot_ids, self._points, strict=True)):
+            at, force, moment = 6 * side, slice(6 * side, 6 * side + 3), slice(6 * side + 3, 6 * side + 6)
+            back = self._data.oMi[joint].rotation.T
+            turned = back @ state[force]
+            local[force], local[moment] = turned, state[moment] + np.cross(point, turned)
+            by_state[force, force], by_state[moment, moment] = back, np.eye(3)
+            by_state[moment, force] = cross_matrix(point) @ back
+            swing = cross_matrix(turned) @ turns[side]
+            by_q[at : at + 6] = np.concatenate([swing, cross_matrix(point) @ swing])
+        return local, by_state, by_q
+
+    def _foot_jacobians(self) -> list[Array]:
+        """(6, nv) of each ankle in the foot's axes, after the joint Jacobians were computed."""
+        model = self.model.pin_model
+        return [pin.getJointJacobian(model, self._data, joint, pin.LOCAL) for joint in self._foot_ids]
+
+    def _pull(self) -> Array:
+        """(nv, 12) Jᵀ from wrenches in the feet's axes to generalised forces, likewise."""
+        return np.concatenate(self._foot_jacobians(), axis=0).T
+
+    def _given(self, q: Array, v: Array, state: Array) -> _Given:
+        """What wrench states, gravity and velocity do to all dofs, with derivatives."""
+        model, still = self.model.pin_model, np.zeros(self.nv)
+        local, by_state, by_q = self.local_wrench(q, state)
+        pull = self._pull()
+        for side, joint in enumerate(self._foot_ids):
+            self._loads[joint] = pin.Force(local[6 * side : 6 * side + 6])
+        force = -pin.rnea(model, self._data, q, v, still, self._loads)
+        # Pinocchio's derivative includes how the pull of a wrench constant in the foot's axes changes with q.
+        bias_q, bias_v, _ = pin.computeRNEADerivatives(model, self._data, q, v, still, self._loads)
+        return _Given(force, pull @ by_q - bias_q, -bias_v, pull @ by_state)
+
+    def _inertia_slope(self, q: Array, a: Array) -> Array:
+        """(nv, nv) ∂(M a)/∂q."""
+        return pin.computeRNEADerivatives(self._weightless, self._data, q, np.zeros(self.nv), a)[0]
+
+    def _accelerate(self, q: Array, push: Array) -> tuple[Array, tuple[Array, bool]]:
+        """Acceleration under generalised forces, and the Cholesky factor of the free dofs' mass matrix."""
+        rows = self._free
+        upper = pin.crba(self.model.pin_model, self._data, q)[np.ix_(rows, rows)]
+        factor = scipy.linalg.cho_factor(upper, lower=False, check_finite=False)
+        a = np.zeros(self.nv)
+        a[rows] = scipy.linalg.cho_solve(factor, push[rows], check_finite=False)
+        return a, factor
+
+
+@dataclass(frozen=True)
+class _Given:
+    """Q_g + Jᵀ w: ``force`` (nv,), its derivatives ``by_q``, ``by_v`` (nv, nv) and ``by_state`` (nv, 12)."""
+
+    force: Array
+    by_q: Array
+    by_v: Array
+    by_state: Array
+
+    @classmethod
+    def nothing(cls, nv: int) -> _Given:
+        none = np.zeros((nv, nv))
+        return cls(np.zeros(nv), none, none, np.zeros((nv, 12)))
+
+
+def cross_matrix(vector: Array) -> Array:
+    """(3, 3) matrix of the product vector × ·."""
+    x, y, z = vector
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def _no_forces(model: pin.Model) -> pin.StdVec_Force:
+    forces = pin.StdVec_Force()
+    for _ in range(model.njoints):
+        forces.append(pin.Force.Zero())
+    return forces

@@ -1,0 +1,111 @@
+"""The thesis's filter on trials: its start, its torques and wrenches, feet without a plate, and its smoother."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mbkf.sensors.footing import Footing
+from tests.followed import (
+    FRAMES,
+    SETTLED,
+    WHOLE,
+    estimates,
+    inputs,
+    made,
+    made_follower,
+    recording,
+    torques,
+    tracked,
+)
+from tests.motions import worst
+
+LEFT = 1
+
+
+def truth(name):
+    return getattr(made().motion, name)[FRAMES.start : FRAMES.stop]
+
+
+def rms(values):
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def test_a_start_agrees_with_the_plates_and_newton():
+    _, found = estimates("torque")
+    first = found[0].inner.state
+    assert worst(first.foot_wrench[:, :3] - recording().plates[0][:, :3]) < 10.0
+    assert worst(first.tau[:3]) < 15.0
+    assert found[0].footing == (Footing.MEASURED, Footing.MEASURED)
+
+
+def test_torques_are_states_with_their_spread():
+    follower, found = estimates("torque")
+    for one in (found[0], found[5]):
+        np.testing.assert_array_equal(follower.spread(one).torque, one.inner.state.tau_sd)
+        np.testing.assert_array_equal(follower.wrench_sd(one), one.inner.state.foot_wrench_sd)
+        np.testing.assert_array_equal(one.wrench, one.inner.state.foot_wrench)
+
+
+def test_reactions_and_torques_follow_the_truth():
+    found = tracked("torque")
+    known = np.isfinite(found.torque_sd[1])
+    off = (torques(found) - truth("tau"))[SETTLED][:, known]
+    assert worst(off[:, 6:] / found.torque_sd[SETTLED][:, known][:, 6:]) < 4.0
+    assert rms((found.wrench - truth("foot_wrench"))[SETTLED, :, :3]) < 3.0
+
+
+def test_its_torques_are_inverse_dynamics_of_its_own_motion():
+    """a, w and τ of a state obey Newton's law together; toes and head are kinematic."""
+    _, found = estimates("torque")
+    again = torques(tracked("torque"))
+    known = np.isfinite(tracked("torque").torque_sd[1])
+    for t in (1, 20, 50):
+        np.testing.assert_allclose(again[t][known], found[t].inner.state.tau[known], rtol=0, atol=1e-5)
+
+
+def test_smoothed_estimates_obey_newton_too():
+    found = tracked("torque", WHOLE)
+    follower, before = estimates("torque")
+    smoothed = follower.smooth(before, recording(), 0, len(before))
+    known = np.isfinite(found.torque_sd[1])
+    for t in (0, 20, 59):
+        assert np.abs(torques(found)[t][known] - smoothed[t].inner.state.tau[known]).max() < 1e-5
+
+
+def test_a_foot_without_a_plate_is_inferred():
+    follower = made_follower("torque", plates=made().plates[:1])
+    read = replace(recording(), plates=recording().plates[:, :1])
+    found = [follower.start(read, 0, None)]
+    for t in range(1, 40):
+        found.append(follower.step(found[-1], read, t))
+    assert found[20].footing == (Footing.MEASURED, Footing.FREE)
+    vertical = np.array([one.wrench[LEFT, 2] for one in found]) - truth("foot_wrench")[:40, LEFT, 2]
+    sd = np.array([follower.wrench_sd(one)[LEFT, 2] for one in found])
+    assert rms(vertical[20:]) < 80.0
+    assert (sd[20:] > 10.0).all()
+    assert follower.innovation(found[20])[1] == 3 * 36 + 6
+
+
+def test_a_loss_of_markers_leaves_the_plates():
+    follower, found = estimates("torque")
+    blind = replace(recording(), markers_m=np.full_like(recording().markers_m, np.nan))
+    step = follower.step(found[20], blind, 21)
+    assert not step.tracked
+    assert follower.innovation(step)[1] == 12
+    assert step.footing == found[21].footing
+
+
+@pytest.mark.parametrize("keep", [1, 5])
+def test_smoothing_a_few_frames(keep):
+    follower, found = estimates("torque")
+    smoothed = follower.smooth(found[:keep], recording(), 0, keep)
+    np.testing.assert_allclose(smoothed[-1].q, found[keep - 1].q, rtol=0, atol=1e-12)
+    assert len(smoothed) == keep
+
+
+def test_it_starts_as_the_kinematic_filter_does():
+    kinematic = made_follower("kinematic", kinematic=inputs().kinematic).start(recording(), 0, None)
+    _, found = estimates("torque")
+    moved = made().model.difference(kinematic.q, found[0].q)
+    assert worst(moved / tracked("torque").position_sd[0]) < 1.0

@@ -1,0 +1,196 @@
+"""The torque plant: F along the manifold, the linear case against the exact Kalman filter, sub-steps."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.linalg
+
+from mbkf.filters.integrators import Motion, runge_kutta
+from mbkf.filters.torque_plant import ForcedState, Scheme, TorquePlant, on_state, update
+from mbkf.model.human_dynamics import FORCE_STATES, HumanDynamics
+from mbkf.numerics.discretisation import COVARIANCES, PROPAGATIONS
+from mbkf.numerics.kalman import information
+from tests.forced_bodies import Cart, DampedPendulum
+from tests.motions import assert_near, moderate_pose, random_model, worst
+
+DT = 0.01
+
+
+def density_of(body, forces=4.0):
+    n = 2 * body.nv + body.nu
+    density = np.zeros((n, n))
+    density[2 * body.nv :, 2 * body.nv :] = forces * np.eye(body.nu)
+    return density
+
+
+def plant_of(body, **scheme):
+    return TorquePlant(body, DT, lambda _: density_of(body), Scheme(**scheme))
+
+
+def loaded_body(force_state, seed=3):
+    """The whole body moving under torques and reactions."""
+    rng = np.random.default_rng(seed)
+    model = random_model(rng)
+    body = HumanDynamics(model, force_state=force_state)
+    q, v = moderate_pose(model, rng), 2.0 * rng.normal(size=model.nv)
+    a = np.where(body.kinematic, 0.0, 5.0 * rng.normal(size=model.nv))
+    wrench = rng.normal(size=(2, 6)) * np.array([50.0, 50.0, 300.0, 30.0, 30.0, 10.0])
+    return body, Motion(q, v), body.forces(q, v, a, wrench)
+
+
+def flow_derivative(body, now, u, h, eps=1e-6):
+    """(2 nv, n) derivative of an exact step of length h by (q, v, u), by central differences."""
+    nv, centre = body.nv, runge_kutta(body, now, u, h)
+    columns = []
+    for e in np.eye(2 * nv + body.nu):
+        scale = eps * np.where(np.arange(len(e)) < 2 * nv, 1.0, 100.0) @ e
+        ends = [
+            runge_kutta(
+                body,
+                Motion(body.integrate(now.q, s * scale * e[:nv]), now.v + s * scale * e[nv : 2 * nv]),
+                u + s * scale * e[2 * nv :],
+                h,
+            )
+            for s in (1.0, -1.0)
+        ]
+        q = [body.difference(centre.q, end.q) for end in ends]
+        columns.append(np.concatenate([q[0] - q[1], ends[0].v - ends[1].v]) / (2.0 * scale))
+    return np.stack(columns, axis=1)
+
+
+@pytest.mark.parametrize("force_state", FORCE_STATES)
+def test_sensitivity_is_the_rate_of_errors_along_the_manifold(force_state):
+    body, now, u = loaded_body(force_state)
+    F = plant_of(body).sensitivity(now.v, body.linearise(now.q, now.v, u))
+
+    def rate(h):
+        forth, back = (flow_derivative(body, now, u, s * h) for s in (1.0, -1.0))
+        return (forth - back) / (2.0 * h)
+
+    numeric = (4.0 * rate(1e-4) - rate(2e-4)) / 3.0
+    scale = np.maximum(np.abs(F[: 2 * body.nv]).max(axis=1, keepdims=True), 1.0)
+    assert worst((numeric - F[: 2 * body.nv]) / scale) < 1e-5
+    assert not F[2 * body.nv :].any()
+
+
+def test_exact_propagation_is_the_derivative_of_a_step():
+    """With F averaged over the step, exp(F Δt) is Φ to second order in Δt."""
+    body, now, u = loaded_body("inertial")
+    state = ForcedState(now.q, now.v, u, np.zeros((2 * body.nv + body.nu,) * 2))
+    errors = []
+    for dt in (0.008, 0.004):
+        plant = TorquePlant(body, dt, lambda _: density_of(body), Scheme("RK4", mean_slope=True))
+        phi = plant.predict(state).phi[: 2 * body.nv]
+        numeric = flow_derivative(body, now, u, dt)
+        scale = np.maximum(np.abs(numeric).max(axis=1, keepdims=True), 1.0)
+        errors.append(worst((phi - numeric) / scale))
+    assert errors[0] < 1e-3
+    assert errors[1] < errors[0] / 4.0
+
+
+def test_simplified_sensitivity_keeps_only_what_forces_do():
+    """Eq. 4.15; the turning of the tangent space is kinematics and stays."""
+    body, now, u = loaded_body("torque")
+    nv, slope = body.nv, body.linearise(now.q, now.v, u)
+    F = plant_of(body, complete=False).sensitivity(now.v, slope)
+    np.testing.assert_array_equal(F[:nv, :nv], body.transport(now.v))
+    np.testing.assert_array_equal(F[:nv, nv : 2 * nv], np.eye(nv))
+    np.testing.assert_array_equal(F[nv : 2 * nv, 2 * nv :], slope.by_u)
+    assert not F[nv : 2 * nv, : 2 * nv].any()
+    pendulum = DampedPendulum()
+    F = plant_of(pendulum, complete=False).sensitivity(
+        np.array([2.0]), pendulum.linearise(np.array([0.4]), np.array([2.0]), np.array([1.0]))
+    )
+    np.testing.assert_array_equal(F, [[0, 1, 0], [0, 0, 1], [0, 0, 0]])
+
+
+def cart_matrices(noise=4.0):
+    """Φ and Q of two carts in closed form."""
+    m, one, none = np.diag(1 / Cart.mass), np.eye(2), np.zeros((2, 2))
+    phi = np.block([[one, DT * one, DT**2 / 2 * m], [none, one, DT * m], [none, none, one]])
+    gain = np.vstack([m * DT**2 / 2, m * DT, one])
+    powers = [np.vstack([m, none, none]) / 2, np.vstack([none, m, none]), np.vstack([none, none, one])]
+    noise_matrix = sum(
+        powers[i] @ powers[j].T * DT ** (5 - i - j) / (5 - i - j) for i in range(3) for j in range(3)
+    )
+    assert gain.shape == (6, 2)
+    return phi, noise * noise_matrix
+
+
+@pytest.mark.parametrize("name", ["HE", "TF", "TN", "RK4"])
+def test_linear_body_is_the_exact_kalman_filter(name):
+    """Constant forces, no stiffness: every integrator above Euler and the exponential are exact."""
+    rng, body = np.random.default_rng(4), Cart()
+    plant, (phi, noise) = plant_of(body, integrator=name), cart_matrices()
+    A = rng.normal(size=(6, 6))
+    x, P = rng.normal(size=6), A @ A.T
+    state = ForcedState(x[:2], x[2:4], x[4:], P)
+    H, sd = rng.normal(size=(4, 6)), np.array([0.1, 0.2, 0.05, 1.0])
+    for _ in range(20):
+        x, P = phi @ x, phi @ P @ phi.T + noise
+        y = rng.normal(size=4)
+        K = np.linalg.solve(H @ P @ H.T + np.diag(sd**2), H @ P).T
+        x, P = x + K @ (y - H @ x), (np.eye(6) - K @ H) @ P
+        prior = plant.predict(state).state
+        seen = np.concatenate([prior.q, prior.v, prior.u])
+        state = update(body, prior, information(y - H @ seen, H, sd)).state
+    assert_near(np.concatenate([state.q, state.v, state.u]), x, 1e-9)
+    assert_near(state.P, P, 1e-9)
+
+
+@pytest.mark.parametrize("covariance", COVARIANCES)
+@pytest.mark.parametrize("propagation", PROPAGATIONS)
+def test_sub_steps_compose(propagation, covariance):
+    """Many sub-steps of any scheme come to the exact one; for the linear body Van Loan needs only one."""
+    body = Cart()
+    state = ForcedState(np.ones(2), np.ones(2), np.ones(2), np.eye(6))
+    exact = plant_of(body, integrator="TN").predict(state)
+    found = plant_of(body, integrator="TN", propagation=propagation, covariance=covariance, substeps=40)
+    fine = found.predict(state)
+    coarse = replace(found.scheme, substeps=1)
+    rough = TorquePlant(body, DT, found.density, coarse).predict(state)
+    assert worst(fine.phi - exact.phi) <= worst(rough.phi - exact.phi) / 30 + 1e-13
+    assert worst(fine.state.P - exact.state.P) <= worst(rough.state.P - exact.state.P) / 30 + 1e-12
+
+
+def test_prediction_keeps_forces_and_returns_its_transition():
+    body, now, u = loaded_body("inertial")
+    A = 1e-3 * np.random.default_rng(5).normal(size=(2 * body.nv + body.nu,) * 2)
+    state = ForcedState(now.q, now.v, u, A @ A.T)
+    found = plant_of(body).predict(state)
+    np.testing.assert_array_equal(found.state.u, u)
+    added = found.state.P - found.phi @ state.P @ found.phi.T
+    assert np.linalg.eigvalsh(0.5 * (added + added.T)).min() > -1e-9 * worst(added)
+    np.testing.assert_array_equal(found.state.P, found.state.P.T)
+
+
+def test_covariance_is_what_the_errors_are():
+    """A pendulum whose torque really wanders: mean squared normalised error near 3, its dimension."""
+    rng, body, force_sd, angle_sd = np.random.default_rng(6), DampedPendulum(), 8.0, 0.01
+    plant = TorquePlant(body, DT, lambda _: np.diag([0.0, 0.0, force_sd**2]), Scheme("RK4", mean_slope=True))
+    P, H, fine, nees = np.diag([0.01, 0.3, 2.0]) ** 2, np.array([[1.0, 0.0, 0.0]]), 10, []
+    for _ in range(12):
+        x = np.array([0.5, 0.0, 4.0])
+        start = x + np.sqrt(np.diag(P)) * rng.normal(size=3)
+        state = ForcedState(start[:1], start[1:2], start[2:], P)
+        for _ in range(60):
+            for _ in range(fine):
+                moved = runge_kutta(body, Motion(x[:1], x[1:2]), x[2:], DT / fine)
+                wander = force_sd * np.sqrt(DT / fine) * rng.normal()
+                x = np.array([moved.q[0], moved.v[0], x[2] + wander])
+            prior = plant.predict(state).state
+            y = x[:1] + angle_sd * rng.normal(size=1) - prior.q
+            state = update(body, prior, information(y, H, np.array([angle_sd]))).state
+            error = x - np.concatenate([state.q, state.v, state.u])
+            nees.append(error @ np.linalg.solve(state.P, error))
+    assert np.mean(nees) == pytest.approx(3.0, abs=0.6)
+
+
+def test_information_lands_on_its_columns():
+    part = information(np.array([1.0]), np.array([[2.0, 3.0]]), np.array([0.5]))
+    whole = on_state(4, np.array([3, 1]), part)
+    H = np.array([[0.0, 3.0, 0.0, 2.0]])
+    assert_near(whole.matrix, H.T @ H / 0.25, 1e-12)
+    assert_near(whole.vector, H[0] / 0.25, 1e-12)
+    assert_near(scipy.linalg.norm(whole.vector[[0, 2]]), 0.0, 0.0)
