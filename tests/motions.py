@@ -148,13 +148,16 @@ def assert_near(found, expected, tolerance):
 
 
 def track_of(q, v, a, **known):
-    """A followed trial with this motion; what is not given is 0, as if everything were known exactly."""
+    """A followed trial with this motion; what is not given is 0, as if everything were known exactly; no wrench."""
     frames, nv = a.shape
     fields = {
         name: np.zeros((frames, nv))
         for name in ("position_sd", "velocity_sd", "angle_sd", "rate_sd", "torque_sd")
     }
     fields |= {
+        "wrench": np.full((frames, 2, 6), np.nan),
+        "wrench_sd": np.full((frames, 2, 6), np.nan),
+        "footing": None,
         "foot_height_sd": np.zeros((frames, 2)),
         "refused": np.zeros((frames, 0), bool),
         "tracked": np.ones(frames, bool),
@@ -162,6 +165,7 @@ def track_of(q, v, a, **known):
         "readings": np.zeros(frames, int),
         "step_seconds": np.zeros(frames),
         "starts": (0,),
+        "smoothed": False,
         "covariance": None,
     }
     return Track(q=q, v=v, a=a, **(fields | known))

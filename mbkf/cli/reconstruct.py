@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 _EPILOG = """\
 examples:
   mbkf reconstruct walk.trc --subject subject.toml --forces grf.mot --out result
+  mbkf reconstruct walk.c3d --subject subject.toml --filter torque --preset FDMC --out result
   mbkf reconstruct walk.c3d --subject subject.toml --hide RKNE,RTIB@1.2:1.5 --without-plate 2 --out result
 
 writes summary.json, motion.h5, angles.mot, torques.sto, reactions.mot and markers.trc to the folder
@@ -30,7 +31,19 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("trial", metavar="TRIAL", help="capture (.c3d or .trc)")
     parser.add_argument("--subject", required=True, metavar="SUBJECT.toml", help="written by 'mbkf scale'")
     parser.add_argument("--forces", metavar="FILE.mot", help="ground reactions; a C3D brings its own plates")
-    parser.add_argument("--filter", choices=("kinematic",), default="kinematic", help="which filter")
+    parser.add_argument(
+        "--filter",
+        choices=("kinematic", "torque", "dynamic"),
+        help="which filter; by default that of the preset, or dynamic",
+    )
+    parser.add_argument(
+        "--preset",
+        metavar="NAME|FILE",
+        help="settings that 'mbkf tune' found, or FD, FDMC, FD-literal, FDMC-literal for the torque filter",
+    )
+    parser.add_argument(
+        "--smooth", action="store_true", help="let later frames correct earlier ones (not for live use)"
+    )
     parser.add_argument(
         "--hide",
         metavar="A,B@T0:T1",
@@ -63,6 +76,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.capture import read_capture
     from mbkf.io.results_folder import write_reconstruction
     from mbkf.io.subject import read_subject
+    from mbkf.pipelines.presets import with_preset
     from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
     from mbkf.pipelines.summary import summarise
     from mbkf.pipelines.truth import truth_beside
@@ -73,12 +87,15 @@ def run(args: argparse.Namespace) -> int:
     truth = truth_beside(args.trial)
     folder = check_folder(args.out)
     settings = ReconstructSettings(
-        filter=args.filter,
+        filter=args.filter or "dynamic",
+        smooth=args.smooth,
         correct_markers=not args.keep_markers,
         hide=hide,
         without_plates=tuple(args.without_plate),
         keep_covariance=truth is not None,
     )
+    if args.preset is not None:
+        settings = with_preset(settings, args.preset, args.filter)
     with stages() as report:
         result = reconstruct(capture, subject, settings=settings, progress=report)
     summary = summarise(result, truth)

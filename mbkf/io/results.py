@@ -19,12 +19,14 @@ SHAPES: dict[str, str] = {
     "measured_m": "T M 3", "predicted_m": "T M 3", "hidden": "T M", "rejected": "T M",
     "foot_wrench": "T 2 6", "foot_cop_m": "T 2 3", "foot_free_moment_nm": "T 2",
     "residual_force_n": "T 3", "residual_moment_nm": "T 3", "tracked": "T", "valid": "T",
-    "nis": "T", "nis_readings": "T", "step_seconds": "T", "plate_change": "T P 6", "covariance": "T 2nv 2nv",
+    "nis": "T", "nis_readings": "T", "step_seconds": "T", "plate_change": "T P 6",
+    "foot_wrench_sd": "T 2 6", "footing": "T 2", "covariance": "T 2nv 2nv",
 }  # fmt: skip
 """Dimensions of every array: T frames, nv dofs, A coordinates, M markers, P plates."""
 
 DTYPES: dict[str, type] = {name: np.bool_ for name in ("singular", "hidden", "rejected", "tracked", "valid")}
 DTYPES["nis_readings"] = np.int64
+DTYPES["footing"] = np.int64
 """Arrays that are not floating-point."""
 
 
@@ -53,10 +55,12 @@ class Reconstruction:
         singular: (T, A) within 10° of the angles' singularity.
         marker_names: (M,) markers followed.
         measured_m: (T, M, 3) measured world positions, NaN where not seen; hidden samples are kept here.
-        predicted_m: (T, M, 3) where the reconstructed body has them.
+        predicted_m: (T, M, 3) where the reconstructed body has them; where a marker was not seen, with the offset
+            from the body that its skin had around the gap.
         hidden: (T, M) taken away on purpose.
         rejected: (T, M) refused by the innovation gate.
-        foot_wrench: (T, 2, 6) ground on right and left foot: force N, moment N m about the world's origin.
+        foot_wrench: (T, 2, 6) ground on right and left foot: force N, moment N m about the world's origin; as
+            measured for the kinematic filter, else as estimated.
         foot_cop_m: (T, 2, 3) centres of pressure, NaN where not loaded.
         foot_free_moment_nm: (T, 2) moment about the vertical through the centre of pressure, NaN where not
             loaded.
@@ -72,6 +76,9 @@ class Reconstruction:
         settings: What the run was set to, as plain data.
         plate_change: (T, P, 6) estimated minus measured plate wrench (N, N m), NaN where a plate is not
             compared; None without plates.
+        foot_wrench_sd: (T, 2, 6) standard deviations of ``foot_wrench``; None where the filter does not estimate it.
+        footing: (T, 2) what right and left foot stand on: -1 something without a reading, 0 air, 1 a plate of its
+            own, 2 a plate both share; None where the filter does not ask.
         covariance: (T, 2nv, 2nv) of (q, v) in the tangent space; only kept on request and never written.
     """
 
@@ -118,6 +125,8 @@ class Reconstruction:
     warnings: tuple[str, ...] = ()
     settings: dict[str, Any] = field(default_factory=dict)
     plate_change: Array | None = None
+    foot_wrench_sd: Array | None = None
+    footing: Array | None = None
     covariance: Array | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:

@@ -28,7 +28,7 @@ UNITS = {
     "angles_sd": _ANGLE, "angle_rates_sd": _RATE, "moments_sd": _FORCE,
     "measured_m": "m", "predicted_m": "m", "foot_wrench": "N, N m about the world's origin",
     "foot_cop_m": "m", "foot_free_moment_nm": "N m", "residual_force_n": "N", "residual_moment_nm": "N m",
-    "step_seconds": "s", "plate_change": "N, N m",
+    "step_seconds": "s", "plate_change": "N, N m", "foot_wrench_sd": "N, N m about the world's origin",
 }  # fmt: skip
 """Unit of each array; the others (flags, counts, the innovation statistic) have none and carry "1"."""
 

@@ -33,6 +33,8 @@ class Segment:
         length_index: Which independent factor is the length factor k of eqs. 4.3 and 4.4.
         posture_sd_rad: (dof,) spread of the joint about the neutral standing posture, rad (0: no prior).
         acceleration_sd: (dof,) typical acceleration of each dof, m/s² or rad/s².
+        movement_sd: (dof,) standard deviation of the acceleration of each dof over a movement, m/s² or rad/s².
+        limits_rad: (dof, 2) least and greatest rotation about each axis; ±inf where there is no limit.
     """
 
     name: str
@@ -46,6 +48,8 @@ class Segment:
     length_index: int
     posture_sd_rad: Array
     acceleration_sd: Array
+    movement_sd: Array
+    limits_rad: Array
 
 
 @dataclass(frozen=True)
@@ -157,7 +161,15 @@ def _segment(entry: dict[str, Any], factors: tuple[str, ...]) -> Segment:
         length_index=factors.index(entry["length_factor"]),
         posture_sd_rad=read_only(np.deg2rad(entry["posture_sd_deg"])),
         acceleration_sd=read_only(entry["acceleration_sd"]),
+        movement_sd=read_only(entry["movement_sd"]),
+        limits_rad=_limits(entry),
     )
+
+
+def _limits(entry: dict[str, Any]) -> Array:
+    if "limits_deg" in entry:
+        return read_only(np.deg2rad(entry["limits_deg"]))
+    return read_only(np.tile([-np.inf, np.inf], (JOINT_DOF[entry["joint"]], 1)))
 
 
 def _scale_matrix(names: list[str], factors: tuple[str, ...]) -> Array:

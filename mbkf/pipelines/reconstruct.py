@@ -10,9 +10,11 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray, StageCallback
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
-from mbkf.filters.inverse_dynamics import inverse_dynamics
-from mbkf.filters.kinematic import KinematicFilter
+from mbkf.filters.dynamic_settings import DynamicSettings
+from mbkf.filters.estimate import Recording
 from mbkf.filters.settings import KinematicSettings
+from mbkf.filters.stretches import SmoothingSettings
+from mbkf.filters.torque_settings import TorqueSettings
 from mbkf.filters.tracking import Track, track
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results import Reconstruction
@@ -21,9 +23,12 @@ from mbkf.model.clinical import dof_names
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.clinical import clinical_motion
+from mbkf.pipelines.followers import FILTERS, FilterInputs, follower
+from mbkf.pipelines.reactions import Reactions, reactions
 from mbkf.scaling.correction import correct_markers
 from mbkf.scaling.frames import MIN_MARKERS
-from mbkf.sensors.contacts import FootLoads, assign_feet
+from mbkf.sensors.contacts import plate_wrenches
+from mbkf.sensors.gap_filling import filled
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.version import __version__
 
@@ -48,23 +53,27 @@ class ReconstructSettings:
     """How a trial is reconstructed.
 
     Attributes:
-        filter: Which filter; "kinematic" is the marker filter followed by inverse dynamics.
-        kinematic: What that filter believes.
+        filter: Which filter; "kinematic" is the marker filter followed by inverse dynamics, "torque" the thesis's
+            dynamic filter, "dynamic" ours.
+        smooth: Whether later frames correct earlier ones.
+        smoothing: How far they do.
+        kinematic, dynamic, torque: What each filter believes.
         correct_markers: Whether marker positions are corrected on the trial first (thesis 4.1.1).
         hide: Markers to hide.
         without_plates: Names of plates to withhold.
         keep_covariance: Whether full covariances are kept in memory.
     """
 
-    filter: str = "kinematic"
+    filter: str = "dynamic"
+    smooth: bool = False
+    smoothing: SmoothingSettings = field(default_factory=SmoothingSettings)
     kinematic: KinematicSettings = field(default_factory=KinematicSettings)
+    dynamic: DynamicSettings = field(default_factory=DynamicSettings)
+    torque: TorqueSettings = field(default_factory=TorqueSettings)
     correct_markers: bool = True
     hide: tuple[Hidden, ...] = ()
     without_plates: tuple[str, ...] = ()
     keep_covariance: bool = False
-
-
-FILTERS = ("kinematic",)
 
 
 def reconstruct(
@@ -103,15 +112,28 @@ def reconstruct(
             model, [m.segment for m in followed], np.array([m.position_m for m in followed])
         )
         held = _held(sensor, shown)
-        kalman = KinematicFilter(
-            sensor, np.array([m.noise_m for m in followed]), 1.0 / shown.rate_hz, held, settings.kinematic
+        inputs = FilterInputs(
+            sensor,
+            np.array([m.noise_m for m in followed]),
+            plates,
+            1.0 / shown.rate_hz,
+            held,
+            settings.kinematic,
+            settings.dynamic,
+            settings.torque,
         )
-        report = None if progress is None else lambda done, total: progress("Filtering", done, total)
-        result = track(kalman, shown.positions_m, keep_covariance=settings.keep_covariance, progress=report)
-        loads = assign_feet(model, result.q, shown.times_s, shown.rate_hz, plates)
-        return _assemble(
-            capture, subject, settings, measured, hidden, sensor, held, result, loads, bool(plates)
+        recording = Recording(
+            shown.positions_m, plate_wrenches(plates, shown.times_s, shown.rate_hz), inputs.dt_s
         )
+        result = track(
+            follower(settings.filter, inputs),
+            recording,
+            smoothing=settings.smoothing if settings.smooth else None,
+            keep_covariance=settings.keep_covariance,
+            progress=None if progress is None else lambda done, total: progress("Filtering", done, total),
+        )
+        ground = reactions(model, result, shown.times_s, shown.rate_hz, plates)
+        return _assemble(capture, subject, settings, measured, hidden, sensor, held, result, ground)
 
 
 def subject_markers(markers: MarkerTrajectories, subject: Subject) -> MarkerTrajectories:
@@ -165,13 +187,11 @@ def _assemble(
     sensor: MarkerSensor,
     held: BoolArray,
     result: Track,
-    loads: FootLoads,
-    has_plates: bool,
+    ground: Reactions,
 ) -> Reconstruction:
     model = sensor.model
-    dynamics = inverse_dynamics(model, result, loads.wrench)
-    known = np.where(has_plates, 1.0, np.nan)
-    tau, tau_sd = dynamics.tau * known, result.torque_sd * known
+    tau = ground.tau
+    tau_sd = np.where(np.isnan(tau), np.nan, result.torque_sd)
     clinical = clinical_motion(model, result, tau, tau_sd)
     located = (result.foot_height_sd <= FOOT_SD_M).all(axis=1)
     names = dof_names(model)
@@ -179,7 +199,7 @@ def _assemble(
         trial=Path(capture.path).stem or "capture",
         protocol=subject.protocol,
         filter=settings.filter,
-        smoothed=False,
+        smoothed=result.smoothed,
         version=__version__,
         subject=subject,
         rate_hz=measured.rate_hz,
@@ -202,32 +222,35 @@ def _assemble(
         singular=clinical.singular,
         marker_names=measured.names,
         measured_m=measured.positions_m,
-        predicted_m=_predicted(sensor, result.q),
+        predicted_m=_predicted(sensor, result, measured, hidden),
         hidden=hidden,
         rejected=result.refused,
-        foot_wrench=loads.wrench,
-        foot_cop_m=loads.centre_of_pressure_m,
-        foot_free_moment_nm=loads.free_moment_nm,
-        residual_force_n=dynamics.residual_force_n * known,
-        residual_moment_nm=dynamics.residual_moment_nm * known,
+        foot_wrench=ground.wrench,
+        foot_cop_m=ground.centre_of_pressure_m,
+        foot_free_moment_nm=ground.free_moment_nm,
+        residual_force_n=ground.residual_force_n,
+        residual_moment_nm=ground.residual_moment_nm,
         tracked=result.tracked,
-        valid=loads.valid & result.tracked & located,
+        valid=ground.valid & result.tracked & located,
         held_dofs=tuple(name for name, fixed in zip(names, held, strict=True) if fixed),
         nis=result.nis,
         nis_readings=result.readings,
         step_seconds=result.step_seconds,
-        warnings=(*capture.notes, *loads.warnings, *_warnings(result, names, held)),
+        warnings=(*capture.notes, *ground.warnings, *_warnings(result, names, held)),
         settings=asdict(settings),
+        plate_change=ground.plate_change,
+        foot_wrench_sd=ground.wrench_sd,
+        footing=result.footing,
         covariance=result.covariance,
     )
 
 
-def _predicted(sensor: MarkerSensor, q: Array) -> Array:
-    """(T, M, 3) markers of the reconstructed body; NaN where it is not followed."""
-    predicted = np.full((len(q), len(sensor.segments), 3), np.nan)
-    for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
-        predicted[t] = sensor.positions(q[t])
-    return predicted
+def _predicted(sensor: MarkerSensor, result: Track, measured: MarkerTrajectories, hidden: BoolArray) -> Array:
+    """(T, M, 3) markers of the reconstructed body, with their skin's offset where they were not seen."""
+    shown = ~hidden & measured.present
+    positions = np.where(shown[:, :, None], measured.positions_m, np.nan)
+    on_body, with_skin = filled(sensor, result.q, positions, 1.0 / measured.rate_hz, result.smoothed)
+    return np.where(shown[:, :, None], on_body, with_skin)
 
 
 def _warnings(result: Track, names: tuple[str, ...], held: BoolArray) -> list[str]:

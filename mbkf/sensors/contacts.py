@@ -13,6 +13,7 @@ from mbkf.io.records import PlateReadings
 from mbkf.io.resample import average_over_frames
 from mbkf.io.wrench import centre_of_pressure
 from mbkf.model.human import HumanModel
+from mbkf.sensors.markers import MarkerSensor
 
 FEET = ("right_foot", "left_foot")
 """Segments that take ground reactions, in the order of every paired array."""
@@ -56,26 +57,27 @@ class FootLoads:
     warnings: tuple[str, ...]
 
 
-def sole_points(model: HumanModel, q: Array) -> Array:
-    """(T, 2, 3, 3) world positions of heel, ball and toe end of right and left sole; NaN where q is NaN."""
+def sole_locals(model: HumanModel) -> tuple[tuple[str, ...], Array]:
+    """Heel, ball and toe end of right and left sole: their segments (6) and places (6, 3) in those, m."""
     sole = model.description.sole
     middle = 0.5 * (sole.inner_y_m + sole.outer_y_m)
-    local = np.empty((2, 3, 3))
-    for side, (segment, sign) in enumerate(zip(FEET, (1.0, -1.0), strict=True)):
+    segments, places = [], []
+    for segment, sign in zip(FEET, (1.0, -1.0), strict=True):
         toes = model.description.segment(segment.replace("foot", "toes"))
-        ends = np.array(
-            [
-                [sole.heel_x_m, sign * middle, sole.height_m],
-                [toes.origin_m[0], sign * middle, sole.height_m],
-                [sole.toe_x_m, sign * middle, sole.height_m],
-            ]
-        )
-        local[side] = ends * model.axis_scale(model.description.segment(segment))
-    ids = [model.joint(segment).joint_id for segment in FEET]
+        for x in (sole.heel_x_m, toes.origin_m[0], sole.toe_x_m):
+            segments.append(segment)
+            places.append(np.array([x, sign * middle, sole.height_m]))
+        scale = model.axis_scale(model.description.segment(segment))
+        places[-3:] = [place * scale for place in places[-3:]]
+    return tuple(segments), np.array(places)
+
+
+def sole_points(model: HumanModel, q: Array) -> Array:
+    """(T, 2, 3, 3) world positions of heel, ball and toe end of right and left sole; NaN where q is NaN."""
+    sensor = MarkerSensor(model, *sole_locals(model))
     points = np.full((len(q), 2, 3, 3), np.nan)
     for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
-        rotations, origins = model.placements(q[t])
-        points[t] = np.einsum("sij,skj->ski", rotations[ids], local) + origins[ids][:, None]
+        points[t] = sensor.positions(q[t]).reshape(2, 3, 3)
     return points
 
 
@@ -98,8 +100,7 @@ def assign_feet(
     foot = np.full((len(q), len(plates)), -1)
     for p, plate in enumerate(plates):
         wrench[:, p], recorded[:, p] = _about_world_origin(plate, times_s, rate_hz)
-        surface = plate.origin_m[2] if plate.corners_m is None else plate.corners_m[:, 2].mean()
-        pressure[:, p] = _pressure(wrench[:, p], float(surface), plate.threshold_n)
+        pressure[:, p] = _pressure(wrench[:, p], surface_height(plate), plate.threshold_n)
         foot[:, p] = _nearest_foot(pressure[:, p], soles, wrench[:, p, 2], rate_hz)
     total = np.zeros((len(q), 2, 6))
     for side in range(2):
@@ -109,6 +110,35 @@ def assign_feet(
     flight = ~touching.any(axis=1) & _falling(q[:, 2], rate_hz)
     valid, warnings = _validity(model, touching, flight, foot, wrench, pressure, recorded)
     return FootLoads(total, at_feet, free, wrench, foot, valid, warnings)
+
+
+def plate_wrenches(plates: tuple[PlateReadings, ...], times_s: Array, rate_hz: float) -> Array:
+    """(T, P, 6) mean force N and moment N m about the world's origin of every plate over each frame.
+
+    NaN where a plate was not recorded.
+
+    Args:
+        plates: The plates.
+        times_s: (T,) times of the frames.
+        rate_hz: Frame rate.
+    """
+    wrench = np.full((len(times_s), len(plates), 6), np.nan)
+    for p, plate in enumerate(plates):
+        found, recorded = _about_world_origin(plate, times_s, rate_hz)
+        wrench[recorded, p] = found[recorded]
+    return wrench
+
+
+def surface_height(plate: PlateReadings) -> float:
+    """Height of a plate's surface in the world, m."""
+    return float(plate.origin_m[2] if plate.corners_m is None else plate.corners_m[:, 2].mean())
+
+
+def pressure_and_free_moment(wrench: Array, surface_m: float, threshold_n: float) -> tuple[Array, Array]:
+    """(T, 2, 3) centre of pressure at a height and (T, 2) free moment of feet's wrenches (T, 2, 6); NaN unloaded."""
+    pressure = np.stack([_pressure(wrench[:, foot], surface_m, threshold_n) for foot in range(2)], axis=1)
+    free = wrench[..., 5] - (pressure[..., 0] * wrench[..., 1] - pressure[..., 1] * wrench[..., 0])
+    return pressure, free
 
 
 def _about_world_origin(plate: PlateReadings, times_s: Array, rate_hz: float) -> tuple[Array, BoolArray]:
@@ -225,9 +255,7 @@ def _validity(
     stray = (~np.isnan(pressure[:, :, 0]) & (foot < 0)).any(axis=1)
     valid = measured & (carried | flight) & ~stray & recorded.any(axis=1)
     warnings = []
-    if foot.shape[1] == 0:
-        warnings.append("no force plates: torques and residuals are not computed")
-    elif stray.any():
+    if stray.any():
         warnings.append(f"{int(stray.sum())} frames have a loaded plate with no foot within {REACH_M:.2f} m")
     if foot.shape[1] and not valid.any():
         warnings.append("no frame has every loaded foot on a measured plate")

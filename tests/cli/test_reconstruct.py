@@ -49,7 +49,7 @@ def test_files_keys_and_numbers(person, reconstruct, capsys):
     assert {path.name for path in out.iterdir()} == FILES
     summary = json.loads((out / "summary.json").read_text(), parse_constant=refuse_constant)
     assert set(summary) == KEYS
-    assert (summary["trial"], summary["protocol"], summary["filter"]) == ("trial", "reference36", "kinematic")
+    assert (summary["trial"], summary["protocol"], summary["filter"]) == ("trial", "reference36", "dynamic")
     assert (summary["frames"], summary["rate_hz"], summary["markers_used"]) == (60, 100.0, 36)
     assert summary["missing_fraction"] == 0.0
     assert 0.1 < summary["marker_rms_mm"] < 2.0
@@ -72,10 +72,39 @@ def test_opensim_files_agree_with_the_motion(person, reconstruct):
     np.testing.assert_allclose(angles.column("knee_angle_r"), np.rad2deg(motion.angles[:, column]), atol=1e-8)
     np.testing.assert_allclose(torques.column("knee_angle_r_moment"), motion.moments[:, column], atol=1e-8)
     reactions = read_storage(out / "reactions.mot")
-    total = reactions.column("ground_force_r_vy") + reactions.column("ground_force_l_vy")
-    assert total == pytest.approx(sum(p.force_n[0, 2] for p in read_c3d(person.trial).plates), rel=1e-6)
+    for side, column in enumerate(("ground_force_r_vy", "ground_force_l_vy")):
+        np.testing.assert_allclose(reactions.column(column), motion.foot_wrench[:, side, 2], atol=1e-6)
     markers = read_trc(out / "markers.trc").markers
     np.testing.assert_allclose(markers.positions_m, motion.predicted_m, atol=1e-8)
+
+
+@pytest.mark.parametrize(("name", "tolerance_n"), [("kinematic", 1e-3), ("dynamic", 1.0)])
+def test_reactions_are_the_plates_or_near_them(name, tolerance_n, person, reconstruct):
+    """Exactly what was measured after the kinematic filter, an estimate within the plates' noise of the dynamic one."""
+    reactions = read_storage(reconstruct(person.trial, "--filter", name) / "reactions.mot")
+    total = reactions.column("ground_force_r_vy") + reactions.column("ground_force_l_vy")
+    plates = sum(plate.force_n[0, 2] for plate in read_c3d(person.trial).plates)
+    np.testing.assert_allclose(total, plates, atol=tolerance_n)
+
+
+@pytest.mark.parametrize("name", ["kinematic", "torque", "dynamic"])
+def test_every_filter_writes_the_same_files(name, person, reconstruct):
+    out = reconstruct(person.trial, "--filter", name)
+    assert {path.name for path in out.iterdir()} == FILES
+    summary = read_summary(out)
+    assert set(summary) == KEYS
+    assert (summary["filter"], summary["smoothed"]) == (name, False)
+    assert (summary["plate_force_change_rms_n"] is None) == (name == "kinematic")
+    motion = read_reconstruction(out)
+    assert (motion.foot_wrench_sd is None, motion.footing is None) == ((name == "kinematic",) * 2)
+
+
+@pytest.mark.parametrize("name", ["kinematic", "torque", "dynamic"])
+def test_smooth_is_told(name, person, reconstruct):
+    plain = read_reconstruction(reconstruct(person.trial, "--filter", name))
+    smooth = read_reconstruction(reconstruct(person.trial, "--filter", name, "--smooth"))
+    assert smooth.smoothed and not plain.smoothed
+    assert np.median(smooth.sd_v / plain.sd_v) < 0.9
 
 
 def test_a_second_run_replaces_the_first_and_keeps_other_files(person, reconstruct):
@@ -94,12 +123,26 @@ def test_hidden_markers_are_predicted(person, reconstruct):
 
 
 def test_withheld_plate(person, reconstruct):
-    whole = read_reconstruction(reconstruct(person.trial))
-    part = read_reconstruction(reconstruct(person.trial, "--without-plate", "2"))
+    """The kinematic filter knows what is measured and nothing else."""
+    whole = read_reconstruction(reconstruct(person.trial, "--filter", "kinematic"))
+    part = read_reconstruction(reconstruct(person.trial, "--filter", "kinematic", "--without-plate", "2"))
     assert whole.foot_wrench[:, :, 2].min() > 300.0
     assert part.foot_wrench[:, 1].any() == np.False_
     assert whole.valid.all()
     assert part.valid.mean() < 0.8  # only while that foot moves
+
+
+def test_what_a_withheld_plate_read_is_estimated(person, reconstruct):
+    """With a spread that covers what the plate would have read and says that it is badly known."""
+    whole = read_reconstruction(reconstruct(person.trial))
+    part = read_reconstruction(reconstruct(person.trial, "--without-plate", "2"))
+    right, left = part.foot_wrench[15:, :, 2].T
+    np.testing.assert_allclose(right, whole.foot_wrench[15:, 0, 2], atol=1.0)
+    assert (np.abs(left - whole.foot_wrench[15:, 1, 2]) < 3 * part.foot_wrench_sd[15:, 1, 2]).all()
+    assert (part.footing[15:] == [1, -1]).all()
+    assert (part.foot_wrench_sd[15:, 1, 2] > 10 * whole.foot_wrench_sd[15:, 1, 2]).all()
+    assert whole.valid.all()
+    assert not part.valid[15:].any()
 
 
 def test_forces_of_another_file(person, reconstruct):
@@ -109,13 +152,28 @@ def test_forces_of_another_file(person, reconstruct):
     assert read_summary(reconstruct(person.trial_trc, "--forces", person.forces))["valid_frames"] == 60
 
 
-def test_without_forces_nothing_is_said_about_torques(person, reconstruct):
-    out = reconstruct(person.trial_trc)
+def test_without_forces_the_kinematic_filter_says_nothing_about_torques(person, reconstruct):
+    out = reconstruct(person.trial_trc, "--filter", "kinematic")
     summary = json.loads((out / "summary.json").read_text(), parse_constant=refuse_constant)
     assert set(summary) == KEYS
     assert summary["valid_frames"] == 0
     assert summary["residual_force_rms_n"] is None
     assert set(summary["torque_peak_nm_per_kg"].values()) == {None}
+
+
+def test_without_forces_torques_are_estimated_with_large_spreads(person, reconstruct):
+    """How two feet share the weight is not observable; residuals need plates."""
+    measured, guessed = (read_summary(reconstruct(trial)) for trial in (person.trial, person.trial_trc))
+    assert set(guessed) == KEYS
+    assert guessed["valid_frames"] == 0
+    assert guessed["residual_force_rms_n"] is None
+    assert guessed["plate_force_change_rms_n"] is None
+    assert None not in guessed["torque_peak_nm_per_kg"].values()
+    for joint in ("hip_r", "knee_r", "ankle_l"):
+        assert guessed["torque_sd_nm"][joint] > 5 * measured["torque_sd_nm"][joint]
+    said = " ".join(guessed["warnings"])
+    assert "no force plates: reactions are estimated from the motion" in said
+    assert "how they share the load cannot be observed" in said
 
 
 def test_kept_markers_are_those_of_the_subject(person, reconstruct):

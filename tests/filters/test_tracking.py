@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from mbkf.errors import NotObservable
+from mbkf.filters.estimate import Recording
 from mbkf.filters.kinematic import KinematicFilter
+from mbkf.filters.kinematic_follower import SETTLING_S, KinematicFollower
 from mbkf.filters.settings import KinematicSettings
-from mbkf.filters.tracking import SETTLING_S, track
+from mbkf.filters.tracking import track
 from tests.motions import (
     angle_errors,
     marker_positions,
@@ -30,6 +32,15 @@ def kalman(**settings):
     )
 
 
+def follow(measured, **options):
+    """A trial of markers (T, M, 3) through the kinematic filter."""
+    return track(
+        KinematicFollower(kalman()),
+        Recording(measured, np.zeros((len(measured), 0, 6)), 1 / RATE_HZ),
+        **options,
+    )
+
+
 LAG_S = 0.05
 """A constant-velocity plant trails a changing velocity by its acceleration times the filter's memory."""
 
@@ -42,7 +53,7 @@ def motion():
 
 @pytest.fixture(scope="module")
 def followed(motion):
-    return track(kalman(), motion[3], keep_covariance=True)
+    return follow(motion[3], keep_covariance=True)
 
 
 def test_a_clean_trial_is_followed_from_the_first_frame(motion, followed):
@@ -77,7 +88,7 @@ def test_spreads_are_those_of_the_covariance(followed):
 
 
 def test_covariances_are_kept_only_on_request(motion):
-    assert track(kalman(), motion[3][:5]).covariance is None
+    assert follow(motion[3][:5]).covariance is None
 
 
 def test_every_reading_is_counted(followed):
@@ -89,7 +100,7 @@ def test_every_reading_is_counted(followed):
 def test_a_short_loss_is_bridged(motion, followed):
     measured = motion[3].copy()
     measured[30:40] = np.nan
-    result = track(kalman(), measured)
+    result = follow(measured)
     assert result.starts == (0,)
     np.testing.assert_array_equal(np.flatnonzero(~result.tracked), np.arange(30, 40))
     assert np.isfinite(result.q).all()
@@ -100,7 +111,7 @@ def test_a_short_loss_is_bridged(motion, followed):
 def test_after_a_total_loss_the_filter_starts_anew(motion):
     measured = motion[3].copy()
     measured[20:60] = np.nan  # 0.4 s, twice as long as it waits
-    result = track(kalman(), measured)
+    result = follow(measured)
     assert result.starts == (0, 60)
     np.testing.assert_array_equal(np.flatnonzero(~result.tracked), np.arange(20, 60))
     assert worst(angle_errors(MODEL, result.q[60:], motion[0][60:])) < 0.1
@@ -110,7 +121,7 @@ def test_after_a_total_loss_the_filter_starts_anew(motion):
 def test_frames_before_the_first_markers_are_nan(motion):
     measured = motion[3].copy()
     measured[:12] = np.nan
-    result = track(kalman(), measured)
+    result = follow(measured)
     assert result.starts == (12,)
     assert not result.tracked[:12].any()
     for name in ("q", "v", "a", "position_sd", "velocity_sd", "angle_sd", "nis", "step_seconds"):
@@ -120,7 +131,7 @@ def test_frames_before_the_first_markers_are_nan(motion):
 
 
 def test_a_trial_of_one_frame(motion):
-    result = track(kalman(), motion[3][:1])
+    result = follow(motion[3][:1])
     assert result.starts == (0,)
     np.testing.assert_array_equal(result.v, 0.0)
     np.testing.assert_array_equal(result.a, 0.0)
@@ -129,7 +140,7 @@ def test_a_trial_of_one_frame(motion):
 def test_an_outlier_is_refused_in_its_frame_alone(motion):
     measured = motion[3].copy()
     measured[40, 7] += [0.0, 0.0, 0.4]
-    result = track(kalman(), measured)
+    result = follow(measured)
     assert np.argwhere(result.refused).tolist() == [[40, 7]]
     assert result.readings[40] == 3 * 35
 
@@ -139,28 +150,28 @@ def test_too_few_markers_cannot_be_followed(motion, markers):
     measured = motion[3].copy()
     measured[:, markers:] = np.nan
     with pytest.raises(NotObservable, match="in no frame do the markers fit"):
-        track(kalman(), measured[:10])
+        follow(measured[:10])
 
 
 def test_markers_of_nobody_cannot_be_followed():
     with pytest.raises(NotObservable, match="unit"):
-        track(kalman(), np.random.default_rng(2).uniform(-2, 2, (3, 36, 3)))
+        follow(np.random.default_rng(2).uniform(-2, 2, (3, 36, 3)))
 
 
 def test_markers_in_another_unit_cannot_be_followed(motion):
     with pytest.raises(NotObservable, match="unit"):
-        track(kalman(), 1000 * motion[3][:3])
+        follow(1000 * motion[3][:3])
 
 
 def test_the_result_does_not_depend_on_where_and_which_way_the_body_moves(motion, followed):
     c, s = np.cos(2.0), np.sin(2.0)
     turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-    result = track(kalman(), motion[3] @ turn.T + [3.0, -2.0, 0.5])
+    result = follow(motion[3] @ turn.T + [3.0, -2.0, 0.5])
     np.testing.assert_allclose(result.q[:, 7:], followed.q[:, 7:], rtol=0, atol=1e-11)
     np.testing.assert_allclose(result.v, followed.v, rtol=0, atol=2e-9)
 
 
 def test_progress_reaches_the_last_frame(motion):
     told = []
-    track(kalman(), motion[3][:30], progress=lambda *step: told.append(step))
+    follow(motion[3][:30], progress=lambda *step: told.append(step))
     assert told[-1] == (30, 30)

@@ -38,3 +38,15 @@ def made_up(frames=12, seed=0, **changes):
     for name in ("angles", "angle_rates", "moments", "angles_sd", "angle_rates_sd", "moments_sd"):
         values[name] = rng.normal(size=(T, A))
     return Reconstruction(**{**values, **changes})
+
+
+def made_up_whole(frames=12, **changes):
+    """One that holds every array, those that are optional as well: 2 plates that are not compared."""
+    rng = np.random.default_rng(1)
+    optional = {
+        "plate_change": np.full((frames, 2, 6), np.nan),
+        "foot_wrench_sd": rng.uniform(1.0, 9.0, (frames, 2, 6)),
+        "footing": rng.integers(-1, 3, (frames, 2)),
+        "covariance": np.zeros((frames, 12, 12)),
+    }
+    return made_up(frames, **{**optional, **changes})

@@ -5,22 +5,23 @@ import pytest
 
 from mbkf.errors import ShapeError, UnknownName
 from mbkf.io.results import ARRAYS, SHAPES
-from tests.io.reconstructions import made_up
+from tests.io.reconstructions import made_up, made_up_whole
 
 
 def test_every_array_is_read_only_and_has_its_shape_documented():
-    r = made_up(plate_change=np.zeros((12, 1, 6)), covariance=np.zeros((12, 12, 12)))
+    r = made_up_whole()
     assert set(ARRAYS) == set(SHAPES)
     for name in ARRAYS:
         assert not getattr(r, name).flags.writeable
     assert r.tracked.dtype == bool
     assert r.nis_readings.dtype == np.int64
+    assert r.footing.dtype == np.int64
     assert r.frames == 12
 
 
 @pytest.mark.parametrize("name", [name for name in ARRAYS if name != "times_s"])
 def test_a_wrong_shape_is_refused_by_name(name):
-    r = made_up(plate_change=np.zeros((12, 1, 6)), covariance=np.zeros((12, 12, 12)))
+    r = made_up_whole()
     with pytest.raises(ShapeError, match=rf"^{name} must have shape \(12"):
         made_up(**{name: getattr(r, name)[:-1]})
     with pytest.raises(ShapeError, match=name):

@@ -9,13 +9,12 @@ import pytest
 from mbkf.errors import FileFormatError
 from mbkf.io.results import ARRAYS, DTYPES, Reconstruction
 from mbkf.io.results_h5 import UNITS, read_h5, write_h5
-from tests.io.reconstructions import made_up
+from tests.io.reconstructions import made_up, made_up_whole
 
 
 @pytest.mark.parametrize("frames", [0, 1, 40])
 def test_a_round_trip_keeps_everything_but_the_covariance(tmp_path, frames):
-    plates = np.full((frames, 2, 6), np.nan)
-    r = made_up(frames, plate_change=plates, covariance=np.zeros((frames, 12, 12)))
+    r = made_up_whole(frames)
     write_h5(r, tmp_path / "motion.h5")
     back = read_h5(tmp_path / "motion.h5")
     assert back.covariance is None
@@ -31,14 +30,23 @@ def test_a_round_trip_keeps_everything_but_the_covariance(tmp_path, frames):
     np.testing.assert_equal(theirs, mine)
 
 
-def test_every_quantity_carries_its_unit(tmp_path):
+def test_what_a_filter_does_not_estimate_is_not_written_and_comes_back_as_none(tmp_path):
     write_h5(made_up(), tmp_path / "motion.h5")
+    back = read_h5(tmp_path / "motion.h5")
+    with h5py.File(tmp_path / "motion.h5") as file:
+        for name in ("plate_change", "foot_wrench_sd", "footing", "covariance"):
+            assert name not in file
+            assert getattr(back, name) is None
+
+
+def test_every_quantity_carries_its_unit(tmp_path):
+    write_h5(made_up_whole(), tmp_path / "motion.h5")
     assert set(UNITS) | set(DTYPES) | {"nis", "covariance"} == set(ARRAYS)
     with h5py.File(tmp_path / "motion.h5") as file:
+        assert set(ARRAYS) - set(file) == {"covariance"}
         for name in ARRAYS:
             if name in file:
                 assert file[name].attrs["unit"] == UNITS.get(name, "1")
-        assert "plate_change" not in file
 
 
 def test_settings_of_numpy_and_paths_are_plain_data(tmp_path):

@@ -1,0 +1,349 @@
+"""The dynamic filter: positions, velocities, accelerations and foot wrenches that obey Newton's law together.
+
+DESIGN §4 fact 5: for given q and v, (a, w) and (τ, w) tell the same, so the state holds accelerations, the plant is
+linear and never stiff, and the pelvis's six Newton–Euler equations enter as readings of zero. Torques follow.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
+from mbkf.filters.dynamic_records import Decision, DynamicStep, FrameReadings, Memory
+from mbkf.filters.dynamic_settings import DynamicSettings
+from mbkf.filters.gate import Sight, judged
+from mbkf.filters.singer import DynamicState, SingerPlant
+from mbkf.model.newton_euler import FEET, NewtonEuler
+from mbkf.numerics.kalman import Information, informed_with_rows
+from mbkf.sensors.footing import Footing, FootingSensor, FootLoad
+from mbkf.sensors.joint_limits import JointLimits
+from mbkf.sensors.markers import MarkerInformation, MarkerReading, MarkerSensor
+from mbkf.sensors.planted import standing_still
+from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.skin import SkinMarkers
+
+DISPLACED_SD_RAD = 0.5
+DISPLACED_SD_RAD_S = 3.0
+"""How far a limb may be, and how differently it may move, that comes back into sight where nobody expected it."""
+
+START_WRENCH_SD = 1000.0
+"""Spread of a wrench before the first reading, N and N m."""
+
+
+class DynamicFilter:
+    """Extended Kalman filter of a body that markers, plates and Newton's law follow.
+
+    Attributes:
+        sensor: The markers on the body.
+        feet: The plates under it.
+        plant: Decaying accelerations.
+        balance: Newton–Euler equations.
+        held: (nv,) dofs that no marker of the capture moves with.
+        settings: What it believes.
+        min_markers: Fewer believed markers than this leave the body untracked.
+    """
+
+    def __init__(
+        self,
+        sensor: MarkerSensor,
+        noise_m: Array,
+        feet: FootingSensor,
+        dt_s: float,
+        held: BoolArray,
+        settings: DynamicSettings,
+        min_markers: int = 6,
+    ) -> None:
+        self.sensor, self.feet, self.held, self.settings = sensor, feet, held, settings
+        self.min_markers = min_markers
+        self.noise_m = noise_m * settings.marker_noise_scale
+        model = sensor.model
+        self.model, self.dt_s = model, dt_s
+        acceleration = np.where(held, 0.0, settings.acceleration_scale * model.movement_sd)
+        self.plant = SingerPlant(model, dt_s, acceleration, settings.decay_s)
+        self.balance = NewtonEuler(model)
+        self.posture = PostureSensor(model)
+        self.limits = JointLimits(model, held, settings.limit_sd_rad)
+        self._markers = MarkerInformation(sensor, self.noise_m)
+        self._certainty = 1.0 / self.noise_m[:, None]
+        self._lean = self.posture.weights(settings.posture_scale, held)
+        self._weight_n = GRAVITY_M_S2 * model.mass_kg
+        s = settings
+        self._law = 1.0 / np.repeat([s.residual_force_n, s.residual_moment_nm], 3)
+        self._plate = 1.0 / np.repeat([s.plate_force_n, s.plate_moment_nm], 3)
+        self._air = 1.0 / np.repeat([s.air_force_n, s.air_moment_nm], 3)
+        free = s.free_force_share * self._weight_n
+        self._free = 1.0 / np.repeat([free, s.free_lever_m * self._weight_n], 3)
+        self._pulling = self._free.copy()
+        self._pulling[2] = 1.0 / s.pulling_force_n
+        self._walk = np.repeat([s.wrench_force, s.wrench_moment], 3) * dt_s**0.5
+        self._calm = 1.0 - np.exp(-dt_s / s.activity_memory_s)
+        self._busiest = self.plant.acceleration_sd * np.where(np.arange(model.nv) < 3, *s.busy_shares)
+        skin = s.skin_memory_s > 0.0
+        camera, memory = s.camera_noise_m, s.skin_memory_s
+        self._skin = SkinMarkers(sensor, self.noise_m, camera, memory, dt_s) if skin else None
+        self._foot_dof = [model.joint(segment).v.start for segment in FEET]
+        self._forget = 1.0 - np.exp(-dt_s / s.noise_memory_s)
+        self._sight = Sight(sensor, held)
+
+    def begin(self) -> Memory:
+        """Memory before the first frame."""
+        return Memory(self.feet.begin(), 1.0, None, None)
+
+    def first(self, q: Array, v: Array, a: Array, P: Array, markers_m: Array, plates: Array) -> DynamicStep:
+        """A first estimate from a pose and velocity with covariance (2 nv, 2 nv), and a frame's readings.
+
+        Args:
+            q: Configuration.
+            v: Velocity.
+            a: Acceleration.
+            P: Covariance of (q, v).
+            markers_m: (M, 3) positions, NaN where missing.
+            plates: (K, 6) wrenches about the world's origin, NaN where not recorded.
+        """
+        nv = self.model.nv
+        whole = np.zeros((3 * nv + 12, 3 * nv + 12))
+        free = np.tile(~self.held, 2)
+        whole[: 2 * nv, : 2 * nv] = P * np.outer(free, free)
+        every = np.arange(2 * nv, 3 * nv)
+        whole[every, every] = np.where(self.held, 0.0, self.model.acceleration_sd) ** 2
+        every = np.arange(3 * nv, 3 * nv + 12)
+        whole[every, every] = START_WRENCH_SD**2
+        state = DynamicState(q, v, a, np.zeros(12), whole)
+        return self._corrected(state, self.begin(), self.plant.acceleration_sd, markers_m, plates)
+
+    def step(self, state: DynamicState, memory: Memory, markers_m: Array, plates: Array) -> DynamicStep:
+        """Prediction and correction by one frame.
+
+        Args:
+            state: Posterior of the frame before.
+            memory: Of the frame before.
+            markers_m: (M, 3) positions, NaN where missing.
+            plates: (K, 6) wrenches about the world's origin: force N, moment N m; NaN where not recorded.
+        """
+        sd = self._movement(memory)
+        return self._corrected(self.plant.predict(state, sd), memory, sd, markers_m, plates)
+
+    def _movement(self, memory: Memory) -> Array:
+        """(nv,) σ_a of the next step: a still joint is expected to stay so, a busy one to change quickly."""
+        usual = self.plant.acceleration_sd
+        if memory.activity is None:
+            return usual
+        s = self.settings
+        busy = np.sqrt((s.quiet_share * usual) ** 2 + s.activity_gain**2 * memory.activity)
+        return np.minimum(busy, self._busiest)
+
+    def _next_activity(self, state: DynamicState, memory: Memory) -> Array | None:
+        if self.settings.activity_gain <= 0.0:
+            return None
+        now = state.a**2 + (self.settings.activity_rate * state.v) ** 2
+        return now if memory.activity is None else memory.activity + self._calm * (now - memory.activity)
+
+    def _corrected(
+        self, prior: DynamicState, memory: Memory, acceleration_sd: Array, markers_m: Array, plates: Array
+    ) -> DynamicStep:
+        decision, reading, innovation = self._decide(prior, memory, acceleration_sd, markers_m, plates)
+        self.wander(prior.P, decision.load.centres_m)
+        frame = self._linearised(prior, decision, reading, innovation)
+        P = informed_with_rows(prior.P.T, frame.matrix, frame.rows)
+        state = self.retract(prior, P @ frame.whole_vector, P)
+        after = Memory(
+            decision.load.memory,
+            self._next_noise_scale(decision, innovation),
+            self._next_activity(state, memory),
+            None if self._skin is None else np.where(decision.trusted[:, None], markers_m, np.nan),
+        )
+        tracked = bool(np.count_nonzero(decision.trusted) >= self.min_markers)
+        return DynamicStep(state, after, decision, tracked, prior, frame)
+
+    def wander(self, P: Array, centres_m: Array) -> None:
+        """Adds to a predicted covariance, in place, what a step changes in the wrenches of feet with centres (2, 3)."""
+        first = 3 * self.model.nv
+        for foot, centre in enumerate(centres_m):
+            mine = slice(first + 6 * foot, first + 6 * foot + 6)
+            shift = _about(-centre) * self._walk
+            P[mine, mine] += shift @ shift.T
+
+    def difference(self, origin: DynamicState, state: DynamicState) -> Array:
+        """(N,) tangent vector from one state's mean to another's."""
+        q = self.model.difference(origin.q, state.q)
+        return np.concatenate([q, state.v - origin.v, state.a - origin.a, state.w - origin.w])
+
+    def retract(self, state: DynamicState, step: Array, P: Array) -> DynamicState:
+        """The state moved by a tangent vector (N,), with another covariance."""
+        nv = self.model.nv
+        q = self.model.integrate(state.q, step[:nv])
+        return DynamicState(
+            q, state.v + step[nv : 2 * nv], state.a + step[2 * nv : 3 * nv], state.w + step[3 * nv :], P
+        )
+
+    def linearise(self, state: DynamicState, decision: Decision, markers_m: Array) -> FrameReadings:
+        """A frame's readings, decided before, linearised at another state (for smoothing)."""
+        reading = self.sensor.reading(state.q)
+        return self._linearised(state, decision, reading, markers_m - reading.positions_m)
+
+    def _decide(
+        self, prior: DynamicState, memory: Memory, acceleration_sd: Array, markers_m: Array, plates: Array
+    ) -> tuple[Decision, MarkerReading, Array]:
+        nv = self.model.nv
+        reading = self.sensor.reading(prior.q)
+        innovation = markers_m - reading.positions_m
+        noise = self.noise_m * memory.noise_scale**0.5
+        seen, trusted, displaced = judged(innovation, reading, prior.P[:nv, :nv], noise, self.settings)
+        if displaced is not None:
+            self._forget_limb(prior.P, displaced)
+        unseen = self._sight.unseen(trusted)
+        load = self.feet.decide(memory.footing, prior.q, prior.v, prior.a, plates)
+        before = memory.markers_m
+        lost = [f for f in (0, 1) if self._foot_dof[f] in unseen]
+        planted = tuple(p for p in (self.feet.planted(load, prior.q, f) for f in lost) if p is not None)
+        decision = Decision(trusted, seen, load, memory.noise_scale, unseen, planted, acceleration_sd, before)
+        return decision, reading, innovation
+
+    def _forget_limb(self, P: Array, displaced: BoolArray) -> None:
+        """Makes a predicted covariance, in place, admit that a limb is somewhere else than expected."""
+        nv, dofs = self.model.nv, self._sight.carriers(displaced)
+        dofs = dofs[~np.isin(dofs, np.arange(6))]
+        P[dofs, dofs] += DISPLACED_SD_RAD**2
+        P[nv + dofs, nv + dofs] += DISPLACED_SD_RAD_S**2
+
+    def _next_noise_scale(self, decision: Decision, innovation: Array) -> float:
+        share = self.settings.innovation_share
+        trusted = decision.trusted
+        if share <= 0.0 or not trusted.any():
+            return decision.noise_scale
+        scaled = innovation[trusted] * self._certainty[trusted]
+        squared = float(np.vdot(scaled, scaled)) / scaled.size
+        low, high = self.settings.noise_range
+        wanted = min(max(squared / share, low**2), high**2)
+        return decision.noise_scale + self._forget * (wanted - decision.noise_scale)
+
+    def _linearised(
+        self, state: DynamicState, decision: Decision, reading: MarkerReading, innovation: Array
+    ) -> FrameReadings:
+        markers = self._marker_information(state, decision, reading, innovation)
+        deviation, jacobian = self.posture.deviation(state.q)
+        lean, nv = self._lean, self.model.nv
+        if len(decision.unseen):
+            lean = lean.copy()
+            lean[decision.unseen] *= self.settings.unseen_posture
+        scaled = jacobian * lean[:, None]
+        matrix, vector = markers.matrix.copy(), markers.vector.copy()
+        matrix[:nv, :nv] += scaled.T @ scaled
+        vector[:nv] -= (deviation * lean) @ scaled
+        limit = self.limits.information(deviation, jacobian)
+        if limit is not None:
+            matrix[:nv, :nv] += limit.matrix
+            vector[:nv] += limit.vector
+        rows, values, readings = self._rows(state, decision)
+        return FrameReadings(markers, matrix, vector, rows, values, readings)
+
+    def _marker_information(
+        self, state: DynamicState, decision: Decision, reading: MarkerReading, innovation: Array
+    ) -> Information:
+        """Of the configuration; of (q, v, a) where skin artefacts are modelled."""
+        if self._skin is None or decision.before_m is None:
+            found = self._markers.at(state.q, reading, innovation, decision.trusted)
+        else:
+            q, v, a = state.q, state.v, state.a
+            found = self._skin.at(q, v, a, reading, innovation, decision.trusted, decision.before_m)
+        return found.scaled(1.0 / decision.noise_scale)
+
+    def _rows(self, state: DynamicState, decision: Decision) -> tuple[Array, Array, int]:
+        """Newton–Euler, feet, and what holds back unseen joints, whitened; the pulls come last."""
+        nv, size = self.model.nv, 3 * self.model.nv + 12
+        root = self.balance.root(state.q, state.v, state.a, state.w)
+        unseen = decision.unseen
+        rows = np.zeros((18 + 2 * len(unseen), size))
+        values = np.empty(len(rows))
+        law = self._law[:, None]
+        np.multiply(root.by_q, law, out=rows[:6, :nv])
+        np.multiply(root.by_v, law, out=rows[:6, nv : 2 * nv])
+        np.multiply(root.by_a, law, out=rows[:6, 2 * nv : 3 * nv])
+        rows[:6, 3 * nv : 3 * nv + 6] = rows[:6, 3 * nv + 6 :] = root.by_wrench * law
+        values[:6] = -root.residual * self._law
+        readings = 6 + self._feet_rows(rows[6:18], values[6:18], state, decision.load)
+        if len(unseen):
+            k = np.arange(len(unseen))
+            rest = 1.0 / self.settings.unseen_velocity_sd
+            rows[18 + k, nv + unseen] = rest
+            values[18 + k] = -rest * state.v[unseen]
+            calm = 1.0 / (self.settings.unseen_acceleration_share * self.plant.acceleration_sd[unseen])
+            rows[18 + len(unseen) + k, 2 * nv + unseen] = calm
+            values[18 + len(unseen) + k] = -calm * state.a[unseen]
+        for planted in decision.planted:
+            still, short = standing_still(
+                self.model,
+                state.q,
+                state.v,
+                planted,
+                self.settings.planted_speed_sd,
+                self.settings.planted_turn_sd,
+            )
+            on_state = np.zeros((len(still), size))
+            on_state[:, nv : 2 * nv] = still
+            rows, values = np.vstack([rows, on_state]), np.concatenate([values, short])
+        return rows, values, readings
+
+    def _feet_rows(self, rows: Array, values: Array, state: DynamicState, load: FootLoad) -> int:
+        """Fills the twelve rows on the wrenches; returns how many of them, the first ones, are plates' readings.
+
+        Moments are weighed about the middle of the sole, where they are small.
+        """
+        if Footing.SHARED in load.footing:
+            return self._shared_rows(rows, values, state, load)
+        first, plates = 3 * self.model.nv, 0
+        for place, foot in enumerate(sorted((0, 1), key=lambda f: load.footing[f] != Footing.MEASURED)):
+            footing, wrench = load.footing[foot], state.w[6 * foot : 6 * foot + 6]
+            mine = slice(6 * place, 6 * place + 6)
+            X = _about(load.centres_m[foot]) * self._foot_weight(footing, wrench)[:, None]
+            rows[mine, first + 6 * foot : first + 6 * foot + 6] = X
+            values[mine] = X @ (self._expected(state, load, foot) - wrench)
+            plates += 6 * (footing == Footing.MEASURED)
+        return plates
+
+    def _expected(self, state: DynamicState, load: FootLoad, foot: int) -> Array:
+        """(6,) wrench a foot is read to carry: its plate's, nothing, or its share of what no plate carries.
+
+        A free foot that would pull at the floor is held at nothing instead.
+        """
+        if load.footing[foot] != Footing.FREE or state.w[6 * foot + 2] < 0.0:
+            return load.wrench[foot]
+        other = load.footing[1 - foot]
+        carried = float(load.wrench[1 - foot, 2]) if other == Footing.MEASURED else 0.0
+        rest = max(self._weight_n - carried, 0.0) * (0.5 if other == Footing.FREE else 1.0)
+        x, y, _ = load.centres_m[foot].tolist()
+        return np.array([0.0, 0.0, rest, y * rest, -x * rest, 0.0])
+
+    def _foot_weight(self, footing: Footing, wrench: Array) -> Array:
+        """(6,) 1/sd of a foot's rows; a free foot that would pull at the floor is held at no vertical force."""
+        if footing == Footing.MEASURED:
+            return self._plate
+        if footing == Footing.AIR:
+            return self._air
+        return self._free if wrench[2] >= 0.0 else self._pulling
+
+    def _shared_rows(self, rows: Array, values: Array, state: DynamicState, load: FootLoad) -> int:
+        """One plate reads the sum of both wrenches; each is weakly held near a half of it."""
+        first = 3 * self.model.nv
+        middle = _about(0.5 * (load.centres_m[0] + load.centres_m[1])) * self._plate[:, None]
+        rows[:6, first : first + 6] = rows[:6, first + 6 :] = middle
+        values[:6] = middle @ (load.wrench[0] - state.w[:6] - state.w[6:])
+        half = _about(load.centres_m[0]) * self._free[:, None]
+        rows[6:, first : first + 6] = half
+        values[6:] = half @ (0.5 * load.wrench[0] - state.w[:6])
+        return 6
+
+
+def _about(point_m: Array) -> Array:
+    """(6, 6) that takes a wrench about the world's origin to one about a point."""
+    x, y, z = point_m.tolist()
+    return np.array(
+        (
+            (1.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+            (0.0, 1.0, 0.0, 0.0, 0.0, 0.0),
+            (0.0, 0.0, 1.0, 0.0, 0.0, 0.0),
+            (0.0, z, -y, 1.0, 0.0, 0.0),
+            (-z, 0.0, x, 0.0, 1.0, 0.0),
+            (y, -x, 0.0, 0.0, 0.0, 1.0),
+        )
+    )

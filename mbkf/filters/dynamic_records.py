@@ -1,0 +1,140 @@
+"""What the dynamic filter hands from step to step: its memory, what it decided, its readings, and the result."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.filters.singer import DynamicState
+from mbkf.numerics.kalman import Information, correct
+from mbkf.sensors.footing import FootingMemory, FootLoad
+from mbkf.sensors.planted import Planted
+
+
+class Memory(NamedTuple):
+    """What a frame leaves for the next besides its estimate.
+
+    Attributes:
+        footing: Of the contact decision.
+        noise_scale: Square of the factor on the markers' noise.
+        activity: (nv,) mean square of recent accelerations, m²/s⁴ or rad²/s⁴; None before the first frame.
+        markers_m: (M, 3) markers believed, NaN elsewhere; None where skin artefacts are not modelled.
+    """
+
+    footing: FootingMemory
+    noise_scale: float
+    activity: Array | None
+    markers_m: Array | None
+
+
+class Decision(NamedTuple):
+    """What a frame's readings were taken to be; with it the same readings can be linearised elsewhere.
+
+    Attributes:
+        trusted: (M,) markers believed.
+        seen: (M,) markers seen.
+        load: What the feet stand on.
+        noise_scale: Square of the factor on the markers' noise.
+        unseen: Dofs of joints whose segment shows no marker.
+        planted: Loaded feet none of whose markers is seen.
+        acceleration_sd: (nv,) σ_a with which the frame was predicted.
+        before_m: (M, 3) markers believed in the frame before; None where skin artefacts are not modelled.
+    """
+
+    trusted: BoolArray
+    seen: BoolArray
+    load: FootLoad
+    noise_scale: float
+    unseen: NDArray[np.intp]
+    planted: tuple[Planted, ...]
+    acceleration_sd: Array
+    before_m: Array | None
+
+
+@dataclass(frozen=True)
+class FrameReadings:
+    """A frame's readings linearised at a state: information on q, and whitened rows on the whole state.
+
+    Attributes:
+        markers: Information of the markers alone.
+        matrix: (nv, nv) information on the configuration, pulls and limits included.
+        vector: (nv,) its vector.
+        rows: (k, N) rows R^(-1/2) H of the other readings.
+        values: (k,) their innovations R^(-1/2) y.
+        readings: Number of scalar readings of instruments and of Newton's law among the rows (the last ones are pulls).
+    """
+
+    markers: Information
+    matrix: Array
+    vector: Array
+    rows: Array
+    values: Array
+    readings: int
+
+    @property
+    def whole_matrix(self) -> Array:
+        """(N, N) Hᵀ R⁻¹ H of all readings."""
+        total = self.rows.T @ self.rows
+        n = len(self.vector)
+        total[:n, :n] += self.matrix
+        return total
+
+    def apply(self, vector: Array) -> Array:
+        """(N,) Hᵀ R⁻¹ H times a vector (N,)."""
+        total = (self.rows @ vector) @ self.rows
+        n = len(self.vector)
+        total[:n] += self.matrix @ vector[:n]
+        return total
+
+    @property
+    def whole_vector(self) -> Array:
+        """(N,) Hᵀ R⁻¹ y of all readings."""
+        total = self.values @ self.rows
+        total[: len(self.vector)] += self.vector
+        return total
+
+
+@dataclass(frozen=True)
+class DynamicStep:
+    """One step of the filter; what only a report needs is worked out when asked for.
+
+    Attributes:
+        state: Posterior.
+        memory: For the next step.
+        decision: What the frame's readings were taken to be.
+        tracked: Whether enough markers were believed.
+        predicted: Prior of this frame.
+        frame: Readings linearised at the prior.
+    """
+
+    state: DynamicState
+    memory: Memory
+    decision: Decision
+    tracked: bool
+    predicted: DynamicState
+    frame: FrameReadings
+
+    @property
+    def refused(self) -> BoolArray:
+        """(M,) markers seen but not believed."""
+        return self.decision.seen & ~self.decision.trusted
+
+    @property
+    def readings(self) -> int:
+        """Number of readings in :attr:`nis`."""
+        return self.frame.markers.readings + self.frame.readings
+
+    @cached_property
+    def nis(self) -> float:
+        """Normalised innovation squared of markers, plates and Newton's law; pulls and limits are no readings."""
+        frame = self.frame
+        rows, values = frame.rows[: frame.readings], frame.values[: frame.readings]
+        after = correct(self.predicted.P, frame.markers)
+        innovation = values - rows @ after.step
+        S = rows @ after.covariance @ rows.T + np.eye(len(rows))
+        return after.nis + float(innovation @ np.linalg.solve(S, innovation))

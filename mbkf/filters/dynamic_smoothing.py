@@ -1,0 +1,100 @@
+"""Smoothing the dynamic filter: later frames correct earlier ones, again and again until Newton's law holds (fact 5).
+
+Each round is an exact linear smoother around the trajectory of the round before (Bell 1994, the iterated Kalman
+smoother, a Gauss–Newton method). Long trials are smoothed in stretches that look a little beyond their ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.filters.dynamic import DynamicFilter
+from mbkf.filters.dynamic_records import Decision, FrameReadings
+from mbkf.filters.singer import DynamicState
+from mbkf.numerics.kalman import informed_with_rows
+from mbkf.numerics.smoothing import BackwardPass
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A frame to smooth: its estimate so far (without its covariance), what its readings were, its markers (M, 3)."""
+
+    state: DynamicState
+    decision: Decision
+    markers_m: Array
+
+
+@dataclass(frozen=True)
+class _Forward:
+    """One frame of a forward pass: posterior covariance, correction of the mean, readings, Φ to the next frame."""
+
+    P: Array
+    delta: Array
+    readings: FrameReadings | None
+    vector: Array
+    transition: Array | None
+
+
+def smooth(
+    kalman: DynamicFilter,
+    begin: DynamicState,
+    frames: Sequence[Frame],
+    rounds: int,
+    wanted: int | None = None,
+) -> Iterator[DynamicState]:
+    """Smoothed states of a stretch, in order.
+
+    Args:
+        kalman: The filter that ran through it.
+        begin: Its posterior at the first frame.
+        frames: The stretch with what the filter found in it.
+        rounds: How often to linearise anew.
+        wanted: Only the first ``wanted`` frames are returned; the others are looked at.
+    """
+    means = [frame.state for frame in frames]
+    for _ in range(rounds - 1):
+        forward = _forward(kalman, begin, means, frames)
+        steps = [step for step, _ in _backward(forward, covariances=False)]
+        means = [kalman.retract(x, step, x.P) for x, step in zip(means, reversed(steps), strict=True)]
+    forward = _forward(kalman, begin, means, frames)
+    steps_and_covariances = list(_backward(forward, covariances=True))[::-1]
+    for mean, (step, P) in list(zip(means, steps_and_covariances, strict=True))[:wanted]:
+        if P is not None:
+            yield kalman.retract(mean, step, P)
+
+
+def _forward(
+    kalman: DynamicFilter, begin: DynamicState, means: Sequence[DynamicState], frames: Sequence[Frame]
+) -> list[_Forward]:
+    """The filter in corrections δ of the trajectory ``means``."""
+    delta, P = kalman.difference(means[0], begin), begin.P
+    passed = [_Forward(P, delta, None, np.zeros_like(delta), None)]
+    for last, mean, frame in zip(means[:-1], means[1:], frames[1:], strict=True):
+        before = replace(last, P=P)
+        transition = kalman.plant.transition(before)
+        prior = kalman.plant.predict(before, frame.decision.acceleration_sd)
+        kalman.wander(prior.P, frame.decision.load.centres_m)
+        delta = transition @ delta + kalman.difference(mean, prior)
+        readings = kalman.linearise(mean, frame.decision, frame.markers_m)
+        P = informed_with_rows(prior.P.T, readings.matrix, readings.rows)
+        vector = readings.whole_vector - readings.apply(delta)
+        delta = delta + P @ vector
+        passed[-1] = replace(passed[-1], transition=transition)
+        passed.append(_Forward(P, delta, readings, vector, None))
+    return passed
+
+
+def _backward(forward: Sequence[_Forward], covariances: bool) -> Iterator[tuple[Array, Array | None]]:
+    """From the last frame to the first: correction of the mean, and the smoothed covariance when wanted."""
+    back = BackwardPass(len(forward[0].delta), covariances)
+    for k in range(len(forward) - 1, -1, -1):
+        here = forward[k]
+        yield here.delta + back.step(here.P), back.covariance(here.P) if covariances else None
+        transition = forward[k - 1].transition if k else None
+        if here.readings is not None and transition is not None:
+            back.through_readings(here.P, here.readings.whole_matrix, here.vector)
+            back.through_plant(transition)

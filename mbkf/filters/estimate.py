@@ -1,0 +1,100 @@
+"""What every filter tells of a frame, in one form, so that trials, live streams and smoothers treat all alike."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.filters.spread import Spread
+from mbkf.model.human import HumanModel
+
+
+@dataclass(frozen=True)
+class Recording:
+    """What the instruments read in the frames of a trial.
+
+    Attributes:
+        markers_m: (T, M, 3) positions, NaN where missing.
+        plates: (T, K, 6) force N and moment N m about the world's origin per plate, world axes; NaN where not recorded.
+        dt_s: Time between frames.
+    """
+
+    markers_m: Array
+    plates: Array
+    dt_s: float
+
+    def __len__(self) -> int:
+        return len(self.markers_m)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A filter's posterior of one frame.
+
+    Attributes:
+        q: (nq,) configuration.
+        v, a: (nv,) velocity and acceleration.
+        wrench: (2, 6) estimated wrench on right and left foot about the world's origin, NaN where the filter has none.
+        footing: (2,) what the feet stand on, see :class:`mbkf.sensors.footing.Footing`; None where the filter does
+            not ask.
+        refused: (M,) markers seen but not believed.
+        tracked: Whether enough markers were believed.
+        started: Whether the filter was started in this frame.
+        inner: The filter's own record of the step.
+    """
+
+    q: Array
+    v: Array
+    a: Array
+    wrench: Array
+    footing: tuple[int, int] | None
+    refused: BoolArray
+    tracked: bool
+    started: bool
+    inner: Any
+
+
+class Follower(Protocol):
+    """A filter as trials and streams drive it."""
+
+    model: HumanModel
+    dt_s: float
+    restart_after_s: float
+
+    def start(self, recording: Recording, t: int, guess: Array | None) -> Estimate | None:
+        """An estimate at frame t that already knows its velocity from the next frames, or None where nothing fits."""
+
+    def step(self, before: Estimate, recording: Recording, t: int) -> Estimate:
+        """The estimate of frame t from that of the frame before."""
+
+    def covariance(self, estimate: Estimate) -> Array:
+        """(2 nv, 2 nv) covariance of (q, v)."""
+
+    def spread(self, estimate: Estimate) -> Spread:
+        """Standard deviations at an estimate."""
+
+    def wrench_sd(self, estimate: Estimate) -> Array:
+        """(2, 6) standard deviations of the feet's wrenches, NaN where the filter estimates none."""
+
+    def innovation(self, estimate: Estimate) -> tuple[float, int]:
+        """Normalised innovation squared of an estimate's frame and the number of readings in it; NaN at a start."""
+
+    def smooth(
+        self, run: Sequence[Estimate], recording: Recording, first: int, wanted: int
+    ) -> list[Estimate]:
+        """The first ``wanted`` estimates of a run of consecutive ones, in the light of all of them.
+
+        Args:
+            run: Estimates of the frames from ``first`` on, in order, without a restart among them.
+            recording: The readings.
+            first: Frame of the first estimate.
+            wanted: How many to return.
+        """
+
+
+NO_WRENCH = np.full((2, 6), np.nan)
+"""The wrench of a filter that estimates none."""

@@ -1,0 +1,74 @@
+"""Smoothing while the filter runs: stretches are smoothed when the frames just after them are in (fixed lag).
+
+What later readings say fades within a few tenths of a second, so a stretch that looks ``ahead_s`` beyond its end is
+smoothed as well as by the whole trial, and memory does not grow with the trial. Live, the result of a frame is known
+at most ``lag_s`` later.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mbkf.filters.estimate import Estimate, Follower, Recording
+
+
+@dataclass(frozen=True)
+class SmoothingSettings:
+    """How far a smoother looks.
+
+    Attributes:
+        stretch_s: Length of a stretch that is smoothed at once.
+        ahead_s: How far beyond its end it looks.
+    """
+
+    stretch_s: float = 1.5
+    ahead_s: float = 0.4
+
+    @property
+    def lag_s(self) -> float:
+        """Longest time after a frame until its smoothed estimate is known (computing time not counted)."""
+        return self.stretch_s + self.ahead_s
+
+
+class StretchSmoother:
+    """Takes estimates frame by frame and gives smoothed ones back as soon as they are due.
+
+    A stretch begins with the last frame of the one before, so that differences over time have both their ends.
+
+    Attributes:
+        follower: The filter.
+        recording: The readings the estimates came from.
+    """
+
+    def __init__(self, follower: Follower, recording: Recording, settings: SmoothingSettings) -> None:
+        self.follower, self.recording = follower, recording
+        self._stretch = max(1, round(settings.stretch_s / follower.dt_s))
+        self._ahead = max(1, round(settings.ahead_s / follower.dt_s))
+        self._run: list[Estimate] = []
+        self._first = 0
+        self._given = 0
+
+    def push(self, t: int, estimate: Estimate) -> list[tuple[int, Estimate]]:
+        """Frame t's estimate in, smoothed earlier ones out; a restart ends the run before it."""
+        done = self.finish() if estimate.started else []
+        if not self._run:
+            self._first = t
+        self._run.append(estimate)
+        if len(self._run) == self._given + self._stretch + self._ahead:
+            done += self._smooth(self._stretch)
+        return done
+
+    def finish(self) -> list[tuple[int, Estimate]]:
+        """What is left, when no more frames follow."""
+        left = len(self._run) - self._given
+        done = self._smooth(left) if left else []
+        self._run, self._given = [], 0
+        return done
+
+    def _smooth(self, wanted: int) -> list[tuple[int, Estimate]]:
+        until = self._given + wanted
+        smoothed = self.follower.smooth(self._run, self.recording, self._first, until)
+        done = list(enumerate(smoothed, start=self._first))[self._given :]
+        self._run, self._given = self._run[until - 1 :], 1
+        self._first += until - 1
+        return done

@@ -1,0 +1,133 @@
+"""Newton–Euler on the whole body: the generalised forces that a motion and two foot wrenches ask for (eq. 3.12).
+
+τ = ID(q, v, a) − Σ J_fᵀ w_f. Its first six rows are the residual at the pelvis, zero for a body that obeys Newton's
+law; the others are the joint torques. Wrenches are about the world's origin in world axes, so that a constant one
+does not change with q by itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from mbkf.conventions import Array
+from mbkf.model.human import HumanModel
+
+FEET = ("right_foot", "left_foot")
+"""Segments that take ground reactions, in the order of every paired array."""
+
+ROOT = 6
+
+
+@dataclass(frozen=True)
+class RootBalance:
+    """The pelvis's six equations, in pelvis axes; force N, moment N m.
+
+    Attributes:
+        residual: (6,) ID(q, v, a) − Σ J_fᵀ w_f.
+        by_q, by_v, by_a: (6, nv) derivatives; by q in the tangent space.
+        by_wrench: (6, 6) by either foot's wrench.
+        origins_m: (2, 3) origin of right and left foot in the world.
+    """
+
+    residual: Array
+    by_q: Array
+    by_v: Array
+    by_a: Array
+    by_wrench: Array
+    origins_m: Array
+
+
+@dataclass(frozen=True)
+class JointTorques:
+    """All generalised forces (nv,) and their derivatives (nv, nv) by q, v, a and (nv, 12) by the feet's wrenches."""
+
+    tau: Array
+    by_q: Array
+    by_v: Array
+    by_a: Array
+    by_wrench: Array
+
+
+class NewtonEuler:
+    """Newton–Euler equations of a body with its two feet's wrenches."""
+
+    def __init__(self, model: HumanModel) -> None:
+        self.model = model
+        self._pin, self._data = model.pin_model, model.pin_model.createData()
+        ids = [model.joint(segment).joint_id for segment in FEET]
+        self._origins = [self._data.oMi[j].translation[None] for j in ids]
+        self._chains = [np.flatnonzero(model.supports[j]) for j in ids]
+        self._moves = [model.supports[j].astype(float) for j in ids]
+        self._after = [_moved_by(model, chain) for chain in self._chains]
+
+    def root(self, q: Array, v: Array, a: Array, wrenches: Array) -> RootBalance:
+        """The pelvis's equations for the feet's wrenches (12,)."""
+        by_q, by_v, by_a = self._inverse_dynamics(q, v, a)
+        data = self._data
+        J = data.J[:, :ROOT]
+        total = wrenches[:6] + wrenches[6:]
+        by_q = by_q[:ROOT].copy()
+        by_q[:, :ROOT] -= J.T @ _turned_wrench(total) @ J
+        by_wrench = -J.T
+        residual = data.tau[:ROOT] + by_wrench @ total
+        return RootBalance(
+            residual, by_q, by_v[:ROOT].copy(), by_a[:ROOT].copy(), by_wrench, np.concatenate(self._origins)
+        )
+
+    def torques(self, q: Array, v: Array, a: Array, wrenches: Array) -> JointTorques:
+        """All generalised forces with derivatives, for the feet's wrenches (12,)."""
+        by_q, by_v, by_a = self._inverse_dynamics(q, v, a)
+        data = self._data
+        tau, by_q, J = data.tau.copy(), by_q.copy(), data.J
+        by_wrench = np.empty((self.model.nv, 12))
+        for foot, (chain, moves, after) in enumerate(
+            zip(self._chains, self._moves, self._after, strict=True)
+        ):
+            wrench = wrenches[6 * foot : 6 * foot + 6]
+            block = -(J * moves).T
+            by_wrench[:, 6 * foot : 6 * foot + 6] = block
+            tau += block @ wrench
+            own = J[:, chain]
+            by_q[np.ix_(chain, chain)] -= after * (own.T @ _turned_wrench(wrench) @ own)
+        return JointTorques(tau, by_q, by_v.copy(), by_a.copy(), by_wrench)
+
+    def tau(self, q: Array, v: Array, a: Array, wrenches: Array) -> Array:
+        """(nv,) generalised forces alone."""
+        tau = pin.rnea(self._pin, self._data, q, v, a)
+        J = pin.computeJointJacobians(self._pin, self._data, q)
+        for foot, moves in enumerate(self._moves):
+            tau -= (wrenches[6 * foot : 6 * foot + 6] @ J) * moves
+        return tau
+
+    def _inverse_dynamics(self, q: Array, v: Array, a: Array) -> tuple[Array, Array, Array]:
+        """(nv, nv) derivatives of inverse dynamics by q, v and a; torques and Jacobian stay in Pinocchio's data."""
+        return pin.computeRNEADerivatives(self._pin, self._data, q, v, a)
+
+
+def _moved_by(model: HumanModel, chain: NDArray[np.intp]) -> Array:
+    """(n, n) 1 where the axis of a chain's dof (row) turns with a dof (column): the same joint's or one before it."""
+    joint_of = np.empty(model.nv, dtype=int)
+    for joint in range(1, model.pin_model.njoints):
+        first = model.pin_model.joints[joint].idx_v
+        joint_of[first : first + model.pin_model.joints[joint].nv] = joint
+    mine = joint_of[chain]
+    return (mine[:, None] >= mine[None, :]).astype(float)
+
+
+def _turned_wrench(wrench: Array) -> Array:
+    """(6, 6) X with (J_k × J_i) · w = J_iᵀ X J_k: what a turn of axis i by dof k changes."""
+    fx, fy, fz, nx, ny, nz = wrench.tolist()
+    return np.array(
+        (
+            (0.0, 0.0, 0.0, 0.0, -fz, fy),
+            (0.0, 0.0, 0.0, fz, 0.0, -fx),
+            (0.0, 0.0, 0.0, -fy, fx, 0.0),
+            (0.0, -fz, fy, 0.0, -nz, ny),
+            (fz, 0.0, -fx, nz, 0.0, -nx),
+            (-fy, fx, 0.0, -ny, nx, 0.0),
+        )
+    )

@@ -1,0 +1,61 @@
+"""Backward pass of a Kalman smoother after Bryson and Frazier: no covariance is inverted, singular ones are welcome.
+
+With λ and L the gradient and curvature that later readings add (zero at the end), a smoothed estimate is
+x⁺ − P⁺ λ with covariance P⁺ − P⁺ L P⁺ (Bierman 1973, "Fixed interval smoothing with discrete measurements").
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import Array
+
+
+class BackwardPass:
+    """Carries what later readings say from frame to frame, towards the beginning.
+
+    Attributes:
+        gradient: (N,) λ after the frame it now stands at.
+        curvature: (N, N) L, or None when covariances are not wanted.
+    """
+
+    def __init__(self, size: int, covariances: bool = True) -> None:
+        self.gradient = np.zeros(size)
+        self.curvature: Array | None = np.zeros((size, size)) if covariances else None
+
+    def step(self, P: Array) -> Array:
+        """(N,) what later readings add to a frame's posterior mean, for its posterior covariance P (N, N)."""
+        return -(P @ self.gradient)
+
+    def covariance(self, P: Array) -> Array:
+        """(N, N) smoothed covariance of a frame with posterior covariance P.
+
+        Raises:
+            ValueError: The pass carries no covariances.
+        """
+        if self.curvature is None:
+            raise ValueError("this pass carries no covariances")
+        smoothed = P - P @ self.curvature @ P
+        return 0.5 * (smoothed + smoothed.T)
+
+    def through_readings(self, P: Array, information: Array, vector: Array) -> None:
+        """From after a frame's readings to before them.
+
+        Args:
+            P: (N, N) posterior covariance.
+            information: (N, N) Λ = HᵀR⁻¹H of the frame's readings.
+            vector: (N,) HᵀR⁻¹y with the innovation y of the prior.
+        """
+        kept = self.gradient - vector
+        self.gradient = kept - information @ (P @ kept)
+        if self.curvature is not None:
+            C = -(P @ information)
+            C.reshape(-1)[:: len(C) + 1] += 1.0
+            curvature = C.T @ (self.curvature @ C + information)
+            self.curvature = 0.5 * (curvature + curvature.T)
+
+    def through_plant(self, transition: Array) -> None:
+        """From before a frame's readings to after those of the frame before it; ``transition`` is Φ (N, N)."""
+        self.gradient = self.gradient @ transition
+        if self.curvature is not None:
+            self.curvature = transition.T @ self.curvature @ transition

@@ -1,0 +1,132 @@
+"""Ground reactions and joint torques of a followed trial, and how far the plates agree."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.filters.inverse_dynamics import inverse_dynamics
+from mbkf.filters.tracking import Track
+from mbkf.io.records import PlateReadings
+from mbkf.model.human import HumanModel
+from mbkf.sensors.contacts import FootLoads, assign_feet, pressure_and_free_moment, surface_height
+from mbkf.sensors.footing import Footing
+
+PRESSURE_FROM_N = 20.0
+"""Vertical force from which an estimated wrench has a centre of pressure."""
+
+
+@dataclass(frozen=True)
+class Reactions:
+    """Reactions of a trial and what Newton's law makes of them; NaN where not known.
+
+    Attributes:
+        wrench: (T, 2, 6) on right and left foot about the world's origin: estimated, or measured where the filter
+            estimates none.
+        wrench_sd: (T, 2, 6) standard deviations, or None.
+        centre_of_pressure_m: (T, 2, 3) under each foot.
+        free_moment_nm: (T, 2) about the vertical through it.
+        tau: (T, nv) generalised forces with these reactions.
+        residual_force_n, residual_moment_nm: (T, 3) residual at the pelvis with the measured plates.
+        plate_change: (T, P, 6) estimated minus measured wrench about the plate's origin where a foot stands on that
+            plate alone; None where the filter estimates none or there are no plates.
+        valid: (T,) every loaded foot on a measured plate.
+        warnings: What a person should know.
+    """
+
+    wrench: Array
+    wrench_sd: Array | None
+    centre_of_pressure_m: Array
+    free_moment_nm: Array
+    tau: Array
+    residual_force_n: Array
+    residual_moment_nm: Array
+    plate_change: Array | None
+    valid: BoolArray
+    warnings: tuple[str, ...]
+
+
+def reactions(
+    model: HumanModel, track: Track, times_s: Array, rate_hz: float, plates: tuple[PlateReadings, ...]
+) -> Reactions:
+    """Reactions of a followed trial.
+
+    Args:
+        model: The body.
+        track: The followed trial.
+        times_s: (T,) times of the frames.
+        rate_hz: Frame rate.
+        plates: The plates it could read.
+    """
+    loads = assign_feet(model, track.q, times_s, rate_hz, plates)
+    measured = inverse_dynamics(model, track, loads.wrench)
+    known = np.where(bool(plates), 1.0, np.nan)
+    force, moment = measured.residual_force_n * known, measured.residual_moment_nm * known
+    if track.footing is None:
+        return Reactions(
+            loads.wrench,
+            None,
+            loads.centre_of_pressure_m,
+            loads.free_moment_nm,
+            measured.tau * known,
+            force,
+            moment,
+            None,
+            loads.valid,
+            loads.warnings if plates else ("no force plates: torques and residuals are not computed",),
+        )
+    surface = np.mean([surface_height(plate) for plate in plates]) if plates else 0.0
+    pressure, free = pressure_and_free_moment(track.wrench, float(surface), PRESSURE_FROM_N)
+    unread = (track.footing == Footing.FREE).any(axis=1)
+    return Reactions(
+        track.wrench,
+        track.wrench_sd,
+        pressure,
+        free,
+        inverse_dynamics(model, track, track.wrench).tau,
+        force,
+        moment,
+        _plate_change(track.wrench, loads, plates) if plates else None,
+        loads.valid & ~unread,
+        (*loads.warnings, *_footing_warnings(track.footing, plates)),
+    )
+
+
+def _plate_change(wrench: Array, loads: FootLoads, plates: tuple[PlateReadings, ...]) -> Array:
+    change = np.full(loads.plate_wrench.shape, np.nan)
+    for p, plate in enumerate(plates):
+        foot = loads.foot_of_plate[:, p]
+        alone = (foot >= 0) & ((loads.foot_of_plate == foot[:, None]).sum(axis=1) == 1)
+        frames = np.flatnonzero(alone)
+        difference = wrench[frames, foot[frames]] - loads.plate_wrench[frames, p]
+        difference[:, 3:] -= np.cross(plate.origin_m, difference[:, :3])
+        change[frames, p] = difference
+    return change
+
+
+def _footing_warnings(footing: Array, plates: tuple[PlateReadings, ...]) -> list[str]:
+    free = footing == Footing.FREE
+    one, both = int(free.any(axis=1).sum()), int(free.all(axis=1).sum())
+    shared = int((footing == Footing.SHARED).any(axis=1).sum())
+    warnings = []
+    if not plates:
+        warnings.append(
+            "no force plates: reactions are estimated from the motion, residuals are not computed"
+        )
+    if one:
+        warnings.append(
+            f"in {one} of {len(footing)} frames a foot carries weight where no plate reads: its reaction is estimated "
+            "from the motion"
+        )
+    if both:
+        warnings.append(
+            f"in {both} frames both feet do, and how they share the load cannot be observed "
+            "(see the standard deviations)"
+        )
+    if shared:
+        warnings.append(
+            f"in {shared} frames both feet stand on one plate: how they share its load cannot be observed"
+        )
+    return warnings

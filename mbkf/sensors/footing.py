@@ -1,0 +1,329 @@
+"""What each foot stands on, decided frame by frame as a live filter must (SPEC S8, DESIGN §4 fact 6).
+
+A foot is *measured* when a loaded plate's centre of pressure lies under it, *free* when it touches the floor where no
+plate reads (its wrench is then unknown, not zero), and otherwise in the *air*. Two feet on one plate *share* it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from itertools import pairwise
+from math import hypot, isnan
+from typing import NamedTuple
+
+import numpy as np
+
+from mbkf.conventions import GRAVITY_M_S2, Array
+from mbkf.io.records import PlateReadings
+from mbkf.model.human import HumanModel
+from mbkf.sensors.contacts import FALL_SHARE, REACH_M, TOUCH_HEIGHT_M, sole_locals, surface_height
+from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.planted import Planted
+
+Outline = list[list[float]]
+
+KEEP_M = 0.04
+"""A plate stays with its foot until the other one is nearer by this."""
+
+SOLE_ENDS = 2
+"""Points of a sole that tell its height: heel and ball; its toe end dips below the floor when the toes bend."""
+
+STAND_HEIGHT_M = 0.045
+STAND_SPEED_M_S = 0.8
+STAND_AFTER_S = 0.025
+"""A foot lower and slower than this for that long carries, unless a plate below it says no. Landing heels are pitched,
+so that they touch a little above a flat sole; the delay lets a plate speak first."""
+
+FLAT_FROM, FLAT_TO = 0.1, 0.6
+"""A foot whose load lies between these shares of its sole, from heel to toe end, lies flat."""
+
+FLOOR_SHARE = 0.1
+"""How fast the height of the floor under a loaded foot is learnt, per frame."""
+
+
+class Footing(IntEnum):
+    """What a foot stands on."""
+
+    FREE = -1
+    AIR = 0
+    MEASURED = 1
+    SHARED = 2
+
+
+class Pressed(NamedTuple):
+    """A centre of pressure (world x, y in m) and its foot (0 right, 1 left, 2 both, -1 nobody)."""
+
+    x: float
+    y: float
+    owner: int
+
+
+@dataclass(frozen=True)
+class FootingMemory:
+    """What a decision remembers from the frame before.
+
+    Attributes:
+        foot_of_plate: (K,) 0 right, 1 left, 2 both, -1 nobody.
+        pressed: (K,) last centre of pressure on each plate and the foot it belonged to, or None.
+        sole_height_m: Height of a loaded sole point of our body, NaN before one was loaded.
+        touching_s: For how long right and left foot have touched the floor without a reading.
+    """
+
+    foot_of_plate: tuple[int, ...]
+    pressed: tuple[Pressed | None, ...]
+    sole_height_m: float
+    touching_s: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class FootLoad:
+    """A frame's decision.
+
+    Attributes:
+        footing: What right and left foot stand on.
+        wrench: (2, 6) measured wrench per foot about the world's origin (of both together where shared).
+        centres_m: (2, 3) middle of right and left sole.
+        stray: Whether a loaded plate belongs to no foot.
+        memory: For the next frame.
+    """
+
+    footing: tuple[Footing, Footing]
+    wrench: Array
+    centres_m: Array
+    stray: bool
+    memory: FootingMemory
+
+
+class FootingSensor:
+    """Sorts plates to feet and finds feet that stand elsewhere.
+
+    Attributes:
+        surfaces_m: Height of each plate.
+    """
+
+    def __init__(self, model: HumanModel, plates: Sequence[PlateReadings], dt_s: float) -> None:
+        self._dt_s = dt_s
+        self._thresholds = [plate.threshold_n for plate in plates]
+        self.surfaces_m = [surface_height(plate) for plate in plates]
+        self._outlines = [_corners(plate) for plate in plates]
+        self._soles = _sole_sensor(model)
+        self._floor = min(self.surfaces_m, default=np.nan)
+
+    def begin(self) -> FootingMemory:
+        """Memory before the first frame."""
+        plates = len(self.surfaces_m)
+        return FootingMemory((-1,) * plates, (None,) * plates, float("nan"), (STAND_AFTER_S, STAND_AFTER_S))
+
+    def decide(self, memory: FootingMemory, q: Array, v: Array, a: Array, plate_wrench: Array) -> FootLoad:
+        """What the feet stand on.
+
+        Args:
+            memory: From the frame before.
+            q: (nq,) predicted configuration.
+            v: (nv,) predicted velocity.
+            a: (nv,) predicted acceleration.
+            plate_wrench: (K, 6) force N and moment N m about the world's origin; NaN where not recorded.
+        """
+        reading = self._soles.reading(q)
+        positions = reading.positions_m.reshape(2, 3, 3)
+        soles, loads = positions.tolist(), plate_wrench.tolist()
+        pressed = [self._pressure(k, load) for k, load in enumerate(loads)]
+        owners = tuple(
+            _owner(point, soles, before, self._outlines[k])
+            for k, (point, before) in enumerate(zip(pressed, memory.foot_of_plate, strict=True))
+        )
+        wrench, footing = np.zeros((2, 6)), [Footing.AIR, Footing.AIR]
+        for k, owner in enumerate(owners):
+            for foot in (0, 1) if owner == 2 else (owner,) if owner >= 0 else ():
+                wrench[foot] += plate_wrench[k]
+                footing[foot] = Footing.SHARED if owner == 2 else Footing.MEASURED
+        height = self._sole_height(memory.sole_height_m, soles, footing)
+        touching = (0.0, 0.0)
+        if Footing.AIR in footing:
+            idle = [
+                (k, memory.pressed[k])
+                for k, (load, point) in enumerate(zip(loads, pressed, strict=True))
+                if point is None and not isnan(load[2])
+            ]
+            speeds = [hypot(*velocity) for velocity in reading.velocities(v).tolist()]
+            moving = [speeds[:3], speeds[3:]]
+            stands = self._standing(footing, soles, moving, height, idle)
+            right, left = (
+                since + self._dt_s if s else 0.0 for since, s in zip(memory.touching_s, stands, strict=True)
+            )
+            touching = (right, left)
+            for foot in self._carrying(footing, soles, touching, idle, _falls(q, v, a)):
+                footing[foot] = Footing.FREE
+        latest = tuple(
+            before if point is None else Pressed(*point, owner)
+            for point, owner, before in zip(pressed, owners, memory.pressed, strict=True)
+        )
+        return FootLoad(
+            (footing[0], footing[1]),
+            wrench,
+            0.5 * (positions[:, 0] + positions[:, 2]),
+            any(point is not None and owner < 0 for point, owner in zip(pressed, owners, strict=True)),
+            FootingMemory(owners, latest, height, touching),
+        )
+
+    def planted(self, load: FootLoad, q: Array, foot: int) -> Planted | None:
+        """The point on which a foot of that frame's decision stands still, or None for one that carries nothing.
+
+        Flat is a foot loaded between heel and ball; behind and before that it rolls.
+
+        Args:
+            load: The decision.
+            q: (nq,) configuration it was taken for.
+            foot: 0 right, 1 left.
+        """
+        if load.footing[foot] == Footing.AIR:
+            return None
+        sole = self._soles.positions(q).reshape(2, 3, 3)[foot]
+        pressed = next((p for p in load.memory.pressed if p is not None and p.owner == foot), None)
+        if load.footing[foot] != Footing.MEASURED or pressed is None:
+            lowest = sole[:SOLE_ENDS][np.argmin(sole[:SOLE_ENDS, 2])]
+            return Planted(foot, lowest, flat=False)
+        along = sole[2, :2] - sole[0, :2]
+        share = float((np.array([pressed.x, pressed.y]) - sole[0, :2]) @ along / (along @ along))
+        surface = self.surfaces_m[load.memory.foot_of_plate.index(foot)]
+        point = np.array([pressed.x, pressed.y, surface])
+        return Planted(foot, point, flat=FLAT_FROM < share < FLAT_TO)
+
+    def _standing(
+        self,
+        footing: list[Footing],
+        soles: list,
+        speeds: list,
+        height: float,
+        idle: list[tuple[int, Pressed | None]],
+    ) -> tuple[bool, bool]:
+        """Whether right and left foot touch the floor where no plate reads."""
+
+        def stands(f: int) -> bool:
+            unread = footing[f] == Footing.AIR and self._touches(soles[f], speeds[f], height)
+            return unread and not self._watched(f, soles[f], idle)
+
+        return stands(0), stands(1)
+
+    def _carrying(
+        self,
+        footing: list[Footing],
+        soles: list,
+        touching_s: tuple[float, float],
+        idle: list[tuple[int, Pressed | None]],
+        falls: bool,
+    ) -> list[int]:
+        """Feet that carry without a reading: long enough on the floor, or the lower one of who does not fall."""
+        carrying = [f for f in (0, 1) if touching_s[f] > STAND_AFTER_S]
+        in_air = footing == [Footing.AIR, Footing.AIR]
+        if carrying or falls or not in_air or any(self._watched(f, soles[f], idle) for f in (0, 1)):
+            return carrying
+        lowest = [min(p[2] for p in soles[f][:SOLE_ENDS]) for f in (0, 1)]
+        return [f for f in (0, 1) if lowest[f] <= min(lowest) + TOUCH_HEIGHT_M]
+
+    def _pressure(self, k: int, load: list[float]) -> tuple[float, float] | None:
+        """Centre of pressure on plate k (eq. 4.9), or None where it is not loaded."""
+        fx, fy, fz, mx, my, _ = load
+        if not fz > self._thresholds[k]:
+            return None
+        z = self.surfaces_m[k]
+        return (z * fx - my) / fz, (mx + z * fy) / fz
+
+    def _sole_height(self, known: float, soles: list, footing: list[Footing]) -> float:
+        """Height at which our body's loaded soles lie: its soles and the plates need not agree to the centimetre."""
+        loaded = [min(p[2] for p in soles[f][:SOLE_ENDS]) for f in (0, 1) if footing[f] == Footing.MEASURED]
+        for lowest in loaded:
+            known = lowest if isnan(known) else known + FLOOR_SHARE * (lowest - known)
+        if isnan(self._floor):  # without plates, the lowest that a sole ever was
+            lowest_now = min(p[2] for sole in soles for p in sole[:SOLE_ENDS])
+            known = lowest_now if isnan(known) else min(known, lowest_now)
+        return known
+
+    def _touches(self, sole: list, speed: list[float], height: float) -> bool:
+        floor = height if not isnan(height) else self._floor
+        if isnan(floor):
+            return False
+        return any(
+            p[2] < floor + STAND_HEIGHT_M and s < STAND_SPEED_M_S
+            for p, s in zip(sole[:SOLE_ENDS], speed[:SOLE_ENDS], strict=True)
+        )
+
+    def _watched(self, foot: int, sole: list, idle: list[tuple[int, Pressed | None]]) -> bool:
+        """Whether a plate that reads nothing lies under a foot, so that it carries nothing.
+
+        A plate without an outline lies where its foot last pressed it.
+        """
+        middle = [(sole[0][i] + sole[2][i]) / 2 for i in (0, 1)]
+        for k, pressed in idle:
+            outline = self._outlines[k]
+            if outline is not None and _inside(middle, outline):
+                return True
+            if outline is not None or pressed is None or pressed.owner != foot:
+                continue
+            if _distance_to_sole((pressed.x, pressed.y), sole) <= REACH_M:
+                return True
+        return False
+
+
+def _falls(q: Array, v: Array, a: Array) -> bool:
+    """Whether the pelvis falls as nobody does whom a floor carries: a_z + (ω × v)_z in world axes."""
+    x, y, z, w = q[3:7].tolist()
+    vx, vy, vz, wx, wy, wz = v[:6].tolist()
+    ax, ay, az = a[:3].tolist()
+    up = (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))
+    rise = (ax + wy * vz - wz * vy, ay + wz * vx - wx * vz, az + wx * vy - wy * vx)
+    return sum(u * r for u, r in zip(up, rise, strict=True)) < -FALL_SHARE * GRAVITY_M_S2
+
+
+def _sole_sensor(model: HumanModel) -> MarkerSensor:
+    """Heel, ball and toe end of right and left sole as six points fixed to the feet."""
+    return MarkerSensor(model, *sole_locals(model))
+
+
+def _owner(point: tuple[float, float] | None, soles: list, before: int, outline: Outline | None) -> int:
+    """Foot of a plate with this centre of pressure: 0 right, 1 left, 2 both, -1 nobody."""
+    if point is None:
+        return -1
+    away = [_distance_to_sole(point, sole) for sole in soles]
+    if outline is not None and _between(soles, away, outline):
+        return 2
+    nearest = 0 if away[0] <= away[1] else 1
+    if before in (0, 1) and away[before] <= away[nearest] + KEEP_M:
+        nearest = before
+    return nearest if away[nearest] <= REACH_M else -1
+
+
+def _between(soles: list, away: list[float], outline: Outline) -> bool:
+    """Whether both feet stand flat on one plate: both soles inside it, the centre of pressure between them."""
+    if not all(_inside(end, outline) for sole in soles for end in (sole[0], sole[2])):
+        return False
+    heights = [min(p[2] for p in sole) for sole in soles]
+    return abs(heights[0] - heights[1]) < TOUCH_HEIGHT_M and min(away) > 0.02
+
+
+def _corners(plate: PlateReadings) -> Outline | None:
+    """The plate's corners (x, y), the first one again at the end, or None where they are not known."""
+    if plate.corners_m is None:
+        return None
+    corners: Outline = plate.corners_m[:, :2].tolist()
+    return corners + corners[:1]
+
+
+def _inside(point: Sequence[float], outline: Outline) -> bool:
+    """Whether a point lies over a convex plate."""
+    x, y = point[0], point[1]
+    signs = []
+    for (ax, ay), (bx, by) in pairwise(outline):
+        signs.append((bx - ax) * (y - ay) - (by - ay) * (x - ax) >= 0)
+    return all(signs) or not any(signs)
+
+
+def _distance_to_sole(point: tuple[float, float], sole: list) -> float:
+    """Horizontal distance from a point to the line from heel to toe end."""
+    (hx, hy, _), (tx, ty, _) = sole[0], sole[2]
+    ax, ay = tx - hx, ty - hy
+    along = ((point[0] - hx) * ax + (point[1] - hy) * ay) / (ax * ax + ay * ay)
+    along = min(max(along, 0.0), 1.0)
+    return hypot(point[0] - hx - along * ax, point[1] - hy - along * ay)

@@ -1,0 +1,47 @@
+"""Framework of tests/test_jacobians.py: a case makes what states a derivative, and the numeric one beside it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from tests.motions import central_difference
+
+
+@dataclass(frozen=True)
+class Case:
+    """Blocks that one comparison checks: a random generator in, per block the stated and the numeric derivative out."""
+
+    name: str
+    blocks: tuple[str, ...]
+    tolerance: float
+    compare: Callable
+
+
+CASES: list[Case] = []
+"""Filled by the modules derivatives_of_bodies and derivatives_of_filters."""
+
+
+def checks(*blocks, tolerance=1e-7):
+    def register(compare):
+        CASES.append(Case(compare.__name__, blocks, tolerance, compare))
+        return compare
+
+    return register
+
+
+def named(room, *pairs):
+    """{room.block: (stated, numeric)}."""
+    return {f"{room}.{block}": (stated, numeric) for block, stated, numeric in pairs}
+
+
+def slope(function, x, step=1e-6):
+    """Derivative of function(x) by a plain vector, appended as the last axis."""
+    ends = [(np.asarray(function(x + step * e)), function(x - step * e)) for e in np.eye(len(x))]
+    return np.stack([(a - b) / (2 * step) for a, b in ends], axis=-1)
+
+
+def along(model, function, q, step=1e-6):
+    """Derivative (nv, nv) of a configuration-valued function(q) along the manifold."""
+    centre = function(q)
+    return central_difference(model, lambda at: model.difference(centre, function(at)), q, step)

@@ -1,0 +1,203 @@
+"""Cases of tests/test_jacobians.py: sensors, plants, and the readings of the filters."""
+
+import numpy as np
+
+from mbkf.filters.dwna import WhiteAccelerationPlant
+from mbkf.filters.integrators import Motion, runge_kutta
+from mbkf.filters.singer import SingerPlant
+from mbkf.filters.state import FilterState
+from mbkf.filters.torque_plant import ForcedState, Scheme, TorquePlant
+from mbkf.sensors.foot_wrench import FootWrenchSensor
+from mbkf.sensors.joint_limits import JointLimits
+from mbkf.sensors.posture import PostureSensor
+from tests.derivatives import checks, named, slope
+from tests.derivatives_of_bodies import forced_body
+from tests.dynamics import dynamic_filter, markers_of, random_state, standing
+from tests.motions import central_difference, moderate_pose, protocol_sensor, random_model
+
+DT = 0.01
+
+
+# Sensors.
+
+
+@checks(
+    "sensors.markers.MarkerReading.jacobian",
+    "sensors.markers.MarkerReading.pull",
+    "sensors.markers.MarkerReading.velocities",
+    "sensors.markers.MarkerSensor.reading",
+)
+def markers(rng):
+    model = random_model(rng)
+    sensor, q = protocol_sensor(model)[0], moderate_pose(model, rng, spread=1.0)
+    forces, v, reading = (
+        rng.normal(size=(len(sensor.segments), 3)),
+        rng.normal(size=model.nv),
+        sensor.reading(q),
+    )
+    by_q = central_difference(model, sensor.positions, q)
+    work = central_difference(model, lambda at: np.vdot(forces, sensor.positions(at)), q)
+    return named(
+        "sensors.markers",
+        ("MarkerReading.jacobian", reading.jacobian, by_q),
+        ("MarkerReading.pull", reading.pull(forces), work),
+        ("MarkerReading.velocities", reading.velocities(v), by_q @ v),
+        ("MarkerSensor.reading", reading.jacobian, by_q),
+    )
+
+
+@checks(
+    "sensors.posture.PostureReading.jacobian",
+    "sensors.posture.PostureSensor.reading",
+    "sensors.posture.PostureSensor.deviation",
+)
+def posture(rng):
+    model = random_model(rng)
+    sensor, q = PostureSensor(model), moderate_pose(model, rng, spread=1.0)
+    numeric = central_difference(model, lambda at: sensor.deviation(at)[0], q)
+    read = central_difference(model, lambda at: sensor.reading(at).deviation, q)
+    return named(
+        "sensors.posture",
+        ("PostureReading.jacobian", sensor.reading(q).jacobian, read),
+        ("PostureSensor.reading", sensor.reading(q).jacobian, numeric[sensor.dofs]),
+        ("PostureSensor.deviation", sensor.deviation(q)[1], numeric),
+    )
+
+
+@checks("sensors.joint_limits.JointLimits.information")
+def joint_limits(rng):
+    """Passed limits pull down the slope of ½ Σ (beyond / sd)²."""
+    model = random_model(rng)
+    sensor = PostureSensor(model)
+    limits = JointLimits(model, np.zeros(model.nv, dtype=bool), 0.5)
+    step = np.minimum(2.37 * model.posture_sd, 1.13) * rng.choice([-1.0, 1.0], model.nv)
+    q = model.integrate(model.neutral(), step)
+
+    def energy(at):
+        deviation = sensor.deviation(at)[0]
+        beyond = np.maximum(deviation - limits.upper, 0.0) + np.maximum(limits.lower - deviation, 0.0)
+        return 0.5 * np.sum((beyond / limits.sd_rad) ** 2)
+
+    vector = limits.information(*sensor.deviation(q)).vector
+    return named(
+        "sensors.joint_limits.JointLimits", ("information", -vector, central_difference(model, energy, q))
+    )
+
+
+@checks(
+    "sensors.foot_wrench.WrenchReading.by_q", "sensors.foot_wrench.WrenchReading.by_state", tolerance=1e-6
+)
+def plates(rng):
+    body, q, _, _, u = forced_body(rng)
+    sensor, points, state = FootWrenchSensor(body), 0.3 * rng.normal(size=(2, 3)), u[-12:]
+    found = sensor.reading(q, state, points)
+    by_q = central_difference(body.model, lambda at: sensor.reading(at, state, points).wrench, q)
+    by_state = slope(lambda at: sensor.reading(q, at, points).wrench, state, 1e-2)
+    return named(
+        "sensors.foot_wrench.WrenchReading",
+        ("by_q", found.by_q, by_q),
+        ("by_state", found.by_state, by_state),
+    )
+
+
+# Plants and filters.
+
+
+@checks("filters.dwna.WhiteAccelerationPlant.transition")
+def kinematic_plant(rng):
+    model = random_model(rng)
+    plant, s = WhiteAccelerationPlant(model, 0.1, model.acceleration_sd), random_state(model, rng)
+    P, nv = np.eye(2 * model.nv), model.nv
+    end = plant.predict(FilterState(s.q, s.v, P))
+
+    def tangent(x):
+        at = plant.predict(FilterState(model.integrate(s.q, x[:nv]), s.v + x[nv:], P))
+        return np.concatenate([model.difference(end.q, at.q), at.v - end.v])
+
+    stated = plant.transition(FilterState(s.q, s.v, P))
+    return named(
+        "filters.dwna.WhiteAccelerationPlant", ("transition", stated, slope(tangent, np.zeros(2 * nv)))
+    )
+
+
+@checks("filters.singer.SingerPlant.transition")
+def singer_plant(rng):
+    model = random_model(rng)
+    kalman, s = dynamic_filter(model, dt_s=0.1), random_state(model, rng)
+    plant = SingerPlant(model, 0.1, model.movement_sd, decay_s=float(rng.uniform(0.02, 1.0)))
+    end, N = plant.predict(s), len(s.P)
+    numeric = slope(lambda x: kalman.difference(end, plant.predict(kalman.retract(s, x, s.P))), np.zeros(N))
+    return named("filters.singer.SingerPlant", ("transition", plant.transition(s), numeric))
+
+
+@checks(
+    "filters.dynamic.DynamicFilter.linearise", "filters.dynamic_records.FrameReadings.rows", tolerance=1e-6
+)
+def dynamic_readings(rng):
+    """Whitened innovations fall by the rows; without pulls, what markers say falls by their information."""
+    model = random_model(rng)
+    kalman = dynamic_filter(model, plates=2, posture_scale=1e6, limit_sd_rad=1e6)
+    s = random_state(model, rng, standing(model), spread=0.05)
+    measured = markers_of(kalman, s.q)
+    hidden = measured.copy()
+    hidden[np.isin(kalman.sensor.segments, ["right_hand"])] = np.nan
+    decision = kalman.step(s, kalman.begin(), hidden, np.zeros((2, 6))).decision
+    assert len(decision.unseen)
+
+    def read(x):
+        return kalman.linearise(kalman.retract(s, x, s.P), decision, measured)
+
+    zero = np.zeros(len(s.P))
+    found = read(zero)
+    falls = -slope(lambda x: read(x).values, zero, 1e-5)
+    informs = -slope(lambda x: read(np.r_[x, zero[model.nv :]]).vector, zero[: model.nv])
+    return {
+        "filters.dynamic_records.FrameReadings.rows": (found.rows, falls),
+        "filters.dynamic.DynamicFilter.linearise": (found.matrix / 1e6, informs / 1e6),
+    }
+
+
+def flow(body, now, u, h, x):
+    """Where an exact step of length h leads from a state that is x (n,) away in its tangent space."""
+    nv = body.nv
+    start = Motion(body.integrate(now.q, x[:nv]), now.v + x[nv : 2 * nv])
+    return runge_kutta(body, start, u + x[2 * nv :], h)
+
+
+def flow_derivative(body, now, u, h):
+    """(2 nv, n) its derivative, forces changed in larger steps than motions."""
+    centre, n = flow(body, now, u, h, np.zeros(2 * body.nv + body.nu)), 2 * body.nv + body.nu
+    size = np.where(np.arange(n) < 2 * body.nv, 1.0, 100.0)
+
+    def tangent(x):
+        end = flow(body, now, u, h, size * x)
+        return np.concatenate([body.difference(centre.q, end.q), end.v - centre.v])
+
+    return slope(tangent, np.zeros(n)) / size
+
+
+@checks("filters.torque_plant.TorquePlant.sensitivity", tolerance=1e-5)
+def torque_sensitivity(rng):
+    """F is the rate at which errors change along the manifold."""
+    body, q, v, _, u = forced_body(rng)
+    plant, now = TorquePlant(body, DT, lambda _: np.zeros(()), Scheme()), Motion(q, v)
+
+    def rate(h):
+        forth, back = (flow_derivative(body, now, u, s * h) for s in (1.0, -1.0))
+        return (forth - back) / (2.0 * h)
+
+    stated = plant.sensitivity(v, body.linearise(q, v, u))[: 2 * body.nv]
+    numeric = (4.0 * rate(1e-4) - rate(2e-4)) / 3.0
+    return named("filters.torque_plant.TorquePlant", ("sensitivity", stated, numeric))
+
+
+@checks("filters.torque_plant.Prediction.phi", tolerance=1e-4)
+def torque_transition(rng):
+    """With F averaged over a short step, exp(F Δt) is Φ to second order."""
+    body, q, v, _, u = forced_body(rng)
+    n, dt = 2 * body.nv + body.nu, 1e-3
+    plant = TorquePlant(body, dt, lambda _: np.zeros((n, n)), Scheme("RK4", mean_slope=True))
+    stated = plant.predict(ForcedState(q, v, u, np.zeros((n, n)))).phi[: 2 * body.nv]
+    return named(
+        "filters.torque_plant.Prediction", ("phi", stated, flow_derivative(body, Motion(q, v), u, dt))
+    )

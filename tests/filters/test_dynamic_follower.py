@@ -1,0 +1,106 @@
+"""The dynamic filter on trials: its start, the spread of its torques, and what smoothing keeps of Newton's law."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mbkf.filters.dynamic_follower import ROUNDS
+from mbkf.filters.singer import DynamicState
+from mbkf.sensors.footing import Footing
+from tests.followed import FRAMES, SETTLED, WHOLE, estimates, made, made_follower, recording, torques, tracked
+from tests.motions import worst
+
+RIGHT, LEFT = 0, 1
+
+
+def truth(name):
+    return getattr(made().motion, name)[FRAMES.start : FRAMES.stop]
+
+
+def residuals_n(found):
+    """(T,) residual forces of a track's own wrenches."""
+    return np.linalg.norm(torques(found)[:, :3], axis=1)
+
+
+def test_a_start_agrees_with_the_plates():
+    follower, found = estimates("dynamic")
+    first = found[0]
+    off = first.wrench - recording().plates[0]
+    assert worst(off[:, :3]) < 15.0
+    assert first.footing == (Footing.MEASURED, Footing.MEASURED)
+    root = follower.kalman.balance.root(first.q, first.v, first.a, first.wrench.ravel())
+    assert worst(root.residual) < 5.0
+
+
+def test_torques_come_with_the_spread_of_the_whole_state():
+    """T P Tᵀ with T the derivative of the torques, here by finite differences along the state."""
+    follower, found = estimates("dynamic")
+    state: DynamicState = found[5].inner.state
+    model, nv = made().model, made().model.nv
+    balance = follower.kalman.balance
+
+    def tau(x):
+        q = model.integrate(state.q, x[:nv])
+        v, a, w = np.split(x[nv:], [nv, 2 * nv])
+        return balance.tau(q, state.v + v, state.a + a, state.w + w)
+
+    h = 1e-6
+    T = np.array([(tau(h * e) - tau(-h * e)) / (2 * h) for e in np.eye(len(state.P))]).T
+    expected = np.sqrt(np.einsum("ij,jk,ik->i", T, state.P, T))
+    np.testing.assert_allclose(follower.spread(found[5]).torque, expected, rtol=1e-5)
+
+
+def test_wrenches_and_motion_come_with_the_states_spread():
+    follower, found = estimates("dynamic")
+    P, nv = found[5].inner.state.P, made().model.nv
+    np.testing.assert_allclose(follower.wrench_sd(found[5]).ravel() ** 2, np.diag(P)[3 * nv :], rtol=1e-12)
+    np.testing.assert_array_equal(follower.covariance(found[5]), P[: 2 * nv, : 2 * nv])
+
+
+def test_reactions_and_torques_follow_the_truth():
+    found = tracked("dynamic")
+    wrench = found.wrench[SETTLED] - truth("foot_wrench")[SETTLED]
+    assert np.sqrt(np.mean(wrench[:, :, :3] ** 2)) < 3.0
+    assert worst(wrench / found.wrench_sd[SETTLED]) < 4.0
+    off = (torques(found) - truth("tau"))[SETTLED, 6:]
+    assert worst(off / found.torque_sd[SETTLED, 6:]) < 4.0
+
+
+def test_smoothing_keeps_newtons_law():
+    """The second linearisation restores what the first one breaks."""
+    assert ROUNDS == 2
+    filtered, smoothed = residuals_n(tracked("dynamic")), residuals_n(tracked("dynamic", WHOLE))
+    assert np.median(smoothed) < 1.0
+    assert np.median(smoothed) < np.median(filtered)
+
+
+def test_smoothing_moves_wrenches_and_shrinks_their_spread_where_a_plate_is_withheld():
+    follower = made_follower("dynamic", plates=made().plates[:1])
+    read = replace(recording(), plates=recording().plates[:, :1])
+    found = [follower.start(read, 0, None)]
+    for t in range(1, 40):
+        found.append(follower.step(found[-1], read, t))
+    smoothed = follower.smooth(found, read, 0, 30)
+    middle = slice(15, 30)
+    before, after = (
+        np.array([follower.wrench_sd(one)[LEFT, 2] for one in run[middle]]) for run in (found, smoothed)
+    )
+    assert (after < before).all()
+    true = truth("foot_wrench")[:40, LEFT, 2]
+    error = [
+        np.sqrt(np.mean([(one.wrench[LEFT, 2] - true[t]) ** 2 for t, one in enumerate(run)][middle]))
+        for run in (found, smoothed)
+    ]
+    assert error[1] < error[0]
+    assert found[20].footing == (Footing.MEASURED, Footing.FREE)
+
+
+@pytest.mark.parametrize("t", [0, 30])
+def test_smoothing_keeps_decisions(t):
+    """What was refused and what the feet stood on is the filter's word."""
+    follower, found = estimates("dynamic")
+    smoothed = follower.smooth(found, recording(), 0, len(found))
+    assert smoothed[t].footing == found[t].footing
+    np.testing.assert_array_equal(smoothed[t].refused, found[t].refused)
+    assert smoothed[t].started == found[t].started

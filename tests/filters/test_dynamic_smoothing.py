@@ -1,0 +1,141 @@
+"""Smoothing the dynamic filter: the exact smoother around a trajectory, and what it makes of true motions."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from mbkf.filters.dynamic_smoothing import Frame, smooth
+from tests.dynamics import follow, trial
+from tests.motions import angle_errors, assert_near, worst
+
+ROUNDS = 4
+MOTIONS = {"squat": range(40, 100), "walk": range(60, 120)}
+each_motion = pytest.mark.parametrize("name", MOTIONS)
+
+
+@cache
+def run_of(name):
+    return follow(trial(name), MOTIONS[name])
+
+
+def frames_of(run):
+    return [
+        Frame(step.state, step.decision, markers)
+        for step, markers in zip(run.steps, run.markers_m, strict=True)
+    ]
+
+
+@cache
+def smoothed(name, rounds=ROUNDS):
+    run = run_of(name)
+    return list(smooth(run.kalman, run.states[0], frames_of(run), rounds))
+
+
+def residual_n(run, states):
+    """RMS force of the residual."""
+    found = [run.kalman.balance.root(s.q, s.v, s.a, s.w).residual[:3] for s in states]
+    return float(np.sqrt(np.mean(np.square(found))))
+
+
+def errors(run, states):
+    """RMS errors of angles, velocities and torques of the joints, without the ends of the stretch."""
+    m, inside = run.trial.motion, slice(10, -5)
+    frames = slice(run.frames.start, run.frames.stop)
+    angle = angle_errors(run.trial.model, [s.q for s in states], m.q[frames])
+    tau = np.array([run.kalman.balance.tau(s.q, s.v, s.a, s.w) for s in states]) - m.tau[frames]
+    v = np.array([s.v for s in states]) - m.v[frames]
+    return np.array([np.sqrt(np.mean(part[inside, 6:] ** 2)) for part in (angle, v, tau)])
+
+
+@each_motion
+def test_rounds_restore_newtons_law(name):
+    """One linear smoother breaks it where the trajectory moved; each further round halves that at least."""
+    run = run_of(name)
+    residuals = [residual_n(run, smoothed(name, rounds)) for rounds in range(1, ROUNDS + 1)]
+    assert residuals[-1] < 0.3 * residuals[0]
+    assert residuals[-1] < 2.5
+    assert residuals[-1] < residual_n(run, run.states)
+
+
+@each_motion
+def test_rounds_converge(name):
+    """Gauss–Newton: the last round changes little."""
+    run = run_of(name)
+    before, after = smoothed(name, ROUNDS - 1), smoothed(name, ROUNDS)
+    sd = [np.sqrt(np.diag(s.P)) for s in after]
+    change = [run.kalman.difference(a, b) for a, b in zip(before, after, strict=True)]
+    assert worst(np.array(change) / np.array(sd)) < 0.3
+
+
+@each_motion
+def test_smoothing_beats_the_filter(name):
+    run = run_of(name)
+    gain = errors(run, smoothed(name)) / errors(run, run.states)
+    assert (gain < [0.95, 0.7, 0.9]).all(), gain
+
+
+@each_motion
+def test_the_last_frame_is_the_filters(name):
+    """In the first round nothing is linearised anew there but the readings, and nothing comes after."""
+    run = run_of(name)
+    last, own = smoothed(name, 1)[-1], run.states[-1]
+    sd = np.sqrt(np.diag(own.P))
+    assert worst(run.kalman.difference(own, last) / sd) < 0.3
+    assert worst((last.P - own.P) / sd[:, None] / sd) < 0.1
+
+
+@each_motion
+def test_stretches_that_look_ahead_are_nearly_the_whole(name):
+    """The first half, smoothed with 20 more frames in sight, against smoothing all."""
+    run, half = run_of(name), 30
+    frames = frames_of(run)
+    part = list(smooth(run.kalman, run.states[0], frames[: half + 20], ROUNDS, wanted=half))
+    assert len(part) == half
+    for t, (found, whole) in enumerate(zip(part, smoothed(name), strict=False)):
+        sd, share = np.sqrt(np.diag(whole.P)), 0.2 if t < half // 2 else 1.0
+        assert worst(run.kalman.difference(whole, found) / sd) < 0.3 * share
+        assert worst((found.P - whole.P) / sd[:, None] / sd) < 0.1 * share
+
+
+def test_looking_ahead_is_what_makes_a_stretch_good():
+    run, half, frames = run_of("squat"), 30, frames_of(run_of("squat"))
+    off = []
+    for ahead in (0, 5, 20):
+        part = smooth(run.kalman, run.states[0], frames[: half + ahead], 2, wanted=half)
+        pairs = zip(part, smoothed("squat", 2), strict=False)
+        sd_and_change = [(np.sqrt(np.diag(w.P)), run.kalman.difference(w, found)) for found, w in pairs]
+        off.append(max(worst(change / sd) for sd, change in sd_and_change))
+    assert off[2] < 0.3 * off[1] < 0.3 * off[0]
+
+
+@each_motion
+def test_covariances_are_symmetric_positive_and_not_larger(name):
+    run = run_of(name)
+    for own, state in zip(run.states, smoothed(name), strict=True):
+        sd = np.sqrt(np.diag(own.P))
+        np.testing.assert_array_equal(state.P, state.P.T)
+        assert np.linalg.eigvalsh(state.P / sd[:, None] / sd).min() > -1e-9
+    gained = [
+        np.diag(state.P) / np.diag(own.P) for own, state in zip(run.states, smoothed(name), strict=True)
+    ]
+    assert np.median(gained[5:-5]) < 0.7
+
+
+def test_states_covariances_given_with_frames_do_not_matter():
+    run = run_of("squat")
+    frames = frames_of(run)[:10]
+    bare = [replace(frame, state=replace(frame.state, P=np.zeros((1, 1)))) for frame in frames]
+    for a, b in zip(
+        smooth(run.kalman, run.states[0], frames, 2), smooth(run.kalman, run.states[0], bare, 2), strict=True
+    ):
+        np.testing.assert_array_equal(a.q, b.q)
+        np.testing.assert_array_equal(a.P, b.P)
+
+
+def test_a_single_frame_is_what_it_was():
+    run = run_of("squat")
+    (found,) = smooth(run.kalman, run.states[0], frames_of(run)[:1], 3)
+    assert_near(run.kalman.difference(run.states[0], found), 0.0, 1e-12)
+    assert_near(found.P, run.states[0].P, 1e-9 * worst(run.states[0].P))

@@ -1,0 +1,34 @@
+"""A filter's way through a trial is the one that a track records, restarts included."""
+
+import numpy as np
+
+from mbkf.filters.estimate import Recording
+from mbkf.filters.following import followed
+from mbkf.filters.kinematic import KinematicFilter
+from mbkf.filters.kinematic_follower import KinematicFollower
+from mbkf.filters.settings import KinematicSettings
+from mbkf.filters.tracking import track
+from tests.motions import marker_positions, protocol_sensor, reference_model, smooth_motion
+
+MODEL = reference_model()
+FRAMES, RATE_HZ = 70, 100.0
+
+
+def test_it_is_what_a_track_records():
+    sensor, _ = protocol_sensor(MODEL)
+    markers = marker_positions(
+        sensor, smooth_motion(MODEL, np.random.default_rng(1)).frames(FRAMES, RATE_HZ)[0]
+    )
+    markers[:3] = np.nan
+    markers[20:50] = np.nan
+    recording = Recording(markers, np.zeros((FRAMES, 0, 6)), 1.0 / RATE_HZ)
+    held = np.zeros(MODEL.nv, dtype=bool)
+    kalman = KinematicFilter(sensor, np.full(36, 0.005), recording.dt_s, held, KinematicSettings())
+    follower = KinematicFollower(kalman)
+    recorded = track(follower, recording)
+    course = list(followed(follower, recording))
+    assert [t for t, _, _ in course] == list(range(3, FRAMES))
+    assert tuple(t for t, estimate, _ in course if estimate.started) == recorded.starts
+    assert len(recorded.starts) == 2
+    np.testing.assert_array_equal([estimate.q for _, estimate, _ in course], recorded.q[3:])
+    assert all(seconds > 0.0 for _, _, seconds in course)

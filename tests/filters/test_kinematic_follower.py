@@ -1,0 +1,97 @@
+"""The kinematic filter on trials: its warm start, its accelerations, and its smoother against a dense one."""
+
+import numpy as np
+import pytest
+
+from mbkf.filters.kinematic_follower import SETTLING_S, WARM_UP_S, warm_start
+from tests.dynamics import DT
+from tests.followed import FRAMES, WHOLE, estimates, made, made_follower, recording, tracked, without
+from tests.motions import worst
+
+SETTLED = round(SETTLING_S / DT)
+
+
+def test_a_warm_start_knows_velocities_and_a_few_accelerations():
+    kalman = made_follower("kinematic").kalman
+    found = warm_start(kalman, recording(), 0, None)
+    cold = kalman.start(recording().markers_m[0])
+    truth, nv = made().motion.v[FRAMES.start], made().model.nv
+    assert found.accelerations.shape == (SETTLED, nv)
+    np.testing.assert_array_equal(cold.v, 0.0)
+    assert truth[2] < -0.6
+    assert abs(found.state.v[2] - truth[2]) < 0.1
+    assert worst((found.state.v - truth) / np.sqrt(np.diag(found.state.P)[nv:])) < 4.0
+    assert (np.diag(found.state.P)[nv:] < np.diag(cold.P)[nv:]).all()
+
+
+@pytest.mark.parametrize("left", [1, 2, round(WARM_UP_S / DT) - 1])
+def test_a_warm_start_near_the_end_makes_do_with_what_is_left(left):
+    follower, t = made_follower("kinematic"), len(FRAMES) - left
+    found = follower.start(recording(), t, None)
+    assert found.started
+    assert np.isfinite(np.r_[found.q, found.v, found.a]).all()
+    if left == 1:
+        np.testing.assert_array_equal(found.v, 0.0)
+        np.testing.assert_array_equal(found.a, 0.0)
+
+
+def test_a_warm_start_without_markers_ahead_starts_at_rest():
+    last = round(WARM_UP_S / DT)
+    found = made_follower("kinematic").start(without(recording(), slice(last, None)), 0, None)
+    np.testing.assert_array_equal(found.v, 0.0)
+
+
+def test_accelerations_are_differences_once_it_has_settled():
+    found = tracked("kinematic")
+    expected = np.diff(found.v, axis=0) / DT
+    np.testing.assert_allclose(found.a[SETTLED:], expected[SETTLED - 1 :], rtol=1e-12, atol=1e-10)
+
+
+def test_while_it_settles_they_are_those_of_the_backward_run():
+    ahead = warm_start(made_follower("kinematic").kalman, recording(), 0, None).accelerations
+    np.testing.assert_array_equal(tracked("kinematic").a[:SETTLED], ahead)
+
+
+def test_smoothed_accelerations_are_central_differences():
+    found = tracked("kinematic", WHOLE)
+    np.testing.assert_allclose(found.a[1:-1], (found.v[2:] - found.v[:-2]) / (2 * DT), rtol=1e-12, atol=1e-10)
+    truth = made().motion.a[FRAMES.start : FRAMES.stop]
+    gone = np.linalg.norm(found.a - truth) / np.linalg.norm(tracked("kinematic").a - truth)
+    assert gone < 0.5
+
+
+def dense_smoother(found):
+    """Corrections (T, 2 nv) and covariances by Rauch, Tung and Striebel, from the filter's own transitions."""
+    step, P = np.zeros_like(found[-1].inner.state.P[0]), found[-1].inner.state.P
+    steps, covariances = [step], [P]
+    for k in range(len(found) - 2, -1, -1):
+        known, here = found[k + 1].inner.result.evidence, found[k].inner.state
+        prior = known.predicted.P
+        gain = np.linalg.solve(prior, known.plant.transition(here) @ here.P).T
+        correction = found[k + 1].inner.state.P @ known.vector
+        step = gain @ (correction + step)
+        P = here.P + gain @ (P - prior) @ gain.T
+        steps.append(step)
+        covariances.append(P)
+    return np.array(steps[::-1]), np.array(covariances[::-1])
+
+
+def test_the_smoother_is_the_dense_one():
+    follower, found = estimates("kinematic")
+    found = found[:12]
+    smoothed = follower.smooth(found, recording(), 0, len(found))
+    steps, covariances = dense_smoother(found)
+    model, nv = made().model, made().model.nv
+    for one, before, step, P in zip(smoothed, found, steps, covariances, strict=True):
+        sd = np.sqrt(np.diag(P))
+        moved = np.r_[model.difference(before.q, one.q), one.v - before.v]
+        assert worst((moved - step) / sd) < 1e-6
+        assert worst((follower.covariance(one) - P) / np.outer(sd, sd)) < 1e-6
+    assert worst(steps[0][nv:]) > 0.01
+
+
+def test_torques_keep_the_filters_spread():
+    """But for the mass matrix, which is that of the smoothed pose."""
+    share = tracked("kinematic", WHOLE).torque_sd[1:] / tracked("kinematic").torque_sd[1:]
+    assert np.median(share) == pytest.approx(1.0, abs=0.01)
+    assert (np.abs(share - 1.0) < 0.25).all()

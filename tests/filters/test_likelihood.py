@@ -1,0 +1,128 @@
+"""The likelihood of a frame is the density of its stacked innovations, for both filters, whatever is missing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import multivariate_normal
+
+from mbkf.errors import InvalidInput
+from mbkf.filters.dynamic_follower import DynamicFollower
+from mbkf.filters.estimate import Recording
+from mbkf.filters.following import followed
+from mbkf.filters.kinematic import KinematicFilter
+from mbkf.filters.kinematic_follower import KinematicFollower
+from mbkf.filters.likelihood import dynamic_likelihood, frame_likelihood, trial_likelihood
+from mbkf.filters.settings import KinematicSettings
+from mbkf.sensors.footing import Footing
+from tests.dynamics import DT, dynamic_filter, half_weight, random_state, standing
+from tests.motions import marker_positions, protocol_sensor, reference_model, smooth_motion
+
+MODEL = reference_model()
+NV = MODEL.nv
+HELD = np.zeros(NV, dtype=bool)
+
+
+def dense(H, P, sd, y):
+    """Log density of all innovations together; each in its own unit, or their covariance looks singular."""
+    S = H @ P @ H.T + np.diag(sd**2)
+    unit = np.sqrt(np.diag(S))
+    return (
+        multivariate_normal(np.zeros(len(y)), S / unit[:, None] / unit).logpdf(y / unit) - np.log(unit).sum()
+    )
+
+
+def marker_part(kalman, prior, seen, markers_m, sd):
+    """Jacobian on q, standard deviations and innovations of the markers seen."""
+    reading = kalman.sensor.reading(prior.q)
+    jacobian = reading.jacobian[seen].reshape(-1, NV)
+    return jacobian, np.repeat(sd[seen], 3), (markers_m - reading.positions_m)[seen].ravel()
+
+
+@pytest.mark.parametrize("missing", [(), (0, 7, 20)], ids=["all", "some missing"])
+def test_a_step_of_the_dynamic_filter(missing):
+    rng = np.random.default_rng(2)
+    kalman = dynamic_filter(MODEL, 2, plate_force_n=4.0, residual_moment_nm=0.7)
+    state = random_state(MODEL, rng, standing(MODEL), 0.1)
+    markers = kalman.sensor.positions(state.q) + 0.003 * rng.normal(size=(36, 3))
+    markers[list(missing)] = np.nan
+    points = kalman.feet.decide(kalman.feet.begin(), state.q, state.v, state.a, np.zeros((2, 6))).centres_m
+    memory = kalman.begin()._replace(noise_scale=1.7)
+    step = kalman.step(state, memory, markers, half_weight(MODEL, points))
+    assert step.decision.load.footing == (Footing.MEASURED, Footing.MEASURED)
+    prior, s, seen = step.predicted, kalman.settings, step.decision.trusted
+    H, sd, y = marker_part(kalman, prior, seen, markers, kalman.noise_m * 1.7**0.5)
+    rest = np.repeat([s.residual_force_n, s.residual_moment_nm], 3)
+    rest = np.concatenate([rest, np.tile(np.repeat([s.plate_force_n, s.plate_moment_nm], 3), 2)])
+    rows, values = step.frame.rows[:18], step.frame.values[:18]
+    whole = np.zeros((len(H) + 18, len(prior.P)))
+    whole[: len(H), :NV], whole[len(H) :] = H, rows * rest[:, None]
+    expected = dense(whole, prior.P, np.concatenate([sd, rest]), np.concatenate([y, values * rest]))
+    found = dynamic_likelihood(kalman, step)
+    assert sum(found) == pytest.approx(expected, rel=1e-5)
+    alone = dense(H, prior.P[:NV, :NV], sd, y)
+    assert found.readings == pytest.approx(alone, rel=1e-5)
+
+
+@pytest.fixture(scope="module")
+def recording():
+    markers = marker_positions(
+        protocol_sensor(MODEL)[0], smooth_motion(MODEL, np.random.default_rng(1)).frames(40, 1 / DT)[0]
+    )
+    markers += 0.002 * np.random.default_rng(0).normal(size=markers.shape)
+    markers[:2] = np.nan
+    markers[20, 3:6] = np.nan
+    markers[25, 7] += 0.5
+    return Recording(markers, np.zeros((40, 0, 6)), DT)
+
+
+@pytest.fixture(scope="module")
+def kinematic():
+    sensor = protocol_sensor(MODEL)[0]
+    return KinematicFollower(KinematicFilter(sensor, np.full(36, 0.004), DT, HELD, KinematicSettings()))
+
+
+def test_frames_of_the_kinematic_filter(kinematic, recording):
+    found = trial_likelihood(kinematic, recording)
+    assert found.first == 2
+    np.testing.assert_array_equal(found.load_readings, 0)
+    np.testing.assert_array_equal(
+        found.marker_readings, 3 * (~np.isnan(recording.markers_m[:, :, 0])).sum(axis=1)
+    )
+    for t, estimate, _ in followed(kinematic, recording):
+        if t not in (20, 25, 39):
+            continue
+        prior = estimate.inner.result.evidence.predicted
+        seen = ~np.isnan(recording.markers_m[t, :, 0]) & ~estimate.refused
+        assert estimate.refused.sum() == (t == 25)
+        H, sd, y = marker_part(
+            kinematic.kalman, prior, seen, recording.markers_m[t], kinematic.kalman.noise_m
+        )
+        expected = dense(H, prior.P[:NV, :NV], sd, y)
+        assert found.markers[t] == pytest.approx(expected, rel=1e-5)
+
+
+def test_a_refused_marker_counts_as_an_outlier(kinematic, recording):
+    """It is worth less than a believed one, so that refusing does not pay."""
+    found = trial_likelihood(kinematic, recording)
+    assert found.markers[25] < found.markers[24] - 5.0
+    assert found.markers[2] == 0.0
+
+
+def test_trials_of_the_dynamic_filter(kinematic, recording):
+    done = []
+    follower = DynamicFollower(dynamic_filter(MODEL), kinematic.kalman)
+    found = trial_likelihood(follower, recording, lambda at, total: done.append((at, total)))
+    assert done[-1] == (40, 40)
+    assert np.isfinite(found.markers).all()
+    assert (found.load_readings[3:] == 6).all()
+    assert (found.loads[3:] != 0.0).all()
+
+
+def test_other_filters_are_refused(kinematic, recording):
+    class Other:
+        pass
+
+    _, estimate, _ = list(followed(kinematic, recording))[5]
+    with pytest.raises(InvalidInput, match="kinematic and the dynamic"):
+        frame_likelihood(Other(), replace(estimate), np.ones(36, bool))

@@ -1,0 +1,123 @@
+"""Smoothing while the filter runs: what comes back, when, and how near it is to smoothing everything at once."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mbkf.filters.stretches import SmoothingSettings, StretchSmoother
+from mbkf.filters.tracking import track
+from mbkf.pipelines.followers import FILTERS
+from tests.dynamics import DT
+from tests.followed import WHOLE, errors, estimates, made, made_follower, recording, tracked, without
+from tests.motions import angle_errors
+
+SHORT = SmoothingSettings(stretch_s=0.1, ahead_s=0.2)
+"""Stretches of 10 frames that look 20 frames ahead; the lag is 30."""
+
+every_filter = pytest.mark.parametrize("name", FILTERS)
+
+
+class Counter:
+    """A follower that smooths nothing and remembers what it was asked; estimates are plain numbers."""
+
+    dt_s = DT
+
+    def __init__(self):
+        self.asked = []
+
+    def smooth(self, run, recording, first, wanted):
+        self.asked.append((first, len(run), wanted))
+        return list(run[:wanted])
+
+
+class Told:
+    """An estimate that only knows its frame and whether it was a start."""
+
+    def __init__(self, t, started=False):
+        self.t, self.started = t, started
+
+
+def returned(frames, settings, starts=(0,)):
+    """The frames that come back, with the frame that was put in when they did, and what was asked of the smoother."""
+    follower = Counter()
+    smoother = StretchSmoother(follower, None, settings)
+    found = []
+    for t in frames:
+        found += [(t, k, e) for k, e in smoother.push(t, Told(t, t in starts))]
+    found += [(frames[-1], k, e) for k, e in smoother.finish()]
+    return found, follower.asked
+
+
+@pytest.mark.parametrize("frames", [range(1), range(29), range(30), range(95), range(7, 60)])
+def test_every_frame_comes_back_once_in_order(frames):
+    found, _ = returned(frames, SHORT, starts=(frames[0],))
+    assert [k for _, k, _ in found] == list(frames)
+    assert all(estimate.t == k for _, k, estimate in found)
+
+
+def test_no_frame_waits_longer_than_the_lag():
+    found, _ = returned(range(200), SHORT)
+    waits = [t - k for t, k, _ in found]
+    assert max(waits) * DT <= SHORT.lag_s == pytest.approx(0.3)
+    assert max(waits) == 29  # the frame itself is the 30th
+    assert min(waits[:-40]) == 20  # every one is looked ahead of
+
+
+def test_stretches_begin_with_the_frame_before():
+    _, asked = returned(range(60), SHORT)
+    assert asked == [(0, 30, 10), (9, 31, 11), (19, 31, 11), (29, 31, 11), (39, 21, 21)]
+
+
+def test_a_restart_ends_a_run():
+    """What was before it is smoothed without what comes after."""
+    found, asked = returned(range(50), SHORT, starts=(0, 17))
+    assert asked[0] == (0, 17, 17)
+    assert all(first >= 17 for first, _, _ in asked[1:])
+    assert [t for t, k, _ in found if k < 17] == [17] * 17
+
+
+def test_nothing_comes_of_nothing():
+    assert StretchSmoother(Counter(), None, SHORT).finish() == []
+
+
+def test_the_default_lag_is_below_two_seconds():
+    assert SmoothingSettings().lag_s == pytest.approx(1.9)
+
+
+@every_filter
+def test_short_stretches_are_nearly_the_whole(name):
+    """What readings say fades within the 0.2 s a stretch looks ahead: less than a third of the spread is left."""
+    whole, parts, model = tracked(name, WHOLE), tracked(name, SHORT), made().model
+    q = angle_errors(model, parts.q, whole.q) / whole.position_sd
+    v = (parts.v - whole.v) / whole.velocity_sd
+    assert np.abs(np.hstack([q, v])).max() < 0.35
+    assert (errors(parts) < 1.03 * errors(whole)).all()
+
+
+@every_filter
+def test_the_last_stretch_is_the_whole(name):
+    """It has seen the same later readings; the dynamic smoother is linearised elsewhere before it."""
+    whole, parts, model = tracked(name, WHOLE), tracked(name, SHORT), made().model
+    q = angle_errors(model, parts.q[30:], whole.q[30:]) / whole.position_sd[30:]
+    assert np.abs(q).max() < (0.2 if name == "dynamic" else 1e-6)
+
+
+def test_pushing_is_what_a_trial_does():
+    one, found = estimates("kinematic")
+    smoother = StretchSmoother(one, recording(), SHORT)
+    back = [
+        pair for t, estimate in enumerate(found) for pair in smoother.push(t, estimate)
+    ] + smoother.finish()
+    np.testing.assert_array_equal([e.q for _, e in back], tracked("kinematic", SHORT).q)
+
+
+def test_frames_before_a_restart_know_nothing_of_those_after():
+    """The same smoothed motion as if the trial ended with the loss."""
+    read = without(recording(range(20, 130)), slice(30, 80))
+    found = track(made_follower("kinematic"), read, smoothing=WHOLE)
+    assert found.starts == (0, 80)
+    ended = replace(read, markers_m=read.markers_m[:80], plates=read.plates[:80])
+    alone = track(made_follower("kinematic"), ended, smoothing=WHOLE)
+    np.testing.assert_array_equal(found.q[:80], alone.q)
+    np.testing.assert_array_equal(found.a[:80], alone.a)

@@ -1,0 +1,42 @@
+"""A loaded foot stands still: velocity of its point and its turning against finite differences."""
+
+import numpy as np
+import pytest
+
+from mbkf.sensors.contacts import sole_locals
+from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.planted import Planted, standing_still
+from tests.motions import moderate_pose, reference_model
+
+MODEL = reference_model()
+Q = moderate_pose(MODEL, np.random.default_rng(3))
+V = np.random.default_rng(4).normal(size=MODEL.nv)
+SOLES = MarkerSensor(MODEL, *sole_locals(MODEL))
+
+
+@pytest.mark.parametrize("foot", [0, 1])
+def test_rows_are_the_velocity_of_the_point(foot):
+    point, h = SOLES.positions(Q)[3 * foot], 1e-6
+    moved = [SOLES.positions(MODEL.integrate(Q, s * h * V))[3 * foot] for s in (-1, 1)]
+    velocity = (moved[1] - moved[0]) / (2 * h)
+    rows, short = standing_still(MODEL, Q, V, Planted(foot, point, flat=False), 0.5, 1.0)
+    np.testing.assert_allclose(0.5 * rows @ V, velocity, atol=1e-7)
+    np.testing.assert_allclose(short, -rows @ V, atol=1e-12)
+
+
+@pytest.mark.parametrize("foot", [0, 1])
+def test_a_flat_foot_does_not_turn_either(foot):
+    """All six rows vanish on motions that leave the foot where it is, and on none that turns it."""
+    point = SOLES.positions(Q)[3 * foot]
+    rows, _ = standing_still(MODEL, Q, V, Planted(foot, point, flat=True), 0.5, 1.0)
+    assert rows.shape == (6, MODEL.nv) and np.linalg.matrix_rank(rows) == 6
+    still = V - np.linalg.pinv(rows) @ (rows @ V)
+    h = 1e-6
+    moved = [SOLES.positions(MODEL.integrate(Q, s * h * still)).reshape(2, 3, 3)[foot] for s in (-1, 1)]
+    np.testing.assert_allclose((moved[1] - moved[0]) / (2 * h), 0.0, atol=1e-6)
+
+
+def test_smaller_spreads_weigh_more():
+    planted = Planted(0, SOLES.positions(Q)[0], flat=True)
+    coarse, fine = (standing_still(MODEL, Q, V, planted, sd, sd)[0] for sd in (1.0, 0.1))
+    np.testing.assert_allclose(fine, 10 * coarse)

@@ -1,0 +1,178 @@
+"""Every derivative the package states is the numeric one along the manifold, and none escapes: they are found here.
+
+A block is a public field, method or function of the rooms below whose name or docstring speaks of a derivative. Each
+needs a case, which compares it with finite differences, or a line in :data:`ELSEWHERE`.
+"""
+
+import dataclasses
+import importlib
+import inspect
+import pkgutil
+import re
+import types
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests import derivatives_of_bodies, derivatives_of_filters
+from tests.derivatives import CASES
+
+ROOMS = ("model", "sensors", "filters", "numerics", "scaling")
+
+NAMED = re.compile(
+    r"(^|_)(jacobian|by|derivatives?|transition|phi|rows|sensitivity|linearise|slope|retraction|transport"
+    r"|gradient|gain)(_|$)"
+)
+SAID = re.compile(r"(?i)derivative|jacobian|sensitivit")
+
+PLAIN = {"bool", "int", "float", "str"}
+"""Kinds of fields that hold no derivative whatever they are called."""
+
+TESTS = Path(__file__).parent
+ELSEWHERE = {
+    "model.forced_body.ForcedBody.linearise": "model/test_forced_body.py",
+    "model.forced_body.ForcedBody.retraction": "model/test_human_dynamics.py",
+    "model.forced_body.ForcedBody.transport": "model/test_human_dynamics.py",
+    "filters.integrators.trapezoidal_newton": "filters/test_integrators.py TN",
+    "filters.gate.judged": "filters/test_gate.py",
+    "filters.gate.believable": "filters/test_gate.py",
+    "numerics.discretisation.Discrete.phi": "numerics/test_discretisation.py",
+    "numerics.kalman.Correction.gain_effect": "numerics/test_kalman.py",
+    "numerics.kalman.informed_with_rows": "numerics/test_kalman.py",
+    "numerics.kalman.with_rows": "numerics/test_kalman.py",
+    "numerics.levenberg_marquardt.ArrowEquations.corner_gradient": "numerics/test_levenberg_marquardt.py",
+    "numerics.levenberg_marquardt.ArrowEquations.frame_gradient": "numerics/test_levenberg_marquardt.py",
+    "numerics.rotations.log_and_inverse_jacobian": "numerics/test_rotations.py",
+    "scaling.problem.ScalingProblem.linearise": "scaling/test_problem.py",
+    "sensors.pose_fit.segment_by_segment": "sensors/test_pose_fit.py",
+}
+"""Blocks that hold no derivative of their own or that are algebra: the test file that checks each, and the name it has
+there where that is another."""
+
+
+def modules():
+    for room in ROOMS:
+        package = importlib.import_module(f"mbkf.{room}")
+        for found in pkgutil.iter_modules(package.__path__):
+            yield importlib.import_module(f"mbkf.{room}.{found.name}")
+
+
+def blocks_in(module):
+    """Dotted names, below ``mbkf``, of everything in a module that speaks of a derivative."""
+    home = module.__name__.removeprefix("mbkf.")
+    for name, thing in vars(module).items():
+        if name.startswith("_") or getattr(thing, "__module__", None) != module.__name__:
+            continue
+        if inspect.isfunction(thing) and speaks(name, thing):
+            yield f"{home}.{name}"
+        elif inspect.isclass(thing):
+            yield from (f"{home}.{name}.{member}" for member in members(thing))
+
+
+def members(one):
+    kinds = {f.name: f.type for f in dataclasses.fields(one)} if dataclasses.is_dataclass(one) else {}
+    kinds |= {name: one.__annotations__[name] for name in getattr(one, "_fields", ())}
+    for name, kind in kinds.items():
+        if NAMED.search(name) and not name.startswith("_") and name_of(kind) not in PLAIN:
+            yield name
+    for name, member in vars(one).items():
+        function = function_of(member)
+        if function is not None and not name.startswith("_") and speaks(name, function):
+            yield name
+
+
+def name_of(kind):
+    """An annotation is a string, a wrapped string or a class."""
+    return getattr(kind, "__forward_arg__", getattr(kind, "__name__", kind))
+
+
+def function_of(member):
+    if isinstance(member, property):
+        return member.fget
+    if isinstance(member, cached_property):
+        return member.func
+    plain = getattr(member, "__func__", member)
+    return plain if inspect.isfunction(plain) else None
+
+
+def speaks(name, function):
+    return NAMED.search(name) or SAID.search(function.__doc__ or "")
+
+
+FOUND = {block for module in modules() for block in blocks_in(module)}
+CHECKED = {block for case in CASES for block in case.blocks}
+
+
+def test_every_block_has_its_case():
+    missing = sorted(FOUND - CHECKED - set(ELSEWHERE))
+    assert missing == [], (
+        f"add a case for each to {derivatives_of_bodies.__name__} or {derivatives_of_filters.__name__}"
+    )
+
+
+def test_no_case_outlives_its_block():
+    """What a case checks exists; it may check more than the search finds."""
+    for block in CHECKED | set(ELSEWHERE):
+        room, module, *path = block.split(".")
+        thing = importlib.import_module(f"mbkf.{room}.{module}")
+        for name in path:
+            known = getattr(thing, "__dataclass_fields__", {})
+            thing = known[name] if name in known else getattr(thing, name)
+    assert not CHECKED & set(ELSEWHERE)
+
+
+@pytest.mark.parametrize("block", ELSEWHERE)
+def test_what_is_checked_elsewhere_is_named_there(block):
+    file, _, name = ELSEWHERE[block].partition(" ")
+    name = name or block.split(".")[-1]
+    assert re.search(rf"\b{name}\b", (TESTS / file).read_text(encoding="utf-8"))
+
+
+def test_the_search_sees_what_it_should():
+    made = types.ModuleType("mbkf.made.up")
+    source = """
+from dataclasses import dataclass
+from functools import cached_property
+@dataclass
+class Reading:
+    value: float
+    by_heat: list
+    by_rows: int
+    _rows: float
+    @property
+    def jacobian(self): "."
+    @cached_property
+    def change(self): "Its derivative by heat."
+class Plant:
+    def transition(self, x): "."
+    def predict(self, x): "."
+    def _slope(self, x): "."
+def jacobian_of(x): "."
+def rises(x): "(n, n) sensitivity."
+def rowing(x): "."
+"""
+    exec(source, vars(made))
+    names = (
+        "Reading.by_heat",
+        "Reading.jacobian",
+        "Reading.change",
+        "Plant.transition",
+        "jacobian_of",
+        "rises",
+    )
+    assert set(blocks_in(made)) == {f"made.up.{name}" for name in names}
+
+
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_stated_derivatives_are_the_numeric_ones(case, seed):
+    """Tolerances are shares of the largest entry, or absolute where that is below 1."""
+    checked = case.compare(np.random.default_rng(seed))
+    assert {*checked} == {*case.blocks}
+    for block, (stated, numeric) in checked.items():
+        assert np.shape(stated) == np.shape(numeric), block
+        error = np.abs(np.asarray(stated) - numeric).max() / max(1.0, np.abs(numeric).max())
+        assert error < case.tolerance, f"{block} differs by {error:.1e}"
+        assert np.abs(numeric).max() > 1e-3, f"{block} is all zero here, which proves nothing"
