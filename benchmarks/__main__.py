@@ -26,7 +26,18 @@ from mbkf.errors import InvalidInput, MbkfError, UnknownName
 
 DATA_VARIABLE = "MBKF_DATA"
 _PIPED_WIDTH = 120
-NOT_BENCHMARKS = {"__main__", "checks", "commands", "picture", "references"}
+NOT_BENCHMARKS = {
+    "__main__",
+    "checks",
+    "commands",
+    "dynamic_captures",
+    "dynamic_losses",
+    "dynamic_methods",
+    "dynamic_offline",
+    "dynamic_synthetic",
+    "picture",
+    "references",
+}
 
 
 def names() -> tuple[str, ...]:

@@ -28,6 +28,10 @@ class Written:
     seconds: float
 
 
+FILTER = ("--filter", "kinematic")
+"""The main job's bounds are those of the marker filter followed by inverse dynamics."""
+
+
 def mbkf(*words: str | Path, fresh: bool = False) -> float:
     """Runs one command quietly.
 
@@ -75,7 +79,9 @@ def scale_and_reconstruct(
     subject = folder / "subject.toml"
     seconds = mbkf("scale", *scaling, "--out", subject, fresh=fresh)
     with_forces = () if forces is None else ("--forces", forces)
-    seconds += mbkf("reconstruct", trial, "--subject", subject, *with_forces, "--out", folder, fresh=fresh)
+    seconds += mbkf(
+        "reconstruct", trial, "--subject", subject, *with_forces, *FILTER, "--out", folder, fresh=fresh
+    )
     return read_folder(folder, seconds)
 
 

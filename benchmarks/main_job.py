@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.checks import Check, Context
-from benchmarks.commands import Written, mbkf, read_folder, scale_and_reconstruct
+from benchmarks.commands import FILTER, Written, mbkf, read_folder, scale_and_reconstruct
 from benchmarks.references import (
     PLUG_IN_GAIT,
     in_degrees,
@@ -181,7 +181,7 @@ def synthetic(_data: Path, out: Path, motion: str) -> list[Check]:
     """A synthetic capture with camera noise only, on the known body and on the one scaled from its static."""
     mbkf("synth", "--motion", motion, "--markers-mm", "0.5", "--skin-mm", "0", "--out", out)
     trial = out / "trial.c3d"
-    mbkf("reconstruct", trial, "--subject", out / "subject.toml", "--out", out / "known_body")
+    mbkf("reconstruct", trial, "--subject", out / "subject.toml", *FILTER, "--out", out / "known_body")
     known = read_summary(out / "known_body")["truth"]["angle_rms_deg"]
     mass = read_folder(out / "known_body").summary["mass_kg"]
     scaling = (out / "static.c3d", "--mass", str(mass))
