@@ -7,6 +7,7 @@ linear and never stiff, and the pelvis's six Newton–Euler equations enter as r
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.filters.dynamic_records import Decision, DynamicStep, FrameReadings, Memory
@@ -21,6 +22,9 @@ from mbkf.sensors.markers import MarkerInformation, MarkerReading, MarkerSensor
 from mbkf.sensors.planted import standing_still
 from mbkf.sensors.posture import PostureSensor
 from mbkf.sensors.skin import SkinMarkers
+
+NOWHERE = np.zeros(0, dtype=np.intp)
+"""No dofs."""
 
 DISPLACED_SD_RAD = 0.5
 DISPLACED_SD_RAD_S = 3.0
@@ -132,36 +136,44 @@ class DynamicFilter:
         busy = np.sqrt((s.quiet_share * usual) ** 2 + s.activity_gain**2 * memory.activity)
         return np.minimum(busy, self._busiest)
 
-    def _next_activity(self, state: DynamicState, memory: Memory) -> Array | None:
+    def _next_activity(self, state: DynamicState, memory: Memory, unseen: NDArray[np.intp]) -> Array | None:
+        """(nv,) mean square; what nobody sees moves as usual, or it would feed on its own guesses."""
         if self.settings.activity_gain <= 0.0:
             return None
         now = state.a**2 + (self.settings.activity_rate * state.v) ** 2
+        now[unseen] = (self.plant.acceleration_sd[unseen] / self.settings.activity_gain) ** 2
         return now if memory.activity is None else memory.activity + self._calm * (now - memory.activity)
 
     def _corrected(
         self, prior: DynamicState, memory: Memory, acceleration_sd: Array, markers_m: Array, plates: Array
     ) -> DynamicStep:
         decision, reading, innovation = self._decide(prior, memory, acceleration_sd, markers_m, plates)
-        self.wander(prior.P, decision.load.centres_m)
+        self.unsettle(prior.P, decision)
         frame = self._linearised(prior, decision, reading, innovation)
         P = informed_with_rows(prior.P.T, frame.matrix, frame.rows)
         state = self.retract(prior, P @ frame.whole_vector, P)
         after = Memory(
             decision.load.memory,
             self._next_noise_scale(decision, innovation),
-            self._next_activity(state, memory),
+            self._next_activity(state, memory, decision.unseen),
             None if self._skin is None else np.where(decision.trusted[:, None], markers_m, np.nan),
         )
         tracked = bool(np.count_nonzero(decision.trusted) >= self.min_markers)
         return DynamicStep(state, after, decision, tracked, prior, frame)
 
-    def wander(self, P: Array, centres_m: Array) -> None:
-        """Adds to a predicted covariance, in place, what a step changes in the wrenches of feet with centres (2, 3)."""
-        first = 3 * self.model.nv
-        for foot, centre in enumerate(centres_m):
-            mine = slice(first + 6 * foot, first + 6 * foot + 6)
+    def unsettle(self, P: Array, decision: Decision) -> None:
+        """Adds to a predicted covariance, in place, what the plant does not know.
+
+        Wrenches wander, their moments about the soles; a displaced limb is somewhere else than expected.
+        """
+        nv, dofs = self.model.nv, decision.displaced
+        for foot, centre in enumerate(decision.load.centres_m):
+            mine = slice(3 * nv + 6 * foot, 3 * nv + 6 * foot + 6)
             shift = _about(-centre) * self._walk
             P[mine, mine] += shift @ shift.T
+        if len(dofs):
+            P[dofs, dofs] += DISPLACED_SD_RAD**2
+            P[nv + dofs, nv + dofs] += DISPLACED_SD_RAD_S**2
 
     def difference(self, origin: DynamicState, state: DynamicState) -> Array:
         """(N,) tangent vector from one state's mean to another's."""
@@ -189,22 +201,24 @@ class DynamicFilter:
         innovation = markers_m - reading.positions_m
         noise = self.noise_m * memory.noise_scale**0.5
         seen, trusted, displaced = judged(innovation, reading, prior.P[:nv, :nv], noise, self.settings)
-        if displaced is not None:
-            self._forget_limb(prior.P, displaced)
+        moved = NOWHERE if displaced is None else self._sight.carriers(displaced)
         unseen = self._sight.unseen(trusted)
         load = self.feet.decide(memory.footing, prior.q, prior.v, prior.a, plates)
         before = memory.markers_m
         lost = [f for f in (0, 1) if self._foot_dof[f] in unseen]
         planted = tuple(p for p in (self.feet.planted(load, prior.q, f) for f in lost) if p is not None)
-        decision = Decision(trusted, seen, load, memory.noise_scale, unseen, planted, acceleration_sd, before)
+        decision = Decision(
+            trusted,
+            seen,
+            load,
+            memory.noise_scale,
+            unseen,
+            planted,
+            moved[moved >= 6],
+            acceleration_sd,
+            before,
+        )
         return decision, reading, innovation
-
-    def _forget_limb(self, P: Array, displaced: BoolArray) -> None:
-        """Makes a predicted covariance, in place, admit that a limb is somewhere else than expected."""
-        nv, dofs = self.model.nv, self._sight.carriers(displaced)
-        dofs = dofs[~np.isin(dofs, np.arange(6))]
-        P[dofs, dofs] += DISPLACED_SD_RAD**2
-        P[nv + dofs, nv + dofs] += DISPLACED_SD_RAD_S**2
 
     def _next_noise_scale(self, decision: Decision, innovation: Array) -> float:
         share = self.settings.innovation_share

@@ -42,6 +42,7 @@ class Decision(NamedTuple):
         noise_scale: Square of the factor on the markers' noise.
         unseen: Dofs of joints whose segment shows no marker.
         planted: Loaded feet none of whose markers is seen.
+        displaced: Dofs of limbs that came back into sight where nobody expected them.
         acceleration_sd: (nv,) σ_a with which the frame was predicted.
         before_m: (M, 3) markers believed in the frame before; None where skin artefacts are not modelled.
     """
@@ -52,6 +53,7 @@ class Decision(NamedTuple):
     noise_scale: float
     unseen: NDArray[np.intp]
     planted: tuple[Planted, ...]
+    displaced: NDArray[np.intp]
     acceleration_sd: Array
     before_m: Array | None
 

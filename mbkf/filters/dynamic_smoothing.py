@@ -18,6 +18,9 @@ from mbkf.filters.singer import DynamicState
 from mbkf.numerics.kalman import informed_with_rows
 from mbkf.numerics.smoothing import BackwardPass
 
+FURTHEST_RAD = 0.5
+"""A round corrects no joint by more than this."""
+
 
 @dataclass(frozen=True)
 class Frame:
@@ -59,12 +62,19 @@ def smooth(
     for _ in range(rounds - 1):
         forward = _forward(kalman, begin, means, frames)
         steps = [step for step, _ in _backward(forward, covariances=False)]
-        means = [kalman.retract(x, step, x.P) for x, step in zip(means, reversed(steps), strict=True)]
+        share = _damping(steps, kalman.model.nv)
+        means = [kalman.retract(x, share * step, x.P) for x, step in zip(means, reversed(steps), strict=True)]
     forward = _forward(kalman, begin, means, frames)
     steps_and_covariances = list(_backward(forward, covariances=True))[::-1]
     for mean, (step, P) in list(zip(means, steps_and_covariances, strict=True))[:wanted]:
         if P is not None:
             yield kalman.retract(mean, step, P)
+
+
+def _damping(steps: Sequence[Array], nv: int) -> float:
+    """Share of a round's steps to take: none turns a joint further than a linearisation reaches."""
+    furthest = max(float(np.abs(step[:nv]).max()) for step in steps)
+    return min(1.0, FURTHEST_RAD / furthest) if furthest > 0.0 else 1.0
 
 
 def _forward(
@@ -77,7 +87,7 @@ def _forward(
         before = replace(last, P=P)
         transition = kalman.plant.transition(before)
         prior = kalman.plant.predict(before, frame.decision.acceleration_sd)
-        kalman.wander(prior.P, frame.decision.load.centres_m)
+        kalman.unsettle(prior.P, frame.decision)
         delta = transition @ delta + kalman.difference(mean, prior)
         readings = kalman.linearise(mean, frame.decision, frame.markers_m)
         P = informed_with_rows(prior.P.T, readings.matrix, readings.rows)

@@ -100,6 +100,28 @@ def with_rows(covariance: Array, rows: Array) -> Array:
 
 def informed_with_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
     """(N, N) :func:`with_rows` of :func:`informed`: P − h₁ h₁ᵀ − h₂ h₂ᵀ in one product."""
+    try:
+        return _informed_with_rows(covariance, matrix, rows)
+    except np.linalg.LinAlgError:
+        return _informed_with_rows(made_positive(covariance), matrix, rows)
+
+
+def made_positive(covariance: Array) -> Array:
+    """The nearest symmetric matrix without negative eigenvalues, for a covariance that rounding has spoilt.
+
+    Components are first brought to a common scale, which a state of metres, radians and newtons does not have.
+
+    Raises:
+        numpy.linalg.LinAlgError: It holds numbers that are none.
+    """
+    scale = np.sqrt(np.maximum(np.abs(np.diagonal(covariance)), 1e-300))
+    correlation = covariance / scale / scale[:, None]
+    values, vectors = np.linalg.eigh(0.5 * (correlation + correlation.T))
+    positive = (vectors * np.maximum(values, 1e-12)) @ vectors.T * scale * scale[:, None]
+    return np.asfortranarray(0.5 * (positive + positive.T))
+
+
+def _informed_with_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
     N, n, m = len(covariance), len(matrix), len(rows)
     halves = np.empty((N, n + m), order="F")
     first = halves[:, :n]

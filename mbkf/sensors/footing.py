@@ -27,6 +27,9 @@ Outline = list[list[float]]
 KEEP_M = 0.04
 """A plate stays with its foot until the other one is nearer by this."""
 
+LEAVE_SLACK = 1.7
+"""A standing foot has left the floor when it is higher or faster than the above times this."""
+
 SOLE_ENDS = 2
 """Points of a sole that tell its height: heel and ball; its toe end dips below the floor when the toes bend."""
 
@@ -149,7 +152,8 @@ class FootingSensor:
             ]
             speeds = [hypot(*velocity) for velocity in reading.velocities(v).tolist()]
             moving = [speeds[:3], speeds[3:]]
-            stands = self._standing(footing, soles, moving, height, idle)
+            stood = [since > STAND_AFTER_S for since in memory.touching_s]
+            stands = self._standing(footing, soles, moving, height, idle, stood)
             right, left = (
                 since + self._dt_s if s else 0.0 for since, s in zip(memory.touching_s, stands, strict=True)
             )
@@ -198,11 +202,13 @@ class FootingSensor:
         speeds: list,
         height: float,
         idle: list[tuple[int, Pressed | None]],
+        stood: list[bool],
     ) -> tuple[bool, bool]:
-        """Whether right and left foot touch the floor where no plate reads."""
+        """Whether right and left foot touch the floor where no plate reads; one that ``stood`` must clearly leave."""
 
         def stands(f: int) -> bool:
-            unread = footing[f] == Footing.AIR and self._touches(soles[f], speeds[f], height)
+            slack = LEAVE_SLACK if stood[f] else 1.0
+            unread = footing[f] == Footing.AIR and self._touches(soles[f], speeds[f], height, slack)
             return unread and not self._watched(f, soles[f], idle)
 
         return stands(0), stands(1)
@@ -241,12 +247,12 @@ class FootingSensor:
             known = lowest_now if isnan(known) else min(known, lowest_now)
         return known
 
-    def _touches(self, sole: list, speed: list[float], height: float) -> bool:
+    def _touches(self, sole: list, speed: list[float], height: float, slack: float) -> bool:
         floor = height if not isnan(height) else self._floor
         if isnan(floor):
             return False
         return any(
-            p[2] < floor + STAND_HEIGHT_M and s < STAND_SPEED_M_S
+            p[2] < floor + slack * STAND_HEIGHT_M and s < slack * STAND_SPEED_M_S
             for p, s in zip(sole[:SOLE_ENDS], speed[:SOLE_ENDS], strict=True)
         )
 

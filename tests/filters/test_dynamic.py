@@ -262,9 +262,9 @@ def bent_knee(limit_sd_rad):
 
 
 def test_a_joint_beyond_its_limit_comes_back():
-    """About to the limit; what speed it gets there is damped only slowly while nobody sees the leg."""
+    """Back behind its limit, and no further than it was beyond: what speed it gets is damped while nobody sees it."""
     assert bent_knee(1e6) > 0.3
-    assert -0.2 < bent_knee(0.03) < 0.05
+    assert -0.4 < bent_knee(0.03) < 0.05
 
 
 def test_held_dofs_stay():
