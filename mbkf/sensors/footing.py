@@ -27,7 +27,7 @@ Outline = list[list[float]]
 KEEP_M = 0.04
 """A plate stays with its foot until the other one is nearer by this."""
 
-LEAVE_SLACK = 1.5
+LEAVE_SLACK = 1.7
 """A standing foot has left the floor when it is higher or faster than the above times this."""
 
 SOLE_ENDS = 2
