@@ -18,12 +18,14 @@ class DynamicSettings:
         busy_shares: σ_a is at most this many times the table, for the pelvis's translation and for all else.
         decay_s: Time T in which an unseen acceleration fades (Singer).
         residual_force_n, residual_moment_nm: How exactly Newton's law holds at the pelvis, per component.
-        plate_force_n, plate_moment_nm: Noise of a plate's reading, moment about the foot's origin.
-        wrench_force, wrench_moment: Random walk of a foot's wrench, N/√s and N m/√s, moment about the foot's origin.
+        plate_force_n, plate_moment_nm: Noise of a plate's reading, moment about the middle of the sole.
+        wrench_force, wrench_moment: Random walk of a foot's wrench, N/√s and N m/√s, moment about the
+            middle of the sole.
         air_force_n, air_moment_nm: How exactly a foot in the air carries nothing.
-        free_force_share, free_lever_m: Spread of an unmeasured foot's force in body weights, and of its lever about
-            the foot's origin, per reading: what keeps two such feet from pulling against each other.
-        pulling_force_n: How softly an unmeasured foot is kept from pulling at the floor.
+        free_force_share, free_lever_m: Spread of an unmeasured foot's force about its share of the weight, in body
+            weights, and of its lever about the middle of the sole, m, per reading: what keeps two such feet from
+            pulling against each other.
+        pulling_force_n: How softly an unmeasured foot is kept from pulling at the floor, N.
         marker_noise_scale: Factor on the markers' own noise.
         innovation_share: Share of an independent reading that a frame's marker counts for, because skin moves slowly
             and the next frames repeat its error: the noise follows the mean square innovation divided by it, within

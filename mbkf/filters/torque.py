@@ -13,7 +13,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.filters.gate import believable
+from mbkf.filters.gate import judged
 from mbkf.filters.state import FilterState
 from mbkf.filters.torque_noise import ForceNoise, condition, load_variance, residual_variance
 from mbkf.filters.torque_plant import ForcedState, Prediction, TorquePlant, on_state, update
@@ -208,10 +208,8 @@ class TorqueFilter:
         prior, nv = prediction.state, self.body.nv
         reading = self.sensor.reading(prior.q)
         innovation = measured_m - reading.positions_m
-        seen = np.asarray(~np.isnan(innovation).any(axis=1))
-        trusted = believable(
-            innovation, reading.jacobian, prior.P[:nv, :nv], self.noise_m, self.settings.tracking
-        )
+        P, settings = prior.P[:nv, :nv], self.settings.tracking
+        seen, trusted, _ = judged(innovation, reading, P, self.noise_m, settings)
         sd = np.repeat(self.noise_m[trusted], 3)
         markers = information(innovation[trusted].ravel(), reading.jacobian[trusted].reshape(-1, nv), sd)
         columns, sensed = self._sensed(prior, markers, feet)

@@ -16,9 +16,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.errors import UnknownName
 from mbkf.model.forced_body import LinearAcceleration
 from mbkf.model.human import HumanModel
-
-FEET = ("right_foot", "left_foot")
-"""Segments that take wrenches, in the order of every paired array."""
+from mbkf.model.newton_euler import FEET
 
 WRENCH_FRAMES = ("ankle", "foot", "thesis")
 """Where a wrench state lives; the moment is in the foot's axes in each.

@@ -13,10 +13,8 @@ from mbkf.io.records import PlateReadings
 from mbkf.io.resample import average_over_frames
 from mbkf.io.wrench import centre_of_pressure
 from mbkf.model.human import HumanModel
+from mbkf.model.newton_euler import FEET
 from mbkf.sensors.markers import MarkerSensor
-
-FEET = ("right_foot", "left_foot")
-"""Segments that take ground reactions, in the order of every paired array."""
 
 REACH_M = 0.20
 """A centre of pressure further than this from a sole belongs to no foot."""
