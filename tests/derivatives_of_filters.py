@@ -24,24 +24,18 @@ DT = 0.01
 @checks(
     "sensors.markers.MarkerReading.jacobian",
     "sensors.markers.MarkerReading.pull",
-    "sensors.markers.MarkerReading.velocities",
     "sensors.markers.MarkerSensor.reading",
 )
 def markers(rng):
     model = random_model(rng)
     sensor, q = protocol_sensor(model)[0], moderate_pose(model, rng, spread=1.0)
-    forces, v, reading = (
-        rng.normal(size=(len(sensor.segments), 3)),
-        rng.normal(size=model.nv),
-        sensor.reading(q),
-    )
+    forces, reading = rng.normal(size=(len(sensor.segments), 3)), sensor.reading(q)
     by_q = central_difference(model, sensor.positions, q)
     work = central_difference(model, lambda at: np.vdot(forces, sensor.positions(at)), q)
     return named(
         "sensors.markers",
         ("MarkerReading.jacobian", reading.jacobian, by_q),
         ("MarkerReading.pull", reading.pull(forces), work),
-        ("MarkerReading.velocities", reading.velocities(v), by_q @ v),
         ("MarkerSensor.reading", reading.jacobian, by_q),
     )
 

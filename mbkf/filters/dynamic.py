@@ -81,6 +81,7 @@ class DynamicFilter:
         self._pulling[2] = 1.0 / s.pulling_force_n
         self._walk = np.repeat([s.wrench_force, s.wrench_moment], 3) * dt_s**0.5
         self._calm = 1.0 - np.exp(-dt_s / s.activity_memory_s)
+        self._quiet = (s.quiet_share * self.plant.acceleration_sd) ** 2
         self._busiest = self.plant.acceleration_sd * np.where(np.arange(model.nv) < 3, *s.busy_shares)
         skin = s.skin_memory_s > 0.0
         camera, memory = s.camera_noise_m, s.skin_memory_s
@@ -132,8 +133,7 @@ class DynamicFilter:
         usual = self.plant.acceleration_sd
         if memory.activity is None:
             return usual
-        s = self.settings
-        busy = np.sqrt((s.quiet_share * usual) ** 2 + s.activity_gain**2 * memory.activity)
+        busy = np.sqrt(self._quiet + self.settings.activity_gain**2 * memory.activity)
         return np.minimum(busy, self._busiest)
 
     def _next_activity(self, state: DynamicState, memory: Memory, unseen: NDArray[np.intp]) -> Array | None:
@@ -141,7 +141,8 @@ class DynamicFilter:
         if self.settings.activity_gain <= 0.0:
             return None
         now = state.a**2 + (self.settings.activity_rate * state.v) ** 2
-        now[unseen] = (self.plant.acceleration_sd[unseen] / self.settings.activity_gain) ** 2
+        if len(unseen):
+            now[unseen] = (self.plant.acceleration_sd[unseen] / self.settings.activity_gain) ** 2
         return now if memory.activity is None else memory.activity + self._calm * (now - memory.activity)
 
     def _corrected(
@@ -167,10 +168,12 @@ class DynamicFilter:
         Wrenches wander, their moments about the soles; a displaced limb is somewhere else than expected.
         """
         nv, dofs = self.model.nv, decision.displaced
-        for foot, centre in enumerate(decision.load.centres_m):
+        shift = _about(-decision.load.centres_m) * self._walk
+        wander = shift @ shift.transpose(0, 2, 1)
+        for foot in (0, 1):
             mine = slice(3 * nv + 6 * foot, 3 * nv + 6 * foot + 6)
-            shift = _about(-centre) * self._walk
-            P[mine, mine] += shift @ shift.T
+            own = P[mine, mine]
+            own += wander[foot]
         if len(dofs):
             P[dofs, dofs] += DISPLACED_SD_RAD**2
             P[nv + dofs, nv + dofs] += DISPLACED_SD_RAD_S**2
@@ -205,7 +208,7 @@ class DynamicFilter:
         unseen = self._sight.unseen(trusted)
         load = self.feet.decide(memory.footing, prior.q, prior.v, prior.a, plates)
         before = memory.markers_m
-        lost = [f for f in (0, 1) if self._foot_dof[f] in unseen]
+        lost = [f for f in (0, 1) if self._foot_dof[f] in unseen] if len(unseen) else []
         planted = tuple(p for p in (self.feet.planted(load, prior.q, f) for f in lost) if p is not None)
         decision = Decision(
             trusted,
@@ -223,7 +226,7 @@ class DynamicFilter:
     def _next_noise_scale(self, decision: Decision, innovation: Array) -> float:
         share = self.settings.innovation_share
         trusted = decision.trusted
-        if share <= 0.0 or not trusted.any():
+        if share <= 0.0 or not np.count_nonzero(trusted):
             return decision.noise_scale
         scaled = innovation[trusted] * self._certainty[trusted]
         squared = float(np.vdot(scaled, scaled)) / scaled.size
@@ -235,15 +238,12 @@ class DynamicFilter:
         self, state: DynamicState, decision: Decision, reading: MarkerReading, innovation: Array
     ) -> FrameReadings:
         markers = self._marker_information(state, decision, reading, innovation)
-        deviation, jacobian = self.posture.deviation(state.q)
         lean, nv = self._lean, self.model.nv
         if len(decision.unseen):
             lean = lean.copy()
             lean[decision.unseen] *= self.settings.unseen_posture
-        scaled = jacobian * lean[:, None]
         matrix, vector = markers.matrix.copy(), markers.vector.copy()
-        matrix[:nv, :nv] += scaled.T @ scaled
-        vector[:nv] -= (deviation * lean) @ scaled
+        deviation, jacobian = self.posture.lean(state.q, lean, matrix[:nv, :nv], vector[:nv])
         limit = self.limits.information(deviation, jacobian)
         if limit is not None:
             matrix[:nv, :nv] += limit.matrix
@@ -306,10 +306,12 @@ class DynamicFilter:
         if Footing.SHARED in load.footing:
             return self._shared_rows(rows, values, state, load)
         first, plates = 3 * self.model.nv, 0
-        for place, foot in enumerate(sorted((0, 1), key=lambda f: load.footing[f] != Footing.MEASURED)):
+        about = _about(load.centres_m)
+        only_left = load.footing[0] != Footing.MEASURED and load.footing[1] == Footing.MEASURED
+        for place, foot in enumerate((1, 0) if only_left else (0, 1)):
             footing, wrench = load.footing[foot], state.w[6 * foot : 6 * foot + 6]
             mine = slice(6 * place, 6 * place + 6)
-            X = _about(load.centres_m[foot]) * self._foot_weight(footing, wrench)[:, None]
+            X = about[foot] * self._foot_weight(footing, wrench)[:, None]
             rows[mine, first + 6 * foot : first + 6 * foot + 6] = X
             values[mine] = X @ (self._expected(state, load, foot) - wrench)
             plates += 6 * (footing == Footing.MEASURED)
@@ -339,25 +341,29 @@ class DynamicFilter:
     def _shared_rows(self, rows: Array, values: Array, state: DynamicState, load: FootLoad) -> int:
         """One plate reads the sum of both wrenches; each is weakly held near a half of it."""
         first = 3 * self.model.nv
-        middle = _about(0.5 * (load.centres_m[0] + load.centres_m[1])) * self._plate[:, None]
+        middle = _about(load.centres_m.mean(axis=0, keepdims=True))[0] * self._plate[:, None]
         rows[:6, first : first + 6] = rows[:6, first + 6 :] = middle
         values[:6] = middle @ (load.wrench[0] - state.w[:6] - state.w[6:])
-        half = _about(load.centres_m[0]) * self._free[:, None]
+        half = _about(load.centres_m[:1])[0] * self._free[:, None]
         rows[6:, first : first + 6] = half
         values[6:] = half @ (0.5 * load.wrench[0] - state.w[:6])
         return 6
 
 
-def _about(point_m: Array) -> Array:
-    """(6, 6) that takes a wrench about the world's origin to one about a point."""
-    x, y, z = point_m.tolist()
-    return np.array(
-        (
-            (1.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-            (0.0, 1.0, 0.0, 0.0, 0.0, 0.0),
-            (0.0, 0.0, 1.0, 0.0, 0.0, 0.0),
-            (0.0, z, -y, 1.0, 0.0, 0.0),
-            (-z, 0.0, x, 0.0, 1.0, 0.0),
-            (y, -x, 0.0, 0.0, 0.0, 1.0),
-        )
-    )
+def _about(points_m: Array) -> Array:
+    """(k, 6, 6) that take a wrench about the world's origin to one about each of the points (k, 3): n − c × f."""
+    found = points_m @ _LEVERS
+    found += _UNMOVED
+    return found.reshape(-1, 6, 6)
+
+
+def _levers() -> Array:
+    """(3, 36) by which a unit shift along each axis changes :func:`_about`."""
+    table = np.zeros((3, 6, 6))
+    for x, y, z in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        table[x, 3 + z, y], table[x, 3 + y, z] = -1.0, 1.0
+    return table.reshape(3, 36)
+
+
+_LEVERS = _levers()
+_UNMOVED = np.eye(6).ravel()

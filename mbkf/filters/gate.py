@@ -34,6 +34,8 @@ class Sight:
             joints[joint.v] = joint.joint_id
         self._on_segment = (sensor.joint_ids[:, None] == joints) & ~held
         self._watched = self._on_segment.any(axis=0)
+        # Markers come and go seldom, so the last answer is kept.
+        self._asked, self._unseen = b"", _NONE
 
     def carriers(self, markers: BoolArray) -> NDArray[np.intp]:
         """Dofs of the joints whose segments carry any of the ``markers`` (M,)."""
@@ -41,9 +43,11 @@ class Sight:
 
     def unseen(self, trusted: BoolArray) -> NDArray[np.intp]:
         """Dofs whose segment carries markers none of which is ``trusted`` (M,) now."""
-        if trusted.all():
-            return _NONE
-        return np.flatnonzero(self._watched & ~(trusted @ self._on_segment))
+        asked = trusted.tobytes()
+        if asked != self._asked:
+            self._asked = asked
+            self._unseen = np.flatnonzero(self._watched & ~(trusted @ self._on_segment))
+        return self._unseen
 
 
 class Belief(NamedTuple):
@@ -65,7 +69,10 @@ def judged(
     noise_m: Array,
     settings: GateSettings,
 ) -> Belief:
-    """Seen and believable markers, by :func:`believable`; asks for the Jacobian only if a marker lies far off.
+    """Seen and believable markers: those inside their gate, yᵀ S⁻¹ y ≤ gate with S = H P Hᵀ + R, or near enough.
+
+    When more than half of the markers fall outside, the state is wrong and not the markers, and all are believed.
+    The Jacobian is asked for only of markers that lie far off.
 
     Args:
         innovation_m: (M, 3) measured minus predicted, NaN where missing.
@@ -75,8 +82,8 @@ def judged(
         settings: Gate and radius.
     """
     squared = np.einsum("ij,ij->i", innovation_m, innovation_m)
-    seen = squared == squared  # noqa: PLR0124, a missing marker's is NaN
     near = squared <= settings.gate_radius_m**2
+    seen = squared == squared  # noqa: PLR0124, a missing marker's is NaN
     if np.count_nonzero(near) == np.count_nonzero(seen):
         return Belief(seen, near, None)
     far = seen & ~near
@@ -86,30 +93,6 @@ def judged(
         return Belief(seen, trusted, None)
     displaced = _whole_segments(seen, trusted, reading.moves)
     return Belief(seen, trusted | displaced, displaced if displaced.any() else None)
-
-
-def believable(
-    innovation_m: Array, jacobian: Array, covariance: Array, noise_m: Array, settings: GateSettings
-) -> BoolArray:
-    """(M,) whether each marker is seen and inside its gate: yᵀ S⁻¹ y ≤ gate, S = H P Hᵀ + R, or near enough.
-
-    When more than half of the markers fall outside, the state is wrong and not the markers, and all are believed.
-
-    Args:
-        innovation_m: (M, 3) measured minus predicted, NaN where missing.
-        jacobian: (M, 3, nv) marker Jacobian H.
-        covariance: (nv, nv) predicted covariance P of the configuration.
-        noise_m: (M,) marker noise.
-        settings: Gate and radius.
-    """
-    squared = (innovation_m**2).sum(axis=1)
-    seen = np.asarray(~np.isnan(squared))
-    inside = squared <= settings.gate_radius_m**2
-    far = seen & ~inside
-    if not far.any():
-        return seen
-    distance = _distance(innovation_m[far], jacobian[far], covariance, noise_m[far])
-    return _with_far(seen, inside, far, distance, settings.gate)
 
 
 def _whole_segments(seen: BoolArray, trusted: BoolArray, moves: Array) -> BoolArray:

@@ -142,10 +142,9 @@ class KinematicFilter:
         innovation = measured_m - reading.positions_m
         seen, trusted, _ = judged(innovation, reading, predicted.P[:nv, :nv], self.noise_m, self.settings)
         markers = self._markers.at(q, reading, innovation, trusted)
-        pull = self.posture.information(q, self._lean)
-        matrix = markers.matrix + pull.matrix
-        vector, rest = np.zeros(2 * nv), np.zeros(nv)
-        np.add(markers.vector, pull.vector, out=vector[:nv])
+        matrix, vector, rest = markers.matrix.copy(), np.zeros(2 * nv), np.zeros(nv)
+        vector[:nv] = markers.vector
+        self.posture.lean(q, self._lean, matrix, vector[:nv])
         P, unseen = predicted.P, self._sight.unseen(trusted)
         if len(unseen):
             certainty = np.full(len(unseen), 1.0 / self.settings.velocity_sd)

@@ -52,6 +52,10 @@ class SingerPlant:
         self.c1 = -decay_s * float(np.expm1(-dt_s / decay_s))
         self.c2 = decay_s * (dt_s - self.c1)
         self.noise = _singer_noise(dt_s, decay_s)
+        # Where in P the diagonals of the nine blocks of q, v and a lie.
+        row, column, dof = np.ogrid[:3, :3, : model.nv]
+        size = 3 * model.nv + 12
+        self._diagonals = (row * model.nv + dof) * size + column * model.nv + dof
 
     def transition(self, state: DynamicState) -> Array:
         """(N, N) Φ at a state."""
@@ -79,10 +83,7 @@ class SingerPlant:
         A, B = self.model.integration_derivatives(state.q, step)
         sd = self.acceleration_sd if acceleration_sd is None else acceleration_sd
         P = self._carried(A, B, state.P if state.P.flags.c_contiguous else state.P.T)
-        # The diagonals of the nine blocks of q, v and a, as a view.
-        nv = self.model.nv
-        diagonals = np.einsum("iaja->ija", P[: 3 * nv, : 3 * nv].reshape(3, nv, 3, nv))
-        diagonals += self.noise[:, :, None] * sd**2
+        P.reshape(-1)[self._diagonals] += self.noise[:, :, None] * (sd * sd)
         q = self.model.integrate(state.q, step)
         return DynamicState(q, state.v + self.c1 * state.a, self.rho * state.a, state.w, P)
 
@@ -91,31 +92,32 @@ class SingerPlant:
         nv = self.model.nv
         q, v, a, w = slice(nv), slice(nv, 2 * nv), slice(2 * nv, 3 * nv), slice(3 * nv, None)
         new = np.empty(P.shape)
-        self._carry_rates(P[nv:, nv:], new[nv:, nv:])
+        self._carry_rates(P, new)
+        by_step = B * self.dt_s
         rows = A @ P[q]
-        rows += B @ self._pushed(P[v], P[a])
+        rows += by_step @ self._pushed(P[v], P[a])
         half = rows[:, q] @ A.T
-        half += self._pushed(rows[:, v], rows[:, a]) @ B.T
+        half += self._pushed(rows[:, v], rows[:, a]) @ by_step.T
         half *= 0.5
         np.add(half, half.T, out=new[q, q])
-        np.multiply(rows[:, a], self.c1, out=new[q, v])
-        new[q, v] += rows[:, v]
+        ahead = new[q, v]
+        np.multiply(rows[:, a], self.c1, out=ahead)
+        ahead += rows[:, v]
         np.multiply(rows[:, a], self.rho, out=new[q, a])
         new[q, w] = rows[:, w]
         new[nv:, q] = new[q, nv:].T
         return new
 
     def _pushed(self, v: Array, a: Array) -> Array:
-        """What velocities and accelerations add to positions: Δt v + c₂ a."""
+        """What velocities and accelerations add to positions, per Δt: v + a c₂ / Δt."""
         pushed = a * (self.c2 / self.dt_s)
         pushed += v
-        pushed *= self.dt_s
         return pushed
 
     def _carry_rates(self, P: Array, new: Array) -> None:
         """The blocks of v, a and w, into ``new``."""
         nv, c1, rho = self.model.nv, self.c1, self.rho
-        v, a, w = slice(nv), slice(nv, 2 * nv), slice(2 * nv, None)
+        v, a, w = slice(nv, 2 * nv), slice(2 * nv, 3 * nv), slice(3 * nv, None)
         ahead = P[a] * c1
         ahead += P[v]
         half = ahead[:, a] * c1
@@ -127,7 +129,7 @@ class SingerPlant:
         np.multiply(P[a, a], rho * rho, out=new[a, a])
         np.multiply(P[a, w], rho, out=new[a, w])
         new[w, w] = P[w, w]
-        new[nv:, v] = new[v, nv:].T
+        new[2 * nv :, v] = new[v, 2 * nv :].T
         new[w, a] = new[a, w].T
 
 

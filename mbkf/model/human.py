@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
+from numpy.lib.stride_tricks import as_strided
 
 from mbkf.conventions import GRAVITY_M_S2, Array, read_only
 from mbkf.errors import InvalidInput, ShapeError, UnknownName
@@ -79,9 +80,7 @@ class HumanModel:
         self.movement_sd = read_only(np.concatenate([_per_dof(s.movement_sd, s) for s in segments]))
         self.limits = read_only(np.concatenate([s.limits_rad for s in segments]))
         self.supports = self._supports()
-        self._placement_views = [
-            part for place in self._data.oMi for part in (place.rotation.T, place.translation[None])
-        ]
+        self._frames = _frames_in(self._data)
 
     @classmethod
     def scaled(
@@ -177,7 +176,7 @@ class HumanModel:
     def placements(self, q: Array) -> tuple[Array, Array]:
         """World rotations (J, 3, 3) and origins (J, 3) of all Pinocchio joints at q (index 0 is the world)."""
         pin.forwardKinematics(self.pin_model, self._data, q)
-        return _rotations_and_origins(self._read_frames())
+        return _rotations_and_origins(self._frames.copy())
 
     def placements_and_jacobian(self, q: Array) -> tuple[Array, Array, Array]:
         """Placements as :meth:`placements`, and J (6, nv): each dof's spatial velocity at the world origin.
@@ -185,7 +184,7 @@ class HumanModel:
         Rows are (linear, angular) in world axes; a column counts for a joint only where ``supports`` says so.
         """
         jacobian = self.spatial_jacobian(q)
-        return (*_rotations_and_origins(self._read_frames()), jacobian)
+        return (*_rotations_and_origins(self._frames.copy()), jacobian)
 
     def frames(self, q: Array) -> Array:
         """(4 J, 3): of every Pinocchio joint its world x, y, z axes and its origin, one below the other.
@@ -193,20 +192,16 @@ class HumanModel:
         A point m̄ of joint j lies at [m̄, 1] · (rows 4 j to 4 j + 3).
         """
         pin.forwardKinematics(self.pin_model, self._data, q)
-        return self._read_frames()
+        return self._frames.copy()
 
     def frames_and_jacobian(self, q: Array) -> tuple[Array, Array]:
         """:meth:`frames` and :meth:`spatial_jacobian` in one pass."""
         jacobian = self.spatial_jacobian(q)
-        return self._read_frames(), jacobian
+        return self._frames.copy(), jacobian
 
     def spatial_jacobian(self, q: Array) -> Array:
         """J (6, nv) of :meth:`placements_and_jacobian` alone."""
         return pin.computeJointJacobians(self.pin_model, self._data, q)
-
-    def _read_frames(self) -> Array:
-        """A copy of what Pinocchio's data holds; asking it for each placement anew costs four times as much."""
-        return np.concatenate(self._placement_views)
 
     def inverse_dynamics(self, q: Array, v: Array, a: Array) -> Array:
         """(nv,) generalised forces M a − Q_g for given motion, without contact (eq. 3.12)."""
@@ -230,6 +225,16 @@ class HumanModel:
         jacobian = np.where(self.supports[self.joint(segment).joint_id], jacobian, 0.0)
         jacobian[:3] += np.cross(jacobian[3:].T, point_m).T
         return jacobian
+
+
+def _frames_in(data: pin.Data) -> Array:
+    """(4 J, 3) :meth:`HumanModel.frames` as a view of Pinocchio's memory, where placements lie side by side."""
+    axes = data.oMi[0].rotation.T
+    number, joint = axes.itemsize, 12 * axes.itemsize
+    places = [place.rotation.T.ctypes.data for place in data.oMi]
+    if places != list(range(places[0], places[0] + len(places) * joint, joint)):
+        raise RuntimeError("this version of Pinocchio keeps placements in another way")
+    return as_strided(axes, (4 * len(places), 3), (3 * number, number))
 
 
 def _rotations_and_origins(frames: Array) -> tuple[Array, Array]:

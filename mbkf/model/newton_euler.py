@@ -8,6 +8,7 @@ does not change with q by itself.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -22,15 +23,13 @@ FEET = ("right_foot", "left_foot")
 ROOT = 6
 
 
-@dataclass(frozen=True)
-class RootBalance:
-    """The pelvis's six equations, in pelvis axes; force N, moment N m.
+class RootBalance(NamedTuple):
+    """The pelvis's six equations, in pelvis axes; force N, moment N m. Valid until the next call.
 
     Attributes:
         residual: (6,) ID(q, v, a) − Σ J_fᵀ w_f.
         by_q, by_v, by_a: (6, nv) derivatives; by q in the tangent space.
         by_wrench: (6, 6) by either foot's wrench.
-        origins_m: (2, 3) origin of right and left foot in the world.
     """
 
     residual: Array
@@ -38,7 +37,6 @@ class RootBalance:
     by_v: Array
     by_a: Array
     by_wrench: Array
-    origins_m: Array
 
 
 @dataclass(frozen=True)
@@ -59,7 +57,6 @@ class NewtonEuler:
         self.model = model
         self._pin, self._data = model.pin_model, model.pin_model.createData()
         ids = [model.joint(segment).joint_id for segment in FEET]
-        self._origins = [self._data.oMi[j].translation[None] for j in ids]
         self._chains = [np.flatnonzero(model.supports[j]) for j in ids]
         self._moves = [model.supports[j].astype(float) for j in ids]
         self._after = [_moved_by(model, chain) for chain in self._chains]
@@ -68,15 +65,11 @@ class NewtonEuler:
         """The pelvis's equations for the feet's wrenches (12,)."""
         by_q, by_v, by_a = self._inverse_dynamics(q, v, a)
         data = self._data
-        J = data.J[:, :ROOT]
-        total = wrenches[:6] + wrenches[6:]
-        by_q = by_q[:ROOT].copy()
-        by_q[:, :ROOT] -= J.T @ _turned_wrench(total) @ J
-        by_wrench = -J.T
-        residual = data.tau[:ROOT] + by_wrench @ total
-        return RootBalance(
-            residual, by_q, by_v[:ROOT].copy(), by_a[:ROOT].copy(), by_wrench, np.concatenate(self._origins)
-        )
+        by_wrench = -data.J[:, :ROOT].T
+        # What stands still in the world turns in the pelvis's axes when these turn.
+        own = by_wrench @ (wrenches[:6] + wrenches[6:])
+        by_q[:ROOT, :ROOT] += _turned_wrench(own)
+        return RootBalance(data.tau[:ROOT] + own, by_q[:ROOT], by_v[:ROOT], by_a[:ROOT], by_wrench)
 
     def torques(self, q: Array, v: Array, a: Array, wrenches: Array) -> JointTorques:
         """All generalised forces with derivatives, for the feet's wrenches (12,)."""
@@ -120,14 +113,17 @@ def _moved_by(model: HumanModel, chain: NDArray[np.intp]) -> Array:
 
 def _turned_wrench(wrench: Array) -> Array:
     """(6, 6) X with (J_k × J_i) · w = J_iᵀ X J_k: what a turn of axis i by dof k changes."""
-    fx, fy, fz, nx, ny, nz = wrench.tolist()
-    return np.array(
-        (
-            (0.0, 0.0, 0.0, 0.0, -fz, fy),
-            (0.0, 0.0, 0.0, fz, 0.0, -fx),
-            (0.0, 0.0, 0.0, -fy, fx, 0.0),
-            (0.0, -fz, fy, 0.0, -nz, ny),
-            (fz, 0.0, -fx, nz, 0.0, -nx),
-            (-fy, fx, 0.0, -ny, nx, 0.0),
-        )
-    )
+    return (_TURNED @ wrench).reshape(6, 6)
+
+
+def _turned_wrench_table() -> Array:
+    """(36, 6) :func:`_turned_wrench` of each component: a vector's cross products with force and moment."""
+    cross = np.zeros((3, 3, 3))
+    for x, y, z in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        cross[x, y, z], cross[x, z, y] = -1.0, 1.0
+    table = np.zeros((6, 6, 6))
+    table[:3, 3:, :3] = table[3:, :3, :3] = table[3:, 3:, 3:] = cross
+    return table.reshape(36, 6)
+
+
+_TURNED = _turned_wrench_table()

@@ -89,17 +89,20 @@ def informed(covariance: Array, matrix: Array) -> Array:
     With Λ = HᵀR⁻¹H = G Gᵀ and S = I + Gᵀ P G: P⁺ = P − P G S⁻¹ Gᵀ P, which equals the textbook update for every R
     (matrix inversion lemma) and keeps P symmetric positive.
     """
-    return _reduced(covariance, _informed_half(covariance, matrix))
-
-
-def with_rows(covariance: Array, rows: Array) -> Array:
-    """(N, N) posterior covariance after readings with whitened Jacobian R^(-1/2) H (m, N), whatever was read."""
-    W = blas.dgemm(1.0, covariance, rows.T)
-    return _reduced(covariance, _half(W, blas.dgemm(1.0, rows.T, W, trans_a=1)))
+    n = len(matrix)
+    return _reduced(covariance, blas.dgemm(1.0, covariance[:, :n], _informed_root(covariance, matrix)))
 
 
 def informed_with_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
-    """(N, N) :func:`with_rows` of :func:`informed`: P − h₁ h₁ᵀ − h₂ h₂ᵀ in one product."""
+    """(N, N) posterior covariance after :func:`informed` and readings with whitened Jacobian R^(-1/2) H.
+
+    Both together take P − h₁ h₁ᵀ − h₂ h₂ᵀ in one product.
+
+    Args:
+        covariance: (N, N) prior covariance P.
+        matrix: (n, n) information Λ on the first n components.
+        rows: (m, N) whitened Jacobian of the other readings, whatever was read.
+    """
     try:
         return _informed_with_rows(covariance, matrix, rows)
     except np.linalg.LinAlgError:
@@ -124,12 +127,12 @@ def made_positive(covariance: Array) -> Array:
 def _informed_with_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
     N, n, m = len(covariance), len(matrix), len(rows)
     halves = np.empty((N, n + m), order="F")
-    first = halves[:, :n]
-    np.copyto(first, _informed_half(covariance, matrix))
-    W = blas.dgemm(1.0, covariance, rows.T)
-    seen = blas.dgemm(1.0, first, rows.T, trans_a=1)
-    W = blas.dgemm(-1.0, first, seen, beta=1.0, c=W, overwrite_c=1)
-    halves[:, n:] = _half(W, blas.dgemm(1.0, rows.T, W, trans_a=1))
+    # Columns of an array in Fortran order, so that BLAS writes into them.
+    first, W = halves[:, :n], halves[:, n:]
+    blas.dgemm(1.0, covariance[:, :n], _informed_root(covariance, matrix), c=first, overwrite_c=1)
+    blas.dgemm(1.0, covariance, rows.T, c=W, overwrite_c=1)
+    blas.dgemm(-1.0, first, blas.dgemm(1.0, first, rows.T, trans_a=1), beta=1.0, c=W, overwrite_c=1)
+    _half(W, blas.dgemm(1.0, rows.T, W, trans_a=1))
     return _reduced(covariance, halves)
 
 
@@ -145,12 +148,12 @@ def read_directly(covariance: Array, components: NDArray[np.intp], sd_inverse: A
     return _reduced(covariance, _half(W, np.asfortranarray(W[components] * sd_inverse[:, None])))
 
 
-def _informed_half(covariance: Array, matrix: Array) -> Array:
-    """(N, n) h with h hᵀ = P G S⁻¹ Gᵀ P, see :func:`informed`; the solve is done on G, which is smaller than P G."""
+def _informed_root(covariance: Array, matrix: Array) -> Array:
+    """(n, n) G C⁻ᵀ with C Cᵀ = S, see :func:`informed`: P times it is the half of what the update takes off."""
     n = len(matrix)
     root = _square_root(matrix)
     S = blas.dgemm(1.0, root, blas.dgemm(1.0, covariance[:n, :n], root), trans_a=1)
-    return blas.dgemm(1.0, covariance[:, :n], _half(root, S))
+    return _half(root, S)
 
 
 def _half(W: Array, S: Array) -> Array:
@@ -174,7 +177,8 @@ def _square_root(matrix: Array) -> Array:
     Where some directions carry no information the Cholesky factor fails: components that nothing informs about are
     then set aside, and if that is not enough the matrix is raised by its rounding.
     """
-    root, failed = lapack.dpotrf(matrix, lower=1, clean=1)
+    # Which of the two triangles is read does not matter, and so no order needs a copy.
+    root, failed = lapack.dpotrf(matrix if matrix.flags.f_contiguous else matrix.T, lower=1, clean=1)
     if not failed:
         return root
     diagonal = np.diagonal(matrix)

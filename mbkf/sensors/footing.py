@@ -18,6 +18,7 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.io.records import PlateReadings
 from mbkf.model.human import HumanModel
+from mbkf.model.newton_euler import FEET
 from mbkf.sensors.contacts import FALL_SHARE, REACH_M, TOUCH_HEIGHT_M, sole_locals, surface_height
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.sensors.planted import Planted
@@ -26,6 +27,9 @@ Outline = list[list[float]]
 
 KEEP_M = 0.04
 """A plate stays with its foot until the other one is nearer by this."""
+
+BETWEEN_M = 0.02
+"""A centre of pressure nearer to a sole than this is that foot's, and not between two."""
 
 LEAVE_SLACK = 1.7
 """A standing foot has left the floor when it is higher or faster than the above times this."""
@@ -111,7 +115,8 @@ class FootingSensor:
         self._thresholds = [plate.threshold_n for plate in plates]
         self.surfaces_m = [surface_height(plate) for plate in plates]
         self._outlines = [_corners(plate) for plate in plates]
-        self._soles = _sole_sensor(model)
+        self._model, self._soles = model, MarkerSensor(model, *sole_locals(model))
+        self._moves = [model.supports[model.joint(segment).joint_id].astype(float) for segment in FEET]
         self._floor = min(self.surfaces_m, default=np.nan)
 
     def begin(self) -> FootingMemory:
@@ -129,12 +134,11 @@ class FootingSensor:
             a: (nv,) predicted acceleration.
             plate_wrench: (K, 6) force N and moment N m about the world's origin; NaN where not recorded.
         """
-        reading = self._soles.reading(q)
-        positions = reading.positions_m.reshape(2, 3, 3)
+        positions = self._soles.positions(q).reshape(2, 3, 3)
         soles, loads = positions.tolist(), plate_wrench.tolist()
         pressed = [self._pressure(k, load) for k, load in enumerate(loads)]
         owners = tuple(
-            _owner(point, soles, before, self._outlines[k])
+            -1 if point is None else _owner(point, soles, before, self._outlines[k])
             for k, (point, before) in enumerate(zip(pressed, memory.foot_of_plate, strict=True))
         )
         wrench, footing = np.zeros((2, 6)), [Footing.AIR, Footing.AIR]
@@ -150,15 +154,12 @@ class FootingSensor:
                 for k, (load, point) in enumerate(zip(loads, pressed, strict=True))
                 if point is None and not isnan(load[2])
             ]
-            speeds = [hypot(*velocity) for velocity in reading.velocities(v).tolist()]
-            moving = [speeds[:3], speeds[3:]]
-            stood = [since > STAND_AFTER_S for since in memory.touching_s]
-            stands = self._standing(footing, soles, moving, height, idle, stood)
-            right, left = (
-                since + self._dt_s if s else 0.0 for since, s in zip(memory.touching_s, stands, strict=True)
-            )
-            touching = (right, left)
-            for foot in self._carrying(footing, soles, touching, idle, _falls(q, v, a)):
+            in_air = footing == [Footing.AIR, Footing.AIR]
+            touching = self._touching(memory.touching_s, footing, soles, (q, v), height, idle)
+            carrying = [f for f in (0, 1) if touching[f] > STAND_AFTER_S]
+            if not carrying and in_air and not _falls(q, v, a):
+                carrying = self._holding(soles, idle)
+            for foot in carrying:
                 footing[foot] = Footing.FREE
         latest = tuple(
             before if point is None else Pressed(*point, owner)
@@ -195,37 +196,32 @@ class FootingSensor:
         point = np.array([pressed.x, pressed.y, surface])
         return Planted(foot, point, flat=FLAT_FROM < share < FLAT_TO)
 
-    def _standing(
+    def _touching(
         self,
+        before_s: tuple[float, float],
         footing: list[Footing],
         soles: list,
-        speeds: list,
+        motion: tuple[Array, Array],
         height: float,
         idle: list[tuple[int, Pressed | None]],
-        stood: list[bool],
-    ) -> tuple[bool, bool]:
-        """Whether right and left foot touch the floor where no plate reads; one that ``stood`` must clearly leave."""
+    ) -> tuple[float, float]:
+        """For how long right and left foot have touched the floor where no plate reads, s."""
 
-        def stands(f: int) -> bool:
-            slack = LEAVE_SLACK if stood[f] else 1.0
-            unread = footing[f] == Footing.AIR and self._touches(soles[f], speeds[f], height, slack)
-            return unread and not self._watched(f, soles[f], idle)
+        def since(f: int) -> float:
+            if footing[f] != Footing.AIR:
+                return 0.0
+            # One that stood must clearly leave.
+            slack = LEAVE_SLACK if before_s[f] > STAND_AFTER_S else 1.0
+            touches = self._touches(f, soles[f], motion, height, slack)
+            stands = touches and not self._watched(f, soles[f], idle)
+            return before_s[f] + self._dt_s if stands else 0.0
 
-        return stands(0), stands(1)
+        return since(0), since(1)
 
-    def _carrying(
-        self,
-        footing: list[Footing],
-        soles: list,
-        touching_s: tuple[float, float],
-        idle: list[tuple[int, Pressed | None]],
-        falls: bool,
-    ) -> list[int]:
-        """Feet that carry without a reading: long enough on the floor, or the lower one of who does not fall."""
-        carrying = [f for f in (0, 1) if touching_s[f] > STAND_AFTER_S]
-        in_air = footing == [Footing.AIR, Footing.AIR]
-        if carrying or falls or not in_air or any(self._watched(f, soles[f], idle) for f in (0, 1)):
-            return carrying
+    def _holding(self, soles: list, idle: list[tuple[int, Pressed | None]]) -> list[int]:
+        """The lower foot or both, on whatever they stand: for a body in the air that does not fall."""
+        if any(self._watched(f, soles[f], idle) for f in (0, 1)):
+            return []
         lowest = [min(p[2] for p in soles[f][:SOLE_ENDS]) for f in (0, 1)]
         return [f for f in (0, 1) if lowest[f] <= min(lowest) + TOUCH_HEIGHT_M]
 
@@ -247,14 +243,19 @@ class FootingSensor:
             known = lowest_now if isnan(known) else min(known, lowest_now)
         return known
 
-    def _touches(self, sole: list, speed: list[float], height: float, slack: float) -> bool:
+    def _touches(
+        self, foot: int, sole: list, motion: tuple[Array, Array], height: float, slack: float
+    ) -> bool:
+        """Whether heel or ball is low and slow; ``slack`` times the usual limits."""
         floor = height if not isnan(height) else self._floor
-        if isnan(floor):
+        low = [point for point in sole[:SOLE_ENDS] if point[2] < floor + slack * STAND_HEIGHT_M]
+        if not low:
             return False
-        return any(
-            p[2] < floor + slack * STAND_HEIGHT_M and s < slack * STAND_SPEED_M_S
-            for p, s in zip(sole[:SOLE_ENDS], speed[:SOLE_ENDS], strict=True)
-        )
+        q, v = motion
+        # The foot's velocity at the world's origin, from which each point's follows.
+        vx, vy, vz, wx, wy, wz = (self._model.spatial_jacobian(q) @ (v * self._moves[foot])).tolist()
+        speeds = [hypot(vx + wy * z - wz * y, vy + wz * x - wx * z, vz + wx * y - wy * x) for x, y, z in low]
+        return min(speeds) < slack * STAND_SPEED_M_S
 
     def _watched(self, foot: int, sole: list, idle: list[tuple[int, Pressed | None]]) -> bool:
         """Whether a plate that reads nothing lies under a foot, so that it carries nothing.
@@ -283,15 +284,8 @@ def _falls(q: Array, v: Array, a: Array) -> bool:
     return sum(u * r for u, r in zip(up, rise, strict=True)) < -FALL_SHARE * GRAVITY_M_S2
 
 
-def _sole_sensor(model: HumanModel) -> MarkerSensor:
-    """Heel, ball and toe end of right and left sole as six points fixed to the feet."""
-    return MarkerSensor(model, *sole_locals(model))
-
-
-def _owner(point: tuple[float, float] | None, soles: list, before: int, outline: Outline | None) -> int:
+def _owner(point: tuple[float, float], soles: list, before: int, outline: Outline | None) -> int:
     """Foot of a plate with this centre of pressure: 0 right, 1 left, 2 both, -1 nobody."""
-    if point is None:
-        return -1
     away = [_distance_to_sole(point, sole) for sole in soles]
     if outline is not None and _between(soles, away, outline):
         return 2
@@ -303,10 +297,12 @@ def _owner(point: tuple[float, float] | None, soles: list, before: int, outline:
 
 def _between(soles: list, away: list[float], outline: Outline) -> bool:
     """Whether both feet stand flat on one plate: both soles inside it, the centre of pressure between them."""
-    if not all(_inside(end, outline) for sole in soles for end in (sole[0], sole[2])):
+    if min(away) <= BETWEEN_M:
         return False
     heights = [min(p[2] for p in sole) for sole in soles]
-    return abs(heights[0] - heights[1]) < TOUCH_HEIGHT_M and min(away) > 0.02
+    if abs(heights[0] - heights[1]) >= TOUCH_HEIGHT_M:
+        return False
+    return all(_inside(end, outline) for sole in soles for end in (sole[0], sole[2]))
 
 
 def _corners(plate: PlateReadings) -> Outline | None:

@@ -31,7 +31,7 @@ class JointLimits:
             jacobian: (nv, nv) its derivative.
         """
         beyond = deviation - np.minimum(np.maximum(deviation, self.lower), self.upper)
-        if not beyond.any():
+        if not np.count_nonzero(beyond):
             return None
         for dofs in self._turning:
             if beyond[dofs].any() and self._is_within(_other_way_round(deviation[dofs]), dofs):

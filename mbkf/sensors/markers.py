@@ -51,17 +51,6 @@ class MarkerReading:
         moved *= self._moves[:, None, :]
         return moved
 
-    def velocities(self, v: Array) -> Array:
-        """(M, 3) H v of a tangent vector v (nv,), without the Jacobian H."""
-        twist = (self._moves * v) @ self._spatial.T
-        x, y, z = self.positions_m.T
-        wx, wy, wz = twist[:, 3:].T
-        moved = twist[:, :3]
-        moved[:, 0] += wy * z - wz * y
-        moved[:, 1] += wz * x - wx * z
-        moved[:, 2] += wx * y - wy * x
-        return moved
-
     def pull(self, forces: Array) -> Array:
         """(nv,) Σ Hᵀ f of forces (M, 3) at the markers, without the Jacobian H."""
         x, y, z = self.positions_m.T

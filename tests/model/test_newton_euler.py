@@ -73,13 +73,6 @@ def test_a_body_in_free_fall_asks_for_nothing():
     assert worst(balance.tau(q, still, a, np.zeros(12))) < 1e-10
 
 
-def test_origins_are_the_ankles():
-    model, balance, s = made(2)
-    origins = model.placements(s.q)[1]
-    expected = [origins[model.joint(foot).joint_id] for foot in FEET]
-    assert_near(balance.root(s.q, s.v, s.a, s.w).origins_m, np.array(expected), 1e-12)
-
-
 def test_a_wrench_on_one_foot_asks_nothing_of_the_other_leg():
     model, balance, s = made(3)
     more = s.w + np.r_[np.zeros(6), np.ones(6)]

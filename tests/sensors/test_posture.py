@@ -53,15 +53,17 @@ def test_where_and_how_the_body_stands_does_not_matter():
 
 
 def test_information_is_that_of_the_stacked_readings():
-    """Held dofs have no reading; each deviation is read as zero."""
+    """Held dofs have no reading; each deviation is read as zero. It adds to what was there."""
     q = moderate_pose(MODEL, np.random.default_rng(6))
     held = np.arange(MODEL.nv) % 7 == 0
-    found = SENSOR.information(q, SENSOR.weights(10.0, held))
+    matrix, vector = np.eye(MODEL.nv), np.ones(MODEL.nv)
+    found = SENSOR.lean(q, SENSOR.weights(10.0, held), matrix, vector)
     reading, free = SENSOR.reading(q), np.flatnonzero(~held[SENSOR.dofs])
     stacked = information(-reading.deviation[free], reading.jacobian[free], 10.0 * SENSOR.sd[free])
-    assert_near(found.matrix, stacked.matrix, 1e-14)
-    assert_near(found.vector, stacked.vector, 1e-14)
-    assert found.readings == 0
+    assert_near(matrix - np.eye(MODEL.nv), stacked.matrix, 1e-14)
+    assert_near(vector - 1.0, stacked.vector, 1e-14)
+    for one, expected in zip(found, SENSOR.deviation(q), strict=True):
+        np.testing.assert_array_equal(one, expected)
 
 
 def test_a_body_on_its_head_is_read_like_one_on_its_feet():
