@@ -3,6 +3,10 @@
 Skin shifts between standing with spread arms and walking, markers fall off and are stuck on again. With the scale
 factors fixed, each marker's offset in its segment is found anew over frames of the whole trial, near where the subject
 file has it.
+
+What a trial cannot tell is a rigid displacement of all markers of a segment from another pose of that segment. Left to
+the markers' own freedom it would move joint centres by a centimetre, and torques with them, so on the segments that
+stand between plates and pelvis it is held near the static trial, where bones were marked.
 """
 
 from __future__ import annotations
@@ -11,6 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from mbkf.conventions import Array, BoolArray
 from mbkf.errors import NotConverged
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
@@ -25,11 +30,20 @@ FRAMES = 40
 LOOKS = 10.0
 """How many independent looks at a marker the frames of one trial are worth (skin moves slowly)."""
 
-POSTURE_LOOKS = 20.0
+POSTURE_LOOKS = 40.0
 """The same for the posture; it keeps a knee from taking the skin's sideways movement for its own."""
 
 OUTLIER_M = 0.06
 """A sample further than this from the fitted body is a wrong point and left out."""
+
+STEADY = ("pelvis", *(f"{side}_{part}" for side in ("right", "left") for part in ("shank", "foot", "toes")))
+"""Segments whose markers the skin moves little; a thigh's it moves by centimetres between standing and walking."""
+
+COMMON_SD_M = 0.003
+"""Spread of a steady segment's markers in each of the six directions of a rigid displacement."""
+
+STRANGE_M = 0.01
+"""A marker that the trial wants further away than this was put on anew, or swapped, and says nothing of the others."""
 
 FIXED_FACTOR_SD = 1e-5
 
@@ -55,8 +69,10 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
             f"most markers do not fit the subject's body within {1e3 * OUTLIER_M:.0f} mm; is it this subject, "
             "and are unit and axes right (--unit, --up)?"
         )
-    if outliers.any():
-        problem = problem.without(outliers)
+    strange = np.linalg.norm(state.offsets_m, axis=1) > STRANGE_M
+    if outliers.any() or strange.any():
+        precision = _offset_precision(problem.markers, subject, ~strange)
+        problem = problem.without(outliers).expecting(precision)
         state = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3).state
     local = problem.local_m(state.factors, state.offsets_m)
     moved = {marker.name: position for marker, position in zip(problem.markers, local, strict=True)}
@@ -86,10 +102,32 @@ def _problem(subject: Subject, trial: MarkerTrajectories) -> ScalingProblem:
         factors=factors,
         factor_covariance=FIXED_FACTOR_SD**2 * np.eye(len(factors)),
         offsets_m=np.zeros((len(markers), 3)),
-        placement_sd_m=np.array([m.placement_sd_m for m in markers]),
+        offset_precision=_offset_precision(markers, subject, np.ones(len(markers), dtype=bool)),
     )
     weight = np.full(count, min(1.0, POSTURE_LOOKS / count))
     return ScalingProblem(body, markers, frames.measured_m, weight, prior)
+
+
+def _offset_precision(markers: tuple[ProtocolMarker, ...], subject: Subject, familiar: BoolArray) -> Array:
+    """(3 M, 3 M): each marker has its own freedom, familiar ones of a steady segment hardly any in common."""
+    own_sd = {marker.name: marker.session_sd_m for marker in subject.markers}
+    precision = np.diag(np.repeat([own_sd[marker.name] ** -2 for marker in markers], 3))
+    for segment in STEADY:
+        here = np.array([marker.segment == segment for marker in markers]) & familiar
+        if here.any():
+            rigid = rigid_displacements(np.array([m.position_m for m in markers])[here])
+            rows = np.flatnonzero(np.repeat(here, 3))
+            precision[np.ix_(rows, rows)] += COMMON_SD_M**-2 * rigid @ rigid.T
+    return precision
+
+
+def rigid_displacements(points_m: Array) -> Array:
+    """(3 n, k) orthonormal basis of what translations and small rotations do to points (n, 3); k is 6, or 3 or 5."""
+    from_middle = points_m - points_m.mean(axis=0)
+    moved = [np.tile(axis, len(points_m)) for axis in np.eye(3)]
+    turned = [np.cross(axis, from_middle).ravel() for axis in np.eye(3)]
+    basis, sizes, _ = np.linalg.svd(np.array(moved + turned).T, full_matrices=False)
+    return np.asarray(basis[:, sizes > 1e-6 * sizes[0]])
 
 
 def _as_protocol_marker(marker: SubjectMarker) -> ProtocolMarker:

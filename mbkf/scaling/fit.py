@@ -116,7 +116,7 @@ def _problem(
         factors=np.full(count, expected),
         factor_covariance=settings.proportion_sd**2 * np.eye(count) + stature**2 * np.ones((count, count)),
         offsets_m=np.zeros((len(frames.markers), 3)),
-        placement_sd_m=np.array([m.placement_sd_m for m in frames.markers]),
+        offset_precision=np.diag(np.repeat([m.placement_sd_m**-2 for m in frames.markers], 3)),
     )
     return ScalingProblem(body, frames.markers, frames.measured_m, weight, prior)
 

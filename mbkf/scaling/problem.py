@@ -11,7 +11,7 @@ reference place, shared by all frames. Residuals, each divided by its standard d
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -67,13 +67,13 @@ class ScalingPrior:
         factors: (K,) expected scale factors k₀.
         factor_covariance: (K, K) their covariance.
         offsets_m: (M, 3) expected offsets δ₀ of the markers.
-        placement_sd_m: (M,) spread of each offset, per coordinate.
+        offset_precision: (3 M, 3 M) inverse covariance of the offsets, 1/m², marker by marker.
     """
 
     factors: Array
     factor_covariance: Array
     offsets_m: Array
-    placement_sd_m: Array
+    offset_precision: Array
 
 
 class ScalingProblem:
@@ -134,6 +134,11 @@ class ScalingProblem:
         kept = np.where(samples[:, :, None], np.nan, self.measured_m)
         return ScalingProblem(self.body, self.markers, kept, self.posture_weight, self.prior)
 
+    def expecting(self, offset_precision: Array) -> ScalingProblem:
+        """The same problem with another precision (3 M, 3 M) of the offsets."""
+        prior = replace(self.prior, offset_precision=offset_precision)
+        return ScalingProblem(self.body, self.markers, self.measured_m, self.posture_weight, prior)
+
     def cost(self, state: ScalingState) -> float:
         """Sum of squared residuals."""
         errors = np.where(self.seen[:, :, None], self.errors_m(state), 0.0) / self.noise_m[:, None]
@@ -143,8 +148,8 @@ class ScalingProblem:
 
     def _shared_cost(self, state: ScalingState) -> float:
         factors = self.factor_root @ (state.factors - self.prior.factors)
-        offsets = (state.offsets_m - self.prior.offsets_m) / self.prior.placement_sd_m[:, None]
-        return float((factors**2).sum() + (offsets**2).sum())
+        offsets = (state.offsets_m - self.prior.offsets_m).ravel()
+        return float((factors**2).sum() + offsets @ self.prior.offset_precision @ offsets)
 
     def move(self, state: ScalingState, own: Array, shared: Array) -> ScalingState:
         """The state after a step; factors stay inside their bounds."""
@@ -182,10 +187,8 @@ class ScalingProblem:
         information = self.factor_root.T @ self.factor_root
         corner[:count, :count] = information
         gradient[:count] = information @ (state.factors - self.prior.factors)
-        precision = np.repeat(1.0 / self.prior.placement_sd_m**2, 3)
-        offsets = np.arange(count, shared)
-        corner[offsets, offsets] = precision
-        gradient[count:] = precision * (state.offsets_m - self.prior.offsets_m).ravel()
+        corner[count:, count:] = self.prior.offset_precision
+        gradient[count:] = self.prior.offset_precision @ (state.offsets_m - self.prior.offsets_m).ravel()
         return corner, gradient
 
     def _frame(self, sensor: MarkerSensor, q: Array, t: int) -> tuple[Array, Array, Array]:

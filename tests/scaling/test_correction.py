@@ -8,7 +8,8 @@ import pytest
 from mbkf.errors import NotConverged, NotObservable
 from mbkf.io.records import MarkerTrajectories
 from mbkf.model.protocol import load_protocol
-from mbkf.scaling.correction import correct_markers
+from mbkf.scaling import correction
+from mbkf.scaling.correction import correct_markers, rigid_displacements
 from mbkf.sensors.markers import MarkerSensor
 from tests.motions import marker_positions, moderate_pose, random_model, subject_of
 
@@ -102,3 +103,38 @@ def test_a_wrong_unit_is_refused(model, subject):
     large = trial(model, subject)
     with pytest.raises(NotConverged, match="--unit"):
         correct_markers(subject, replace(large, positions_m=1e3 * large.positions_m))
+
+
+@pytest.mark.parametrize("segment", ["right_shank", "pelvis"])
+def test_a_steady_segment_is_held_under_all_its_markers(model, subject, segment, monkeypatch):
+    """The same shift of all of them is taken for posture, more than if each were on its own."""
+    own = [m.name for m in subject.markers if m.segment == segment]
+    loose = replace(
+        subject,
+        markers=tuple(replace(m, session_sd_m=0.03) if m.name in own else m for m in subject.markers),
+    )
+    rng, shift = np.random.default_rng(3), np.array([0.012, 0.0, 0.0])
+    places = np.array([m.position_m + (m.name in own) * shift for m in loose.markers])
+    sensor = MarkerSensor(model, [m.segment for m in loose.markers], places)
+    seen = marker_positions(sensor, [moderate_pose(model, rng, spread=0.6) for _ in range(20)])
+    shifted = MarkerTrajectories(tuple(m.name for m in loose.markers), seen, 100.0)
+
+    def common_mm():
+        pairs = zip(loose.markers, correct_markers(loose, shifted).markers, strict=True)
+        moved = [b.position_m - a.position_m for a, b in pairs if a.name in own]
+        return 1e3 * np.linalg.norm(np.mean(moved, axis=0))
+
+    held = common_mm()
+    monkeypatch.setattr(correction, "COMMON_SD_M", 10.0)
+    assert held < 0.7 * common_mm()
+
+
+@pytest.mark.parametrize(("points", "directions"), [(1, 3), (2, 5), (3, 6), (5, 6)])
+def test_rigid_displacements_are_what_small_motions_do(points, directions):
+    rng = np.random.default_rng(points)
+    places, turn, shift = rng.normal(size=(points, 3)), rng.normal(size=3), rng.normal(size=3)
+    basis = rigid_displacements(places)
+    assert basis.shape == (3 * points, directions)
+    np.testing.assert_allclose(basis.T @ basis, np.eye(directions), atol=1e-12)
+    moved = (shift + np.cross(turn, places)).ravel()
+    np.testing.assert_allclose(basis @ (basis.T @ moved), moved, atol=1e-12)

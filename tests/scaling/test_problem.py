@@ -30,7 +30,7 @@ def problem():
         factors=random_scale(rng),
         factor_covariance=random_covariance(rng, 17),
         offsets_m=rng.uniform(-0.02, 0.02, (len(MARKERS), 3)),
-        placement_sd_m=rng.uniform(0.005, 0.05, len(MARKERS)),
+        offset_precision=np.linalg.inv(0.01 * random_covariance(rng, 3 * len(MARKERS))),
     )
     return ScalingProblem(BODY, MARKERS, measured, np.array([0.0, 0.3, 1.0]), prior)
 
@@ -60,7 +60,8 @@ def residuals(problem, state):
         rows.append(np.sqrt(problem.posture_weight[t]) * deviation)
     whiten = np.linalg.inv(np.linalg.cholesky(problem.prior.factor_covariance))
     rows.append(whiten @ (state.factors - problem.prior.factors))
-    rows += list((state.offsets_m - problem.prior.offsets_m) / problem.prior.placement_sd_m[:, None])
+    offsets = (state.offsets_m - problem.prior.offsets_m).ravel()
+    rows.append(np.linalg.cholesky(problem.prior.offset_precision).T @ offsets)
     return np.concatenate(rows)
 
 
