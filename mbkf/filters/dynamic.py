@@ -81,6 +81,8 @@ class DynamicFilter:
         self._pulling[2] = 1.0 / s.pulling_force_n
         self._walk = np.repeat([s.wrench_force, s.wrench_moment], 3) * dt_s**0.5
         self._calm = 1.0 - np.exp(-dt_s / s.activity_memory_s)
+        usual_speed = s.unseen_velocity_s * self.plant.acceleration_sd
+        self._rest = 1.0 / np.clip(usual_speed, *s.unseen_velocity_range)
         self._quiet = (s.quiet_share * self.plant.acceleration_sd) ** 2
         self._busiest = self.plant.acceleration_sd * np.where(np.arange(model.nv) < 3, *s.busy_shares)
         skin = s.skin_memory_s > 0.0
@@ -150,9 +152,11 @@ class DynamicFilter:
     ) -> DynamicStep:
         decision, reading, innovation = self._decide(prior, memory, acceleration_sd, markers_m, plates)
         self.unsettle(prior.P, decision)
-        frame = self._linearised(prior, decision, reading, innovation)
-        P = informed_with_rows(prior.P.T, frame.matrix, frame.rows)
-        state = self.retract(prior, P @ frame.whole_vector, P)
+        state, frame = self._updated(prior, decision, reading, innovation)
+        lifted = self._pulling_feet(state, decision.load)
+        if lifted:
+            decision = decision._replace(lifted=lifted)
+            state, frame = self._updated(prior, decision, reading, innovation)
         after = Memory(
             decision.load.memory,
             self._next_noise_scale(decision, innovation),
@@ -161,6 +165,20 @@ class DynamicFilter:
         )
         tracked = bool(np.count_nonzero(decision.trusted) >= self.min_markers)
         return DynamicStep(state, after, decision, tracked, prior, frame)
+
+    def _updated(
+        self, prior: DynamicState, decision: Decision, reading: MarkerReading, innovation: Array
+    ) -> tuple[DynamicState, FrameReadings]:
+        frame = self._linearised(prior, decision, reading, innovation)
+        P = informed_with_rows(prior.P.T, frame.matrix, frame.rows)
+        return self.retract(prior, P @ frame.whole_vector, P), frame
+
+    def _pulling_feet(self, state: DynamicState, load: FootLoad) -> tuple[int, ...]:
+        """Free feet whose estimated force pulls at the floor, clearly more than it is kept from that."""
+        if Footing.FREE not in load.footing:
+            return ()
+        least = -3.0 * self.settings.pulling_force_n
+        return tuple(f for f in (0, 1) if load.footing[f] == Footing.FREE and state.w[6 * f + 2] < least)
 
     def unsettle(self, P: Array, decision: Decision) -> None:
         """Adds to a predicted covariance, in place, what the plant does not know.
@@ -275,10 +293,10 @@ class DynamicFilter:
         np.multiply(root.by_a, law, out=rows[:6, 2 * nv : 3 * nv])
         rows[:6, 3 * nv : 3 * nv + 6] = rows[:6, 3 * nv + 6 :] = root.by_wrench * law
         values[:6] = -root.residual * self._law
-        readings = 6 + self._feet_rows(rows[6:18], values[6:18], state, decision.load)
+        readings = 6 + self._feet_rows(rows[6:18], values[6:18], state, decision)
         if len(unseen):
             k = np.arange(len(unseen))
-            rest = 1.0 / self.settings.unseen_velocity_sd
+            rest = self._rest[unseen]
             rows[18 + k, nv + unseen] = rest
             values[18 + k] = -rest * state.v[unseen]
             calm = 1.0 / (self.settings.unseen_acceleration_share * self.plant.acceleration_sd[unseen])
@@ -298,31 +316,32 @@ class DynamicFilter:
             rows, values = np.vstack([rows, on_state]), np.concatenate([values, short])
         return rows, values, readings
 
-    def _feet_rows(self, rows: Array, values: Array, state: DynamicState, load: FootLoad) -> int:
+    def _feet_rows(self, rows: Array, values: Array, state: DynamicState, decision: Decision) -> int:
         """Fills the twelve rows on the wrenches; returns how many of them, the first ones, are plates' readings.
 
         Moments are weighed about the middle of the sole, where they are small.
         """
+        load = decision.load
         if Footing.SHARED in load.footing:
             return self._shared_rows(rows, values, state, load)
         first, plates = 3 * self.model.nv, 0
         about = _about(load.centres_m)
         only_left = load.footing[0] != Footing.MEASURED and load.footing[1] == Footing.MEASURED
         for place, foot in enumerate((1, 0) if only_left else (0, 1)):
-            footing, wrench = load.footing[foot], state.w[6 * foot : 6 * foot + 6]
-            mine = slice(6 * place, 6 * place + 6)
-            X = about[foot] * self._foot_weight(footing, wrench)[:, None]
+            wrench, mine = state.w[6 * foot : 6 * foot + 6], slice(6 * place, 6 * place + 6)
+            pulls = wrench[2] < 0.0 or foot in decision.lifted
+            X = about[foot] * self._foot_weight(load.footing[foot], pulls)[:, None]
             rows[mine, first + 6 * foot : first + 6 * foot + 6] = X
-            values[mine] = X @ (self._expected(state, load, foot) - wrench)
-            plates += 6 * (footing == Footing.MEASURED)
+            values[mine] = X @ (self._expected(load, foot, pulls) - wrench)
+            plates += 6 * (load.footing[foot] == Footing.MEASURED)
         return plates
 
-    def _expected(self, state: DynamicState, load: FootLoad, foot: int) -> Array:
+    def _expected(self, load: FootLoad, foot: int, pulls: bool) -> Array:
         """(6,) wrench a foot is read to carry: its plate's, nothing, or its share of what no plate carries.
 
         A free foot that would pull at the floor is held at nothing instead.
         """
-        if load.footing[foot] != Footing.FREE or state.w[6 * foot + 2] < 0.0:
+        if load.footing[foot] != Footing.FREE or pulls:
             return load.wrench[foot]
         other = load.footing[1 - foot]
         carried = float(load.wrench[1 - foot, 2]) if other == Footing.MEASURED else 0.0
@@ -330,13 +349,13 @@ class DynamicFilter:
         x, y, _ = load.centres_m[foot].tolist()
         return np.array([0.0, 0.0, rest, y * rest, -x * rest, 0.0])
 
-    def _foot_weight(self, footing: Footing, wrench: Array) -> Array:
+    def _foot_weight(self, footing: Footing, pulls: bool) -> Array:
         """(6,) 1/sd of a foot's rows; a free foot that would pull at the floor is held at no vertical force."""
         if footing == Footing.MEASURED:
             return self._plate
         if footing == Footing.AIR:
             return self._air
-        return self._free if wrench[2] >= 0.0 else self._pulling
+        return self._pulling if pulls else self._free
 
     def _shared_rows(self, rows: Array, values: Array, state: DynamicState, load: FootLoad) -> int:
         """One plate reads the sum of both wrenches; each is weakly held near a half of it."""

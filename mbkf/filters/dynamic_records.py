@@ -45,6 +45,7 @@ class Decision(NamedTuple):
         displaced: Dofs of limbs that came back into sight where nobody expected them.
         acceleration_sd: (nv,) σ_a with which the frame was predicted.
         before_m: (M, 3) markers believed in the frame before; None where skin artefacts are not modelled.
+        lifted: Free feet, 0 right and 1 left, that would end up pulling at the floor and so carry nothing.
     """
 
     trusted: BoolArray
@@ -56,6 +57,7 @@ class Decision(NamedTuple):
     displaced: NDArray[np.intp]
     acceleration_sd: Array
     before_m: Array | None
+    lifted: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)

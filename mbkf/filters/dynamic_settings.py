@@ -36,8 +36,9 @@ class DynamicSettings:
         limit_sd_rad: Softness of a joint's limit.
         unseen_posture: Factor on the posture prior's weight for joints of segments without a marker in sight: said
             anew in every frame, it would soon outweigh what was known before.
-        unseen_velocity_sd, unseen_acceleration_share: What holds back joints of segments without a marker in sight:
-            spread about rest per reading, rad/s, and share of their movement acceleration.
+        unseen_velocity_s, unseen_velocity_range, unseen_acceleration_share: What holds back joints of segments without
+            a marker in sight: spread about rest per reading, their movement acceleration over that time, s, within the
+            range, rad/s; and share of their movement acceleration.
         planted_speed_sd, planted_turn_sd: How still a loaded foot without a marker in sight stands, m/s and rad/s.
         skin_memory_s: How long a marker's skin artefact lasts where it is modelled as a Gauss–Markov process with the
             marker's noise as its spread (``mbkf.sensors.skin``); 0 for white noise.
@@ -48,7 +49,7 @@ class DynamicSettings:
 
     acceleration_scale: float = 1.0
     quiet_share: float = 0.2
-    activity_gain: float = 12.0
+    activity_gain: float = 8.0
     activity_rate: float = 5.0
     activity_memory_s: float = 0.05
     busy_shares: tuple[float, float] = (2.0, 8.0)
@@ -71,7 +72,8 @@ class DynamicSettings:
     posture_scale: float = 1.0
     limit_sd_rad: float = 0.03
     unseen_posture: float = 0.05
-    unseen_velocity_sd: float = 10.0
+    unseen_velocity_s: float = 0.075
+    unseen_velocity_range: tuple[float, float] = (10.0, 30.0)
     unseen_acceleration_share: float = 10.0
     planted_speed_sd: float = 0.03
     planted_turn_sd: float = 0.2

@@ -34,6 +34,8 @@ BETWEEN_M = 0.02
 LEAVE_SLACK = 1.7
 """A standing foot has left the floor when it is higher or faster than the above times this."""
 
+TOES = ("right_toes", "left_toes")
+
 SOLE_ENDS = 2
 """Points of a sole that tell its height: heel and ball; its toe end dips below the floor when the toes bend."""
 
@@ -176,7 +178,7 @@ class FootingSensor:
     def planted(self, load: FootLoad, q: Array, foot: int) -> Planted | None:
         """The point on which a foot of that frame's decision stands still, or None for one that carries nothing.
 
-        Flat is a foot loaded between heel and ball; behind and before that it rolls.
+        Flat is a foot loaded between heel and ball, behind that it rolls; loaded before the ball it stands on its toes.
 
         Args:
             load: The decision.
@@ -186,15 +188,18 @@ class FootingSensor:
         if load.footing[foot] == Footing.AIR:
             return None
         sole = self._soles.positions(q).reshape(2, 3, 3)[foot]
-        pressed = next((p for p in load.memory.pressed if p is not None and p.owner == foot), None)
-        if load.footing[foot] != Footing.MEASURED or pressed is None:
+        if load.footing[foot] != Footing.MEASURED:
             lowest = sole[:SOLE_ENDS][np.argmin(sole[:SOLE_ENDS, 2])]
-            return Planted(foot, lowest, flat=False)
-        along = sole[2, :2] - sole[0, :2]
-        share = float((np.array([pressed.x, pressed.y]) - sole[0, :2]) @ along / (along @ along))
+            return Planted(FEET[foot], lowest, flat=False)
         surface = self.surfaces_m[load.memory.foot_of_plate.index(foot)]
-        point = np.array([pressed.x, pressed.y, surface])
-        return Planted(foot, point, flat=FLAT_FROM < share < FLAT_TO)
+        fx, fy, fz, mx, my, _ = load.wrench[foot].tolist()
+        pressed = np.array([(fx * surface - my) / fz, (fy * surface + mx) / fz, surface])
+        heel, ball, end = sole[:, :2]
+        along = (end - heel) / ((end - heel) @ (end - heel))
+        share = (pressed[:2] - heel) @ along
+        if share > (ball - heel) @ along:
+            return Planted(TOES[foot], pressed, flat=True)
+        return Planted(FEET[foot], pressed, flat=bool(FLAT_FROM < share < FLAT_TO))
 
     def _touching(
         self,

@@ -1,7 +1,8 @@
 """A foot that carries weight does not slide: what is known of a loaded foot while none of its markers is seen.
 
 The point under the centre of pressure stands still, whether the foot is flat or rolls; a flat foot does not turn
-either. Read as zero velocity; its derivative by the configuration vanishes where the reading is met.
+either, nor do the toes once the load is on them and the heel rises. Read as zero velocity; its derivative by the
+configuration vanishes where the reading is met.
 """
 
 from __future__ import annotations
@@ -12,13 +13,12 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.human import HumanModel
-from mbkf.sensors.contacts import FEET
 
 
 class Planted(NamedTuple):
-    """A standing foot: 0 right or 1 left, the world point (3,) that stands still, and whether the foot lies flat."""
+    """What stands: a foot or its toes, the world point (3,) of it that does not move, and whether it lies flat."""
 
-    foot: int
+    segment: str
     point_m: Array
     flat: bool
 
@@ -26,17 +26,17 @@ class Planted(NamedTuple):
 def standing_still(
     model: HumanModel, q: Array, v: Array, planted: Planted, speed_sd: float, turn_sd: float
 ) -> tuple[Array, Array]:
-    """Whitened rows (k, nv) on the velocity and their innovations (k,): three, and three more for a flat foot.
+    """Whitened rows (k, nv) on the velocity and their innovations (k,): three, and three more for what lies flat.
 
     Args:
         model: The body.
         q: (nq,) configuration.
         v: (nv,) velocity.
-        planted: The foot.
+        planted: The foot or its toes.
         speed_sd: How still the point stands, m/s.
-        turn_sd: How little a flat foot turns, rad/s.
+        turn_sd: How little what lies flat turns, rad/s.
     """
-    jacobian = model.segment_jacobian(q, FEET[planted.foot], planted.point_m)
+    jacobian = model.segment_jacobian(q, planted.segment, planted.point_m)
     weight = 1.0 / np.repeat([speed_sd, turn_sd], 3)
     rows = (weight[:, None] * jacobian)[: 6 if planted.flat else 3]
     return rows, -rows @ v

@@ -262,9 +262,10 @@ def bent_knee(limit_sd_rad):
 
 
 def test_a_joint_beyond_its_limit_comes_back():
-    """Back behind its limit, and no further than it was beyond: what speed it gets is damped while nobody sees it."""
+    """Back behind its limit; a quarter of the knee's range is as far as the speed it gets may carry it unseen."""
+    quarter = 0.25 * np.ptp(MODEL.limits[KNEE])
     assert bent_knee(1e6) > 0.3
-    assert -0.4 < bent_knee(0.03) < 0.05
+    assert -quarter < bent_knee(0.03) < 0.05
 
 
 def test_held_dofs_stay():

@@ -201,3 +201,37 @@ def test_memory_cannot_be_changed():
         with pytest.raises(FrozenInstanceError):
             setattr(memory, field.name, None)
         assert isinstance(getattr(memory, field.name), tuple | float)
+
+
+@pytest.mark.parametrize("name", ["squat", "walk"])
+def test_what_is_said_to_stand_still_does(name):
+    """Over a true motion the point and, where it lies flat, the segment are nearly at rest."""
+    made = trial(name)
+    feet, m = made.feet(), made.motion
+    memory, speeds, turns = feet.begin(), [], []
+    for q, v, a, load in zip(m.q, m.v, m.a, m.foot_wrench, strict=True):
+        decided = feet.decide(memory, q, v, a, load)
+        memory = decided.memory
+        for foot in np.flatnonzero(load[:, 2] > 100.0):
+            planted = feet.planted(decided, q, foot)
+            twist = made.model.segment_jacobian(q, planted.segment, planted.point_m) @ v
+            speeds.append(np.linalg.norm(twist[:3]))
+            turns += [np.linalg.norm(twist[3:])] if planted.flat else []
+    assert max(speeds) < 0.1
+    assert np.percentile(turns, 90) < 0.1  # toes that are about to leave turn faster
+
+
+def test_who_rises_on_the_toes_stands_on_them():
+    q = standing(MODEL)
+    soles = sole_points(MODEL, q[None])[0]
+    for share, segment, flat in (
+        (0.05, "right_foot", False),
+        (0.4, "right_foot", True),
+        (0.9, "right_toes", True),
+    ):
+        at = soles[RIGHT, 0] + share * (soles[RIGHT, 2] - soles[RIGHT, 0])
+        loads = half_weight(MODEL, np.array([at, soles[LEFT].mean(axis=0)]))
+        feet = FootingSensor(MODEL, plates_under(MODEL, q), DT)
+        planted = feet.planted(feet.decide(feet.begin(), q, STILL, STILL, loads), q, RIGHT)
+        assert (planted.segment, planted.flat) == (segment, flat)
+        np.testing.assert_allclose(planted.point_m[:2], at[:2], atol=1e-9)
