@@ -31,6 +31,7 @@ NOT_BENCHMARKS = {
     "checks",
     "commands",
     "dynamic_captures",
+    "dynamic_consistency",
     "dynamic_losses",
     "dynamic_methods",
     "dynamic_offline",
@@ -84,7 +85,7 @@ def _parser() -> argparse.ArgumentParser:
         "--out",
         type=Path,
         metavar="DIR",
-        default=Path("results", "benchmarks"),
+        default=Path("results"),
         help="where checks.json and the benchmarks' own files go (default: %(default)s)",
     )
     return parser

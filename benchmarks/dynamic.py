@@ -13,6 +13,7 @@ from pathlib import Path
 
 from benchmarks.checks import Check, Context
 from benchmarks.dynamic_captures import SOURCES, all_capture_rows
+from benchmarks.dynamic_consistency import own_plant_rows
 from benchmarks.dynamic_losses import (
     CAPTURES,
     FRACTIONS,
@@ -69,7 +70,8 @@ def parts(
         yield f"a leg lost in the {motion}", partial(leg_rows, motion, methods, mapper)
     seeds = range(1 if quick else CONSISTENCY_SEEDS)
     keys = [(motion, seed) for motion in (("squat",) if quick else MOTIONS) for seed in seeds]
-    yield "matched noise", partial(consistency_rows, keys, methods, mapper)
+    yield "matched noise", partial(own_plant_rows, mapper, quick=quick)
+    yield "camera noise only", partial(consistency_rows, keys, methods, mapper)
 
 
 def synthetic_rows(motion: str, methods: Sequence[Method], mapper: Mapper, quick: bool) -> list[Check]:

@@ -5,7 +5,8 @@ for every method alike. FCDI (kinematic filter and inverse dynamics) is run at t
 is best for the motion, found for torques and for velocities separately: it is compared at its own best in each.
 RMS values over joint dofs and tracked frames are pooled over seeds.
 
-For consistency only the instruments' noise can be matched: a squat is planned, no random walk as a plant believes.
+What the capture defaults say of their errors is shown without a bound: a squat is planned, no random walk as a plant
+believes, and these settings expect skin. `dynamic_consistency` judges the filter where everything is matched.
 """
 
 from __future__ import annotations
@@ -323,11 +324,11 @@ def method_rows(name: str, found: Sequence[Errors], base: Baseline, smooth: bool
 def consistency_rows(
     keys: Sequence[tuple[str, int]], methods: Sequence[Method], mapper: Mapper
 ) -> list[Check]:
-    """Matched noise, no artefact, known marker positions: NEES, NIS and coverage over all trials."""
+    """Camera noise, no artefact, known marker positions, default settings: NEES, NIS and coverage, no bounds."""
     trials = mapper(partial(make_case, settings=MATCHED, correct=False), keys)
     rows: list[Check] = []
     for method in methods:
-        label = f"matched noise: {method.label}"
+        label = f"defaults, camera noise only: {method.label}"
         rows += rows_or_failure(label, partial(_consistent, label, trials, method, mapper))
     return rows
 
@@ -338,10 +339,10 @@ def _consistent(label: str, trials: Sequence[Case], method: Method, mapper: Mapp
     for k, quantity in enumerate(("positions", "velocities", "torques")):
         nees = float(np.mean([one.nees[k] for one in found]))
         inside = 100.0 * float(np.mean([one.coverage[k] for one in found]))
-        rows += within(f"{label}, NEES per dof, {quantity}", nees, 0.8, 1.25)
-        rows += within(f"{label}, 95 % intervals cover, {quantity}", inside, 90.0, 98.0, "%")
+        rows.append(information(f"{label}, NEES per dof, {quantity}", nees))
+        rows.append(information(f"{label}, 95 % intervals cover, {quantity}", inside, "%"))
     nis = float(np.mean([one.nis for one in found]))
-    rows += within(f"{label}, NIS per reading", nis, 0.8, 1.25)
+    rows.append(information(f"{label}, NIS per reading", nis))
     joint = float(np.mean([one.joint_nees for one in found]))
     return [*rows, information(f"{label}, joint NEES, positions and velocities", joint)]
 
