@@ -14,7 +14,7 @@ from mbkf.filters.settings import KinematicSettings
 from mbkf.filters.state import FilterState
 from mbkf.numerics.kalman import Information, correct, informed, read_directly
 from mbkf.sensors.markers import MarkerInformation, MarkerSensor
-from mbkf.sensors.pose_fit import PoseFit, fit_pose, segment_by_segment
+from mbkf.sensors.pose_fit import PoseFit, fit_most_markers, segment_by_segment
 from mbkf.sensors.posture import PostureSensor
 
 START_SPEED_SD_M_S = 2.0
@@ -130,7 +130,7 @@ class KinematicFilter:
         if (~np.isnan(measured_m).any(axis=1)).sum() < self.settings.min_markers:
             return None
         guesses = [segment_by_segment(self.sensor, measured_m)] + ([] if guess is None else [guess])
-        fits = [fit_pose(self.sensor, self.posture, measured_m, self.noise_m, q) for q in guesses]
+        fits = [fit_most_markers(self.sensor, self.posture, measured_m, self.noise_m, q) for q in guesses]
         best = min(fits, key=lambda one: one.rms_m)
         return best if best.rms_m <= self.settings.restart_rms_m else None
 

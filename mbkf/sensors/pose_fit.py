@@ -15,6 +15,8 @@ from mbkf.sensors.posture import PostureSensor
 _TRUNK_WEIGHT = 0.05
 _NEUTRAL_PULL = 2e-3
 
+_STRAY_M, _STRAY_SHARE = 0.06, 0.25
+
 
 @dataclass(frozen=True)
 class PoseFit:
@@ -127,6 +129,21 @@ def fit_pose(
     distance = np.linalg.norm(sensor.positions(q)[seen] - target, axis=1)
     rms = float(np.sqrt((distance**2).mean())) if seen.any() else np.inf
     return PoseFit(q, rms, np.linalg.inv(solution.equations.frames[0]), solution.converged)
+
+
+def fit_most_markers(
+    sensor: MarkerSensor, posture: PostureSensor, measured_m: Array, noise_m: Array, start: Array
+) -> PoseFit:
+    """:func:`fit_pose` without the markers that lie far from the body, at most a quarter of them, the worst first."""
+    kept = measured_m.copy()
+    fit = fit_pose(sensor, posture, kept, noise_m, start)
+    for _ in range(int(_STRAY_SHARE * np.count_nonzero(~np.isnan(measured_m[:, 0])))):
+        distance = np.linalg.norm(sensor.positions(fit.q) - kept, axis=1)
+        if not (distance > _STRAY_M).any():
+            break
+        kept[np.nanargmax(distance)] = np.nan
+        fit = fit_pose(sensor, posture, kept, noise_m, fit.q)
+    return fit
 
 
 def _nearest_rotation(matrix: Array) -> Array:

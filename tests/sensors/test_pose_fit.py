@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.sensors.markers import MarkerSensor
-from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
+from mbkf.sensors.pose_fit import fit_most_markers, fit_pose, segment_by_segment
 from mbkf.sensors.posture import PostureSensor
 from tests.motions import assert_near, moderate_pose, protocol_sensor, random_model, reference_model, worst
 
@@ -131,3 +131,30 @@ def test_running_out_of_iterations_is_reported(body):
     model, sensor, _ = body
     measured = sensor.positions(moderate_pose(model, np.random.default_rng(8)))
     assert not fitted(sensor, measured, start=model.neutral(), max_iterations=1).converged
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_stray_markers_are_left_out(body, seed):
+    """One to three markers a foot off: where their segments show others, the pose is as good as without them."""
+    model, sensor, names = body
+    rng = np.random.default_rng(seed)
+    truth = moderate_pose(model, rng, spread=0.4)
+    measured = sensor.positions(truth) + 0.002 * rng.normal(size=(len(names), 3))
+    strays = rng.choice(
+        [names.index(name) for name in ("C7", "CLAV", "RASI", "LMID", "RMT1")], 1 + seed % 3, False
+    )
+    without = measured.copy()
+    without[strays] = np.nan
+    measured[strays] += 0.3 * rng.normal(size=(len(strays), 3)) + 0.2
+    posture, sd = PostureSensor(model), noise(sensor, 0.005)
+    found = fit_most_markers(sensor, posture, measured, sd, segment_by_segment(sensor, measured))
+    alone = fit_pose(sensor, posture, without, sd, segment_by_segment(sensor, without))
+    assert pose_error(model, found.q, alone.q) < 0.02
+    assert found.rms_m < 0.01
+
+
+def test_points_that_are_no_body_do_not_become_one(body):
+    model, sensor, _ = body
+    points = np.random.default_rng(0).uniform(-1.0, 1.0, (len(sensor.segments), 3))
+    start = segment_by_segment(sensor, points)
+    assert fit_most_markers(sensor, PostureSensor(model), points, noise(sensor, 0.005), start).rms_m > 0.1
