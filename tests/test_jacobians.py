@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests import derivatives_of_bodies, derivatives_of_filters
+from tests import derivatives_of_bodies, derivatives_of_filters, derivatives_of_pendulum
 from tests.derivatives import CASES
 
 ROOMS = ("model", "sensors", "filters", "numerics", "scaling")
@@ -32,6 +32,9 @@ PLAIN = {"bool", "int", "float", "str"}
 
 TESTS = Path(__file__).parent
 ELSEWHERE = {
+    "model.double_pendulum.DoublePendulum.transport": "model/test_forced_body.py",
+    "model.double_pendulum_pin.PinocchioPendulum.transport": "model/test_forced_body.py",
+    "model.forced_body.WithIdleStates.transport": "model/test_forced_body.py",
     "model.forced_body.ForcedBody.linearise": "model/test_forced_body.py",
     "model.forced_body.ForcedBody.retraction": "model/test_human_dynamics.py",
     "model.forced_body.ForcedBody.transport": "model/test_human_dynamics.py",
@@ -106,7 +109,8 @@ CHECKED = {block for case in CASES for block in case.blocks}
 def test_every_block_has_its_case():
     missing = sorted(FOUND - CHECKED - set(ELSEWHERE))
     assert missing == [], (
-        f"add a case for each to {derivatives_of_bodies.__name__} or {derivatives_of_filters.__name__}"
+        f"add a case for each to {derivatives_of_bodies.__name__}, {derivatives_of_filters.__name__} or "
+        f"{derivatives_of_pendulum.__name__}"
     )
 
 

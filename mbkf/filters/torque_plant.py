@@ -1,7 +1,8 @@
 """The plant of the torque-state filters: x = [z, ż, T_e], forces a Wiener process (thesis 3.2.3, eqs. 3.36–3.41).
 
-ẋ = [ż, M⁻¹(Q_g + Bᵀ T_e), 0] + w̃. Serves any body of :class:`mbkf.model.forced_body.ForcedBody`; the covariance
-lives in the tangent space (δz, δż, δT_e) of dimension n = 2 nv + nu.
+ẋ = [ż, M⁻¹(Q_g + Bᵀ T_e), A T_e] + w̃, with A = 0 in the thesis. Serves any body of
+:class:`mbkf.model.forced_body.ForcedBody`; the covariance lives in the tangent space (δz, δż, δT_e) of dimension
+n = 2 nv + nu.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
@@ -70,11 +72,23 @@ class TorquePlant:
         dt_s: Time between frames.
         density: Noise density, taken at the beginning of a frame.
         scheme: How it is discretised.
+        drift: (nu, nu) A of u̇ = A u + w̃, for states that fade instead of wandering; None for 0. The motion sees u as
+            it is at the beginning of a step.
     """
 
-    def __init__(self, body: ForcedBody, dt_s: float, density: NoiseDensity, scheme: Scheme) -> None:
+    def __init__(
+        self,
+        body: ForcedBody,
+        dt_s: float,
+        density: NoiseDensity,
+        scheme: Scheme,
+        drift: Array | None = None,
+    ) -> None:
         self.body, self.dt_s, self.density, self.scheme = body, dt_s, density, scheme
+        self.drift = drift
         self._advance = integrator(scheme.integrator)
+        step_s = dt_s / max(1, scheme.substeps)
+        self._fade: Array | None = None if drift is None else scipy.linalg.expm(step_s * drift)
 
     def sensitivity(self, v: Array, slope: LinearAcceleration) -> Array:
         """(n, n) F of the error (eq. 3.40, simplified by eq. 4.15).
@@ -89,23 +103,27 @@ class TorquePlant:
         F[nv : 2 * nv, 2 * nv :] = slope.by_u
         if self.scheme.complete:
             F[nv : 2 * nv, :nv], F[nv : 2 * nv, nv : 2 * nv] = slope.by_q, slope.by_v
+        if self.drift is not None:
+            F[2 * nv :, 2 * nv :] = self.drift
         return F
 
     def predict(self, state: ForcedState) -> Prediction:
         """The state one frame later (eqs. 2.48, 2.49)."""
         parts = max(1, self.scheme.substeps)
         h, density = self.dt_s / parts, self.density(state)
-        now = Motion(state.q, state.v)
+        now, u = Motion(state.q, state.v), state.u
         whole: Discrete | None = None
         for _ in range(parts):
-            later = self._advance(self.body, now, state.u, h)
-            F = self._slope(now, later, state.u)
+            later = self._advance(self.body, now, u, h)
+            F = self._slope(now, later, u)
             part = discretise(F, density, h, self.scheme.propagation, self.scheme.covariance)
             whole = part if whole is None else whole.then(part)
             now = later
+            if self._fade is not None:
+                u = self._fade @ u
         assert whole is not None
         P = symmetric(whole.phi @ state.P @ whole.phi.T + whole.noise)
-        return Prediction(ForcedState(now.q, now.v, state.u, P), whole.phi)
+        return Prediction(ForcedState(now.q, now.v, u, P), whole.phi)
 
     def _slope(self, now: Motion, later: Motion, u: Array) -> Array:
         F = self.sensitivity(now.v, self.body.linearise(now.q, now.v, u))

@@ -8,6 +8,7 @@ import scipy.linalg
 
 from mbkf.filters.integrators import Motion, runge_kutta
 from mbkf.filters.torque_plant import ForcedState, Scheme, TorquePlant, on_state, update
+from mbkf.model.forced_body import WithIdleStates
 from mbkf.model.human_dynamics import FORCE_STATES, HumanDynamics
 from mbkf.numerics.discretisation import COVARIANCES, PROPAGATIONS
 from mbkf.numerics.kalman import information
@@ -152,6 +153,27 @@ def test_sub_steps_compose(propagation, covariance):
     rough = TorquePlant(body, DT, found.density, coarse).predict(state)
     assert worst(fine.phi - exact.phi) <= worst(rough.phi - exact.phi) / 30 + 1e-13
     assert worst(fine.state.P - exact.state.P) <= worst(rough.state.P - exact.state.P) / 30 + 1e-12
+
+
+@pytest.mark.parametrize("substeps", [1, 3])
+def test_fading_states_settle_at_their_stationary_spread(substeps):
+    """An idle state with drift −λ is a Gauss–Markov process: mean e^(−λt), variance σ²/2λ; the body feels nothing."""
+    rate, noise, body = 4.0, 3.0, WithIdleStates(DampedPendulum(), 1)
+    density = np.diag([0.0, 0.0, 0.0, noise**2])
+    scheme = Scheme("TN", substeps=substeps)
+    plant = TorquePlant(body, DT, lambda _: density, scheme, np.diag([0.0, -rate]))
+    state = ForcedState(
+        np.array([0.3]), np.array([0.5]), np.array([2.0, 5.0]), np.diag([1e-4, 1e-4, 1.0, 0.0])
+    )
+    alone = TorquePlant(DampedPendulum(), DT, lambda _: np.zeros((3, 3)), scheme)
+    other = ForcedState(state.q, state.v, state.u[:1], state.P[:3, :3])
+    for _ in range(200):
+        state, other = plant.predict(state).state, alone.predict(other).state
+    assert state.u[0] == 2.0
+    assert state.u[1] == pytest.approx(5.0 * np.exp(-rate * 200 * DT), rel=1e-9)
+    assert state.P[3, 3] == pytest.approx(noise**2 / (2 * rate), rel=1e-6)
+    assert_near(np.concatenate([state.q, state.v]), np.concatenate([other.q, other.v]), 1e-12)
+    assert_near(state.P[:3, :3], other.P, 1e-9)
 
 
 def test_prediction_keeps_forces_and_returns_its_transition():

@@ -5,7 +5,9 @@ import inspect
 import numpy as np
 import pytest
 
-from mbkf.model.forced_body import ForcedBody, LinearAcceleration
+from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
+from mbkf.model.double_pendulum_pin import PinocchioPendulum
+from mbkf.model.forced_body import ForcedBody, LinearAcceleration, WithIdleStates
 from mbkf.model.human_dynamics import HumanDynamics
 from tests.forced_bodies import Cart, DampedPendulum
 from tests.motions import reference_model
@@ -14,6 +16,9 @@ MAKERS = {
     "HumanDynamics": lambda: (HumanDynamics(reference_model()), reference_model().neutral()),
     "Cart": lambda: (Cart(), np.zeros(2)),
     "DampedPendulum": lambda: (DampedPendulum(), np.zeros(1)),
+    "DoublePendulum": lambda: (DoublePendulum(PendulumShape()), np.zeros(4)),
+    "PinocchioPendulum": lambda: (PinocchioPendulum(PendulumShape()), np.zeros(4)),
+    "WithIdleStates": lambda: (WithIdleStates(DampedPendulum(), 2), np.zeros(1)),
 }
 
 
@@ -35,3 +40,13 @@ def test_speaks_the_protocol(name):
     assert shapes == [(body.nv,), square, square, (body.nv, body.nu), square]
     assert [part.shape for part in body.retraction(q, v)] == [square, square]
     np.testing.assert_allclose(body.difference(q, body.integrate(q, v)), v, atol=1e-12)
+
+
+def test_idle_states_push_nothing():
+    own = DampedPendulum()
+    body = WithIdleStates(own, 2)
+    q, v, u = np.array([0.3]), np.array([1.0]), np.array([2.0, 50.0, -7.0])
+    assert body.nu == 3
+    np.testing.assert_array_equal(body.acceleration(q, v, u), own.acceleration(q, v, u[:1]))
+    np.testing.assert_array_equal(body.linearise(q, v, u).by_u, [[1.0, 0.0, 0.0]])
+    np.testing.assert_array_equal(body.transport(v), own.transport(v))

@@ -1,0 +1,85 @@
+"""FCDI on the double pendulum: the human's white-acceleration plant and update, then inverse dynamics (SPEC §5)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, cast
+
+import numpy as np
+
+from benchmarks.double_pendulum.torque import START_VARIANCE
+from benchmarks.double_pendulum.trials import Estimate, Trial
+from mbkf.conventions import Array
+from mbkf.filters.dwna import WhiteAccelerationPlant
+from mbkf.filters.state import FilterState
+from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
+from mbkf.model.human import HumanModel
+from mbkf.numerics.kalman import correct, information
+from mbkf.synthesis.pendulum import MARKER_BARS, MARKER_SHARES
+
+TORQUE_ROW = 3
+"""τ_1 is what the equation of θ_2 asks for; residual efforts take what is left of the other three (eq. 3.12)."""
+
+
+class PlainManifold:
+    """What the kinematic plants ask of a body, for plain coordinates: a stand-in for the human's manifold."""
+
+    nv: ClassVar[int] = 4
+
+    def integrate(self, q: Array, dv: Array) -> Array:
+        """(4,) q + dv."""
+        return q + dv
+
+    def integration_derivatives(self, q: Array, dv: Array) -> tuple[Array, Array]:
+        """Identities (4, 4)."""
+        del q, dv
+        return np.eye(4), np.eye(4)
+
+    @classmethod
+    def as_model(cls) -> HumanModel:
+        """Itself, under the type that the plants are annotated with; they use no more than this of it."""
+        return cast(HumanModel, cls())
+
+
+def joint_torque(body: DoublePendulum, q: Array, v: Array, a: Array, plate: Array) -> float:
+    """τ_1 by inverse dynamics (eq. 3.12) under measured F_x, F_y, T_2 (3,)."""
+    row = TORQUE_ROW
+    wanted: float = body.inertial(q, v, a).force[row] - body.effort_matrix(q)[row, 1:4] @ plate
+    return float(wanted)
+
+
+@dataclass(frozen=True)
+class KinematicMethod:
+    """FCDI as a method.
+
+    Attributes:
+        shape: The pendulum it believes in.
+        acceleration: σ_a of every component of z, rad/s² and m/s².
+        marker_m: Standard deviation of a marker coordinate.
+    """
+
+    shape: PendulumShape
+    acceleration: float = 30.0
+    marker_m: float = 1e-3
+
+    def run(self, trial: Trial) -> Estimate:
+        """Follows a trial; accelerations are differences of filtered velocities (eq. 3.7)."""
+        body, dt, truth = DoublePendulum(self.shape, residual=False), trial.dt_s, trial.motion
+        plant = WhiteAccelerationPlant(PlainManifold.as_model(), dt, np.full(4, self.acceleration))
+        state = FilterState(truth.q[0], truth.v[0], np.diag(np.repeat(START_VARIANCE[:2], 4)))
+        frames = len(truth.times_s)
+        q, v, nis = np.empty((frames, 4)), np.empty((frames, 4)), np.full(frames, np.nan)
+        q[0], v[0] = state.q, state.v
+        efforts = trial.read.efforts.copy()
+        efforts[0, 0] = truth.efforts[0, 0]
+        for t in range(1, frames):
+            prior = plant.predict(state)
+            seen = body.on_bars(prior.q, MARKER_SHARES, MARKER_BARS)
+            innovation = trial.read.markers_m[t] - seen.positions_m
+            rows = ~np.isnan(innovation)
+            sd = np.full(int(rows.sum()), self.marker_m)
+            found = correct(prior.P, information(innovation[rows], seen.jacobian[rows], sd))
+            state = FilterState(prior.q + found.step[:4], prior.v + found.step[4:], found.covariance)
+            q[t], v[t], nis[t] = state.q, state.v, found.nis
+            efforts[t, 0] = joint_torque(body, q[t], v[t], (v[t] - v[t - 1]) / dt, trial.read.efforts[t, 1:])
+        return Estimate(q, v, efforts, nis)
