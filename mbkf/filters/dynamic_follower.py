@@ -17,6 +17,7 @@ from mbkf.filters.kinematic_follower import warm_start
 from mbkf.filters.singer import DynamicState
 from mbkf.filters.spread import Spread, SpreadReader
 from mbkf.filters.state import FilterState
+from mbkf.filters.stated import stated_covariance
 
 ROUNDS = 2
 """How often a smoothed stretch is linearised; a third round changes the residual by less than 0.1 N."""
@@ -47,8 +48,11 @@ class DynamicFollower:
 
     def covariance(self, estimate: Estimate) -> Array:
         """(2 nv, 2 nv) of (q, v); dofs that are held may be anywhere a posture is."""
+        return self._moving(self.error_covariance(estimate))
+
+    def _moving(self, stated: Array) -> Array:
         nv = self.model.nv
-        P = estimate.inner.state.P[: 2 * nv, : 2 * nv].copy()
+        P = stated[: 2 * nv, : 2 * nv].copy()
         held = np.flatnonzero(self.kalman.held)
         P[held, held] += self.model.posture_sd[held] ** 2
         return P
@@ -58,9 +62,23 @@ class DynamicFollower:
         state: DynamicState = estimate.inner.state
         torque = self.kalman.balance.torques(state.q, state.v, state.a, state.w)
         T = np.hstack([torque.by_q, torque.by_v, torque.by_a, torque.by_wrench])
-        variance = np.einsum("ij,ij->i", T @ state.P, T)
-        spread = self._reader.at(FilterState(state.q, state.v, self.covariance(estimate)))
+        stated = self.error_covariance(estimate)
+        variance = np.einsum("ij,ij->i", T @ stated, T)
+        spread = self._reader.at(FilterState(state.q, state.v, self._moving(stated)))
         return replace(spread, torque=np.sqrt(np.maximum(variance, 0.0)))
+
+    def error_covariance(self, estimate: Estimate) -> Array:
+        """(N, N) covariance of the whole state's errors; the filter's own where only white noise is expected."""
+        step: DynamicStep = estimate.inner
+        s, P, decision = self.kalman.settings, estimate.inner.state.P, step.decision
+        if s.innovation_share <= 0.0:
+            return P
+        unknown = np.union1d(decision.unseen, np.flatnonzero(self.kalman.held))
+        # A pose takes up part of what its markers err by, so innovations show less than that.
+        readings = 3 * int(np.count_nonzero(decision.trusted))
+        over = max(readings - self.model.nv + len(unknown), readings // 4)
+        skin = s.innovation_share * readings / max(over, 1)
+        return stated_covariance(P, step.frame.matrix, unknown, skin, s.new_share, s.skin_rate_rad_s)
 
     def wrench_sd(self, estimate: Estimate) -> Array:
         """(2, 6) from the state's covariance."""

@@ -31,6 +31,8 @@ class DynamicSettings:
             and the next frames repeat its error: the noise follows the mean square innovation divided by it, within
             ``noise_range``. 0 keeps the markers' own noise (white camera noise only).
         noise_memory_s: Time over which that mean square is taken.
+        new_share, skin_rate_rad_s: Share of the marker noise that is new in every frame, and how fast the rest
+            changes, for the standard deviations (:mod:`mbkf.filters.stated`).
         noise_range: Least and greatest factor on the markers' noise that follows.
         posture_scale: The posture prior's spread is the body's table times this, per reading.
         limit_sd_rad: Softness of a joint's limit.
@@ -48,8 +50,8 @@ class DynamicSettings:
     """
 
     acceleration_scale: float = 1.0
-    quiet_share: float = 0.2
-    activity_gain: float = 8.0
+    quiet_share: float = 0.1
+    activity_gain: float = 6.0
     activity_rate: float = 5.0
     activity_memory_s: float = 0.05
     busy_shares: tuple[float, float] = (2.0, 8.0)
@@ -68,6 +70,8 @@ class DynamicSettings:
     marker_noise_scale: float = 1.0
     innovation_share: float = 0.12
     noise_memory_s: float = 1.0
+    new_share: float = 0.035
+    skin_rate_rad_s: float = 4.0
     noise_range: tuple[float, float] = (0.5, 4.0)
     posture_scale: float = 1.0
     limit_sd_rad: float = 0.03

@@ -1,0 +1,56 @@
+"""The stated covariance: what is new and what skin repeats, told apart by experiment."""
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mbkf.filters.stated import stated_covariance
+
+NV, NOBODY = 5, np.zeros(0, dtype=int)
+
+
+def made(seed):
+    rng = np.random.default_rng(seed)
+    A, B = rng.normal(size=(3 * NV + 12,) * 2), rng.normal(size=(2 * NV, NV))
+    return rng, A @ A.T, B.T @ B
+
+
+@given(st.integers(0, 200), st.floats(0.01, 1.0), st.floats(0.0, 20.0))
+def test_it_is_symmetric_and_positive(seed, new, rate):
+    rng, P, information = made(seed)
+    unknown = np.flatnonzero(rng.random(NV) < 0.3)
+    stated = stated_covariance(P, information, unknown, 0.2, new, rate)
+    np.testing.assert_allclose(stated, stated.T, rtol=1e-12, atol=1e-9 * np.abs(stated).max())
+    assert np.linalg.eigvalsh(stated).min() > -1e-9 * np.abs(stated).max()
+
+
+def test_without_skin_it_is_the_share_that_is_new():
+    _, P, information = made(1)
+    stated = stated_covariance(P, information, NOBODY, 0.0, 0.04, 4.0)
+    np.testing.assert_allclose(stated[: 3 * NV, : 3 * NV], 0.04 * P[: 3 * NV, : 3 * NV])
+    np.testing.assert_array_equal(stated[3 * NV :, 3 * NV :], P[3 * NV :, 3 * NV :])
+
+
+def test_unknown_joints_keep_what_the_filter_says():
+    _, P, information = made(2)
+    unknown = np.array([1, 3])
+    stated = stated_covariance(P, information, unknown, 0.3, 0.04, 4.0)
+    for block in (0, NV, 2 * NV):
+        own = np.ix_(block + unknown, block + unknown)
+        np.testing.assert_array_equal(stated[own], P[own])
+
+
+def test_skin_that_swings_has_the_stated_covariance():
+    """Poses fitted to markers that swing as sines with random phases, by simulation; no other error."""
+    rng, _, _ = made(3)
+    H, rate, amplitude, runs = rng.normal(size=(12, NV)), 4.0, 0.1, 40_000
+    fit = np.linalg.pinv(H)
+    phase = rng.uniform(0, 2 * np.pi, (runs, 12))
+    skin = np.sqrt(2.0) * amplitude * np.sin(phase)
+    rates = np.sqrt(2.0) * amplitude * rate * np.cos(phase)
+    x = np.hstack([skin @ fit.T, rates @ fit.T, -(rate**2) * skin @ fit.T])
+    measured = x.T @ x / runs
+    P = np.zeros((3 * NV + 12,) * 2)
+    stated = stated_covariance(P, H.T @ H, NOBODY, amplitude**2, 0.04, rate)[: 3 * NV, : 3 * NV]
+    scale = np.sqrt(np.diag(stated))
+    np.testing.assert_allclose(measured / scale / scale[:, None], stated / scale / scale[:, None], atol=0.03)
