@@ -88,7 +88,7 @@ def test_the_last_frame_is_the_filters(name):
 
 @each_motion
 def test_stretches_that_look_ahead_are_nearly_the_whole(name):
-    """The first half, smoothed with 20 more frames in sight, against smoothing all."""
+    """The first half, smoothed with 20 more frames in sight (half of what is usual), against smoothing all."""
     run, half = run_of(name), 30
     frames = frames_of(run)
     part = list(smooth(run.kalman, run.states[0], frames[: half + 20], ROUNDS, wanted=half))
@@ -96,7 +96,7 @@ def test_stretches_that_look_ahead_are_nearly_the_whole(name):
     for t, (found, whole) in enumerate(zip(part, smoothed(name), strict=False)):
         sd, share = np.sqrt(np.diag(whole.P)), 0.25 if t < half // 2 else 1.0
         assert worst(run.kalman.difference(whole, found) / sd) < 0.3 * share
-        assert worst((found.P - whole.P) / sd[:, None] / sd) < 0.1 * share
+        assert worst((found.P - whole.P) / sd[:, None] / sd) < 0.3 * share
 
 
 def test_looking_ahead_is_what_makes_a_stretch_good():
