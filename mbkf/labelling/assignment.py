@@ -1,0 +1,142 @@
+"""Measured points to predicted markers, all at once: the most likely assignment inside every marker's gate.
+
+A point that marker i made lies about its prediction with covariance S_i; one that nobody made (a ghost) may lie
+anywhere, λ of them per m³. Twice the log-likelihood ratio of the two, with squared distances by Mahalanobis instead
+of eq. 4.6's, is the cost of a pair (Blackman & Popoli 1999, ch. 6):
+
+    c_ij = d²_ij + ln det(2π S_i) + 2 ln λ
+
+A pair that costs less than nothing is better than a hidden marker and a ghost; ``linear_sum_assignment`` finds the
+cheapest set of pairs, so that no point gets two labels and no marker two points.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+from scipy.spatial.distance import cdist
+
+from mbkf.conventions import Array, BoolArray
+
+HIDDEN = -1
+"""The point of a marker that has none, and the marker of a point that is nobody's."""
+
+Indices = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class AssignmentSettings:
+    """What an assignment believes.
+
+    Attributes:
+        gate: Squared Mahalanobis distance (3 coordinates) beyond which a point is not the marker's.
+        radius_m: Distance beyond which it never is.
+        ghosts_per_m3: How many points that are no markers are expected, λ.
+        near_m: A point this near its marker, with every other marker and point further than ``clear_m``, is taken
+            without asking for covariances.
+        clear_m: See ``near_m``.
+        known_bonus: How much cheaper a pair is that was a pair in the frame before, by the point's own track.
+    """
+
+    gate: float = 25.0
+    radius_m: float = 0.15
+    ghosts_per_m3: float = 5.0
+    near_m: float = 0.010
+    clear_m: float = 0.025
+    known_bonus: float = 6.0
+
+
+def assign(
+    predicted_m: Array,
+    points_m: Array,
+    covariance: Callable[[BoolArray], Array],
+    settings: AssignmentSettings,
+    known: Indices | None = None,
+) -> Indices:
+    """(M,) index of each marker's point, ``HIDDEN`` where it has none.
+
+    Args:
+        predicted_m: (M, 3) predicted markers.
+        points_m: (N, 3) measured points, none of them missing, in any order.
+        covariance: Gives S, (m, 3, 3) in m², of the markers chosen by a mask (M,); asked only where points are near
+            to several markers or far from all.
+        settings: Gate, radius, ghosts.
+        known: (N,) marker that each point's own track carried in the frame before, ``HIDDEN`` where none.
+    """
+    found = np.full(len(predicted_m), HIDDEN, dtype=np.intp)
+    if not len(points_m) or not len(predicted_m):
+        return found
+    squared = squared_distances(predicted_m, points_m)
+    markers, points = _undisputed(squared, settings, known)
+    found[markers] = points
+    own = (found == HIDDEN).nonzero()[0]
+    if not len(own):
+        return found
+    left = np.ones(len(points_m), dtype=bool)
+    left[points] = False
+    near = (squared[own] <= settings.radius_m**2) & left
+    own = own[near.any(axis=1)]
+    if not len(own):
+        return found
+    hard, free = np.zeros(len(found), dtype=bool), near.any(axis=0).nonzero()[0]
+    hard[own] = True
+    offsets = points_m[free] - predicted_m[own][:, None]
+    cost = pair_costs(offsets, covariance(hard), settings)
+    if known is not None:
+        cost -= settings.known_bonus * (known[free] == own[:, None])
+    pairs = cheapest_pairs(cost)
+    paired = pairs != HIDDEN
+    found[own[paired]] = free[pairs[paired]]
+    return found
+
+
+def squared_distances(predicted_m: Array, points_m: Array) -> Array:
+    """(M, N) squared distances, eq. 4.6."""
+    return np.asarray(cdist(predicted_m, points_m, "sqeuclidean"))
+
+
+def pair_costs(offsets_m: Array, covariance: Array, settings: AssignmentSettings) -> Array:
+    """(m, n) costs of pairs; infinite outside gate or radius.
+
+    Args:
+        offsets_m: (m, n, 3) point minus predicted marker.
+        covariance: (m, 3, 3) of the innovation.
+        settings: Gate, radius, ghosts.
+    """
+    whitened = np.linalg.solve(covariance, offsets_m.transpose(0, 2, 1))
+    distance = np.einsum("ijk,ikj->ij", offsets_m, whitened)
+    squared = np.einsum("ijk,ijk->ij", offsets_m, offsets_m)
+    volume = np.log(np.linalg.det(2.0 * np.pi * covariance)) + 2.0 * math.log(settings.ghosts_per_m3)
+    inside = (distance <= settings.gate) & (squared <= settings.radius_m**2)
+    return np.where(inside, distance + volume[:, None], np.inf)
+
+
+def cheapest_pairs(cost: Array) -> Indices:
+    """(m,) column of each row in the cheapest set of pairs; rows stay ``HIDDEN`` where no column costs less than 0."""
+    found = np.full(len(cost), HIDDEN, dtype=np.intp)
+    rows, columns = linear_sum_assignment(np.minimum(cost, 0.0))
+    chosen = cost[rows, columns] < 0.0
+    found[rows[chosen]] = columns[chosen]
+    return found
+
+
+def _undisputed(
+    squared: Array, settings: AssignmentSettings, known: Indices | None
+) -> tuple[Indices, Indices]:
+    """Markers, and their points, with one point near, no other point and, at that point, no other marker near."""
+    every = squared.ravel()
+    pairs = (every <= settings.clear_m**2).nonzero()[0]
+    markers = pairs // squared.shape[1]
+    points = pairs - squared.shape[1] * markers
+    alone = every[pairs] <= settings.near_m**2
+    alone &= (np.bincount(markers) == 1)[markers]
+    alone &= (np.bincount(points) == 1)[points]
+    if known is not None:
+        carried = known[points]
+        alone &= (carried == HIDDEN) | (carried == markers)
+    return markers[alone], points[alone]

@@ -1,0 +1,197 @@
+"""Labels for a frame nobody knows anything about: relative positions, then a pose fit that must be good (SPEC §7).
+
+The thesis sorts the markers of a standing pose by height and side. Here the subject's own marker geometry takes the
+place of such rules, so that any protocol will do: the root's markers are found by their distances, the other segments
+by the distances of their markers from each other and from the joint, and the pose fitted to that (eq. 4.1 with
+positions only) says where the rest should be.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.labelling.assignment import HIDDEN, AssignmentSettings, Indices, assign
+from mbkf.labelling.growing import GrownBody, grow, regrow
+from mbkf.labelling.placing import likeness
+from mbkf.labelling.seeds import anyhow, upright
+from mbkf.labelling.skeleton import clusters, limbs
+from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.pose_fit import PoseFit, fit_pose, segment_by_segment
+from mbkf.sensors.posture import PostureSensor
+
+LEAST_SD_M = 0.010
+"""Body and person differ by this much at least."""
+
+MIN_MARKERS = 6
+"""Fewer do not place a body."""
+
+STRANGE = 2.5
+"""A point further than so many standard deviations from its marker does not take part in the fit that judges it."""
+
+
+DOUBTFUL = 2.0
+"""A limb with a marker further off than so many standard deviations, or without one, is grown anew."""
+
+LIMB_CANDIDATES = 3
+"""How many ways to grow it are fitted."""
+
+
+@dataclass(frozen=True)
+class FirstFrameSettings:
+    """When a first frame is believed.
+
+    Attributes:
+        rms_m: Greatest RMS distance of the labelled points from the fitted body.
+        least_share: Least share of the body's markers that must be found.
+        least_explained: Least share of the points, or of the body's markers where these are fewer, that must be.
+        candidates: How many grown bodies are fitted.
+        rounds: How often labels and pose are brought into line.
+        radius_m: Hard radius of the assignment while the pose is not settled.
+    """
+
+    rms_m: float = 0.025
+    least_share: float = 0.6
+    least_explained: float = 0.8
+    candidates: int = 6
+    rounds: int = 6
+    radius_m: float = 0.25
+
+
+@dataclass(frozen=True)
+class FirstFrame:
+    """A labelled frame.
+
+    Attributes:
+        points: (M,) point of every marker, ``HIDDEN`` where none.
+        q: (nq,) fitted pose.
+        rms_m: RMS distance of the labelled points from it.
+        worth: How much more likely its labels are than that all points are ghosts (twice the log).
+    """
+
+    points: Indices
+    q: Array
+    rms_m: float
+    worth: float
+
+    @property
+    def labelled(self) -> int:
+        """Number of markers found."""
+        return int((self.points != HIDDEN).sum())
+
+
+class FirstFrameSearch:
+    """Finds a subject's markers among unlabelled points.
+
+    Attributes:
+        sensor: The markers on the subject's body.
+        sd_m: (M,) how far a marker may be from its place on the body, noise and placement together, m.
+        settings: When to believe what was found.
+    """
+
+    def __init__(self, sensor: MarkerSensor, sd_m: Array, settings: FirstFrameSettings | None = None) -> None:
+        self.sensor = sensor
+        self.sd_m = np.hypot(sd_m, LEAST_SD_M)
+        self.settings = settings or FirstFrameSettings()
+        self.posture = PostureSensor(sensor.model)
+        self._body = clusters(sensor, self.sd_m)
+        self._assignment = AssignmentSettings(radius_m=self.settings.radius_m, near_m=0.0)
+
+    @property
+    def least(self) -> int:
+        """Fewer points than this are not looked at."""
+        return max(MIN_MARKERS, int(np.ceil(self.settings.least_share * len(self.sd_m))))
+
+    def standing(self, points_m: Array) -> FirstFrame | None:
+        """Labels of points (N, 3) where the body is upright and faces anywhere, or None where none are believed."""
+        return self._search(points_m, upright(self._body[0], points_m))
+
+    def anyhow(self, points_m: Array) -> FirstFrame | None:
+        """The same for a body in any attitude (prone, kneeling); slower by the number of roots that may be."""
+        return self._search(points_m, anyhow(self._body[0], points_m))
+
+    def _search(self, points_m: Array, seeds: tuple[Array, Array]) -> FirstFrame | None:
+        grown = grow(self._body, points_m, seeds, self.settings.candidates)
+        fitted = [self._fitted(points_m, one.points, None) for one in grown]
+        near = [one for one in fitted if one.rms_m <= 2.0 * self.settings.rms_m] or fitted
+        if not near:
+            return None
+        best = self._improved(points_m, max(near, key=lambda one: one.worth))
+        return best if self.believed(best, len(points_m)) else None
+
+    def about(self, points_m: Array, q: Array) -> FirstFrame | None:
+        """Labels of points (N, 3) of a body that is nearly in the pose q (nq,), or None."""
+        predicted = self.sensor.positions(q)
+        near = np.broadcast_to(0.03**2 * np.eye(3), (len(predicted), 3, 3))
+        first = assign(predicted, points_m, lambda chosen: near[chosen], self._assignment)
+        found = self._fitted(points_m, first, q)
+        return found if self.believed(found, len(points_m)) else None
+
+    def _improved(self, points_m: Array, found: FirstFrame) -> FirstFrame:
+        """Labels with every doubtful limb grown anew from the fitted body, from the fingers and toes inwards."""
+        for limb in reversed(limbs(self._body)):
+            own = np.concatenate([self._body[number].markers for number in limb])
+            distance = np.linalg.norm(
+                self.sensor.positions(found.q) - labelled(points_m, found.points), axis=1
+            )
+            if (distance[own] <= DOUBTFUL * self.sd_m[own]).all():
+                continue
+            others = [
+                self._fitted(points_m, one.points, None)
+                for one in regrow(self._body, points_m, self._placed(found), limb, LIMB_CANDIDATES)
+            ]
+            found = max(found, *others, key=lambda one: one.worth)
+        return found
+
+    def _placed(self, found: FirstFrame) -> GrownBody:
+        rotations, origins = self.sensor.model.placements(found.q)
+        joints = [self.sensor.model.joint(cluster.segment).joint_id for cluster in self._body]
+        return GrownBody(rotations[joints], origins[joints], found.points, 0.0)
+
+    def believed(self, found: FirstFrame, points: int) -> bool:
+        """Whether enough markers of a frame with so many points fit well enough."""
+        could = min(points, len(found.points))
+        enough = found.labelled >= max(self.least, self.settings.least_explained * could)
+        return enough and found.rms_m <= self.settings.rms_m
+
+    def _fitted(self, points_m: Array, labels: Indices, start: Array | None) -> FirstFrame:
+        """Pose and labels brought into line: fit, assign by the fit's covariance, and again until nothing changes."""
+        q = start
+        for _ in range(self.settings.rounds):
+            measured = labelled(points_m, labels)
+            if q is None:
+                q = segment_by_segment(self.sensor, measured)
+            fit = self._fit(measured, q)
+            distance = np.linalg.norm(self.sensor.positions(fit.q) - measured, axis=1)
+            worth = float(np.nansum(likeness(distance**2, self.sd_m)))
+            found = FirstFrame(labels, fit.q, fit.rms_m, worth)
+            far = distance > STRANGE * self.sd_m
+            if far.any() and (~far).sum() >= MIN_MARKERS:
+                fit = self._fit(np.where(far[:, None], np.nan, measured), fit.q)
+            again = self._assigned(points_m, fit.q, fit.covariance)
+            if (again == labels).all():
+                break
+            labels, q = again, fit.q
+        return found
+
+    def _fit(self, measured_m: Array, start: Array) -> PoseFit:
+        return fit_pose(self.sensor, self.posture, measured_m, self.sd_m, start, max_iterations=12)
+
+    def _assigned(self, points_m: Array, q: Array, covariance: Array) -> Indices:
+        reading = self.sensor.reading(q)
+
+        def spread(chosen: BoolArray) -> Array:
+            H = reading.only(chosen).jacobian
+            own = self.sd_m[chosen, None, None] ** 2 * np.eye(3)
+            return np.asarray((H @ covariance) @ H.transpose(0, 2, 1) + own)
+
+        return assign(reading.positions_m, points_m, spread, self._assignment)
+
+
+def labelled(points_m: Array, labels: Indices) -> Array:
+    """(M, 3) the markers' points, NaN where a marker has none."""
+    if not len(points_m):
+        return np.full((len(labels), 3), np.nan)
+    return np.where((labels != HIDDEN)[:, None], points_m[labels], np.nan)

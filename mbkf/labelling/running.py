@@ -1,0 +1,185 @@
+"""Labels from frame to frame, between a filter's prediction and its correction (thesis 4.1.3).
+
+Besides the filter's prediction the labeller knows three things: how far each marker lay off the body when last seen
+(skin and placement, which outlive a short gap), which label each point's own track carried, and what the labels would
+be without either. The last is asked now and then: memory that geometry contradicts twice running is wrong, so that
+markers whose labels were exchanged get them back.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.labelling.assignment import HIDDEN, AssignmentSettings, Indices, assign, pair_costs
+from mbkf.sensors.expectation import MarkerExpectation
+
+MOST_STRANGE = 0.2
+"""Where a larger share of the labelled markers is far from the corrected body, the pose is wrong and not they."""
+
+
+@dataclass(frozen=True)
+class RunningSettings:
+    """How labels are kept from frame to frame.
+
+    Attributes:
+        assignment: Gate, radius and what a known track is worth.
+        memory_s: How long an offset from the body is remembered while a marker is not seen, and how long it takes to
+            learn one.
+        offset_sd_m: How far a marker strays from its remembered offset between frames while it is seen.
+        unseen_sd_m: How much further off a marker may be that was never seen since the start.
+        strange: Standard deviations by which a point may miss its remembered place on the corrected body.
+        doubt_every: Frames between two looks without memory.
+        doubt_margin: How much less the labels without memory must cost to count as a contradiction.
+        doubts: Contradictions running that overrule the memory.
+    """
+
+    assignment: AssignmentSettings = field(default_factory=lambda: AssignmentSettings(radius_m=0.10))
+    memory_s: float = 0.3
+    learning_s: float = 0.05
+    offset_sd_m: float = 0.004
+    unseen_sd_m: float = 0.015
+    strange: float = 3.5
+    doubt_every: int = 4
+    doubt_margin: float = 9.0
+    doubts: int = 2
+
+
+class RunningLabeller:
+    """Assigns the points of one frame after the other.
+
+    Attributes:
+        noise_m: (M,) marker noise.
+        placement_m: (M,) how far a marker may sit from its place on the body.
+        settings: How.
+        repaired: How many markers had their labels taken back from a wrong point so far.
+    """
+
+    def __init__(
+        self, noise_m: Array, placement_m: Array, dt_s: float, settings: RunningSettings | None = None
+    ) -> None:
+        self.noise_m, self.placement_m = noise_m, placement_m
+        self._forgotten = noise_m**2 + placement_m**2
+        self.settings = settings or RunningSettings()
+        self.repaired = 0
+        self._keep = math.exp(-dt_s / self.settings.memory_s)
+        self._learn = 1.0 - math.exp(-dt_s / self.settings.learning_s)
+        self._patient = replace(self.settings.assignment, known_bonus=0.0)
+        self.restart()
+
+    def restart(self) -> None:
+        """Forgets offsets and tracks; what the next frame's points are is told by :meth:`remember`."""
+        self._offset_m = np.zeros((len(self.noise_m), 3))
+        self._variance = self._forgotten + self.settings.unseen_sd_m**2
+        self._carried = np.zeros(0, dtype=np.intp)
+        self._doubted = np.zeros(len(self.noise_m), dtype=int)
+        self._frames = 0
+
+    def label(self, expected: MarkerExpectation, points_m: Array, follows: Indices | None = None) -> Indices:
+        """(M,) the point of every marker in this frame, ``HIDDEN`` where it has none.
+
+        Args:
+            expected: Where the filter expects the markers.
+            points_m: (N, 3) measured points in any order, none missing.
+            follows: (N,) which point of the frame before each continues, ``HIDDEN`` where that is not known.
+        """
+        known = None
+        if follows is not None and len(self._carried) and follows.max(initial=HIDDEN) != HIDDEN:
+            known = np.where(follows != HIDDEN, self._carried[follows], HIDDEN)
+
+        def covariance(chosen: BoolArray) -> Array:
+            return _with_own(expected.spread(chosen), self._variance[chosen])
+
+        predicted = expected.positions_m + self._offset_m
+        labels = assign(predicted, points_m, covariance, self.settings.assignment, known)
+        self._frames += 1
+        if self._frames % self.settings.doubt_every == 0:
+            labels = self._doubt(labels, expected, points_m)
+        return labels
+
+    def contradicted(self, labels: Indices, points_m: Array, on_body_m: Array) -> BoolArray:
+        """(M,) markers whose point does not go with the pose that all points together led to: ghosts near a marker.
+
+        A prediction may be a centimetre off because the limb moved otherwise; then all its markers are. What is left
+        after the correction is each marker's own. Where many are far, it is the pose that is wrong, and none is named.
+
+        Args:
+            labels: (M,) the point of every marker.
+            points_m: (N, 3) the frame's points.
+            on_body_m: (M, 3) markers on the body in the pose the filter came to.
+        """
+        seen = labels != HIDDEN
+        far = np.zeros(len(labels), dtype=bool)
+        if seen.any():
+            away = points_m[labels] - on_body_m - self._offset_m
+            squared = np.einsum("ij,ij->i", away, away)
+            far = seen & (squared > self.settings.strange**2 * (self._variance + 0.5 * self.noise_m**2))
+        few = np.count_nonzero(far) <= MOST_STRANGE * np.count_nonzero(seen)
+        return far if few else np.zeros_like(far)
+
+    def remember(self, labels: Indices, points_m: Array, on_body_m: Array) -> None:
+        """Learns from a frame once the filter has used it.
+
+        Args:
+            labels: (M,) the point of every marker.
+            points_m: (N, 3) the frame's points.
+            on_body_m: (M, 3) markers on the body in the pose the filter came to.
+        """
+        seen = labels != HIDDEN
+        self._carried = np.full(len(points_m), HIDDEN, dtype=np.intp)
+        self._carried[labels[seen]] = np.flatnonzero(seen)
+        keep, fixed = self._keep, self.settings.offset_sd_m**2
+        limit = self._forgotten
+        unseen = ~seen & (self._variance > limit)
+        fading = np.where(unseen, self._variance, keep**2 * self._variance + (1.0 - keep**2) * limit)
+        fresh = seen & (self._variance > 2.0 * fixed)
+        if len(points_m):
+            gain = np.where(fresh, 0.5, self._learn)[:, None]
+            learnt = self._offset_m + gain * (points_m[labels] - on_body_m - self._offset_m)
+            self._offset_m = np.where(seen[:, None], learnt, keep * self._offset_m)
+        else:
+            self._offset_m = keep * self._offset_m
+        self._variance = np.where(seen, np.maximum(fixed, 0.3 * self._variance), fading)
+
+    def _doubt(self, labels: Indices, expected: MarkerExpectation, points_m: Array) -> Indices:
+        """The labels, or those without memory where these are much likelier for the second time running."""
+
+        def covariance(chosen: BoolArray) -> Array:
+            return _with_own(expected.spread(chosen), self._forgotten[chosen])
+
+        other = assign(expected.positions_m, points_m, covariance, self._patient)
+        changed = (other != labels) & (other != HIDDEN)
+        if not changed.any():
+            self._doubted[:] = 0
+            return labels
+        affected = (other != labels) & (changed | np.isin(labels, other[changed]))
+        offsets = points_m - expected.positions_m[affected][:, None]
+        costs = np.minimum(pair_costs(offsets, covariance(affected), self._patient), 0.0)
+        gain = _total(costs, labels[affected]) - _total(costs, other[affected])
+        if gain < self.settings.doubt_margin:
+            self._doubted[:] = 0
+            return labels
+        self._doubted = np.where(affected, self._doubted + 1, 0)
+        overruled = affected & (self._doubted >= self.settings.doubts)
+        if not overruled.any():
+            return labels
+        self.repaired += int((overruled & (labels != HIDDEN) & (other != HIDDEN)).sum())
+        self._doubted[overruled] = 0
+        self._offset_m[overruled] = 0.0
+        self._variance = np.where(overruled, self._forgotten, self._variance)
+        changed_labels = np.where(affected, other, labels)
+        return np.asarray(changed_labels)
+
+
+def _with_own(spread: Array, variance: Array) -> Array:
+    spread[:, np.arange(3), np.arange(3)] += variance[:, None]
+    return spread
+
+
+def _total(costs: Array, labels: Indices) -> float:
+    """What labels (m,) of the rows cost; a hidden marker costs nothing."""
+    seen = np.flatnonzero(labels != HIDDEN)
+    return float(costs[seen, labels[seen]].sum())

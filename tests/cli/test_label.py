@@ -1,0 +1,50 @@
+"""`mbkf label` writes the named capture and its summary, and refuses bad input in one line."""
+
+import json
+
+import pytest
+
+from mbkf.cli.main import main
+from mbkf.io.capture import read_capture
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A synthetic capture as `mbkf synth` writes it."""
+    out = tmp_path_factory.mktemp("walk")
+    assert main(["synth", "--motion", "walk", "--seconds", "1", "--out", str(out)]) == 0
+    return out
+
+
+@pytest.mark.parametrize("suffix", [".c3d", ".trc"])
+def test_label_writes_capture_and_summary(folder, tmp_path, capsys, suffix):
+    out = tmp_path / f"named{suffix}"
+    words = ["label", folder / "raw.c3d", "--subject", folder / "subject.toml", "--out", out]
+    assert main([str(word) for word in [*words, "--truth", folder / "trial.c3d"]]) == 0
+    shown = capsys.readouterr()
+    assert "ghost points dropped" in shown.out
+    assert "correct" in shown.out
+    summary = json.loads(out.with_suffix(".json").read_text())
+    assert summary["correct_fraction"] >= 0.99
+    assert summary["wrong_fraction"] <= 0.001
+    assert summary["missed_fraction"] <= 0.01
+    assert {"assigned_fraction", "ghosts_dropped", "swaps_repaired", "first_labelled_frame"} <= set(summary)
+    truth, named = read_capture(folder / "trial.c3d"), read_capture(out)
+    assert set(named.markers.names) <= set(truth.markers.names)
+    assert named.markers.frames == truth.markers.frames
+
+
+def test_without_truth_nothing_is_compared(folder, tmp_path):
+    out = tmp_path / "named.c3d"
+    words = ["label", folder / "raw.c3d", "--subject", folder / "subject.toml", "--out", out]
+    assert main([str(word) for word in words]) == 0
+    assert "correct_fraction" not in json.loads(out.with_suffix(".json").read_text())
+
+
+def test_bad_input_is_refused(folder, tmp_path, refused):
+    raw, subject = folder / "raw.c3d", folder / "subject.toml"
+    refused(["label", raw, "--subject", subject, "--out", tmp_path / "x.csv"], "--out", ".c3d or .trc")
+    refused(["label", raw, "--subject", subject, "--out", raw], "the raw capture itself")
+    refused(["label", tmp_path / "no.c3d", "--subject", subject, "--out", tmp_path / "x.c3d"], "no.c3d")
+    refused(["label", raw, "--subject", tmp_path / "no.toml", "--out", tmp_path / "x.c3d"], "mbkf scale")
+    refused(["label", raw, "--subject", subject], "--out")
