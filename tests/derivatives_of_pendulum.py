@@ -36,26 +36,24 @@ def manifold(block, body, q, v):
     return {f"{block}.retraction": (stated, numeric)}
 
 
-@checks(
-    "model.double_pendulum.DoublePendulum.linearise",
-    "model.double_pendulum.DoublePendulum.retraction",
-)
+@checks("model.forced_body.PlainCoordinates.retraction")
+def plain_coordinates(rng):
+    body, q, v, _ = loaded(rng, DoublePendulum)
+    return manifold("model.forced_body.PlainCoordinates", body, q, v)
+
+
+@checks("model.double_pendulum.DoublePendulum.linearise")
 def natural_coordinates(rng):
     body, q, v, u = loaded(rng, DoublePendulum)
     stated, numeric = map(joined, linearised(body, q, v, u))
-    block = "model.double_pendulum.DoublePendulum"
-    return {f"{block}.linearise": (stated, numeric)} | manifold(block, body, q, v)
+    return {"model.double_pendulum.DoublePendulum.linearise": (stated, numeric)}
 
 
-@checks(
-    "model.double_pendulum_pin.PinocchioPendulum.linearise",
-    "model.double_pendulum_pin.PinocchioPendulum.retraction",
-)
+@checks("model.double_pendulum_pin.PinocchioPendulum.linearise")
 def pinocchio_pendulum(rng):
     body, q, v, u = loaded(rng, PinocchioPendulum)
     stated, numeric = map(joined, linearised(body, q, v, u))
-    block = "model.double_pendulum_pin.PinocchioPendulum"
-    return {f"{block}.linearise": (stated, numeric)} | manifold(block, body, q, v)
+    return {"model.double_pendulum_pin.PinocchioPendulum.linearise": (stated, numeric)}
 
 
 @checks("model.forced_body.WithIdleStates.linearise", "model.forced_body.WithIdleStates.retraction")

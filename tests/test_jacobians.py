@@ -32,8 +32,7 @@ PLAIN = {"bool", "int", "float", "str"}
 
 TESTS = Path(__file__).parent
 ELSEWHERE = {
-    "model.double_pendulum.DoublePendulum.transport": "model/test_forced_body.py",
-    "model.double_pendulum_pin.PinocchioPendulum.transport": "model/test_forced_body.py",
+    "model.forced_body.PlainCoordinates.transport": "model/test_forced_body.py",
     "model.forced_body.WithIdleStates.transport": "model/test_forced_body.py",
     "model.forced_body.ForcedBody.linearise": "model/test_forced_body.py",
     "model.forced_body.ForcedBody.retraction": "model/test_human_dynamics.py",

@@ -8,7 +8,6 @@ with F_x, F_y and T_2 (the "plate"). τ_1 is the torque of the joint. Independen
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import ClassVar
 
 import casadi as ca
 import numpy as np
@@ -16,7 +15,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.model.compiled import Compiled
-from mbkf.model.forced_body import LinearAcceleration
+from mbkf.model.forced_body import LinearAcceleration, PlainCoordinates
 
 EFFORTS = ("tau_1", "F_x", "F_y", "T_2")
 """Components of T_e (eq. 3.58), N m, N, N, N m."""
@@ -67,7 +66,7 @@ class Inertial:
     by_a: Array
 
 
-class DoublePendulum:
+class DoublePendulum(PlainCoordinates):
     """Natural coordinates q̄ of the three points (eq. 3.53), carried to z by q̄' = R ż; derivatives by CasADi.
 
     Speaks :class:`mbkf.model.forced_body.ForcedBody`.
@@ -78,7 +77,7 @@ class DoublePendulum:
         nv, nu: Degrees of freedom (4) and efforts (4, with residual 7).
     """
 
-    nv: ClassVar[int] = 4
+    nv = 4
 
     def __init__(self, shape: PendulumShape, residual: bool = True) -> None:
         self.shape, self.residual = shape, residual
@@ -97,26 +96,6 @@ class DoublePendulum:
         slopes = [ca.jacobian(accelerated, x) for x in (z, v, u)]
         self._linearise = Compiled("linearise", [z, v, u], [accelerated, *slopes])
         self._given = Compiled("inertial", [z, v, a], [given, *(ca.jacobian(given, x) for x in (z, v, a))])
-
-    # Plain coordinates.
-
-    def integrate(self, q: Array, dv: Array) -> Array:
-        """(4,) z + dv."""
-        return q + dv
-
-    def difference(self, q0: Array, q1: Array) -> Array:
-        """(4,) from z_0 to z_1."""
-        return q1 - q0
-
-    def retraction(self, q: Array, dv: Array) -> tuple[Array, Array]:
-        """Derivatives (4, 4) of z + dv by both: identities."""
-        del q, dv
-        return np.eye(4), np.eye(4)
-
-    def transport(self, v: Array) -> Array:
-        """(4, 4) zero: an error in z stays what it is as the body moves."""
-        del v
-        return np.zeros((4, 4))
 
     # Dynamics.
 

@@ -5,15 +5,13 @@ Its joint coordinates are p = [x_0, y_0, θ_1, θ_2 − θ_1] = T z with a const
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 import numpy as np
 import pinocchio as pin
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.model.double_pendulum import EFFORTS, RESIDUALS, PendulumShape
-from mbkf.model.forced_body import LinearAcceleration
+from mbkf.model.forced_body import LinearAcceleration, PlainCoordinates
 
 FROM_ABSOLUTE = np.array(
     [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, -1.0, 1.0]]
@@ -21,10 +19,10 @@ FROM_ABSOLUTE = np.array(
 """T."""
 
 
-class PinocchioPendulum:
+class PinocchioPendulum(PlainCoordinates):
     """The same body as :class:`mbkf.model.double_pendulum.DoublePendulum`, with the same arguments and results."""
 
-    nv: ClassVar[int] = 4
+    nv = 4
 
     def __init__(self, shape: PendulumShape, residual: bool = True) -> None:
         self.shape, self.residual = shape, residual
@@ -35,24 +33,6 @@ class PinocchioPendulum:
         self._loads = pin.StdVec_Force()
         for _ in range(self.pin_model.njoints):
             self._loads.append(pin.Force.Zero())
-
-    def integrate(self, q: Array, dv: Array) -> Array:
-        """(4,) z + dv."""
-        return q + dv
-
-    def difference(self, q0: Array, q1: Array) -> Array:
-        """(4,) from z_0 to z_1."""
-        return q1 - q0
-
-    def retraction(self, q: Array, dv: Array) -> tuple[Array, Array]:
-        """Derivatives (4, 4) of z + dv by both: identities."""
-        del q, dv
-        return np.eye(4), np.eye(4)
-
-    def transport(self, v: Array) -> Array:
-        """(4, 4) zero."""
-        del v
-        return np.zeros((4, 4))
 
     def acceleration(self, q: Array, v: Array, u: Array) -> Array:
         """(4,) z̈ by the articulated-body algorithm."""

@@ -56,6 +56,34 @@ class ForcedBody(Protocol):
         """The acceleration with its derivatives."""
 
 
+class PlainCoordinates:
+    """The part of :class:`ForcedBody` that is alike for all bodies whose configuration is a plain vector.
+
+    Attributes:
+        nv: Number of coordinates.
+    """
+
+    nv: int
+
+    def integrate(self, q: Array, dv: Array) -> Array:
+        """(nv,) q + dv."""
+        return q + dv
+
+    def difference(self, q0: Array, q1: Array) -> Array:
+        """(nv,) from q_0 to q_1."""
+        return q1 - q0
+
+    def retraction(self, q: Array, dv: Array) -> tuple[Array, Array]:
+        """Derivatives (nv, nv) of q + dv by both: identities."""
+        del q, dv
+        return np.eye(self.nv), np.eye(self.nv)
+
+    def transport(self, v: Array) -> Array:
+        """(nv, nv) zero: an error in q stays what it is as the body moves."""
+        del v
+        return np.zeros((self.nv, self.nv))
+
+
 class WithIdleStates:
     """A forced body whose u carries further states behind its forces that push nothing, such as marker artefacts.
 
