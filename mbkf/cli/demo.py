@@ -22,7 +22,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         epilog="example:\n  mbkf demo\n  mbkf demo --motion jump --seed 3 --out jump3",
     )
     add_motion_options(parser)
-    parser.add_argument("--filter", choices=("kinematic",), default="kinematic", help="which filter")
+    parser.add_argument(
+        "--filter", choices=("dynamic", "kinematic", "torque"), default="dynamic", help="which filter"
+    )
     parser.add_argument("--out", metavar="DIR", default="mbkf-demo", help="folder to write (mbkf-demo)")
     parser.set_defaults(run=run)
 

@@ -64,7 +64,7 @@ def run_demo(
     *,
     seconds: float | None = None,
     seed: int = 0,
-    filter_name: str = "kinematic",
+    filter_name: str = "dynamic",
     progress: StageCallback | None = None,
 ) -> Demo:
     """Synthetic capture → subject scaled from the standing trial → reconstruction → errors.
