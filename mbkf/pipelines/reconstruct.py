@@ -11,7 +11,6 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray, StageCallback
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
 from mbkf.filters.dynamic_settings import DynamicSettings
-from mbkf.filters.estimate import Recording
 from mbkf.filters.settings import KinematicSettings
 from mbkf.filters.stretches import SmoothingSettings
 from mbkf.filters.torque_settings import TorqueSettings
@@ -20,20 +19,16 @@ from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject, match_names
 from mbkf.model.clinical import dof_names
-from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.clinical import clinical_motion
 from mbkf.pipelines.followers import FILTERS, FilterInputs, follower
 from mbkf.pipelines.reactions import Reactions, reactions
+from mbkf.pipelines.trial_inputs import trial_inputs
 from mbkf.scaling.correction import correct_markers
 from mbkf.scaling.frames import MIN_MARKERS
-from mbkf.sensors.contacts import plate_wrenches
 from mbkf.sensors.gap_filling import filled
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.version import __version__
-
-MIN_PRESENT = 0.02
-"""A marker seen in a smaller share of the frames than this does not count for what can be observed."""
 
 FOOT_SD_M = 0.03
 """A foot whose height is known no better than this may or may not touch the floor."""
@@ -106,25 +101,7 @@ def reconstruct(
         plates = _plates(capture, settings.without_plates)
         if settings.correct_markers:
             subject = correct_markers(subject, shown)
-        model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
-        followed = [m for name in measured.names for m in subject.markers if m.name == name]
-        sensor = MarkerSensor(
-            model, [m.segment for m in followed], np.array([m.position_m for m in followed])
-        )
-        held = _held(sensor, shown)
-        inputs = FilterInputs(
-            sensor,
-            np.array([m.noise_m for m in followed]),
-            plates,
-            1.0 / shown.rate_hz,
-            held,
-            settings.kinematic,
-            settings.dynamic,
-            settings.torque,
-        )
-        recording = Recording(
-            shown.positions_m, plate_wrenches(plates, shown.times_s, shown.rate_hz), inputs.dt_s
-        )
+        inputs, recording = trial_inputs(shown, plates, subject, settings)
         result = track(
             follower(settings.filter, inputs),
             recording,
@@ -132,8 +109,8 @@ def reconstruct(
             keep_covariance=settings.keep_covariance,
             progress=None if progress is None else lambda done, total: progress("Filtering", done, total),
         )
-        ground = reactions(model, result, shown.times_s, shown.rate_hz, plates)
-        return _assemble(capture, subject, settings, measured, hidden, sensor, held, result, ground)
+        ground = reactions(inputs.sensor.model, result, shown.times_s, shown.rate_hz, plates)
+        return _assemble(capture, subject, settings, measured, hidden, inputs, result, ground)
 
 
 def subject_markers(markers: MarkerTrajectories, subject: Subject) -> MarkerTrajectories:
@@ -172,23 +149,17 @@ def _plates(capture: Capture, without: Sequence[str]) -> tuple:
     return tuple(plate for plate in capture.plates if plate.name not in without)
 
 
-def _held(sensor: MarkerSensor, markers: MarkerTrajectories) -> BoolArray:
-    """(nv,) dofs that move no marker of the trial."""
-    present = markers.present.mean(axis=0) >= MIN_PRESENT
-    return ~sensor.model.supports[sensor.joint_ids[present]].any(axis=0)
-
-
 def _assemble(
     capture: Capture,
     subject: Subject,
     settings: ReconstructSettings,
     measured: MarkerTrajectories,
     hidden: BoolArray,
-    sensor: MarkerSensor,
-    held: BoolArray,
+    inputs: FilterInputs,
     result: Track,
     ground: Reactions,
 ) -> Reconstruction:
+    sensor, held = inputs.sensor, inputs.held
     model = sensor.model
     tau = ground.tau
     tau_sd = np.where(np.isnan(tau), np.nan, result.torque_sd)

@@ -1,32 +1,53 @@
-"""What a filter is built from and reads, made of a capture and a subject as `reconstruct` does it."""
+"""What a filter is built from and reads, made of a trial's markers and plates and of its subject."""
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 
+from mbkf.filters.dynamic_settings import DynamicSettings
 from mbkf.filters.estimate import Recording
-from mbkf.io.records import Capture
+from mbkf.filters.settings import KinematicSettings
+from mbkf.filters.torque_settings import TorqueSettings
+from mbkf.io.records import MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
 from mbkf.pipelines.followers import FilterInputs
-from mbkf.pipelines.reconstruct import MIN_PRESENT, ReconstructSettings, subject_markers
-from mbkf.scaling.correction import correct_markers
 from mbkf.sensors.contacts import plate_wrenches
 from mbkf.sensors.markers import MarkerSensor
 
+MIN_PRESENT = 0.02
+"""A marker seen in a smaller share of the frames than this does not count for what can be observed."""
+
+
+class Beliefs(Protocol):
+    """What each filter believes."""
+
+    @property
+    def kinematic(self) -> KinematicSettings:
+        """Of the kinematic filter."""
+
+    @property
+    def dynamic(self) -> DynamicSettings:
+        """Of the dynamic filter."""
+
+    @property
+    def torque(self) -> TorqueSettings:
+        """Of the torque filter."""
+
 
 def trial_inputs(
-    capture: Capture, subject: Subject, settings: ReconstructSettings
+    shown: MarkerTrajectories, plates: tuple[PlateReadings, ...], subject: Subject, beliefs: Beliefs
 ) -> tuple[FilterInputs, Recording]:
-    """Body, markers and plates of a trial, and its readings; nothing is hidden or withheld.
+    """Body, markers and plates of a trial, and its readings.
 
-    Raises:
-        NotObservable: Too few of the subject's markers.
-        NotConverged: The markers do not fit the subject's body.
+    Args:
+        shown: (T, M, 3) m, under the subject's own names; what is hidden is NaN.
+        plates: The plates that are read.
+        subject: The person, with marker positions as they are to be used.
+        beliefs: Settings of the filters.
     """
-    shown = subject_markers(capture.markers, subject)
-    if settings.correct_markers:
-        subject = correct_markers(subject, shown)
     model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
     by_name = {marker.name: marker for marker in subject.markers}
     followed = [by_name[name] for name in shown.names]
@@ -35,12 +56,12 @@ def trial_inputs(
     inputs = FilterInputs(
         sensor,
         np.array([m.noise_m for m in followed]),
-        capture.plates,
+        plates,
         1.0 / shown.rate_hz,
         ~model.supports[sensor.joint_ids[present]].any(axis=0),
-        settings.kinematic,
-        settings.dynamic,
-        settings.torque,
+        beliefs.kinematic,
+        beliefs.dynamic,
+        beliefs.torque,
     )
-    wrenches = plate_wrenches(capture.plates, shown.times_s, shown.rate_hz)
+    wrenches = plate_wrenches(plates, shown.times_s, shown.rate_hz)
     return inputs, Recording(shown.positions_m, wrenches, inputs.dt_s)

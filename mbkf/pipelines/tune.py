@@ -36,8 +36,9 @@ from mbkf.io.subject import Subject
 from mbkf.numerics.line_search import maximise
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.followers import FilterInputs, follower
-from mbkf.pipelines.reconstruct import ReconstructSettings
+from mbkf.pipelines.reconstruct import ReconstructSettings, subject_markers
 from mbkf.pipelines.trial_inputs import trial_inputs
+from mbkf.scaling.correction import correct_markers
 from mbkf.version import __version__
 
 SETTLING_S = 0.5
@@ -337,6 +338,16 @@ def _names(settings: TuneSettings) -> tuple[str, ...]:
     return tuple(dict.fromkeys(settings.parameters))
 
 
+def _inputs(
+    capture: Capture, subject: Subject, settings: ReconstructSettings
+) -> tuple[FilterInputs, Recording]:
+    """The whole trial, nothing hidden or withheld."""
+    shown = subject_markers(capture.markers, subject)
+    if settings.correct_markers:
+        subject = correct_markers(subject, shown)
+    return trial_inputs(shown, capture.plates, subject, settings)
+
+
 def _split(
     captures: Sequence[Capture], subject: Subject, settings: TuneSettings
 ) -> tuple[list[_Stretch], list[_Stretch]]:
@@ -345,7 +356,7 @@ def _split(
     if not count:
         raise InvalidInput("tuning needs at least one trial")
     kind = settings.filter
-    made = [trial_inputs(capture, subject, settings.reconstruct) for capture in captures]
+    made = [_inputs(capture, subject, settings.reconstruct) for capture in captures]
     names = [Path(capture.path).stem or f"trial {i + 1}" for i, capture in enumerate(captures)]
     if count == 1 and not settings.hold_out:
         (inputs, whole), half = made[0], len(made[0][1]) // 2

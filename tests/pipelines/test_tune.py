@@ -9,7 +9,7 @@ import pytest
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
 from mbkf.filters.settings import KinematicSettings
 from mbkf.io.records import Capture, MarkerTrajectories
-from mbkf.pipelines.reconstruct import ReconstructSettings
+from mbkf.pipelines.reconstruct import ReconstructSettings, subject_markers
 from mbkf.pipelines.trial_inputs import trial_inputs
 from mbkf.pipelines.tune import PARAMETERS, Tuned, TunedParameter, TuneSettings, tune
 from mbkf.sensors.markers import MarkerSensor
@@ -152,7 +152,8 @@ def test_parameters_are_settings_of_their_filter(kind):
 
 
 def test_inputs_are_those_of_a_reconstruction(subject, trial):
-    inputs, recording = trial_inputs(trial, subject, BARE)
+    shown = subject_markers(trial.markers, subject)
+    inputs, recording = trial_inputs(shown, trial.plates, subject, BARE)
     assert len(recording) == 160
     assert recording.plates.shape == (160, 0, 6)
     np.testing.assert_array_equal(inputs.noise_m, STATED * NOISE_M)
