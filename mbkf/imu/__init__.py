@@ -1,0 +1,1 @@
+"""Inertial sensors: orientation filters, virtual IMUs, joint angles, stride length."""

@@ -1,0 +1,86 @@
+"""When a foot stands still, read from its accelerometer and gyroscope.
+
+The statistic is the generalised likelihood ratio of Skog, Händel, Nilsson and Rantakokko, *Zero-velocity detection —
+an algorithm evaluation*, IEEE Trans. Biomed. Eng. 57 (2010), eq. 9.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import binary_closing, binary_opening, uniform_filter1d
+
+from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
+from mbkf.errors import InvalidInput
+
+
+@dataclass(frozen=True)
+class StillnessSettings:
+    """What counts as standing still.
+
+    Attributes:
+        window_s: Time over which the statistic is averaged.
+        acceleration_m_s2: Spread of the specific force about a constant of gravity's size that a standing foot shows.
+        angular_rate_rad_s: Spread of its angular velocity.
+        threshold: The foot is still where the statistic is below.
+        shortest_s: Shorter rests are none.
+        bridge_s: Shorter movements within a rest are part of it.
+    """
+
+    window_s: float = 0.1
+    acceleration_m_s2: float = 0.6
+    angular_rate_rad_s: float = 0.6
+    threshold: float = 2.0
+    shortest_s: float = 0.08
+    bridge_s: float = 0.05
+
+    def __post_init__(self) -> None:
+        for name in ("window_s", "acceleration_m_s2", "angular_rate_rad_s", "threshold"):
+            if not (np.isfinite(getattr(self, name)) and getattr(self, name) > 0.0):
+                raise InvalidInput(f"{name} must be positive, got {getattr(self, name)}")
+        for name in ("shortest_s", "bridge_s"):
+            if not (np.isfinite(getattr(self, name)) and getattr(self, name) >= 0.0):
+                raise InvalidInput(f"{name} must be 0 or more, got {getattr(self, name)}")
+
+
+def unrest(
+    specific_force_mps2: Array, angular_velocity_rad_s: Array, rate_hz: float, settings: StillnessSettings
+) -> Array:
+    """(T,) mean over the window of |f − g f̄/|f̄||²/σ_f² + |ω|²/σ_ω², f̄ the window's mean specific force.
+
+    Args:
+        specific_force_mps2: (T, 3) sensor axes.
+        angular_velocity_rad_s: (T, 3) sensor axes.
+        rate_hz: Sample rate.
+        settings: σ_f, σ_ω and the window.
+    """
+    size = max(3, round(settings.window_s * rate_hz)) | 1
+    mean = uniform_filter1d(specific_force_mps2, size, axis=0, mode="nearest")
+    length = np.linalg.norm(mean, axis=1, keepdims=True)
+    gravity = GRAVITY_M_S2 * mean / np.maximum(length, 1e-9)
+    off = ((specific_force_mps2 - gravity) ** 2).sum(axis=1) / settings.acceleration_m_s2**2
+    turning = (angular_velocity_rad_s**2).sum(axis=1) / settings.angular_rate_rad_s**2
+    averaged: Array = uniform_filter1d(off + turning, size, mode="nearest")
+    return averaged
+
+
+def still_samples(
+    specific_force_mps2: Array, angular_velocity_rad_s: Array, rate_hz: float, settings: StillnessSettings
+) -> BoolArray:
+    """(T,) samples in which the foot stands still; arguments as in :func:`unrest`."""
+    still = unrest(specific_force_mps2, angular_velocity_rad_s, rate_hz, settings) < settings.threshold
+    gap, rest = (max(1, round(s * rate_hz)) for s in (settings.bridge_s, settings.shortest_s))
+    # What lies beyond the ends counts as it does at the ends.
+    margin = gap + rest
+    padded = np.pad(still, margin, mode="edge")
+    closed = binary_closing(padded, np.ones(gap + 1, dtype=bool))
+    opened: BoolArray = binary_opening(closed, np.ones(rest, dtype=bool))
+    return opened[margin:-margin]
+
+
+def phases(mask: BoolArray) -> list[tuple[int, int]]:
+    """First sample, and the one after the last, of each run of true values in a mask (T,)."""
+    edges = np.diff(np.concatenate([[0], np.asarray(mask, dtype=np.int8), [0]]))
+    starts, stops = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+    return [(int(a), int(b)) for a, b in zip(starts, stops, strict=True)]

@@ -1,0 +1,68 @@
+"""When a foot stands still."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mbkf.conventions import GRAVITY_M_S2
+from mbkf.errors import InvalidInput
+from mbkf.imu.zero_velocity import StillnessSettings, phases, still_samples, unrest
+from tests.foot_walks import foot_walk
+
+SETTINGS = StillnessSettings()
+
+
+def readings_of(walk):
+    one = walk.readings
+    return one.specific_force_mps2, one.angular_velocity_rad_s, one.rate_hz
+
+
+@pytest.mark.parametrize("rate_hz", [50.0, 100.0, 204.8])
+def test_the_rests_of_a_walk_are_found_at_any_rate(rate_hz):
+    walk = foot_walk(rate_hz=rate_hz, force_noise_m_s2=0.05, rate_noise_rad_s=0.01)
+    found = still_samples(*readings_of(walk), SETTINGS)
+    assert len(phases(found)) == len(phases(walk.still)) == 4
+    assert (found == walk.still).mean() > 0.9
+
+
+def test_rest_is_judged_whatever_the_sensors_direction():
+    walk, other = (foot_walk(mounting_rad=turn) for turn in ((0.3, -0.2, 0.1), (2.0, 1.0, -1.5)))
+    assert np.allclose(unrest(*readings_of(walk), SETTINGS), unrest(*readings_of(other), SETTINGS))
+
+
+def test_the_statistic_of_white_noise_is_its_variance_over_the_assumed_one():
+    rng = np.random.default_rng(1)
+    f = [0.0, 0.0, GRAVITY_M_S2] + 0.3 * rng.normal(size=(4000, 3))
+    w = 0.2 * rng.normal(size=(4000, 3))
+    settings = StillnessSettings(acceleration_m_s2=0.3, angular_rate_rad_s=0.2)
+    assert unrest(f, w, 100.0, settings).mean() == pytest.approx(6.0, rel=0.1)
+
+
+def test_short_rests_are_none_and_short_movements_are_bridged():
+    f, w = np.tile([0.0, 0.0, GRAVITY_M_S2], (300, 1)), np.zeros((300, 3))
+    w[50:58] = 3.0  # bridged
+    w[120:200] = 3.0
+    w[250:] = 3.0
+    settings = StillnessSettings(window_s=0.02, bridge_s=0.15, shortest_s=0.1)
+    assert phases(still_samples(f, w, 100.0, settings)) == [(0, 119), (201, 249)]
+    longer = StillnessSettings(window_s=0.02, bridge_s=0.15, shortest_s=0.6)
+    assert phases(still_samples(f, w, 100.0, longer)) == [(0, 119)]
+
+
+@given(st.lists(st.booleans(), max_size=40))
+def test_phases_are_the_runs_of_a_mask(bits):
+    mask = np.array(bits, dtype=bool)
+    again = np.zeros_like(mask)
+    for start, stop in phases(mask):
+        assert start < stop
+        assert start == 0 or not mask[start - 1]
+        assert stop == len(mask) or not mask[stop]
+        again[start:stop] = True
+    assert np.array_equal(again, mask)
+
+
+@pytest.mark.parametrize("bad", [{"window_s": 0.0}, {"threshold": -1.0}, {"bridge_s": np.nan}])
+def test_bad_settings_are_refused(bad):
+    with pytest.raises(InvalidInput, match=next(iter(bad))):
+        StillnessSettings(**bad)
