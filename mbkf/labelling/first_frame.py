@@ -68,7 +68,7 @@ class FirstFrame:
         points: (M,) point of every marker, ``HIDDEN`` where none.
         q: (nq,) fitted pose.
         rms_m: RMS distance of the labelled points from it.
-        worth: How much more likely its labels are than that all points are ghosts (twice the log).
+        worth: How much more likely its labels are than that all points are ghosts (twice the log), posture included.
     """
 
     points: Indices
@@ -129,6 +129,13 @@ class FirstFrameSearch:
         found = self._fitted(points_m, first, q)
         return found if self.believed(found, len(points_m)) else None
 
+    def settled(self, points_m: Array, labels: Indices) -> FirstFrame | None:
+        """Labels of points (N, 3) from rough ones (M,), which some markers may lack, or None."""
+        if np.count_nonzero(labels != HIDDEN) < MIN_MARKERS:
+            return None
+        found = self._improved(points_m, self._fitted(points_m, labels, None))
+        return found if self.believed(found, len(points_m)) else None
+
     def _improved(self, points_m: Array, found: FirstFrame) -> FirstFrame:
         """Labels with every doubtful limb grown anew from the fitted body, from the fingers and toes inwards."""
         for limb in reversed(limbs(self._body)):
@@ -165,8 +172,7 @@ class FirstFrameSearch:
                 q = segment_by_segment(self.sensor, measured)
             fit = self._fit(measured, q)
             distance = np.linalg.norm(self.sensor.positions(fit.q) - measured, axis=1)
-            worth = float(np.nansum(likeness(distance**2, self.sd_m)))
-            found = FirstFrame(labels, fit.q, fit.rms_m, worth)
+            found = FirstFrame(labels, fit.q, fit.rms_m, self.worth(measured, fit.q))
             far = distance > STRANGE * self.sd_m
             if far.any() and (~far).sum() >= MIN_MARKERS:
                 fit = self._fit(np.where(far[:, None], np.nan, measured), fit.q)
@@ -175,6 +181,15 @@ class FirstFrameSearch:
                 break
             labels, q = again, fit.q
         return found
+
+    def worth(self, markers_m: Array, q: Array) -> float:
+        """How much likelier markers (M, 3) of a body in the pose q (nq,) are than ghosts, and the pose than none.
+
+        Exchanged markers of a wrist fit as well, but turn the forearm the other way round: the posture tells.
+        """
+        away = self.sensor.positions(q) - markers_m
+        posture = self.posture.reading(q).deviation / self.posture.sd
+        return float(np.nansum(likeness((away**2).sum(axis=1), self.sd_m)) - posture @ posture)
 
     def _fit(self, measured_m: Array, start: Array) -> PoseFit:
         return fit_pose(self.sensor, self.posture, measured_m, self.sd_m, start, max_iterations=12)

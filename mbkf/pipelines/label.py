@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,22 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, StageCallback
-from mbkf.errors import MbkfError, NotObservable
-from mbkf.filters.kinematic import KinematicFilter
-from mbkf.filters.kinematic_follower import KinematicFollower
-from mbkf.filters.settings import KinematicSettings
+from mbkf.errors import NotObservable
 from mbkf.io.records import Capture, MarkerTrajectories
-from mbkf.io.subject import Subject, SubjectMarker
+from mbkf.io.subject import Subject
 from mbkf.labelling.assignment import HIDDEN, Indices
-from mbkf.labelling.first_frame import FirstFrame, FirstFrameSearch, labelled
-from mbkf.labelling.placing import likeness
-from mbkf.labelling.running import RunningLabeller, RunningSettings
-from mbkf.model.human import HumanModel
+from mbkf.labelling.first_frame import FirstFrame, labelled
+from mbkf.labelling.running import RunningSettings
 from mbkf.numerics.threads import single_threaded
+from mbkf.pipelines.any_attitude import STAGE, starts_anyhow
+from mbkf.pipelines.label_body import LabelBody, label_body
+from mbkf.pipelines.label_redecision import redecided, trajectories
 from mbkf.pipelines.label_score import LabelScore
-from mbkf.pipelines.labelling_pass import LabellingPass
-from mbkf.scaling.correction import correct_markers
-from mbkf.sensors.markers import MarkerSensor
 
 CANDIDATES = 8
 """Frames, spread over the capture, that are looked at for a start."""
@@ -39,12 +34,6 @@ JUDGED = 40
 SCAN_S = 0.1
 """Where none of these will do, frames so far apart are tried in turn, and those above in any attitude."""
 
-CORRECTED_SD_M = 0.006
-"""How far a marker sits from where a first pass over the capture found it."""
-
-LEAST_SEEN = 0.05
-"""A marker that the first pass saw in a smaller share of the frames was not worn: a ghost took its place."""
-
 
 @dataclass(frozen=True)
 class Labelling:
@@ -57,6 +46,7 @@ class Labelling:
         starts: Frames at which labels were found without those of the frame before.
         repaired: How many markers had their labels taken back from a wrong point.
         step_seconds: (T,) computing time of each frame's labels, filter not counted; NaN where searched.
+        redecided: How many samples lost or changed their label when the whole capture was known.
     """
 
     markers: MarkerTrajectories
@@ -65,6 +55,7 @@ class Labelling:
     starts: tuple[int, ...]
     repaired: int
     step_seconds: Array
+    redecided: int = 0
 
     @property
     def assigned_fraction(self) -> float:
@@ -87,6 +78,7 @@ def summarise(found: Labelling, compared: LabelScore | None = None) -> dict[str,
         "assigned_fraction": found.assigned_fraction,
         "ghosts_dropped": int(found.ghosts.sum()),
         "swaps_repaired": found.repaired,
+        "samples_redecided": found.redecided,
         "first_labelled_frame": found.first_labelled_frame,
         "starts": list(found.starts),
         "step_seconds_median": _median(found.step_seconds),
@@ -111,41 +103,30 @@ def labelled_capture(raw: Capture, found: Labelling) -> Capture:
 
 
 @dataclass(frozen=True)
-class _Body:
-    """A subject's markers ready to be looked for."""
+class Start:
+    """A frame and the pose (nq,) of the body in it, nearly, where both are known beforehand."""
 
-    subject: Subject
-    markers: tuple[SubjectMarker, ...]
-    sensor: MarkerSensor
-    search: FirstFrameSearch
-
-    settings: RunningSettings
-
-    def start_pass(self, positions_m: Array, dt_s: float) -> LabellingPass:
-        """A pass over points (T, C, 3) with a filter and a labeller of its own."""
-        noise = np.array([m.noise_m for m in self.markers])
-        placement = np.array([m.session_sd_m for m in self.markers])
-        held = ~self.sensor.model.supports[self.sensor.joint_ids].any(axis=0)
-        follower = KinematicFollower(KinematicFilter(self.sensor, noise, dt_s, held, KinematicSettings()))
-        return LabellingPass(
-            follower,
-            self.sensor,
-            self.search,
-            RunningLabeller(noise, placement, dt_s, self.settings),
-            positions_m,
-        )
+    frame: int
+    q: Array
 
 
-def label(capture: Capture, subject: Subject, *, progress: StageCallback | None = None) -> Labelling:
+def label(
+    capture: Capture,
+    subject: Subject,
+    *,
+    start: Start | None = None,
+    progress: StageCallback | None = None,
+) -> Labelling:
     """Names the points of a capture.
 
     The columns of the capture may be tracks or may be shuffled in every frame. The capture is labelled from its surest
-    frame forwards and backwards, once with the subject's own marker geometry and once with that geometry corrected
-    on the result (thesis 4.1.1).
+    frame forwards and backwards; then a smoother decides again, with the subject's marker geometry corrected on the
+    result (thesis 4.1.1).
 
     Args:
         capture: Unlabelled points; their names are ignored.
         subject: The scaled person. Markers that scaling never saw are not looked for.
+        start: Where to start from; by default it is searched for.
         progress: Called with the stage, items done and items in all.
 
     Raises:
@@ -154,17 +135,30 @@ def label(capture: Capture, subject: Subject, *, progress: StageCallback | None 
     report = progress or (lambda *_: None)
     markers = capture.markers
     with single_threaded():
-        body = _body(subject.markers, subject, RunningSettings())
-        found = _likeliest(body, markers, lambda n, all_: report("Labelling", n, all_))
-        corrected = _corrected(body, found.labelling)
-        if corrected is None:
-            return found.labelling
-        again = corrected.search.about(_present(markers, found.start), found.q[found.start])
-        if again is None:
-            return found.labelling
-        return _both_ways(
-            corrected, markers, found.start, again, lambda n, all_: report("Labelling again", n, all_)
-        ).labelling
+        body = label_body(subject.markers, subject, RunningSettings())
+        starts = _starts(body, markers, report) if start is None else _started(body, markers, start, report)
+        found = _likeliest(body, markers, starts, lambda n, all_: report("Labelling", n, all_))
+        again = redecided(
+            body,
+            markers,
+            found.labelling.label_of_point,
+            found.q,
+            lambda n, all_: report("Looking again", n, all_),
+        )
+        labels = again.label_of_point
+        return replace(
+            found.labelling,
+            markers=trajectories(markers, labels, body.names),
+            label_of_point=labels,
+            ghosts=_ghosts(markers.positions_m, labels),
+            redecided=again.changed,
+        )
+
+
+def _ghosts(positions_m: Array, label_of_point: Indices) -> Array:
+    """(T,) points that are nobody's."""
+    there = ~np.isnan(positions_m).any(axis=2)
+    return np.asarray((there & (label_of_point == HIDDEN)).sum(axis=1))
 
 
 @dataclass(frozen=True)
@@ -176,24 +170,20 @@ class _Run:
     q: Array
 
 
-def _body(markers: Sequence[SubjectMarker], subject: Subject, settings: RunningSettings) -> _Body:
-    seen = subject.report.get("markers")
-    worn = tuple(m for m in markers if seen is None or m.name in seen)
-    model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
-    sensor = MarkerSensor(model, [m.segment for m in worn], np.array([m.position_m for m in worn]))
-    sd = np.array([np.hypot(m.noise_m, m.session_sd_m) for m in worn])
-    return _Body(subject, worn, sensor, FirstFrameSearch(sensor, sd), settings)
-
-
 def _present(markers: MarkerTrajectories, t: int) -> Array:
     frame = markers.positions_m[t]
     return frame[~np.isnan(frame).any(axis=1)]
 
 
-def _likeliest(body: _Body, markers: MarkerTrajectories, progress: Callable[[int, int], None]) -> _Run:
+def _likeliest(
+    body: LabelBody,
+    markers: MarkerTrajectories,
+    starts: list[tuple[int, FirstFrame]],
+    progress: Callable[[int, int], None],
+) -> _Run:
     """The pass whose labels fit the body best, of those from a few starts that disagree."""
     runs: list[_Run] = []
-    for t, first in _starts(body, markers):
+    for t, first in starts:
         points = _present(markers, t)
         shown = labelled(points, first.points)
         if any(np.array_equal(run.labelling.markers.positions_m[t], shown, equal_nan=True) for run in runs):
@@ -204,22 +194,25 @@ def _likeliest(body: _Body, markers: MarkerTrajectories, progress: Callable[[int
     return max(runs, key=lambda run: _likelihood(body, run))
 
 
-def _likelihood(body: _Body, run: _Run) -> float:
-    """Worth of a run's labels, summed over a few frames; see :func:`mbkf.labelling.placing.likeness`."""
+def _likelihood(body: LabelBody, run: _Run) -> float:
+    """Worth of a run's labels, summed over a few frames."""
     total, shown = 0.0, run.labelling.markers.positions_m
     for t in np.unique(np.linspace(0, len(shown) - 1, JUDGED).astype(int)):
         if not np.isnan(run.q[t]).any():
-            away = shown[t] - body.sensor.positions(run.q[t])
-            total += float(np.nansum(likeness((away**2).sum(axis=1), body.search.sd_m)))
+            total += body.search.worth(shown[t], run.q[t])
     return total
 
 
-def _starts(body: _Body, markers: MarkerTrajectories) -> list[tuple[int, FirstFrame]]:
+def _starts(
+    body: LabelBody, markers: MarkerTrajectories, report: StageCallback
+) -> list[tuple[int, FirstFrame]]:
     """Frames to start from with their labels, surest first; else the first of all frames that can be labelled."""
     last, search = markers.frames - 1, body.search
     looks = sorted({round(share * last) for share in np.linspace(0.02, 0.98, CANDIDATES)})
     found = [(t, search.standing(_present(markers, t))) for t in looks]
     good = [(t, one) for t, one in found if one is not None]
+    if 2 * len(good) < len(looks):
+        good += starts_anyhow(search, markers, looks, lambda n, all_: report(STAGE, n, all_))
     if good:
         return sorted(good, key=lambda pair: -pair[1].worth)
     for t in range(0, markers.frames, max(1, round(SCAN_S * markers.rate_hz))):
@@ -237,8 +230,16 @@ def _starts(body: _Body, markers: MarkerTrajectories) -> list[tuple[int, FirstFr
     )
 
 
+def _started(
+    body: LabelBody, markers: MarkerTrajectories, start: Start, report: StageCallback
+) -> list[tuple[int, FirstFrame]]:
+    """The start that is known, or those that can be found where its pose does not fit the subject."""
+    first = body.search.about(_present(markers, start.frame), start.q)
+    return _starts(body, markers, report) if first is None else [(start.frame, first)]
+
+
 def _both_ways(
-    body: _Body,
+    body: LabelBody,
     markers: MarkerTrajectories,
     start: int,
     first: FirstFrame,
@@ -257,32 +258,14 @@ def _both_ways(
         return np.concatenate([earlier[::-1][:start], later[start:]])
 
     labels = joined(ahead.label_of_point, back.label_of_point)
-    present = ~np.isnan(positions).any(axis=2)
-    names = tuple(m.name for m in body.markers)
-    found = replace(markers, names=names, positions_m=joined(ahead.markers_m, back.markers_m))
+    found = replace(markers, names=body.names, positions_m=joined(ahead.markers_m, back.markers_m))
     starts = sorted({*ahead.starts, *(frames - 1 - t for t in back.starts)})
     result = Labelling(
         found,
         labels,
-        (present & (labels == HIDDEN)).sum(axis=1),
+        _ghosts(positions, labels),
         tuple(starts),
         ahead.labeller.repaired + back.labeller.repaired,
         joined(ahead.step_seconds, back.step_seconds),
     )
     return _Run(result, start, joined(ahead.q, back.q))
-
-
-def _corrected(body: _Body, found: Labelling) -> _Body | None:
-    """The body with marker positions as the first pass has them, or None where these fit no body."""
-    try:
-        subject = correct_markers(body.subject, found.markers)
-    except MbkfError:
-        return None
-    share = found.markers.present.mean(axis=0)
-    worn = {m.name for m, seen in zip(body.markers, share, strict=True) if seen >= LEAST_SEEN}
-    markers = [
-        replace(m, session_sd_m=min(m.session_sd_m, CORRECTED_SD_M))
-        for m in subject.markers
-        if m.name in worn
-    ]
-    return _body(markers, subject, RunningSettings(unseen_sd_m=0.0))

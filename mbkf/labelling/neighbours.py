@@ -1,0 +1,170 @@
+"""Neighbours' names: markers of one segment that only the whole body's posture tells apart.
+
+Of two markers a few centimetres apart a trial may show one: which? Two markers of a wrist, exchanged, fit the forearm
+as well, but the other way round. A first frame or a gap may get such names wrong; here a few frames are fitted with
+either name, and the likelier posture wins.
+"""
+
+from __future__ import annotations
+
+import itertools
+import warnings
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.labelling.assignment import Indices
+from mbkf.labelling.first_frame import FirstFrameSearch
+from mbkf.labelling.tracklets import Tracklets
+from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
+
+LOOKS = 16
+"""Frames that are fitted to find names that were not worn."""
+
+FEW_LOOKS = 5
+"""Frames that are fitted to find exchanged names."""
+
+NEAR_M = 0.10
+"""A name is tried on a trajectory that runs no farther from its place than this."""
+
+GAIN = 1.0
+"""How much likelier a frame must become in the mean (twice the log) for a name to change."""
+
+EXCHANGE_GAIN = 3.0
+"""The same for two names that change places."""
+
+SMALL = 3
+"""Markers of a segment with more markers than this fit one way only."""
+
+MOST_CHANGES = 6
+
+
+def renamed(search: FirstFrameSearch, markers_m: Array, q: Array) -> Indices:
+    """(M,) under which marker's name the trajectory now called by each marker belongs.
+
+    Args:
+        search: The body, its markers and what they are worth.
+        markers_m: (T, M, 3) labelled trajectories, NaN where hidden.
+        q: (T, nq) poses, NaN where the body was not followed.
+    """
+    looks = _spread(np.flatnonzero(~np.isnan(q).any(axis=1)), LOOKS)
+    name = np.arange(markers_m.shape[1])
+    shown = markers_m[looks]
+    worth, poses = _worth(search, shown, q[looks])
+    for _ in range(MOST_CHANGES):
+        tried = [
+            (*_worth(search, _moved(shown, old, new), poses), old, new)
+            for old, new in _unused_neighbours(search, shown, poses)
+        ]
+        best = max(tried, key=lambda one: one[0], default=None)
+        if best is None or best[0] < worth + GAIN:
+            break
+        worth, poses, old, new = best
+        shown = _moved(shown, old, new)
+        name[name == old] = new
+    return name
+
+
+def exchanged(
+    search: FirstFrameSearch, markers_m: Array, q: Array, label: Indices, tracklets: Tracklets
+) -> Indices:
+    """(n,) labels of the tracklets, with two markers' names exchanged while that makes the posture likelier.
+
+    Args:
+        search: The body, its markers and what they are worth.
+        markers_m: (T, M, 3) labelled trajectories, NaN where hidden.
+        q: (T, nq) poses, NaN where the body was not followed.
+        label: (n,) labels of the tracklets.
+        tracklets: They.
+    """
+    label, segments = label.copy(), np.array(search.sensor.segments)
+    followed = ~np.isnan(q).any(axis=1)
+    for segment in dict.fromkeys(search.sensor.segments):
+        own = np.intersect1d(np.flatnonzero(segments == segment), label)
+        if len(own) > SMALL:
+            continue
+        for a, b in itertools.combinations(own, 2):
+            for together in _overlapping(np.flatnonzero((label == a) | (label == b)), tracklets):
+                spans = tracklets.spans[together]
+                first, end = int(spans[:, 0].min()), int(spans[:, 1].max())
+                looks = _spread(first + np.flatnonzero(np.asarray(followed)[first:end]), FEW_LOOKS)
+                if _likelier_exchanged(search, markers_m[looks], q[looks], a, b):
+                    label[together] = a + b - label[together]
+    return label
+
+
+def _overlapping(pieces: Indices, tracklets: Tracklets) -> list[Indices]:
+    """The tracklets in groups that hang together in time, with gaps between the groups."""
+    spans = tracklets.spans[pieces]
+    order = np.argsort(spans[:, 0])
+    reached = np.maximum.accumulate(spans[order, 1])
+    return np.split(pieces[order], 1 + np.flatnonzero(spans[order[1:], 0] >= reached[:-1]))
+
+
+def _likelier_exchanged(search: FirstFrameSearch, markers_m: Array, q: Array, a: int, b: int) -> bool:
+    if not len(q):
+        return False
+    other = markers_m.copy()
+    other[:, [a, b]] = markers_m[:, [b, a]]
+    return _freely(search, other, q) > _freely(search, markers_m, q) + EXCHANGE_GAIN
+
+
+def _freely(search: FirstFrameSearch, markers_m: Array, q: Array) -> float:
+    """Mean worth of frames (n, M, 3), fitted from poses (n, nq) and from the markers alone, whichever is better."""
+    total = 0.0
+    for frame, pose in zip(markers_m, q, strict=True):
+        fits = [_fit(search, frame, start) for start in (pose, segment_by_segment(search.sensor, frame))]
+        total += max(search.worth(frame, fit) for fit in fits)
+    return total / len(q)
+
+
+def _fit(search: FirstFrameSearch, markers_m: Array, start: Array) -> Array:
+    fit = fit_pose(search.sensor, search.posture, markers_m, search.sd_m, start, max_iterations=10)
+    return fit.q
+
+
+def _spread(frames: Indices, most: int) -> Indices:
+    """A few of the frames from the first to the last."""
+    if not len(frames):
+        return frames
+    return frames[np.unique(np.linspace(0, len(frames) - 1, most).astype(int))]
+
+
+def _moved(markers_m: Array, old: int, new: int) -> Array:
+    moved = markers_m.copy()
+    moved[:, new], moved[:, old] = markers_m[:, old], np.nan
+    return moved
+
+
+def _worth(search: FirstFrameSearch, markers_m: Array, q: Array) -> tuple[float, Array]:
+    """Mean worth of frames (n, M, 3) under these names, and the poses (n, nq) fitted to them from poses q."""
+    if not len(q):
+        return 0.0, q
+    poses = np.array([_fit(search, frame, pose) for frame, pose in zip(markers_m, q, strict=True)])
+    return float(np.mean([search.worth(*one) for one in zip(markers_m, poses, strict=True)])), poses
+
+
+def _unused_neighbours(search: FirstFrameSearch, markers_m: Array, q: Array) -> list[tuple[int, int]]:
+    """Markers in use and, for each, those of its segment that are not and whose place its trajectory runs by."""
+    sensor = search.sensor
+    used = ~np.isnan(markers_m[:, :, 0]).all(axis=0)
+    mean = _mean_place(search, markers_m, q)
+    return [
+        (int(old), int(new))
+        for new in np.flatnonzero(~used)
+        for old in np.flatnonzero(used)
+        if sensor.segments[old] == sensor.segments[new]
+        and np.linalg.norm(mean[old] - sensor.local_m[new]) <= NEAR_M
+    ]
+
+
+def _mean_place(search: FirstFrameSearch, markers_m: Array, q: Array) -> Array:
+    """(M, 3) median places of the trajectories in their segments' frames."""
+    joints = search.sensor.joint_ids
+    place = np.full(markers_m.shape, np.nan)
+    for k, pose in enumerate(q):
+        rotations, origins = search.sensor.model.placements(pose)
+        place[k] = np.einsum("mji,mj->mi", rotations[joints], markers_m[k] - origins[joints])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # markers not in use
+        return np.asarray(np.nanmedian(place, axis=0) if len(q) else np.full(markers_m.shape[1:], np.nan))
