@@ -17,13 +17,19 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "demo",
         help="the whole chain on a synthetic capture, with its error",
-        description="A synthetic person is captured, scaled from a standing trial and reconstructed; the result is "
-        "compared with what really happened. The capture is labelled.",
+        description="A synthetic person is captured; from the points without names, ghosts among them, labels, motion "
+        "and torques are found, and compared with what really happened.",
         epilog="example:\n  mbkf demo\n  mbkf demo --motion jump --seed 3 --out jump3",
     )
     add_motion_options(parser)
     parser.add_argument(
         "--filter", choices=("dynamic", "kinematic", "torque"), default="dynamic", help="which filter"
+    )
+    parser.add_argument(
+        "--report",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="write report.html beside the result (yes)",
     )
     parser.add_argument("--out", metavar="DIR", default="mbkf-demo", help="folder to write (mbkf-demo)")
     parser.set_defaults(run=run)
@@ -35,10 +41,11 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         MbkfError: The folder is a file, or an option makes no sense.
     """
+    from mbkf.cli.label import print_labels
     from mbkf.cli.progress import stages
     from mbkf.cli.reconstruct import print_summary
     from mbkf.errors import InvalidInput
-    from mbkf.pipelines.demo import run_demo
+    from mbkf.pipelines.demo import LABELLED, run_demo
 
     if args.seed < 0:
         raise InvalidInput(f"--seed must be 0 or more, got {args.seed}")
@@ -51,9 +58,20 @@ def run(args: argparse.Namespace) -> int:
             filter_name=args.filter,
             progress=report,
         )
+    print_labels(demo.labels, demo.folder / LABELLED)
     print_summary(demo.summary, demo.folder / "result")
     _print_errors(demo)
+    if args.report:
+        _write_report(demo)
     return 0
+
+
+def _write_report(demo: Demo) -> None:
+    from mbkf.viz.report import labels_of, write_report
+
+    path = demo.folder / "report.html"
+    write_report(demo.result, demo.summary, path, labels_of(demo.folder / "result", demo.result.trial))
+    print(path)
 
 
 def _print_errors(demo: Demo) -> None:

@@ -16,7 +16,10 @@ from typing import NoReturn
 from mbkf.errors import MbkfError
 from mbkf.version import __version__
 
-COMMANDS = ("demo", "synth", "info", "scale", "label", "reconstruct", "tune", "observability", "export")
+COMMANDS = (
+    "demo", "synth", "info", "scale", "label", "reconstruct", "replay", "live", "view", "report", "tune",
+    "observability", "imu", "export",
+)  # fmt: skip
 """Names of the subcommands, in the order of the help; each is the module ``mbkf.cli.<name>``."""
 
 EXIT_BUG = 1

@@ -20,7 +20,7 @@ SHAPES: dict[str, str] = {
     "foot_wrench": "T 2 6", "foot_cop_m": "T 2 3", "foot_free_moment_nm": "T 2",
     "residual_force_n": "T 3", "residual_moment_nm": "T 3", "tracked": "T", "valid": "T",
     "nis": "T", "nis_readings": "T", "step_seconds": "T", "plate_change": "T P 6",
-    "foot_wrench_sd": "T 2 6", "footing": "T 2", "covariance": "T 2nv 2nv",
+    "foot_wrench_sd": "T 2 6", "footing": "T 2", "covariance": "T 2nv 2nv", "plate_corners_m": "P 4 3",
 }  # fmt: skip
 """Dimensions of every array: T frames, nv dofs, A coordinates, M markers, P plates."""
 
@@ -80,6 +80,8 @@ class Reconstruction:
         footing: (T, 2) what right and left foot stand on: -1 something without a reading, 0 air, 1 a plate of its
             own, 2 a plate both share; None where the filter does not ask.
         covariance: (T, 2nv, 2nv) of (q, v) in the tangent space; only kept on request and never written.
+        plate_corners_m: (P, 4, 3) world corners of the capture's plates, NaN where their file has no geometry; None
+            without plates.
     """
 
     trial: str
@@ -128,6 +130,7 @@ class Reconstruction:
     foot_wrench_sd: Array | None = None
     footing: Array | None = None
     covariance: Array | None = field(default=None, repr=False)
+    plate_corners_m: Array | None = None
 
     def __post_init__(self) -> None:
         for name in ("dof_names", "coordinate_names", "marker_names", "held_dofs", "warnings"):

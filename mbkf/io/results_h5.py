@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import io
 import json
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,7 @@ UNITS = {
     "measured_m": "m", "predicted_m": "m", "foot_wrench": "N, N m about the world's origin",
     "foot_cop_m": "m", "foot_free_moment_nm": "N m", "residual_force_n": "N", "residual_moment_nm": "N m",
     "step_seconds": "s", "plate_change": "N, N m", "foot_wrench_sd": "N, N m about the world's origin",
+    "plate_corners_m": "m",
 }  # fmt: skip
 """Unit of each array; the others (flags, counts, the innovation statistic) have none and carry "1"."""
 
@@ -43,7 +45,8 @@ def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
     Raises:
         OSError: The file cannot be written.
     """
-    with replacing(path) as partial, h5py.File(partial, "w") as file:
+    made = io.BytesIO()  # HDF5 itself does not survive a disk that is full
+    with h5py.File(made, "w") as file:
         file.attrs["format"] = FORMAT
         file.attrs["format_version"] = FORMAT_VERSION
         file.attrs["axes"] = (
@@ -66,6 +69,8 @@ def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
             )
             dataset = file.create_dataset(name, data=array, **packed)
             dataset.attrs["unit"] = UNITS.get(name, "1")
+    with replacing(path) as partial:
+        partial.write_bytes(made.getbuffer())
 
 
 def read_h5(path: str | Path) -> Reconstruction:

@@ -22,7 +22,8 @@ from mbkf.model.clinical import dof_names
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.clinical import clinical_motion
 from mbkf.pipelines.followers import FILTERS, FilterInputs, follower
-from mbkf.pipelines.reactions import Reactions, reactions
+from mbkf.pipelines.imu_body import ImuOnBody, with_imus
+from mbkf.pipelines.reactions import reactions
 from mbkf.pipelines.trial_inputs import trial_inputs
 from mbkf.scaling.correction import correct_markers
 from mbkf.scaling.frames import MIN_MARKERS
@@ -76,6 +77,7 @@ def reconstruct(
     subject: Subject,
     *,
     settings: ReconstructSettings | None = None,
+    imus: ImuOnBody | None = None,
     progress: StageCallback | None = None,
 ) -> Reconstruction:
     """Follows the subject through a capture and solves for torques.
@@ -84,6 +86,7 @@ def reconstruct(
         capture: Markers and plates.
         subject: The scaled person.
         settings: How; the defaults are the same for every capture.
+        imus: Inertial sensors on the body, for the dynamic filter.
         progress: Called with the stage, items done and items in all.
 
     Raises:
@@ -102,6 +105,11 @@ def reconstruct(
         if settings.correct_markers:
             subject = correct_markers(subject, shown)
         inputs, recording = trial_inputs(shown, plates, subject, settings)
+        if imus is not None:
+            if settings.filter != "dynamic":
+                raise InvalidInput(f"the {settings.filter} filter reads no inertial sensors; use --filter dynamic")
+            inputs, recording, told = with_imus(inputs, recording, shown.times_s, imus)
+            capture = replace(capture, notes=(*capture.notes, *told))
         result = track(
             follower(settings.filter, inputs),
             recording,
@@ -109,8 +117,7 @@ def reconstruct(
             keep_covariance=settings.keep_covariance,
             progress=None if progress is None else lambda done, total: progress("Filtering", done, total),
         )
-        ground = reactions(inputs.sensor.model, result, shown.times_s, shown.rate_hz, plates)
-        return _assemble(capture, subject, settings, measured, hidden, inputs, result, ground)
+        return assemble(capture, subject, settings, measured, hidden, inputs, result)
 
 
 def subject_markers(markers: MarkerTrajectories, subject: Subject) -> MarkerTrajectories:
@@ -149,7 +156,7 @@ def _plates(capture: Capture, without: Sequence[str]) -> tuple:
     return tuple(plate for plate in capture.plates if plate.name not in without)
 
 
-def _assemble(
+def assemble(
     capture: Capture,
     subject: Subject,
     settings: ReconstructSettings,
@@ -157,10 +164,21 @@ def _assemble(
     hidden: BoolArray,
     inputs: FilterInputs,
     result: Track,
-    ground: Reactions,
 ) -> Reconstruction:
+    """Reactions, torques and clinical coordinates of a followed trial, put together.
+
+    Args:
+        capture: The trial, for its name and notes.
+        subject: The person, as followed.
+        settings: How.
+        measured: (T, M, 3) the subject's markers.
+        hidden: (T, M) those taken away on purpose.
+        inputs: What the filter was built from, with the plates it read.
+        result: What it found.
+    """
     sensor, held = inputs.sensor, inputs.held
     model = sensor.model
+    ground = reactions(model, result, measured.times_s, measured.rate_hz, inputs.plates)
     tau = ground.tau
     tau_sd = np.where(np.isnan(tau), np.nan, result.torque_sd)
     clinical = clinical_motion(model, result, tau, tau_sd)
@@ -213,7 +231,14 @@ def _assemble(
         foot_wrench_sd=ground.wrench_sd,
         footing=result.footing,
         covariance=result.covariance,
+        plate_corners_m=_corners(capture),
     )
+
+
+def _corners(capture: Capture) -> Array | None:
+    unknown = np.full((4, 3), np.nan)
+    corners = [unknown if plate.corners_m is None else plate.corners_m for plate in capture.plates]
+    return np.array(corners) if corners else None
 
 
 def _predicted(sensor: MarkerSensor, result: Track, measured: MarkerTrajectories, hidden: BoolArray) -> Array:

@@ -17,6 +17,7 @@ def test_demo_prints_errors_and_writes_the_folder(tmp_path: Path, capsys: pytest
     assert "Against the known truth" in printed
     assert "knee_angle_r" in printed
     assert (tmp_path / "demo" / "result" / "summary.json").is_file()
+    assert "known truth" in (tmp_path / "demo" / "report.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("words", [["--seed", "-1"], ["--motion", "dance"], ["--seconds", "-3"]])

@@ -48,5 +48,6 @@ def made_up_whole(frames=12, **changes):
         "foot_wrench_sd": rng.uniform(1.0, 9.0, (frames, 2, 6)),
         "footing": rng.integers(-1, 3, (frames, 2)),
         "covariance": np.zeros((frames, 12, 12)),
+        "plate_corners_m": rng.normal(size=(2, 4, 3)),
     }
     return made_up(frames, **{**optional, **changes})

@@ -19,13 +19,18 @@ def test_every_array_is_read_only_and_has_its_shape_documented():
     assert r.frames == 12
 
 
-@pytest.mark.parametrize("name", [name for name in ARRAYS if name != "times_s"])
+@pytest.mark.parametrize("name", [name for name in ARRAYS if name not in ("times_s", "plate_corners_m")])
 def test_a_wrong_shape_is_refused_by_name(name):
     r = made_up_whole()
     with pytest.raises(ShapeError, match=rf"^{name} must have shape \(12"):
         made_up(**{name: getattr(r, name)[:-1]})
     with pytest.raises(ShapeError, match=name):
         made_up(**{name: getattr(r, name)[..., None]})
+
+
+def test_plates_have_four_corners():
+    with pytest.raises(ShapeError, match=r"^plate_corners_m must have shape \(P, 4, 3\)"):
+        made_up(plate_corners_m=made_up_whole().plate_corners_m[:, :3])
 
 
 def test_values_come_by_name():

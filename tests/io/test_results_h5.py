@@ -34,7 +34,7 @@ def test_what_a_filter_does_not_estimate_is_not_written_and_comes_back_as_none(t
     write_h5(made_up(), tmp_path / "motion.h5")
     back = read_h5(tmp_path / "motion.h5")
     with h5py.File(tmp_path / "motion.h5") as file:
-        for name in ("plate_change", "foot_wrench_sd", "footing", "covariance"):
+        for name in ("plate_change", "foot_wrench_sd", "footing", "covariance", "plate_corners_m"):
             assert name not in file
             assert getattr(back, name) is None
 

@@ -1,0 +1,122 @@
+// The live page: rows arrive over a WebSocket; the newest is drawn, the last seconds are plotted.
+"use strict";
+
+const KEPT_S = 60;
+
+class Stream {
+  constructor(scene) {
+    this.scene = scene;
+    this.rows = [];
+    this.gap = 0.5;
+  }
+
+  push(row) {
+    const last = this.rows[this.rows.length - 1];
+    if (last && row[0] < last[0]) this.rows = []; // the stream began anew
+    this.rows.push(row);
+    while (this.rows[0][0] < row[0] - KEPT_S) this.rows.shift();
+  }
+
+  series(q) {
+    const take = (at, factor) => Float32Array.from(this.rows, (row) => row[at] * factor);
+    return { times: take(0, 1), values: take(q.column, q.factor), sds: q.sd_column >= 0 ? take(q.sd_column, q.factor) : null };
+  }
+}
+
+class Live {
+  constructor(page) {
+    [this.page, this.paused, this.span, this.arrived] = [page, false, 10, 0];
+    this.controls(page.bar);
+    this.connect();
+    setInterval(() => this.watch(), 500);
+  }
+
+  controls(bar) {
+    this.button = element("button", { className: "play", id: "pause", title: "Freeze the picture (space); the recording goes on" });
+    this.button.onclick = () => this.pause(!this.paused);
+    this.spans = element("select", { id: "span", ariaLabel: "Seconds plotted" }, ...[5, 10, 20, 60].map((s) =>
+      element("option", { value: s, textContent: `last ${s} s`, selected: s === 10 })));
+    this.spans.onchange = () => { this.span = Number(this.spans.value); this.draw(); };
+    const gauge = (id, label) => {
+      const number = element("b", { id, textContent: "–" });
+      bar.append(element("span", { className: "gauge" }, `${label} `, number));
+      return number;
+    };
+    bar.append(this.button, this.spans);
+    this.gauges = { time: gauge("time", "time"), rate: gauge("rate", "rate"), latency: gauge("latency", "latency"), lost: gauge("lost", "frames lost") };
+    this.state = bar.appendChild(element("span", { className: "state", id: "state" }));
+    addEventListener("keydown", (event) => {
+      if (event.key !== " " || /INPUT|SELECT|BUTTON/.test(event.target.tagName)) return;
+      event.preventDefault();
+      this.pause(!this.paused);
+    });
+    this.pause(false);
+    this.tell("connecting", "wait");
+  }
+
+  pause(on) {
+    this.paused = on;
+    this.button.textContent = on ? "▶ Continue" : "❚❚ Pause";
+    this.button.setAttribute("aria-pressed", on);
+  }
+
+  tell(text, kind) {
+    this.state.textContent = text;
+    this.state.dataset.kind = kind;
+  }
+
+  connect() {
+    const socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/frames${location.search}`);
+    socket.binaryType = "arraybuffer";
+    socket.onmessage = ({ data }) => (typeof data === "string" ? this.begin(JSON.parse(data)) : this.take(new Float32Array(data)));
+    socket.onclose = () => {
+      this.tell("not connected; trying again", "bad");
+      setTimeout(() => this.connect(), 1000);
+    };
+  }
+
+  begin(scene) {
+    this.stream = new Stream(scene);
+    this.page.title(scene.title);
+    if (!this.view) {
+      this.view = new BodyScene(this.page.pane, scene);
+      this.page.legend(this.view);
+      this.panel = new Panel(this.page.column, scene.quantities, null);
+      this.panel.onChange = () => this.draw();
+    } else if (JSON.stringify(scene.parts) !== JSON.stringify(this.scene.parts)) location.reload();
+    this.scene = scene;
+    this.tell("waiting for the first frame", "wait");
+  }
+
+  take(row) {
+    this.arrived = performance.now();
+    this.status = Object.fromEntries(this.scene.status.map((name, i) => [name, row[i]]));
+    if (!this.paused) {
+      this.stream.push(row);
+      if (!this.drawing) this.drawing = requestAnimationFrame(() => { this.drawing = 0; this.draw(); });
+    }
+    this.watch();
+  }
+
+  watch() {
+    if (!this.status || !this.arrived) return;
+    const s = this.status;
+    this.gauges.time.textContent = `${s.time_s.toFixed(1)} s`;
+    this.gauges.rate.textContent = `${s.rate_hz.toFixed(0)} Hz`;
+    this.gauges.latency.textContent = `${s.latency_ms.toFixed(1)} ms`;
+    this.gauges.lost.textContent = s.lost.toFixed(0);
+    this.gauges.lost.parentElement.classList.toggle("bad", s.lost > 0);
+    const quiet = (performance.now() - this.arrived) / 1000;
+    if (quiet > 1) this.tell(`no frames for ${quiet.toFixed(0)} s`, "bad");
+    else if (this.paused) this.tell("paused", "wait");
+    else if (!s.tracked) this.tell("body not followed", "bad");
+    else this.tell("live", "good");
+  }
+
+  draw() {
+    if (!this.stream || !this.stream.rows.length) return;
+    const rows = this.stream.rows, row = rows[rows.length - 1];
+    this.view.show(row);
+    this.panel.draw(this.stream, row, [row[0] - this.span, row[0]], null);
+  }
+}

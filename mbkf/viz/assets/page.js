@@ -1,0 +1,67 @@
+// The frame of both pages: header, 3-D view with its legend, plots, and a bar of controls.
+"use strict";
+
+const LEGEND = [
+  ["body", "Body", "■", "#8fa0b0"], ["seen", "Measured", "●", COLOURS.measured], ["predicted", "On the body", "○", COLOURS.predicted],
+  ["hidden", "Not seen, predicted", "◆", COLOURS.hidden], ["refused", "Refused", "■", COLOURS.refused],
+  ["unlabelled", "Without a name", "▲", COLOURS.unlabelled], ["reactions", "Reaction", "↑", COLOURS.axis],
+];
+
+class Page {
+  constructor() {
+    this.pane = document.getElementById("scene");
+    this.column = document.getElementById("column");
+    this.bar = document.getElementById("bar");
+  }
+
+  title(text) {
+    document.getElementById("trial").textContent = text;
+    document.title = `${text} · mbkf`;
+  }
+
+  legend(view) {
+    const legend = document.getElementById("legend");
+    for (const [what, label, sign, colour] of LEGEND) {
+      if (what === "unlabelled" && !view.parts.unlabelled[1]) continue;
+      const box = element("input", { type: "checkbox", checked: true });
+      box.onchange = () => view.toggle(what, box.checked);
+      const mark = element("i", { textContent: sign });
+      mark.style.color = colour;
+      legend.append(element("label", {}, box, mark, label));
+    }
+    const sides = element("span", { className: "sides" });
+    for (const [side, name] of [["r", "right"], ["l", "left"]]) {
+      const mark = element("i", { textContent: "■" });
+      mark.style.color = COLOURS[side];
+      sides.append(mark, `${name} `);
+    }
+    legend.append(sides);
+    const views = document.getElementById("views");
+    for (const from of ["oblique", "front", "right", "left", "back", "top"]) {
+      const button = element("button", { textContent: from });
+      button.onclick = () => view.look(from);
+      views.append(button);
+    }
+    const follow = element("input", { type: "checkbox", checked: true });
+    follow.onchange = () => { view.follow = follow.checked; };
+    views.append(element("label", {}, follow, "follow"));
+  }
+}
+
+async function start() {
+  const page = new Page(), held = document.getElementById("recording");
+  if (!held) {
+    window.mbkf = new Live(page);
+    return;
+  }
+  const { scene, rows } = JSON.parse(held.textContent);
+  page.title(scene.title);
+  window.mbkf = new Player(page, scene, await Recording.unpack(scene, rows));
+}
+
+function trouble(error) {
+  document.getElementById("trouble").textContent = `Something went wrong: ${error.message}. A browser of 2023 or later with WebGL is needed.`;
+}
+
+addEventListener("error", trouble);
+start().catch(trouble);

@@ -1,0 +1,109 @@
+// The column of plots: each shows a quantity chosen from a list, its present value, and a target band to train with.
+"use strict";
+
+const DEFAULTS = ["angle:knee_angle_r", "torque:ankle_angle_r", "reaction:vertical_r", "reaction:vertical_l"];
+
+function remembered(key) {
+  try {
+    return JSON.parse(localStorage.getItem(key));
+  } catch {
+    return null;
+  }
+}
+
+function remember(key, value) {
+  try {
+    localStorage.setItem(key, JSON.stringify(value));
+  } catch { /* a page opened from a file may have no storage */ }
+}
+
+class Panel {
+  // column: the element to fill; onSeek(time): called when a plot is clicked, or null.
+  constructor(column, quantities, onSeek) {
+    this.quantities = new Map(quantities.map((q) => [q.id, q]));
+    this.onSeek = onSeek;
+    this.cards = [];
+    this.list = column.appendChild(element("div", { className: "plots" }));
+    const add = element("button", { className: "add", textContent: "+ Add a plot" });
+    add.onclick = () => this.add({ id: quantities[0].id });
+    column.append(add);
+    const kept = (remembered("mbkf-plots") || []).filter((choice) => this.quantities.has(choice.id));
+    const first = DEFAULTS.filter((id) => this.quantities.has(id)).map((id) => ({ id }));
+    for (const choice of kept.length ? kept : first) this.add(choice);
+  }
+
+  add({ id, low = "", high = "" }) {
+    const card = { id, low, high };
+    const choose = element("select", { title: "Quantity to plot", ariaLabel: "Quantity to plot" });
+    const groups = new Map();
+    for (const q of this.quantities.values()) {
+      if (!groups.has(q.group)) groups.set(q.group, choose.appendChild(element("optgroup", { label: q.group })));
+      groups.get(q.group).append(element("option", { value: q.id, textContent: q.title, selected: q.id === id }));
+    }
+    card.value = element("output", { className: "value", title: "± two standard deviations" });
+    card.verdict = element("span", { className: "verdict" });
+    card.canvas = element("canvas");
+    card.curve = new Curve(card.canvas);
+    const bound = (name, label) => {
+      const input = element("input", { type: "number", step: "any", value: card[name], placeholder: "–", ariaLabel: `Target ${label}` });
+      input.oninput = () => { card[name] = input.value; this.changed(); };
+      return input;
+    };
+    card.unit = element("span", { className: "unit" });
+    const remove = element("button", { className: "remove", textContent: "×", title: "Remove this plot" });
+    card.positive = element("span", { className: "positive" });
+    card.element = element("section", { className: "card" },
+      element("div", { className: "head" }, choose, card.value, remove),
+      card.canvas,
+      element("div", { className: "foot" }, card.positive,
+        element("label", { className: "target", title: "Band to train with" }, "target ", bound("low", "from"), " to ", bound("high", "to"), " ", card.unit), card.verdict));
+    choose.onchange = () => { card.id = choose.value; card.low = card.high = ""; card.element.querySelectorAll("input").forEach((i) => { i.value = ""; }); this.changed(); };
+    remove.onclick = () => { this.cards.splice(this.cards.indexOf(card), 1); card.element.remove(); this.changed(); };
+    if (this.onSeek) {
+      const seek = (event) => { if (event.buttons & 1) this.onSeek(card.curve.timeAt(event.clientX)); };
+      card.canvas.onpointerdown = (event) => { card.canvas.setPointerCapture(event.pointerId); seek(event); };
+      card.canvas.onpointermove = seek;
+      card.canvas.style.cursor = "ew-resize";
+    }
+    this.cards.push(card);
+    this.list.append(card.element);
+    this.changed();
+  }
+
+  changed() {
+    remember("mbkf-plots", this.cards.map(({ id, low, high }) => ({ id, low, high })));
+    for (const card of this.cards) {
+      const q = this.quantities.get(card.id);
+      card.unit.textContent = q.unit;
+      card.positive.textContent = q.positive ? `positive: ${q.positive}` : "";
+    }
+    if (this.onChange) this.onChange();
+  }
+
+  target(card) {
+    const low = parseFloat(card.low), high = parseFloat(card.high);
+    if (Number.isNaN(low) || Number.isNaN(high)) return null;
+    return low <= high ? [low, high] : [high, low];
+  }
+
+  // history.series(q) gives times, values and sds; row is the frame shown now, window the times, playhead a time or null.
+  draw(history, row, window, playhead) {
+    for (const card of this.cards) {
+      const q = this.quantities.get(card.id), target = this.target(card), { times, values, sds } = history.series(q);
+      card.curve.draw(times, values, sds, window, { colour: COLOURS[q.side], target, playhead, gap: history.gap });
+      this.tell(card, q, row, target);
+    }
+  }
+
+  tell(card, q, row, target) {
+    const value = row ? row[q.column] * q.factor : NaN, sd = row && q.sd_column >= 0 ? row[q.sd_column] * q.factor : NaN;
+    const digits = Math.abs(value) >= 100 ? 0 : q.unit === "m" ? 3 : 1;
+    const band = Number.isNaN(sd) ? "" : ` ± ${(2 * sd).toFixed(digits)}`, rounded = Number(value.toFixed(digits)) || 0;
+    const shown = Number.isNaN(value) ? "–" : `${rounded.toFixed(digits).replace("-", "−")}${band} ${q.unit}`;
+    if (card.value.textContent !== shown) card.value.textContent = shown;
+    const where = !target || Number.isNaN(value) ? "" : value < target[0] ? "below" : value > target[1] ? "above" : "inside";
+    card.element.dataset.target = where;
+    const words = { "": "", below: "▼ below target", above: "▲ above target", inside: "✓ in target" }[where];
+    if (card.verdict.textContent !== words) card.verdict.textContent = words;
+  }
+}

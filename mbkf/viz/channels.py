@@ -1,0 +1,177 @@
+"""The row of numbers a picture is drawn from, alike for the live page and for playback, and what can be plotted.
+
+A row is one frame: the poses of the segments, the markers, the reactions and every curve, one after another as
+32-bit numbers; NaN where something is not known. The page is told once where each part begins.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from mbkf.conventions import SIDES, Array, BoolArray
+from mbkf.viz.wording import SIDE_NAMES, wordings
+
+SEEN, UNSEEN, REFUSED = 0, 1, 2
+"""What a marker's state says: measured and used, not measured (or hidden), measured but not believed."""
+
+RESOLUTION = {
+    "segments": 2e-4, "measured": 2e-4, "predicted": 2e-4, "force": 0.2, "force_sd": 0.2, "pressure": 5e-4,
+    "angles": 3e-4, "angles_sd": 2e-4, "moments": 0.02, "moments_sd": 0.02,
+}  # fmt: skip
+"""What can be seen of a part's numbers on a screen; finer differences need not travel with a recording."""
+
+AXES = (("vertical", "Vertical reaction", 2), ("x", "Reaction along x", 0), ("y", "Reaction along y", 1))
+"""Components of a reaction: name, title, world axis."""
+
+STATUS = ("time_s", "number", "latency_ms", "rate_hz", "lost", "tracked")
+"""The first numbers of a row."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Something that can be plotted.
+
+    Attributes:
+        id: Name that stays the same from run to run, e.g. "angle:knee_angle_r".
+        group: Heading it is listed under.
+        title: What it is called, with its side.
+        side: "r", "l" or "".
+        unit: As shown.
+        positive: What a positive value means, "" where that is plain.
+        factor: From the row's number to the unit.
+        column: Where it stands in the row.
+        sd_column: Where its standard deviation stands, -1 where it has none.
+    """
+
+    id: str
+    group: str
+    title: str
+    side: str
+    unit: str
+    positive: str
+    factor: float
+    column: int
+    sd_column: int = -1
+
+
+class Layout:
+    """Where each part of a row stands.
+
+    Attributes:
+        parts: First column and width of each part, by name: status, segments (position, quaternion x y z w each),
+            measured and predicted markers, state of each marker, force, force_sd and pressure point of the feet,
+            angles, angles_sd, moments, moments_sd, unlabelled points.
+        width: Numbers in a row.
+    """
+
+    def __init__(self, segments: int, markers: int, coordinates: int, unlabelled: int = 0) -> None:
+        widths = {
+            "status": len(STATUS),
+            "segments": 7 * segments,
+            "measured": 3 * markers,
+            "predicted": 3 * markers,
+            "state": markers,
+            "force": 6,
+            "force_sd": 6,
+            "pressure": 6,
+            "angles": coordinates,
+            "angles_sd": coordinates,
+            "moments": coordinates,
+            "moments_sd": coordinates,
+            "unlabelled": 3 * unlabelled,
+        }
+        self.parts: dict[str, tuple[int, int]] = {}
+        self.width = 0
+        for name, width in widths.items():
+            self.parts[name] = (self.width, width)
+            self.width += width
+
+    def blank(self, frames: int) -> Array:
+        """(frames, width) rows of NaN."""
+        return np.full((frames, self.width), np.nan)
+
+    def put(self, rows: Array, part: str, values: Array) -> None:
+        """Writes a part of rows (T, width); ``values`` has T rows of any shape that fills the part."""
+        first, width = self.parts[part]
+        rows[:, first : first + width] = values.reshape(len(rows), width)
+
+    def resolution(self) -> Array:
+        """(width,) the :data:`RESOLUTION` of every column, 0 where it has none."""
+        return np.concatenate(
+            [np.full(width, RESOLUTION.get(p, 0.0)) for p, (_, width) in self.parts.items()]
+        )
+
+    def column(self, part: str, offset: int = 0) -> int:
+        """Column of the n-th number of a part."""
+        return self.parts[part][0] + offset
+
+
+def marker_states(measured_m: Array, hidden: BoolArray, refused: BoolArray) -> Array:
+    """State of markers whose measured positions are (…, M, 3): :data:`SEEN`, :data:`UNSEEN` or :data:`REFUSED`."""
+    unseen = np.isnan(measured_m).any(axis=-1) | hidden
+    return np.where(unseen, UNSEEN, np.where(refused, REFUSED, SEEN)).astype(float)
+
+
+def quantities(layout: Layout, coordinate_names: tuple[str, ...], streamed: bool) -> list[Quantity]:
+    """Everything that can be plotted, in the order of the list that people choose from.
+
+    Args:
+        layout: Of the rows.
+        coordinate_names: (A,) clinical coordinates.
+        streamed: Whether there are latency, rate and lost frames to show.
+    """
+    words = wordings()
+    found = []
+    for group, part, of_load in (("Angles", "angles", False), ("Torques", "moments", True)):
+        for a, name in enumerate(coordinate_names):
+            w = words[name]
+            residual = of_load and w.joint == "pelvis"
+            suffix = "" if not of_load else (" residual" if residual else " torque")
+            side = f", {SIDE_NAMES[w.side]}" if w.side else ""
+            found.append(
+                Quantity(
+                    id=f"{'torque' if of_load else 'angle'}:{name}",
+                    group="Residuals at the pelvis" if residual else group,
+                    title=f"{w.title}{suffix}{side}",
+                    side=w.side,
+                    unit=w.load_unit if of_load else w.unit,
+                    positive=w.positive,
+                    factor=1.0 if of_load else w.factor,
+                    column=layout.column(part, a),
+                    sd_column=layout.column(f"{part}_sd", a),
+                )
+            )
+    for foot, side in enumerate(SIDES):
+        for name, title, axis in AXES:
+            found.append(
+                Quantity(
+                    id=f"reaction:{name}_{side}",
+                    group="Ground reactions",
+                    title=f"{title}, {SIDE_NAMES[side]}",
+                    side=side,
+                    unit="N",
+                    positive="upward" if name == "vertical" else "",
+                    factor=1.0,
+                    column=layout.column("force", 3 * foot + axis),
+                    sd_column=layout.column("force_sd", 3 * foot + axis),
+                )
+            )
+    if streamed:
+        for name, title, unit in (
+            ("latency_ms", "Latency", "ms"), ("rate_hz", "Frame rate", "Hz"), ("lost", "Frames lost", ""),
+        ):  # fmt: skip
+            column = layout.column("status", STATUS.index(name))
+            found.append(Quantity(f"stream:{name}", "Stream", title, "", unit, "", 1.0, column))
+    return sorted(found, key=lambda q: GROUPS.index(q.group))
+
+
+GROUPS = ("Angles", "Torques", "Ground reactions", "Residuals at the pelvis", "Stream")
+"""Headings of the list of quantities, in order."""
+
+
+def as_plain(found: list[Quantity]) -> list[dict[str, Any]]:
+    """Quantities as JSON can hold them."""
+    return [asdict(quantity) for quantity in found]

@@ -1,0 +1,45 @@
+"""Pieces of HTML that the report is put together from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from html import escape
+
+
+def section(name: str, title: str, *body: str) -> str:
+    """A section with its heading; ``name`` is what the navigation leads to."""
+    return f'<section id="{name}"><h2>{escape(title)}</h2>{"".join(body)}</section>'
+
+
+def paragraph(text: str) -> str:
+    """A paragraph of plain text."""
+    return f"<p>{escape(text)}</p>"
+
+
+def grid(charts: Iterable[str], columns: int = 3) -> str:
+    """Charts side by side; an empty string leaves its place free."""
+    cells = "".join(f"<div>{chart}</div>" for chart in charts)
+    return f'<div class="grid g{columns}">{cells}</div>'
+
+
+def table(headings: Sequence[str], rows: Iterable[Sequence[str]], kind: str = "") -> str:
+    """A table of texts; the first column is left-aligned, the others are numbers."""
+    head = "".join(f"<th>{escape(text)}</th>" for text in headings)
+    body = "".join(
+        "<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in rows if row
+    )
+    return f'<table class="{kind}"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
+
+
+def folded(title: str, *body: str) -> str:
+    """Something that is shown when its title is clicked (and on paper)."""
+    return f"<details><summary>{escape(title)}</summary>{''.join(body)}</details>"
+
+
+def key(*entries: tuple[str, str]) -> str:
+    """A legend: pairs of the class of a swatch and its text."""
+    return (
+        '<p class="key">'
+        + "".join(f'<span><i class="{cls}"></i>{escape(text)}</span>' for cls, text in entries)
+        + "</p>"
+    )

@@ -1,0 +1,72 @@
+"""Two orientation filters on one sensor: what each says, and their difference, as quaternions and as angles."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from mbkf.conventions import Array
+from mbkf.imu.frames import conjugate, multiply
+from mbkf.imu.orientation import Orientation
+from mbkf.io.atomic import replacing
+
+FIRST, SECOND, DIFFERENCE = "#1f6fb4", "#e06c10", "#444444"
+_DEGREES = 180.0 / np.pi
+_ANGLES = ("roll", "pitch", "yaw")
+
+
+def write_comparison(first: Orientation, second: Orientation, path: str | Path) -> None:
+    """Draws both courses and their difference into a PNG or SVG file.
+
+    Left the quaternion's components, right the unwrapped Euler angles; the upper rows hold both filters, the lowest
+    row second minus first.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    figure = Figure(figsize=(11.0, 10.0), layout="constrained")
+    axes = figure.subplots(5, 2, sharex=True)
+    q1, q2 = first.quaternion, _same_sign(second.quaternion, first.quaternion)
+    for row, name in enumerate("wxyz"):
+        k = "xyzw".index(name)
+        _both(axes[row, 0], first, second, q1[:, k], q2[:, k], f"q{name}")
+        axes[4, 0].plot(first.time_s, q2[:, k] - q1[:, k], label=f"q{name}", linewidth=0.9)
+    e1, e2 = _DEGREES * first.euler_rad, _DEGREES * second.euler_rad
+    apart = _near_zero(e2 - e1)
+    for row, name in enumerate(_ANGLES):
+        _both(axes[row, 1], first, second, e1[:, row], e1[:, row] + apart[:, row], f"{name} (deg)")
+        axes[4, 1].plot(first.time_s, apart[:, row], label=name, linewidth=0.9)
+    between = multiply(second.quaternion, conjugate(first.quaternion))
+    angle = 2.0 * np.arctan2(np.linalg.norm(between[:, :3], axis=1), np.abs(between[:, 3]))
+    axes[3, 1].plot(first.time_s, _DEGREES * angle, color=DIFFERENCE, linewidth=0.9)
+    axes[3, 1].set_ylabel("angle between (deg)")
+    for column, unit in enumerate(("", " (deg)")):
+        axes[4, column].set_ylabel(f"{second.method} − {first.method}{unit}")
+        axes[4, column].set_xlabel("time (s)")
+        axes[4, column].legend(fontsize=8, ncols=4)
+    axes[0, 0].legend(fontsize=8)
+    figure.suptitle(f"{first.name}, {first.frame}")
+    for one in axes.flat:
+        one.grid(color="#e4e6e8", linewidth=0.7)
+        one.spines[["top", "right"]].set_visible(False)
+    with replacing(path) as partial:
+        figure.savefig(partial, dpi=110)
+
+
+def _both(axes: Axes, first: Orientation, second: Orientation, a: Array, b: Array, name: str) -> None:
+    axes.plot(first.time_s, a, color=FIRST, linewidth=0.9, label=first.method)
+    axes.plot(second.time_s, b, color=SECOND, linewidth=0.9, label=second.method)
+    axes.set_ylabel(name)
+
+
+def _same_sign(q: Array, like: Array) -> Array:
+    """Of q and −q, which are the same rotation, the nearer one."""
+    return np.where((q * like).sum(axis=1, keepdims=True) < 0.0, -q, q)
+
+
+def _near_zero(degrees: Array) -> Array:
+    """Differences of angles without whole turns."""
+    return degrees - 360.0 * np.round(degrees / 360.0)

@@ -1,0 +1,184 @@
+"""A small web server for one page: its text, and a WebSocket that sends the newest row, in a thread of its own.
+
+Bound to this computer alone unless another address is asked for; then every request must carry the token. Requests
+that another web page or another host name caused are refused.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import hmac
+import ipaddress
+import logging
+import secrets
+import socket
+import threading
+from collections.abc import Callable
+from http import HTTPStatus
+from urllib.parse import parse_qs, urlencode, urlsplit
+
+from websockets.asyncio.server import ServerConnection, serve
+from websockets.datastructures import Headers
+from websockets.exceptions import ConnectionClosed
+from websockets.http11 import Request, Response
+
+from mbkf.errors import InvalidInput
+
+LOOPBACK = "127.0.0.1"
+SEND_PERIOD_S = 1.0 / 30.0
+STOP_S = 3.0
+
+Newest = Callable[[], tuple[int, bytes] | None]
+"""The newest row and its number, or None where there is none; called at most 30 times a second per open page."""
+
+
+class PageServer:
+    """Serves one page until it is closed.
+
+    Args:
+        text: The page.
+        greeting: First message of the WebSocket.
+        newest: Where rows come from; None for a page that needs no stream.
+        address: Where to listen.
+        port: 0 for any that is free.
+        token: What a request must carry; made up where the address is not this computer's own and none is given.
+
+    Attributes:
+        url: What to open, token included.
+
+    Raises:
+        InvalidInput: The address or port cannot be listened on.
+    """
+
+    def __init__(
+        self,
+        text: str,
+        *,
+        greeting: str = "",
+        newest: Newest | None = None,
+        address: str = LOOPBACK,
+        port: int = 0,
+        token: str | None = None,
+    ) -> None:
+        self._text, self._greeting, self._newest = text.encode("utf-8"), greeting, newest
+        self._local = _is_loopback(address)
+        self._token = token or ("" if self._local else secrets.token_urlsafe(16))
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._stop: asyncio.Event | None = None
+        self._listening = threading.Event()
+        self._failure: OSError | None = None
+        self._port = 0
+        self._thread = threading.Thread(target=self._run, args=(address, port), name="mbkf page", daemon=True)
+        self._thread.start()
+        self._listening.wait()
+        if self._failure is not None:
+            raise InvalidInput(
+                f"the page cannot be served at {address}:{port} ({self._failure.strerror or self._failure}); "
+                "choose another address or port"
+            )
+        host = socket.gethostname() if address in ("0.0.0.0", "::", "") else address
+        query = "?" + urlencode({"token": self._token}) if self._token else ""
+        self.url = f"http://{f'[{host}]' if ':' in host else host}:{self._port}/{query}"
+
+    def close(self) -> None:
+        """Ends all connections and the thread."""
+        if self._loop is not None and self._stop is not None and self._thread.is_alive():
+            self._loop.call_soon_threadsafe(self._stop.set)
+            self._thread.join(STOP_S)
+
+    def wait(self) -> None:
+        """Returns when the server was closed; an interrupt from the keyboard comes through."""
+        while self._thread.is_alive():
+            self._thread.join(0.2)
+
+    def _run(self, address: str, port: int) -> None:
+        try:
+            asyncio.run(self._serve(address, port))
+        except OSError as error:
+            self._failure = error
+        finally:
+            self._listening.set()
+
+    async def _serve(self, address: str, port: int) -> None:
+        self._loop, self._stop = asyncio.get_running_loop(), asyncio.Event()
+        quiet = logging.Logger("mbkf page", logging.CRITICAL)
+        async with serve(
+            self._stream, address, port, process_request=self._answer, compression=None, logger=quiet,
+            close_timeout=0.5,
+        ) as server:  # fmt: skip
+            self._port = next(iter(server.sockets)).getsockname()[1]
+            self._listening.set()
+            await self._stop.wait()
+
+    def _answer(self, _connection: ServerConnection, request: Request) -> Response | None:
+        """The page, a refusal, or None where the WebSocket goes ahead."""
+        url = urlsplit(request.path)
+        if not self._allowed(request, parse_qs(url.query).get("token", [""])[0]):
+            return _response(
+                HTTPStatus.FORBIDDEN, b"Refused: open the address that mbkf printed, with its token.\n"
+            )
+        if url.path == "/frames" and self._newest is not None:
+            return None
+        if url.path == "/":
+            return _response(HTTPStatus.OK, self._text, "text/html; charset=utf-8")
+        return _response(HTTPStatus.NOT_FOUND, b"Nothing is here.\n")
+
+    def _allowed(self, request: Request, token: str) -> bool:
+        """Whether the request carries the token and comes from this page rather than from a stranger's."""
+        host, origin = request.headers.get("Host", ""), request.headers.get("Origin")
+        named = urlsplit(f"//{host}").hostname or ""
+        own_name = not self._local or named == "localhost" or _is_loopback(named)
+        own_page = origin is None or urlsplit(origin).netloc == host
+        return own_name and own_page and hmac.compare_digest(token.encode(), self._token.encode())
+
+    async def _stream(self, connection: ServerConnection) -> None:
+        """Sends the newest row whenever there is one; a slow page gets fewer rows, never old ones."""
+        assert self._newest is not None
+        closed = asyncio.ensure_future(connection.wait_closed())
+        sent = -1
+        try:
+            await connection.send(self._greeting)
+            while not closed.done():
+                found = self._newest()
+                if found is not None and found[0] != sent:
+                    sent = found[0]
+                    await connection.send(found[1])
+                await asyncio.wait({closed}, timeout=SEND_PERIOD_S)
+        except ConnectionClosed:
+            pass
+        finally:
+            closed.cancel()
+
+
+def checked_port(port: int) -> int:
+    """A port that can be asked for.
+
+    Raises:
+        InvalidInput: It is not from 0 to 65535.
+    """
+    if not 0 <= port <= 65535:
+        raise InvalidInput(f"port {port}: choose one from 0 (any that is free) to 65535")
+    return port
+
+
+def _is_loopback(address: str) -> bool:
+    if address == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(address).is_loopback
+    except ValueError:
+        return False
+
+
+def _response(status: HTTPStatus, body: bytes, kind: str = "text/plain; charset=utf-8") -> Response:
+    headers = Headers(
+        [
+            ("Content-Type", kind),
+            ("Content-Length", str(len(body))),
+            ("Cache-Control", "no-store"),
+            ("X-Content-Type-Options", "nosniff"),
+            ("Referrer-Policy", "no-referrer"),
+            ("Connection", "close"),
+        ]
+    )
+    return Response(status.value, status.phrase, headers, body)

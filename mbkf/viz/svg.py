@@ -1,0 +1,223 @@
+"""Curves with ±2σ bands as small inline SVG; colours come from the page's style sheet."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mbkf.conventions import Array
+
+WIDTH, HEIGHT = 340.0, 150.0
+LEFT, RIGHT, TOP, BOTTOM = 40.0, 8.0, 24.0, 20.0
+
+
+@dataclass(frozen=True)
+class Line:
+    """One curve of a chart.
+
+    Attributes:
+        x, y: (N,) points; NaN breaks the line.
+        sd: (N,) standard deviations for the band of ±2, or None.
+        side: "r", "l" or "" for its colour.
+        thin: Drawn lightly, as one of several.
+    """
+
+    x: Array
+    y: Array
+    sd: Array | None = None
+    side: str = ""
+    thin: bool = False
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A dashed vertical line at ``x`` in the colour of a side."""
+
+    x: float
+    side: str = ""
+
+
+def chart(
+    title: str,
+    unit: str,
+    lines: Sequence[Line],
+    x_range: tuple[float, float],
+    x_unit: str,
+    *,
+    marks: Sequence[Mark] = (),
+    level: float | None = None,
+    note: str = "",
+    width: float = WIDTH,
+    height: float = HEIGHT,
+) -> str:
+    """A chart as an SVG element.
+
+    Args:
+        title: Written above, with the unit.
+        unit: Of y.
+        lines: Curves, drawn in order.
+        x_range: First and last x shown.
+        x_unit: Written after the last tick.
+        marks: Vertical lines.
+        level: A horizontal line that means something (a bound, an expected value).
+        note: Shown when the pointer rests on the chart.
+        width: In the drawing's own units, which the page scales.
+        height: Likewise.
+    """
+    low, high = _y_range(lines, level)
+    box = _Box(width, height, x_range, (low, high))
+    parts = [_grid(box, x_unit)]
+    if level is not None:
+        parts.append(f'<path class="level" d="M{LEFT:g} {box.y(level):.1f}H{width - RIGHT:g}"/>')
+    parts += [
+        f'<path class="mark {_side(m.side)}" d="M{box.x(m.x):.1f} {TOP:g}V{height - BOTTOM:g}"/>'
+        for m in marks
+        if x_range[0] <= m.x <= x_range[1]
+    ]
+    parts += [_band(box, line) for line in lines if line.sd is not None]
+    parts += [_path(box, line) for line in lines]
+    heading = (
+        f'<text class="title" x="2" y="12">{escape(title)}<tspan class="unit"> {escape(unit)}</tspan></text>'
+    )
+    hint = f"<title>{escape(note)}</title>" if note else ""
+    return (
+        f'<svg class="chart" viewBox="0 0 {width:g} {height:g}" role="img" aria-label="{escape(title)}">'
+        f"{hint}{heading}"
+        f"{''.join(parts)}</svg>"
+    )
+
+
+def ticks(low: float, high: float, wanted: int) -> tuple[list[float], int]:
+    """About ``wanted`` round numbers from low to high, and the decimals they need."""
+    raw = (high - low) / max(1, wanted)
+    power = 10.0 ** math.floor(math.log10(raw))
+    step = next(s * power for s in (1.0, 2.0, 5.0, 10.0) if s * power >= 0.999 * raw)
+    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    return [k * step for k in range(first, last + 1)], max(0, -math.floor(math.log10(step) + 1e-9))
+
+
+def number(value: float, digits: int) -> str:
+    """A number with a real minus sign and no negative zero."""
+    return f"{round(value, digits) + 0.0:.{digits}f}".replace("-", "−")
+
+
+@dataclass(frozen=True)
+class _Box:
+    """From values to places on the drawing."""
+
+    width: float
+    height: float
+    x_range: tuple[float, float]
+    y_range: tuple[float, float]
+
+    def x(self, value: float) -> float:
+        first, last = self.x_range
+        return LEFT + (value - first) / ((last - first) or 1.0) * (self.width - LEFT - RIGHT)
+
+    def y(self, value: float) -> float:
+        low, high = self.y_range
+        return self.height - BOTTOM - (value - low) / (high - low) * (self.height - TOP - BOTTOM)
+
+    def path(self, x: Array, y: Array) -> str:
+        """A path in tenths of a unit, each point relative to the one before (the shortest text there is).
+
+        What lies outside the frame is drawn on its edge.
+        """
+        (first, last), (low, high) = self.x_range, self.y_range
+        across = LEFT + (x - first) / ((last - first) or 1.0) * (self.width - LEFT - RIGHT)
+        down = (
+            self.height - BOTTOM - (np.clip(y, low, high) - low) / (high - low) * (self.height - TOP - BOTTOM)
+        )
+        tenths = np.round(10.0 * np.column_stack([across, down])).astype(int)
+        steps = np.diff(tenths, axis=0).ravel()
+        start = f"M{tenths[0, 0]} {tenths[0, 1]}l"
+        return start + "".join(f"{n}" if n < 0 else f" {n}" for n in steps.tolist())
+
+
+def _y_range(lines: Sequence[Line], level: float | None) -> tuple[float, float]:
+    """All curves and most of their bands: bands may leave the frame where they are far wider than usual."""
+    values = [line.y[np.isfinite(line.y)] for line in lines]
+    values += [np.array([] if level is None else [level])]
+    for line in lines:
+        if line.sd is not None and np.isfinite(line.sd).any():
+            wide = 2.0 * line.sd[np.isfinite(line.sd)]
+            usual = min(float(wide.max()), 3.0 * float(np.median(wide)))
+            known = np.isfinite(line.sd) & np.isfinite(line.y)
+            around = np.minimum(2.0 * line.sd[known], usual)
+            values += [line.y[known] - around, line.y[known] + around]
+    every = np.concatenate(values) if values else np.empty(0)
+    if not every.size:
+        return -1.0, 1.0
+    low, high = float(every.min()), float(every.max())
+    margin = max(0.06 * (high - low), 0.01 * max(abs(low), abs(high)), 1e-3)
+    return low - margin, high + margin
+
+
+def _grid(box: _Box, x_unit: str) -> str:
+    bottom, right = box.height - BOTTOM, box.width - RIGHT
+    parts = []
+    found, digits = ticks(*box.y_range, wanted=max(2, round((bottom - TOP) / 26)))
+    for value in found:
+        y = box.y(value)
+        parts.append(
+            f'<path class="{"zero" if value == 0 else "grid"}" d="M{LEFT:g} {y:.1f}H{right:g}"/>'
+            f'<text class="y" x="{LEFT - 5:g}" y="{y + 3.2:.1f}">{number(value, digits)}</text>'
+        )
+    found, digits = ticks(*box.x_range, wanted=max(2, round((right - LEFT) / 62)))
+    for value in found:
+        x = box.x(value)
+        unit = f" {x_unit}" if value == found[-1] else ""
+        end = ' class="x end"' if x > right - 12 else ' class="x"'
+        parts.append(
+            f'<path class="grid" d="M{x:.1f} {TOP:g}V{bottom:g}"/>'
+            f'<text{end} x="{min(x, right):.1f}" y="{bottom + 13:g}">{number(value, digits)}{unit}</text>'
+        )
+    return "".join(parts)
+
+
+def _side(side: str) -> str:
+    return side or "m"
+
+
+def _runs(known: NDArray[np.bool_]) -> list[slice]:
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]])))
+    return [slice(first, last) for first, last in zip(edges[::2], edges[1::2], strict=True)]
+
+
+_TENTHS = 'transform="scale(.1)"'
+
+
+def _path(box: _Box, line: Line) -> str:
+    known = np.isfinite(line.y)
+    d = "".join(box.path(*_thinned(line.x[run], line.y[run], box.width)) for run in _runs(known))
+    return (
+        f'<path {_TENTHS} class="{"thin" if line.thin else "line"} {_side(line.side)}" d="{d}"/>' if d else ""
+    )
+
+
+def _band(box: _Box, line: Line) -> str:
+    assert line.sd is not None
+    d = ""
+    for run in _runs(np.isfinite(line.y) & np.isfinite(line.sd)):
+        if run.stop - run.start < 2:
+            continue
+        step = max(1, 2 * (run.stop - run.start) // round(box.width))
+        x, y, wide = line.x[run][::step], line.y[run][::step], 2.0 * line.sd[run][::step]
+        d += box.path(np.concatenate([x, x[::-1]]), np.concatenate([y + wide, (y - wide)[::-1]])) + "z"
+    return f'<path {_TENTHS} class="band {_side(line.side)}" d="{d}"/>' if d else ""
+
+
+def _thinned(x: Array, y: Array, width: float) -> tuple[Array, Array]:
+    """A curve with no more than a least and a greatest value for each unit of width."""
+    bins = round(width)
+    if len(x) <= 2 * bins:
+        return x, y
+    edges = np.linspace(0, len(x), bins + 1).astype(int)
+    kept = sorted({int(i) for a, b in pairwise(edges) for i in (a + y[a:b].argmin(), a + y[a:b].argmax())})
+    return x[kept], y[kept]

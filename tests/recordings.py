@@ -1,0 +1,72 @@
+"""A true walk as a reconstruction, for tests of what is made of results: no filter runs."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from mbkf.io.results import Reconstruction
+from mbkf.model.clinical import ClinicalAngles, dof_names
+from mbkf.sensors.footing import Footing
+from mbkf.sensors.markers import MarkerSensor
+from mbkf.synthesis.motion import synthesise_motion
+from mbkf.synthesis.person import body_of, synthesise_subject
+from tests.motions import marker_positions
+
+LOST = slice(100, 110)
+"""Frames in which the walker's body is not followed."""
+
+PLATE = np.array([[0.6, 0.4, 0.0], [0.0, 0.4, 0.0], [0.0, -0.4, 0.0], [0.6, -0.4, 0.0]])
+
+
+@cache
+def walker():
+    """The person, the body, and two and a half seconds of true walking."""
+    person = synthesise_subject(5)
+    model = body_of(person)
+    return person, model, synthesise_motion(model, "walk", 2.5, seed=5)
+
+
+@cache
+def walk():
+    """The walk as a dynamic filter would tell it, with standard deviations of 0.02 rad, 3 N m and 5 N."""
+    person, model, motion = walker()
+    T, M, nv = len(motion.times_s), len(person.markers), model.nv
+    clinical = ClinicalAngles(model)
+    angles = clinical.angles(motion.q)
+    segments = [marker.segment for marker in person.markers]
+    sensor = MarkerSensor(model, segments, np.array([marker.position_m for marker in person.markers]))
+    markers = marker_positions(sensor, motion.q)
+    rng = np.random.default_rng(0)
+    per_dof, per_angle = np.ones((T, nv)), np.ones((T, len(clinical.names)))
+    force = motion.foot_wrench
+    return Reconstruction(
+        trial="walk <1>", protocol=person.protocol, filter="dynamic", smoothed=False, version="0", subject=person,
+        rate_hz=motion.rate_hz, times_s=motion.times_s, dof_names=dof_names(model), q=motion.q, v=motion.v,
+        a=motion.a, tau=motion.tau, sd_q=0.02 * per_dof, sd_v=0.1 * per_dof, sd_tau=3.0 * per_dof,
+        coordinate_names=clinical.names, angles=angles, angle_rates=0.0 * per_angle,
+        moments=clinical.moments(motion.q, motion.tau, angles), angles_sd=0.02 * per_angle,
+        angle_rates_sd=0.1 * per_angle, moments_sd=3.0 * per_angle, singular=np.zeros(angles.shape, bool),
+        marker_names=tuple(m.name for m in person.markers),
+        measured_m=markers + 0.002 * rng.normal(size=markers.shape), predicted_m=markers,
+        hidden=np.zeros((T, M), bool), rejected=np.zeros((T, M), bool), foot_wrench=force,
+        foot_cop_m=motion.centre_of_pressure, foot_free_moment_nm=np.zeros((T, 2)),
+        residual_force_n=np.full((T, 3), 1.0), residual_moment_nm=np.full((T, 3), 0.5), tracked=np.ones(T, bool),
+        valid=np.ones(T, bool), held_dofs=(), nis=np.full(T, 90.0), nis_readings=np.full(T, 100),
+        step_seconds=np.full(T, 1e-3), warnings=("a remark with <b>markup</b>",),
+        settings={"dynamic": {"jerk": 200.0}, "hide": []}, foot_wrench_sd=np.full((T, 2, 6), 5.0),
+        footing=np.where(force[..., 2] > 0, Footing.MEASURED, Footing.AIR), plate_corners_m=PLATE[None],
+    )  # fmt: skip
+
+
+@cache
+def broken_walk():
+    """The walk with a marker unseen, one hidden, one refused, and the body lost for a while."""
+    r = walk()
+    measured, hidden, rejected = r.measured_m.copy(), r.hidden.copy(), r.rejected.copy()
+    measured[20:50, 0] = np.nan
+    hidden[30:40, 1] = True
+    rejected[60:65, 2] = True
+    tracked = r.tracked.copy()
+    tracked[LOST] = False
+    return replace(r, measured_m=measured, hidden=hidden, rejected=rejected, tracked=tracked)

@@ -1,0 +1,43 @@
+"""Frames of the made walk as a live stream, for tests of the live page."""
+
+import threading
+from contextlib import contextmanager
+
+import numpy as np
+
+from mbkf.stream.frame import LiveFrame
+from tests.recordings import walk
+
+
+def frame(k, lost=0):
+    """The k-th frame of an endless repetition of the walk; the first marker is never seen."""
+    r = walk()
+    t = k % r.frames
+    measured = r.measured_m[t].copy()
+    measured[0] = np.nan
+    return LiveFrame(
+        number=k, time_s=k / r.rate_hz, q=r.q[t], v=r.v[t], torques=r.tau[t], torques_sd=r.sd_tau[t],
+        wrench=r.foot_wrench[t], wrench_sd=r.foot_wrench_sd[t], plates=np.zeros((1, 6)), measured_m=measured,
+        predicted_m=r.predicted_m[t], unlabelled_m=np.array([[0.3, 0.4, 1.0]]), angle_sd=r.sd_q[t], latency_s=0.0015,
+        lost=lost, rate_hz=r.rate_hz, tracked=True, started=k == 0,
+    )  # fmt: skip
+
+
+@contextmanager
+def feeding(sink, period_s=0.01):
+    """Gives a sink a new frame every so often, in a thread, until the block ends."""
+    done = threading.Event()
+
+    def feed():
+        k = 0
+        while not done.wait(period_s):
+            sink.take(frame(k, lost=3))
+            k += 1
+
+    thread = threading.Thread(target=feed)
+    thread.start()
+    try:
+        yield
+    finally:
+        done.set()
+        thread.join()

@@ -1,0 +1,195 @@
+"""The pages in a real browser: something is drawn, it moves, it stops, strangers stay outside, nothing is fetched."""
+
+import io
+import os
+import shutil
+import time
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from mbkf.pipelines.summary import summarise
+from mbkf.viz.live_page import LivePage
+from mbkf.viz.playback import write_playback
+from mbkf.viz.report import write_report
+from tests.recordings import PLATE, broken_walk, walk, walker
+from tests.viz.streams import feeding
+
+FLAGS = (
+    "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync",
+)  # fmt: skip
+PATIENCE_S = 30.0
+
+
+@pytest.fixture(scope="module")
+def browser():
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if chromium is None:
+        message = "no chromium on this machine; install it (Debian: apt-get install chromium)"
+        (pytest.fail if os.environ.get("CI") else pytest.skip)(message)
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        made = playwright.chromium.launch(executable_path=chromium, args=FLAGS)
+        yield made
+        made.close()
+
+
+@pytest.fixture
+def opened(browser):
+    """Opens an address; afterwards the page must have reported no error."""
+    errors, pages = [], []
+
+    @contextmanager
+    def open_(url):
+        page = browser.new_page(viewport={"width": 920, "height": 420})
+        page.set_default_timeout(1e3 * PATIENCE_S)
+        page.requested = []
+        page.on("request", lambda request: page.requested.append(request.url))
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.on("console", lambda m: errors.append(m.text) if m.type == "error" else None)
+        page.answer = page.goto(url)
+        pages.append(page)
+        yield page
+        page.close()
+
+    open_.errors = errors
+    yield open_
+    assert errors == []
+
+
+@pytest.fixture(scope="module")
+def live():
+    made = LivePage(walker()[1], walk().marker_names, PLATE[None], title="a walk", token="sesame")
+    with feeding(made):
+        yield made
+    made.close()
+
+
+def picture(page, selector):
+    return imread(io.BytesIO(page.locator(selector).first.screenshot()))[..., :3]
+
+
+def colours(image):
+    """How many clearly different colours cover at least a thousandth of a picture each."""
+    coarse = (image * 7.99).astype(int).reshape(-1, 3) @ [64, 8, 1]
+    return int((np.bincount(coarse) > coarse.size / 1000).sum())
+
+
+def until(page, expression):
+    """Waits for something to become true in the page (whose policy forbids playwright's own way of waiting)."""
+    ends = time.monotonic() + PATIENCE_S
+    while not page.evaluate(expression):
+        assert time.monotonic() < ends, f"never true: {expression}"
+        page.wait_for_timeout(30)
+
+
+def until_plotted_anew(page, before):
+    ends = time.monotonic() + PATIENCE_S
+    while plotted(page) == before:
+        assert time.monotonic() < ends, "the plot never changed"
+        page.wait_for_timeout(30)
+
+
+def followed(page):
+    until(page, "Boolean(window.mbkf && mbkf.view && mbkf.view.seenPelvis)")
+    page.wait_for_timeout(200)
+
+
+def plotted(page):
+    return page.evaluate("document.querySelector('.card canvas').toDataURL()")
+
+
+def test_a_recording_plays_from_a_file_without_any_request(opened, tmp_path):
+    write_playback(broken_walk(), tmp_path / "walk.html")
+    with opened((tmp_path / "walk.html").as_uri()) as page:
+        followed(page)
+        assert page.title() == "walk <1> · mbkf"
+        assert colours(picture(page, "#scene")) >= 6, "a person, markers and a floor have several colours"
+        page.select_option("#speed", "0.5")
+        page.click("#play")
+        until(page, "mbkf.frame > 3")
+        page.click("#play")
+        stopped = page.evaluate("mbkf.frame")
+        before = plotted(page)
+        page.wait_for_timeout(300)
+        assert page.evaluate("mbkf.frame") == stopped
+        page.locator("#scrub").fill("150")
+        assert page.evaluate("mbkf.frame") == 150
+        assert page.text_content("#clock").startswith("1.50 s")
+        assert plotted(page) != before, "the playhead stands elsewhere"
+        knee = float(np.rad2deg(walk().angle("knee_angle_r")[150]))
+        assert float(page.text_content(".value").split()[0].replace("−", "-")) == pytest.approx(
+            knee, abs=0.06
+        )
+        page.locator("#scrub").fill("35")
+        until(page, "mbkf.view.markers.hidden.count === 2 && mbkf.view.markers.refused.count === 0")
+        page.locator("#scrub").fill("62")
+        until(page, "mbkf.view.markers.hidden.count === 0 && mbkf.view.markers.refused.count === 1")
+        page.locator("#scrub").fill("105")
+        assert page.evaluate("mbkf.view.segments.some((s) => s.visible)") is False, "the body is lost here"
+        assert page.requested == [page.url]
+
+
+def test_the_live_page_moves_and_pauses_and_trains(opened, live):
+    with opened(live.url) as page:
+        followed(page)
+        assert colours(picture(page, "#scene")) >= 6
+        until(page, "document.getElementById('state').textContent === 'live'")
+        assert page.text_content("#lost") == "3"
+        assert page.text_content("#latency") == "1.5 ms"
+        before = plotted(page)
+        until_plotted_anew(page, before)
+        page.click("#pause")
+        page.wait_for_timeout(300)
+        held, frozen = plotted(page), page.evaluate("mbkf.stream.rows.length")
+        page.wait_for_timeout(400)
+        assert (plotted(page), page.evaluate("mbkf.stream.rows.length")) == (held, frozen)
+        assert page.text_content("#state") == "paused"
+        page.click("#pause")
+        until_plotted_anew(page, held)
+        page.locator(".card select").first.select_option("reaction:vertical_l")
+        assert "upward" in page.text_content(".card .positive")
+        low, high = page.locator(".card").first.locator("input").all()
+        low.fill("-5000")
+        high.fill("5000")
+        until(page, "document.querySelector('.card .verdict').textContent === '✓ in target'")
+        low.fill("4000")
+        until(page, "document.querySelector('.card .verdict').textContent === '▼ below target'")
+
+
+def test_the_live_page_is_closed_and_opened_again_and_strangers_stay_outside(opened, live):
+    for _ in range(2):
+        with opened(live.url) as page:
+            followed(page)
+            until(page, "document.getElementById('state').textContent === 'live'")
+    with opened(live.url.replace("sesame", "simsalabim")) as page:
+        assert page.answer.status == 403
+        assert "Refused" in page.text_content("body")
+        opened.errors.clear()  # the browser itself tells of the refusal
+
+
+def test_a_page_whose_server_ends_says_so(opened):
+    made = LivePage(walker()[1], walk().marker_names)
+    with opened(made.url) as page:
+        until(page, "document.getElementById('state').textContent.startsWith('waiting')")
+        made.close()
+        until(page, "document.getElementById('state').textContent.startsWith('not connected')")
+        opened.errors.clear()  # the lost connection
+
+
+def test_the_report_opens_from_a_file_without_any_request(opened, tmp_path):
+    r = broken_walk()
+    write_report(r, summarise(r), tmp_path / "report.html")
+    with opened((tmp_path / "report.html").as_uri()) as page:
+        assert page.requested == [page.url]
+        for name in ("quality", "gait", "motion", "reactions", "settings"):
+            box = page.locator(f"#{name}").bounding_box()
+            assert box["width"] > 600 and box["height"] > 100
+        assert colours(picture(page, "svg.chart >> nth=4")) >= 3
+        page.click("summary >> nth=0")
+        assert page.locator("details >> nth=0").locator("svg.chart").first.bounding_box()["height"] > 50
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
