@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from mbkf.conventions import StageCallback
+    from mbkf.io.records import Capture
+    from mbkf.io.subject import Subject
+    from mbkf.pipelines.label import Labelling
 
 _EPILOG = """\
 examples:
   mbkf label raw.c3d --subject subject.toml --out trial.c3d
   mbkf label raw.trc --subject subject.toml --out trial.trc
   mbkf label walk7/raw.c3d --subject walk7/subject.toml --truth walk7/trial.c3d --out labelled.c3d
+  mbkf label raw.c3d --static standing.c3d --mass 71 --out trial.c3d       (scales from the labelled standing trial)
+  mbkf label raw.c3d --protocol autolabel62 --mass 75 --out trial.c3d      (nobody has scaled this person)
 
 Points may be shuffled in every frame or come as tracks. Points that are no marker are dropped. The numbers that are
-printed also go to FILE.json.
+printed also go to FILE.json. A person scaled on the way is written to FILE.toml, for 'mbkf reconstruct --subject'.
 """
 
 
@@ -27,7 +34,19 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         epilog=_EPILOG,
     )
     parser.add_argument("raw", metavar="RAW", help="unlabelled capture (.c3d or .trc); its names are ignored")
-    parser.add_argument("--subject", required=True, metavar="SUBJECT.toml", help="written by 'mbkf scale'")
+    parser.add_argument("--subject", metavar="SUBJECT.toml", help="written by 'mbkf scale'")
+    parser.add_argument(
+        "--static", metavar="LABELLED", help="instead of --subject: a labelled standing trial to scale from"
+    )
+    parser.add_argument(
+        "--protocol",
+        metavar="NAME|FILE",
+        help="marker protocol; without --subject and --static the person is scaled from the capture itself",
+    )
+    parser.add_argument(
+        "--mass", metavar="KG", type=float, help="body mass of a person to be scaled; by default as stated"
+    )
+    parser.add_argument("--height", metavar="M", type=float, help="body height of a person to be scaled")
     parser.add_argument("--truth", metavar="LABELLED.c3d", help="the same trial with labels, to compare with")
     parser.add_argument("--up", metavar="AXIS", help="axis of the file that points up: x, y, z, -x, -y or -z")
     parser.add_argument("--unit", metavar="UNIT", help="length unit of the file: mm, cm or m")
@@ -42,32 +61,63 @@ def run(args: argparse.Namespace) -> int:
         MbkfError: An input is unusable.
     """
     from mbkf.cli.progress import stages
-    from mbkf.io.atomic import check_folder, replacing
-    from mbkf.io.c3d_write import write_c3d
+    from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
-    from mbkf.io.subject import read_subject
-    from mbkf.io.trc import write_trc
-    from mbkf.pipelines.label import label, labelled_capture, summarise
+    from mbkf.io.subject import write_subject
+    from mbkf.pipelines.label_files import write_labels
     from mbkf.pipelines.label_score import score
 
     out = _checked(Path(args.out), Path(args.raw))
     check_folder(out.parent)
-    subject = read_subject(args.subject)
+    _check_person(args)
     raw = read_capture(args.raw, up=args.up, unit=args.unit)
     truth = None if args.truth is None else read_capture(args.truth, up=args.up, unit=args.unit)
     with stages() as report:
-        found = label(raw, subject, progress=report)
+        found, subject = _label(args, raw, report)
     compared = None if truth is None else score(found.markers, truth.markers, subject)
-    summary = summarise(found, compared)
-    labelled = labelled_capture(raw, found)
-    if out.suffix.lower() == ".trc":
-        write_trc(labelled.markers, out)
-    else:
-        write_c3d(labelled, out)
-    with replacing(out.with_suffix(".json")) as partial:
-        partial.write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
-    _print(summary, out)
+    if args.subject is None:
+        write_subject(subject, out.with_suffix(".toml"))
+    print_labels(write_labels(raw, found, out, compared), out)
+    if args.subject is None:
+        print(
+            f"{out.with_suffix('.toml')}: the person, markers fit to {subject.report['marker_rms_mm']:.1f} mm RMS"
+        )
     return 0
+
+
+def _label(args: argparse.Namespace, raw: Capture, report: StageCallback) -> tuple[Labelling, Subject]:
+    """The labels, and the person that they were found with."""
+    from mbkf.io.capture import read_capture
+    from mbkf.io.subject import read_subject
+    from mbkf.pipelines.label import label
+    from mbkf.pipelines.label_unscaled import label_unscaled
+    from mbkf.pipelines.scale import scale
+
+    person = {"mass_kg": args.mass, "height_m": args.height}
+    if args.subject is not None:
+        subject = read_subject(args.subject)
+    elif args.static is not None:
+        static = read_capture(args.static, up=args.up, unit=args.unit)
+        subject = scale(static, protocol=args.protocol, progress=report, **person)
+    else:
+        return label_unscaled(raw, args.protocol, progress=report, **person)
+    return label(raw, subject, progress=report), subject
+
+
+def _check_person(args: argparse.Namespace) -> None:
+    """Refuses none or two ways to say who wears the markers."""
+    from mbkf.errors import InvalidInput
+
+    if args.subject is None and args.static is None and args.protocol is None:
+        raise InvalidInput(
+            "who wears the markers? give --subject SUBJECT.toml, --static LABELLED, or --protocol NAME with --mass KG"
+        )
+    if args.subject is not None:
+        for name in ("static", "protocol", "mass", "height"):
+            if getattr(args, name) is not None:
+                raise InvalidInput(f"--{name} is for a person to be scaled; leave it away beside --subject")
+    if args.mass is not None and not args.mass > 0:
+        raise InvalidInput(f"--mass must be positive, got {args.mass:g}; give the body mass in kg")
 
 
 def _checked(out: Path, raw: Path) -> Path:
@@ -82,7 +132,8 @@ def _checked(out: Path, raw: Path) -> Path:
     return out
 
 
-def _print(summary: dict[str, Any], out: Path) -> None:
+def print_labels(summary: dict[str, Any], out: Path) -> None:
+    """Says what was labelled, and how well where the truth is known."""
     print(
         f"{out}: {summary['markers']} markers in {summary['frames']} frames, "
         f"{100 * summary['assigned_fraction']:.2f} % of marker-frames assigned, "

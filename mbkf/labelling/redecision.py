@@ -47,7 +47,7 @@ class RedecisionSettings:
     """
 
     placement_sd_m: float = 0.005
-    gate: float = 16.0
+    gate: float = 20.0
     doubt: float = 4.0
     brief_s: float = 0.4
     restless: float = 9.0

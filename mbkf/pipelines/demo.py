@@ -1,4 +1,4 @@
-"""The whole chain on a synthetic capture with known truth: scale from standing, reconstruct, compare."""
+"""The whole chain on an unlabelled synthetic capture with known truth: scale, label, reconstruct, compare."""
 
 from __future__ import annotations
 
@@ -17,6 +17,9 @@ from mbkf.io.subject import write_subject
 from mbkf.io.truth import Truth
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
+from mbkf.pipelines.label import label
+from mbkf.pipelines.label_files import write_labels
+from mbkf.pipelines.label_score import score
 from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
 from mbkf.pipelines.scale import scale
 from mbkf.pipelines.summary import summarise
@@ -27,6 +30,10 @@ COORDINATES = (
     "lumbar_extension", "arm_flex_r", "elbow_flex_r",
 )  # fmt: skip
 """The coordinates whose errors the demo lists."""
+
+
+LABELLED = "labelled.c3d"
+"""The raw capture with the names it was given."""
 
 
 @dataclass(frozen=True)
@@ -50,9 +57,10 @@ class CoordinateError:
 
 @dataclass(frozen=True)
 class Demo:
-    """What the demo made: the folder, the result, its summary and the errors of a few coordinates."""
+    """What the demo made: the folder, what labelling said, the result, its summary and a few coordinates' errors."""
 
     folder: Path
+    labels: dict[str, Any]
     result: Reconstruction
     summary: dict[str, Any]
     errors: tuple[CoordinateError, ...]
@@ -67,7 +75,7 @@ def run_demo(
     filter_name: str = "dynamic",
     progress: StageCallback | None = None,
 ) -> Demo:
-    """Synthetic capture → subject scaled from the standing trial → reconstruction → errors.
+    """Synthetic capture → subject scaled from the standing trial → labels → reconstruction → errors.
 
     Args:
         motion: "squat", "walk" or "jump".
@@ -87,11 +95,15 @@ def run_demo(
     subject = scale(static, mass_kg=person.mass_kg, progress=progress)
     write_subject(subject, folder / "scaled.toml")
     settings = ReconstructSettings(filter=filter_name, keep_covariance=True)
-    result = reconstruct(read_capture(folder / "trial.c3d"), subject, settings=settings, progress=progress)
+    raw = read_capture(folder / "raw.c3d")
+    found = label(raw, subject, progress=progress)
+    compared = score(found.markers, capture.trial.markers, subject)
+    labels = write_labels(raw, found, folder / LABELLED, compared)
+    result = reconstruct(read_capture(folder / LABELLED), subject, settings=settings, progress=progress)
     summary = summarise(result, capture.truth)
     write_reconstruction(result, summary, folder / "result")
     body = HumanModel.scaled(person.scale_factors, person.mass_kg, person.body)
-    return Demo(folder, result, summary, coordinate_errors(result, capture.truth, body))
+    return Demo(folder, labels, result, summary, coordinate_errors(result, capture.truth, body))
 
 
 def coordinate_errors(result: Reconstruction, truth: Truth, body: HumanModel) -> tuple[CoordinateError, ...]:

@@ -17,7 +17,7 @@ from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.first_frame import FirstFrame, labelled
 from mbkf.labelling.running import RunningSettings
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.any_attitude import STAGE, starts_anyhow
+from mbkf.pipelines.any_attitude import STAGE, AnyAttitude
 from mbkf.pipelines.label_body import LabelBody, label_body
 from mbkf.pipelines.label_redecision import redecided, trajectories
 from mbkf.pipelines.label_score import LabelScore
@@ -77,6 +77,7 @@ def summarise(found: Labelling, compared: LabelScore | None = None) -> dict[str,
         "markers": int(found.markers.present.any(axis=0).sum()),
         "assigned_fraction": found.assigned_fraction,
         "ghosts_dropped": int(found.ghosts.sum()),
+        "ghosts_per_frame": [int(n) for n in found.ghosts],
         "swaps_repaired": found.repaired,
         "samples_redecided": found.redecided,
         "first_labelled_frame": found.first_labelled_frame,
@@ -212,7 +213,8 @@ def _starts(
     found = [(t, search.standing(_present(markers, t))) for t in looks]
     good = [(t, one) for t, one in found if one is not None]
     if 2 * len(good) < len(looks):
-        good += starts_anyhow(search, markers, looks, lambda n, all_: report(STAGE, n, all_))
+        anyhow = AnyAttitude(search, markers.positions_m, markers.rate_hz)
+        good += anyhow.starts(looks, lambda n, all_: report(STAGE, n, all_))
     if good:
         return sorted(good, key=lambda pair: -pair[1].worth)
     for t in range(0, markers.frames, max(1, round(SCAN_S * markers.rate_hz))):

@@ -17,6 +17,7 @@ from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.labelling.first_frame import FirstFrameSearch
 from mbkf.labelling.running import RunningLabeller, RunningSettings
 from mbkf.model.human import HumanModel
+from mbkf.pipelines.any_attitude import AnyAttitude
 from mbkf.pipelines.labelling_pass import LabellingPass
 from mbkf.scaling.correction import correct_markers
 from mbkf.sensors.markers import MarkerSensor
@@ -65,7 +66,8 @@ class LabelBody:
 
     def start_pass(self, positions_m: Array, dt_s: float) -> LabellingPass:
         """A pass over points (T, C, 3) with a filter and a labeller of its own."""
-        return LabellingPass(self.follower(dt_s), self.sensor, self.search, self.labeller(dt_s), positions_m)
+        anyhow = AnyAttitude(self.search, positions_m, 1.0 / dt_s)
+        return LabellingPass(self.follower(dt_s), self.sensor, anyhow, self.labeller(dt_s), positions_m)
 
 
 def label_body(markers: Sequence[SubjectMarker], subject: Subject, settings: RunningSettings) -> LabelBody:

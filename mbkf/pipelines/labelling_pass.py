@@ -12,9 +12,10 @@ from mbkf.conventions import Array
 from mbkf.filters.estimate import Estimate, Follower, Recording
 from mbkf.filters.prediction import expected_markers
 from mbkf.labelling.assignment import HIDDEN, Indices
-from mbkf.labelling.first_frame import FirstFrame, FirstFrameSearch, labelled
+from mbkf.labelling.first_frame import FirstFrame, labelled
 from mbkf.labelling.running import RunningLabeller
 from mbkf.labelling.tracks import continued
+from mbkf.pipelines.any_attitude import AnyAttitude
 from mbkf.sensors.markers import MarkerSensor
 
 START_FRAMES = 6
@@ -64,12 +65,12 @@ class LabellingPass:
         self,
         follower: Follower,
         sensor: MarkerSensor,
-        search: FirstFrameSearch,
+        anyhow: AnyAttitude,
         labeller: RunningLabeller,
         positions_m: Array,
     ) -> None:
         """Args: filter, markers on its body, search, labeller, and the capture's points (T, C, 3), NaN where empty."""
-        self._follower, self._sensor, self._search = follower, sensor, search
+        self._follower, self._sensor, self._search, self._anyhow = follower, sensor, anyhow.search, anyhow
         self.labeller, self._positions_m = labeller, positions_m
         frames, markers = len(positions_m), len(sensor.segments)
         self.markers_m = np.full((frames, markers, 3), np.nan)
@@ -98,7 +99,10 @@ class LabellingPass:
             found = first if t == start and first is not None else self.find(t, tries % SEARCH_EVERY == 0)
             estimate = None if found is None else self._begin(t, found)
             tries += 1
-            t = t + wait if estimate is None else self._follow(t + 1, estimate, progress)
+            if estimate is None:
+                t += wait
+            else:
+                t, tries = self._follow(t + 1, estimate, progress), 0
 
     def find(self, t: int, thorough: bool) -> FirstFrame | None:
         """Labels of a frame by search, the slow one for bodies that do not stand included where ``thorough``."""
@@ -106,7 +110,7 @@ class LabellingPass:
         if len(points) < self._search.least:
             return None
         found = self._search.standing(points)
-        return self._search.anyhow(points) if found is None and thorough else found
+        return self._anyhow.at(t) if found is None and thorough else found
 
     def _begin(self, t: int, found: FirstFrame) -> Estimate | None:
         """The filter's first estimate: labels are carried through the next frames pose by pose to learn velocities."""

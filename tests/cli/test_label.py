@@ -6,6 +6,7 @@ import pytest
 
 from mbkf.cli.main import main
 from mbkf.io.capture import read_capture
+from mbkf.io.subject import read_subject
 
 
 @pytest.fixture(scope="module")
@@ -48,3 +49,27 @@ def test_bad_input_is_refused(folder, tmp_path, refused):
     refused(["label", tmp_path / "no.c3d", "--subject", subject, "--out", tmp_path / "x.c3d"], "no.c3d")
     refused(["label", raw, "--subject", tmp_path / "no.toml", "--out", tmp_path / "x.c3d"], "mbkf scale")
     refused(["label", raw, "--subject", subject], "--out")
+
+
+@pytest.mark.parametrize(
+    "who", [["--static", "static.c3d"], ["--protocol", "reference36", "--height", "1.8"]]
+)
+def test_a_person_scaled_on_the_way_is_written(folder, tmp_path, capsys, who):
+    out = tmp_path / "named.c3d"
+    who = [folder / word if word.endswith(".c3d") else word for word in who]
+    words = ["label", folder / "raw.c3d", *who, "--mass", "75", "--truth", folder / "trial.c3d", "--out", out]
+    assert main([str(word) for word in words]) == 0
+    assert str(tmp_path / "named.toml") in capsys.readouterr().out
+    subject = read_subject(tmp_path / "named.toml")
+    assert subject.mass_kg == 75.0
+    assert {marker.name for marker in subject.markers} >= set(read_capture(out).markers.names)
+    assert json.loads(out.with_suffix(".json").read_text())["correct_fraction"] >= 0.9
+
+
+def test_it_must_be_known_who_wears_the_markers(folder, tmp_path, refused):
+    raw, out = folder / "raw.c3d", tmp_path / "named.c3d"
+    refused(["label", raw, "--out", out], "--subject", "--protocol")
+    both = ["--subject", folder / "subject.toml", "--protocol", "reference36"]
+    refused(["label", raw, *both, "--out", out], "--protocol", "--subject")
+    refused(["label", raw, "--protocol", "reference36", "--mass", "-3", "--out", out], "--mass", "positive")
+    refused(["label", raw, "--protocol", "nosuch", "--mass", "75", "--out", out], "nosuch")

@@ -1,8 +1,14 @@
-"""Columns that are tracks are recognised, shuffled ones are not."""
+"""Columns that are tracks are recognised, shuffled ones are not; points are followed through a capture."""
 
 import numpy as np
+import pytest
 
-from mbkf.labelling.tracks import continued
+from mbkf.labelling.assignment import HIDDEN
+from mbkf.labelling.tracks import columns_are_tracks, continued, follow
+from tests.labelling.bodies import reference_sensor
+from tests.labelling.movement import RATE_HZ, movement, shuffled
+
+SENSOR = reference_sensor()
 
 
 def frames(seed=0, points=30):
@@ -33,3 +39,59 @@ def test_shuffled_columns_do_not():
 def test_no_column_in_common():
     empty = np.full((4, 3), np.nan)
     assert not continued(empty, np.zeros((4, 3))).any()
+
+
+def owners(tracks, marker_of_point):
+    """For every track the set of markers whose points it holds."""
+    found = [set() for _ in range(tracks.count)]
+    for t, c in np.argwhere(tracks.number != HIDDEN):
+        found[tracks.number[t, c]].add(int(marker_of_point[t, c]))
+    return found
+
+
+@pytest.mark.parametrize("shuffle", [False, True])
+def test_tracks_hold_one_marker_each_through_gaps(shuffle):
+    rng = np.random.default_rng(3)
+    positions = movement(SENSOR, rng)
+    columns = np.broadcast_to(np.arange(positions.shape[1]), positions.shape[:2])
+    positions[40:46, 5] = np.nan
+    if shuffle:
+        positions, columns = shuffled(positions, rng)
+    tracks = follow(positions, RATE_HZ)
+    assert np.array_equal(tracks.number != HIDDEN, ~np.isnan(positions[:, :, 0]))
+    held = owners(tracks, columns)
+    assert all(len(markers) == 1 for markers in held)
+    assert tracks.count <= positions.shape[1] + 2
+    assert sum(5 in markers for markers in held) == 1
+
+
+def test_a_column_that_leaps_is_two_tracks():
+    rng = np.random.default_rng(4)
+    positions = movement(SENSOR, rng, frames=40)
+    positions[15:20, 7] = np.nan
+    positions[20:, 7] += [2.0, 0.0, 0.0]
+    number = follow(positions, RATE_HZ).number[:, 7]
+    assert len(set(number[:15])) == len(set(number[20:])) == 1
+    assert number[0] != number[-1]
+
+
+def test_columns_are_known_for_tracks_or_not():
+    rng = np.random.default_rng(5)
+    positions = movement(SENSOR, rng, frames=40)
+    assert columns_are_tracks(positions)
+    assert not columns_are_tracks(shuffled(positions, rng)[0])
+
+
+def test_positions_and_lives_of_tracks():
+    rng = np.random.default_rng(6)
+    positions = movement(SENSOR, rng, frames=20)
+    positions[5:8, 2] = np.nan
+    tracks = follow(positions, RATE_HZ)
+    own = tracks.number[0]
+    looks = np.array([0, 6, 19])
+    assert np.array_equal(tracks.positions(positions, looks)[:, own], positions[looks], equal_nan=True)
+    assert np.array_equal(tracks.lives()[own].T, ~np.isnan(positions[:, :, 0]))
+
+
+def test_nothing_makes_no_tracks():
+    assert follow(np.full((5, 3, 3), np.nan), RATE_HZ).count == 0

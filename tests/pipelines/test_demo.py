@@ -30,6 +30,15 @@ def test_the_capture_and_the_result_are_on_disk(demo: Demo) -> None:
     }
 
 
+def test_it_starts_from_points_without_names(demo: Demo) -> None:
+    """The reconstruction is that of the labelled file, whose names are right."""
+    assert demo.result.trial == "labelled"
+    assert (demo.folder / "labelled.json").is_file()
+    assert demo.labels["correct_fraction"] >= 0.998
+    assert demo.labels["wrong_fraction"] <= 0.001
+    assert demo.labels["ghosts_dropped"] > 0
+
+
 def test_leg_angles_follow_the_truth(demo: Demo) -> None:
     """3 mm of skin movement on levers of 0.2 m and more is below two degrees in hip, knee and ankle."""
     assert tuple(error.name for error in demo.errors) == COORDINATES

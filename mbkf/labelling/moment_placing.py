@@ -1,0 +1,221 @@
+"""Poses of one segment that lay its marker cluster onto tracks, at several moments at once.
+
+Nobody has measured this body: its markers sit some centimetres from where the protocol has them and its limbs are
+longer or shorter. So a segment's pose comes from its own tracks, its joint pulls it only softly, and what keeps wrong
+tracks out is that they do not move with the segment, or fit at one moment and not at the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.labelling.assignment import HIDDEN, Indices
+from mbkf.labelling.moments import Moments
+from mbkf.labelling.placing import MOST_POSTURE, PLACING_SD_M, likeness, nearest_rotations
+from mbkf.labelling.skeleton import Cluster
+
+TOGETHER_M = 0.05
+"""Two tracks whose distance varies more than this are not on one segment; skin and shoulder blades do so much."""
+
+LENGTH_M = 0.03
+"""How much the distance of two markers may differ from the protocol's."""
+
+JOINT_REACH_M, JOINT_SD_M = 0.12, 0.04
+"""How far a joint may be, and how far it typically is, from where the chain of segments placed it."""
+
+REACH_M = 0.09
+"""How far a track may be from its marker while the segment's pose is not settled."""
+
+SETTLED_SDS = 3.0
+"""How many of a marker's standard deviations it may be once it is."""
+
+MATCH_SD_M = 0.02
+"""A marker's spread against which :data:`JOINT_SD_M` weighs the joint's pull."""
+
+ROUNDS = 3
+"""How often pose and tracks are brought into line."""
+
+_PAIRS, _SINGLES, _KEPT = 120, 40, 24
+_PARENT_PULL = 2e-4
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A segment at K moments.
+
+    Attributes:
+        rotations: (K, 3, 3) its orientation.
+        origins_m: (K, 3) its joint.
+        tracks: (k,) place among the N tracks of each of its markers' own, ``HIDDEN`` where none.
+        score: What it is worth: matches less distances, less the joint's gap and turn.
+    """
+
+    rotations: Array
+    origins_m: Array
+    tracks: Indices
+    score: float
+
+
+class MomentPlacing:
+    """Places segments on the tracks of some moments.
+
+    Attributes:
+        seen: The tracks.
+        together: (N, N) whether two may be on one segment.
+    """
+
+    def __init__(self, seen: Moments) -> None:
+        self.seen = seen
+        self.together = np.asarray(seen.spread_m <= TOGETHER_M)
+        self._weight = (~np.isnan(seen.positions_m[:, :, 0])).astype(float)
+        self._points = np.nan_to_num(seen.positions_m)
+
+    def placings(
+        self, cluster: Cluster, origins_m: Array, parents: Array, free: Indices, most: int
+    ) -> list[Placed]:
+        """The best ways to place a segment, best first, and last the one with no marker found.
+
+        Args:
+            cluster: The segment.
+            origins_m: (K, 3) where the chain has its joint.
+            parents: (K, 3, 3) orientation of the segment before.
+            free: Tracks not yet taken.
+            most: How many to return at most.
+        """
+        nothing = Placed(parents, origins_m, np.full(len(cluster.markers), HIDDEN, dtype=np.intp), 0.0)
+        tracks, allowed = self._first(cluster, origins_m, free)
+        if not len(tracks):
+            return [nothing]
+        for round_ in range(ROUNDS):
+            rotations, origins = self.settle(cluster.local_m, tracks, origins_m, parents)
+            reach = np.maximum(_settled_reach(cluster), REACH_M if round_ == 0 else 0.0)
+            tracks, score = self.rate(cluster, rotations, origins, free, allowed, reach)
+            score = score - self._strain(cluster, rotations, origins, origins_m, parents)
+            kept = np.fromiter(_different(tracks, score, _KEPT), dtype=np.intp)
+            tracks, score, allowed = tracks[kept], score[kept], allowed[kept]
+            rotations, origins = rotations[kept], origins[kept]
+            if not len(kept):
+                break
+        ways = [Placed(*way) for way in zip(rotations, origins, tracks, score.tolist(), strict=True)]
+        return [*ways[: most - 1], nothing]
+
+    def settle(
+        self, local_m: Array, tracks: Indices, origins_m: Array, parents: Array | None
+    ) -> tuple[Array, Array]:
+        """Poses (n, K, 3, 3), (n, K, 3) of a segment by its tracks (n, k) and, softly, its joint (K, 3).
+
+        Least squares of the markers' distances and the joint's, each by its own spread (Wahba's problem with the joint
+        as a further point). Without ``parents`` the segment is the root and has no joint.
+        """
+        weight = np.where((tracks != HIDDEN)[:, None], self._weight[:, tracks].transpose(1, 0, 2), 0.0)
+        found = self._points[:, tracks].transpose(1, 0, 2, 3)
+        joint = 0.0 if parents is None else (MATCH_SD_M / JOINT_SD_M) ** 2
+        total = np.maximum(weight.sum(axis=2) + joint, 1e-9)[:, :, None]
+        middle = ((weight[..., None] * found).sum(axis=2) + joint * origins_m) / total
+        own = (weight[..., None] * local_m).sum(axis=2) / total
+        arms, away = local_m - own[:, :, None], found - middle[:, :, None]
+        attitude = np.einsum("nkm,nkmi,nkmj->nkij", weight, away, arms)
+        if parents is not None:
+            attitude += joint * np.einsum("nki,nkj->nkij", origins_m - middle, -own) + _PARENT_PULL * parents
+        rotations = nearest_rotations(attitude.reshape(-1, 3, 3)).reshape(attitude.shape)
+        return rotations, middle - np.einsum("nkij,nkj->nki", rotations, own)
+
+    def rate(
+        self,
+        cluster: Cluster,
+        rotations: Array,
+        origins_m: Array,
+        free: Indices,
+        allowed: BoolArray,
+        reach_m: Array,
+    ) -> tuple[Indices, Array]:
+        """Tracks (n, k) nearest to a cluster's markers in n ways to place it, and what they are worth (n,).
+
+        Args:
+            cluster: The segment.
+            rotations: (n, K, 3, 3) its orientations.
+            origins_m: (n, K, 3) its joint.
+            free: (F,) tracks not yet taken.
+            allowed: (n, F) which of them move with those that it was placed by.
+            reach_m: (k,) how far a marker's track may be.
+        """
+        placed = np.einsum("nkij,mj->nkmi", rotations, cluster.local_m) + origins_m[:, :, None]
+        away = placed[:, :, :, None] - self._points[:, None, free]
+        weight = self._weight[:, free]
+        shown = np.maximum(weight.sum(axis=0), 1e-9)
+        squared = np.einsum("nkmpi,nkmpi,kp->nmp", away, away, weight) / shown
+        squared = np.where(allowed[:, None] & (weight.sum(axis=0) > 0), squared, np.inf)
+        nearest = squared.argmin(axis=2)
+        least = np.take_along_axis(squared, nearest[:, :, None], axis=2)[:, :, 0]
+        same = nearest[:, :, None] == nearest[:, None]
+        beaten = (same & (least[:, None] < least[:, :, None])).any(axis=2)
+        good = (least <= reach_m**2) & ~beaten
+        worth = likeness(np.where(good, least, 0.0), np.hypot(cluster.sd_m, PLACING_SD_M))
+        found = np.where(good, free[nearest], HIDDEN)
+        return found, np.where(good, np.maximum(worth, 0.0), 0.0).sum(axis=1)
+
+    def _first(self, cluster: Cluster, origins_m: Array, free: Indices) -> tuple[Indices, BoolArray]:
+        """Tracks (n, k) of two markers, or of one where the segment has fewer than three, and what may join them."""
+        found = np.zeros((0, len(cluster.markers)), dtype=np.intp)
+        if not len(cluster.markers) or not len(free):
+            return found, np.zeros((0, len(free)), dtype=bool)
+        marker, track, misfit = self._within_reach(cluster, origins_m, free)
+        one, two = np.triu_indices(len(marker), 1)
+        fits = (
+            (marker[one] != marker[two]) & (track[one] != track[two]) & self.together[track[one], track[two]]
+        )
+        one, two = one[fits], two[fits]
+        between = np.linalg.norm(cluster.local_m[marker[one]] - cluster.local_m[marker[two]], axis=1)
+        differ = np.abs(between - self.seen.length_m[track[one], track[two]])
+        # Long distances say more of the orientation, and are matched less often by chance.
+        pairs = np.argsort(differ - 0.1 * between)[:_PAIRS]
+        pairs = pairs[differ[pairs] <= LENGTH_M]
+        one, two = one[pairs], two[pairs]
+        single = np.argsort(misfit)[: _SINGLES if len(cluster.markers) < 3 else 0]
+        found = np.full((len(one) + len(single), len(cluster.markers)), HIDDEN, dtype=np.intp)
+        row = np.arange(len(one))
+        found[row, marker[one]], found[row, marker[two]] = track[one], track[two]
+        found[len(one) + np.arange(len(single)), marker[single]] = track[single]
+        allowed = self.together[track[one]] & self.together[track[two]]
+        return found, np.concatenate([allowed, self.together[track[single]]])[:, free]
+
+    def _within_reach(
+        self, cluster: Cluster, origins_m: Array, free: Indices
+    ) -> tuple[Indices, Indices, Array]:
+        """Markers and tracks that are about as far from the joint as each other at all moments, and by how much not."""
+        weight = self._weight[:, free]
+        distance = np.linalg.norm(self._points[:, free] - origins_m[:, None], axis=2)
+        radius = np.linalg.norm(cluster.local_m, axis=1)
+        squared = ((distance[:, None] - radius[:, None]) ** 2 * weight[:, None]).sum(axis=0)
+        misfit = np.sqrt(squared / np.maximum(weight.sum(axis=0), 1e-9))
+        marker, place = np.nonzero(misfit <= JOINT_REACH_M)
+        return marker, free[place], misfit[marker, place]
+
+    def _strain(
+        self, cluster: Cluster, rotations: Array, origins: Array, origins_m: Array, parents: Array
+    ) -> Array:
+        """(n,) what the joint's gap and an unusual turn cost, mean over the moments."""
+        gap = ((origins - origins_m) ** 2).sum(axis=2) / JOINT_SD_M**2
+        cosine = (np.einsum("nkij,kij->nk", rotations, parents) - 1.0) / 2.0
+        turn = np.arccos(np.clip(cosine, -1.0, 1.0)) / cluster.posture_sd_rad
+        return np.asarray((gap + np.minimum(turn**2, MOST_POSTURE)).mean(axis=1))
+
+
+def _settled_reach(cluster: Cluster) -> Array:
+    return np.asarray(SETTLED_SDS * np.hypot(cluster.sd_m, PLACING_SD_M))
+
+
+def _different(tracks: Indices, score: Array, most: int) -> Iterator[int]:
+    """Rows with tracks of their own, best first."""
+    known = set()
+    for row in np.argsort(-score):
+        key = tracks[row].tobytes()
+        if key not in known and (tracks[row] != HIDDEN).any():
+            known.add(key)
+            yield int(row)
+            if len(known) == most:
+                return

@@ -1,0 +1,108 @@
+"""Tracks at a few moments of a capture: what moves together is one segment, in whatever attitude the body is.
+
+Two tracks of one segment keep their distance through a whole capture; those of different segments do not, as soon as
+the body moves. That needs no model, so that it helps most where there is no subject yet.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.labelling.assignment import Indices
+from mbkf.labelling.tracks import Tracks
+
+LOOKS = 160
+"""Frames, spread over the capture, from which distances are learnt."""
+
+SHOWN = 0.8
+"""A moment shows at least so large a share of the tracks that the best frame does."""
+
+STILL_M, TRAVEL_M = 0.05, 0.50
+"""A track that moves less than the one, while half of all move more than the other, is on nobody's body."""
+
+MIN_SHOWN = 0.15
+"""A track that fewer of the frames looked at show than this takes no part."""
+
+_MIDDLE = (5.0, 95.0)
+
+
+@dataclass(frozen=True)
+class Moments:
+    """N tracks at K moments.
+
+    Attributes:
+        frames: (K,) the frames; the first is the one that the tracks were taken from.
+        tracks: (N,) their numbers.
+        positions_m: (K, N, 3) where they are, NaN where not seen.
+        spread_m: (N, N) by how much the distance of two varies in the capture, 0 where they never appear together.
+        length_m: (N, N) their distance, median.
+    """
+
+    frames: Indices
+    tracks: Indices
+    positions_m: Array
+    spread_m: Array
+    length_m: Array
+
+
+def moments(points_m: Array, tracks: Tracks, frame: int, count: int) -> Moments | None:
+    """The tracks seen in a frame, at moments in which their distances differ most from each other.
+
+    Args:
+        points_m: (T, C, 3) the capture's points.
+        tracks: Their tracks.
+        frame: The frame.
+        count: How many moments, at most.
+
+    Returns:
+        None where the frame shows fewer than three tracks that may be a body's.
+    """
+    looks = np.unique(np.append(np.linspace(0, len(points_m) - 1, LOOKS).astype(int), frame))
+    every = tracks.positions(points_m, looks)
+    there = ~np.isnan(every[:, :, 0])
+    own = there[np.searchsorted(looks, frame)] & (there.mean(axis=0) >= MIN_SHOWN) & moving(every)
+    chosen = np.flatnonzero(own)
+    if len(chosen) < 3:
+        return None
+    seen = every[:, chosen]
+    distance = np.linalg.norm(seen[:, :, None] - seen[:, None], axis=3)
+    low, high, middle = _quantiles(distance, (*_MIDDLE, 50.0))
+    shown = (~np.isnan(seen[:, :, 0])).sum(axis=1)
+    picked = _differing(distance, shown >= SHOWN * shown.max(), int(np.searchsorted(looks, frame)), count)
+    return Moments(looks[picked], chosen, seen[picked], high - low, middle)
+
+
+def moving(positions_m: Array) -> BoolArray:
+    """(N,) tracks (T, N, 3) that move, where most do: the others are on the furniture."""
+    low, high = _quantiles(positions_m, (2.0, 98.0))
+    way = np.linalg.norm(high - low, axis=1)
+    return np.asarray((way > STILL_M) | (np.median(way) < TRAVEL_M))
+
+
+def _quantiles(values: Array, shares: tuple[float, ...]) -> Array:
+    """Percentiles along the first axis, 0 where there is nothing."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "All-NaN slice", RuntimeWarning)
+        return np.nan_to_num(np.nanpercentile(values, shares, axis=0))
+
+
+def _differing(distance_m: Array, good: BoolArray, first: int, count: int) -> Indices:
+    """Frames of (F, N, N) distances: the first, then always the good one that is least like those picked."""
+    picked = [first]
+    pairs = np.triu_indices(distance_m.shape[1], 1)
+    flat = distance_m[:, pairs[0], pairs[1]]
+    unlike = np.where(good, np.inf, -1.0)
+    while len(picked) < count:
+        away = (flat - flat[picked[-1]]) ** 2
+        known = ~np.isnan(away)
+        mean = np.where(known, away, 0.0).sum(axis=1) / np.maximum(known.sum(axis=1), 1)
+        unlike = np.minimum(unlike, mean)
+        best = int(unlike.argmax())
+        if unlike[best] <= 0.0:
+            break
+        picked.append(best)
+    return np.array(picked, dtype=np.intp)

@@ -1,0 +1,95 @@
+"""Whole tracks named by a body: which marker a track is near at many moments, not which is nearest in one frame."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.labelling.assignment import HIDDEN, Indices
+from mbkf.labelling.placing import likeness
+from mbkf.labelling.tracks import Tracks
+from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
+from mbkf.sensors.posture import PostureSensor
+
+LOOKS = 60
+"""Moments, spread over the capture, at which tracks are compared with the body."""
+
+MOST_AGAINST = -15.0
+"""What one moment can say against a pair at most: a limb may be placed wrongly there."""
+
+MIN_MARKERS = 6
+"""A moment with fewer named tracks places no body."""
+
+
+def trajectories(points_m: Array, tracks: Tracks, owner: Indices, markers: int) -> Array:
+    """(T, M, 3) trajectories of markers from the tracks they own, NaN elsewhere.
+
+    Args:
+        points_m: (T, C, 3) points of the capture.
+        tracks: Their tracks.
+        owner: (count,) marker of every track, ``HIDDEN`` for those that are nobody's.
+        markers: How many markers there are.
+    """
+    found = np.full((len(points_m), markers, 3), np.nan)
+    whose = np.where(tracks.number == HIDDEN, HIDDEN, owner[tracks.number])
+    frames, columns = np.nonzero(whose != HIDDEN)
+    found[frames, whose[frames, columns]] = points_m[frames, columns]
+    return found
+
+
+def name_tracks(
+    sensor: MarkerSensor, sd_m: Array, points_m: Array, tracks: Tracks, owner: Indices
+) -> tuple[Indices, float]:
+    """Marker of every track (count,) by a body whose pose follows from the tracks named before, and what it is worth.
+
+    Pairs of track and marker are taken by their likelihood over all moments at which the track is seen, the likeliest
+    first; two tracks that are seen at once are not the same marker.
+
+    Args:
+        sensor: The markers on the body.
+        sd_m: (M,) how far a marker may be from its place.
+        points_m: (T, C, 3) points of the capture.
+        tracks: Their tracks.
+        owner: (count,) marker of the tracks named so far.
+    """
+    looks = np.unique(np.linspace(0, len(points_m) - 1, LOOKS).astype(int))
+    seen = tracks.positions(points_m, looks)
+    known = trajectories(points_m, tracks, owner, len(sd_m))[looks]
+    evidence = _evidence(sensor, sd_m, seen, known)
+    found = _without_conflicts(evidence, tracks.lives())
+    named = np.flatnonzero(found != HIDDEN)
+    return found, float(evidence[named, found[named]].sum())
+
+
+def _evidence(sensor: MarkerSensor, sd_m: Array, seen_m: Array, known_m: Array) -> Array:
+    """(count, M) what all moments together say for a track (F, count, 3) being a marker, by known markers (F, M, 3)."""
+    posture = PostureSensor(sensor.model)
+    total = np.zeros((seen_m.shape[1], len(sd_m)))
+    for points, measured in zip(seen_m, known_m, strict=True):
+        if np.count_nonzero(~np.isnan(measured[:, 0])) < MIN_MARKERS:
+            continue
+        start = segment_by_segment(sensor, measured)
+        placed = sensor.positions(fit_pose(sensor, posture, measured, sd_m, start, max_iterations=12).q)
+        squared = ((points[:, None] - placed) ** 2).sum(axis=2)
+        total += np.nan_to_num(np.maximum(likeness(squared, sd_m), MOST_AGAINST))
+    return total
+
+
+def _without_conflicts(evidence: Array, lives: BoolArray) -> Indices:
+    """(count,) marker of every track, no marker on two tracks (count, T) in one frame."""
+    owner = np.full(len(evidence), HIDDEN, dtype=np.intp)
+    taken = np.zeros((evidence.shape[1], lives.shape[1]), dtype=bool)
+    for pair in _likeliest(evidence):
+        track, marker = divmod(pair, evidence.shape[1])
+        if owner[track] == HIDDEN and not (taken[marker] & lives[track]).any():
+            owner[track] = marker
+            taken[marker] |= lives[track]
+    return owner
+
+
+def _likeliest(evidence: Array) -> Sequence[int]:
+    order = np.argsort(-evidence, axis=None)
+    return [int(pair) for pair in order[: np.count_nonzero(evidence > 0.0)]]

@@ -1,0 +1,52 @@
+"""A rough body laid onto the tracks of a prone person: every marker on its own track, or on none."""
+
+import numpy as np
+import pytest
+
+from mbkf.labelling.assignment import HIDDEN
+from mbkf.labelling.moment_growing import lay
+from mbkf.labelling.moments import moments
+from mbkf.labelling.skeleton import clusters
+from mbkf.labelling.tracks import follow
+from mbkf.model.human import HumanModel
+from mbkf.sensors.markers import MarkerSensor
+from tests.labelling.bodies import reference_sensor
+from tests.labelling.movement import RATE_HZ, movement, shuffled
+
+ROUGH = reference_sensor("autolabel62")
+BODY = clusters(ROUGH, np.full(len(ROUGH.segments), 0.03))
+
+
+def person(rng, size):
+    """Somebody of another size, whose clusters sit elsewhere on the segments than the protocol has them."""
+    model = HumanModel.scaled({name: size for name in ROUGH.model.description.scale_factors})
+    local = size * ROUGH.local_m + rng.normal(0.0, 0.006, ROUGH.local_m.shape)
+    for segment in set(ROUGH.segments):
+        local[np.array(ROUGH.segments) == segment] += rng.normal(0.0, 0.012, 3)
+    return MarkerSensor(model, ROUGH.segments, local)
+
+
+@pytest.mark.parametrize(("seed", "size"), [(1, 0.95)])
+def test_a_prone_stranger_is_found(seed, size):
+    rng = np.random.default_rng(seed)
+    positions, marker = shuffled(movement(person(rng, size), rng), rng)
+    tracks = follow(positions, RATE_HZ)
+    seen = moments(positions, tracks, 70, 6)
+    owner = np.empty(tracks.count, dtype=int)
+    owner[tracks.number[70]] = marker[70]
+    best, *others = lay(BODY, seen, 3)
+    there = best.tracks != HIDDEN
+    right = owner[seen.tracks[best.tracks[there]]] == np.flatnonzero(there)
+    assert right.sum() >= 0.9 * len(there)
+    assert right.mean() >= 0.98
+    assert all(other.score <= best.score for other in others)
+    assert len(set(best.tracks[there].tolist())) == there.sum()
+
+
+def test_points_that_are_nobody_make_no_body():
+    rng = np.random.default_rng(0)
+    drift = np.cumsum(rng.normal(0.0, 0.004, (120, 20, 3)), axis=0)
+    positions = rng.uniform(-1.0, 1.0, (20, 3)) + drift
+    seen = moments(positions, follow(positions, RATE_HZ), 60, 5)
+    for body in lay(BODY, seen, 3):
+        assert (body.tracks != HIDDEN).sum() < 0.4 * len(body.tracks)

@@ -1,0 +1,98 @@
+"""One segment on tracks at several moments: least squares, tracks that move together, strain."""
+
+import numpy as np
+import pytest
+
+from mbkf.labelling.assignment import HIDDEN
+from mbkf.labelling.moment_placing import JOINT_SD_M, MATCH_SD_M, MomentPlacing
+from mbkf.labelling.moments import moments
+from mbkf.labelling.skeleton import clusters
+from mbkf.labelling.tracks import follow
+from tests.labelling.bodies import reference_sensor
+from tests.labelling.movement import RATE_HZ, movement, poses
+
+SENSOR = reference_sensor("autolabel62")
+BODY = clusters(SENSOR, np.full(len(SENSOR.segments), 0.025))
+FRAMES = 100
+
+
+@pytest.fixture(scope="module")
+def scene():
+    """Placing on a prone body's tracks; the track of every marker, and the segments' true poses at the moments."""
+    positions = movement(SENSOR, np.random.default_rng(7), frames=FRAMES)
+    q = poses(SENSOR.model, np.random.default_rng(7), frames=FRAMES)
+    tracks = follow(positions, RATE_HZ)
+    seen = moments(positions, tracks, 50, 4)
+    place = np.full(tracks.count, HIDDEN)
+    place[seen.tracks] = np.arange(len(seen.tracks))
+    joints = [SENSOR.model.joint(cluster.segment).joint_id for cluster in BODY]
+    placements = [SENSOR.model.placements(q[t]) for t in seen.frames]
+    rotations = np.array([turns[joints] for turns, _ in placements])
+    origins = np.array([places[joints] for _, places in placements])
+    return MomentPlacing(seen), place[tracks.number[50]], rotations, origins
+
+
+def number_of(segment):
+    return next(k for k, cluster in enumerate(BODY) if cluster.segment == segment)
+
+
+@pytest.mark.parametrize("segment", ["right_shank", "left_forearm", "head", "right_foot"])
+def test_a_segment_finds_its_tracks_though_its_joint_is_off(scene, segment):
+    placing, own, rotations, origins = scene
+    number = number_of(segment)
+    cluster = BODY[number]
+    off = origins[:, number] + [0.03, -0.02, 0.02]
+    parents = rotations[:, cluster.parent]
+    ways = placing.placings(cluster, off, parents, np.arange(len(own)), 6)
+    assert np.array_equal(ways[0].tracks, own[cluster.markers])
+    assert (ways[-1].tracks == HIDDEN).all()
+    assert ways[-1].score == 0.0
+    scores = [way.score for way in ways[:-1]]
+    assert scores == sorted(scores, reverse=True)
+    assert len(ways) <= 6
+
+
+def test_settled_poses_are_true_where_everything_fits(scene):
+    placing, own, rotations, origins = scene
+    number = number_of("left_thigh")
+    cluster = BODY[number]
+    parents = rotations[:, cluster.parent]
+    turns, joints = placing.settle(cluster.local_m, own[cluster.markers][None], origins[:, number], parents)
+    assert np.allclose(joints[0], origins[:, number], atol=2e-3)
+    assert np.allclose(turns[0], rotations[:, number], atol=2e-2)
+
+
+def test_settled_poses_are_least_squares(scene):
+    placing, own, rotations, origins = scene
+    number = number_of("right_upper_arm")
+    cluster = BODY[number]
+    joint = origins[:, number] + [0.02, 0.03, -0.01]
+    tracks = own[cluster.markers]
+    turns, joints = placing.settle(cluster.local_m, tracks[None], joint, rotations[:, cluster.parent])
+    found = placing.seen.positions_m[:, tracks]
+
+    def cost(turn, origin):
+        markers = ((cluster.local_m @ turn.transpose(0, 2, 1) + origin[:, None] - found) ** 2).sum()
+        return markers / MATCH_SD_M**2 + ((origin - joint) ** 2).sum() / JOINT_SD_M**2
+
+    best = cost(turns[0], joints[0])
+    rng = np.random.default_rng(0)
+    for _ in range(20):
+        small = np.eye(3) + np.cross(np.eye(3), rng.normal(0.0, 0.02, 3))
+        assert cost(np.linalg.qr(small)[0] * np.sign(np.diag(small)) @ turns[0], joints[0]) >= best - 0.05
+        assert cost(turns[0], joints[0] + rng.normal(0.0, 0.003, 3)) >= best - 0.05
+
+
+def test_tracks_that_do_not_move_together_are_not_on_one_segment(scene):
+    placing, own, _, _ = scene
+    thigh, other = BODY[number_of("right_thigh")], BODY[number_of("left_shank")]
+    assert placing.together[np.ix_(own[thigh.markers], own[thigh.markers])].all()
+    assert not placing.together[np.ix_(own[thigh.markers], own[other.markers])].any()
+
+
+def test_a_segment_without_markers_goes_with_its_parent(scene):
+    placing, own, rotations, origins = scene
+    number = number_of("neck")
+    (way,) = placing.placings(BODY[number], origins[:, number], rotations[:, 1], np.arange(len(own)), 6)
+    assert np.array_equal(way.rotations, rotations[:, 1])
+    assert np.array_equal(way.origins_m, origins[:, number])
