@@ -17,6 +17,7 @@ import numpy as np
 
 from benchmarks.checks import Check, Context
 from benchmarks.dynamic_captures import SOURCES
+from benchmarks.labelling_live import live_rows, streamed
 from benchmarks.speed import PRODUCT_SIZE
 from mbkf.conventions import Array
 from mbkf.errors import MbkfError
@@ -80,6 +81,9 @@ def run(context: Context) -> list[Check]:
         checks += rows if trial.judged else [replace(row, bound=math.inf, relation="<=") for row in rows]
     if not context.quick:
         checks = [*exchange_rows(context.require_data()), *checks]
+    from benchmarks.labelling_any_attitude import rows as any_attitude_rows  # which takes its parts from here
+
+    checks += any_attitude_rows(context, trials(context.require_data(), context.quick))
     return [*checks, *speed_rows()]
 
 
@@ -134,22 +138,25 @@ def knee_distance_m(capture: Capture, name: str) -> float:
 
 def plain_rows(trial: Trial) -> list[Check]:
     """As they are: every point of the capture, shuffled."""
-    found, seconds = labelled(trial, shuffled(trial.capture.markers.positions_m, 0))
+    points = shuffled(trial.capture.markers.positions_m, 0)
+    found, seconds = labelled(trial, points)
     least, most = 99.8, (0.0 if trial.name.startswith(NEVER_WRONG) else math.inf)
+    label_ = f"{trial.name}, as it is"
+    live = streamed(points, truth_of(trial, points), trial.subject)
     return [
-        *share_rows(f"{trial.name}, as it is", [found], least, most),
-        Check(f"{trial.name}, as it is: time / duration", seconds / duration_s(trial), math.inf, "<="),
+        *share_rows(label_, [found], least, most),
+        Check(f"{label_}: time / duration", seconds / duration_s(trial), math.inf, "<="),
+        *live_rows(label_, live, bounded=True),
     ]
 
 
 def hard_rows(trial: Trial, seeds: range) -> list[Check]:
     """Five ghosts near the body and a tenth of the samples hidden in streaks of 20 frames."""
     label_ = f"{trial.name}, {GHOSTS} ghosts, {_PERCENT * HIDDEN_SHARE:.0f} % hidden, {len(seeds)} seeds"
-    found = []
-    for seed in seeds:
-        shown = hard(trial.capture.markers, seed)
-        found.append(labelled(trial, shuffled(shown, seed))[0])
-    return share_rows(label_, found, 99.0, 0.1)
+    shown = [shuffled(hard(trial.capture.markers, seed), seed) for seed in seeds]
+    found = [labelled(trial, points)[0] for points in shown]
+    live = streamed(shown[0], truth_of(trial, shown[0]), trial.subject)
+    return [*share_rows(label_, found, 99.0, 0.1), *live_rows(f"{label_}, the first", live, bounded=False)]
 
 
 def hard(markers: MarkerTrajectories, seed: int) -> Array:
@@ -228,7 +235,9 @@ def loss_rows(trial: Trial) -> list[Check]:
     right = _PERCENT * float(found.right[after].sum()) / max(1, present)
     wrong = float(found.wrong[first + length :].sum())
     label_ = f"{trial.name}, all lost for {length / markers.rate_hz:.2f} s"
+    live = streamed(shuffled(positions, 7), truth_of(hidden, positions), trial.subject)
     return [
+        *live_rows(f"{label_}, from {BACK_S} s after the return", live, after, bounded=False),
         Check(f"{label_}: right from {BACK_S} s after the return", right, 99.8, ">=", "%"),
         Check(f"{label_}: wrong after the return", wrong, 0.0, "<=", "samples"),
     ]

@@ -30,4 +30,5 @@ def expected_markers(follower: Follower, estimate: Estimate, sensor: MarkerSenso
         found[np.arange(nv), np.arange(nv)] += 0.25 * dt**4 * model.acceleration_sd**2
         return found
 
-    return MarkerExpectation(sensor.reading(model.integrate(estimate.q, dt * estimate.v)), covariance)
+    q = model.integrate(estimate.q, dt * estimate.v)
+    return MarkerExpectation(sensor.positions(q), lambda: sensor.reading(q), covariance)

@@ -68,17 +68,16 @@ def assign(
         settings: Gate, radius, ghosts.
         known: (N,) marker that each point's own track carried in the frame before, ``HIDDEN`` where none.
     """
-    found = np.full(len(predicted_m), HIDDEN, dtype=np.intp)
     if not len(points_m) or not len(predicted_m):
-        return found
+        return np.full(len(predicted_m), HIDDEN, dtype=np.intp)
     squared = squared_distances(predicted_m, points_m)
-    markers, points = _undisputed(squared, settings, known)
-    found[markers] = points
-    own = (found == HIDDEN).nonzero()[0]
+    found = _undisputed(squared, settings, known)
+    seen = found != HIDDEN
+    own = (~seen).nonzero()[0]
     if not len(own):
         return found
     left = np.ones(len(points_m), dtype=bool)
-    left[points] = False
+    left[found[seen]] = False
     near = (squared[own] <= settings.radius_m**2) & left
     own = own[near.any(axis=1)]
     if not len(own):
@@ -125,10 +124,16 @@ def cheapest_pairs(cost: Array) -> Indices:
     return found
 
 
-def _undisputed(
-    squared: Array, settings: AssignmentSettings, known: Indices | None
-) -> tuple[Indices, Indices]:
-    """Markers, and their points, with one point near, no other point and, at that point, no other marker near."""
+def marker_of_point(labels: Indices, points: int) -> Indices:
+    """(N,) the marker of each of N points, ``HIDDEN`` where none, from the point of every marker (M,)."""
+    found = np.full(points, HIDDEN, dtype=np.intp)
+    seen = labels != HIDDEN
+    found[labels[seen]] = seen.nonzero()[0]
+    return found
+
+
+def _undisputed(squared: Array, settings: AssignmentSettings, known: Indices | None) -> Indices:
+    """(M,) points of markers with one point near, no other point and, at that point, no other marker near."""
     every = squared.ravel()
     pairs = (every <= settings.clear_m**2).nonzero()[0]
     markers = pairs // squared.shape[1]
@@ -139,4 +144,6 @@ def _undisputed(
     if known is not None:
         carried = known[points]
         alone &= (carried == HIDDEN) | (carried == markers)
-    return markers[alone], points[alone]
+    found = np.full(len(squared), HIDDEN, dtype=np.intp)
+    found[markers[alone]] = points[alone]
+    return found

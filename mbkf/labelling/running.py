@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.labelling.assignment import HIDDEN, AssignmentSettings, Indices, assign, pair_costs
+from mbkf.labelling.assignment import HIDDEN, AssignmentSettings, Indices, assign, marker_of_point, pair_costs
 from mbkf.sensors.expectation import MarkerExpectation
 
 MOST_STRANGE = 0.2
@@ -67,6 +67,7 @@ class RunningLabeller:
         self.repaired = 0
         self._keep = math.exp(-dt_s / self.settings.memory_s)
         self._learn = 1.0 - math.exp(-dt_s / self.settings.learning_s)
+        self._forgetting = (1.0 - self._keep**2) * self._forgotten
         self._patient = replace(self.settings.assignment, known_bonus=0.0)
         self.restart()
 
@@ -74,7 +75,7 @@ class RunningLabeller:
         """Forgets offsets and tracks; what the next frame's points are is told by :meth:`remember`."""
         self._offset_m = np.zeros((len(self.noise_m), 3))
         self._variance = self._forgotten + self.settings.unseen_sd_m**2
-        self._carried = np.zeros(0, dtype=np.intp)
+        self._before = (np.full(len(self.noise_m), HIDDEN, dtype=np.intp), 0)
         self._doubted = np.zeros(len(self.noise_m), dtype=int)
         self._frames = 0
 
@@ -87,8 +88,8 @@ class RunningLabeller:
             follows: (N,) which point of the frame before each continues, ``HIDDEN`` where that is not known.
         """
         known = None
-        if follows is not None and len(self._carried) and follows.max(initial=HIDDEN) != HIDDEN:
-            known = np.where(follows != HIDDEN, self._carried[follows], HIDDEN)
+        if follows is not None and self._before[1] and follows.max(initial=HIDDEN) != HIDDEN:
+            known = np.where(follows != HIDDEN, marker_of_point(*self._before)[follows], HIDDEN)
 
         def covariance(chosen: BoolArray) -> Array:
             return _with_own(expected.spread(chosen), self._variance[chosen])
@@ -128,21 +129,18 @@ class RunningLabeller:
             points_m: (N, 3) the frame's points.
             on_body_m: (M, 3) markers on the body in the pose the filter came to.
         """
-        seen = labels != HIDDEN
-        self._carried = np.full(len(points_m), HIDDEN, dtype=np.intp)
-        self._carried[labels[seen]] = np.flatnonzero(seen)
-        keep, fixed = self._keep, self.settings.offset_sd_m**2
-        limit = self._forgotten
-        unseen = ~seen & (self._variance > limit)
-        fading = np.where(unseen, self._variance, keep**2 * self._variance + (1.0 - keep**2) * limit)
-        fresh = seen & (self._variance > 2.0 * fixed)
+        self._before = (labels, len(points_m))
+        seen, variance, fixed = labels != HIDDEN, self._variance, self.settings.offset_sd_m**2
+        faded = self._keep * self._offset_m
         if len(points_m):
-            gain = np.where(fresh, 0.5, self._learn)[:, None]
+            gain = np.where(variance > 2.0 * fixed, 0.5, self._learn)[:, None]
             learnt = self._offset_m + gain * (points_m[labels] - on_body_m - self._offset_m)
-            self._offset_m = np.where(seen[:, None], learnt, keep * self._offset_m)
+            self._offset_m = np.where(seen[:, None], learnt, faded)
         else:
-            self._offset_m = keep * self._offset_m
-        self._variance = np.where(seen, np.maximum(fixed, 0.3 * self._variance), fading)
+            self._offset_m = faded
+        # What was never seen is more uncertain than what was forgotten, and stays so.
+        forgetting = np.maximum(variance, self._keep**2 * variance + self._forgetting)
+        self._variance = np.where(seen, np.maximum(fixed, 0.3 * variance), forgetting)
 
     def _doubt(self, labels: Indices, expected: MarkerExpectation, points_m: Array) -> Indices:
         """The labels, or those without memory where these are much likelier for the second time running."""

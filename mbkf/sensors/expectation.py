@@ -15,18 +15,20 @@ class MarkerExpectation:
     """Markers predicted from a state.
 
     Attributes:
-        reading: Predicted positions ĥ(x⁻) and, when asked for, their Jacobian H.
-        predict_covariance: Works out the (nv, nv) covariance P⁻ of the predicted configuration, which many frames do
-            not need.
+        positions_m: (M, 3) predicted positions ĥ(x⁻) in the world, m.
+        read: Works out the reading with its Jacobian H.
+        predict_covariance: Works out the (nv, nv) covariance P⁻ of the predicted configuration. Many frames need
+            neither.
     """
 
-    reading: MarkerReading
+    positions_m: Array
+    read: Callable[[], MarkerReading]
     predict_covariance: Callable[[], Array]
 
-    @property
-    def positions_m(self) -> Array:
-        """(M, 3) predicted positions in the world, m."""
-        return self.reading.positions_m
+    @cached_property
+    def reading(self) -> MarkerReading:
+        """The reading at the predicted state."""
+        return self.read()
 
     @cached_property
     def covariance(self) -> Array:

@@ -13,13 +13,14 @@ def test_spread_is_the_covariance_carried_to_the_markers():
     rng = np.random.default_rng(0)
     root = rng.normal(size=(model.nv, model.nv))
     calls = []
+    q = model.neutral()
 
     def covariance():
         calls.append(1)
         return root @ root.T
 
-    expected = MarkerExpectation(sensor.reading(model.neutral()), covariance)
-    assert np.array_equal(expected.positions_m, sensor.positions(model.neutral()))
+    expected = MarkerExpectation(sensor.positions(q), lambda: sensor.reading(q), covariance)
+    assert np.array_equal(expected.positions_m, sensor.positions(q))
     assert calls == []
     H = sensor.reading(model.neutral()).jacobian
     for chosen in ([True, False], [False, True], [True, True]):
