@@ -5,7 +5,7 @@ every frame, and a tracklet is judged as a whole: a marker keeps its place on th
 tracklet, a ghost wanders. With mean offset r̄ from the marker's place, scatter s² about it (three coordinates together)
 and n_e independent looks, the cost of a pair is
 
-    c = |r̄|² / (σ_p² + σ² + p²) + ln det(2π(σ_p² + σ² + p²) I) + 2 ln λ + (n_e − 1)(s² / (σ² + p²) − κ)
+    c = |r̄|² / (σ_p² + σ² + p²) + ln det(2π(σ_p² + σ² + p²) I) + 2 ln λ + (n_e − 1)(s² / (σ² + min(p², σ²)) − κ)
 
 with placement σ_p, marker noise σ, the body's own uncertainty p and λ ghosts per m³ (compare
 :mod:`mbkf.labelling.assignment`); κ allows skin more than its stated noise.
@@ -34,7 +34,8 @@ class RedecisionSettings:
     Attributes:
         placement_sd_m: How far the mean of a tracklet may be from its marker's place, σ_p.
         gate: Squared Mahalanobis distance (3 coordinates) of the mean beyond which a tracklet is not the marker's.
-        doubt: The same beyond which it is in doubt ...
+        radius_m: Distance of the mean beyond which it never is, however unsure the body.
+        doubt: The squared distance beyond which it is in doubt ...
         brief_s: ... as is any tracklet shorter than this, unless the capture is not much longer.
         restless: Scatter that is no longer a marker's, κ, in variances of its noise over three coordinates.
         correlation_s: Offsets this far apart in time are independent looks.
@@ -48,6 +49,7 @@ class RedecisionSettings:
 
     placement_sd_m: float = 0.005
     gate: float = 20.0
+    radius_m: float = 0.05
     doubt: float = 4.0
     brief_s: float = 0.4
     restless: float = 9.0
@@ -227,12 +229,15 @@ def _costs(
         looks = 1.0 + (len(at) - 1) * dt_s / (settings.correlation_s + dt_s)
         mean = local.mean(axis=0)
         scatter = local.var(axis=0).sum(axis=1)
-        own = noise_m**2 + course.variance_m2[at].mean(axis=0)
-        placed = settings.placement_sd_m**2 + own
-        away = (mean**2).sum(axis=1) / placed
+        unsure = course.variance_m2[at].mean(axis=0)
+        placed = settings.placement_sd_m**2 + noise_m**2 + unsure
+        squared = (mean**2).sum(axis=1)
+        away = squared / placed
         once = away + 3.0 * np.log(2.0 * math.pi * placed) + 2.0 * math.log(settings.ghosts_per_m3)
-        pair = once + (looks - 1.0) * (scatter / own - settings.restless)
-        cost[number] = np.where((away <= settings.gate) & ~np.isnan(pair), pair, np.inf)
+        steady = noise_m**2 + np.minimum(unsure, noise_m**2)  # the body's own error changes slowly
+        pair = once + (looks - 1.0) * (scatter / steady - settings.restless)
+        inside = (away <= settings.gate) & (squared <= settings.radius_m**2) & ~np.isnan(pair)
+        cost[number] = np.where(inside, pair, np.inf)
     return cost
 
 
