@@ -144,10 +144,9 @@ class MomentPlacing:
             reach_m: (k,) how far a marker's track may be.
         """
         placed = np.einsum("nkij,mj->nkmi", rotations, cluster.local_m) + origins_m[:, :, None]
-        away = placed[:, :, :, None] - self._points[:, None, free]
         weight = self._weight[:, free]
         shown = np.maximum(weight.sum(axis=0), 1e-9)
-        squared = np.einsum("nkmpi,nkmpi,kp->nmp", away, away, weight) / shown
+        squared = self._squared(placed, free) / shown
         squared = np.where(allowed[:, None] & (weight.sum(axis=0) > 0), squared, np.inf)
         nearest = squared.argmin(axis=2)
         least = np.take_along_axis(squared, nearest[:, :, None], axis=2)[:, :, 0]
@@ -157,6 +156,16 @@ class MomentPlacing:
         worth = likeness(np.where(good, least, 0.0), np.hypot(cluster.sd_m, PLACING_SD_M))
         found = np.where(good, free[nearest], HIDDEN)
         return found, np.where(good, np.maximum(worth, 0.0), 0.0).sum(axis=1)
+
+    def _squared(self, placed_m: Array, free: Indices) -> Array:
+        """(n, k, F) squared distances of markers (n, K, k, 3) from tracks, summed over the moments that show these."""
+        ways, moments, markers, _ = placed_m.shape
+        weight, points = self._weight[:, free], self._points[:, free]
+        there = placed_m.transpose(0, 2, 1, 3).reshape(ways * markers, 3 * moments)
+        seen = (weight[:, :, None] * points).transpose(0, 2, 1).reshape(3 * moments, len(free))
+        own = (there**2).reshape(-1, moments, 3).sum(axis=2) @ weight
+        found = own - 2.0 * there @ seen + (weight * (points**2).sum(axis=2)).sum(axis=0)
+        return np.asarray(np.maximum(found, 0.0).reshape(ways, markers, len(free)))
 
     def _first(self, cluster: Cluster, origins_m: Array, free: Indices) -> tuple[Indices, BoolArray]:
         """Tracks (n, k) of two markers, or of one where the segment has fewer than three, and what may join them."""

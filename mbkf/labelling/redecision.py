@@ -37,6 +37,7 @@ class RedecisionSettings:
         radius_m: Distance of the mean beyond which it never is, however unsure the body.
         doubt: The squared distance beyond which it is in doubt ...
         brief_s: ... as is any tracklet shorter than this, unless the capture is not much longer.
+        most_doubt: Where a larger share of the labels would be in doubt, none is: a capture begins, or comes back.
         restless: Scatter that is no longer a marker's, κ, in variances of its noise over three coordinates.
         correlation_s: Offsets this far apart in time are independent looks.
         ghosts_per_m3: λ.
@@ -52,6 +53,7 @@ class RedecisionSettings:
     radius_m: float = 0.05
     doubt: float = 4.0
     brief_s: float = 0.4
+    most_doubt: float = 0.4
     restless: float = 9.0
     correlation_s: float = 0.1
     ghosts_per_m3: float = 5.0
@@ -153,10 +155,19 @@ def doubtful(
             mean = _offsets(positions_m, frames, columns, course)[:, marker].mean(axis=0)
             variance = course.variance_m2[frames, marker].mean()
             placed = settings.placement_sd_m**2 + noise_m[marker] ** 2 + variance
-            far[number] |= bool(
-                mean @ mean > settings.doubt * placed
-            )  # never where the body was not followed
-    return far
+            # Never where the body was not followed: comparisons with NaN are false.
+            far[number] |= bool(mean @ mean > settings.doubt * placed)
+    return np.asarray(far & (_share_in_doubt(far, label != HIDDEN, tracklets) <= settings.most_doubt))
+
+
+def _share_in_doubt(far: BoolArray, labelled: BoolArray, tracklets: Tracklets) -> Array:
+    """(n,) share of doubtful ones among the labelled points of a tracklet's frames, in the mean."""
+    doubts, all_ = np.zeros(len(tracklets.number)), np.zeros(len(tracklets.number))
+    for number, (first, end) in enumerate(tracklets.spans):
+        doubts[first:end] += far[number]
+        all_[first:end] += labelled[number]
+    share = doubts / np.maximum(1.0, all_)
+    return np.array([share[first:end].mean() for first, end in tracklets.spans])
 
 
 def worn(

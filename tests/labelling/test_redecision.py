@@ -124,3 +124,11 @@ def test_a_brief_tracklet_is_in_doubt(scene):
     )
     assert np.array_equal(far, np.diff(tracklets.spans, axis=1)[:, 0] < 25)
     assert far.sum() == 2
+
+
+def test_where_all_is_in_doubt_nothing_is(scene):
+    positions, course = scene
+    positions[10:15] = np.nan
+    tracklets = linked(positions)
+    so_far = np.tile([0, 1, 2], (100, 1))
+    assert not doubtful(so_far, positions, tracklets, course, NOISE_M, 1.0 / RATE_HZ, SETTINGS).any()

@@ -12,16 +12,15 @@ from mbkf.pipelines.label import label, labelled_capture, summarise
 from mbkf.pipelines.label_score import score
 from mbkf.pipelines.labelling_pass import LOST_S
 from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
-from mbkf.pipelines.scale import scale
-from mbkf.pipelines.synth import synthesise
 from mbkf.synthesis.cameras import without_labels
+from tests.walker import walker
 
 
 @pytest.fixture(scope="module")
 def walk():
     """A second of walking: capture with labels, unlabelled with ghosts, and the scaled subject."""
-    person, made = synthesise("walk", seconds=1.2)
-    return made.trial, made.raw, scale(made.static, mass_kg=person.mass_kg)
+    made = walker()
+    return made.trial, made.raw, made.subject
 
 
 def unlabelled(trial, positions, seed=0, shuffle=True):

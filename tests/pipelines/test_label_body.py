@@ -7,14 +7,13 @@ import pytest
 
 from mbkf.labelling.running import RunningSettings
 from mbkf.pipelines.label_body import CORRECTED_SD_M, corrected_body, label_body
-from mbkf.pipelines.scale import scale
-from mbkf.pipelines.synth import synthesise
+from tests.walker import walker
 
 
 @pytest.fixture(scope="module")
 def person():
-    subject, made = synthesise("walk", seconds=1.0)
-    return made.trial.markers, scale(made.static, mass_kg=subject.mass_kg)
+    made = walker()
+    return made.trial.markers, made.subject
 
 
 def test_markers_that_scaling_never_saw_are_not_looked_for(person):

@@ -9,12 +9,12 @@ from mbkf.io.capture import read_capture
 from mbkf.labelling.assignment import HIDDEN
 from mbkf.pipelines.label import Labelling
 from mbkf.pipelines.label_files import write_labels
-from mbkf.pipelines.synth import synthesise
+from tests.walker import walker
 
 
 @pytest.mark.parametrize("ending", ["c3d", "trc"])
 def test_the_file_holds_the_markers_that_are_shown_and_the_summary_stands_beside_it(tmp_path, ending):
-    _, made = synthesise("walk", seconds=1.0)
+    made = walker()
     markers = made.trial.markers
     positions = markers.positions_m.copy()
     positions[:, 3] = np.nan

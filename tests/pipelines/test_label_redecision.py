@@ -10,16 +10,14 @@ from mbkf.labelling.running import RunningSettings
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.label_body import label_body
 from mbkf.pipelines.label_redecision import course, redecided, trajectories
-from mbkf.pipelines.scale import scale
-from mbkf.pipelines.synth import synthesise
+from tests.walker import walker
 
 
 @pytest.fixture(scope="module")
 def walk():
     """A body, points in columns that are markers, their labels, and poses."""
-    person, made = synthesise("walk", seconds=1.2)
-    subject = scale(made.static, mass_kg=person.mass_kg)
-    body = label_body(subject.markers, subject, RunningSettings())
+    made = walker()
+    body = label_body(made.subject.markers, made.subject, RunningSettings())
     points = made.trial.markers
     label = np.array([body.names.index(name) for name in points.names])
     there = ~np.isnan(points.positions_m).any(axis=2)

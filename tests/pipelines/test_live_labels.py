@@ -10,14 +10,13 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.label_score import score
 from mbkf.pipelines.live import LiveFilter
 from mbkf.pipelines.live_labels import LONGEST_WAIT_S, LiveLabels, live_body
-from mbkf.pipelines.scale import scale
-from mbkf.pipelines.synth import synthesise
+from tests.walker import walker
 
 
 @pytest.fixture(scope="module")
 def walk():
-    person, made = synthesise("walk", seconds=1.6)
-    return made.trial.markers, made.raw.markers, scale(made.static, mass_kg=person.mass_kg)
+    made = walker()
+    return made.trial.markers, made.raw.markers, made.subject
 
 
 def streamed(points_m, rate_hz, subject):
@@ -50,7 +49,7 @@ def test_shuffled_points_with_ghosts_are_named_as_they_come(walk):
 def test_a_total_loss_is_followed_by_a_new_start(walk):
     truth, raw, subject = walk
     points = raw.positions_m.copy()
-    gone = slice(60, 60 + round(0.45 * raw.rate_hz))
+    gone = slice(35, 35 + round(0.35 * raw.rate_hz))
     points[gone] = np.nan
     body, named, _ = streamed(points, raw.rate_hz, subject)
     assert np.isnan(named[gone]).all()
