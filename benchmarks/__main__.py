@@ -36,8 +36,18 @@ NOT_BENCHMARKS = {
     "dynamic_methods",
     "dynamic_offline",
     "dynamic_synthetic",
+    "live_runs",
+    "inertial_body",
+    "inertial_orientation",
+    "inertial_stride",
+    "inertial_stride_page",
+    "inertial_stride_study",
+    "labelling_any_attitude",
+    "labelling_live",
+    "labelling_rows",
     "picture",
     "references",
+    "screenshots",
 }
 
 

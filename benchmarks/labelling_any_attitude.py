@@ -19,7 +19,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from benchmarks.checks import Check, Context
-from benchmarks.labelling import (
+from benchmarks.labelling_rows import (
     Trial,
     crossing_rows,
     duration_s,

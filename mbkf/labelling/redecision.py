@@ -61,7 +61,7 @@ class RedecisionSettings:
     least_votes: float = 0.15
     least_share: float = 0.15
     rare: float = 0.6
-    wandering: float = 1.3
+    wandering: float = 1.5
 
 
 @dataclass(frozen=True)

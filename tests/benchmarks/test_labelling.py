@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from benchmarks.labelling import CROSSING_M, GHOSTS, Trial, crossed, hard, renamed, shuffled, truth_of
+from benchmarks.labelling import renamed
+from benchmarks.labelling_rows import CROSSING_M, GHOSTS, Trial, crossed, hard, shuffled, truth_of
 from tests.captures import made_capture
 
 

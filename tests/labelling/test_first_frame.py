@@ -73,3 +73,14 @@ def test_points_of_no_body_are_not_believed():
 def test_labels_of_an_empty_frame():
     assert np.isnan(labelled(np.zeros((0, 3)), np.full(5, HIDDEN))).all()
     assert SEARCH.standing(np.zeros((0, 3))) is None
+
+
+def test_rough_labels_are_settled():
+    rng = np.random.default_rng(6)
+    frame = unlabelled(SENSOR.positions(posture(SENSOR.model, rng, 0.2, 1.0)), rng, 1, 3)
+    rough = frame.truth.copy()
+    rough[rng.choice(len(rough), 8, replace=False)] = HIDDEN
+    found = SEARCH.settled(frame.points, rough)
+    assert found is not None
+    assert np.array_equal(found.points, frame.truth)
+    assert SEARCH.settled(frame.points, np.full(len(rough), HIDDEN)) is None

@@ -1,0 +1,95 @@
+"""A subject's markers found in any attitude, prone or kneeling, from the tracks of a whole capture."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.labelling.assignment import HIDDEN, Indices
+from mbkf.labelling.first_frame import FirstFrame, FirstFrameSearch
+from mbkf.labelling.moment_growing import lay
+from mbkf.labelling.moments import moments
+from mbkf.labelling.skeleton import clusters
+from mbkf.labelling.tracks import Tracks, follow
+from mbkf.sensors.markers import MarkerSensor
+
+STAGE = "Searching any attitude"
+"""What the search calls itself; it takes seconds."""
+
+MOMENTS = 6
+"""Frames at which a body is laid onto the tracks at once."""
+
+ENOUGH = 3
+"""So many frames that can be labelled suffice."""
+
+
+def laid(
+    sensor: MarkerSensor, sd_m: Array, points_m: Array, tracks: Tracks, frame: int
+) -> tuple[Indices, float]:
+    """Marker of every track (count,) that a frame shows, by the body that explains them best, and its score.
+
+    Args:
+        sensor: The markers on a body whose geometry may be rough.
+        sd_m: (M,) how far each marker may be from its place on its segment.
+        points_m: (T, C, 3) points of the capture.
+        tracks: Their tracks.
+        frame: The frame.
+    """
+    owner = np.full(tracks.count, HIDDEN, dtype=np.intp)
+    seen = moments(points_m, tracks, frame, MOMENTS)
+    bodies = [] if seen is None else lay(clusters(sensor, sd_m), seen, 1)
+    if seen is None or not bodies:
+        return owner, 0.0
+    there = bodies[0].tracks != HIDDEN
+    owner[seen.tracks[bodies[0].tracks[there]]] = np.flatnonzero(there)
+    return owner, bodies[0].score
+
+
+class AnyAttitude:
+    """A subject's search in one capture.
+
+    Attributes:
+        search: The subject's search within a frame.
+    """
+
+    def __init__(self, search: FirstFrameSearch, positions_m: Array, rate_hz: float) -> None:
+        """Args: search, the capture's points (T, C, 3), NaN where empty, and their rate."""
+        self.search, self._positions_m, self._rate_hz = search, positions_m, rate_hz
+
+    @cached_property
+    def _tracks(self) -> Tracks:
+        return follow(self._positions_m, self._rate_hz)
+
+    def at(self, frame: int) -> FirstFrame | None:
+        """Labels of a frame's points, in the order of their columns, or None where none are believed."""
+        points = self._positions_m[frame]
+        columns = np.flatnonzero(~np.isnan(points).any(axis=1))
+        sensor, sd = self.search.sensor, self.search.sd_m
+        owner, _ = laid(sensor, sd, self._positions_m, self._tracks, frame)
+        own = owner[self._tracks.number[frame, columns]]
+        labels = np.full(len(sd), HIDDEN, dtype=np.intp)
+        labels[own[own != HIDDEN]] = np.flatnonzero(own != HIDDEN)
+        return self.search.settled(points[columns], labels)
+
+    def starts(
+        self, looks: Sequence[int], progress: Callable[[int, int], None]
+    ) -> list[tuple[int, FirstFrame]]:
+        """Frames that can be labelled with their labels, surest first; a few of them suffice.
+
+        Args:
+            looks: Frames to look at.
+            progress: Called with frames looked at and frames in all.
+        """
+        found: list[tuple[int, FirstFrame]] = []
+        for done, frame in enumerate(looks):
+            progress(done, len(looks))
+            first = self.at(frame)
+            if first is not None:
+                found.append((frame, first))
+            if len(found) == ENOUGH:
+                break
+        progress(len(looks), len(looks))
+        return sorted(found, key=lambda pair: -pair[1].worth)
