@@ -50,3 +50,13 @@ class NotObservable(MbkfError):
 
 class NotConverged(MbkfError):
     """An optimisation ended without reaching its tolerance."""
+
+
+class MissingDependency(MbkfError):
+    """A library that is not part of the plain installation is needed."""
+
+    def __init__(self, package: str, needed_for: str, extra: str) -> None:
+        self.package, self.needed_for, self.extra = package, needed_for, extra
+        super().__init__(
+            f"{needed_for} needs the library '{package}'; install it with: pip install 'mbkf[{extra}]'"
+        )

@@ -8,19 +8,47 @@ from collections.abc import Iterator
 from mbkf.filters.estimate import Estimate, Follower, Recording
 
 
+class Pursuit:
+    """Drives a filter from frame to frame, through a whole trial or a live stream alike.
+
+    Attributes:
+        follower: The filter.
+        estimate: The latest estimate, None before the first start.
+    """
+
+    def __init__(self, follower: Follower) -> None:
+        self.follower = follower
+        self.estimate: Estimate | None = None
+        self._lost_for = 0
+
+    @property
+    def must_start(self) -> bool:
+        """Whether the next frame tries a start, which looks at the frames after it, too."""
+        lost = self._lost_for * self.follower.dt_s > self.follower.restart_after_s
+        return self.estimate is None or lost
+
+    def advance(self, recording: Recording, t: int) -> Estimate | None:
+        """The estimate of frame t, the one after the latest; None as long as no start has succeeded."""
+        before, fresh = self.estimate, None
+        if self.must_start:
+            fresh = self.follower.start(recording, t, None if before is None else before.q)
+        if fresh is None and before is not None:
+            fresh = self.follower.step(before, recording, t)
+        if fresh is not None:
+            self.estimate = fresh
+            self._lost_for = 0 if fresh.tracked else self._lost_for + 1
+        return fresh
+
+    def forget(self) -> None:
+        """Nothing is known any more; the next frame has to start anew."""
+        self.estimate, self._lost_for = None, 0
+
+
 def followed(follower: Follower, recording: Recording) -> Iterator[tuple[int, Estimate, float]]:
     """The estimates with their frames and computing times, s; frames before the first start have none."""
-    estimate: Estimate | None = None
-    lost_for = 0
+    pursuit = Pursuit(follower)
     for t in range(len(recording)):
         begin = time.perf_counter()
-        lost = lost_for * recording.dt_s > follower.restart_after_s
-        fresh = None
-        if estimate is None or lost:
-            fresh = follower.start(recording, t, None if estimate is None else estimate.q)
-        if fresh is None and estimate is not None:
-            fresh = follower.step(estimate, recording, t)
+        fresh = pursuit.advance(recording, t)
         if fresh is not None:
-            estimate = fresh
-            lost_for = 0 if fresh.tracked else lost_for + 1
             yield t, fresh, time.perf_counter() - begin

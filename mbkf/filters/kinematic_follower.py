@@ -21,6 +21,11 @@ SETTLING_S = 0.05
 """While a started filter settles, accelerations are those of the backward run."""
 
 
+def warm_up_frames(dt_s: float) -> int:
+    """How many frames after its own a warm start looks at."""
+    return round(WARM_UP_S / dt_s)
+
+
 @dataclass(frozen=True)
 class WarmStart:
     """A first state, and the accelerations (n, nv) of the n frames from it on while the filter settles."""
@@ -44,7 +49,7 @@ def warm_start(
 ) -> WarmStart | None:
     """A state at frame t that already knows its velocity: the next frames are run through backwards first."""
     markers, dt = recording.markers_m, recording.dt_s
-    last = min(t + round(WARM_UP_S / dt), len(markers) - 1)
+    last = min(t + warm_up_frames(dt), len(markers) - 1)
     here = kalman.start(markers[t], guess)
     state = None if here is None else kalman.start(markers[last], here.q)
     if here is None:

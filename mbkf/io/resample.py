@@ -50,10 +50,8 @@ def average_over_frames(plate: PlateReadings, frame_times_s: Array, rate_hz: flo
     position = (times - plate.start_time_s) * plate.rate_hz  # in samples
     half = 0.5 * plate.rate_hz / rate_hz
     low, high = (np.clip(position + side * half, 0.0, last) for side in (-1.0, 1.0))
-    steps = 0.5 * (samples[1:] + samples[:-1])
-    integral = np.vstack([np.zeros((1, 6)), np.cumsum(steps, axis=0)])
-    area = _integral_at(high, samples, integral) - _integral_at(low, samples, integral)
     width = (high - low)[:, None]
+    area = integrals_between(samples, low, high, 2.0 * half)
     single = samples[np.clip(np.round(position), 0, last).astype(int)]
     means = np.where(width > 1e-9, area / np.maximum(width, 1e-9), single)
     inside = (position >= -0.5) & (position <= last + 0.5)
@@ -61,9 +59,31 @@ def average_over_frames(plate: PlateReadings, frame_times_s: Array, rate_hz: flo
     return FrameLoads(means[:, :3], means[:, 3:])
 
 
-def _integral_at(position: Array, samples: Array, integral: Array) -> Array:
-    """Integral of the joined samples from the first one to a place between them, in samples."""
-    floor = np.minimum(position.astype(int), max(len(samples) - 2, 0))
-    rest = (position - floor)[:, None]
-    following = samples[np.minimum(floor + 1, len(samples) - 1)]
-    return integral[floor] + rest * (samples[floor] + 0.5 * rest * (following - samples[floor]))
+def integrals_between(samples: Array, low: Array, high: Array, span: float) -> Array:
+    """Integrals of samples joined by straight lines: Σ f_k ∫ h(x − k) dx with the hat h of each sample.
+
+    Only samples inside a window count, and always in the same order, so that a live stream that keeps few of them
+    finds the very same numbers as a whole trial does.
+
+    Args:
+        samples: (S, n) readings.
+        low: (T,) where the windows begin, in samples.
+        high: (T,) where they end.
+        span: No window is longer than this.
+
+    Returns:
+        (T, n) integrals, per sample interval.
+    """
+    places = np.floor(low).astype(int) + np.arange(int(np.ceil(span)) + 2)[:, None]
+    weights = _hat_until(high - places) - _hat_until(low - places)
+    total = np.zeros((len(low), samples.shape[1]))
+    for k, weight in zip(places, weights, strict=True):
+        counted = np.flatnonzero(weight > 0.0)
+        total[counted] += weight[counted, None] * samples[k[counted]]
+    return total
+
+
+def _hat_until(x: Array) -> Array:
+    """Integral from −1 to x of the hat 1 − |x|."""
+    x = np.clip(x, -1.0, 1.0)
+    return np.where(x < 0.0, 0.5 * (1.0 + x) ** 2, 1.0 - 0.5 * (1.0 - x) ** 2)

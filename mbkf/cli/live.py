@@ -1,0 +1,233 @@
+"""`mbkf live`: follows a stream and shows and writes motion, torques and reactions as they come."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from mbkf.stream.frame import FrameSink
+    from mbkf.stream.session import LiveOutcome, LiveSession
+    from mbkf.stream.source import FrameSource
+
+LEAST_PATIENCE_S = 30.0
+"""With a time limit, a stream that never appears is waited for at least so long."""
+
+FILE_PREFIX = "file:"
+
+_EPILOG = """\
+examples:
+  mbkf live --from lsl --subject subject.toml --out result
+  mbkf live --from natnet --server 192.168.1.10 --local 192.168.1.20 --subject subject.toml --view --out result
+  mbkf live --from file:walk.c3d --subject subject.toml --seconds 5 --out result
+  mbkf live --recover result
+
+Ctrl-C or --seconds ends it. Then DIR holds what 'mbkf reconstruct' writes, and live.json: frames received and lost,
+latencies from arrival to result, and what happened. Marker positions are those of the subject file. A stream that
+breaks off is waited for and taken up again.
+"""
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Adds the command to the command line."""
+    parser = subparsers.add_parser(
+        "live",
+        help="follows a stream of markers and plates",
+        description="Follow a scaled subject through a live stream, frame by frame.",
+        epilog=_EPILOG,
+    )
+    parser.add_argument(
+        "--from", dest="source", metavar="lsl|natnet|file:TRIAL", help="where frames come from"
+    )
+    parser.add_argument("--subject", metavar="SUBJECT.toml", help="written by 'mbkf scale'")
+    parser.add_argument("--filter", choices=("kinematic", "torque", "dynamic"), help="by default dynamic")
+    parser.add_argument("--preset", metavar="NAME|FILE", help="settings, as for 'mbkf reconstruct'")
+    parser.add_argument("--view", action="store_true", help="show it in the browser")
+    parser.add_argument(
+        "--seconds", type=float, metavar="S", help="end after this time, from the first frame"
+    )
+    parser.add_argument("--out", metavar="DIR", help="folder to write")
+    parser.add_argument(
+        "--recover", metavar="DIR", help="make the results of a run that broke off, from its log in DIR"
+    )
+    stream = parser.add_argument_group("the stream")
+    stream.add_argument(
+        "--stream", metavar="NAME", help="LSL: name of the marker stream (default: the first)"
+    )
+    stream.add_argument("--plates-stream", metavar="NAME", help="LSL: name of the plate stream")
+    stream.add_argument(
+        "--server", default="127.0.0.1", metavar="ADDRESS", help="NatNet: the camera computer"
+    )
+    stream.add_argument("--local", default="127.0.0.1", metavar="ADDRESS", help="NatNet: this computer")
+    stream.add_argument("--port", type=int, default=1510, metavar="N", help="NatNet: command port")
+    stream.add_argument("--multicast", metavar="ADDRESS", help="NatNet: multicast group (default: unicast)")
+    stream.add_argument("--up", metavar="AXIS", help="NatNet and files: axis that points up (NatNet: y)")
+    stream.add_argument("--forces", metavar="FILE.mot", help="file: ground reactions beside it")
+    stream.add_argument("--unit", metavar="UNIT", help="file: length unit of the markers")
+    stream.add_argument("--unlabelled", action="store_true", help="file: ignore its names")
+    stream.add_argument(
+        "--speed",
+        type=float,
+        default=1.0,
+        metavar="X",
+        help="file: times real time; 0 for as fast as it goes",
+    )
+    out = parser.add_argument_group("results while it runs")
+    out.add_argument("--publish", metavar="NAME", help="send results as an LSL stream of this name")
+    out.add_argument("--websocket", metavar="[ADDRESS:]PORT", help="serve results as JSON over WebSocket")
+    out.add_argument(
+        "--view-address", default="127.0.0.1", metavar="ADDRESS", help="where the page is served"
+    )
+    out.add_argument("--view-port", type=int, default=0, metavar="N", help="port of the page (default: any)")
+    out.add_argument("--token", metavar="TEXT", help="what page and WebSocket ask for on another address")
+    out.add_argument("--keep-log", action="store_true", help="keep the log beside the results")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Follows the stream, writes the folder and prints the key numbers.
+
+    Raises:
+        MbkfError: An input is unusable.
+    """
+    from mbkf.cli.stopping import stopped_by_signal
+    from mbkf.errors import InvalidInput
+    from mbkf.io.atomic import check_folder
+    from mbkf.io.subject import read_subject
+    from mbkf.pipelines.presets import with_preset
+    from mbkf.pipelines.reconstruct import ReconstructSettings
+    from mbkf.stream.session import LiveSession
+
+    if args.recover is not None:
+        return _recover(Path(args.recover))
+    for option, given in (("--from", args.source), ("--subject", args.subject), ("--out", args.out)):
+        if given is None:
+            raise InvalidInput(f"{option} is missing; see mbkf live --help")
+    _check_numbers(args)
+    subject = read_subject(args.subject)
+    folder = check_folder(args.out)
+    settings = ReconstructSettings(filter=args.filter or "dynamic", correct_markers=False)
+    if args.preset is not None:
+        settings = with_preset(settings, args.preset, args.filter)
+    source = _source(args)
+    session = LiveSession(source, subject, settings, folder, args.source.partition(":")[0])
+    with stopped_by_signal() as stop:
+        _say(f"waiting for {args.source} …")
+        patience = None if args.seconds is None else max(args.seconds, LEAST_PATIENCE_S)
+        try:
+            if not session.connect(stop, patience):
+                raise InvalidInput("stopped before a stream appeared; nothing was written")
+            sinks = _sinks(args, session)
+        except BaseException:
+            source.close()
+            raise
+        _say(f"{session.stream.trial}: {len(session.names)} markers at {session.stream.rate_hz:g} Hz")
+        outcome = session.run(stop, sinks, args.seconds, keep_log=args.keep_log)
+    return _told(outcome, folder)
+
+
+def _check_numbers(args: argparse.Namespace) -> None:
+    from mbkf.cli.replay import check_positive
+
+    if args.seconds is not None:
+        check_positive("--seconds", args.seconds)
+    check_positive("--speed", args.speed, or_zero=True)
+
+
+def _source(args: argparse.Namespace) -> FrameSource:
+    from mbkf.errors import InvalidInput, UnknownName
+
+    kind: str = args.source
+    if kind == "lsl":
+        from mbkf.stream.lsl_source import LslSource
+
+        return LslSource(args.stream, args.plates_stream)
+    if kind == "natnet":
+        from mbkf.stream.natnet_source import NatNetSource
+
+        return NatNetSource(args.server, args.local, args.port, args.multicast, args.up or "y")
+    if not kind.startswith(FILE_PREFIX):
+        raise UnknownName("source", kind, ("lsl", "natnet", "file:TRIAL"), "--from")
+    path = kind.removeprefix(FILE_PREFIX)
+    if not path:
+        raise InvalidInput("--from file: lacks the file; write file:TRIAL.c3d")
+    from mbkf.io.capture import read_capture
+    from mbkf.stream.file_source import FileSource
+    from mbkf.stream.played import played
+
+    capture = read_capture(path, forces=args.forces, up=args.up, unit=args.unit)
+    return FileSource(played(capture, args.unlabelled), args.speed)
+
+
+def _sinks(args: argparse.Namespace, session: LiveSession) -> list[FrameSink]:
+    sinks: list[FrameSink] = []
+    if args.publish is not None:
+        from mbkf.stream.lsl_results import LslResults
+
+        sinks.append(LslResults(session.model, args.publish, session.stream.rate_hz))
+    if args.websocket is not None:
+        from mbkf.stream.websocket_results import WebSocketResults, parse_address
+
+        address, port = parse_address(args.websocket)
+        served = WebSocketResults(session.model, address, port, args.token)
+        _say(f"results: {served.url}")
+        sinks.append(served)
+    if args.view:
+        from mbkf.viz.live_page import LivePage
+
+        page = LivePage(
+            session.model,
+            session.names,
+            session.plate_corners_m,
+            title=session.stream.trial,
+            address=args.view_address,
+            port=args.view_port,
+            token=args.token,
+        )
+        _say(f"page: {page.url}")
+        sinks.append(page)
+    return sinks
+
+
+def _recover(folder: Path) -> int:
+    from mbkf.errors import InvalidInput
+    from mbkf.stream.run_folder import write_results
+
+    summary, problem = write_results(folder, ("live: made from the log of a run that broke off",))
+    if summary is None:
+        raise InvalidInput(f"nothing can be recovered: {problem}")
+    print(f"{folder}: {summary['frames']} frames recovered")
+    return 0
+
+
+def _told(outcome: LiveOutcome, folder: Path) -> int:
+    """Prints how the run went.
+
+    Raises:
+        InvalidInput: Its results could not be written.
+    """
+    from mbkf.cli.reconstruct import print_summary
+    from mbkf.errors import InvalidInput
+
+    if outcome.summary is not None:
+        print_summary(outcome.summary, folder)
+    report = outcome.report
+    print(
+        f"{report['frames_in']} frames came, {report['frames_lost']} were lost; latency median "
+        f"{_ms(report['latency_ms_median'])}, 99 % {_ms(report['latency_ms_p99'])} ms; {report['ended_by']}"
+    )
+    if outcome.problem is not None:
+        where = f"; its log is kept, 'mbkf live --recover {folder}' makes them" if report["log"] else ""
+        raise InvalidInput(f"the results could not be written: {outcome.problem}{where}")
+    return 0
+
+
+def _ms(value: Any) -> str:
+    return "–" if value is None else f"{value:.1f}"
+
+
+def _say(text: str) -> None:
+    from rich.console import Console
+
+    Console(stderr=True, highlight=False, markup=False).print(text, soft_wrap=True)

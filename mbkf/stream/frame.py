@@ -1,0 +1,63 @@
+"""What the live loop tells of one frame, and who may listen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from mbkf.conventions import Array
+
+
+@dataclass(frozen=True)
+class LiveFrame:
+    """One frame of a live reconstruction; world axes x forward, y left, z up.
+
+    Attributes:
+        number: Frame number, counted from 0 at the first frame taken; lost frames are counted, too.
+        time_s: Time of the frame in s, from the first one.
+        q: (nq,) configuration.
+        v: (nv,) velocity.
+        torques: (nv,) generalised forces, N and N m; the first six are the residual at the pelvis.
+        torques_sd: (nv,) their standard deviations, NaN where not known.
+        wrench: (2, 6) ground on right and left foot: force N, moment N m about the world's origin.
+        wrench_sd: (2, 6) their standard deviations, NaN where not known.
+        plates: (K, 6) measured force N and moment N m about the world's origin per plate; NaN where not read.
+        measured_m: (M, 3) labelled markers, NaN where hidden.
+        predicted_m: (M, 3) the same markers on the body.
+        unlabelled_m: (N, 3) points without a name.
+        angle_sd: (nv,) standard deviations of the configuration in its tangent space, rad; the pelvis's first three m.
+        latency_s: Time from the frame's arrival to this result.
+        lost: Frames lost so far.
+        rate_hz: Rate of the frames of the last second.
+        tracked: Whether enough markers were believed to follow the body.
+        started: Whether the filter was started, or restarted, in this frame.
+    """
+
+    number: int
+    time_s: float
+    q: Array
+    v: Array
+    torques: Array
+    torques_sd: Array
+    wrench: Array
+    wrench_sd: Array
+    plates: Array
+    measured_m: Array
+    predicted_m: Array
+    unlabelled_m: Array
+    angle_sd: Array
+    latency_s: float
+    lost: int
+    rate_hz: float
+    tracked: bool
+    started: bool
+
+
+class FrameSink(Protocol):
+    """Somebody who shows or sends on the frames of a live reconstruction."""
+
+    def take(self, frame: LiveFrame) -> None:
+        """A new frame. Must never block: what cannot be passed on at once is dropped."""
+
+    def close(self) -> None:
+        """No more frames follow."""

@@ -1,0 +1,78 @@
+"""live.json: what a live run received, how quickly it answered and what happened, kept up to date while it runs.
+
+Its place on disk is taken at the start, so that it can still be written when the disk is full.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import threading
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+LIVE_FILE = "live.json"
+
+ROOM_BYTES = 128 * 1024
+"""What is set aside for it."""
+
+
+class ReportFile:
+    """A JSON file rewritten in place."""
+
+    def __init__(self, path: Path) -> None:
+        """Makes the file and takes its room.
+
+        Raises:
+            OSError: It cannot be written.
+        """
+        self._path, self._lock = path, threading.Lock()
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open("wb") as file:
+            file.write(b"{}\n".ljust(ROOM_BYTES))
+
+    def write(self, report: Mapping[str, Any], last: bool = False) -> None:
+        """Writes the report over the one before; the last one gives the rest of the room back.
+
+        Raises:
+            OSError: It is larger than its room, and there is no other.
+        """
+        text = json.dumps(_finite(report), indent=2, allow_nan=False, ensure_ascii=False).encode() + b"\n"
+        with self._lock, self._path.open("r+b") as file:
+            file.write(text if last else text.ljust(ROOM_BYTES))
+            if last:
+                file.truncate()
+
+
+def latency_summary(latencies_s: Sequence[float], at_start_s: Sequence[float]) -> dict[str, float | None]:
+    """Latencies in ms.
+
+    Args:
+        latencies_s: Arrival to result, of frames that were answered at once.
+        at_start_s: The same of frames that waited for a start of the filter, which looks a quarter of a second ahead,
+            or until it had caught up; only they are told of where there are no others.
+    """
+    milliseconds = 1e3 * np.array(latencies_s if len(latencies_s) else at_start_s, dtype=float)
+    known = len(milliseconds) > 0
+    return {
+        "latency_ms_median": float(np.median(milliseconds)) if known else None,
+        "latency_ms_p95": float(np.percentile(milliseconds, 95)) if known else None,
+        "latency_ms_p99": float(np.percentile(milliseconds, 99)) if known else None,
+        "latency_ms_max": float(milliseconds.max()) if known else None,
+        "latency_ms_max_at_start": 1e3 * max(at_start_s) if at_start_s else None,
+        "frames_at_start": len(at_start_s),
+    }
+
+
+def _finite(value: Any) -> Any:
+    """Plain data with NaN and infinities as None."""
+    if isinstance(value, Mapping):
+        return {str(key): _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

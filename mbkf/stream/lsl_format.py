@@ -1,0 +1,249 @@
+"""How markers and plates travel through Lab Streaming Layer: channels and the stream's own XML.
+
+A marker stream is of type "MoCap", three channels per marker ("PositionX", … in "meters"), each with a <marker> that
+names it; points without names have none. A plate stream is of type "ForcePlate", six channels per plate ("ForceX" …
+"MomentZ" in "newtons" and "newtonmeters"), force of the plate on the body and moment about the plate's origin. Both may
+end with a channel of type "FrameNumber" that counts frames or samples; without it, time stamps tell.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.errors import InvalidInput
+from mbkf.io.axes import rotation_to_world
+from mbkf.io.records import PlateReadings
+from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
+from mbkf.stream.source import StreamDescription, empty_plate
+
+MARKERS_TYPE, PLATES_TYPE = "MoCap", "ForcePlate"
+MARKER_TYPES = ("mocap", "motioncapture", "motion capture")
+COUNTER = "framenumber"
+_POSITION = ("positionx", "positiony", "positionz")
+_LOAD = ("forcex", "forcey", "forcez", "momentx", "momenty", "momentz")
+_METRES = {"meters": 1.0, "metres": 1.0, "m": 1.0, "millimeters": 1e-3, "millimetres": 1e-3, "mm": 1e-3}
+
+
+@dataclass(frozen=True)
+class MarkerLayout:
+    """Where things stand in a sample of markers.
+
+    Attributes:
+        named: (M, 3) channels of named markers.
+        nameless: (N, 3) channels of points without names.
+        counter: Channel that counts frames, None where there is none.
+        rotation: (3, 3) from the stream's axes to the world's, times metres per unit.
+    """
+
+    named: Array
+    nameless: Array
+    counter: int | None
+    rotation: Array
+
+    def points(self, sample: Array) -> tuple[Array, Array]:
+        """(M, 3) named markers and (N, 3) points of a sample, world axes, m."""
+        return sample[self.named] @ self.rotation.T, sample[self.nameless] @ self.rotation.T
+
+
+@dataclass(frozen=True)
+class PlateLayout:
+    """Where things stand in a sample of plates.
+
+    Attributes:
+        loads: (K, 6) channels of each plate.
+        counter: Channel that counts samples, None where there is none.
+        rotation: (3, 3) from the stream's axes to the world's.
+    """
+
+    loads: Array
+    counter: int | None
+    rotation: Array
+
+    def wrenches(self, samples: Array) -> Array:
+        """(S, K, 6) wrenches of samples (S, channels), world axes."""
+        found = samples[:, self.loads]
+        force, moment = found[..., :3] @ self.rotation.T, found[..., 3:] @ self.rotation.T
+        return np.concatenate([force, moment], axis=-1)
+
+
+def marker_info(lsl: Any, stream: StreamDescription, name: str, points: int) -> Any:
+    """The stream information of markers, or of so many points without names where the stream has none."""
+    labels = stream.marker_names or tuple(f"point{k + 1}" for k in range(points))
+    count = 3 * len(labels) + 1
+    info = lsl.StreamInfo(
+        name, MARKERS_TYPE, count, stream.rate_hz, lsl.cf_double64, f"mbkf-{name}-{stream.trial}"
+    )
+    desc = _described(info, stream, stream.start_time_s)
+    if stream.plates:
+        desc.append_child_value("plates_stream", plates_name(name))
+    channels = desc.append_child("channels")
+    for label in labels:
+        for axis in "XYZ":
+            named = {"marker": label} if stream.marker_names else {}
+            _channel(channels, label=f"{label}_{axis}", **named, type=f"Position{axis}", unit="meters")
+    _channel(channels, label="frame", type="FrameNumber", unit="none")
+    return info
+
+
+def plates_info(lsl: Any, stream: StreamDescription, name: str) -> Any:
+    """The stream information of the plates that belong to a marker stream of that name."""
+    count = 6 * len(stream.plates) + 1
+    own = plates_name(name)
+    info = lsl.StreamInfo(
+        own, PLATES_TYPE, count, stream.plate_rate_hz, lsl.cf_double64, f"mbkf-{own}-{stream.trial}"
+    )
+    desc = _described(info, stream, stream.plates[0].start_time_s)
+    plates = desc.append_child("plates")
+    for plate in stream.plates:
+        entry = plates.append_child("plate")
+        entry.append_child_value("name", plate.name)
+        entry.append_child_value("threshold_n", repr(plate.threshold_n))
+        entry.append_child_value("origin_m", _numbers(plate.origin_m))
+        if plate.corners_m is not None:
+            entry.append_child_value("corners_m", _numbers(plate.corners_m.ravel()))
+    channels = desc.append_child("channels")
+    for plate in stream.plates:
+        for kind, unit in (("Force", "newtons"), ("Moment", "newtonmeters")):
+            for axis in "XYZ":
+                label = f"{plate.name}_{kind[0]}{axis.lower()}"
+                _channel(channels, label=label, plate=plate.name, type=f"{kind}{axis}", unit=unit)
+    _channel(channels, label="sample", type="FrameNumber", unit="none")
+    return info
+
+
+def plates_name(markers_name: str) -> str:
+    """What the plate stream beside a marker stream is called."""
+    return f"{markers_name}-plates"
+
+
+def read_marker_info(info: Any) -> tuple[StreamDescription, MarkerLayout, str]:
+    """What a marker stream is, where things stand in it, and the name of its plate stream ("" for none).
+
+    Raises:
+        InvalidInput: It states no rate, or no channels of positions.
+    """
+    where = f"LSL stream '{info.name()}'"
+    if not info.nominal_srate() > 0.0:
+        raise InvalidInput(f"{where} states no rate; the filter needs a regular one")
+    channels = _channels(info)
+    names, named, nameless = [], [], []
+    for k, triple in _groups(channels, _POSITION):
+        if triple.get("marker"):
+            names.append(triple["marker"])
+            named.append(k)
+        else:
+            nameless.append(k)
+    if not named and not nameless:
+        raise InvalidInput(f"{where} has no channels of type PositionX, PositionY, PositionZ")
+    unit = channels[(named or nameless)[0][0]]["unit"].lower() or "meters"
+    if unit not in _METRES:
+        raise InvalidInput(f"{where} is in '{unit}'; meters or millimeters are understood")
+    desc = info.desc()
+    layout = MarkerLayout(
+        np.array(named, dtype=int).reshape(-1, 3),
+        np.array(nameless, dtype=int).reshape(-1, 3),
+        _counter(channels),
+        rotation_to_world(desc.child_value("up") or "z") * _METRES[unit],
+    )
+    description = StreamDescription(
+        desc.child_value("trial") or info.name(),
+        tuple(names),
+        float(desc.child_value("rate_hz") or info.nominal_srate()),
+        float(desc.child_value("start_time_s") or 0.0),
+    )
+    return description, layout, desc.child_value("plates_stream")
+
+
+def read_plates_info(info: Any) -> tuple[tuple[PlateReadings, ...], PlateLayout]:
+    """The plates of a plate stream, without readings, and where things stand in it.
+
+    Raises:
+        InvalidInput: It states no rate, or its plates and channels do not belong together.
+    """
+    where = f"LSL stream '{info.name()}'"
+    desc, channels = info.desc(), _channels(info)
+    if not info.nominal_srate() > 0.0:
+        raise InvalidInput(f"{where} states no rate; the filter needs a regular one")
+    loads = [k for k, _ in _groups(channels, _LOAD)]
+    rotation = rotation_to_world(desc.child_value("up") or "z")
+    start_s = float(desc.child_value("start_time_s") or 0.0)
+    rate_hz = float(desc.child_value("rate_hz") or info.nominal_srate())
+    plates: list[PlateReadings] = []
+    entry = desc.child("plates").child("plate")
+    while not entry.empty():
+        corners = entry.child_value("corners_m")
+        plates.append(
+            empty_plate(
+                entry.child_value("name") or str(len(plates) + 1),
+                rate_hz,
+                start_s,
+                rotation @ _array(entry.child_value("origin_m"), where),
+                float(entry.child_value("threshold_n") or DEFAULT_COP_THRESHOLD_N),
+                _array(corners, where).reshape(-1, 3) @ rotation.T if corners else None,
+            )
+        )
+        entry = entry.next_sibling("plate")
+    if len(plates) != len(loads):
+        raise InvalidInput(
+            f"{where} has force channels of {len(loads)} plates and describes {len(plates)} in <plates>"
+        )
+    return tuple(plates), PlateLayout(np.array(loads, dtype=int).reshape(-1, 6), _counter(channels), rotation)
+
+
+def _described(info: Any, stream: StreamDescription, start_s: float) -> Any:
+    desc = info.desc()
+    desc.append_child_value("manufacturer", "mbkf")
+    desc.append_child_value("trial", stream.trial)
+    desc.append_child_value("up", "z")
+    rate_hz = info.nominal_srate()
+    desc.append_child_value("rate_hz", repr(float(rate_hz)))
+    desc.append_child_value("start_time_s", repr(float(start_s)))
+    return desc
+
+
+def _channel(channels: Any, **values: str) -> None:
+    entry = channels.append_child("channel")
+    for key, value in values.items():
+        entry.append_child_value(key, value)
+
+
+def _channels(info: Any) -> list[dict[str, str]]:
+    found = []
+    entry = info.desc().child("channels").child("channel")
+    while not entry.empty():
+        found.append({key: entry.child_value(key) for key in ("label", "marker", "plate", "type", "unit")})
+        entry = entry.next_sibling("channel")
+    return found[: info.channel_count()]
+
+
+def _groups(channels: list[dict[str, str]], types: tuple[str, ...]) -> list[tuple[list[int], dict[str, str]]]:
+    """Neighbouring channels of these types in this order, and what the first of them says."""
+    kinds = [channel["type"].lower() for channel in channels]
+    size = len(types)
+    return [
+        (list(range(k, k + size)), channels[k])
+        for k in range(len(channels) - size + 1)
+        if tuple(kinds[k : k + size]) == types
+    ]
+
+
+def _counter(channels: list[dict[str, str]]) -> int | None:
+    return next((k for k, channel in enumerate(channels) if channel["type"].lower() == COUNTER), None)
+
+
+def _numbers(values: Array) -> str:
+    return " ".join(repr(float(value)) for value in values)
+
+
+def _array(text: str, where: str) -> Array:
+    try:
+        values = np.array([float(word) for word in text.split()])
+    except ValueError as error:
+        raise InvalidInput(f"{where}: '{text}' are not numbers") from error
+    if len(values) % 3 or not len(values):
+        raise InvalidInput(f"{where}: '{text}' are not coordinates of points")
+    return values

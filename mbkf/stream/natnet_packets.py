@@ -1,0 +1,165 @@
+"""OptiTrack's NatNet protocol, version 4.0, from the camera computer's side: messages packed as clients expect them.
+
+Little endian throughout: message number and length (two bytes each), then the payload. Positions are in m; the channels
+of a force plate follow the C3D convention, as its corners do: plate axes with z down, force of the plate on the body.
+
+Source: the NatNet SDK's description of its packets (NatNetTypes.h) and what the client library ``natnet`` reads.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.errors import InvalidInput
+
+VERSION = (4, 0, 0, 0)
+
+CONNECT, SERVER_INFO, REQUEST, RESPONSE, REQUEST_DESCRIPTIONS, DESCRIPTIONS = 0, 1, 2, 3, 4, 5
+FRAME, DISCONNECT, KEEP_ALIVE = 7, 9, 10
+"""Numbers of messages."""
+
+CHANNELS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
+OCCLUDED, SOLVED, UNLABELLED = 0x01, 0x02, 0x10
+"""Flags of a labelled marker."""
+
+MARKER_SIZE_M = 0.014
+_SET_DESCRIPTION, _PLATE_DESCRIPTION = 0, 3
+_NAME_BYTES = 256
+MOST_BYTES = 65_000
+
+
+@dataclass(frozen=True)
+class PlateDescription:
+    """What NatNet tells of a force plate.
+
+    Attributes:
+        number: From 1.
+        serial: Its serial number; we put its name here.
+        offset_m: (3,) from the middle of the corners to the point the moments refer to, plate axes.
+        corners_m: (4, 3) in the stream's axes.
+    """
+
+    number: int
+    serial: str
+    offset_m: Array
+    corners_m: Array
+
+
+def message(number: int, payload: bytes = b"") -> bytes:
+    """A whole packet.
+
+    Raises:
+        InvalidInput: The payload is too large for one.
+    """
+    if len(payload) > MOST_BYTES:
+        raise InvalidInput("a frame of this capture is too large for NatNet; play it with --to lsl")
+    return struct.pack("<HH", number, len(payload)) + payload
+
+
+def server_info(application: str, port: int) -> bytes:
+    """The answer to a client that connects: unicast, with the clock in ns."""
+    name = application.encode()[: _NAME_BYTES - 1].ljust(_NAME_BYTES, b"\0")
+    clock = struct.pack("<QHB4B", 1_000_000_000, port, 0, 0, 0, 0, 0)
+    return message(SERVER_INFO, name + bytes(VERSION) + bytes(VERSION) + clock)
+
+
+def descriptions(set_name: str, markers: Sequence[str], plates: Sequence[PlateDescription]) -> bytes:
+    """What is streamed: one set of named markers, if there are any, and the plates."""
+    parts = []
+    if markers:
+        named = _text(set_name) + struct.pack("<I", len(markers)) + b"".join(map(_text, markers))
+        parts.append(struct.pack("<I", _SET_DESCRIPTION) + named)
+    parts += [struct.pack("<I", _PLATE_DESCRIPTION) + plate_description(plate) for plate in plates]
+    return message(DESCRIPTIONS, struct.pack("<I", len(parts)) + b"".join(parts))
+
+
+def plate_description(plate: PlateDescription) -> bytes:
+    """A force plate with calibrated channels (Fx … Mz); the protocol has all four corners."""
+    corners = np.asarray(plate.corners_m)
+    width, length = (float(np.linalg.norm(corners[0] - corners[k])) for k in (1, 3))
+    calibration = np.eye(12)
+    return b"".join(
+        [
+            struct.pack("<I", plate.number),
+            _text(plate.serial),
+            struct.pack("<2f", width, length),
+            _floats(plate.offset_m),
+            _floats(calibration),
+            _floats(corners),
+            struct.pack("<3I", 2, 0, len(CHANNELS)),
+            *map(_text, CHANNELS),
+        ]
+    )
+
+
+def frame(
+    number: int,
+    time_s: float,
+    set_name: str,
+    markers_m: Array,
+    points_m: Array,
+    plates: Array,
+) -> bytes:
+    """One frame.
+
+    Args:
+        number: Frame number.
+        time_s: Its time.
+        set_name: Of the named markers.
+        markers_m: (M, 3) named markers in the stream's axes, NaN where hidden: sent as nought and marked occluded.
+        points_m: (N, 3) points without names.
+        plates: (K, m, 6) samples of each plate's channels in this frame.
+    """
+    hidden = np.asarray(np.isnan(markers_m).any(axis=1))
+    shown = np.where(hidden[:, None], 0.0, markers_m)
+    sets = b""
+    if len(markers_m):
+        sets = _text(set_name) + struct.pack("<I", len(shown)) + _floats(shown)
+    labelled = [
+        _labelled((1 << 16) + k + 1, position, OCCLUDED if out else SOLVED)
+        for k, (position, out) in enumerate(zip(shown, hidden, strict=True))
+    ]
+    labelled += [_labelled(k + 1, position, SOLVED | UNLABELLED) for k, position in enumerate(points_m)]
+    nanoseconds = round(1e9 * time_s)
+    payload = [
+        struct.pack("<I", number),
+        struct.pack("<I", 1 if len(markers_m) else 0),
+        sets,
+        struct.pack("<I", len(points_m)),
+        _floats(points_m),
+        struct.pack("<2I", 0, 0),  # rigid bodies, skeletons
+        struct.pack("<I", len(labelled)),
+        *labelled,
+        struct.pack("<I", len(plates)),
+        *(_channels(k + 1, samples) for k, samples in enumerate(plates)),
+        struct.pack("<I", 0),  # devices
+        struct.pack("<2Id3QH", 0, 0, time_s, nanoseconds, nanoseconds, nanoseconds, 0),
+        struct.pack("<I", 0),  # end of data
+    ]
+    return message(FRAME, b"".join(payload))
+
+
+def _labelled(identity: int, position: Array, flags: int) -> bytes:
+    x, y, z = position.tolist()
+    return struct.pack("<I4fHf", identity, x, y, z, MARKER_SIZE_M, flags, 0.0)
+
+
+def _channels(number: int, samples: Array) -> bytes:
+    """One plate's samples (m, 6), channel by channel."""
+    parts = [struct.pack("<2I", number, samples.shape[1])]
+    for channel in samples.T:
+        parts += [struct.pack("<I", len(channel)), _floats(channel)]
+    return b"".join(parts)
+
+
+def _floats(values: Array) -> bytes:
+    return np.asarray(values, dtype="<f4").tobytes()
+
+
+def _text(value: str) -> bytes:
+    return value.encode() + b"\0"

@@ -1,0 +1,75 @@
+"""Frame numbers that never go back: what is lost, late or out of order is told from the source's own count.
+
+A source that restarts counts from nought again, and a broken clock may jump; then the time that passed here decides
+how many frames went by.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+LATE_S = 0.5
+"""A frame that is behind by less than this is late or out of order; more, and the source's count has been set back."""
+
+BACK_FRAMES = 3
+"""So many frames in a row that are behind, each after the other, are a count set back, however little."""
+
+SLACK_S = 1.0
+"""A count that runs ahead of the time that passed by more than this has jumped."""
+
+
+@dataclass(frozen=True)
+class Numbered:
+    """A frame's place.
+
+    Attributes:
+        number: Its number here, None for one that comes too late.
+        lost: How many frames are missing before it.
+        reset: Whether the source's count jumped, so that time here decided.
+        backwards: Whether it jumped back.
+    """
+
+    number: int | None
+    lost: int
+    reset: bool = False
+    backwards: bool = False
+
+
+class Numbering:
+    """Numbers frames, from the number of the first one on."""
+
+    def __init__(self, rate_hz: float) -> None:
+        self._rate_hz = rate_hz
+        self._shift = 0
+        self._last: int | None = None
+        self._last_s = 0.0
+        self._behind: list[int] = []
+
+    def place(self, number: int, arrival_s: float) -> Numbered:
+        """Place of the next frame.
+
+        Args:
+            number: As the source counts.
+            arrival_s: When it arrived.
+        """
+        if self._last is None:
+            self._last, self._last_s = number, arrival_s
+            return Numbered(number, 0)
+        here, backwards = number + self._shift, False
+        passed = (arrival_s - self._last_s) * self._rate_hz
+        reset = here - self._last > passed + SLACK_S * self._rate_hz
+        if here <= self._last:
+            self._behind.append(number)
+            recent = self._behind[-BACK_FRAMES:]
+            onward = len(recent) == BACK_FRAMES and all(b > a for a, b in pairwise(recent))
+            if self._last - here < LATE_S * self._rate_hz and not onward:
+                return Numbered(None, 0)
+            reset = backwards = True
+        if reset:
+            here = self._last + max(1, round(passed))
+            self._shift = here - number
+        self._behind.clear()
+        lost = here - self._last - 1
+        self._last, self._last_s = here, arrival_s
+        return Numbered(here, lost, reset, backwards)

@@ -1,0 +1,93 @@
+"""The latest readings of the plates, averaged over each frame as a whole trial's are."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.io.resample import integrals_between
+from mbkf.stream.source import PlateSamples, StreamDescription
+
+KEPT_S = 2.0
+"""Readings older than this are forgotten."""
+
+OUTSIDE = 0.5
+"""A frame so many samples outside of what was read has no reading."""
+
+
+class PlateBuffer:
+    """Keeps what the plates read lately.
+
+    Attributes:
+        newest: Index of the newest sample, None before the first.
+        missing: How many samples between others never came.
+    """
+
+    def __init__(self, stream: StreamDescription) -> None:
+        self._count = len(stream.plates)
+        self._rate_hz, self._frame_rate_hz = stream.plate_rate_hz, stream.rate_hz
+        self._frames_from_s = stream.start_time_s
+        self._from_s = stream.plates[0].start_time_s if stream.plates else 0.0
+        self._half = 0.5 * self._rate_hz / self._frame_rate_hz
+        self._origins = np.array([plate.origin_m for plate in stream.plates]).reshape(-1, 3)
+        size = int(KEPT_S * self._rate_hz) + 4 * int(self._half + 1)
+        self._values = np.full((size, 6 * self._count), np.nan)
+        self._oldest = 0
+        self.newest: int | None = None
+        self.missing = 0
+
+    def put(self, samples: PlateSamples) -> PlateSamples:
+        """Takes new samples; those that are not newer than what is known are left out of what is returned."""
+        index, wrench = samples.index, samples.wrench
+        if not len(index) or not self._count:
+            return PlateSamples.none(self._count)
+        if self.newest is not None and index[0] <= self.newest:
+            fresh = index > self.newest
+            index, wrench = index[fresh], wrench[fresh]
+            if not len(index):
+                return PlateSamples.none(self._count)
+        size = len(self._values)
+        if self.newest is None or index[0] - self.newest > size:
+            self._values[:] = np.nan
+            self._oldest = int(index[0])
+        else:
+            self._values[np.arange(self.newest + 1, int(index[0])) % size] = np.nan
+        expected = index[-1] - (index[0] - 1 if self.newest is None else self.newest)
+        self.missing += int(expected) - len(index)
+        if len(index) <= index[-1] - index[0]:
+            self._values[np.setdiff1d(np.arange(index[0], index[-1]), index) % size] = np.nan
+        self._values[index % size] = wrench.reshape(len(index), -1)
+        self.newest = int(index[-1])
+        return PlateSamples(index, wrench)
+
+    def mean(self, number: int) -> Array:
+        """(K, 6) mean force N and moment N m about the world's origin over a frame; NaN where not read."""
+        unread = np.full((self._count, 6), np.nan)
+        if self.newest is None:
+            return unread
+        position = self._position(number)
+        oldest = max(self._oldest, self.newest - len(self._values) + 1)
+        if not oldest - OUTSIDE <= position <= self.newest + OUTSIDE:
+            return unread
+        low = np.clip(position - self._half, oldest, self.newest)
+        high = np.clip(position + self._half, oldest, self.newest)
+        first = int(np.floor(low))
+        rows = np.arange(first, int(np.ceil(high)) + 1)
+        samples = self._values[rows % len(self._values)]
+        if high - low > 1e-9:
+            area = integrals_between(
+                samples, np.array([low - first]), np.array([high - first]), 2.0 * self._half
+            )
+            loads = (area / (high - low)).reshape(self._count, 6)
+        else:
+            loads = samples[round(float(np.clip(position, oldest, self.newest))) - first].reshape(
+                self._count, 6
+            )
+        loads[np.isnan(loads).any(axis=1)] = np.nan
+        loads[:, 3:] += np.cross(self._origins, loads[:, :3])
+        return loads
+
+    def _position(self, number: int) -> float:
+        """Where the middle of a frame lies, in samples."""
+        time_s = self._frames_from_s + number / self._frame_rate_hz
+        return (time_s - self._from_s) * self._rate_hz

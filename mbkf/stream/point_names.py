@@ -1,0 +1,63 @@
+"""Names for the points of a stream that has none, and the frames that wait for them."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.filters.estimate import Estimate, Follower
+from mbkf.io.subject import Subject
+from mbkf.pipelines.live import NUMERICAL
+from mbkf.pipelines.live_labels import LiveLabels, live_body
+from mbkf.stream.intake import Note, ReadyFrame
+
+Named = list[tuple[ReadyFrame, Array]]
+"""Frames with their markers (M, 3)."""
+
+
+class PointNames:
+    """Holds frames until their points have names."""
+
+    def __init__(
+        self, subject: Subject, names: tuple[str, ...], follower: Follower, patient: bool, note: Note
+    ) -> None:
+        """Args: the person, the markers that are followed, the filter, whether the source waits, and whom to tell."""
+        self._body = live_body(subject)
+        self._columns = [self._body.names.index(name) for name in names]
+        self._follower, self._patient, self._note = follower, patient, note
+        self._waiting: deque[ReadyFrame] = deque()
+        self._labels = self._fresh()
+
+    def push(self, frame: ReadyFrame, before: Estimate | None) -> Named:
+        """A new frame; gives back those that are due.
+
+        Args:
+            frame: The frame.
+            before: The filter's estimate of the frame before, None where it has none or has to start anew.
+        """
+        self._waiting.append(frame)
+        try:
+            return self._due(self._labels.push(frame.unlabelled_m, before))
+        except NUMERICAL as error:
+            self._note("labels", f"labels are searched anew ({error})", frame.number, 1)
+            self._labels = self._fresh()
+            nobody = np.full((len(self._columns), 3), np.nan)
+            unnamed = [(one, nobody) for one in self._waiting]
+            self._waiting.clear()
+            return unnamed
+
+    def learn(self, estimate: Estimate) -> None:
+        """What the filter made of the frame pushed last."""
+        self._labels.learn(estimate.q)
+
+    def finish(self) -> Named:
+        """The frames that still wait, when no more follow."""
+        return self._due(self._labels.finish())
+
+    def _fresh(self) -> LiveLabels:
+        return LiveLabels(self._body, self._follower, patient=self._patient)
+
+    def _due(self, found: list[Array]) -> Named:
+        return [(self._waiting.popleft(), markers[self._columns]) for markers in found]

@@ -1,0 +1,72 @@
+"""Between the thread that reads a stream and the filter: a slot that overwrites, never a queue that grows.
+
+It holds the frames of a short while, so that a hiccup of the machine loses none; a longer while when the filter starts,
+and nothing is shown that could grow old. When the filter falls behind by more, only the latest frame is kept.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from typing import Generic, TypeVar
+
+T = TypeVar("T")
+
+
+class Slot(Generic[T]):
+    """Holds a few items; the latest win."""
+
+    def __init__(self, size: int, patient: bool = False) -> None:
+        """Args: items held at most, and whether a full slot makes the giver wait instead of dropping items."""
+        self._size, self._patient = max(1, size), patient
+        self._items: deque[T] = deque()
+        self._changed = threading.Condition()
+        self._closed = False
+
+    def allow(self, size: int) -> None:
+        """Holds so many items at most from now on; those that are held already stay."""
+        with self._changed:
+            self._size = max(1, size)
+            self._changed.notify_all()
+
+    def put(self, item: T) -> list[T]:
+        """A new item; what a closed slot is given is dropped. Returns the items it overwrote."""
+        with self._changed:
+            while self._patient and len(self._items) >= self._size and not self._closed:
+                self._changed.wait()
+            overwritten: list[T] = []
+            if self._closed:
+                return overwritten
+            if len(self._items) >= self._size:
+                overwritten.extend(self._items)
+                self._items.clear()
+            self._items.append(item)
+            self._changed.notify_all()
+            return overwritten
+
+    def take(self, timeout_s: float) -> T | None:
+        """The oldest item held; None where none comes for so long, or ever (see :attr:`ended`)."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._items or self._closed, timeout_s)
+            if not self._items:
+                return None
+            item = self._items.popleft()
+            self._changed.notify_all()
+            return item
+
+    def close(self) -> None:
+        """No more items follow; those held can still be taken."""
+        with self._changed:
+            self._closed = True
+            self._changed.notify_all()
+
+    def left(self) -> list[T]:
+        """What nobody took."""
+        with self._changed:
+            return list(self._items)
+
+    @property
+    def ended(self) -> bool:
+        """Whether it is closed and empty."""
+        with self._changed:
+            return self._closed and not self._items

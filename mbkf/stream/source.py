@@ -1,0 +1,139 @@
+"""What a source of live frames looks like, whether it is a network stream or a file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mbkf.conventions import Array
+from mbkf.io.records import PlateReadings
+
+FARTHEST_M = 100.0
+"""A point farther from the origin than this is no measurement: no camera volume is that large."""
+
+
+@dataclass(frozen=True)
+class StreamDescription:
+    """What a source knows before its first frame.
+
+    Attributes:
+        trial: Name of what it plays, or of the stream.
+        marker_names: (M,) its markers; none where points come without names.
+        rate_hz: Frame rate.
+        start_time_s: Time of frame 0 of the source's own counting.
+        plates: Its plates without readings, all at one rate; ``start_time_s`` is the time of sample 0.
+    """
+
+    trial: str
+    marker_names: tuple[str, ...]
+    rate_hz: float
+    start_time_s: float = 0.0
+    plates: tuple[PlateReadings, ...] = ()
+
+    @property
+    def plate_rate_hz(self) -> float:
+        """Rate of the plates, that of the frames where there are none."""
+        return self.plates[0].rate_hz if self.plates else self.rate_hz
+
+
+@dataclass(frozen=True)
+class PlateSamples:
+    """Readings of all plates, one after the other.
+
+    Attributes:
+        index: (S,) numbers of the samples, ascending.
+        wrench: (S, K, 6) force N and moment N m about each plate's own origin, world axes.
+    """
+
+    index: NDArray[np.int64]
+    wrench: Array
+
+    @classmethod
+    def none(cls, plates: int) -> PlateSamples:
+        """No sample of so many plates."""
+        return cls(np.zeros(0, dtype=int), np.zeros((0, plates, 6)))
+
+
+@dataclass(frozen=True)
+class SourceFrame:
+    """One frame as a source delivers it; world axes, m.
+
+    Attributes:
+        number: As the source counts frames.
+        arrival_s: When it arrived, on the clock of ``time.perf_counter``.
+        markers_m: (M, 3) named markers, NaN where missing.
+        unlabelled_m: (N, 3) points without names.
+        plates: What the plates read since the frame before.
+    """
+
+    number: int
+    arrival_s: float
+    markers_m: Array
+    unlabelled_m: Array
+    plates: PlateSamples
+
+
+class FrameSource(Protocol):
+    """Where frames come from.
+
+    Attributes:
+        patient: Whether it waits for a slow reader, as a file does; a camera does not.
+    """
+
+    patient: bool
+
+    def connect(self, timeout_s: float) -> StreamDescription | None:
+        """Looks for the stream for so long; None where it is not there (yet).
+
+        Raises:
+            MbkfError: It is there, and is not what it should be.
+        """
+
+    def read(self, timeout_s: float) -> SourceFrame | None:
+        """The next frame; None where none has come for so long. A stream that died is looked for again meanwhile.
+
+        Raises:
+            EOFError: No more frames will ever come.
+        """
+
+    def news(self) -> list[tuple[str, str]]:
+        """What happened to the connection since this was asked last: a word and a sentence each."""
+
+    def close(self) -> None:
+        """Lets go of the stream."""
+
+
+def plausible(points_m: Array) -> tuple[Array, int]:
+    """Points with those that cannot be true as missing, and how many these are; NaN itself is just a missing point.
+
+    Args:
+        points_m: (N, 3) as received.
+    """
+    missing = np.asarray(np.isnan(points_m).any(axis=1))
+    wrong = ~missing & ~np.asarray((np.abs(points_m) <= FARTHEST_M).all(axis=1))
+    bad = missing | wrong
+    return (np.where(bad[:, None], np.nan, points_m) if bad.any() else points_m), int(wrong.sum())
+
+
+def empty_plate(
+    name: str,
+    rate_hz: float,
+    start_time_s: float,
+    origin_m: Array,
+    threshold_n: float,
+    corners_m: Array | None,
+) -> PlateReadings:
+    """A plate that has not read anything yet."""
+    nothing = np.zeros((0, 3))
+    return PlateReadings(
+        name, rate_hz, start_time_s, origin_m, nothing, nothing, nothing, threshold_n, corners_m
+    )
+
+
+def without_readings(plate: PlateReadings) -> PlateReadings:
+    """The same plate before it has read anything."""
+    nothing = np.zeros((0, 3))
+    return replace(plate, force_n=nothing, moment_nm=nothing, centre_of_pressure_m=nothing)

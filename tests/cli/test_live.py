@@ -1,0 +1,185 @@
+"""`mbkf live` and `mbkf replay` as typed: together over both protocols, ended by Ctrl-C, refused in one line."""
+
+import json
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+import uuid
+
+import numpy as np
+import pytest
+
+from mbkf.cli.main import main
+from mbkf.cli.stopping import stopped_by_signal
+from mbkf.io.results_folder import read_reconstruction
+from mbkf.pipelines.live_results import live_results
+from mbkf.stream.run_folder import LOG_FOLDER
+
+
+def run(words):
+    return main([str(word) for word in words])
+
+
+@pytest.fixture(scope="module")
+def expected(person, tmp_path_factory):
+    """What reconstruct makes of the trial with the subject's own marker positions."""
+    out = tmp_path_factory.mktemp("expected")
+    assert (
+        run(["reconstruct", person.trial, "--subject", person.subject, "--keep-markers", "--out", out]) == 0
+    )
+    return read_reconstruction(out)
+
+
+def free_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        one.bind(("127.0.0.1", 0))
+        return one.getsockname()[1]
+
+
+def test_a_file_gives_what_reconstruct_gives(person, tmp_path, capsys, expected):
+    out = tmp_path / "out"
+    words = [
+        "live",
+        "--from",
+        f"file:{person.trial}",
+        "--subject",
+        person.subject,
+        "--speed",
+        0,
+        "--out",
+        out,
+    ]
+    assert run(words) == 0
+    shown = capsys.readouterr()
+    assert "60 frames came, 0 were lost" in shown.out
+    assert "36 markers at 100 Hz" in shown.err
+    found = read_reconstruction(out)
+    for name in ("q", "v", "tau", "foot_wrench", "angles", "moments", "sd_q", "predicted_m"):
+        np.testing.assert_allclose(getattr(found, name), getattr(expected, name), atol=1e-9, err_msg=name)
+    report = json.loads((out / "live.json").read_text())
+    assert {"latency_ms_median", "latency_ms_p99", "latency_ms_max", "rate_hz"} <= set(report)
+    assert report["source"] == "file"
+
+
+@pytest.mark.parametrize("protocol", ["lsl", "natnet"])
+def test_a_replay_is_followed(person, tmp_path, capsys, protocol):
+    out, name, port = tmp_path / "out", f"mbkf-test-{uuid.uuid4().hex[:8]}", free_port()
+    live = ["live", "--from", protocol, "--subject", person.subject, "--seconds", 0.6, "--keep-log"]
+    replay = ["replay", person.trial, "--to", protocol, "--wait", 20]
+    if protocol == "lsl":
+        live, replay = [*live, "--stream", name], [*replay, "--name", name]
+    else:
+        live, replay = [*live, "--port", port], [*replay, "--port", port]
+    playing = threading.Thread(target=run, args=(replay,))
+    playing.start()
+    code = run([*live, "--out", out])
+    playing.join()
+    assert code == 0, capsys.readouterr().err
+    assert "60 frames sent at 100 Hz" in capsys.readouterr().out
+    report = json.loads((out / "live.json").read_text())
+    assert (report["frames_in"], report["frames_lost"]) == (60, 0)
+    assert report["frames_processed"] == 60
+    found, again = read_reconstruction(out), live_results(out / LOG_FOLDER)
+    np.testing.assert_array_equal(found.tau, again.tau)
+    assert found.tracked.all()
+
+
+def test_ctrl_c_leaves_complete_files(person, tmp_path):
+    out = tmp_path / "out"
+    words = [
+        "live",
+        "--from",
+        f"file:{person.trial}",
+        "--subject",
+        person.subject,
+        "--speed",
+        0.3,
+        "--out",
+        out,
+    ]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "mbkf", *map(str, words)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    until = time.monotonic() + 20.0
+    while not (out / LOG_FOLDER).is_dir() and time.monotonic() < until:
+        time.sleep(0.02)
+    time.sleep(1.2)
+    process.send_signal(signal.SIGINT)
+    printed, errors = process.communicate(timeout=20.0)
+    assert process.returncode == 0, errors
+    assert "it was stopped" in printed
+    assert 0 < read_reconstruction(out).frames < 60
+    assert json.loads((out / "live.json").read_text())["state"] == "finished"
+    assert not (out / LOG_FOLDER).exists()
+
+
+def test_results_are_shown_and_sent_while_it_runs(person, tmp_path, capsys):
+    name = f"mbkf-test-{uuid.uuid4().hex[:8]}"
+    words = ["live", "--from", f"file:{person.trial}", "--subject", person.subject, "--speed", 0, "--view"]
+    assert run([*words, "--publish", name, "--websocket", 0, "--out", tmp_path / "out"]) == 0
+    told = capsys.readouterr().err
+    assert "page: http://127.0.0.1:" in told
+    assert "results: ws://127.0.0.1:" in told
+    assert read_reconstruction(tmp_path / "out").frames == 60
+
+
+def test_bad_input_is_refused(person, tmp_path, refused):
+    subject, out = ["--subject", person.subject], ["--out", tmp_path / "out"]
+    trial = ["--from", f"file:{person.trial}"]
+    refused(["live", *subject, *out], "--from is missing")
+    refused(["live", *trial, *out], "--subject is missing")
+    refused(["live", *trial, *subject], "--out is missing")
+    refused(["live", "--from", "vicon", *subject, *out], "unknown source 'vicon'")
+    refused(["live", "--from", "file:", *subject, *out], "file:TRIAL")
+    refused(["live", "--from", "file:none.c3d", *subject, *out], "none.c3d")
+    refused(["live", *trial, *subject, *out, "--seconds", "0"], "--seconds 0")
+    refused(["live", *trial, *subject, *out, "--speed", "-1"], "--speed -1")
+    refused(["live", *trial, "--subject", "none.toml", *out], "none.toml")
+    refused(["live", *trial, *subject, *out, "--preset", "none"], "unknown preset 'none'")
+    refused(["live", "--recover", tmp_path / "nothing"], "no such file")
+    file = tmp_path / "file"
+    file.touch()
+    refused(["live", *trial, *subject, "--out", file], "a file stands")
+
+
+@pytest.mark.parametrize(
+    ("options", "fragment"),
+    [
+        (["--speed", "0"], "--speed 0"),
+        (["--jitter", "-1"], "--jitter -1"),
+        (["--loss", "1.5"], "--loss 1.5"),
+        (["--wait", "nan"], "--wait nan"),
+        (["--port", "70000", "--to", "natnet"], "cannot be served"),
+        (["--up", "q"], "up axis"),
+    ],
+)
+def test_replay_refuses_bad_input(person, refused, options, fragment):
+    words = options if "--to" in options else [*options, "--to", "lsl"]
+    refused(["replay", person.trial, *words], fragment)
+
+
+def test_replay_refuses_a_missing_file(refused):
+    refused(["replay", "none.c3d", "--to", "lsl"], "none.c3d")
+
+
+def test_a_missing_library_is_named(person, tmp_path, refused, monkeypatch):
+    monkeypatch.setitem(sys.modules, "natnet", None)
+    words = ["live", "--from", "natnet", "--subject", person.subject, "--out", tmp_path / "out"]
+    refused(words, "pip install 'mbkf[natnet]'")
+
+
+def test_a_first_signal_asks_and_a_second_breaks_off():
+    before = signal.getsignal(signal.SIGINT)
+    with stopped_by_signal() as stop:
+        assert not stop.is_set()
+        signal.raise_signal(signal.SIGTERM)
+        assert stop.is_set()
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+    assert signal.getsignal(signal.SIGINT) is before
