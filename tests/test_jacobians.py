@@ -16,7 +16,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests import derivatives_of_bodies, derivatives_of_filters, derivatives_of_pendulum
+from tests import (
+    derivatives_of_bodies,
+    derivatives_of_filters,
+    derivatives_of_inertial,
+    derivatives_of_pendulum,
+)
 from tests.derivatives import CASES
 
 ROOMS = ("model", "sensors", "filters", "numerics", "scaling")
@@ -108,8 +113,8 @@ CHECKED = {block for case in CASES for block in case.blocks}
 def test_every_block_has_its_case():
     missing = sorted(FOUND - CHECKED - set(ELSEWHERE))
     assert missing == [], (
-        f"add a case for each to {derivatives_of_bodies.__name__}, {derivatives_of_filters.__name__} or "
-        f"{derivatives_of_pendulum.__name__}"
+        f"add a case for each to {derivatives_of_bodies.__name__}, {derivatives_of_filters.__name__}, "
+        f"{derivatives_of_inertial.__name__} or {derivatives_of_pendulum.__name__}"
     )
 
 

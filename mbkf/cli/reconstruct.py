@@ -8,12 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from mbkf.pipelines.imu_body import ImuOnBody
     from mbkf.pipelines.reconstruct import Hidden
 
 _EPILOG = """\
 examples:
   mbkf reconstruct walk.trc --subject subject.toml --forces grf.mot --out result
   mbkf reconstruct walk.c3d --subject subject.toml --filter torque --preset FDMC --out result
+  mbkf reconstruct walk.c3d --subject subject.toml --imu imus.csv --imu-mounts imus.toml --out result
   mbkf reconstruct walk.c3d --subject subject.toml --hide RKNE,RTIB@1.2:1.5 --without-plate 2 --out result
 
 writes summary.json, motion.h5, angles.mot, torques.sto, reactions.mot and markers.trc to the folder
@@ -51,6 +53,16 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         default=[],
         help="hide markers between two times in s; may be repeated",
     )
+    parser.add_argument(
+        "--imu",
+        metavar="FILE",
+        action="append",
+        default=[],
+        help="inertial sensors worn in the trial, named after their segments, on the same clock; may be repeated",
+    )
+    parser.add_argument(
+        "--imu-mounts", metavar="FILE.toml", help="where they sit (default: found from the markers' motion)"
+    )
     parser.add_argument("--without-plate", metavar="N", action="append", default=[], help="withhold a plate")
     parser.add_argument(
         "--keep-markers",
@@ -85,7 +97,7 @@ def run(args: argparse.Namespace) -> int:
     subject = read_subject(args.subject)
     capture = read_capture(args.trial, forces=args.forces, up=args.up, unit=args.unit)
     truth = truth_beside(args.trial)
-    folder = check_folder(args.out)
+    folder, imus = check_folder(args.out), _imus(args)
     settings = ReconstructSettings(
         filter=args.filter or "dynamic",
         smooth=args.smooth,
@@ -97,11 +109,26 @@ def run(args: argparse.Namespace) -> int:
     if args.preset is not None:
         settings = with_preset(settings, args.preset, args.filter)
     with stages() as report:
-        result = reconstruct(capture, subject, settings=settings, progress=report)
+        result = reconstruct(capture, subject, settings=settings, imus=imus, progress=report)
     summary = summarise(result, truth)
     write_reconstruction(result, summary, folder)
     print_summary(summary, folder)
     return 0
+
+
+def _imus(args: argparse.Namespace) -> ImuOnBody | None:
+    """The sensors that --imu names."""
+    from mbkf.errors import InvalidInput
+    from mbkf.io.imu_files import read_imu
+    from mbkf.io.imu_mount import read_mounts
+    from mbkf.pipelines.imu_body import ImuOnBody
+
+    if not args.imu:
+        if args.imu_mounts is not None:
+            raise InvalidInput("--imu-mounts: name the readings with --imu, too")
+        return None
+    readings = tuple(one for path in args.imu for one in read_imu(path))
+    return ImuOnBody(readings, () if args.imu_mounts is None else read_mounts(args.imu_mounts))
 
 
 def parse_hide(text: str) -> Hidden:

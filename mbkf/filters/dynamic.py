@@ -13,6 +13,7 @@ from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.filters.dynamic_records import Decision, DynamicStep, FrameReadings, Memory
 from mbkf.filters.dynamic_settings import DynamicSettings
 from mbkf.filters.gate import Sight, judged
+from mbkf.filters.inertial_part import InertialPart
 from mbkf.filters.singer import DynamicState, SingerPlant
 from mbkf.model.newton_euler import FEET, NewtonEuler
 from mbkf.numerics.kalman import Information, informed_with_rows
@@ -44,7 +45,8 @@ class DynamicFilter:
         balance: Newton–Euler equations.
         held: (nv,) dofs that no marker of the capture moves with.
         settings: What it believes.
-        min_markers: Fewer believed markers than this leave the body untracked.
+        min_markers: Fewer believed markers than this leave the body untracked, unless inertial sensors read.
+        inertial: Inertial sensors on the body, None where there are none.
     """
 
     def __init__(
@@ -56,9 +58,10 @@ class DynamicFilter:
         held: BoolArray,
         settings: DynamicSettings,
         min_markers: int = 6,
+        inertial: InertialPart | None = None,
     ) -> None:
         self.sensor, self.feet, self.held, self.settings = sensor, feet, held, settings
-        self.min_markers = min_markers
+        self.min_markers, self.inertial = min_markers, inertial
         self.noise_m = noise_m * settings.marker_noise_scale
         model = sensor.model
         self.model, self.dt_s = model, dt_s
@@ -118,7 +121,9 @@ class DynamicFilter:
         state = DynamicState(q, v, a, np.zeros(12), whole)
         return self._corrected(state, self.begin(), self.plant.acceleration_sd, markers_m, plates)
 
-    def step(self, state: DynamicState, memory: Memory, markers_m: Array, plates: Array) -> DynamicStep:
+    def step(
+        self, state: DynamicState, memory: Memory, markers_m: Array, plates: Array, imus: Array | None = None
+    ) -> DynamicStep:
         """Prediction and correction by one frame.
 
         Args:
@@ -126,9 +131,10 @@ class DynamicFilter:
             memory: Of the frame before.
             markers_m: (M, 3) positions, NaN where missing.
             plates: (K, 6) wrenches about the world's origin: force N, moment N m; NaN where not recorded.
+            imus: (S, 6) readings of inertial sensors.
         """
         sd = self._movement(memory)
-        return self._corrected(self.plant.predict(state, sd), memory, sd, markers_m, plates)
+        return self._corrected(self.plant.predict(state, sd), memory, sd, markers_m, plates, imus)
 
     def _movement(self, memory: Memory) -> Array:
         """(nv,) σ_a of the next step: a still joint is expected to stay so, a busy one to change quickly."""
@@ -148,9 +154,17 @@ class DynamicFilter:
         return now if memory.activity is None else memory.activity + self._calm * (now - memory.activity)
 
     def _corrected(
-        self, prior: DynamicState, memory: Memory, acceleration_sd: Array, markers_m: Array, plates: Array
+        self,
+        prior: DynamicState,
+        memory: Memory,
+        acceleration_sd: Array,
+        markers_m: Array,
+        plates: Array,
+        imus: Array | None = None,
     ) -> DynamicStep:
         decision, reading, innovation = self._decide(prior, memory, acceleration_sd, markers_m, plates)
+        if imus is not None and self.inertial is not None:
+            decision = self.inertial.decide(decision, memory, imus)
         self.unsettle(prior.P, decision)
         state, frame = self._updated(prior, decision, reading, innovation)
         lifted = self._pulling_feet(state, decision.load)
@@ -163,7 +177,9 @@ class DynamicFilter:
             self._next_activity(state, memory, decision.unseen),
             None if self._skin is None else np.where(decision.trusted[:, None], markers_m, np.nan),
         )
-        tracked = bool(np.count_nonzero(decision.trusted) >= self.min_markers)
+        if self.inertial is not None:
+            after = self.inertial.remember(after, memory, state.q, decision)
+        tracked = decision.imus is not None or bool(np.count_nonzero(decision.trusted) >= self.min_markers)
         return DynamicStep(state, after, decision, tracked, prior, frame)
 
     def _updated(
@@ -302,17 +318,13 @@ class DynamicFilter:
             calm = 1.0 / (self.settings.unseen_acceleration_share * self.plant.acceleration_sd[unseen])
             rows[18 + len(unseen) + k, 2 * nv + unseen] = calm
             values[18 + len(unseen) + k] = -calm * state.a[unseen]
-        for planted in decision.planted:
-            still, short = standing_still(
-                self.model,
-                state.q,
-                state.v,
-                planted,
-                self.settings.planted_speed_sd,
-                self.settings.planted_turn_sd,
-            )
-            on_state = np.zeros((len(still), size))
-            on_state[:, nv : 2 * nv] = still
+        sds = self.settings.planted_speed_sd, self.settings.planted_turn_sd
+        parts = [(nv, *standing_still(self.model, state.q, state.v, foot, *sds)) for foot in decision.planted]
+        if self.inertial is not None:
+            parts += self.inertial.parts(state, decision, rows[:6], values[:6])
+        for first, block, short in parts:
+            on_state = np.zeros((len(block), size))
+            on_state[:, first : first + block.shape[1]] = block
             rows, values = np.vstack([rows, on_state]), np.concatenate([values, short])
         return rows, values, readings
 

@@ -44,7 +44,9 @@ class DynamicFollower:
     def step(self, before: Estimate, recording: Recording, t: int) -> Estimate:
         """One frame on."""
         was: DynamicStep = before.inner
-        return _estimate(self.kalman.step(was.state, was.memory, recording.markers_m[t], recording.plates[t]))
+        imus = None if recording.imus is None else recording.imus[t]
+        markers, plates = recording.markers_m[t], recording.plates[t]
+        return _estimate(self.kalman.step(was.state, was.memory, markers, plates, imus))
 
     def covariance(self, estimate: Estimate) -> Array:
         """(2 nv, 2 nv) of (q, v); dofs that are held may be anywhere a posture is."""
@@ -73,7 +75,8 @@ class DynamicFollower:
         s, P, decision = self.kalman.settings, estimate.inner.state.P, step.decision
         if s.innovation_share <= 0.0:
             return P
-        unknown = np.union1d(decision.unseen, np.flatnonzero(self.kalman.held))
+        unseen = decision.unseen if decision.unmarked is None else decision.unmarked
+        unknown = np.union1d(unseen, np.flatnonzero(self.kalman.held))
         # A pose takes up part of what its markers err by, so innovations show less than that.
         readings = 3 * int(np.count_nonzero(decision.trusted))
         over = max(readings - self.model.nv + len(unknown), readings // 4)

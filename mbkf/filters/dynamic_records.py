@@ -24,12 +24,14 @@ class Memory(NamedTuple):
         noise_scale: Square of the factor on the markers' noise.
         activity: (nv,) mean square of recent accelerations, m²/s⁴ or rad²/s⁴; None before the first frame.
         markers_m: (M, 3) markers believed, NaN elsewhere; None where skin artefacts are not modelled.
+        usual: (nq,) mean posture; None where there are no inertial sensors.
     """
 
     footing: FootingMemory
     noise_scale: float
     activity: Array | None
     markers_m: Array | None
+    usual: Array | None = None
 
 
 class Decision(NamedTuple):
@@ -45,6 +47,9 @@ class Decision(NamedTuple):
         displaced: Dofs of limbs that came back into sight where nobody expected them.
         acceleration_sd: (nv,) σ_a with which the frame was predicted.
         before_m: (M, 3) markers believed in the frame before; None where skin artefacts are not modelled.
+        imus: (S, 6) inertial readings; None where there are none. Then ``unseen`` leaves out what they feel.
+        usual: (nq,) mean posture so far, for joints that nothing shows; None where there are no inertial sensors.
+        unmarked: Dofs of joints whose segment shows no marker, felt or not, where there are inertial readings.
         lifted: Free feet, 0 right and 1 left, that would end up pulling at the floor and so carry nothing.
     """
 
@@ -57,6 +62,9 @@ class Decision(NamedTuple):
     displaced: NDArray[np.intp]
     acceleration_sd: Array
     before_m: Array | None
+    imus: Array | None = None
+    usual: Array | None = None
+    unmarked: NDArray[np.intp] | None = None
     lifted: tuple[int, ...] = ()
 
 

@@ -45,6 +45,12 @@ class DynamicSettings:
         skin_memory_s: How long a marker's skin artefact lasts where it is modelled as a Gauss–Markov process with the
             marker's noise as its spread (``mbkf.sensors.skin``); 0 for white noise.
         camera_noise_m: White noise besides the artefact.
+        imu_rate_sd_rad_s, imu_force_sd_mps2: How far an inertial sensor's reading is from that of its segment, skin
+            movement included.
+        imu_residual_scale: Factor on the residual's spread where inertial sensors read and a limb is neither seen by
+            markers nor felt by them.
+        usual_posture_s: With inertial sensors, the time over which a joint's mean posture is taken while it is seen.
+        usual_posture_sd_rad: Its spread about that when nothing shows it, per reading.
         gate: Squared Mahalanobis distance (3 readings) above which a marker is not believed.
         gate_radius_m: Distance below which no marker is refused, m.
     """
@@ -83,5 +89,10 @@ class DynamicSettings:
     planted_turn_sd: float = 0.2
     skin_memory_s: float = 0.0
     camera_noise_m: float = 0.001
+    imu_rate_sd_rad_s: float = 0.05
+    imu_force_sd_mps2: float = 0.5
+    imu_residual_scale: float = 30.0
+    usual_posture_s: float = 1.0
+    usual_posture_sd_rad: float = 1.5
     gate: float = 60.0
     gate_radius_m: float = 0.03

@@ -21,11 +21,14 @@ class Recording:
         markers_m: (T, M, 3) positions, NaN where missing.
         plates: (T, K, 6) force N and moment N m about the world's origin per plate, world axes; NaN where not recorded.
         dt_s: Time between frames.
+        imus: (T, S, 6) angular velocity rad/s and specific force m/s² of inertial sensors in their own axes, NaN where
+            missing; None where there are none.
     """
 
     markers_m: Array
     plates: Array
     dt_s: float
+    imus: Array | None = None
 
     def __len__(self) -> int:
         return len(self.markers_m)

@@ -22,9 +22,10 @@ UNITS: dict[str, dict[str, float]] = {
 """Units of each quantity in a table and their factor to m/s², rad/s, µT and s; "au" is a field of unknown size."""
 
 _SPELLINGS = {
-    "m/s/s": "m/s2", "ms2": "m/s2", "ms-2": "m/s2", "mps2": "m/s2", "m/s": "m/s2", "m2": "m/s2",
-    "rads": "rad/s", "rads-1": "rad/s", "degs-1": "deg/s", "rad": "rad/s", "radps": "rad/s", "degs": "deg/s", "dps": "deg/s", "degps": "deg/s",
-    "deg": "deg/s", "/s": "deg/s", "mdps": "mdeg/s", "a.u.": "au", "arbitrary": "au", "normalized": "au",
+    "m/s/s": "m/s2", "ms2": "m/s2", "ms-2": "m/s2", "mps2": "m/s2",
+    "rads-1": "rad/s", "degs-1": "deg/s",
+    "rads": "rad/s", "radps": "rad/s", "degs": "deg/s", "dps": "deg/s", "degps": "deg/s",
+    "mdps": "mdeg/s", "a.u.": "au", "arbitrary": "au", "normalized": "au",
     "normalised": "au", "microtesla": "ut", "sec": "s", "seconds": "s", "msec": "ms", "usec": "us",
 }  # fmt: skip
 
@@ -331,15 +332,15 @@ def _sensor(
 ) -> ImuReadings:
     """The record of one sensor; an accelerometer is needed, the others are not."""
     values = {}
-    for kind in ("acc", "gyr", "mag"):
+    for kind, axes in (("acc", "xyz"), ("gyr", "xyz"), ("mag", "xyz"), ("quat", "xyzw")):
         own = {column.axis: column for column in columns if column.kind == kind}
-        if own and len(own) != 3:
-            missing = ", ".join(axis for axis in "xyz" if axis not in own)
+        missing = [f"{kind}_{axis}" for axis in axes if axis not in own]
+        if own and missing:
             raise FileFormatError(
-                path, f"sensor '{name}' has no column {kind}_{missing}; export all three axes"
+                path, f"sensor '{name}' has no column {', '.join(missing)}; export all axes"
             )
         if own:
-            values[kind] = np.stack([own[axis].factor * table[:, own[axis].index] for axis in "xyz"], axis=1)
+            values[kind] = np.stack([own[axis].factor * table[:, own[axis].index] for axis in axes], axis=1)
     if "acc" not in values:
         raise FileFormatError(
             path, f"sensor '{name}' has no accelerometer; export its acc_x, acc_y and acc_z"

@@ -11,6 +11,7 @@ from mbkf.filters.dynamic import DynamicFilter
 from mbkf.filters.dynamic_follower import DynamicFollower
 from mbkf.filters.dynamic_settings import DynamicSettings
 from mbkf.filters.estimate import Follower
+from mbkf.filters.inertial_part import InertialPart
 from mbkf.filters.kinematic import KinematicFilter
 from mbkf.filters.kinematic_follower import KinematicFollower
 from mbkf.filters.settings import KinematicSettings
@@ -19,6 +20,7 @@ from mbkf.filters.torque_follower import TorqueFollower
 from mbkf.filters.torque_settings import TorqueSettings
 from mbkf.io.records import PlateReadings
 from mbkf.sensors.footing import FootingSensor
+from mbkf.sensors.inertial import InertialSensor
 from mbkf.sensors.markers import MarkerSensor
 
 
@@ -33,6 +35,7 @@ class FilterInputs:
         dt_s: Time between frames.
         held: (nv,) dofs that no marker of the trial moves with.
         kinematic, dynamic, torque: What each filter believes.
+        inertial: Inertial sensors on the body, None where there are none.
     """
 
     sensor: MarkerSensor
@@ -43,6 +46,7 @@ class FilterInputs:
     kinematic: KinematicSettings
     dynamic: DynamicSettings
     torque: TorqueSettings
+    inertial: InertialSensor | None = None
 
 
 def _kinematic(inputs: FilterInputs) -> Follower:
@@ -50,14 +54,17 @@ def _kinematic(inputs: FilterInputs) -> Follower:
 
 
 def _dynamic(inputs: FilterInputs) -> Follower:
-    model = inputs.sensor.model
+    model, dynamic, felt = inputs.sensor.model, inputs.dynamic, None
+    if inputs.inertial is not None:
+        felt = InertialPart(inputs.inertial, inputs.dt_s, dynamic)
     kalman = DynamicFilter(
         inputs.sensor,
         inputs.noise_m,
         FootingSensor(model, inputs.plates, inputs.dt_s),
         inputs.dt_s,
         inputs.held,
-        inputs.dynamic,
+        dynamic,
+        inertial=felt,
     )
     return DynamicFollower(kalman, _starter(inputs))
 

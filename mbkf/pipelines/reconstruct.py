@@ -107,7 +107,9 @@ def reconstruct(
         inputs, recording = trial_inputs(shown, plates, subject, settings)
         if imus is not None:
             if settings.filter != "dynamic":
-                raise InvalidInput(f"the {settings.filter} filter reads no inertial sensors; use --filter dynamic")
+                raise InvalidInput(
+                    f"the {settings.filter} filter reads no inertial sensors; use --filter dynamic"
+                )
             inputs, recording, told = with_imus(inputs, recording, shown.times_s, imus)
             capture = replace(capture, notes=(*capture.notes, *told))
         result = track(

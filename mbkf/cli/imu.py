@@ -1,0 +1,87 @@
+"""`mbkf imu`: orientation, tuning, joint angles, virtual sensors and stride length from inertial sensors."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+from collections.abc import Sequence
+from typing import Any
+
+SUBCOMMANDS = ("orient", "tune", "synth", "angles", "stride")
+"""Each is the module ``mbkf.cli.imu_<name>``."""
+
+_EPILOG = """\
+examples:
+  mbkf imu orient thigh.csv --frame ENU --filter ekf --compare madgwick --out result
+  mbkf imu tune thigh.csv
+  mbkf imu synth truth.h5 --subject subject.toml --out imus.csv
+
+`mbkf imu COMMAND --help` explains a command and gives an example.
+"""
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Adds the group to the command line."""
+    parser = subparsers.add_parser(
+        "imu",
+        help="inertial sensors: orientation, tuning, joint angles, virtual sensors, stride length",
+        description="Work with inertial sensors.",
+        epilog=_EPILOG,
+    )
+    group = parser.add_subparsers(dest="imu_command", metavar="COMMAND", required=True, title="commands")
+    for name in SUBCOMMANDS:
+        importlib.import_module(f"mbkf.cli.imu_{name}").add_parser(group)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Runs the command of the group that was named."""
+    return int(importlib.import_module(f"mbkf.cli.imu_{args.imu_command}").run(args))
+
+
+def add_reading_options(parser: argparse.ArgumentParser) -> None:
+    """Options of every command that reads sensors."""
+    parser.add_argument(
+        "--units",
+        metavar="acc=g,gyr=deg/s",
+        default="",
+        help="units of a table that does not state them: acc m/s2, g, mg; gyr rad/s, deg/s; mag uT, nT, gauss, au",
+    )
+    parser.add_argument(
+        "--rate", type=float, metavar="HZ", help="sample rate of a file that does not state it"
+    )
+
+
+def read(paths: Sequence[str], args: argparse.Namespace) -> tuple[Any, ...]:
+    """The sensors of all files named on the command line.
+
+    Raises:
+        MbkfError: A file or a unit cannot be used.
+    """
+    from dataclasses import replace
+    from pathlib import Path
+
+    from mbkf.io.imu_files import read_imu
+
+    units = parse_units(args.units)
+    found = [one for path in paths for one in read_imu(path, units=units, rate_hz=args.rate)]
+    if len({one.name for one in found}) < len(found):
+        files = [(path, one) for path in paths for one in read_imu(path, units=units, rate_hz=args.rate)]
+        found = [replace(one, name=f"{Path(path).stem}_{one.name}") for path, one in files]
+    return tuple(found)
+
+
+def parse_units(text: str) -> dict[str, str]:
+    """Reads ``acc=g,gyr=deg/s``.
+
+    Raises:
+        InvalidInput: The text is not of that form.
+    """
+    from mbkf.errors import InvalidInput
+
+    found = {}
+    for part in filter(None, (part.strip() for part in text.split(","))):
+        kind, equals, unit = part.partition("=")
+        if not equals or not unit.strip():
+            raise InvalidInput(f"--units '{part}': write QUANTITY=UNIT, as in acc=g or gyr=deg/s")
+        found[kind.strip().lower()] = unit.strip()
+    return found

@@ -1,0 +1,125 @@
+"""`mbkf imu orient`: orientation of inertial sensors."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import Any
+
+_EPILOG = """\
+examples:
+  mbkf imu orient thigh.csv --frame ENU --out result
+  mbkf imu orient left_foot.csv right_foot.csv --units acc=g,gyr=deg/s --rate 204.8 --frame NWU --out result
+  mbkf imu orient trial.mat --frame ENU --filter madgwick --beta 0.1 --compare ekf --out result
+
+Files: CSV tables with units in their column names, Xsens text exports (or a folder of them), MATLAB files of the BROAD
+and qmt sets. Writes per sensor NAME.csv (quaternion sensor -> world as x, y, z, w; unwrapped roll, pitch, yaw), and
+with --compare NAME_compare.png; and orientation.json.
+"""
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Adds the command to the command line."""
+    from mbkf.cli.imu import add_reading_options
+
+    parser = subparsers.add_parser(
+        "orient",
+        help="accelerometer, gyroscope and magnetometer to orientation",
+        description="Orientation of every sensor by Madgwick's filter or an error-state Kalman filter.",
+        epilog=_EPILOG,
+    )
+    parser.add_argument("files", metavar="FILE", nargs="+", help="inertial readings")
+    add_reading_options(parser)
+    parser.add_argument(
+        "--frame", required=True, choices=("ENU", "NED", "NWU"), help="world frame of the result"
+    )
+    parser.add_argument(
+        "--filter",
+        default="ekf",
+        choices=("madgwick", "ekf", "smooth"),
+        help="smooth is the offline version of ekf",
+    )
+    parser.add_argument(
+        "--compare", choices=("madgwick", "ekf", "smooth"), help="a second filter to draw beside it"
+    )
+    parser.add_argument(
+        "--sensor", metavar="NAME", action="append", default=[], help="only this sensor; may be repeated"
+    )
+    parser.add_argument(
+        "--beta", type=float, default=0.1, help="Madgwick's gain, rad/s (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--zeta", type=float, default=0.0, help="Madgwick's gain of the gyroscope's bias (default: 0)"
+    )
+    parser.add_argument("--no-mag", action="store_true", help="leave magnetometers out")
+    parser.add_argument(
+        "--rest-bias",
+        action="store_true",
+        help="take a sensor that lies still not to turn at all (ekf, smooth)",
+    )
+    parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Filters the sensors, writes the folder and prints the key numbers.
+
+    Raises:
+        MbkfError: An input is unusable.
+    """
+    from mbkf.cli.imu import read
+    from mbkf.cli.progress import stages
+    from mbkf.imu.madgwick import MadgwickSettings
+    from mbkf.imu.orientation import OrientSettings
+    from mbkf.imu.orientation_ekf import OrientationSettings
+    from mbkf.io.atomic import check_folder, replacing
+    from mbkf.io.imu_write import write_orientation_csv
+    from mbkf.pipelines.imu_orient import orient, summarise
+
+    settings = OrientSettings(
+        args.filter,
+        not args.no_mag,
+        MadgwickSettings(args.beta, args.zeta),
+        OrientationSettings(rest_bias=args.rest_bias),
+    )
+    folder = check_folder(args.out)
+    sensors = read(args.files, args)
+    with stages() as report:
+        result = orient(
+            sensors,
+            frame=args.frame,
+            settings=settings,
+            compare=args.compare,
+            only=args.sensor,
+            progress=report,
+        )
+    summary = summarise(result, settings)
+    for k, course in enumerate(result.courses):
+        stem = course.name.replace("/", "_")
+        note = f"orientation: sensor -> {course.frame} by {course.method}"
+        write_orientation_csv(
+            folder / f"{stem}.csv", course.time_s, course.quaternion, course.euler_rad, course.gyro_bias_rad_s,
+            course.sd_rad, note,
+        )  # fmt: skip
+        if result.compared:
+            from mbkf.viz.orientation_plots import write_comparison
+
+            write_comparison(course, result.compared[k], folder / f"{stem}_compare.png")
+    with replacing(folder / "orientation.json") as partial:
+        partial.write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+    _print(summary)
+    print(folder)
+    return 0
+
+
+def _print(summary: dict[str, Any]) -> None:
+    for one in summary["sensors"]:
+        line = f"{one['name']}: {one['samples']} samples, {summary['method']} in {summary['frame']}"
+        if one["error_deg"] is not None:
+            e = one["error_deg"]
+            line += f"; error {e['total']:.2f} deg (inclination {e['inclination']:.2f}, heading {e['heading']:.2f})"
+        if "difference_rms_deg" in one:
+            line += f"; {summary['compared_with']} differs by {one['difference_rms_deg']['total']:.2f} deg"
+        print(line)
+    for warning in summary["warnings"]:
+        print(f"note: {warning}")

@@ -1,0 +1,94 @@
+"""Headings of a chain of segments held together by its joints, so that none drifts away on its own.
+
+Joints of the legs hardly turn about the vertical: seen from above, the side-to-side axes of neighbouring segments stay
+within some degrees of each other. Each joint is read so, with its own spread; headings wander slowly between.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.imu.frames import multiply, rotate
+
+JOINTS: tuple[tuple[str, str, float], ...] = (
+    ("pelvis", "torso", 8.0), ("pelvis", "right_thigh", 8.0), ("pelvis", "left_thigh", 8.0),
+    ("right_thigh", "right_shank", 6.0), ("left_thigh", "left_shank", 6.0),
+    ("right_shank", "right_foot", 8.0), ("left_shank", "left_foot", 8.0),
+)  # fmt: skip
+"""Proximal and distal segment, and how far their side-to-side axes differ in heading in ordinary movement, degrees."""
+
+
+@dataclass(frozen=True)
+class HeadingSettings:
+    """How headings wander and how joints hold them.
+
+    Attributes:
+        walk_rad: Random walk of a segment's heading error, rad/√s: gyroscope drift or a disturbed field.
+        memory_s: Joint readings are independent after this time.
+        start_sd_rad: Spread of the heading errors at the start.
+        spread_scale: Factor on the joints' spreads.
+    """
+
+    walk_rad: float = 0.01
+    memory_s: float = 1.0
+    start_sd_rad: float = 0.2
+    spread_scale: float = 1.0
+
+
+def held_headings(
+    segments: Sequence[str], orientation: Array, dt_s: float, settings: HeadingSettings | None = None
+) -> Array:
+    """Corrections (T, S) of headings, rad, to be added to those of segments; the first segment's is 0.
+
+    A Kalman filter with backward smoother over all joints at once.
+
+    Args:
+        segments: S names; the first one is the chain's root.
+        orientation: (T, S, 4) segment → world, z up.
+        dt_s: Time between samples.
+        settings: How.
+    """
+    s = settings or HeadingSettings()
+    joints = [(segments.index(a), segments.index(b), sd) for a, b, sd in JOINTS if {a, b} <= set(segments)]
+    count, n = len(orientation), len(segments)
+    side = rotate(orientation, np.array([0.0, 1.0, 0.0]))
+    level = np.hypot(side[..., 0], side[..., 1])
+    heading = np.unwrap(np.arctan2(side[..., 1], side[..., 0]), axis=0)
+    H = np.zeros((len(joints), n))
+    for row, (a, b, _) in enumerate(joints):
+        H[row, a], H[row, b] = -1.0, 1.0
+    sd = np.radians([spread for _, _, spread in joints]) * s.spread_scale
+    apart = heading @ H.T
+    apart -= 2.0 * np.pi * np.round(np.median(apart, axis=0) / (2.0 * np.pi))
+    P = s.start_sd_rad**2 * np.eye(n)
+    P[0, 0] = 1e-12
+    Q = s.walk_rad**2 * dt_s * np.eye(n)
+    Q[0, 0] = 0.0
+    above, below = [joint[0] for joint in joints], [joint[1] for joint in joints]
+    x, means, covariances = np.zeros(n), np.empty((count, n)), np.empty((count, n, n))
+    for t in range(count):
+        P = P + Q
+        # A side axis near the vertical has no heading.
+        weak = 1.0 / np.maximum(np.minimum(level[t, above], level[t, below]), 0.1) ** 4
+        R = np.diag(sd**2 * weak * (s.memory_s / dt_s))
+        K = np.linalg.solve(H @ P @ H.T + R, H @ P).T
+        known = np.where(np.isfinite(apart[t]), -apart[t] - H @ x, 0.0)
+        x = x + K @ known
+        P = P - K @ H @ P
+        means[t], covariances[t] = x, P
+    for t in range(count - 2, -1, -1):
+        C = np.linalg.solve(covariances[t] + Q + 1e-15 * np.eye(n), covariances[t]).T
+        means[t] += C @ (means[t + 1] - means[t])
+    return means - means[:, :1]
+
+
+def turned(orientation: Array, heading: Array) -> Array:
+    """(T, S, 4) orientations turned about the vertical by (T, S) rad."""
+    zero = np.zeros_like(heading)
+    return multiply(
+        np.stack([zero, zero, np.sin(0.5 * heading), np.cos(0.5 * heading)], axis=-1), orientation
+    )

@@ -1,0 +1,255 @@
+"""Orientations of sensors over a recording, by any of the filters, in the world frame that is asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+import numpy as np
+
+from mbkf.conventions import Array, StageCallback, read_only
+from mbkf.errors import InvalidInput, UnknownName
+from mbkf.imu.frames import FRAMES, change_frame
+from mbkf.imu.madgwick import MadgwickFilter, MadgwickSettings, MadgwickState
+from mbkf.imu.orientation_ekf import OrientationFilter, OrientationSettings
+from mbkf.imu.orientation_smoothing import smoothed
+from mbkf.io.imu import ImuReadings
+from mbkf.numerics.cardan import cardan_angles, quaternion_matrices
+
+METHODS = ("madgwick", "ekf", "smooth")
+"""Madgwick's filter, the error-state Kalman filter, and its offline version."""
+
+REST_S = 0.25
+"""The first state is that of the mean reading over this time."""
+
+GIVEN_SD_RAD = 0.03
+"""How far a start that is given is off."""
+
+_SIDE_BY_SIDE = 20
+"""From so many sensors on arrays over sensors beat floats."""
+
+Item = TypeVar("Item")
+
+MOST_SMOOTHED = 120_000
+"""A smoother keeps about 3 kB per sample; it takes so many at a time."""
+
+
+@dataclass(frozen=True)
+class Orientation:
+    """One sensor's course.
+
+    Attributes:
+        name: Sensor name.
+        time_s: (T,) s.
+        quaternion: (T, 4) sensor → world, (x, y, z, w); NaN where the gyroscope was missing.
+        frame: World frame: ENU, NED or NWU. Without a magnetometer its heading is the first sample's.
+        gyro_bias_rad_s: (T, 3).
+        sd_rad: (T, 3) standard deviation of the error's rotation about the axes of NWU; None for Madgwick's filter.
+        method: One of :data:`METHODS`.
+    """
+
+    name: str
+    time_s: Array
+    quaternion: Array
+    frame: str
+    gyro_bias_rad_s: Array
+    sd_rad: Array | None
+    method: str
+
+    def __post_init__(self) -> None:
+        for name in ("time_s", "quaternion", "gyro_bias_rad_s", "sd_rad"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, read_only(getattr(self, name)))
+
+    @property
+    def euler_rad(self) -> Array:
+        """(T, 3) unwrapped angles roll, pitch, yaw (R = R_z(yaw) R_y(pitch) R_x(roll)), rad."""
+        return euler_angles(self.quaternion)
+
+
+@dataclass(frozen=True)
+class OrientSettings:
+    """How orientations are found.
+
+    Attributes:
+        method: One of :data:`METHODS`.
+        magnetometer: Whether fields are used where there are any.
+        madgwick: Gains of Madgwick's filter.
+        ekf: What the Kalman filter believes.
+    """
+
+    method: str = "ekf"
+    magnetometer: bool = True
+    madgwick: MadgwickSettings = field(default_factory=MadgwickSettings)
+    ekf: OrientationSettings = field(default_factory=OrientationSettings)
+
+    def __post_init__(self) -> None:
+        if self.method not in METHODS:
+            raise UnknownName("orientation filter", self.method, METHODS)
+
+
+def orientations(
+    readings: Sequence[ImuReadings],
+    *,
+    frame: str,
+    settings: OrientSettings | None = None,
+    start: Array | None = None,
+    progress: StageCallback | None = None,
+) -> tuple[Orientation, ...]:
+    """Orientation of every sensor at every sample; sensors sampled together run side by side.
+
+    Args:
+        readings: Sensors; each at a regular rate, NaN where a sample is missing.
+        frame: World frame of the result: ENU, NED or NWU.
+        settings: How.
+        start: (N, 4) orientation at the first sample in ``frame``; by default what the first readings say.
+        progress: Called as samples are done.
+
+    Raises:
+        UnknownName: Unknown frame.
+        InvalidInput: A sensor starts without a reading or has no gyroscope.
+    """
+    chosen = settings or OrientSettings()
+    if frame not in FRAMES:
+        raise UnknownName("world frame", frame, FRAMES)
+    for one in readings:
+        _check(one)
+    found: dict[int, Orientation] = {}
+    for group in _together(readings, chosen):
+        begins = None if start is None else change_frame(np.asarray(start)[group], frame, "NWU")
+        courses = _run([readings[k] for k in group], chosen, begins, progress)
+        for k, (q, bias, sd) in zip(group, courses, strict=True):
+            lost = np.any(np.isnan(readings[k].angular_velocity_rad_s), axis=1)
+            turned = np.where(lost[:, None], np.nan, change_frame(q, "NWU", frame))
+            found[k] = Orientation(
+                readings[k].name, readings[k].time_s, turned, frame, bias, sd, chosen.method
+            )
+    return tuple(found[k] for k in range(len(readings)))
+
+
+def euler_angles(quaternion: Array) -> Array:
+    """(T, 3) unwrapped roll, pitch, yaw, rad, of quaternions (T, 4); NaN where one is missing."""
+    yaw_pitch_roll = cardan_angles(quaternion_matrices(quaternion)[:, ::-1, ::-1], np.array(-1.0))
+    angles = yaw_pitch_roll[:, ::-1].copy()
+    there = np.isfinite(angles).all(axis=1)
+    angles[there] = np.unwrap(angles[there], axis=0)
+    return angles
+
+
+def resting_readings(one: ImuReadings, seconds: float = REST_S) -> tuple[Array, Array | None]:
+    """Mean specific force (3,) and field (3,) or None over the first part of a recording."""
+    count = max(1, round(seconds * one.rate_hz))
+    force = np.nanmean(one.specific_force_mps2[:count], axis=0)
+    if one.magnetic_field is None or not np.isfinite(one.magnetic_field[:count]).all(axis=1).any():
+        return force, None
+    return force, np.nanmean(one.magnetic_field[:count], axis=0)
+
+
+def _resting_rate(one: ImuReadings) -> Array:
+    """(3,) root mean square rate over the first part of a recording, rad/s; 0 where there is none."""
+    rates = one.angular_velocity_rad_s[: max(1, round(REST_S * one.rate_hz))]
+    rates = rates[np.isfinite(rates).all(axis=1)]
+    return np.sqrt((rates**2).mean(axis=0)) if len(rates) else np.zeros(3)
+
+
+def _check(one: ImuReadings) -> None:
+    count = max(1, round(REST_S * one.rate_hz))
+    if not np.isfinite(one.angular_velocity_rad_s).all(axis=1).any():
+        raise InvalidInput(f"sensor {one.name}: no gyroscope; its orientation cannot be followed without one")
+    if not np.isfinite(one.specific_force_mps2[:count]).all(axis=1).any():
+        raise InvalidInput(
+            f"sensor {one.name}: the accelerometer is missing at the start; cut the recording there"
+        )
+
+
+def _together(readings: Sequence[ImuReadings], settings: OrientSettings) -> list[list[int]]:
+    """Indices of sensors with the same number of samples, rate and instruments."""
+    groups: dict[tuple[int, float, bool], list[int]] = {}
+    for k, one in enumerate(readings):
+        magnetic = settings.magnetometer and resting_readings(one)[1] is not None
+        groups.setdefault((one.samples, one.rate_hz, magnetic), []).append(k)
+    if settings.method != "smooth":
+        return list(groups.values())
+    split = []
+    for (samples, _, _), group in groups.items():
+        many = max(1, MOST_SMOOTHED // max(samples, 1))
+        split += [group[k : k + many] for k in range(0, len(group), many)]
+    return split
+
+
+def _run(
+    group: Sequence[ImuReadings],
+    settings: OrientSettings,
+    start: Array | None,
+    progress: StageCallback | None,
+) -> list[tuple[Array, Array, Array | None]]:
+    """Per sensor its quaternions (T, 4) in NWU, bias (T, 3) and standard deviations (T, 3) or None."""
+    gyro = np.stack([one.angular_velocity_rad_s for one in group], axis=1)
+    force = np.stack([one.specific_force_mps2 for one in group], axis=1)
+    rest = [resting_readings(one) for one in group]
+    first, magnetic = np.array([f for f, _ in rest]), settings.magnetometer and rest[0][1] is not None
+    fields = [one.magnetic_field for one in group if one.magnetic_field is not None]
+    field = np.stack(fields, axis=1) if magnetic else None
+    first_field = np.array([m for _, m in rest]) if magnetic else None
+    dt = 1.0 / group[0].rate_hz
+    samples, done = len(gyro), 0
+
+    def tell() -> None:
+        nonlocal done
+        done += 1
+        if progress is not None and (done % 1000 == 0 or done == samples - 1):
+            progress("Orientation", done, samples)
+
+    if settings.method == "madgwick":
+        filter_ = MadgwickFilter(dt, settings.madgwick)
+        begins = filter_.begin(first, first_field) if start is None else filter_.begin_at(start)
+        return [(q, bias, None) for q, bias in _run_madgwick(filter_, begins, gyro, force, field, tell)]
+    kalman = OrientationFilter(dt, settings.ekf)
+    begin = kalman.begin(first, first_field, np.array([_resting_rate(one) for one in group]))
+    if start is not None:
+        P = begin.P.copy()
+        P[:, [0, 1, 2], [0, 1, 2]] = GIVEN_SD_RAD**2
+        begin = begin._replace(quaternion=start, P=P)
+    passages = _told(kalman.run(gyro, force, field, begin), tell)
+    if settings.method == "smooth":
+        course = smoothed(begin, passages)
+        q, bias, variance = course.quaternion, course.gyro_bias, course.variance
+    else:
+        states = [begin, *(passage.state for passage in passages)]
+        q = np.array([state.quaternion for state in states])
+        bias = np.array([state.gyro_bias for state in states])
+        variance = np.array([np.diagonal(state.P, axis1=1, axis2=2) for state in states])
+    sd = np.sqrt(np.maximum(variance[:, :, :3], 0.0))
+    return [(q[:, n], bias[:, n], sd[:, n]) for n in range(len(group))]
+
+
+def _run_madgwick(
+    filter_: MadgwickFilter,
+    begin: MadgwickState,
+    gyro: Array,
+    force: Array,
+    field: Array | None,
+    tell: Callable[[], None],
+) -> list[tuple[Array, Array]]:
+    """Quaternions (T, 4) and biases (T, 3) per sensor: few sensors one by one in floats, many side by side."""
+    count = gyro.shape[1]
+    if count >= _SIDE_BY_SIDE:
+        states = list(_told(filter_.run(gyro, force, field, begin), tell))
+        w, x, y, z = (np.array([state.q[k] for state in states]) for k in range(4))
+        bias = np.array([np.stack(state.bias, axis=-1) for state in states])
+        return [(np.stack([x, y, z, w], axis=-1)[:, n], bias[:, n]) for n in range(count)]
+    found = []
+    for n in range(count):
+        mine = filter_.begin_at(begin.quaternion[n])
+        run = filter_.run(gyro[:, n], force[:, n], None if field is None else field[:, n], mine)
+        states = list(_told(run, tell) if n == 0 else run)
+        q = np.array([state.q for state in states])
+        found.append((q[:, [1, 2, 3, 0]], np.array([state.bias for state in states])))
+    return found
+
+
+def _told(items: Iterable[Item], tell: Callable[[], None]) -> Iterator[Item]:
+    for item in items:
+        tell()
+        yield item

@@ -1,0 +1,88 @@
+"""How sensors are turned on their segments: from standing, and from movements in which the legs swing fore and aft."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.errors import InvalidInput
+from mbkf.imu.frames import conjugate, multiply, rotate
+
+LEAST_SWING_RAD_S = 0.5
+"""Legs that turn less than this (root mean square) do not show where forward is."""
+
+_LEGS = ("thigh", "shank")
+
+
+def facing(segments: Sequence[str], orientation: Array, gyro: Array, standing: Array) -> float | None:
+    """Heading of forward while standing, rad about the vertical from the world's x axis; None where legs hardly swing.
+
+    Thighs and shanks swing about the side-to-side axis, the first principal axis of their angular velocities
+    seen from above; of its two senses it is the left one about which shanks have turned against thighs, for knees bend
+    one way only. How the pelvis, the first segment, has turned since standing is taken off, so that people may walk
+    about, and stand in another direction than they walk.
+
+    Args:
+        segments: S names, the pelvis first.
+        orientation: (T, S, 4) sensor → one world, z up, with one common heading.
+        gyro: (T, S, 3) rad/s in sensor axes.
+        standing: (S, 4) sensor → world while standing.
+    """
+    legs = [k for k, name in enumerate(segments) if name.endswith(_LEGS)]
+    if not legs:
+        return None
+    since = multiply(orientation[:, 0], conjugate(standing[0]))
+    twist = 2.0 * np.arctan2(since[:, 2], since[:, 3])
+    back = np.stack([0.0 * twist, 0.0 * twist, -np.sin(0.5 * twist), np.cos(0.5 * twist)], axis=-1)
+    orientation = multiply(back[:, None], orientation)
+    world = np.nan_to_num(rotate(orientation[:, legs], gyro[:, legs]))[..., :2].reshape(-1, 2)
+    values, vectors = np.linalg.eigh(world.T @ world / len(world))
+    if values[1] < LEAST_SWING_RAD_S**2 or values[1] < 2.0 * values[0]:
+        return None
+    left = vectors[:, 1]
+    bend = 0.0
+    for side in ("right", "left"):
+        if {f"{side}_thigh", f"{side}_shank"} <= set(segments):
+            thigh, shank = (segments.index(f"{side}_{part}") for part in ("thigh", "shank"))
+            bend += _turn_about(orientation[:, shank], standing[shank], left)
+            bend -= _turn_about(orientation[:, thigh], standing[thigh], left)
+    if bend < 0.0:
+        left = -left
+    return float(np.arctan2(-left[0], left[1]))
+
+
+def _turn_about(orientation: Array, standing: Array, axis: Array) -> float:
+    """Mean turn, rad, since standing about a level axis (2,)."""
+    since = multiply(orientation, conjugate(standing))
+    since = np.where(since[:, 3:] < 0.0, -since, since)
+    angle = 2.0 * np.arctan2(since[:, :2] @ axis, since[:, 3])
+    return float(np.nanmean(angle))
+
+
+def alignments(standing: Array, posture: Array, heading_rad: float) -> Array:
+    """(S, 4) sensor → segment.
+
+    Args:
+        standing: (S, 4) sensor → world while standing.
+        posture: (S, 4) segment → world of the same posture when facing the world's x axis.
+        heading_rad: Where the person faced.
+    """
+    turn = np.array([0.0, 0.0, np.sin(0.5 * heading_rad), np.cos(0.5 * heading_rad)])
+    return multiply(conjugate(multiply(turn, posture)), standing)
+
+
+def mean_orientation(orientation: Array) -> Array:
+    """(S, 4) mean of orientations (T, S, 4): the largest eigenvector of Σ q qᵀ (Markley et al. 2007).
+
+    Raises:
+        InvalidInput: A sensor has no sample.
+    """
+    there = np.all(np.isfinite(orientation), axis=-1)
+    if not there.any(axis=0).all():
+        raise InvalidInput("a sensor has no reading while standing; choose another time with --standing")
+    q = np.where(there[..., None], orientation, 0.0)
+    _, vectors = np.linalg.eigh(np.einsum("tsi,tsj->sij", q, q))
+    mean = vectors[:, :, -1]
+    return np.where(mean[:, 3:] < 0.0, -mean, mean)

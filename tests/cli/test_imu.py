@@ -1,0 +1,170 @@
+"""`mbkf imu`: what each command writes and prints, and how bad input ends."""
+
+import json
+
+import numpy as np
+import pytest
+
+from mbkf.cli import imu_angles, imu_orient, imu_synth, imu_tune
+from mbkf.cli.imu import SUBCOMMANDS, parse_units
+from mbkf.cli.main import main
+from mbkf.io.imu_files import read_imu
+from mbkf.io.imu_mount import read_mounts
+from mbkf.io.imu_write import write_imu_csv
+from mbkf.io.storage import read_storage
+from tests.imu.turning import turning
+from tests.pipelines.test_imu_angles import SAGITTAL, marching
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("imu")
+    write_imu_csv([turning(4.0, rate_rad_s=2.0).readings("thigh")], folder / "thigh.csv")
+    still = turning(4.0, still_s=99.0)
+    noise = np.random.default_rng(0).normal(0.0, 0.01, still.gyro.shape)
+    write_imu_csv([still.readings("rest", gyro=still.gyro + noise)], folder / "rest.csv")
+    write_imu_csv(marching()[0], folder / "legs.csv")
+    lines = (folder / "thigh.csv").read_text().replace("rad/s", "deg/s")
+    (folder / "wrong.csv").write_text(lines)
+    return folder
+
+
+def test_orient_writes_tables_pictures_and_numbers(files, tmp_path, capsys):
+    words = [
+        "imu",
+        "orient",
+        str(files / "thigh.csv"),
+        "--frame",
+        "ENU",
+        "--compare",
+        "madgwick",
+        "--out",
+        str(tmp_path),
+    ]
+    assert main(words) == 0
+    shown = capsys.readouterr().out
+    assert "thigh: 400 samples, ekf in ENU; error" in shown
+    table = np.genfromtxt(tmp_path / "thigh.csv", delimiter=",", skip_header=2)
+    assert table.shape == (400, 14)
+    np.testing.assert_allclose(np.linalg.norm(table[:, 1:5], axis=1), 1.0, atol=1e-6)
+    assert (tmp_path / "thigh_compare.png").is_file()
+    summary = json.loads((tmp_path / "orientation.json").read_text())
+    assert summary["sensors"][0]["error_deg"]["total"] < 6.0
+
+
+def test_tune_at_rest_and_by_search(files, tmp_path, capsys):
+    assert main(["imu", "tune", str(files / "rest.csv"), "--out", str(tmp_path / "g.json")]) == 0
+    row = json.loads((tmp_path / "g.json").read_text())["sensors"][0]
+    assert row["beta"] == pytest.approx(0.75**0.5 * 0.01, rel=0.05)
+    assert main(["imu", "tune", str(files / "thigh.csv"), "--search", "--frame", "NWU"]) == 0
+    assert "differ least" in capsys.readouterr().out
+
+
+def test_angles_writes_what_opensim_opens(files, tmp_path):
+    words = ["imu", "angles", str(files / "legs.csv"), "--standing", "0:1.8", "--out", str(tmp_path / "a")]
+    assert main(words) == 0
+    table = read_storage(tmp_path / "a" / "angles.mot")
+    assert table.in_degrees
+    truth = marching()[1]
+    for name in SAGITTAL:
+        assert np.sqrt(((table.column(name) - truth[name]) ** 2).mean()) < 3.0
+    assert len(read_mounts(tmp_path / "a" / "mounts.toml")) == 8
+    assert json.loads((tmp_path / "a" / "angles.json").read_text())["samples"] == 300
+
+
+def test_synth_writes_readings_and_mounts(tmp_path):
+    assert main(["synth", "--motion", "squat", "--seconds", "1.2", "--out", str(tmp_path / "s")]) == 0
+    words = [
+        "imu",
+        "synth",
+        str(tmp_path / "s" / "truth.h5"),
+        "--segments",
+        "torso,left_foot",
+        "--rate",
+        "60",
+    ]
+    assert main([*words, "--gyro-noise", "0", "--out", str(tmp_path / "i.csv")]) == 0
+    torso, foot = read_imu(tmp_path / "i.csv")
+    assert (torso.name, foot.name) == ("torso", "left_foot")
+    assert foot.rate_hz == pytest.approx(60.0)
+    assert [mount.segment for mount in read_mounts(tmp_path / "i.toml")] == ["torso", "left_foot"]
+    words = [
+        "reconstruct",
+        str(tmp_path / "s" / "trial.c3d"),
+        "--subject",
+        str(tmp_path / "s" / "subject.toml"),
+    ]
+    words += [
+        "--imu",
+        str(tmp_path / "i.csv"),
+        "--imu-mounts",
+        str(tmp_path / "i.toml"),
+        "--hide",
+        "LASI@0.5:0.7",
+    ]
+    code = main([*words[:-2], "--out", str(tmp_path / "r")])
+    assert code == 0
+    assert json.loads((tmp_path / "r" / "summary.json").read_text())["marker_rms_mm"] < 10.0
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["orient", "wrong.csv", "--frame", "ENU", "--out", "o"], "--units gyr=rad/s"),
+        (["orient", "none.csv", "--frame", "ENU", "--out", "o"], "no such file"),
+        (
+            ["orient", "thigh.csv", "--frame", "ENU", "--sensor", "foot", "--out", "o"],
+            "unknown sensor 'foot'",
+        ),
+        (["orient", "thigh.csv", "--frame", "ENU", "--units", "acc", "--out", "o"], "QUANTITY=UNIT"),
+        (["orient", "thigh.csv", "--frame", "ENU", "--units", "acc=x", "--out", "o"], "unit of acc"),
+        (["orient", "thigh.csv", "--frame", "ENU", "--beta", "-1", "--out", "o"], "beta"),
+        (["orient", "thigh.csv", "--out", "o"], "--frame"),
+        (["tune", "thigh.csv", "--static", "3"], "START:END"),
+        (["tune", "rest.csv", "--static", "50:60"], "the recording lasts"),
+        (["angles", "thigh.csv", "--out", "o"], "segment of sensor"),
+        (["angles", "legs.csv", "--standing", "5:1", "--out", "o"], "START:END"),
+        (["angles", "legs.csv", "--sensor", "tail", "--out", "o"], "tail"),
+        (["synth", "none.h5", "--out", "i.csv"], "no such file"),
+        (["synth", "none.h5", "--out", "i.txt"], ".csv"),
+        (["synth", "none.h5", "--seed", "-1", "--out", "i.csv"], "--seed"),
+        ([], "COMMAND"),
+    ],
+)
+def test_bad_input_is_one_clear_line(files, tmp_path, monkeypatch, refused, words, told):
+    names = [
+        str(files / word) if word.endswith((".csv", ".h5")) and word != "i.csv" else word for word in words
+    ]
+    monkeypatch.chdir(tmp_path)
+    refused(["imu", *names], told)
+
+
+def test_reconstruct_refuses_sensors_it_cannot_use(person, files, tmp_path, refused):
+    words = ["reconstruct", person.trial, "--subject", person.subject, "--out", tmp_path / "o"]
+    refused([*words, "--imu-mounts", "x.toml"], "--imu")
+    refused([*words, "--imu", files / "legs.csv", "--filter", "kinematic"], "--filter dynamic")
+    refused([*words, "--imu", files / "thigh.csv"], "thigh")
+
+
+def test_units_are_read_from_the_command_line():
+    assert parse_units("acc=g, Gyr=deg/s") == {"acc": "g", "gyr": "deg/s"}
+    assert parse_units("") == {}
+
+
+@pytest.mark.parametrize("name", SUBCOMMANDS)
+def test_every_command_explains_itself_with_an_example(name, capsys):
+    with pytest.raises(SystemExit) as end:
+        main(["imu", name, "--help"])
+    assert end.value.code == 0
+    assert f"mbkf imu {name} " in capsys.readouterr().out
+
+
+def test_the_commands_are_the_modules_named_after_them():
+    for module, name in (
+        (imu_angles, "angles"),
+        (imu_orient, "orient"),
+        (imu_synth, "synth"),
+        (imu_tune, "tune"),
+    ):
+        assert name in SUBCOMMANDS
+        assert callable(module.run)

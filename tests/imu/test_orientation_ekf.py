@@ -1,0 +1,123 @@
+"""The error-state filter: it finds attitude and bias, knows its own error, and is not led astray."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from mbkf.imu.orientation_ekf import OrientationFilter, OrientationSettings
+from tests.imu.turning import RATE_HZ, apart_deg, turning
+
+DT = 1.0 / RATE_HZ
+BIAS = np.array([0.02, -0.01, 0.015])
+
+
+def course(gyro, force, field, settings=None):
+    kalman = OrientationFilter(DT, settings)
+    first = kalman.begin(force[:1], None if field is None else field[:1])
+    mag = None if field is None else field[:, None]
+    passages = list(kalman.run(gyro[:, None], force[:, None], mag, first))
+    states = [first, *(p.state for p in passages)]
+    return np.array([s.quaternion[0] for s in states]), states[-1], states
+
+
+def noisy(made, seed=0):
+    rng = np.random.default_rng(seed)
+    return (
+        made.gyro + BIAS + rng.normal(0, 0.01, made.gyro.shape),
+        made.force + rng.normal(0, 0.05, made.gyro.shape),
+        made.field + rng.normal(0, 0.3, made.gyro.shape),
+    )
+
+
+def test_attitude_and_bias_are_found():
+    made = turning(24.0)
+    found, last, _ = course(*noisy(made))
+    assert apart_deg(found, made.truth)[1800:].max() < 2.0
+    np.testing.assert_allclose(last.gyro_bias[0], BIAS, atol=0.003)
+
+
+def test_without_a_field_only_the_heading_is_lost():
+    made = turning(24.0)
+    gyro, force, _ = noisy(made)
+    found, _, _ = course(gyro, force, None)
+    up = np.degrees(
+        np.arccos(np.clip((Rotation.from_quat(found).inv().apply([0, 0, 1.0])
+                           * Rotation.from_quat(made.truth).inv().apply([0, 0, 1.0])).sum(axis=1), -1, 1))
+    )  # fmt: skip
+    assert up[1000:].max() < 1.5
+
+
+def test_covariances_stay_symmetric_and_positive():
+    made = turning(10.0)
+    for settings in (OrientationSettings(), OrientationSettings(rest_bias=True, integrating=False)):
+        *_, states = course(*noisy(made), settings)
+        for state in states[::50]:
+            P = state.P[0]
+            np.testing.assert_allclose(P, P.T, atol=1e-9)
+            assert np.linalg.eigvalsh(P).min() > 0
+
+
+def test_its_statement_of_error_is_honest_without_shaking():
+    """Squared errors over stated variances: near 1 on the cautious side, for noise as the settings have it."""
+    ratios = []
+    for seed in range(4):
+        made = turning(10.0, seed, shake_mps2=0.5)
+        found, _, states = course(*noisy(made, seed))
+        error = (Rotation.from_quat(made.truth) * Rotation.from_quat(found).inv()).as_rotvec()[500:]
+        P = np.array([s.P[0, :2, :2] for s in states])[500:]
+        ratios.append(
+            np.einsum("ti,ti->t", error[:, :2], np.linalg.solve(P, error[:, :2, None])[..., 0]).mean() / 2
+        )
+    assert 0.02 < np.mean(ratios) < 2.0
+
+
+def test_a_magnet_passing_by_does_not_turn_the_heading():
+    made = turning(24.0)
+    gyro, force, field = noisy(made)
+    disturbed = field.copy()
+    disturbed[1500:1800] += [30.0, 25.0, 0.0]
+    clean, _, _ = course(gyro, force, field)
+    found, _, _ = course(gyro, force, disturbed)
+    assert apart_deg(found, clean)[1500:].max() < 3.0
+    blind = OrientationSettings(field_tolerance=1e6, dip_tolerance_rad=1e6)
+    led, _, _ = course(gyro, force, disturbed, blind)
+    assert apart_deg(led, clean)[1500:1800].max() > 3 * apart_deg(found, clean)[1500:1800].max()
+
+
+def test_strong_shaking_does_not_tilt_it():
+    made = turning(20.0, shake_mps2=8.0)
+    found, _, _ = course(*noisy(made))
+    assert apart_deg(found, made.truth)[1500:].max() < 5.0
+
+
+def test_many_sensors_are_as_one():
+    made = [turning(4.0, seed) for seed in range(3)]
+    kalman = OrientationFilter(DT)
+    gyro, force, field = (np.stack([getattr(m, n) for m in made], 1) for n in ("gyro", "force", "field"))
+    together = [p.state for p in kalman.run(gyro, force, field)]
+    for n in range(3):
+        alone, last, _ = course(gyro[:, n], force[:, n], field[:, n])
+        np.testing.assert_allclose(alone[-1], together[-1].quaternion[n], atol=1e-10)
+        np.testing.assert_allclose(last.P[0], together[-1].P[n], atol=1e-10)
+
+
+def test_a_sensor_at_rest_reads_its_bias():
+    made = turning(12.0, still_s=100.0)
+    gyro, force, _ = noisy(made)
+    _, plain, _ = course(gyro, force, None)
+    _, rested, _ = course(gyro, force, None, OrientationSettings(rest_bias=True))
+    np.testing.assert_allclose(rested.gyro_bias[0], BIAS, atol=0.002)
+    assert np.abs(plain.gyro_bias[0] - BIAS).max() > 0.003  # the turn about the vertical goes unseen
+
+
+@pytest.mark.parametrize("what", [0, 1, 2])
+def test_missing_samples_widen_the_error_and_are_bridged(what):
+    made = turning(10.0)
+    parts = list(noisy(made))
+    parts[what] = parts[what].copy()
+    parts[what][600:640] = np.nan
+    found, last, states = course(*parts)
+    assert np.isfinite(found).all()
+    assert np.isfinite(last.P).all()
+    if what == 0:
+        assert states[639].P[0, 0, 0] > 10 * states[599].P[0, 0, 0]
