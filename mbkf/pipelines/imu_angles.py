@@ -26,6 +26,7 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.imu_orient import prepared
 
 ROOT = "pelvis"
+_DOUBT_RAD, _DOUBT_SHARE, _DOUBT_EVERY = np.radians(15.0), 0.02, 5
 STILL_RAD_S, STILL_S = 0.15, 1.0
 """Standing: no sensor turns faster (root mean square) for so long."""
 
@@ -127,7 +128,8 @@ def imu_angles(
         for one, segment, turn in zip(sensors, segments, aligned, strict=True)
     )
     found = tuple(clinical.names[k] for k in wanted)
-    return ImuAngles(time_s, motion, found, values[:, wanted], mounts, tuple(warnings))
+    told = (*warnings, *_doubts(body, segments, motion, common))
+    return ImuAngles(time_s, motion, found, values[:, wanted], mounts, told)
 
 
 def _order(names: Sequence[str]) -> list[int]:
@@ -287,6 +289,26 @@ def _configurations(body: HumanModel, segments: Sequence[str], course: Array) ->
             R = quaternion_matrices(turn)
             motion[:, joint.q.start] = np.arctan2(R[:, 0, 2], R[:, 0, 0])
     return motion
+
+
+def _doubts(body: HumanModel, segments: Sequence[str], motion: Array, common: bool) -> list[str]:
+    """What makes the calibration doubtful: headings by custom only, joints that turn further than joints can."""
+    told = []
+    if not common:
+        told.append(
+            "the sensors share no heading (no magnetometers): each is taken to be strapped on as usual, "
+            "z away from the body and x up the limb; angles are wrong where one is not"
+        )
+    turns = np.array([body.difference(body.neutral(), q) for q in motion[::_DOUBT_EVERY]])
+    beyond = np.maximum(turns - body.limits[:, 1], body.limits[:, 0] - turns)
+    for name in segments[1:]:
+        share = float((beyond[:, body.joint(name).v] > _DOUBT_RAD).any(axis=1).mean())
+        if share > _DOUBT_SHARE:
+            told.append(
+                f"the joint above {name} is more than 15 deg beyond its range in {100 * share:.0f} % of the time; "
+                "check --standing, which sensor is which, and how they were put on"
+            )
+    return told
 
 
 def _determined(clinical: ClinicalAngles, name: str, segments: Sequence[str]) -> bool:

@@ -18,8 +18,9 @@ from mbkf.viz.server import LOOPBACK, PageServer
 class LivePage:
     """A web page that follows a live reconstruction (a ``FrameSink``).
 
-    A frame is only kept here; the server's own thread makes a row of the newest one, at most 30 times a second and
-    only while a page is open, so the filter never waits. The page may be closed and opened again at any time.
+    A frame is only kept here; the server's own thread makes a row of the newest one, at most 30 times a second, just
+    after a frame has come and only while a page is open, so the filter never waits. The page may be closed and opened
+    again at any time.
 
     Args:
         model: The body.
@@ -70,6 +71,7 @@ class LivePage:
     def take(self, frame: LiveFrame) -> None:
         """Keeps the frame as the newest one; returns at once."""
         self._newest = frame
+        self._server.wake()
 
     def close(self) -> None:
         """Ends the server; open pages say that they are not connected."""

@@ -7,6 +7,7 @@ that another web page or another host name caused are refused.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import hmac
 import ipaddress
 import logging
@@ -15,6 +16,7 @@ import socket
 import threading
 from collections.abc import Callable
 from http import HTTPStatus
+from typing import Any
 from urllib.parse import parse_qs, urlencode, urlsplit
 
 from websockets.asyncio.server import ServerConnection, serve
@@ -26,6 +28,7 @@ from mbkf.errors import InvalidInput
 
 LOOPBACK = "127.0.0.1"
 SEND_PERIOD_S = 1.0 / 30.0
+LONGEST_SLEEP_S = 0.2
 STOP_S = 3.0
 
 Newest = Callable[[], tuple[int, bytes] | None]
@@ -65,6 +68,8 @@ class PageServer:
         self._token = token or ("" if self._local else secrets.token_urlsafe(16))
         self._loop: asyncio.AbstractEventLoop | None = None
         self._stop: asyncio.Event | None = None
+        self._fresh = asyncio.Event()
+        self._asleep = False
         self._listening = threading.Event()
         self._failure: OSError | None = None
         self._port = 0
@@ -85,6 +90,13 @@ class PageServer:
         if self._loop is not None and self._stop is not None and self._thread.is_alive():
             self._loop.call_soon_threadsafe(self._stop.set)
             self._thread.join(STOP_S)
+
+    def wake(self) -> None:
+        """Says that there is a new row: it is made now, and not while the next frame is being answered."""
+        if self._asleep and self._loop is not None:
+            self._asleep = False
+            with contextlib.suppress(RuntimeError):  # the server has just ended
+                self._loop.call_soon_threadsafe(self._fresh.set)
 
     def wait(self) -> None:
         """Returns when the server was closed; an interrupt from the keyboard comes through."""
@@ -144,10 +156,19 @@ class PageServer:
                     sent = found[0]
                     await connection.send(found[1])
                 await asyncio.wait({closed}, timeout=SEND_PERIOD_S)
+                await self._woken(closed)
         except ConnectionClosed:
             pass
         finally:
             closed.cancel()
+
+    async def _woken(self, closed: asyncio.Future[Any]) -> None:
+        """Waits for a new row, for the connection's end, or a while."""
+        self._fresh.clear()
+        self._asleep = True
+        fresh: asyncio.Future[Any] = asyncio.ensure_future(self._fresh.wait())
+        await asyncio.wait({closed, fresh}, timeout=LONGEST_SLEEP_S, return_when=asyncio.FIRST_COMPLETED)
+        fresh.cancel()
 
 
 def checked_port(port: int) -> int:

@@ -123,3 +123,13 @@ def test_orientations_of_the_file_may_be_used():
     readings, truth = marching(1.0)
     found = imu_angles(readings, MODEL, standing=(0.0, 1.8), settings=AnglesSettings(from_file=True))
     assert worst(found, truth) < 1.0
+
+
+def test_what_is_doubtful_is_told():
+    readings, _ = marching(0.7, careless=False)
+    assert imu_angles(readings, MODEL).warnings == ()
+    blind = [replace(one, magnetic_field=None) for one in readings]
+    assert "no heading" in imu_angles(blind, MODEL).warnings[0]
+    names = {"right_shank": "right_foot", "right_foot": "right_shank"}
+    swapped = [replace(one, name=names.get(one.name, one.name)) for one in blind]
+    assert any("beyond its range" in text for text in imu_angles(swapped, MODEL).warnings)
