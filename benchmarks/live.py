@@ -28,9 +28,6 @@ RATES_HZ = (200, 250, 300, 350, 400, 450, 500, 600)
 CATCHING_UP = 0.2
 """A run whose filter is behind for longer than this share of it does not keep up."""
 
-MOST_PLATES = 40
-"""A C3D lists up to 255 analog channels; a walk of a minute beyond these plates is on an unmeasured floor."""
-
 LATENCY_MS = 5.0
 EQUAL = 1e-9
 PROTOCOLS = ("lsl", "natnet")
@@ -76,10 +73,7 @@ def synthetic(out: Path, seconds: float, rate_hz: float) -> Trial:
     folder = out / f"walk-{seconds:g}s-{rate_hz:g}Hz"
     if not (folder / "truth.h5").is_file():
         subject, made = synthesise("walk", seconds=seconds, rate_hz=rate_hz)
-        trial, raw = (
-            replace(one, plates=one.plates[:MOST_PLATES], analog=()) for one in (made.trial, made.raw)
-        )
-        write_folder(subject, replace(made, trial=trial, raw=raw), folder)
+        write_folder(subject, made, folder)
     frames = round(seconds * rate_hz) + 1
     name = f"synthetic walk {seconds:g} s, {rate_hz:g} Hz"
     return Trial(name, folder / "trial.c3d", None, folder / "subject.toml", frames / rate_hz)

@@ -19,6 +19,9 @@ _MM = 1000.0
 _DEFAULT_HALF_SIDES_M = np.array([[0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2], [0.3, -0.2]])
 """Corners given to a plate whose geometry is not known, about the point its moments refer to."""
 
+MOST_CHANNELS = 255
+"""The format counts them in one byte."""
+
 _CHANNELS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 
 
@@ -33,7 +36,7 @@ def write_c3d(capture: Capture, path: str | Path) -> None:
         path: The file, replaced whole or not at all; its suffix is ``.c3d``.
 
     Raises:
-        InvalidInput: The name does not end in ``.c3d``, or the capture has no frames.
+        InvalidInput: The name does not end in ``.c3d``, the capture has no frames, or more channels than fit.
         OSError: The file cannot be written.
     """
     import ezc3d
@@ -113,6 +116,11 @@ def _fill_analog(content: Any, capture: Capture) -> None:
             rows.append(_sampled(times, stamps, channel.values, per_frame))
             names.append(channel.name)
             units.append(channel.unit)
+    if len(names) > MOST_CHANNELS:
+        raise InvalidInput(
+            f"{len(names)} analog channels, six of them for each of {len(capture.plates)} plates; a C3D file holds "
+            f"{MOST_CHANNELS}: leave some away"
+        )
     group = content["parameters"]["ANALOG"]
     group["RATE"]["value"] = np.array([rate_hz])
     group["LABELS"]["value"] = names

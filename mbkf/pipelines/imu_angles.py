@@ -112,7 +112,7 @@ def imu_angles(
         window = None if still is not None else _window(sensors, time_s, standing)
         upright = mean_orientation(q[window]) if window is not None else _attitudes(still or ())
         rest = _posture(body, posture, segments)
-        headings = _headings(body, segments, q, sensors, time_s, upright, rest, common)
+        headings = _headings(body, segments, q, time_s, upright, rest, common)
         q, upright = turned(q, -headings[None]), turned(upright[None], -headings[None])[0]
         aligned = alignments(upright, rest, 0.0)
         course = multiply(q, conjugate(aligned))
@@ -236,7 +236,6 @@ def _headings(
     body: HumanModel,
     segments: Sequence[str],
     q: Array,
-    sensors: Sequence[ImuReadings],
     time_s: Array,
     upright: Array,
     rest: Array,
@@ -246,17 +245,18 @@ def _headings(
     usual = _by_custom(body, segments, upright, rest)
     if not common:
         return usual
-    gyro = np.stack(
-        [
-            np.column_stack([np.interp(time_s, one.time_s, axis) for axis in one.angular_velocity_rad_s.T])
-            for one in sensors
-        ],
-        axis=1,
-    )
-    seen = facing(segments, q, gyro, upright) if np.isfinite(gyro).any() else None
+    seen = facing(segments, q, _turning(q, time_s), upright)
     if seen is None:
         seen = float(np.arctan2(np.sin(usual).mean(), np.cos(usual).mean()))
     return np.full(len(segments), seen)
+
+
+def _turning(q: Array, time_s: Array) -> Array:
+    """(T, S, 3) angular velocities, rad/s in sensor axes, of orientations (T, S, 4); the last one is repeated."""
+    between = multiply(conjugate(q[:-1]), q[1:])
+    between = np.where(between[..., 3:] < 0.0, -between, between)
+    rates = 2.0 * between[..., :3] / np.diff(time_s)[:, None, None]
+    return np.concatenate([rates, rates[-1:]])
 
 
 def _by_custom(body: HumanModel, segments: Sequence[str], upright: Array, rest: Array) -> Array:
@@ -283,6 +283,7 @@ def _configurations(body: HumanModel, segments: Sequence[str], course: Array) ->
         turn = course[:, k]
         if above != "world":
             turn = multiply(conjugate(course[:, segments.index(above)]), turn)
+        turn = np.where(turn[:, 3:] < 0.0, -turn, turn)
         if joint.kind in ("free", "spherical"):
             motion[:, joint.q.stop - 4 : joint.q.stop] = turn
         elif joint.kind == "hinge":
@@ -302,10 +303,11 @@ def _doubts(body: HumanModel, segments: Sequence[str], motion: Array, common: bo
     turns = np.array([body.difference(body.neutral(), q) for q in motion[::_DOUBT_EVERY]])
     beyond = np.maximum(turns - body.limits[:, 1], body.limits[:, 0] - turns)
     for name in segments[1:]:
-        share = float((beyond[:, body.joint(name).v] > _DOUBT_RAD).any(axis=1).mean())
+        flexion = min(body.joint(name).v.start + 1, body.joint(name).v.stop - 1)
+        share = float((beyond[:, flexion] > _DOUBT_RAD).mean())
         if share > _DOUBT_SHARE:
             told.append(
-                f"the joint above {name} is more than 15 deg beyond its range in {100 * share:.0f} % of the time; "
+                f"the joint above {name} bends more than 15 deg beyond its range in {100 * share:.0f} % of the time; "
                 "check --standing, which sensor is which, and how they were put on"
             )
     return told

@@ -123,3 +123,11 @@ def test_what_cannot_be_written_is_refused_and_leaves_nothing(tmp_path):
     with pytest.raises(InvalidInput, match="no frames"):
         write_c3d(Capture("", markers_of(np.zeros((0, 3, 3)))), tmp_path / "a.c3d")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_more_plates_than_the_format_counts_are_refused_and_as_many_as_it_counts_come_back(tmp_path):
+    positions, plate = standing_points(3) / 1e3, plate_of(frames=3)
+    with pytest.raises(InvalidInput, match="258 analog channels"):
+        write_c3d(Capture("", markers_of(positions), (plate,) * 43), tmp_path / "a.c3d")
+    write_c3d(Capture("", markers_of(positions), (plate,) * 42), tmp_path / "b.c3d")
+    assert len(read_c3d(tmp_path / "b.c3d").plates) == 42

@@ -130,6 +130,29 @@ def test_what_is_doubtful_is_told():
     assert imu_angles(readings, MODEL).warnings == ()
     blind = [replace(one, magnetic_field=None) for one in readings]
     assert "no heading" in imu_angles(blind, MODEL).warnings[0]
-    names = {"right_shank": "right_foot", "right_foot": "right_shank"}
-    swapped = [replace(one, name=names.get(one.name, one.name)) for one in blind]
-    assert any("beyond its range" in text for text in imu_angles(swapped, MODEL).warnings)
+    turned = np.array([1.0, -1.0, -1.0])
+    inside_out = [
+        replace(
+            one,
+            specific_force_mps2=one.specific_force_mps2 * turned,
+            angular_velocity_rad_s=one.angular_velocity_rad_s * turned,
+        )
+        if "right" in one.name
+        else one
+        for one in blind
+    ]
+    told = imu_angles(inside_out, MODEL).warnings
+    assert any("right_shank" in text and "beyond its range" in text for text in told)
+    assert not any("left_shank" in text for text in told)
+
+
+def test_a_real_walk_with_the_makers_orientations_bends_knees_as_people_do(real_data):
+    from mbkf.io.imu_files import read_imu
+
+    sensors = read_imu(real_data / "imu_opensense_walk")
+    found = imu_angles(sensors, MODEL, standing=(0.0, 0.5), settings=AnglesSettings(from_file=True))
+    assert found.warnings == ()
+    for name in ("knee_angle_r", "knee_angle_l"):
+        knee = np.degrees(found.angles[:, found.names.index(name)])
+        assert -15.0 < knee.min() < 5.0
+        assert 50.0 < knee.max() < 80.0
