@@ -32,7 +32,7 @@ class RunningSettings:
         offset_sd_m: How far a marker strays from its remembered offset between frames while it is seen.
         unseen_sd_m: How much further off a marker may be that was never seen since the start.
         strange: Standard deviations by which a point may miss its remembered place on the corrected body.
-        doubt_every: Frames between two looks without memory.
+        every: Frames between two lessons of the memory, after which it asks what the labels are without it.
         doubt_margin: How much less the labels without memory must cost to count as a contradiction.
         doubts: Contradictions running that overrule the memory.
     """
@@ -43,7 +43,7 @@ class RunningSettings:
     offset_sd_m: float = 0.004
     unseen_sd_m: float = 0.015
     strange: float = 3.5
-    doubt_every: int = 4
+    every: int = 4
     doubt_margin: float = 9.0
     doubts: int = 2
 
@@ -65,8 +65,9 @@ class RunningLabeller:
         self._forgotten = noise_m**2 + placement_m**2
         self.settings = settings or RunningSettings()
         self.repaired = 0
-        self._keep = math.exp(-dt_s / self.settings.memory_s)
-        self._learn = 1.0 - math.exp(-dt_s / self.settings.learning_s)
+        lesson_s = dt_s * self.settings.every
+        self._keep = math.exp(-lesson_s / self.settings.memory_s)
+        self._learn = 1.0 - math.exp(-lesson_s / self.settings.learning_s)
         self._forgetting = (1.0 - self._keep**2) * self._forgotten
         self._patient = replace(self.settings.assignment, known_bonus=0.0)
         self.restart()
@@ -78,6 +79,12 @@ class RunningLabeller:
         self._before = (np.full(len(self.noise_m), HIDDEN, dtype=np.intp), 0)
         self._doubted = np.zeros(len(self.noise_m), dtype=int)
         self._frames = 0
+
+    @property
+    def learns(self) -> bool:
+        """Whether the memory learns from the frame last labelled: the first few, then every so many."""
+        every = self.settings.every
+        return self._frames <= 2 * every or self._frames % every == 0
 
     def label(self, expected: MarkerExpectation, points_m: Array, follows: Indices | None = None) -> Indices:
         """(M,) the point of every marker in this frame, ``HIDDEN`` where it has none.
@@ -97,7 +104,7 @@ class RunningLabeller:
         predicted = expected.positions_m + self._offset_m
         labels = assign(predicted, points_m, covariance, self.settings.assignment, known)
         self._frames += 1
-        if self._frames % self.settings.doubt_every == 0:
+        if self._frames % self.settings.every == 0:
             labels = self._doubt(labels, expected, points_m)
         return labels
 
@@ -130,6 +137,8 @@ class RunningLabeller:
             on_body_m: (M, 3) markers on the body in the pose the filter came to.
         """
         self._before = (labels, len(points_m))
+        if not self.learns:
+            return
         seen, variance, fixed = labels != HIDDEN, self._variance, self.settings.offset_sd_m**2
         faded = self._keep * self._offset_m
         if len(points_m):

@@ -95,9 +95,11 @@ class LiveLabels:
 
     def learn(self, q: Array) -> None:
         """What the filter made of the frame pushed last: its pose (nq,)."""
-        on_body = self.body.sensor.positions(q)
-        strange = self._labeller.contradicted(self._labels, self._points_m, on_body)
-        self._labels = np.where(strange, HIDDEN, self._labels)
+        on_body = self._points_m[:0]
+        if self._labeller.learns:
+            on_body = self.body.sensor.positions(q)
+            strange = self._labeller.contradicted(self._labels, self._points_m, on_body)
+            self._labels = np.where(strange, HIDDEN, self._labels)
         self._labeller.remember(self._labels, self._points_m, on_body)
         self._poses = [q]
 

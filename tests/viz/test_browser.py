@@ -58,7 +58,8 @@ def opened(browser):
 
     open_.errors = errors
     yield open_
-    assert errors == []
+    # A browser reports a refusal, which some tests ask for, as an error of the page.
+    assert [error for error in errors if "403 (Forbidden)" not in error] == []
 
 
 @pytest.fixture(scope="module")
