@@ -25,10 +25,10 @@ OPEN_S = 3.0
 PLATES_S = 3.0
 """How long the plate stream that the markers name is looked for."""
 
-LATE_S = 0.005
-"""Plates may come later than the end of their frame by this; their samples are waited for so long."""
+LATE_S = 0.040
+"""Plates may come later than the end of their frame by this, as a busy computer makes them once in a minute."""
 
-QUIET_S = 0.5
+QUIET_S = 0.1
 """Plates that have said nothing for this long are not waited for any more."""
 
 KEPT_S = 10
