@@ -1,7 +1,6 @@
 """A slot never grows, a patient one loses nothing, and threads that wait on it end."""
 
 import threading
-import time
 
 import pytest
 
@@ -67,10 +66,9 @@ def test_a_slow_receiver_does_not_hold_up_the_sender(held):
         got.append(frame)
 
     sending = SendingThread(slow, "test", held)
-    begin = time.perf_counter()
     for k in range(200):
         sending.take(k)
-    assert time.perf_counter() - begin < 2.0
+    assert got == []  # all are taken, and the receiver still has its first
     gate.set()
     sending.close()
     assert got[-1] == 199
