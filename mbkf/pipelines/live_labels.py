@@ -148,16 +148,12 @@ class LiveLabels:
 
     def _awaited(self) -> list[Array]:
         """What a search has to say, and the next one begun; frames that waited too long go on without names."""
+        if self._search is None:
+            self._begin_search()
         if self._search is not None and self._search.done():
             self._heard(self._search.result())
             if self._found and (len(self._found) == LOOKS or self._sure()):
                 return self._named()
-        if self._search is None:
-            self._begin_search()
-            if self._patient and self._search is not None:
-                self._heard(self._search.result())
-                if self._found and (len(self._found) == LOOKS or self._sure()):
-                    return self._named()
         return self._unnamed(self._longest)
 
     def _begin_search(self) -> None:
