@@ -45,6 +45,7 @@ NOT_BENCHMARKS = {
     "labelling_any_attitude",
     "labelling_live",
     "labelling_rows",
+    "labelling_speed",
     "picture",
     "references",
     "screenshots",

@@ -11,7 +11,6 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from time import perf_counter
 
 import numpy as np
 
@@ -19,20 +18,11 @@ from benchmarks.checks import Check, Context
 from benchmarks.dynamic_captures import SOURCES
 from benchmarks.labelling_any_attitude import rows as any_attitude_rows
 from benchmarks.labelling_rows import Trial, crossing_rows, hard_rows, loss_rows, plain_rows
-from benchmarks.speed import PRODUCT_SIZE
-from mbkf.filters.estimate import Recording
-from mbkf.filters.kinematic import KinematicFilter
-from mbkf.filters.kinematic_follower import KinematicFollower
-from mbkf.filters.prediction import expected_markers
-from mbkf.filters.settings import KinematicSettings
+from benchmarks.labelling_speed import speed_rows
 from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture
-from mbkf.labelling.running import RunningLabeller
-from mbkf.model.human import HumanModel
-from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.scale import scale
 from mbkf.pipelines.synth import synthesise
-from mbkf.sensors.markers import MarkerSensor
 
 REAL = ("biomechzoo HC032A", "biomechzoo HC044A", "gaitalytics", "rajagopal walk", "rajagopal run")
 CONTRADICTORY, EXCHANGED = "biomechzoo HC032A", {"LHFB": "LTUB", "LTUB": "LHFB"}
@@ -45,7 +35,6 @@ SYNTHETIC = ("walk", "squat", "jump")
 QUICK = ("gaitalytics", "synthetic walk")
 
 SEEDS, QUICK_SEEDS = 3, 1
-MARKERS, POINTS = 36, 50
 
 
 def run(context: Context) -> list[Check]:
@@ -108,57 +97,3 @@ def knee_distance_m(capture: Capture, name: str) -> float:
     positions, names = capture.markers.positions_m, capture.markers.names
     away = positions[:, names.index(name)] - positions[:, names.index(KNEE)]
     return float(np.nanmedian(np.linalg.norm(away, axis=1)))
-
-
-def speed_rows() -> list[Check]:
-    """Time of one frame's labels in P, for 36 markers and 50 points; prediction and memory counted, filter not."""
-    person, made = synthesise("walk")
-    model = HumanModel.scaled(person.scale_factors, person.mass_kg, person.body)
-    sensor = MarkerSensor(
-        model, [m.segment for m in person.markers], np.array([m.position_m for m in person.markers])
-    )
-    noise = np.array([m.noise_m for m in person.markers])
-    markers = made.trial.markers
-    follower = KinematicFollower(
-        KinematicFilter(
-            sensor, noise, 1.0 / markers.rate_hz, np.zeros(model.nv, dtype=bool), KinematicSettings()
-        )
-    )
-    recording = Recording(markers.positions_m, np.zeros((markers.frames, 0, 6)), 1.0 / markers.rate_hz)
-    labeller = RunningLabeller(noise, np.full(len(noise), 0.005), recording.dt_s)
-    rng = np.random.default_rng(1)
-    factor = rng.normal(size=(PRODUCT_SIZE, PRODUCT_SIZE))
-    rows = []
-    with single_threaded():
-        estimate = follower.start(recording, 0, None)
-        assert estimate is not None, "the synthetic walk starts"
-        for t in range(1, markers.frames):
-            shown = markers.positions_m[t]
-            shown = shown[~np.isnan(shown).any(axis=1)]
-            extra = shown.mean(axis=0) + rng.uniform(-0.8, 0.8, (POINTS - len(shown), 3))
-            points = rng.permutation(np.concatenate([shown, extra]))
-            ticks = [perf_counter()]
-            np.matmul(factor, factor)
-            ticks.append(perf_counter())
-            expected = expected_markers(follower, estimate, sensor)
-            ticks.append(perf_counter())
-            labels = labeller.label(expected, points)
-            ticks.append(perf_counter())
-            estimate = follower.step(estimate, recording, t)
-            ticks.append(perf_counter())
-            on_body = sensor.positions(estimate.q) if labeller.learns else points[:0]
-            labeller.remember(labels, points, on_body)
-            ticks.append(perf_counter())
-            rows.append(np.diff(ticks))
-    parts = np.array(rows)
-    product = float(np.median(parts[:, 0]))
-    own = parts[:, [1, 2, 4]]
-    name = f"labels of {MARKERS} markers among {POINTS} points"
-    return [
-        Check(f"{name}, all told, median", float(np.median(own.sum(axis=1))) / product, 0.25, "<=", "P"),
-        Check(f"{name}, all told, mean", float(own.sum(axis=1).mean()) / product, math.inf, "<=", "P"),
-        *(
-            Check(f"{name}: {part}, median", float(np.median(seconds)) / product, math.inf, "<=", "P")
-            for part, seconds in zip(("prediction", "assignment", "memory"), own.T, strict=True)
-        ),
-    ]

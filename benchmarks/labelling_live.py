@@ -23,12 +23,11 @@ def streamed(points_m: Array, truth: MarkerTrajectories, subject: Subject) -> La
     """Points (T, C, 3) named one frame after the other, with a kinematic filter, against the truth."""
     body = live_body(subject)
     follower = live_body(subject).follower(1.0 / truth.rate_hz)
-    labels, live = LiveLabels(body, follower, patient=True), LiveFilter(follower)
+    labels, live = LiveLabels(body, follower.dt_s, patient=True), LiveFilter(follower)
     named: list[Array] = []
     with single_threaded():
         for number, frame in enumerate(points_m):
-            before = None if live.pursuit.must_start else live.pursuit.estimate
-            for markers in labels.push(frame, before):
+            for markers in labels.push(frame, live.expect()):
                 steps = live.push(len(named), markers, np.zeros((0, 6)))
                 named.append(markers)
                 last = steps[-1] if steps else None

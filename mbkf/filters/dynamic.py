@@ -12,11 +12,14 @@ from numpy.typing import NDArray
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.filters.dynamic_records import Decision, DynamicStep, FrameReadings, Memory
 from mbkf.filters.dynamic_settings import DynamicSettings
+from mbkf.filters.estimate import Foresight
+from mbkf.filters.foot_rows import FootRows
 from mbkf.filters.gate import Sight, judged
 from mbkf.filters.inertial_part import InertialPart
 from mbkf.filters.singer import DynamicState, SingerPlant
 from mbkf.model.newton_euler import FEET, NewtonEuler
 from mbkf.numerics.kalman import Information, informed_with_rows
+from mbkf.sensors.expectation import MarkerExpectation
 from mbkf.sensors.footing import Footing, FootingSensor, FootLoad
 from mbkf.sensors.joint_limits import JointLimits
 from mbkf.sensors.markers import MarkerInformation, MarkerReading, MarkerSensor
@@ -73,16 +76,9 @@ class DynamicFilter:
         self._markers = MarkerInformation(sensor, self.noise_m)
         self._certainty = 1.0 / self.noise_m[:, None]
         self._lean = self.posture.weights(settings.posture_scale, held)
-        self._weight_n = GRAVITY_M_S2 * model.mass_kg
         s = settings
         self._law = 1.0 / np.repeat([s.residual_force_n, s.residual_moment_nm], 3)
-        self._plate = 1.0 / np.repeat([s.plate_force_n, s.plate_moment_nm], 3)
-        self._air = 1.0 / np.repeat([s.air_force_n, s.air_moment_nm], 3)
-        free = s.free_force_share * self._weight_n
-        self._free = 1.0 / np.repeat([free, s.free_lever_m * self._weight_n], 3)
-        self._pulling = self._free.copy()
-        self._pulling[2] = 1.0 / s.pulling_force_n
-        self._walk = np.repeat([s.wrench_force, s.wrench_moment], 3) * dt_s**0.5
+        self._feet = FootRows(3 * model.nv, GRAVITY_M_S2 * model.mass_kg, dt_s, s)
         self._calm = 1.0 - np.exp(-dt_s / s.activity_memory_s)
         usual_speed = s.unseen_velocity_s * self.plant.acceleration_sd
         self._rest = 1.0 / np.clip(usual_speed, *s.unseen_velocity_range)
@@ -119,10 +115,26 @@ class DynamicFilter:
         every = np.arange(3 * nv, 3 * nv + 12)
         whole[every, every] = START_WRENCH_SD**2
         state = DynamicState(q, v, a, np.zeros(12), whole)
-        return self._corrected(state, self.begin(), self.plant.acceleration_sd, markers_m, plates)
+        known = self._foresight(state, self.plant.acceleration_sd)
+        return self._corrected(known, self.begin(), markers_m, plates)
+
+    def expect(self, state: DynamicState, memory: Memory) -> Foresight:
+        """The prediction alone."""
+        sd = self._movement(memory)
+        return self._foresight(self.plant.predict(state, sd), sd)
+
+    def _foresight(self, prior: DynamicState, acceleration_sd: Array) -> Foresight:
+        nv, reading = self.model.nv, self.sensor.reading(prior.q)
+        return Foresight(prior.q, MarkerExpectation(reading, prior.P[:nv, :nv]), (prior, acceleration_sd))
 
     def step(
-        self, state: DynamicState, memory: Memory, markers_m: Array, plates: Array, imus: Array | None = None
+        self,
+        state: DynamicState,
+        memory: Memory,
+        markers_m: Array,
+        plates: Array,
+        imus: Array | None = None,
+        foresight: Foresight | None = None,
     ) -> DynamicStep:
         """Prediction and correction by one frame.
 
@@ -132,9 +144,10 @@ class DynamicFilter:
             markers_m: (M, 3) positions, NaN where missing.
             plates: (K, 6) wrenches about the world's origin: force N, moment N m; NaN where not recorded.
             imus: (S, 6) readings of inertial sensors.
+            foresight: What :meth:`expect` made of state and memory; used up.
         """
-        sd = self._movement(memory)
-        return self._corrected(self.plant.predict(state, sd), memory, sd, markers_m, plates, imus)
+        foresight = foresight or self.expect(state, memory)
+        return self._corrected(foresight, memory, markers_m, plates, imus)
 
     def _movement(self, memory: Memory) -> Array:
         """(nv,) σ_a of the next step: a still joint is expected to stay so, a busy one to change quickly."""
@@ -155,14 +168,15 @@ class DynamicFilter:
 
     def _corrected(
         self,
-        prior: DynamicState,
+        foresight: Foresight,
         memory: Memory,
-        acceleration_sd: Array,
         markers_m: Array,
         plates: Array,
         imus: Array | None = None,
     ) -> DynamicStep:
-        decision, reading, innovation = self._decide(prior, memory, acceleration_sd, markers_m, plates)
+        prior, reading = foresight.prior[0], foresight.markers.reading
+        innovation = markers_m - reading.positions_m
+        decision = self._decide(foresight, memory, innovation, plates)
         if imus is not None and self.inertial is not None:
             decision = self.inertial.decide(decision, memory, imus)
         self.unsettle(prior.P, decision)
@@ -202,8 +216,7 @@ class DynamicFilter:
         Wrenches wander, their moments about the soles; a displaced limb is somewhere else than expected.
         """
         nv, dofs = self.model.nv, decision.displaced
-        shift = _about(-decision.load.centres_m) * self._walk
-        wander = shift @ shift.transpose(0, 2, 1)
+        wander = self._feet.wander(decision.load)
         for foot in (0, 1):
             mine = slice(3 * nv + 6 * foot, 3 * nv + 6 * foot + 6)
             own = P[mine, mine]
@@ -230,21 +243,18 @@ class DynamicFilter:
         reading = self.sensor.reading(state.q)
         return self._linearised(state, decision, reading, markers_m - reading.positions_m)
 
-    def _decide(
-        self, prior: DynamicState, memory: Memory, acceleration_sd: Array, markers_m: Array, plates: Array
-    ) -> tuple[Decision, MarkerReading, Array]:
-        nv = self.model.nv
-        reading = self.sensor.reading(prior.q)
-        innovation = markers_m - reading.positions_m
+    def _decide(self, foresight: Foresight, memory: Memory, innovation: Array, plates: Array) -> Decision:
+        (prior, acceleration_sd), markers = foresight.prior, foresight.markers
         noise = self.noise_m * memory.noise_scale**0.5
-        seen, trusted, displaced = judged(innovation, reading, prior.P[:nv, :nv], noise, self.settings)
+        seen, trusted, displaced = judged(
+            innovation, markers.reading, markers.covariance, noise, self.settings
+        )
         moved = NOWHERE if displaced is None else self._sight.carriers(displaced)
         unseen = self._sight.unseen(trusted)
         load = self.feet.decide(memory.footing, prior.q, prior.v, prior.a, plates)
-        before = memory.markers_m
         lost = [f for f in (0, 1) if self._foot_dof[f] in unseen] if len(unseen) else []
         planted = tuple(p for p in (self.feet.planted(load, prior.q, f) for f in lost) if p is not None)
-        decision = Decision(
+        return Decision(
             trusted,
             seen,
             load,
@@ -253,9 +263,8 @@ class DynamicFilter:
             planted,
             moved[moved >= 6],
             acceleration_sd,
-            before,
+            memory.markers_m,
         )
-        return decision, reading, innovation
 
     def _next_noise_scale(self, decision: Decision, innovation: Array) -> float:
         share = self.settings.innovation_share
@@ -309,7 +318,7 @@ class DynamicFilter:
         np.multiply(root.by_a, law, out=rows[:6, 2 * nv : 3 * nv])
         rows[:6, 3 * nv : 3 * nv + 6] = rows[:6, 3 * nv + 6 :] = root.by_wrench * law
         values[:6] = -root.residual * self._law
-        readings = 6 + self._feet_rows(rows[6:18], values[6:18], state, decision)
+        readings = 6 + self._feet.fill(rows[6:18], values[6:18], state.w, decision.load, decision.lifted)
         if len(unseen):
             k = np.arange(len(unseen))
             rest = self._rest[unseen]
@@ -327,74 +336,3 @@ class DynamicFilter:
             on_state[:, first : first + block.shape[1]] = block
             rows, values = np.vstack([rows, on_state]), np.concatenate([values, short])
         return rows, values, readings
-
-    def _feet_rows(self, rows: Array, values: Array, state: DynamicState, decision: Decision) -> int:
-        """Fills the twelve rows on the wrenches; returns how many of them, the first ones, are plates' readings.
-
-        Moments are weighed about the middle of the sole, where they are small.
-        """
-        load = decision.load
-        if Footing.SHARED in load.footing:
-            return self._shared_rows(rows, values, state, load)
-        first, plates = 3 * self.model.nv, 0
-        about = _about(load.centres_m)
-        only_left = load.footing[0] != Footing.MEASURED and load.footing[1] == Footing.MEASURED
-        for place, foot in enumerate((1, 0) if only_left else (0, 1)):
-            wrench, mine = state.w[6 * foot : 6 * foot + 6], slice(6 * place, 6 * place + 6)
-            pulls = wrench[2] < 0.0 or foot in decision.lifted
-            X = about[foot] * self._foot_weight(load.footing[foot], pulls)[:, None]
-            rows[mine, first + 6 * foot : first + 6 * foot + 6] = X
-            values[mine] = X @ (self._expected(load, foot, pulls) - wrench)
-            plates += 6 * (load.footing[foot] == Footing.MEASURED)
-        return plates
-
-    def _expected(self, load: FootLoad, foot: int, pulls: bool) -> Array:
-        """(6,) wrench a foot is read to carry: its plate's, nothing, or its share of what no plate carries.
-
-        A free foot that would pull at the floor is held at nothing instead.
-        """
-        if load.footing[foot] != Footing.FREE or pulls:
-            return load.wrench[foot]
-        other = load.footing[1 - foot]
-        carried = float(load.wrench[1 - foot, 2]) if other == Footing.MEASURED else 0.0
-        rest = max(self._weight_n - carried, 0.0) * (0.5 if other == Footing.FREE else 1.0)
-        x, y, _ = load.centres_m[foot].tolist()
-        return np.array([0.0, 0.0, rest, y * rest, -x * rest, 0.0])
-
-    def _foot_weight(self, footing: Footing, pulls: bool) -> Array:
-        """(6,) 1/sd of a foot's rows; a free foot that would pull at the floor is held at no vertical force."""
-        if footing == Footing.MEASURED:
-            return self._plate
-        if footing == Footing.AIR:
-            return self._air
-        return self._pulling if pulls else self._free
-
-    def _shared_rows(self, rows: Array, values: Array, state: DynamicState, load: FootLoad) -> int:
-        """One plate reads the sum of both wrenches; each is weakly held near a half of it."""
-        first = 3 * self.model.nv
-        middle = _about(load.centres_m.mean(axis=0, keepdims=True))[0] * self._plate[:, None]
-        rows[:6, first : first + 6] = rows[:6, first + 6 :] = middle
-        values[:6] = middle @ (load.wrench[0] - state.w[:6] - state.w[6:])
-        half = _about(load.centres_m[:1])[0] * self._free[:, None]
-        rows[6:, first : first + 6] = half
-        values[6:] = half @ (0.5 * load.wrench[0] - state.w[:6])
-        return 6
-
-
-def _about(points_m: Array) -> Array:
-    """(k, 6, 6) that take a wrench about the world's origin to one about each of the points (k, 3): n − c × f."""
-    found = points_m @ _LEVERS
-    found += _UNMOVED
-    return found.reshape(-1, 6, 6)
-
-
-def _levers() -> Array:
-    """(3, 36) by which a unit shift along each axis changes :func:`_about`."""
-    table = np.zeros((3, 6, 6))
-    for x, y, z in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        table[x, 3 + z, y], table[x, 3 + y, z] = -1.0, 1.0
-    return table.reshape(3, 36)
-
-
-_LEVERS = _levers()
-_UNMOVED = np.eye(6).ravel()

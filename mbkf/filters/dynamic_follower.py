@@ -11,7 +11,7 @@ from mbkf.conventions import Array
 from mbkf.filters.dynamic import DynamicFilter
 from mbkf.filters.dynamic_records import DynamicStep
 from mbkf.filters.dynamic_smoothing import Frame, smooth
-from mbkf.filters.estimate import Estimate, Recording
+from mbkf.filters.estimate import Estimate, Foresight, Recording
 from mbkf.filters.kinematic import KinematicFilter
 from mbkf.filters.kinematic_follower import warm_start
 from mbkf.filters.singer import DynamicState
@@ -41,12 +41,19 @@ class DynamicFollower:
         first = self.kalman.first(state.q, state.v, a, state.P, recording.markers_m[t], recording.plates[t])
         return replace(_estimate(first), tracked=True, started=True)
 
-    def step(self, before: Estimate, recording: Recording, t: int) -> Estimate:
+    def expect(self, before: Estimate) -> Foresight:
+        """By the filter's own plant."""
+        was: DynamicStep = before.inner
+        return self.kalman.expect(was.state, was.memory)
+
+    def step(
+        self, before: Estimate, recording: Recording, t: int, foresight: Foresight | None = None
+    ) -> Estimate:
         """One frame on."""
         was: DynamicStep = before.inner
         imus = None if recording.imus is None else recording.imus[t]
         markers, plates = recording.markers_m[t], recording.plates[t]
-        return _estimate(self.kalman.step(was.state, was.memory, markers, plates, imus))
+        return _estimate(self.kalman.step(was.state, was.memory, markers, plates, imus, foresight))
 
     def covariance(self, estimate: Estimate) -> Array:
         """(2 nv, 2 nv) of (q, v); dofs that are held may be anywhere a posture is."""

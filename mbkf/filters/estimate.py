@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.spread import Spread
 from mbkf.model.human import HumanModel
+from mbkf.sensors.expectation import MarkerExpectation
 
 
 @dataclass(frozen=True)
@@ -61,6 +62,21 @@ class Estimate:
     inner: Any
 
 
+class Foresight(NamedTuple):
+    """What a filter expects of the next frame, before it is known which point is which marker.
+
+    Attributes:
+        q: (nq,) predicted configuration.
+        markers: Its markers, in the filter's order.
+        prior: The filter's predicted state, which the step with it goes on from and uses up; None where it predicts
+            anew.
+    """
+
+    q: Array
+    markers: MarkerExpectation
+    prior: Any
+
+
 class Follower(Protocol):
     """A filter as trials and streams drive it."""
 
@@ -71,8 +87,20 @@ class Follower(Protocol):
     def start(self, recording: Recording, t: int, guess: Array | None) -> Estimate | None:
         """An estimate at frame t that already knows its velocity from the next frames, or None where nothing fits."""
 
-    def step(self, before: Estimate, recording: Recording, t: int) -> Estimate:
-        """The estimate of frame t from that of the frame before."""
+    def expect(self, before: Estimate) -> Foresight:
+        """What the frame after an estimate should show: what a labeller needs between prediction and correction."""
+
+    def step(
+        self, before: Estimate, recording: Recording, t: int, foresight: Foresight | None = None
+    ) -> Estimate:
+        """The estimate of frame t from that of the frame before.
+
+        Args:
+            before: That estimate.
+            recording: The readings.
+            t: The frame.
+            foresight: What :meth:`expect` made of ``before``, where it was asked; good for one step.
+        """
 
     def covariance(self, estimate: Estimate) -> Array:
         """(2 nv, 2 nv) covariance of (q, v)."""

@@ -9,10 +9,12 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.dwna import WhiteAccelerationPlant
+from mbkf.filters.estimate import Foresight
 from mbkf.filters.gate import Sight, judged
 from mbkf.filters.settings import KinematicSettings
 from mbkf.filters.state import FilterState
 from mbkf.numerics.kalman import Information, correct, informed, read_directly
+from mbkf.sensors.expectation import MarkerExpectation
 from mbkf.sensors.markers import MarkerInformation, MarkerSensor
 from mbkf.sensors.pose_fit import PoseFit, fit_most_markers, segment_by_segment
 from mbkf.sensors.posture import PostureSensor
@@ -134,11 +136,16 @@ class KinematicFilter:
         best = min(fits, key=lambda one: one.rms_m)
         return best if best.rms_m <= self.settings.restart_rms_m else None
 
-    def step(self, state: FilterState, measured_m: Array) -> StepResult:
+    def expect(self, state: FilterState) -> Foresight:
+        """The prediction alone."""
+        predicted, nv = self.plant.predict(state), self.sensor.model.nv
+        reading = self.sensor.reading(predicted.q)
+        return Foresight(predicted.q, MarkerExpectation(reading, predicted.P[:nv, :nv]), predicted)
+
+    def step(self, state: FilterState, measured_m: Array, foresight: Foresight | None = None) -> StepResult:
         """Prediction and correction by one frame of markers (M, 3), NaN where missing."""
-        predicted = self.plant.predict(state)
-        q, v, nv = predicted.q, predicted.v, self.sensor.model.nv
-        reading = self.sensor.reading(q)
+        q, expected, predicted = foresight or self.expect(state)
+        reading, v, nv = expected.reading, predicted.v, self.sensor.model.nv
         innovation = measured_m - reading.positions_m
         seen, trusted, _ = judged(innovation, reading, predicted.P[:nv, :nv], self.noise_m, self.settings)
         markers = self._markers.at(q, reading, innovation, trusted)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.estimate import NO_WRENCH, Estimate, Recording
+from mbkf.filters.estimate import NO_WRENCH, Estimate, Foresight, Recording
 from mbkf.filters.kinematic import KinematicFilter, StepResult
 from mbkf.filters.spread import Spread, SpreadReader
 from mbkf.filters.state import FilterState
@@ -84,10 +84,16 @@ class KinematicFollower:
         q, v = found.state.q, found.state.v
         return Estimate(q, v, found.accelerations[0], NO_WRENCH, None, nobody, True, True, inner)
 
-    def step(self, before: Estimate, recording: Recording, t: int) -> Estimate:
+    def expect(self, before: Estimate) -> Foresight:
+        """By the filter's own plant."""
+        return self.kalman.expect(before.inner.state)
+
+    def step(
+        self, before: Estimate, recording: Recording, t: int, foresight: Foresight | None = None
+    ) -> Estimate:
         """One frame on."""
         was: _Followed = before.inner
-        result = self.kalman.step(was.state, recording.markers_m[t])
+        result = self.kalman.step(was.state, recording.markers_m[t], foresight)
         since = was.since + 1
         settled = since >= len(was.settling)
         a = (result.state.v - was.state.v) / self.dt_s if settled else was.settling[since]

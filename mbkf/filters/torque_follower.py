@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.filters.estimate import Estimate, Recording
+from mbkf.filters.estimate import Estimate, Foresight, Recording
 from mbkf.filters.kinematic import KinematicFilter
 from mbkf.filters.kinematic_follower import warm_start
+from mbkf.filters.prediction import steady_motion
 from mbkf.filters.spread import Spread, SpreadReader
 from mbkf.filters.state import FilterState
 from mbkf.filters.torque import TorqueFilter, TorqueState, TorqueStep
@@ -49,8 +50,15 @@ class TorqueFollower:
         nobody = np.zeros(recording.markers_m.shape[1], dtype=bool)
         return self._estimate(_Followed(state, None, None, load.memory), load.footing, nobody, True)
 
-    def step(self, before: Estimate, recording: Recording, t: int) -> Estimate:
+    def expect(self, before: Estimate) -> Foresight:
+        """By steady motion: the filter's own plant waits for the plates, which say what the torques do."""
+        return steady_motion(before, self.covariance(before), self.kalman.sensor, self.dt_s)
+
+    def step(
+        self, before: Estimate, recording: Recording, t: int, foresight: Foresight | None = None
+    ) -> Estimate:
         """One frame on; the feet's footing is decided where the motion before would carry them."""
+        del foresight
         was: _Followed = before.inner
         state = was.state
         q = self.model.integrate(state.q, self.dt_s * state.v)

@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,14 +73,12 @@ def assign(
         return np.full(len(predicted_m), HIDDEN, dtype=np.intp)
     squared = squared_distances(predicted_m, points_m)
     found = _all_clear(squared, settings, known)
-    if found is None:
-        found = _undisputed(squared, settings, known)
-    seen = found != HIDDEN
-    if seen.all():
+    if found is not None:
         return found
-    own = (~seen).nonzero()[0]
+    found = _undisputed(squared, settings, known)
+    own = (found == HIDDEN).nonzero()[0]
     left = np.ones(len(points_m), dtype=bool)
-    left[found[seen]] = False
+    left[found[found != HIDDEN]] = False
     near = (squared[own] <= settings.radius_m**2) & left
     own = own[near.any(axis=1)]
     if not len(own):
@@ -135,20 +134,43 @@ def marker_of_point(labels: Indices, points: int) -> Indices:
 
 
 def _all_clear(squared: Array, settings: AssignmentSettings, known: Indices | None) -> Indices | None:
-    """What ``_undisputed`` finds in the usual frame, quicker; None where some pair is in dispute."""
-    nearest = squared.argmin(axis=1)
-    near = squared[np.arange(len(squared)), nearest] <= settings.near_m**2
+    """The answer in the usual frame, where no pair is in dispute and no hidden marker may be a free point; else None.
+
+    It is asked of every frame, and so makes do with few calls; for the few hidden markers lists are quicker.
+    """
+    markers, points = squared.shape
+    found = squared.argmin(axis=1)
+    near = squared.ravel()[found + _row_starts(markers, points)] <= settings.near_m**2
     count = np.count_nonzero(near)
     if np.count_nonzero(squared <= settings.clear_m**2) != count:
         return None
-    taken = nearest if count == len(near) else nearest[near]
-    if len(set(taken.tolist())) < count:
+    hidden = [] if count == markers else [i for i, found_near in enumerate(near.tolist()) if not found_near]
+    for i in hidden:
+        found[i] = HIDDEN
+    taken = set(found.tolist())
+    if len(taken) != min(count + 1, markers):
         return None
-    if known is not None:
-        carried = known[taken]
-        if ((carried != HIDDEN) & (carried != near.nonzero()[0])).any():
-            return None
-    return nearest if count == len(near) else np.where(near, nearest, HIDDEN)
+    if known is not None and _contradicts(known, found):
+        return None
+    farthest = settings.radius_m**2
+    for i in hidden:
+        for j, distance in enumerate(squared[i].tolist()):
+            if distance <= farthest and j not in taken:
+                return None
+    return found
+
+
+def _contradicts(known: Indices, found: Indices) -> bool:
+    """Whether any point was another marker's in the frame before, by its own track."""
+    seen = (found != HIDDEN).nonzero()[0]
+    carried = known[found[seen]]
+    return bool(((carried != HIDDEN) & (carried != seen)).any())
+
+
+@cache
+def _row_starts(rows: int, columns: int) -> Indices:
+    """(rows,) where the rows of a matrix begin in its ravelled form."""
+    return np.arange(rows) * columns
 
 
 def _undisputed(squared: Array, settings: AssignmentSettings, known: Indices | None) -> Indices:

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.estimate import Estimate, Follower, Recording
-from mbkf.filters.prediction import expected_markers
+from mbkf.filters.estimate import Estimate, Follower, Foresight, Recording
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.first_frame import FirstFrame, labelled
 from mbkf.labelling.running import RunningLabeller
@@ -145,13 +144,14 @@ class LabellingPass:
         lost = 0
         while t < len(self._positions_m):
             points = self._points(t)
-            labels = self._labels(t, points, estimate, lost)
+            foresight = self._follower.expect(estimate)
+            labels = self._labels(t, points, foresight, lost)
             could = min(len(labels), len(points.positions_m))
             few = np.count_nonzero(labels != HIDDEN) < max(LOST_SHARE * could, 6)
             lost = lost + 1 if few else 0
             if lost * self._follower.dt_s > LOST_S:
                 return t
-            estimate, labels = self._corrected(t, points, labels, estimate)
+            estimate, labels = self._corrected(t, points, labels, estimate, foresight)
             self._remember(t, points, labels, estimate)
             if progress is not None:
                 progress(t + 1)
@@ -159,11 +159,11 @@ class LabellingPass:
         return t
 
     def _corrected(
-        self, t: int, points: Points, labels: Indices, before: Estimate
+        self, t: int, points: Points, labels: Indices, before: Estimate, foresight: Foresight
     ) -> tuple[Estimate, Indices]:
         """The filter's step with these labels, or with those of them that go with where it came to."""
         self._note(t, points, labels)
-        estimate = self._follower.step(before, self._recording, t)
+        estimate = self._follower.step(before, self._recording, t, foresight)
         on_body = self._sensor.positions(estimate.q)
         strange = self.labeller.contradicted(labels, points.positions_m, on_body)
         if not strange.any():
@@ -172,15 +172,14 @@ class LabellingPass:
         self._note(t, points, labels)
         return self._follower.step(before, self._recording, t), labels
 
-    def _labels(self, t: int, points: Points, estimate: Estimate, lost: int) -> Indices:
+    def _labels(self, t: int, points: Points, foresight: Foresight, lost: int) -> Indices:
         """By prediction; after a blackout by the pose first, since the prediction has grown vague."""
         begin = time.perf_counter()
-        expected = expected_markers(self._follower, estimate, self._sensor)
         if lost and len(points.positions_m) >= self._search.least:
-            found = self._search.about(points.positions_m, estimate.q)
+            found = self._search.about(points.positions_m, foresight.q)
             if found is not None:
                 return found.points
-        labels = self.labeller.label(expected, points.positions_m, points.follows)
+        labels = self.labeller.label(foresight.markers, points.positions_m, points.follows)
         self.step_seconds[t] = time.perf_counter() - begin
         return labels
 

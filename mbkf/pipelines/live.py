@@ -14,7 +14,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import MbkfError
-from mbkf.filters.estimate import Estimate, Follower, Recording
+from mbkf.filters.estimate import Estimate, Follower, Foresight, Recording
 from mbkf.filters.following import Pursuit
 from mbkf.filters.kinematic_follower import warm_up_frames
 from mbkf.io.records import MarkerTrajectories, PlateReadings
@@ -54,6 +54,7 @@ class LiveFilter:
         self._follower = follower
         self._ahead = warm_up_frames(follower.dt_s)
         self._waiting: deque[tuple[int, Array, Array]] = deque()
+        self._expecting_s = 0.0
 
     @property
     def latest(self) -> Estimate | None:
@@ -61,6 +62,15 @@ class LiveFilter:
         if self._waiting or self.pursuit.must_start:
             return None
         return self.pursuit.estimate
+
+    def expect(self) -> Foresight | None:
+        """What the filter expects of the frame pushed next; None while that cannot be answered at once."""
+        if self._waiting:
+            return None
+        begin = time.perf_counter()
+        found = self.pursuit.expect()
+        self._expecting_s = time.perf_counter() - begin
+        return found
 
     def push(self, number: int, markers_m: Array, plates: Array) -> list[LiveStep]:
         """The next frame.
@@ -95,7 +105,7 @@ class LiveFilter:
         return steps
 
     def _step(self, awaited: bool) -> LiveStep:
-        begin = time.perf_counter()
+        begin, self._expecting_s = time.perf_counter() - self._expecting_s, 0.0
         number = self._waiting[0][0]
         seen = list(self._waiting) if self.pursuit.must_start else [self._waiting[0]]
         recording = Recording(

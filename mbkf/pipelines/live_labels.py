@@ -13,8 +13,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.estimate import Estimate, Follower
-from mbkf.filters.prediction import expected_markers
+from mbkf.filters.estimate import Foresight
 from mbkf.io.subject import Subject
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.first_frame import FirstFrame, labelled
@@ -36,9 +35,13 @@ UNEXPLAINED = 1
 """... unless all but so many of the points, or of the markers where these are fewer, have found each other."""
 
 
-def live_body(subject: Subject) -> LabelBody:
-    """The subject's markers ready to be looked for in a stream."""
-    return label_body(subject.markers, subject, RunningSettings())
+def live_body(subject: Subject, names: tuple[str, ...] | None = None) -> LabelBody:
+    """The subject's markers ready to be looked for in a stream: those of the ``names``, in that order, or all."""
+    body = label_body(subject.markers, subject, RunningSettings())
+    if names is None or names == body.names:
+        return body
+    chosen = [body.markers[body.names.index(name)] for name in names]
+    return label_body(chosen, subject, RunningSettings())
 
 
 class LiveLabels:
@@ -49,21 +52,21 @@ class LiveLabels:
         starts: Frames, counted from 0, whose labels were found by search.
     """
 
-    def __init__(self, body: LabelBody, follower: Follower, *, patient: bool = False) -> None:
+    def __init__(self, body: LabelBody, dt_s: float, *, patient: bool = False) -> None:
         """Args: as follows.
 
-        body: The subject's markers, with a model of its own.
-        follower: The filter whose estimates :meth:`push` is given.
+        body: The subject's markers, in the filter's order, with a model of its own.
+        dt_s: Time between frames.
         patient: Whether frames can be kept waiting by whoever sends them, as a file can: searches are then made on
             the spot, not beside the stream.
         """
         self.body = body
         self.starts: list[int] = []
-        self._follower, self._patient = follower, patient
-        self._labeller = body.labeller(follower.dt_s)
-        self._patience = LOST_S / follower.dt_s
-        self._retry = max(1, round(RETRY_S / follower.dt_s))
-        self._longest = max(2, round(LONGEST_WAIT_S / follower.dt_s))
+        self._patient = patient
+        self._labeller = body.labeller(dt_s)
+        self._patience = LOST_S / dt_s
+        self._retry = max(1, round(RETRY_S / dt_s))
+        self._longest = max(2, round(LONGEST_WAIT_S / dt_s))
         self._beside = None if patient else ThreadPoolExecutor(1, "label search")
         self._waiting: deque[tuple[int, Array]] = deque()
         self._search: Future[FirstFrame | None] | None = None
@@ -74,17 +77,17 @@ class LiveLabels:
         self._points_m = np.zeros((0, 3))
         self._labels = np.full(len(body.markers), HIDDEN, dtype=np.intp)
 
-    def push(self, points_m: Array, before: Estimate | None) -> list[Array]:
+    def push(self, points_m: Array, foresight: Foresight | None) -> list[Array]:
         """Markers (M, 3) of the frames that are due, in order: this one, or none, or those that waited and this one.
 
         Args:
             points_m: (N, 3) the frame's points in any order; NaN rows are no points.
-            before: The filter's estimate of the frame before, None where it has none or will start anew.
+            foresight: What the filter expects of this frame, None where it will start anew.
         """
         self._frame += 1
         present = points_m[~np.isnan(points_m).any(axis=1)]
-        if before is not None and self._lost <= self._patience:
-            return [self._taken(present, self._predicted(present, before))]
+        if foresight is not None and self._lost <= self._patience:
+            return [self._taken(present, self._predicted(present, foresight))]
         carried = self._carried(present, self._poses) if self._poses else None
         if carried is not None:
             self._poses = [*self._poses[-1:], carried.q]
@@ -120,14 +123,13 @@ class LiveLabels:
         self._points_m, self._labels = points_m, labels
         return labelled(points_m, labels)
 
-    def _predicted(self, points_m: Array, before: Estimate) -> Indices:
+    def _predicted(self, points_m: Array, foresight: Foresight) -> Indices:
         """By the filter's prediction; after a blackout by the pose first, since the prediction has grown vague."""
         if self._lost and len(points_m) >= self.body.search.least:
-            found = self.body.search.about(points_m, before.q)
+            found = self.body.search.about(points_m, foresight.q)
             if found is not None:
                 return found.points
-        expected = expected_markers(self._follower, before, self.body.sensor)
-        return self._labeller.label(expected, points_m, self._follows(points_m))
+        return self._labeller.label(foresight.markers, points_m, self._follows(points_m))
 
     def _follows(self, points_m: Array) -> Indices:
         """(N,) the point of the frame before that stood in the same place of the list, where that is the same one."""

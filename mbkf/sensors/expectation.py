@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.sensors.markers import MarkerReading
@@ -15,25 +13,17 @@ class MarkerExpectation:
     """Markers predicted from a state.
 
     Attributes:
-        positions_m: (M, 3) predicted positions ĥ(x⁻) in the world, m.
-        read: Works out the reading with its Jacobian H.
-        predict_covariance: Works out the (nv, nv) covariance P⁻ of the predicted configuration. Many frames need
-            neither.
+        reading: The markers at the predicted configuration, with their Jacobian H for those who ask.
+        covariance: (nv, nv) covariance P⁻ of the predicted configuration in its tangent space.
     """
 
-    positions_m: Array
-    read: Callable[[], MarkerReading]
-    predict_covariance: Callable[[], Array]
+    reading: MarkerReading
+    covariance: Array
 
-    @cached_property
-    def reading(self) -> MarkerReading:
-        """The reading at the predicted state."""
-        return self.read()
-
-    @cached_property
-    def covariance(self) -> Array:
-        """(nv, nv) covariance P⁻ of the predicted configuration in its tangent space."""
-        return self.predict_covariance()
+    @property
+    def positions_m(self) -> Array:
+        """(M, 3) predicted positions ĥ(x⁻) in the world, m."""
+        return self.reading.positions_m
 
     def spread(self, markers: BoolArray) -> Array:
         """(m, 3, 3) covariance H P⁻ Hᵀ of the chosen markers' (M,) predicted positions, m²."""

@@ -7,7 +7,7 @@ from collections import deque
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.estimate import Estimate, Follower
+from mbkf.filters.estimate import Estimate, Foresight
 from mbkf.io.subject import Subject
 from mbkf.pipelines.live import NUMERICAL
 from mbkf.pipelines.live_labels import LiveLabels, live_body
@@ -21,29 +21,28 @@ class PointNames:
     """Holds frames until their points have names."""
 
     def __init__(
-        self, subject: Subject, names: tuple[str, ...], follower: Follower, patient: bool, note: Note
+        self, subject: Subject, names: tuple[str, ...], dt_s: float, patient: bool, note: Note
     ) -> None:
-        """Args: the person, the markers that are followed, the filter, whether the source waits, and whom to tell."""
-        self._body = live_body(subject)
-        self._columns = [self._body.names.index(name) for name in names]
-        self._follower, self._patient, self._note = follower, patient, note
+        """Args: the person, the markers followed, the time step, whether the source waits, and whom to tell."""
+        self._body = live_body(subject, names)
+        self._dt_s, self._patient, self._note = dt_s, patient, note
         self._waiting: deque[ReadyFrame] = deque()
         self._labels = self._fresh()
 
-    def push(self, frame: ReadyFrame, before: Estimate | None) -> Named:
+    def push(self, frame: ReadyFrame, foresight: Foresight | None) -> Named:
         """A new frame; gives back those that are due.
 
         Args:
             frame: The frame.
-            before: The filter's estimate of the frame before, None where it has none or has to start anew.
+            foresight: What the filter expects of the frame, None where it has to start anew.
         """
         self._waiting.append(frame)
         try:
-            return self._due(self._labels.push(frame.unlabelled_m, before))
+            return self._due(self._labels.push(frame.unlabelled_m, foresight))
         except NUMERICAL as error:
             self._note("labels", f"labels are searched anew ({error})", frame.number, 1)
             self._labels = self._fresh()
-            nobody = np.full((len(self._columns), 3), np.nan)
+            nobody = np.full((len(self._body.names), 3), np.nan)
             unnamed = [(one, nobody) for one in self._waiting]
             self._waiting.clear()
             return unnamed
@@ -57,7 +56,7 @@ class PointNames:
         return self._due(self._labels.finish())
 
     def _fresh(self) -> LiveLabels:
-        return LiveLabels(self._body, self._follower, patient=self._patient)
+        return LiveLabels(self._body, self._dt_s, patient=self._patient)
 
     def _due(self, found: list[Array]) -> Named:
-        return [(self._waiting.popleft(), markers[self._columns]) for markers in found]
+        return [(self._waiting.popleft(), markers) for markers in found]

@@ -136,7 +136,7 @@ class LiveSession:
         self._named_here = None
         if not stream.marker_names:
             patient = self._source.patient
-            self._named_here = PointNames(self._subject, self.names, self._follower, patient, self._note)
+            self._named_here = PointNames(self._subject, self.names, 1.0 / stream.rate_hz, patient, self._note)
 
     @property
     def plate_corners_m(self) -> Array:
@@ -256,7 +256,7 @@ class LiveSession:
             assert frame.markers_m is not None
             self._feed(frame, frame.markers_m)
             return
-        due = self._named_here.push(frame, self._filter.latest)
+        due = self._named_here.push(frame, self._filter.expect())
         for one, markers in due:
             self._feed(one, markers)
         latest = self._filter.latest

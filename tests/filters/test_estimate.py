@@ -11,7 +11,7 @@ from mbkf.filters.kinematic_follower import WARM_UP_S
 from mbkf.filters.spread import SpreadReader
 from mbkf.filters.tracking import track
 from mbkf.pipelines.followers import FILTERS
-from tests.dynamics import DT
+from tests.dynamics import DT, MARKER_SD_M
 from tests.followed import (
     FRAMES,
     WHOLE,
@@ -241,3 +241,28 @@ def test_a_short_loss_is_bridged_with_growing_spreads(name):
     assert found.starts == (0,)
     assert not found.tracked[30:40].any() and found.tracked[40:].all()
     assert (found.position_sd[39, 3:6] > 2 * found.position_sd[29, 3:6]).all()
+
+
+@every_filter
+def test_a_step_with_what_was_expected_is_the_same_step(name):
+    follower, found = estimates(name)
+    for t in (5, 30):
+        foresight = follower.expect(found[t])
+        np.testing.assert_array_equal(
+            follower.step(found[t], recording(), t + 1, foresight).q, found[t + 1].q
+        )
+
+
+@every_filter
+def test_what_is_expected_is_as_far_off_as_stated(name):
+    """Innovations lie within H P Hᵀ + R, marker by marker: well within, since a squat is slower than most motion."""
+    follower, found = estimates(name)
+    everyone = np.ones(len(recording().markers_m[0]), dtype=bool)
+    squared = []
+    for t in range(20, LAST):
+        markers = follower.expect(found[t]).markers
+        S = markers.spread(everyone)
+        S[:, np.arange(3), np.arange(3)] += MARKER_SD_M**2
+        y = recording().markers_m[t + 1] - markers.positions_m
+        squared.append(np.einsum("mi,mij,mj->m", y, np.linalg.inv(S), y))
+    assert 0.25 < np.mean(squared) / 3.0 < 1.5

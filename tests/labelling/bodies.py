@@ -35,11 +35,16 @@ def posture(model, rng, swing_rad=0.25, yaw=0.0):
     return model.integrate(q, step)
 
 
+GHOSTS_CLEAR_M = 0.06
+"""A ghost much nearer to a marker than this could as well be the marker."""
+
+
 def unlabelled(positions, rng, missing=0, extra=0, noise_m=0.002):
-    """The frame's points: some taken away, some ghosts added, all shuffled."""
+    """The frame's points: some taken away, some ghosts added, all shuffled; no ghost beside a marker's place."""
     seen = np.ones(len(positions), dtype=bool)
     seen[rng.choice(len(positions), missing, replace=False)] = False
-    ghosts = positions.mean(axis=0) + rng.uniform(-0.8, 0.8, (extra, 3))
+    ghosts = positions.mean(axis=0) + rng.uniform(-0.8, 0.8, (20 * extra, 3))
+    ghosts = ghosts[np.linalg.norm(ghosts[:, None] - positions, axis=2).min(axis=1) > GHOSTS_CLEAR_M][:extra]
     points = np.concatenate([positions[seen] + rng.normal(0.0, noise_m, (seen.sum(), 3)), ghosts])
     order = rng.permutation(len(points))
     truth = np.full(len(positions), HIDDEN)

@@ -79,16 +79,36 @@ def test_what_the_filter_cannot_digest_makes_it_start_anew(monkeypatch):
     chosen = follower("kinematic", inputs)
     step, left = chosen.step, [3]
 
-    def failing(before, recording, t):
+    def failing(before, recording, t, foresight):
         left[0] -= 1
         if left[0] == 0:
             raise np.linalg.LinAlgError("singular matrix")
-        return step(before, recording, t)
+        return step(before, recording, t, foresight)
 
     monkeypatch.setattr(chosen, "step", failing)
     steps, _ = steps_of(LiveFilter(chosen), recording)
     assert [step.number for step in steps if step.trouble] == [3]
     assert [step.number for step in steps if step.estimate and step.estimate.started] == [0, 4]
+
+
+@pytest.mark.parametrize("name", ["kinematic", "dynamic"])
+def test_what_was_expected_is_what_the_step_goes_on_from(name, monkeypatch):
+    """Asked what it expects before each frame, the filter predicts no second time and finds the very same."""
+    inputs, recording = recorded()
+    plain, _ = steps_of(LiveFilter(follower(name, inputs)), recording)
+    chosen = follower(name, inputs)
+    asked, calls = LiveFilter(chosen), []
+    predict = chosen.kalman.plant.predict
+    monkeypatch.setattr(chosen.kalman.plant, "predict", lambda *a: calls.append(1) or predict(*a))
+    found = []
+    for t in range(len(recording)):
+        expected, before = asked.expect(), len(calls)
+        assert (expected is None) == (asked.latest is None)
+        assert asked.expect() is expected
+        found += asked.push(t, recording.markers_m[t], recording.plates[t])
+        assert expected is None or len(calls) == before
+    for one, other in zip(found, plain, strict=False):
+        np.testing.assert_array_equal(one.estimate.q, other.estimate.q)
 
 
 def test_after_a_cut_nothing_is_known():

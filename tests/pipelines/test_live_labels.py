@@ -23,12 +23,11 @@ def streamed(points_m, rate_hz, subject):
     """The body, (T, M, 3) names given while a filter follows, and the frames in which they were searched."""
     body = live_body(subject)
     follower = live_body(subject).follower(1.0 / rate_hz)
-    labels, live = LiveLabels(body, follower, patient=True), LiveFilter(follower)
+    labels, live = LiveLabels(body, follower.dt_s, patient=True), LiveFilter(follower)
     named, plates = [], np.zeros((0, 6))
     with single_threaded():
         for number, frame in enumerate(points_m):
-            before = None if live.pursuit.must_start else live.pursuit.estimate
-            for markers in labels.push(frame, before):
+            for markers in labels.push(frame, live.expect()):
                 steps = live.push(len(named), markers, plates)
                 named.append(markers)
             if named and steps and steps[-1].number == number and steps[-1].estimate is not None:
@@ -66,7 +65,7 @@ def test_a_total_loss_is_followed_by_a_new_start(walk):
 def test_nobody_is_nobody(walk):
     _, _, subject = walk
     body = live_body(subject)
-    labels = LiveLabels(body, body.follower(0.01), patient=True)
+    labels = LiveLabels(body, 0.01, patient=True)
     rng = np.random.default_rng(0)
     frames = [rng.uniform(-1, 1, (40, 3)), np.full((40, 3), np.nan), np.zeros((0, 3))]
     due = [one for frame in frames for one in labels.push(frame, None)] + labels.finish()
@@ -77,7 +76,7 @@ def test_nobody_is_nobody(walk):
 def test_a_stream_goes_on_while_it_is_searched(walk):
     truth, raw, subject = walk
     body = live_body(subject)
-    labels = LiveLabels(body, live_body(subject).follower(1.0 / raw.rate_hz))
+    labels = LiveLabels(body, 1.0 / raw.rate_hz)
     assert labels.push(raw.positions_m[0], None) == []  # the search has only begun
     due = []
     for frame in raw.positions_m[1:60]:
@@ -96,7 +95,7 @@ def test_a_stream_goes_on_while_it_is_searched(walk):
 def test_frames_do_not_wait_for_ever(walk):
     _, _, subject = walk
     body = live_body(subject)
-    labels = LiveLabels(body, body.follower(0.01), patient=True)
+    labels = LiveLabels(body, 0.01, patient=True)
     most = round(LONGEST_WAIT_S / 0.01)
     due = [labels.push(np.zeros((0, 3)), None) for _ in range(most + 5)]
     assert [len(one) for one in due] == [0] * most + [1] * 5

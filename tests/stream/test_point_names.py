@@ -3,12 +3,10 @@
 import numpy as np
 import pytest
 
-from mbkf.pipelines.followers import follower
-from mbkf.pipelines.live import live_inputs
 from mbkf.pipelines.live_labels import live_body
 from mbkf.stream.intake import ReadyFrame
 from mbkf.stream.point_names import PointNames
-from tests.stream.scripted import SETTINGS, frames_of
+from tests.stream.scripted import frames_of
 
 
 @pytest.fixture
@@ -19,9 +17,8 @@ def names(subject):
 @pytest.fixture
 def made(capture, subject, names):
     _, frames = frames_of(capture, unlabelled=True)
-    chosen = follower("kinematic", live_inputs(names, 100.0, (), subject, SETTINGS).inputs)
     notes = []
-    points = PointNames(subject, names[::-1], chosen, True, lambda *what: notes.append(what))
+    points = PointNames(subject, names[::-1], 0.01, True, lambda *what: notes.append(what))
     plates = np.zeros((0, 6))
     ready = [ReadyFrame(f.number, f.arrival_s, None, f.unlabelled_m, plates) for f in frames[:5]]
     return points, ready, notes

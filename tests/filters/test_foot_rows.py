@@ -1,0 +1,90 @@
+"""The feet's twelve rows: minus the derivative of their innovations, about the soles, by what each foot stands on."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+
+from mbkf.filters.dynamic_settings import DynamicSettings
+from mbkf.filters.foot_rows import FootRows
+from mbkf.sensors.footing import Footing, FootingMemory, FootLoad
+
+FIRST, WEIGHT_N, DT = 6, 700.0, 0.01
+SETTINGS = DynamicSettings()
+ROWS = FootRows(FIRST, WEIGHT_N, DT, SETTINGS)
+MEMORY = FootingMemory((), (), float("nan"), (0.0, 0.0))
+SINGLE = (Footing.FREE, Footing.AIR, Footing.MEASURED)
+PAIRS = [*product(SINGLE, repeat=2), (Footing.SHARED, Footing.SHARED)]
+
+
+def load(footing, seed=0):
+    rng = np.random.default_rng(seed)
+    wrench = rng.normal(0.0, 100.0, (2, 6))
+    wrench[:, 2] = 300.0
+    wrench[[foot in (Footing.AIR, Footing.FREE) for foot in footing]] = 0.0
+    return FootLoad(footing, wrench, rng.uniform(-0.5, 0.5, (2, 3)), False, MEMORY)
+
+
+def filled(loaded, w, lifted=()):
+    rows, values = np.zeros((12, FIRST + 12)), np.empty(12)
+    return rows, values, ROWS.fill(rows, values, w, loaded, lifted)
+
+
+def about(centre_m, wrench):
+    """The same wrench about another point."""
+    return np.concatenate([wrench[:3], wrench[3:] - np.cross(centre_m, wrench[:3])])
+
+
+@pytest.mark.parametrize("footing", PAIRS)
+def test_rows_are_minus_the_derivative_of_the_innovations(footing):
+    loaded, w = load(footing), np.tile([10.0, -5.0, 200.0, 3.0, 2.0, 1.0], 2)
+    rows, values, plates = filled(loaded, w)
+    assert plates == 6 * sum(foot == Footing.MEASURED for foot in footing) or Footing.SHARED in footing
+    assert (rows[:, :FIRST] == 0.0).all()
+    step = np.random.default_rng(1).normal(size=12)
+    moved = filled(loaded, w + step)[1]
+    np.testing.assert_allclose(moved - values, -rows[:, FIRST:] @ step, rtol=1e-9, atol=1e-9)
+
+
+def test_a_plate_reads_the_wrench_about_the_sole_with_its_own_noise():
+    loaded, w = load((Footing.AIR, Footing.MEASURED)), np.arange(12.0)
+    _, values, plates = filled(loaded, w)
+    assert plates == 6
+    noise = np.repeat([SETTINGS.plate_force_n, SETTINGS.plate_moment_nm], 3)
+    off = about(loaded.centres_m[1], loaded.wrench[1] - w[6:])
+    np.testing.assert_allclose(values[:6], off / noise, rtol=1e-12)
+
+
+def test_a_shared_plate_reads_the_sum():
+    loaded, w = load((Footing.SHARED, Footing.SHARED)), np.arange(12.0)
+    _, values, plates = filled(loaded, w)
+    assert plates == 6
+    noise = np.repeat([SETTINGS.plate_force_n, SETTINGS.plate_moment_nm], 3)
+    off = about(loaded.centres_m.mean(axis=0), loaded.wrench[0] - w[:6] - w[6:])
+    np.testing.assert_allclose(values[:6], off / noise, rtol=1e-12)
+
+
+def test_a_free_foot_carries_what_the_plates_do_not_under_its_sole():
+    loaded = load((Footing.MEASURED, Footing.FREE))
+    rest = WEIGHT_N - loaded.wrench[0, 2]
+    w = np.concatenate([loaded.wrench[0], np.zeros(6)])
+    w[8] = rest
+    w[9:] = np.cross(loaded.centres_m[1], [0.0, 0.0, rest])
+    np.testing.assert_allclose(filled(loaded, w)[1], 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("lifted", [(), (0,)])
+def test_a_free_foot_that_pulls_is_held_at_nothing(lifted):
+    loaded, w = load((Footing.FREE, Footing.AIR)), np.zeros(12)
+    w[2] = -50.0 if not lifted else 20.0
+    rows, values, _ = filled(loaded, w, lifted)
+    assert values[2] == pytest.approx(-w[2] / SETTINGS.pulling_force_n)
+    assert rows[2, FIRST + 2] == pytest.approx(1.0 / SETTINGS.pulling_force_n)
+
+
+def test_wrenches_wander_about_the_soles():
+    loaded = load((Footing.FREE, Footing.FREE))
+    sd = np.repeat([SETTINGS.wrench_force, SETTINGS.wrench_moment], 3) * DT**0.5
+    for centre, wander in zip(loaded.centres_m, ROWS.wander(loaded), strict=True):
+        to_sole = np.array([about(centre, one) for one in np.eye(6)]).T
+        np.testing.assert_allclose(to_sole @ wander @ to_sole.T, np.diag(sd**2), rtol=1e-9, atol=1e-9)
