@@ -8,16 +8,15 @@ from dataclasses import replace
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.dynamic import DynamicFilter
+from mbkf.filters.dynamic import NOWHERE, DynamicFilter
 from mbkf.filters.dynamic_records import DynamicStep
 from mbkf.filters.dynamic_smoothing import Frame, smooth
 from mbkf.filters.estimate import Estimate, Foresight, Recording
 from mbkf.filters.kinematic import KinematicFilter
 from mbkf.filters.kinematic_follower import warm_start
 from mbkf.filters.singer import DynamicState
-from mbkf.filters.spread import Spread, SpreadReader
-from mbkf.filters.state import FilterState
-from mbkf.filters.stated import stated_covariance
+from mbkf.filters.spread import Spread, SpreadReader, root
+from mbkf.filters.stated import StatedErrors
 
 ROUNDS = 2
 """How often a smoothed stretch is linearised; a third round changes the residual by less than 0.1 N."""
@@ -30,7 +29,8 @@ class DynamicFollower:
         self.kalman, self._starter = kalman, starter
         self.model, self.dt_s = kalman.model, kalman.dt_s
         self.restart_after_s = starter.settings.restart_after_s
-        self._reader = SpreadReader(self.model, self.dt_s)
+        self._reader = SpreadReader(self.model)
+        self._held = np.flatnonzero(kalman.held)
 
     def start(self, recording: Recording, t: int, guess: Array | None) -> Estimate | None:
         """The kinematic filter's warm start, corrected by this frame's plates and Newton's law."""
@@ -57,12 +57,8 @@ class DynamicFollower:
 
     def covariance(self, estimate: Estimate) -> Array:
         """(2 nv, 2 nv) of (q, v); dofs that are held may be anywhere a posture is."""
-        return self._moving(self.error_covariance(estimate))
-
-    def _moving(self, stated: Array) -> Array:
-        nv = self.model.nv
-        P = stated[: 2 * nv, : 2 * nv].copy()
-        held = np.flatnonzero(self.kalman.held)
+        nv, held = self.model.nv, self._held
+        P = self.errors(estimate).covariance()[: 2 * nv, : 2 * nv]
         P[held, held] += self.model.posture_sd[held] ** 2
         return P
 
@@ -71,24 +67,25 @@ class DynamicFollower:
         state: DynamicState = estimate.inner.state
         torque = self.kalman.balance.torques(state.q, state.v, state.a, state.w)
         T = np.hstack([torque.by_q, torque.by_v, torque.by_a, torque.by_wrench])
-        stated = self.error_covariance(estimate)
-        variance = np.einsum("ij,ij->i", T @ stated, T)
-        spread = self._reader.at(FilterState(state.q, state.v, self._moving(stated)))
-        return replace(spread, torque=np.sqrt(np.maximum(variance, 0.0)))
+        errors, held = self.errors(estimate), self._held
+        P = errors.position.copy()
+        P[held, held] += self.model.posture_sd[held] ** 2
+        return Spread(self._reader, state.q, P, errors.velocity_variance, root(errors.variance_of(T)))
 
-    def error_covariance(self, estimate: Estimate) -> Array:
-        """(N, N) covariance of the whole state's errors; the filter's own where only white noise is expected."""
+    def errors(self, estimate: Estimate) -> StatedErrors:
+        """Those of the whole state; what the filter itself says where only white noise is expected."""
         step: DynamicStep = estimate.inner
         s, P, decision = self.kalman.settings, estimate.inner.state.P, step.decision
         if s.innovation_share <= 0.0:
-            return P
-        unseen = decision.unseen if decision.unmarked is None else decision.unmarked
-        unknown = np.union1d(unseen, np.flatnonzero(self.kalman.held))
+            return StatedErrors(P, step.frame.matrix, NOWHERE, 0.0, 1.0, 0.0)
+        known = ~self.kalman.held
+        known[decision.unseen if decision.unmarked is None else decision.unmarked] = False
+        seen = np.flatnonzero(known)
         # A pose takes up part of what its markers err by, so innovations show less than that.
         readings = 3 * int(np.count_nonzero(decision.trusted))
-        over = max(readings - self.model.nv + len(unknown), readings // 4)
+        over = max(readings - len(seen), readings // 4)
         skin = s.innovation_share * readings / max(over, 1)
-        return stated_covariance(P, step.frame.matrix, unknown, skin, s.new_share, s.skin_rate_rad_s)
+        return StatedErrors(P, step.frame.matrix, seen, skin, s.new_share, s.skin_rate_rad_s)
 
     def wrench_sd(self, estimate: Estimate) -> Array:
         """(2, 6) from the state's covariance."""

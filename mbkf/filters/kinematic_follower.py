@@ -72,7 +72,7 @@ class KinematicFollower:
         self.model = kalman.sensor.model
         self.dt_s = kalman.plant.dt_s
         self.restart_after_s = kalman.settings.restart_after_s
-        self._reader = SpreadReader(self.model, self.dt_s)
+        self._reader = SpreadReader(self.model)
 
     def start(self, recording: Recording, t: int, guess: Array | None) -> Estimate | None:
         """A warm start."""
@@ -109,8 +109,11 @@ class KinematicFollower:
     def spread(self, estimate: Estimate) -> Spread:
         """Standard deviations; torques as far as accelerations cause them, NaN at a start."""
         inner: _Followed = estimate.inner
-        change = None if inner.result is None else inner.result.velocity_step_covariance
-        return self._reader.at(inner.state, change)
+        q, P, nv = inner.state.q, inner.state.P, self.model.nv
+        torque = np.full(nv, np.nan)
+        if inner.result is not None:
+            torque = self._reader.torque(q, inner.result.velocity_step_covariance, self.dt_s)
+        return Spread(self._reader, q, P[:nv, :nv], np.diagonal(P)[nv:], torque)
 
     def wrench_sd(self, estimate: Estimate) -> Array:
         """This filter estimates no wrench."""

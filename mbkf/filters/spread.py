@@ -6,82 +6,96 @@ Taken frame by frame, so that long trials need not keep a covariance matrix per 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.state import FilterState
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.sensors.contacts import FEET
 
 
-@dataclass(frozen=True)
-class Spread:
-    """Standard deviations at one instant.
+class SpreadReader:
+    """Reads standard deviations off the covariances of a body's filter.
 
     Attributes:
-        position: (nv,) of the configuration in its tangent space, rad or m.
-        velocity: (nv,) of the velocity.
-        angle: (A,) of the clinical coordinates.
-        rate: (A,) of their rates, from the velocities' own variances.
-        torque: (nv,) of the generalised forces that the accelerations' spread causes; NaN at a start.
-        foot_height: (2,) of the height of right and left foot, m.
+        model: The body.
+        clinical: Its clinical coordinates, A of them.
     """
 
-    position: Array
-    velocity: Array
-    angle: Array
-    rate: Array
-    torque: Array
-    foot_height: Array
-
-
-class SpreadReader:
-    """Reads standard deviations off the covariances of a body's filter."""
-
-    def __init__(self, model: HumanModel, dt_s: float) -> None:
-        self.model, self.dt_s = model, dt_s
-        self._clinical = ClinicalAngles(model)
+    def __init__(self, model: HumanModel) -> None:
+        self.model, self.clinical = model, ClinicalAngles(model)
         self._feet = [model.joint(segment).joint_id for segment in FEET]
 
-    @property
-    def coordinates(self) -> int:
-        """Number A of clinical coordinates."""
-        return len(self._clinical.names)
-
-    def at(self, state: FilterState, velocity_step_covariance: Array | None = None) -> Spread:
-        """Standard deviations of a state.
+    def torque(self, q: Array, step_covariance: Array, dt_s: float) -> Array:
+        """(nv,) of the generalised forces that eq. 3.7's accelerations cause, M (v_k − v_{k−1}) / Δt.
 
         Args:
-            state: Posterior of a frame.
-            velocity_step_covariance: (nv, nv) covariance of v_k − v_{k−1}, which gives that of eq. 3.7's
-                accelerations; None at a start.
+            q: (nq,) configuration.
+            step_covariance: (nv, nv) covariance of v_k − v_{k−1}.
+            dt_s: Time step Δt.
         """
-        nv, q = self.model.nv, state.q
-        P = state.P[:nv, :nv]
-        variance = np.diag(state.P)
-        E = self._clinical.rate_matrix(q)
-        torque = np.full(nv, np.nan)
-        if velocity_step_covariance is not None:
-            M = self.model.mass_matrix(q)
-            torque = _root(((M @ velocity_step_covariance) * M).sum(axis=1)) / self.dt_s
-        return Spread(
-            position=_root(variance[:nv]),
-            velocity=_root(variance[nv:]),
-            angle=_root(((E @ P) * E).sum(axis=1)),
-            rate=_root(E**2 @ variance[nv:]),
-            torque=torque,
-            foot_height=self._foot_height(q, P),
-        )
+        M = self.model.mass_matrix(q)
+        return root(((M @ step_covariance) * M).sum(axis=1)) / dt_s
 
-    def _foot_height(self, q: Array, P: Array) -> Array:
+    def foot_height(self, q: Array, P: Array) -> Array:
+        """(2,) of the feet, for the covariance P (nv, nv) of the configuration."""
         _, origins, jacobian = self.model.placements_and_jacobian(q)
         x, y, _ = origins[self._feet].T[:, :, None]
         rise = (jacobian[2] + jacobian[3] * y - jacobian[4] * x) * self.model.supports[self._feet]
-        return _root(((rise @ P) * rise).sum(axis=1))
+        return root(((rise @ P) * rise).sum(axis=1))
 
 
-def _root(variance: Array) -> Array:
+@dataclass(frozen=True)
+class Spread:
+    """Standard deviations at one instant; those of clinical coordinates and feet are worked out when asked for.
+
+    Attributes:
+        reader: The body's.
+        q: (nq,) configuration.
+        P: (nv, nv) its covariance in the tangent space.
+        velocity_variance: (nv,) variances of the velocities.
+        torque: (nv,) of the generalised forces; NaN where nothing is known of them.
+    """
+
+    reader: SpreadReader
+    q: Array
+    P: Array
+    velocity_variance: Array
+    torque: Array
+
+    @property
+    def position(self) -> Array:
+        """(nv,) of the configuration in its tangent space, rad or m."""
+        return root(np.diagonal(self.P))
+
+    @property
+    def velocity(self) -> Array:
+        """(nv,) of the velocity."""
+        return root(self.velocity_variance)
+
+    @cached_property
+    def _rate_matrix(self) -> Array:
+        return self.reader.clinical.rate_matrix(self.q)
+
+    @property
+    def angle(self) -> Array:
+        """(A,) of the clinical coordinates."""
+        E = self._rate_matrix
+        return root(((E @ self.P) * E).sum(axis=1))
+
+    @property
+    def rate(self) -> Array:
+        """(A,) of their rates, from the velocities' own variances."""
+        return root(self._rate_matrix**2 @ self.velocity_variance)
+
+    @property
+    def foot_height(self) -> Array:
+        """(2,) of the height of right and left foot, m."""
+        return self.reader.foot_height(self.q, self.P)
+
+
+def root(variance: Array) -> Array:
     """Square root; rounding may leave a variance of zero a little below it."""
     return np.sqrt(np.maximum(variance, 0.0))

@@ -13,34 +13,101 @@ their spread to neither, and wrenches theirs to plates: they keep what P says.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import lapack
 
 from mbkf.conventions import Array
 
 
-def stated_covariance(
-    P: Array, information: Array, unknown: NDArray[np.intp], skin: float, new: float, rate_rad_s: float
-) -> Array:
-    """(N, N) covariance of the errors of (q, v, a, w), positive semidefinite as P is.
+@dataclass(frozen=True)
+class StatedErrors:
+    """Errors of (q, v, a, w); their covariance Σ is positive semidefinite as P is.
 
-    Args:
-        P: (3 nv + 12, 3 nv + 12) the filter's.
+    Attributes:
+        P: (3 nv + 12, 3 nv + 12) the filter's own covariance.
         information: (nv, nv) of one frame on the configuration, as the filter weighs it.
-        unknown: Dofs that nobody sees.
+        seen: (n,) dofs that somebody sees.
         skin: Variance of the markers over what the filter takes for it.
         new: Share κ of what the filter takes for it that is new in every frame.
         rate_rad_s: ω.
     """
-    nv = len(information)
-    seen = np.ones(nv, dtype=bool)
-    seen[unknown] = False
-    size = np.ones(len(P))
-    size[: 3 * nv] = np.tile(np.where(seen, new**0.5, 1.0), 3)
-    stated = P * size * size[:, None]
-    where = np.flatnonzero(seen)
-    C = skin * np.linalg.inv(information[np.ix_(where, where)])
-    rates = (1.0, rate_rad_s, rate_rad_s**2)
-    for first, second, sign in ((0, 0, 1.0), (1, 1, 1.0), (2, 2, 1.0), (0, 2, -1.0), (2, 0, -1.0)):
-        stated[np.ix_(first * nv + where, second * nv + where)] += sign * rates[first] * rates[second] * C
-    return stated
+
+    P: Array
+    information: Array
+    seen: NDArray[np.intp]
+    skin: float
+    new: float
+    rate_rad_s: float
+
+    @cached_property
+    def size(self) -> Array:
+        """(N,) by which errors of the filter's kind are smaller than P says, √κ."""
+        nv, size = len(self.information), np.ones(len(self.P))
+        for first in (0, nv, 2 * nv):
+            size[first + self.seen] = self.new**0.5
+        return size
+
+    @cached_property
+    def repeated(self) -> Array:
+        """(n, n) C of the seen dofs."""
+        seen = self.seen
+        if not len(seen):
+            return np.zeros((0, 0))
+        information = self.information
+        if len(seen) < len(information):
+            information = information[seen[:, None], seen]
+        root, failed = lapack.dpotrf(information, lower=True)
+        if failed:
+            return np.asarray(self.skin * np.linalg.inv(information))
+        inverse, _ = lapack.dpotri(root, lower=True)
+        lower = np.tril(inverse)
+        whole = lower + lower.T
+        np.einsum("ii->i", whole)[:] *= 0.5
+        whole *= self.skin
+        return whole
+
+    @cached_property
+    def position(self) -> Array:
+        """(nv, nv) block of Σ of the configuration."""
+        nv, seen = len(self.information), self.seen
+        size = self.size[:nv]
+        block = self.P[:nv, :nv] * size
+        block *= size[:, None]
+        block[seen[:, None], seen] += self.repeated
+        return block
+
+    @property
+    def velocity_variance(self) -> Array:
+        """(nv,) diagonal of Σ of the velocities."""
+        velocities = slice(len(self.information), 2 * len(self.information))
+        found: Array = np.diagonal(self.P)[velocities] * self.size[velocities] ** 2
+        found[self.seen] += self.rate_rad_s**2 * np.diagonal(self.repeated)
+        return found
+
+    def variance_of(self, T: Array) -> Array:
+        """(m,) diagonal of T Σ Tᵀ for quantities T (m, N) of the state, without Σ."""
+        nv, rate = len(self.information), self.rate_rad_s
+        sized = T * self.size
+        variance: Array = np.einsum("ij,ij->i", sized @ self.P, sized)
+        # Positions and accelerations swing in opposition, velocities between them.
+        swing = T[:, :nv] - rate**2 * T[:, 2 * nv : 3 * nv]
+        quarter = rate * T[:, nv : 2 * nv]
+        if len(self.seen) < nv:
+            swing, quarter = swing[:, self.seen], quarter[:, self.seen]
+        for part in (swing, quarter):
+            variance += np.einsum("ij,ij->i", part @ self.repeated, part)
+        return variance
+
+    def covariance(self) -> Array:
+        """(N, N) Σ."""
+        nv, rate, C = len(self.information), self.rate_rad_s, self.repeated
+        whole = self.P * self.size * self.size[:, None]
+        rates = (1.0, rate, rate**2)
+        for first, second, sign in ((0, 0, 1.0), (1, 1, 1.0), (2, 2, 1.0), (0, 2, -1.0), (2, 0, -1.0)):
+            own = np.ix_(first * nv + self.seen, second * nv + self.seen)
+            whole[own] += sign * rates[first] * rates[second] * C
+        return whole

@@ -13,7 +13,6 @@ from mbkf.filters.kinematic import KinematicFilter
 from mbkf.filters.kinematic_follower import warm_start
 from mbkf.filters.prediction import steady_motion
 from mbkf.filters.spread import Spread, SpreadReader
-from mbkf.filters.state import FilterState
 from mbkf.filters.torque import TorqueFilter, TorqueState, TorqueStep
 from mbkf.filters.torque_plant import ForcedState
 from mbkf.numerics.smoothing import BackwardPass
@@ -37,7 +36,7 @@ class TorqueFollower:
         self.kalman, self.feet, self._starter = kalman, feet, starter
         self.model, self.dt_s = kalman.sensor.model, kalman.plant.dt_s
         self.restart_after_s = starter.settings.restart_after_s
-        self._reader = SpreadReader(self.model, self.dt_s)
+        self._reader = SpreadReader(self.model)
 
     def start(self, recording: Recording, t: int, guess: Array | None) -> Estimate | None:
         """The kinematic filter's warm start; torques by inverse dynamics under this frame's plates."""
@@ -84,8 +83,8 @@ class TorqueFollower:
     def spread(self, estimate: Estimate) -> Spread:
         """Standard deviations; torques are states of this filter."""
         state: TorqueState = estimate.inner.state
-        spread = self._reader.at(FilterState(state.q, state.v, self.covariance(estimate)))
-        return replace(spread, torque=state.tau_sd)
+        P, nv = self.covariance(estimate), self.model.nv
+        return Spread(self._reader, state.q, P[:nv, :nv], np.diagonal(P)[nv:], state.tau_sd)
 
     def wrench_sd(self, estimate: Estimate) -> Array:
         """(2, 6) of the state's wrenches, carried to the world's origin."""

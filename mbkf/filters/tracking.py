@@ -152,8 +152,9 @@ class _Recorder:
         for name in ("q", "v", "a", "wrench"):
             self._arrays[name][t] = getattr(estimate, name)
         self._arrays["wrench_sd"][t] = self._follower.wrench_sd(estimate)
-        for name, value in vars(self._follower.spread(estimate)).items():
-            key = f"{name}_sd"
+        spread = self._follower.spread(estimate)
+        for name in ("position", "velocity", "angle", "rate", "torque", "foot_height"):
+            key, value = f"{name}_sd", getattr(spread, name)
             if key not in self._arrays:
                 self._arrays[key] = np.full((self._frames, *value.shape), np.nan)
             self._arrays[key][t] = value

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
 from mbkf.filters.estimate import Estimate, Follower
+from mbkf.filters.spread import Spread
 from mbkf.filters.tracking import Track
 from mbkf.io.frame_log import FrameLogWriter, read_frame_log
 from mbkf.io.records import PlateReadings
@@ -81,8 +82,8 @@ class LiveRows:
         measured_m: Array,
         estimate: Estimate | None,
         step_seconds: float,
-    ) -> NDArray:
-        """(1,) a row of :attr:`dtype`.
+    ) -> tuple[NDArray, Spread | None]:
+        """(1,) a row of :attr:`dtype`, and the spread for :meth:`judge`.
 
         Args:
             number: The frame.
@@ -93,7 +94,7 @@ class LiveRows:
         row = self._empty.copy()
         row["number"], row["measured_m"] = number, measured_m
         if estimate is None:
-            return row
+            return row, None
         row["known"], row["step_seconds"] = True, step_seconds
         row["started"], row["tracked"] = estimate.started, estimate.tracked
         row["refused"] = estimate.refused
@@ -102,14 +103,18 @@ class LiveRows:
         for name in ("q", "v", "a", "wrench"):
             row[name] = getattr(estimate, name)
         row["wrench_sd"] = self._follower.wrench_sd(estimate)
-        for name, value in vars(self._follower.spread(estimate)).items():
-            row[f"{name}_sd"] = value
-        return row
+        spread = self._follower.spread(estimate)
+        for name in ("position", "velocity", "torque"):
+            row[f"{name}_sd"] = getattr(spread, name)
+        return row, spread
 
-    def judge(self, row: NDArray, estimate: Estimate | None) -> None:
-        """Adds to a row how well its frame was predicted; nobody waits for that."""
-        if estimate is not None:
-            row["nis"], row["readings"] = self._follower.innovation(estimate)
+    def judge(self, row: NDArray, estimate: Estimate | None, spread: Spread | None) -> None:
+        """Adds to a row how well its frame was predicted, and what only the results tell; nobody waits for that."""
+        if estimate is None or spread is None:
+            return
+        row["nis"], row["readings"] = self._follower.innovation(estimate)
+        for name in ("angle", "rate", "foot_height"):
+            row[f"{name}_sd"] = getattr(spread, name)
 
 
 def blank(dtype: np.dtype, rows: int) -> NDArray:

@@ -84,7 +84,11 @@ class PlateBuffer:
                 self._count, 6
             )
         loads[np.isnan(loads).any(axis=1)] = np.nan
-        loads[:, 3:] += np.cross(self._origins, loads[:, :3])
+        x, y, z = self._origins.T
+        fx, fy, fz = loads[:, :3].T
+        loads[:, 3] += y * fz - z * fy
+        loads[:, 4] += z * fx - x * fz
+        loads[:, 5] += x * fy - y * fx
         return loads
 
     def _position(self, number: int) -> float:

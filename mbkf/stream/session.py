@@ -274,7 +274,7 @@ class LiveSession:
             assert ready.markers_m is not None
             if step.trouble is not None:
                 self._note("numbers", f"the filter starts anew ({step.trouble})", step.number, 1)
-            row = self._rows.row(step.number, ready.markers_m, step.estimate, step.seconds)
+            row, spread = self._rows.row(step.number, ready.markers_m, step.estimate, step.seconds)
             latency = time.perf_counter() - ready.arrival_s
             if not ready.lost:
                 row["latency_s"] = latency
@@ -285,7 +285,7 @@ class LiveSession:
                 if self._starts > 1:
                     self._note("start", "the filter started anew", step.number, 1)
             self._show(ready, row, latency)
-            self._rows.judge(row, step.estimate)
+            self._rows.judge(row, step.estimate, spread)
             self._writer.put_row(row)
 
     def _show(self, ready: ReadyFrame, row: np.ndarray, latency_s: float) -> None:

@@ -47,7 +47,7 @@ def test_torques_come_with_the_spread_of_the_whole_state():
 
     h = 1e-6
     T = np.array([(tau(h * e) - tau(-h * e)) / (2 * h) for e in np.eye(len(state.P))]).T
-    expected = np.sqrt(np.einsum("ij,jk,ik->i", T, follower.error_covariance(found[5]), T))
+    expected = np.sqrt(np.einsum("ij,jk,ik->i", T, follower.errors(found[5]).covariance(), T))
     np.testing.assert_allclose(follower.spread(found[5]).torque, expected, rtol=1e-5)
 
 
@@ -55,7 +55,7 @@ def test_wrenches_and_motion_come_with_the_states_spread():
     follower, found = estimates("dynamic")
     P, nv = found[5].inner.state.P, made().model.nv
     np.testing.assert_allclose(follower.wrench_sd(found[5]).ravel() ** 2, np.diag(P)[3 * nv :], rtol=1e-12)
-    stated = follower.error_covariance(found[5])
+    stated = follower.errors(found[5]).covariance()
     np.testing.assert_array_equal(follower.covariance(found[5]), stated[: 2 * nv, : 2 * nv])
 
 
@@ -63,7 +63,7 @@ def test_where_only_white_noise_is_expected_the_spread_is_the_filters():
     follower = made_follower("dynamic")
     follower.kalman.settings = replace(follower.kalman.settings, innovation_share=0.0)
     estimate = estimates("dynamic")[1][5]
-    assert follower.error_covariance(estimate) is estimate.inner.state.P
+    np.testing.assert_array_equal(follower.errors(estimate).covariance(), estimate.inner.state.P)
 
 
 def test_reactions_and_torques_follow_the_truth():

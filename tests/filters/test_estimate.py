@@ -94,7 +94,7 @@ def test_covariances_are_symmetric_positive_and_those_of_the_spread(name):
 @every_filter
 def test_spreads_are_finite_and_positive(name):
     one, first, second = two(name)
-    nv, angles = made().model.nv, SpreadReader(made().model, DT).coordinates
+    nv, angles = made().model.nv, len(SpreadReader(made().model).clinical.names)
     widths = dict(position=nv, velocity=nv, angle=angles, rate=angles, foot_height=2)
     for estimate in (first, second):
         spread = one.spread(estimate)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mbkf.filters.spread import SpreadReader
+from mbkf.filters.spread import Spread, SpreadReader
 from mbkf.filters.state import FilterState
 from mbkf.model.clinical import ClinicalAngles
 from tests.motions import random_model, smooth_motion
@@ -20,7 +20,9 @@ def case():
     A = 1e-3 * rng.normal(size=(2 * model.nv, 2 * model.nv))
     B = 0.01 * rng.normal(size=(model.nv, model.nv))
     state = FilterState(source.q(0.4), source.v(0.4), A @ A.T)
-    return model, state, B, SpreadReader(model, DT_S).at(state, B @ B.T)
+    reader, nv = SpreadReader(model), model.nv
+    torque = reader.torque(state.q, B @ B.T, DT_S)
+    return model, state, B, Spread(reader, state.q, state.P[:nv, :nv], np.diag(state.P)[nv:], torque)
 
 
 def slopes(model, q, read):
@@ -31,9 +33,9 @@ def slopes(model, q, read):
 
 
 def test_dofs_are_the_diagonal(case):
-    model, state, _, spread = case
+    _, state, _, spread = case
     np.testing.assert_allclose(np.r_[spread.position, spread.velocity] ** 2, np.diag(state.P), rtol=1e-12)
-    assert len(spread.angle) == SpreadReader(model, DT_S).coordinates
+    assert len(spread.angle) == len(spread.reader.clinical.names)
 
 
 def test_angles_by_finite_differences(case):
@@ -66,8 +68,3 @@ def test_torques_are_the_velocity_difference_through_the_mass_matrix(case):
     changes = (B @ np.random.default_rng(0).normal(size=(model.nv, 4000))) / DT_S
     tau = model.mass_matrix(state.q) @ changes
     np.testing.assert_allclose(spread.torque, tau.std(axis=1), rtol=0.05)
-
-
-def test_a_start_has_no_torque(case):
-    model, state, _, _ = case
-    assert np.isnan(SpreadReader(model, DT_S).at(state).torque).all()

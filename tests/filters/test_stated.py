@@ -1,12 +1,14 @@
 """The stated covariance: what is new and what skin repeats, told apart by experiment."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mbkf.filters.stated import stated_covariance
+from mbkf.filters.stated import StatedErrors
 
-NV, NOBODY = 5, np.zeros(0, dtype=int)
+NV = 5
+EVERYBODY = np.arange(NV)
 
 
 def made(seed):
@@ -18,15 +20,34 @@ def made(seed):
 @given(st.integers(0, 200), st.floats(0.01, 1.0), st.floats(0.0, 20.0))
 def test_it_is_symmetric_and_positive(seed, new, rate):
     rng, P, information = made(seed)
-    unknown = np.flatnonzero(rng.random(NV) < 0.3)
-    stated = stated_covariance(P, information, unknown, 0.2, new, rate)
+    seen = np.flatnonzero(rng.random(NV) > 0.3)
+    stated = StatedErrors(P, information, seen, 0.2, new, rate).covariance()
     np.testing.assert_allclose(stated, stated.T, rtol=1e-12, atol=1e-9 * np.abs(stated).max())
     assert np.linalg.eigvalsh(stated).min() > -1e-9 * np.abs(stated).max()
 
 
+@given(st.integers(0, 200), st.floats(0.01, 1.0), st.floats(0.0, 20.0))
+def test_parts_are_those_of_the_whole(seed, new, rate):
+    """What is read off without the whole covariance is what the whole says."""
+    rng, P, information = made(seed)
+    errors = StatedErrors(P, information, np.flatnonzero(rng.random(NV) > 0.3), 0.2, new, rate)
+    whole, T = errors.covariance(), rng.normal(size=(7, len(P)))
+    near = {"rtol": 1e-9, "atol": 1e-9 * np.abs(whole).max()}
+    np.testing.assert_allclose(errors.position, whole[:NV, :NV], **near)
+    np.testing.assert_allclose(errors.velocity_variance, np.diag(whole)[NV : 2 * NV], **near)
+    np.testing.assert_allclose(errors.variance_of(T), np.diag(T @ whole @ T.T), **near)
+
+
+def test_a_frame_that_says_nothing_of_a_joint_says_so():
+    """Where nothing is known of a seen dof its information cannot be inverted: LinAlgError, nothing made up."""
+    _, P, _ = made(4)
+    with pytest.raises(np.linalg.LinAlgError):
+        StatedErrors(P, np.zeros((NV, NV)), EVERYBODY, 0.2, 0.04, 4.0).covariance()
+
+
 def test_without_skin_it_is_the_share_that_is_new():
     _, P, information = made(1)
-    stated = stated_covariance(P, information, NOBODY, 0.0, 0.04, 4.0)
+    stated = StatedErrors(P, information, EVERYBODY, 0.0, 0.04, 4.0).covariance()
     np.testing.assert_allclose(stated[: 3 * NV, : 3 * NV], 0.04 * P[: 3 * NV, : 3 * NV])
     np.testing.assert_array_equal(stated[3 * NV :, 3 * NV :], P[3 * NV :, 3 * NV :])
 
@@ -34,7 +55,7 @@ def test_without_skin_it_is_the_share_that_is_new():
 def test_unknown_joints_keep_what_the_filter_says():
     _, P, information = made(2)
     unknown = np.array([1, 3])
-    stated = stated_covariance(P, information, unknown, 0.3, 0.04, 4.0)
+    stated = StatedErrors(P, information, np.array([0, 2, 4]), 0.3, 0.04, 4.0).covariance()
     for block in (0, NV, 2 * NV):
         own = np.ix_(block + unknown, block + unknown)
         np.testing.assert_array_equal(stated[own], P[own])
@@ -51,6 +72,7 @@ def test_skin_that_swings_has_the_stated_covariance():
     x = np.hstack([skin @ fit.T, rates @ fit.T, -(rate**2) * skin @ fit.T])
     measured = x.T @ x / runs
     P = np.zeros((3 * NV + 12,) * 2)
-    stated = stated_covariance(P, H.T @ H, NOBODY, amplitude**2, 0.04, rate)[: 3 * NV, : 3 * NV]
+    errors = StatedErrors(P, H.T @ H, EVERYBODY, amplitude**2, 0.04, rate)
+    stated = errors.covariance()[: 3 * NV, : 3 * NV]
     scale = np.sqrt(np.diag(stated))
     np.testing.assert_allclose(measured / scale / scale[:, None], stated / scale / scale[:, None], atol=0.03)

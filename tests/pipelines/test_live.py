@@ -155,8 +155,8 @@ def log(tmp_path):
         for step in filter_.push(t, recording.markers_m[t], recording.plates[t]):
             if step.number not in (30, 31):
                 markers = recording.markers_m[step.number]
-                row = rows.row(step.number, markers, step.estimate, step.seconds)
-                rows.judge(row, step.estimate)
+                row, spread = rows.row(step.number, markers, step.estimate, step.seconds)
+                rows.judge(row, step.estimate, spread)
                 made.frames.append(row)
     samples = np.zeros(500, dtype=made.plates.dtype)
     samples["index"] = np.arange(30, 530)
