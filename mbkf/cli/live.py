@@ -3,22 +3,28 @@
 from __future__ import annotations
 
 import argparse
+import threading
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from mbkf.io.subject import Subject
     from mbkf.stream.frame import FrameSink
     from mbkf.stream.session import LiveOutcome, LiveSession
     from mbkf.stream.source import FrameSource
+    from mbkf.stream.standing import KnownPerson, ScaledPerson, StandingStart
 
 LEAST_PATIENCE_S = 30.0
 """With a time limit, a stream that never appears is waited for at least so long."""
 
 FILE_PREFIX = "file:"
 
+NO_STREAM = "stopped before a stream appeared; nothing was written"
+
 _EPILOG = """\
 examples:
   mbkf live --from lsl --subject subject.toml --out result
+  mbkf live --from lsl --mass 63.6 --out result                     (stand still for a second, then move)
   mbkf live --from natnet --server 192.168.1.10 --local 192.168.1.20 --subject subject.toml --view --out result
   mbkf live --from file:walk.c3d --subject subject.toml --seconds 5 --out result
   mbkf live --recover result
@@ -26,6 +32,10 @@ examples:
 Ctrl-C or --seconds ends it. Then DIR holds what 'mbkf reconstruct' writes, and live.json: frames received and lost,
 latencies from arrival to result, and what happened. Marker positions are those of the subject file. A stream that
 breaks off is waited for and taken up again.
+
+Without --subject whoever stands still for a second is scaled from those frames, as 'mbkf scale' would from a static
+trial, and followed from then on; DIR/subject.toml keeps the person. Points without names need --protocol. Without
+--mass the plates tell it, if both feet stand on them; their amplifiers must have been set to zero.
 """
 
 
@@ -40,7 +50,19 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--from", dest="source", metavar="lsl|natnet|file:TRIAL", help="where frames come from"
     )
-    parser.add_argument("--subject", metavar="SUBJECT.toml", help="written by 'mbkf scale'")
+    parser.add_argument(
+        "--subject",
+        metavar="SUBJECT.toml",
+        help="written by 'mbkf scale'; else whoever stands still is scaled",
+    )
+    parser.add_argument(
+        "--mass", type=float, metavar="KG", help="without --subject: body mass; by default what plates carry"
+    )
+    parser.add_argument(
+        "--protocol",
+        metavar="NAME|FILE",
+        help="without --subject: markers worn; by default found from the stream's names",
+    )
     parser.add_argument("--filter", choices=("kinematic", "torque", "dynamic"), help="by default dynamic")
     parser.add_argument("--preset", metavar="NAME|FILE", help="settings, as for 'mbkf reconstruct'")
     parser.add_argument("--view", action="store_true", help="show it in the browser")
@@ -94,35 +116,42 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.cli.stopping import stopped_by_signal
     from mbkf.errors import InvalidInput
     from mbkf.io.atomic import check_folder
-    from mbkf.io.subject import read_subject
+    from mbkf.io.subject import Subject
     from mbkf.pipelines.presets import with_preset
     from mbkf.pipelines.reconstruct import ReconstructSettings
     from mbkf.stream.session import LiveSession
+    from mbkf.stream.standing import StandingStart
 
     if args.recover is not None:
         return _recover(Path(args.recover))
-    for option, given in (("--from", args.source), ("--subject", args.subject), ("--out", args.out)):
+    for option, given in (("--from", args.source), ("--out", args.out)):
         if given is None:
             raise InvalidInput(f"{option} is missing; see mbkf live --help")
     _check_numbers(args)
-    subject = read_subject(args.subject)
+    person = _person(args)
     folder = check_folder(args.out)
     settings = ReconstructSettings(filter=args.filter or "dynamic", correct_markers=False)
     if args.preset is not None:
         settings = with_preset(settings, args.preset, args.filter)
-    source = _source(args)
-    session = LiveSession(source, subject, settings, folder, args.source.partition(":")[0])
+    source, name = _source(args), args.source.partition(":")[0]
     with stopped_by_signal() as stop:
         _say(f"waiting for {args.source} …")
         patience = None if args.seconds is None else max(args.seconds, LEAST_PATIENCE_S)
         try:
+            if isinstance(person, Subject):
+                session = LiveSession(source, person, settings, folder, name)
+            else:
+                found = _standing(StandingStart(source, name, person, folder, _say), stop, patience)
+                session = LiveSession(found.source, found.subject, settings, folder, name, found.told)
             if not session.connect(stop, patience):
-                raise InvalidInput("stopped before a stream appeared; nothing was written")
+                raise InvalidInput(NO_STREAM)
             sinks = _sinks(args, session)
         except BaseException:
             source.close()
             raise
-        _say(f"{session.stream.trial}: {len(session.names)} markers at {session.stream.rate_hz:g} Hz")
+        _say(
+            f"following {session.stream.trial}: {len(session.names)} markers at {session.stream.rate_hz:g} Hz"
+        )
         outcome = session.run(stop, sinks, args.seconds, keep_log=args.keep_log)
     return _told(outcome, folder)
 
@@ -133,6 +162,40 @@ def _check_numbers(args: argparse.Namespace) -> None:
     if args.seconds is not None:
         check_positive("--seconds", args.seconds)
     check_positive("--speed", args.speed, or_zero=True)
+
+
+def _person(args: argparse.Namespace) -> Subject | KnownPerson:
+    """The subject of the file, or what is known of somebody who is to be scaled."""
+    from mbkf.cli.replay import check_positive
+    from mbkf.errors import InvalidInput
+    from mbkf.io.subject import read_subject
+    from mbkf.model.protocol import load_protocol
+    from mbkf.stream.standing import KnownPerson
+
+    if args.subject is None:
+        if args.mass is not None:
+            check_positive("--mass", args.mass)
+        return KnownPerson(args.mass, None if args.protocol is None else load_protocol(args.protocol))
+    for name in ("mass", "protocol"):
+        if getattr(args, name) is not None:
+            raise InvalidInput(f"--{name} is for a person to be scaled; leave it away beside --subject")
+    return read_subject(args.subject)
+
+
+def _standing(start: StandingStart, stop: threading.Event, patience_s: float | None) -> ScaledPerson:
+    """Somebody who stood still and was scaled.
+
+    Raises:
+        InvalidInput: There is no stream, or nobody was scaled.
+    """
+    from mbkf.errors import InvalidInput
+
+    if not start.connect(stop, patience_s):
+        raise InvalidInput(NO_STREAM)
+    found = start.find(stop, patience_s)
+    if found is None:
+        raise InvalidInput("stopped before anybody was scaled; live.json tells what was seen")
+    return found
 
 
 def _source(args: argparse.Namespace) -> FrameSource:

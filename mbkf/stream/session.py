@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import gc
-import sys
 import threading
 import time
 from array import array
 from collections import deque
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -17,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.errors import InvalidInput
 from mbkf.io.subject import Subject
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.numerics.threads import single_threaded
@@ -26,6 +22,7 @@ from mbkf.pipelines.live import LiveFilter, LiveStep, live_inputs
 from mbkf.pipelines.live_labels import live_body
 from mbkf.pipelines.live_log import LiveRows
 from mbkf.pipelines.reconstruct import ReconstructSettings
+from mbkf.stream.connecting import wait_for
 from mbkf.stream.events import Events
 from mbkf.stream.frame import FrameSink
 from mbkf.stream.frame_maker import FrameMaker
@@ -33,6 +30,7 @@ from mbkf.stream.intake import BRIDGED_S, Intake, ReadyFrame
 from mbkf.stream.live_report import LIVE_FILE, ReportFile, latency_summary
 from mbkf.stream.log_writer import LogWriter
 from mbkf.stream.point_names import PointNames
+from mbkf.stream.prompt import prompt
 from mbkf.stream.reader import Reader
 from mbkf.stream.run_folder import LOG_FOLDER, drop_log, open_log, write_results
 from mbkf.stream.slot import Slot
@@ -41,15 +39,11 @@ from mbkf.stream.source import FrameSource, StreamDescription
 SLACK_S, START_SLACK_S = 0.25, 5.0
 """The slot holds the frames of this time: what a hiccup of the machine takes, and what a start with its search does."""
 
-CONNECT_S = 0.5
 RUNNING, RECENT_FRAMES = "running", 5000
 """While a run goes on, its latencies are those of so many frames."""
 
 SILENT_S = 1.0
 """A stream that says nothing for this long is told of."""
-
-SWITCH_S = 0.0005
-"""How long a thread may keep the interpreter while another one waits; Python's 5 ms would be a frame's whole time."""
 
 
 @dataclass(frozen=True)
@@ -83,10 +77,20 @@ class LiveSession:
         settings: ReconstructSettings,
         folder: Path,
         source_name: str,
+        scaling: Mapping[str, Any] | None = None,
     ) -> None:
-        """Args: source, scaled person, filter and its settings, folder for the results, and what to call the source."""
+        """Args: as follows.
+
+        source: Where frames come from.
+        subject: The scaled person.
+        settings: The filter and its settings.
+        folder: For the results.
+        source_name: What to call the source.
+        scaling: How the person was scaled from the stream, for live.json.
+        """
         self._source, self._subject, self._settings = source, subject, settings
         self._folder, self._source_name = folder, source_name
+        self._scaling = {} if scaling is None else {"scaling": dict(scaling)}
         self._begin_s = time.perf_counter()
         self._events = Events()
         self._latencies, self._at_start = array("d"), array("d")
@@ -109,18 +113,10 @@ class LiveSession:
             InvalidInput: The source did not appear in time.
             MbkfError: It is not what it should be.
         """
-        begin = time.perf_counter()
-        while not stop.is_set():
-            found = self._source.connect(CONNECT_S)
-            if found is not None:
-                self._prepare(found)
-                return True
-            if patience_s is not None and time.perf_counter() - begin > patience_s:
-                raise InvalidInput(
-                    f"no {self._source_name} stream appeared within {patience_s:.0f} s; start it, or "
-                    "'mbkf replay', and check its name and the network"
-                )
-        return False
+        found = wait_for(self._source, self._source_name, stop, patience_s)
+        if found is not None:
+            self._prepare(found)
+        return found is not None
 
     def _prepare(self, stream: StreamDescription) -> None:
         self.stream = stream
@@ -136,7 +132,9 @@ class LiveSession:
         self._named_here = None
         if not stream.marker_names:
             patient = self._source.patient
-            self._named_here = PointNames(self._subject, self.names, 1.0 / stream.rate_hz, patient, self._note)
+            self._named_here = PointNames(
+                self._subject, self.names, 1.0 / stream.rate_hz, patient, self._note
+            )
 
     @property
     def plate_corners_m(self) -> Array:
@@ -173,7 +171,7 @@ class LiveSession:
         slot: Slot[ReadyFrame] = Slot(round(START_SLACK_S * self.stream.rate_hz), self._source.patient)
         reader = Reader(self._source, intake, slot, writer.put_samples, self._note_unplaced)
         self._intake, self._slot, self._writer, self._reader = intake, slot, writer, reader
-        with single_threaded(), _prompt():
+        with single_threaded(), prompt():
             reader.start()
             ended_by = self._guarded(stop, seconds)
             reader.stop()
@@ -338,6 +336,7 @@ class LiveSession:
             "rate_hz": rate,
             "nominal_rate_hz": self.stream.rate_hz,
             "starts": self._starts,
+            **self._scaling,
             **more,
             "events": self._events.plain(),
         }
@@ -360,17 +359,3 @@ class LiveSession:
         )
         report.write(plain, last=True)
         return LiveOutcome(plain, summary, problem)
-
-
-@contextmanager
-def _prompt() -> Iterator[None]:
-    """Inside, threads take turns quickly and the collector leaves alone what was there before."""
-    usual = sys.getswitchinterval()
-    sys.setswitchinterval(SWITCH_S)
-    gc.collect()
-    gc.freeze()
-    try:
-        yield
-    finally:
-        gc.unfreeze()
-        sys.setswitchinterval(usual)

@@ -1,6 +1,7 @@
 """`mbkf live` and `mbkf replay` as typed: together over both protocols, ended by Ctrl-C, refused in one line."""
 
 import json
+import re
 import signal
 import socket
 import subprocess
@@ -8,15 +9,20 @@ import sys
 import threading
 import time
 import uuid
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from mbkf.cli.main import main
 from mbkf.cli.stopping import stopped_by_signal
+from mbkf.io.c3d_write import write_c3d
+from mbkf.io.capture import read_capture
 from mbkf.io.results_folder import read_reconstruction
+from mbkf.io.subject import read_subject
 from mbkf.pipelines.live_results import live_results
 from mbkf.stream.run_folder import LOG_FOLDER
+from tests.captures import MASS_KG, made_capture
 
 
 def run(words):
@@ -129,11 +135,93 @@ def test_results_are_shown_and_sent_while_it_runs(person, tmp_path, capsys):
     assert read_reconstruction(tmp_path / "out").frames == 60
 
 
+@pytest.fixture(scope="module")
+def visit(tmp_path_factory):
+    """A file in which somebody stands and then moves."""
+    standing, moving = made_capture(110, 0.0), made_capture(40)
+    positions = np.concatenate([standing.markers.positions_m, moving.markers.positions_m])
+    whole = made_capture(len(positions), markers=replace(moving.markers, positions_m=positions))
+    path = tmp_path_factory.mktemp("visit") / "visit.c3d"
+    write_c3d(whole, path)
+    return path
+
+
+def test_who_stands_still_is_scaled_as_scale_does_from_the_same_frames(visit, tmp_path, capsys):
+    out, static = tmp_path / "out", tmp_path / "static.c3d"
+    words = ["live", "--from", f"file:{visit}", "--mass", MASS_KG, "--speed", 0, "--out", out]
+    assert run(words) == 0
+    told = capsys.readouterr()
+    assert "50 frames came, 0 were lost" in told.out
+    steps = (
+        "waiting for file",
+        "stand still for 1 s",
+        "standing still; scaling",
+        "scaled in",
+        "following visit",
+    )
+    assert [line.startswith(step) for line, step in zip(told.err.splitlines(), steps, strict=True)] == 5 * [
+        True
+    ]
+    scaling = json.loads((out / "live.json").read_text())["scaling"]
+    whole = read_capture(visit)
+    stretch = whole.markers.positions_m[scaling["first_frame"] : scaling["last_frame"] + 1]
+    write_c3d(replace(whole, markers=replace(whole.markers, positions_m=stretch), plates=()), static)
+    assert run(["scale", static, "--mass", MASS_KG, "--out", tmp_path / "twin.toml"]) == 0
+    found, twin = read_subject(out / "subject.toml"), read_subject(tmp_path / "twin.toml")
+    assert found.scale_factors == pytest.approx(twin.scale_factors, abs=1e-6)
+    for one, other in zip(found.markers, twin.markers, strict=True):
+        np.testing.assert_allclose(one.position_m, other.position_m, atol=1e-6)
+    assert read_reconstruction(out).tracked.all()
+
+
+def test_nobody_who_stands_still_ends_in_one_line(person, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert run(["live", "--from", f"file:{person.trial}", "--speed", 0, "--out", out]) == 2
+    last = capsys.readouterr().err.splitlines()[-1]
+    assert last.startswith("mbkf: error: the source ended before anybody was scaled: marker")
+    assert json.loads((out / "live.json").read_text())["state"] == "nobody scaled"
+
+
+@pytest.mark.parametrize(
+    ("file", "options", "hint"),
+    [("trial", ["--unlabelled"], "--protocol NAME"), ("trial_trc", [], "no force plates .* --mass KG")],
+)
+def test_what_the_stream_does_not_tell_is_asked_for(person, tmp_path, capsys, file, options, hint):
+    words = ["live", "--from", f"file:{getattr(person, file)}", *options, "--out", tmp_path / "out"]
+    assert run(words) == 2
+    waiting, refusal = capsys.readouterr().err.splitlines()
+    assert waiting.startswith("waiting for file:")
+    assert re.match(f"mbkf: error: .*{hint}", refusal)
+    assert not (tmp_path / "out").exists()
+
+
+def test_ctrl_c_before_anybody_stood_still_leaves_a_report(visit, tmp_path):
+    out = tmp_path / "out"
+    words = ["live", "--from", f"file:{visit}", "--speed", "0.2", "--out", out]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "mbkf", *map(str, words)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    until = time.monotonic() + 20.0
+    while not (out / "live.json").is_file() and time.monotonic() < until:
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=20.0)
+    assert process.returncode == 2
+    assert errors.splitlines()[-1].startswith("mbkf: error: stopped before anybody was scaled")
+    assert json.loads((out / "live.json").read_text())["ended_by"] == "it was stopped"
+
+
 def test_bad_input_is_refused(person, tmp_path, refused):
     subject, out = ["--subject", person.subject], ["--out", tmp_path / "out"]
     trial = ["--from", f"file:{person.trial}"]
     refused(["live", *subject, *out], "--from is missing")
-    refused(["live", *trial, *out], "--subject is missing")
+    refused(["live", *trial, *subject, *out, "--mass", "70"], "--mass is for a person to be scaled")
+    refused(["live", *trial, *subject, *out, "--protocol", "rizzoli"], "--protocol is for a person")
+    refused(["live", *trial, *out, "--mass", "-1"], "--mass -1")
+    refused(["live", *trial, *out, "--protocol", "none"], "unknown protocol 'none'")
     refused(["live", *trial, *subject], "--out is missing")
     refused(["live", "--from", "vicon", *subject, *out], "unknown source 'vicon'")
     refused(["live", "--from", "file:", *subject, *out], "file:TRIAL")

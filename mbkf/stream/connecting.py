@@ -1,0 +1,40 @@
+"""Waiting for a source that is not there yet."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+from mbkf.errors import InvalidInput
+from mbkf.stream.source import FrameSource, StreamDescription
+
+CONNECT_S = 0.5
+"""How long a source is looked for before it is seen whether to stop."""
+
+
+def wait_for(
+    source: FrameSource, source_name: str, stop: threading.Event, patience_s: float | None
+) -> StreamDescription | None:
+    """What a source says of itself once it is there; None where it was stopped first.
+
+    Args:
+        source: Where frames are to come from.
+        source_name: What to call it.
+        stop: Set when nobody wants it any more.
+        patience_s: How long to wait at most.
+
+    Raises:
+        InvalidInput: The source did not appear in time.
+        MbkfError: It is not what it should be.
+    """
+    begin = time.perf_counter()
+    while not stop.is_set():
+        found = source.connect(CONNECT_S)
+        if found is not None:
+            return found
+        if patience_s is not None and time.perf_counter() - begin > patience_s:
+            raise InvalidInput(
+                f"no {source_name} stream appeared within {patience_s:.0f} s; start it, or 'mbkf replay', and check "
+                "its name and the network"
+            )
+    return None
