@@ -77,8 +77,8 @@ def integrals_between(samples: Array, low: Array, high: Array, span: float) -> A
     places = np.floor(low).astype(int) + np.arange(int(np.ceil(span)) + 2)[:, None]
     weights = _hat_until(high - places) - _hat_until(low - places)
     if len(low) == 1:  # a stream's frame: the same sum, row after row, in one call
-        counted = weights[:, 0] > 0.0
-        only: Array = (weights[counted] * samples[places[counted, 0]]).sum(axis=0)
+        inside = weights[:, 0] > 0.0
+        only: Array = (weights[inside] * samples[places[inside, 0]]).sum(axis=0)
         return only[None]
     total = np.zeros((len(low), samples.shape[1]))
     for k, weight in zip(places, weights, strict=True):
