@@ -57,7 +57,7 @@ def assign(
     points_m: Array,
     covariance: Callable[[BoolArray], Array],
     settings: AssignmentSettings,
-    known: Indices | None = None,
+    known: Callable[[], Indices | None] | None = None,
 ) -> Indices:
     """(M,) index of each marker's point, ``HIDDEN`` where it has none.
 
@@ -67,15 +67,17 @@ def assign(
         covariance: Gives S, (m, 3, 3) in m², of the markers chosen by a mask (M,); asked only where points are near
             to several markers or far from all.
         settings: Gate, radius, ghosts.
-        known: (N,) marker that each point's own track carried in the frame before, ``HIDDEN`` where none.
+        known: Gives the marker (N,) that each point's own track carried in the frame before, ``HIDDEN`` where none, or
+            None where tracks say nothing; asked only where pairs are in dispute.
     """
     if not len(points_m) or not len(predicted_m):
         return np.full(len(predicted_m), HIDDEN, dtype=np.intp)
     squared = squared_distances(predicted_m, points_m)
-    found = _all_clear(squared, settings, known)
+    found = _all_clear(squared, settings)
     if found is not None:
         return found
-    found = _undisputed(squared, settings, known)
+    carried = None if known is None else known()
+    found = _undisputed(squared, settings, carried)
     own = (found == HIDDEN).nonzero()[0]
     left = np.ones(len(points_m), dtype=bool)
     left[found[found != HIDDEN]] = False
@@ -87,8 +89,8 @@ def assign(
     hard[own] = True
     offsets = points_m[free] - predicted_m[own][:, None]
     cost = pair_costs(offsets, covariance(hard), settings)
-    if known is not None:
-        cost -= settings.known_bonus * (known[free] == own[:, None])
+    if carried is not None:
+        cost -= settings.known_bonus * (carried[free] == own[:, None])
     pairs = cheapest_pairs(cost)
     paired = pairs != HIDDEN
     found[own[paired]] = free[pairs[paired]]
@@ -133,7 +135,7 @@ def marker_of_point(labels: Indices, points: int) -> Indices:
     return found
 
 
-def _all_clear(squared: Array, settings: AssignmentSettings, known: Indices | None) -> Indices | None:
+def _all_clear(squared: Array, settings: AssignmentSettings) -> Indices | None:
     """The answer in the usual frame, where no pair is in dispute and no hidden marker may be a free point; else None.
 
     It is asked of every frame, and so makes do with few calls; for the few hidden markers lists are quicker.
@@ -150,21 +152,12 @@ def _all_clear(squared: Array, settings: AssignmentSettings, known: Indices | No
     taken = set(found.tolist())
     if len(taken) != min(count + 1, markers):
         return None
-    if known is not None and _contradicts(known, found):
-        return None
     farthest = settings.radius_m**2
     for i in hidden:
         for j, distance in enumerate(squared[i].tolist()):
             if distance <= farthest and j not in taken:
                 return None
     return found
-
-
-def _contradicts(known: Indices, found: Indices) -> bool:
-    """Whether any point was another marker's in the frame before, by its own track."""
-    seen = (found != HIDDEN).nonzero()[0]
-    carried = known[found[seen]]
-    return bool(((carried != HIDDEN) & (carried != seen)).any())
 
 
 @cache

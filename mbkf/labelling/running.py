@@ -9,6 +9,7 @@ markers whose labels were exchanged get them back.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -86,17 +87,23 @@ class RunningLabeller:
         every = self.settings.every
         return self._frames <= 2 * every or self._frames % every == 0
 
-    def label(self, expected: MarkerExpectation, points_m: Array, follows: Indices | None = None) -> Indices:
+    def label(
+        self, expected: MarkerExpectation, points_m: Array, follows: Callable[[], Indices] | None = None
+    ) -> Indices:
         """(M,) the point of every marker in this frame, ``HIDDEN`` where it has none.
 
         Args:
             expected: Where the filter expects the markers.
             points_m: (N, 3) measured points in any order, none missing.
-            follows: (N,) which point of the frame before each continues, ``HIDDEN`` where that is not known.
+            follows: Gives the point of the frame before that each continues (N,), ``HIDDEN`` where that is not known;
+                asked only where labels are in dispute.
         """
-        known = None
-        if follows is not None and self._before[1] and follows.max(initial=HIDDEN) != HIDDEN:
-            known = np.where(follows != HIDDEN, marker_of_point(*self._before)[follows], HIDDEN)
+
+        def known() -> Indices | None:
+            before = None if follows is None or not self._before[1] else follows()
+            if before is None or before.max(initial=HIDDEN) == HIDDEN:
+                return None
+            return np.where(before != HIDDEN, marker_of_point(*self._before)[before], HIDDEN)
 
         def covariance(chosen: BoolArray) -> Array:
             return _with_own(expected.spread(chosen), self._variance[chosen])

@@ -40,12 +40,10 @@ class Points:
     Attributes:
         positions_m: (N, 3) those present.
         columns: (N,) the columns they stand in.
-        follows: (N,) which point of the frame before each continues, ``HIDDEN`` where that is not known.
     """
 
     positions_m: Array
     columns: Indices
-    follows: Indices
 
 
 class LabellingPass:
@@ -179,20 +177,26 @@ class LabellingPass:
             found = self._search.about(points.positions_m, foresight.q)
             if found is not None:
                 return found.points
-        labels = self.labeller.label(foresight.markers, points.positions_m, points.follows)
+        labels = self.labeller.label(
+            foresight.markers, points.positions_m, lambda: self._follows(t, points.columns)
+        )
         self.step_seconds[t] = time.perf_counter() - begin
         return labels
 
     def _points(self, t: int) -> Points:
         now = self._positions_m[t]
         columns = np.flatnonzero(~np.isnan(now).any(axis=1))
-        follows = np.full(len(columns), HIDDEN, dtype=np.intp)
+        return Points(now[columns], columns)
+
+    def _follows(self, t: int, columns: Indices) -> Indices:
+        """(N,) which point of the frame before each of a frame continues, ``HIDDEN`` where that is not known."""
+        now, follows = self._positions_m[t], np.full(len(columns), HIDDEN, dtype=np.intp)
         if t:
             before = self._positions_m[t - 1]
             place = np.cumsum(~np.isnan(before).any(axis=1)) - 1
             same = continued(before, now)[columns]
             follows[same] = place[columns[same]]
-        return Points(now[columns], columns, follows)
+        return follows
 
     def _note(self, t: int, points: Points, labels: Indices) -> None:
         self.markers_m[t] = labelled(points.positions_m, labels)

@@ -85,7 +85,8 @@ class LiveLabels:
             foresight: What the filter expects of this frame, None where it will start anew.
         """
         self._frame += 1
-        present = points_m[~np.isnan(points_m).any(axis=1)]
+        missing = np.isnan(points_m)
+        present = points_m[~missing.any(axis=1)] if missing.any() else points_m
         if foresight is not None and self._lost <= self._patience:
             return [self._taken(present, self._predicted(present, foresight))]
         carried = self._carried(present, self._poses) if self._poses else None
@@ -129,7 +130,7 @@ class LiveLabels:
             found = self.body.search.about(points_m, foresight.q)
             if found is not None:
                 return found.points
-        return self._labeller.label(foresight.markers, points_m, self._follows(points_m))
+        return self._labeller.label(foresight.markers, points_m, lambda: self._follows(points_m))
 
     def _follows(self, points_m: Array) -> Indices:
         """(N,) the point of the frame before that stood in the same place of the list, where that is the same one."""

@@ -1,5 +1,6 @@
 """Assignment of points to predicted markers: cheapest, gated, one label per point, whatever the points' order."""
 
+from functools import partial
 from itertools import permutations
 
 import numpy as np
@@ -137,7 +138,9 @@ def test_own_track_decides_between_equals():
     points = np.array([[0.004, 0.0, 0.0], [0.006, 0.0, 0.0]])
     covariance = np.repeat(0.006**2 * np.eye(3)[None], 2, axis=0)
     for known in ([0, 1], [1, 0]):
-        found = assign(predicted, points, lambda chosen: covariance[chosen], SETTINGS, np.array(known))
+        found = assign(
+            predicted, points, lambda chosen: covariance[chosen], SETTINGS, partial(np.array, known)
+        )
         assert found.tolist() == np.argsort(known).tolist()
 
 
@@ -146,3 +149,26 @@ def test_geometry_overrules_a_track():
     covariance = np.repeat(0.006**2 * np.eye(3)[None], 2, axis=0)
     found = assign(predicted, predicted, lambda chosen: covariance[chosen], SETTINGS, np.array([1, 0]))
     assert found.tolist() == [0, 1]
+
+
+def test_in_a_clear_frame_nobody_asks_for_more():
+    """Each marker has one point near and none else about, one is hidden: neither covariances nor tracks are needed."""
+    predicted = np.arange(12.0)[:, None] * np.array([0.2, 0.0, 0.0])
+    order = np.random.default_rng(0).permutation(11)
+    points = (predicted[:11] + np.array([0.0, 0.004, 0.0]))[order]
+
+    def asked(*_):
+        raise AssertionError("asked in vain")
+
+    found = assign(predicted, points, asked, SETTINGS, asked)
+    assert found.tolist() == [*np.argsort(order), HIDDEN]
+
+
+@pytest.mark.parametrize("away_m", [0.05, 0.12])
+def test_a_free_point_about_a_hidden_marker_is_looked_at(away_m):
+    """Also where that point is nearer to the hidden marker than any taken one, and where a taken one is nearer."""
+    predicted = np.array([[0.0, 0.0, 0.0], [0.04, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    points = np.array([[0.0, 0.001, 0.0], [0.04, away_m, 0.0], [1.0, 0.001, 0.0]])
+    covariance = np.repeat(0.05**2 * np.eye(3)[None], 3, axis=0)
+    found = assign(predicted, points, lambda chosen: covariance[chosen], SETTINGS)
+    assert found.tolist() == [0, 1, 2]

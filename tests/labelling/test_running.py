@@ -54,7 +54,7 @@ def test_exchanged_labels_are_taken_back(tracked):
     wrong[pair] = wrong[pair[::-1]]
     for _ in range(30):
         one.remember(wrong, ON_BODY, ON_BODY)
-    follows = np.arange(COUNT) if tracked else None
+    follows = (lambda: np.arange(COUNT)) if tracked else None
     found = [step(one, ON_BODY, follows) for _ in range(20)]
     assert np.array_equal(found[-1], np.arange(COUNT))
 
