@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +15,7 @@ if TYPE_CHECKING:
     from mbkf.stream.session import LiveOutcome, LiveSession
     from mbkf.stream.source import FrameSource
     from mbkf.stream.standing import KnownPerson, ScaledPerson, StandingStart
+    from mbkf.viz.standing_page import StandingPage
 
 LEAST_PATIENCE_S = 30.0
 """With a time limit, a stream that never appears is waited for at least so long."""
@@ -35,7 +38,8 @@ breaks off is waited for and taken up again.
 
 Without --subject whoever stands still for a second is scaled from those frames, as 'mbkf scale' would from a static
 trial, and followed from then on; DIR/subject.toml keeps the person. Points without names need --protocol. Without
---mass the plates tell it, if both feet stand on them; their amplifiers must have been set to zero.
+--mass the plates tell it, if both feet stand on them; their amplifiers must have been set to zero. With --view the
+page tells the person in front of it what is waited for, and then shows what is measured.
 """
 
 
@@ -134,18 +138,20 @@ def run(args: argparse.Namespace) -> int:
     if args.preset is not None:
         settings = with_preset(settings, args.preset, args.filter)
     source, name = _source(args), args.source.partition(":")[0]
-    with stopped_by_signal() as stop:
+    with stopped_by_signal() as stop, _waiting_page(args) as waiting:
         _say(f"waiting for {args.source} …")
         patience = None if args.seconds is None else max(args.seconds, LEAST_PATIENCE_S)
         try:
             if isinstance(person, Subject):
                 session = LiveSession(source, person, settings, folder, name)
             else:
-                found = _standing(StandingStart(source, name, person, folder, _say), stop, patience)
+                shown = None if waiting is None else waiting.progress
+                start = StandingStart(source, name, person, folder, _teller(waiting), shown)
+                found = _standing(start, waiting, stop, patience)
                 session = LiveSession(found.source, found.subject, settings, folder, name, found.told)
             if not session.connect(stop, patience):
                 raise InvalidInput(NO_STREAM)
-            sinks = _sinks(args, session)
+            sinks = _sinks(args, session, waiting)
         except BaseException:
             source.close()
             raise
@@ -162,6 +168,10 @@ def _check_numbers(args: argparse.Namespace) -> None:
     if args.seconds is not None:
         check_positive("--seconds", args.seconds)
     check_positive("--speed", args.speed, or_zero=True)
+    if args.view:
+        from mbkf.viz.server import checked_port
+
+        checked_port(args.view_port)
 
 
 def _person(args: argparse.Namespace) -> Subject | KnownPerson:
@@ -182,16 +192,46 @@ def _person(args: argparse.Namespace) -> Subject | KnownPerson:
     return read_subject(args.subject)
 
 
-def _standing(start: StandingStart, stop: threading.Event, patience_s: float | None) -> ScaledPerson:
+@contextmanager
+def _waiting_page(args: argparse.Namespace) -> Iterator[StandingPage | None]:
+    """The page for whoever is to be scaled, not yet opened; closed at the end."""
+    if not args.view or args.subject is not None:
+        yield None
+        return
+    from mbkf.viz.standing_page import StandingPage
+
+    page = StandingPage(address=args.view_address, port=args.view_port, token=args.token)
+    try:
+        yield page
+    finally:
+        page.close()
+
+
+def _teller(waiting: StandingPage | None) -> Callable[[str], None]:
+    """Says a sentence in the terminal, and on the page if there is one."""
+
+    def tell(text: str) -> None:
+        _say(text)
+        if waiting is not None:
+            waiting.say(text)
+
+    return tell
+
+
+def _standing(
+    start: StandingStart, waiting: StandingPage | None, stop: threading.Event, patience_s: float | None
+) -> ScaledPerson:
     """Somebody who stood still and was scaled.
 
     Raises:
-        InvalidInput: There is no stream, or nobody was scaled.
+        InvalidInput: There is no stream, nobody was scaled, or the page cannot be served.
     """
     from mbkf.errors import InvalidInput
 
     if not start.connect(stop, patience_s):
         raise InvalidInput(NO_STREAM)
+    if waiting is not None:
+        _say(f"page: {waiting.open(start.stream.trial)}")
     found = start.find(stop, patience_s)
     if found is None:
         raise InvalidInput("stopped before anybody was scaled; live.json tells what was seen")
@@ -223,7 +263,7 @@ def _source(args: argparse.Namespace) -> FrameSource:
     return FileSource(played(capture, args.unlabelled), args.speed)
 
 
-def _sinks(args: argparse.Namespace, session: LiveSession) -> list[FrameSink]:
+def _sinks(args: argparse.Namespace, session: LiveSession, waiting: StandingPage | None) -> list[FrameSink]:
     sinks: list[FrameSink] = []
     if args.publish is not None:
         from mbkf.stream.lsl_results import LslResults
@@ -237,20 +277,27 @@ def _sinks(args: argparse.Namespace, session: LiveSession) -> list[FrameSink]:
         _say(f"results: {served.url}")
         sinks.append(served)
     if args.view:
-        from mbkf.viz.live_page import LivePage
-
-        page = LivePage(
-            session.model,
-            session.names,
-            session.plate_corners_m,
-            title=session.stream.trial,
-            address=args.view_address,
-            port=args.view_port,
-            token=args.token,
-        )
-        _say(f"page: {page.url}")
-        sinks.append(page)
+        sinks.append(_live_page(args, session, waiting))
     return sinks
+
+
+def _live_page(args: argparse.Namespace, session: LiveSession, waiting: StandingPage | None) -> FrameSink:
+    """The live page, where the waiting page was if there was one."""
+    from mbkf.viz.live_page import LivePage
+
+    port, token = (args.view_port, args.token) if waiting is None else waiting.hand_over()
+    page = LivePage(
+        session.model,
+        session.names,
+        session.plate_corners_m,
+        title=session.stream.trial,
+        address=args.view_address,
+        port=port,
+        token=token,
+    )
+    if waiting is None:
+        _say(f"page: {page.url}")
+    return page
 
 
 def _recover(folder: Path) -> int:

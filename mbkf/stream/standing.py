@@ -89,10 +89,14 @@ class StandingStart:
         known: KnownPerson,
         folder: Path,
         say: Callable[[str], None],
+        progress: Callable[[float | None], None] | None = None,
     ) -> None:
-        """Args: source, what to call it, what is known of the person, folder for the results, and whom to tell."""
+        """Args: source, its name, what is known of the person, folder for the results, and whom to tell.
+
+        `say` takes sentences; `progress` how much of the standing is done, 0 to 1, None where no frames come.
+        """
         self._source, self._source_name, self._known = source, source_name, known
-        self._folder, self._say = folder, say
+        self._folder, self._say, self._done = folder, say, progress or (lambda _: None)
         self._begin_s = time.perf_counter()
         self._events = Events()
         self._stance = Stance(0, 0, 0.0, None, False)
@@ -224,6 +228,8 @@ class StandingStart:
         if self._stance.frames <= 1:
             self._stretch.clear()
         self._stretch.append(frame)
+        seen = self._stance.seen >= self._watch.least
+        self._done(min(self._stance.frames / self._watch.wanted, 1.0) if seen else 0.0)
         self._look_why(points)
         if self._stance.enough:
             self._begin()
@@ -293,6 +299,7 @@ class StandingStart:
         self._kept.clear()
         self._stretch.clear()
         self._watch.restart()
+        self._done(0.0)
         return None
 
     def _scaled(self, subject: Subject) -> ScaledPerson:
@@ -332,6 +339,8 @@ class StandingStart:
         """Says what is waited for, now and then."""
         now = time.perf_counter()
         silent = now - self._heard_s > SILENT_S
+        if silent:
+            self._done(None)
         why = "the stream says nothing" if silent else self._why
         if now - self._told_s >= (AGAIN_S if why == self._told else TELL_S):
             self._say(f"waiting for somebody to stand still: {why}")

@@ -48,6 +48,8 @@ class PageServer:
 
     Attributes:
         url: What to open, token included.
+        port: Where it listens.
+        token: What requests have to carry; empty where nothing is asked for.
 
     Raises:
         InvalidInput: The address or port cannot be listened on.
@@ -65,14 +67,14 @@ class PageServer:
     ) -> None:
         self._text, self._greeting, self._newest = text.encode("utf-8"), greeting, newest
         self._local = _is_loopback(address)
-        self._token = token or ("" if self._local else secrets.token_urlsafe(16))
+        self.token = token or ("" if self._local else secrets.token_urlsafe(16))
         self._loop: asyncio.AbstractEventLoop | None = None
         self._stop: asyncio.Event | None = None
         self._fresh = asyncio.Event()
         self._asleep = False
-        self._listening = threading.Event()
+        self._listening, self._freed = threading.Event(), threading.Event()
         self._failure: OSError | None = None
-        self._port = 0
+        self.port = 0
         self._thread = threading.Thread(target=self._run, args=(address, port), name="mbkf page", daemon=True)
         self._thread.start()
         self._listening.wait()
@@ -82,14 +84,26 @@ class PageServer:
                 "choose another address or port"
             )
         host = socket.gethostname() if address in ("0.0.0.0", "::", "") else address
-        query = "?" + urlencode({"token": self._token}) if self._token else ""
-        self.url = f"http://{f'[{host}]' if ':' in host else host}:{self._port}/{query}"
+        query = "?" + urlencode({"token": self.token}) if self.token else ""
+        self.url = f"http://{f'[{host}]' if ':' in host else host}:{self.port}/{query}"
 
     def close(self) -> None:
         """Ends all connections and the thread."""
-        if self._loop is not None and self._stop is not None and self._thread.is_alive():
-            self._loop.call_soon_threadsafe(self._stop.set)
+        if self._end():
             self._thread.join(STOP_S)
+
+    def free(self) -> None:
+        """Stops listening, so that another server may listen there at once; connections and thread end soon after."""
+        if self._end():
+            self._freed.wait(STOP_S)
+
+    def _end(self) -> bool:
+        """Asks the thread to end; False where it has."""
+        if self._loop is None or self._stop is None or not self._thread.is_alive():
+            return False
+        with contextlib.suppress(RuntimeError):  # the loop has just been closed
+            self._loop.call_soon_threadsafe(self._stop.set)
+        return True
 
     def wake(self) -> None:
         """Says that there is a new row: it is made now, and not while the next frame is being answered."""
@@ -110,6 +124,7 @@ class PageServer:
             self._failure = error
         finally:
             self._listening.set()
+            self._freed.set()
 
     async def _serve(self, address: str, port: int) -> None:
         self._loop, self._stop = asyncio.get_running_loop(), asyncio.Event()
@@ -118,9 +133,12 @@ class PageServer:
             self._stream, address, port, process_request=self._answer, compression=None, logger=quiet,
             close_timeout=0.5,
         ) as server:  # fmt: skip
-            self._port = next(iter(server.sockets)).getsockname()[1]
+            self.port = next(iter(server.sockets)).getsockname()[1]
             self._listening.set()
             await self._stop.wait()
+            server.close()
+            await asyncio.sleep(0)  # what closing begins with
+            self._freed.set()
 
     def _answer(self, _connection: ServerConnection, request: Request) -> Response | None:
         """The page, a refusal, or None where the WebSocket goes ahead."""
@@ -141,7 +159,7 @@ class PageServer:
         named = urlsplit(f"//{host}").hostname or ""
         own_name = not self._local or named == "localhost" or _is_loopback(named)
         own_page = origin is None or urlsplit(origin).netloc == host
-        return own_name and own_page and hmac.compare_digest(token.encode(), self._token.encode())
+        return own_name and own_page and hmac.compare_digest(token.encode(), self.token.encode())
 
     async def _stream(self, connection: ServerConnection) -> None:
         """Sends the newest row whenever there is one; a slow page gets fewer rows, never old ones."""

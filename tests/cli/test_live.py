@@ -10,6 +10,7 @@ import threading
 import time
 import uuid
 from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -22,6 +23,8 @@ from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.subject import read_subject
 from mbkf.pipelines.live_results import live_results
 from mbkf.stream.run_folder import LOG_FOLDER
+from mbkf.viz.live_page import LivePage
+from mbkf.viz.standing_page import StandingPage
 from tests.captures import MASS_KG, made_capture
 
 
@@ -174,6 +177,82 @@ def test_who_stands_still_is_scaled_as_scale_does_from_the_same_frames(visit, tm
     assert read_reconstruction(out).tracked.all()
 
 
+class Watched(StandingPage):
+    """Keeps in mind what it was told."""
+
+    made: ClassVar[list["Watched"]] = []
+
+    def __init__(self, **options):
+        super().__init__(**options)
+        self.said, self.shares, self.url, self.handed = [], [], None, None
+        Watched.made.append(self)
+
+    def open(self, title):
+        self.url = super().open(title)
+        return self.url
+
+    def say(self, text):
+        super().say(text)
+        self.said.append(text)
+
+    def progress(self, share):
+        super().progress(share)
+        self.shares.append(share)
+
+    def hand_over(self):
+        self.handed = super().hand_over()
+        return self.handed
+
+
+@pytest.fixture
+def watched(monkeypatch):
+    Watched.made = []
+    monkeypatch.setattr("mbkf.viz.standing_page.StandingPage", Watched)
+    return Watched.made
+
+
+@pytest.mark.parametrize("address", ["127.0.0.1", "0.0.0.0"])
+def test_who_is_to_stand_still_is_told_on_the_page_that_the_live_page_replaces(
+    visit, tmp_path, capsys, monkeypatch, watched, address
+):
+    live = []
+
+    class Page(LivePage):
+        def __init__(self, *args, **options):
+            super().__init__(*args, **options)
+            live.append(self.url)
+
+    monkeypatch.setattr("mbkf.viz.live_page.LivePage", Page)
+    words = ["live", "--from", f"file:{visit}", "--mass", MASS_KG, "--speed", 0, "--view"]
+    assert run([*words, "--view-address", address, "--out", tmp_path / "out"]) == 0
+    told = capsys.readouterr().err.splitlines()
+    (waiting,) = watched
+    assert live == [waiting.url]
+    assert [line for line in told if line.startswith("page: ")] == [f"page: {waiting.url}"]
+    assert told[1] == f"page: {waiting.url}", "as soon as the stream is there"
+    assert waiting.said == told[2:5]
+    assert waiting.shares[-1] == 1.0
+    assert bool(waiting.handed[1]) == (address == "0.0.0.0")
+
+
+def test_a_page_that_nobody_is_scaled_at_is_closed(person, tmp_path, capsys, watched):
+    before = threading.active_count()
+    words = ["live", "--from", f"file:{person.trial}", "--speed", 0, "--view"]
+    assert run([*words, "--out", tmp_path / "out"]) == 2
+    assert watched[0].url in capsys.readouterr().err
+    assert watched[0].handed is None
+    assert threading.active_count() == before
+
+
+def test_a_known_subject_or_no_view_needs_no_waiting_page(person, visit, tmp_path, watched):
+    words = ["live", "--speed", 0]
+    known = [*words, "--from", f"file:{person.trial}", "--subject", person.subject, "--view"]
+    assert run([*known, "--out", tmp_path / "known"]) == 0
+    unseen = [*words, "--from", f"file:{visit}", "--mass", MASS_KG]
+    assert run([*unseen, "--out", tmp_path / "unseen"]) == 0
+    assert watched == []
+
+
 def test_nobody_who_stands_still_ends_in_one_line(person, tmp_path, capsys):
     out = tmp_path / "out"
     assert run(["live", "--from", f"file:{person.trial}", "--speed", 0, "--out", out]) == 2
@@ -221,6 +300,7 @@ def test_bad_input_is_refused(person, tmp_path, refused):
     refused(["live", *trial, *subject, *out, "--mass", "70"], "--mass is for a person to be scaled")
     refused(["live", *trial, *subject, *out, "--protocol", "rizzoli"], "--protocol is for a person")
     refused(["live", *trial, *out, "--mass", "-1"], "--mass -1")
+    refused(["live", *trial, *out, "--view", "--view-port", "70000"], "port 70000")
     refused(["live", *trial, *out, "--protocol", "none"], "unknown protocol 'none'")
     refused(["live", *trial, *subject], "--out is missing")
     refused(["live", "--from", "vicon", *subject, *out], "unknown source 'vicon'")

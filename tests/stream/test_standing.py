@@ -2,6 +2,7 @@
 
 import json
 import threading
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -49,8 +50,8 @@ def cut(capture: Capture, first: int, last: int | None = None) -> Capture:
 def begin(folder, source, *, mass_kg=MASS_KG, protocol=None, **options):
     """What `find` gives, and what was said."""
     said = []
-    say = options.pop("say", said.append)
-    start = StandingStart(source, "script", KnownPerson(mass_kg, protocol), folder, say)
+    say, progress = options.pop("say", said.append), options.pop("progress", None)
+    start = StandingStart(source, "script", KnownPerson(mass_kg, protocol), folder, say, progress)
     stop = options.pop("stop", threading.Event())
     assert start.connect(stop, 1.0)
     return start.find(stop, **options), said
@@ -250,6 +251,44 @@ def test_what_is_waited_for_is_told_now_and_then(tmp_path, visit, monkeypatch):
     found, said = begin(tmp_path, ScriptedSource(stream, frames))
     assert any("waiting for somebody to stand still" in line and "moved" in line for line in said)
     assert "waiting" in {event["kind"] for event in found.told["events"]}
+
+
+def test_the_share_of_standing_grows_while_somebody_is_still_and_begins_anew_after_a_failure(tmp_path, visit):
+    stream, frames = frames_of(replace(visit, plates=()))
+    still = frames[COMES : COMES + STANDS]
+    wrong = [replace(frame, markers_m=frame.markers_m[::-1]) for frame in still]
+    shares = []
+    found, _ = begin(tmp_path, ScriptedSource(stream, frames[:COMES] + wrong + still), progress=shares.append)
+    assert found.told["attempts"] == 2
+    assert max(shares[: COMES - 5]) < 0.1, "who comes does not stand"
+    full = shares.index(1.0)
+    np.testing.assert_allclose(shares[full - 90 : full + 1], np.arange(10, 101) / 100.0)
+    assert shares[full + 1 : full + 3] == pytest.approx([0.0, 0.01])
+    assert shares[-1] == 1.0
+
+
+def test_there_is_no_share_of_standing_while_too_few_markers_are_seen_or_no_frames_come(
+    tmp_path, visit, monkeypatch
+):
+    monkeypatch.setattr(standing, "SILENT_S", 0.05)
+    stream, frames = frames_of(replace(visit, plates=()))
+    hidden = [f.markers_m.copy() for f in frames[:30]]
+    for markers in hidden:
+        markers[5:20] = np.nan
+    few = [replace(f, markers_m=markers) for f, markers in zip(frames, hidden, strict=False)]
+    shares = []
+
+    class FallingSilent(ScriptedSource):
+        def read(self, timeout_s):
+            if self.script:
+                return super().read(timeout_s)
+            time.sleep(0.01)
+            return None
+
+    with pytest.raises(InvalidInput, match="nobody was scaled"):
+        begin(tmp_path, FallingSilent(stream, few), progress=shares.append, patience_s=0.5)
+    assert set(shares) == {0.0, None}
+    assert shares[-1] is None
 
 
 def test_points_that_cannot_be_do_not_count(tmp_path, visit):

@@ -1,10 +1,7 @@
 """The pages in a real browser: something is drawn, it moves, it stops, strangers stay outside, nothing is fetched."""
 
 import io
-import os
-import shutil
 import time
-from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -15,51 +12,8 @@ from mbkf.viz.live_page import LivePage
 from mbkf.viz.playback import write_playback
 from mbkf.viz.report import write_report
 from tests.recordings import PLATE, broken_walk, walk, walker
+from tests.viz.browsing import PATIENCE_S, until
 from tests.viz.streams import feeding
-
-FLAGS = (
-    "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run",
-    "--disable-background-networking", "--disable-component-update", "--disable-sync",
-)  # fmt: skip
-PATIENCE_S = 30.0
-
-
-@pytest.fixture(scope="module")
-def browser():
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    if chromium is None:
-        message = "no chromium on this machine; install it (Debian: apt-get install chromium)"
-        (pytest.fail if os.environ.get("CI") else pytest.skip)(message)
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        made = playwright.chromium.launch(executable_path=chromium, args=FLAGS)
-        yield made
-        made.close()
-
-
-@pytest.fixture
-def opened(browser):
-    """Opens an address; afterwards the page must have reported no error."""
-    errors, pages = [], []
-
-    @contextmanager
-    def open_(url):
-        page = browser.new_page(viewport={"width": 920, "height": 420})
-        page.set_default_timeout(1e3 * PATIENCE_S)
-        page.requested = []
-        page.on("request", lambda request: page.requested.append(request.url))
-        page.on("pageerror", lambda error: errors.append(str(error)))
-        page.on("console", lambda m: errors.append(m.text) if m.type == "error" else None)
-        page.answer = page.goto(url)
-        pages.append(page)
-        yield page
-        page.close()
-
-    open_.errors = errors
-    yield open_
-    # A browser reports a refusal, which some tests ask for, as an error of the page.
-    assert [error for error in errors if "403 (Forbidden)" not in error] == []
 
 
 @pytest.fixture(scope="module")
@@ -78,14 +32,6 @@ def colours(image):
     """How many clearly different colours cover at least a thousandth of a picture each."""
     coarse = (image * 7.99).astype(int).reshape(-1, 3) @ [64, 8, 1]
     return int((np.bincount(coarse) > coarse.size / 1000).sum())
-
-
-def until(page, expression):
-    """Waits for something to become true in the page (whose policy forbids playwright's own way of waiting)."""
-    ends = time.monotonic() + PATIENCE_S
-    while not page.evaluate(expression):
-        assert time.monotonic() < ends, f"never true: {expression}"
-        page.wait_for_timeout(30)
 
 
 def until_plotted_anew(page, before):
