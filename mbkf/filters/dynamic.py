@@ -193,8 +193,8 @@ class DynamicFilter:
         )
         if self.inertial is not None:
             after = self.inertial.remember(after, memory, state.q, decision)
-        tracked = decision.imus is not None or bool(np.count_nonzero(decision.trusted) >= self.min_markers)
-        return DynamicStep(state, after, decision, tracked, prior, frame)
+        enough = decision.imus is not None or bool(np.count_nonzero(decision.trusted) >= self.min_markers)
+        return DynamicStep(state, after, decision, enough and not decision.strayed, prior, frame)
 
     def _updated(
         self, prior: DynamicState, decision: Decision, reading: MarkerReading, innovation: Array
@@ -246,7 +246,7 @@ class DynamicFilter:
     def _decide(self, foresight: Foresight, memory: Memory, innovation: Array, plates: Array) -> Decision:
         (prior, acceleration_sd), markers = foresight.prior, foresight.markers
         noise = self.noise_m * memory.noise_scale**0.5
-        seen, trusted, displaced = judged(
+        seen, trusted, displaced, strayed = judged(
             innovation, markers.reading, markers.covariance, noise, self.settings
         )
         moved = NOWHERE if displaced is None else self._sight.carriers(displaced)
@@ -264,6 +264,7 @@ class DynamicFilter:
             moved[moved >= 6],
             acceleration_sd,
             memory.markers_m,
+            strayed,
         )
 
     def _next_noise_scale(self, decision: Decision, innovation: Array) -> float:

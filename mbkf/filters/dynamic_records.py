@@ -47,6 +47,7 @@ class Decision(NamedTuple):
         displaced: Dofs of limbs that came back into sight where nobody expected them.
         acceleration_sd: (nv,) σ_a with which the frame was predicted.
         before_m: (M, 3) markers believed in the frame before; None where skin artefacts are not modelled.
+        strayed: Whether most markers lie far from the state.
         imus: (S, 6) inertial readings; None where there are none. Then ``unseen`` leaves out what they feel.
         usual: (nq,) mean posture so far, for joints that nothing shows; None where there are no inertial sensors.
         unmarked: Dofs of joints whose segment shows no marker, felt or not, where there are inertial readings.
@@ -62,6 +63,7 @@ class Decision(NamedTuple):
     displaced: NDArray[np.intp]
     acceleration_sd: Array
     before_m: Array | None
+    strayed: bool
     imus: Array | None = None
     usual: Array | None = None
     unmarked: NDArray[np.intp] | None = None
@@ -119,7 +121,7 @@ class DynamicStep:
         state: Posterior.
         memory: For the next step.
         decision: What the frame's readings were taken to be.
-        tracked: Whether enough markers were believed.
+        tracked: Whether enough markers were believed, and the state was not far from most of them.
         predicted: Prior of this frame.
         frame: Readings linearised at the prior.
     """

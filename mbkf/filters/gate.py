@@ -10,6 +10,10 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array, BoolArray
 from mbkf.sensors.markers import MarkerReading, MarkerSensor
 
+STRAYED_M = 0.10
+"""Where more than half of the markers lie so far off their prediction, the body has jumped or it is another one, and
+the filter has to start anew. Fast limbs are mispredicted by a third of that, most markers by a tenth."""
+
 _NONE = np.zeros(0, dtype=np.intp)
 
 
@@ -54,12 +58,13 @@ class Belief(NamedTuple):
     """Markers of a frame (M,): those ``seen``, those of them ``trusted``, and those of segments found elsewhere.
 
     ``displaced`` markers, all that are seen of a segment, lie far from where it was expected, so that the state is
-    wrong there and not they; None where there are none.
+    wrong there and not they; None where there are none. ``strayed``: most markers are far from the state.
     """
 
     seen: BoolArray
     trusted: BoolArray
     displaced: BoolArray | None
+    strayed: bool = False
 
 
 def judged(
@@ -86,13 +91,14 @@ def judged(
     seen = squared == squared  # noqa: PLR0124, a missing marker's is NaN
     if np.count_nonzero(near) == np.count_nonzero(seen):
         return Belief(seen, near, None)
+    strayed = bool(2 * np.count_nonzero(squared > STRAYED_M**2) > np.count_nonzero(seen))
     far = seen & ~near
     distance = _distance(innovation_m[far], reading.only(far).jacobian, covariance, noise_m[far])
     trusted = _with_far(seen, near, far, distance, settings.gate)
     if trusted.all():
-        return Belief(seen, trusted, None)
+        return Belief(seen, trusted, None, strayed)
     displaced = _whole_segments(seen, trusted, reading.moves)
-    return Belief(seen, trusted | displaced, displaced if displaced.any() else None)
+    return Belief(seen, trusted | displaced, displaced if displaced.any() else None, strayed)
 
 
 def _whole_segments(seen: BoolArray, trusted: BoolArray, moves: Array) -> BoolArray:

@@ -54,7 +54,7 @@ class StepResult:
         state: Posterior.
         refused: (M,) markers seen but not believed.
         readings: How many coordinates of markers were believed.
-        tracked: Whether enough markers were believed.
+        tracked: Whether enough markers were believed, and the state was not far from most of them.
         evidence: What ``nis`` and ``velocity_step_covariance`` are worked out from when asked for.
     """
 
@@ -147,7 +147,9 @@ class KinematicFilter:
         q, expected, predicted = foresight or self.expect(state)
         reading, v, nv = expected.reading, predicted.v, self.sensor.model.nv
         innovation = measured_m - reading.positions_m
-        seen, trusted, _ = judged(innovation, reading, predicted.P[:nv, :nv], self.noise_m, self.settings)
+        seen, trusted, _, strayed = judged(
+            innovation, reading, predicted.P[:nv, :nv], self.noise_m, self.settings
+        )
         markers = self._markers.at(q, reading, innovation, trusted)
         matrix, vector, rest = markers.matrix.copy(), np.zeros(2 * nv), np.zeros(nv)
         vector[:nv] = markers.vector
@@ -161,6 +163,6 @@ class KinematicFilter:
         P = informed(P, matrix)
         step = P @ vector
         posterior = FilterState(self.sensor.model.integrate(q, step[:nv]), v + step[nv:], P)
-        tracked = markers.readings >= 3 * self.settings.min_markers
+        tracked = markers.readings >= 3 * self.settings.min_markers and not strayed
         evidence = Evidence(state, predicted, self.plant, markers, matrix, rest, vector)
         return StepResult(posterior, seen & ~trusted, markers.readings, tracked, evidence)

@@ -209,7 +209,7 @@ class TorqueFilter:
         reading = self.sensor.reading(prior.q)
         innovation = measured_m - reading.positions_m
         P, settings = prior.P[:nv, :nv], self.settings.tracking
-        seen, trusted, _ = judged(innovation, reading, P, self.noise_m, settings)
+        seen, trusted, *_ = judged(innovation, reading, P, self.noise_m, settings)
         sd = np.repeat(self.noise_m[trusted], 3)
         markers = information(innovation[trusted].ravel(), reading.jacobian[trusted].reshape(-1, nv), sd)
         columns, sensed = self._sensed(prior, markers, feet)

@@ -261,7 +261,8 @@ def _warnings(result: Track, names: tuple[str, ...], held: BoolArray) -> list[st
     lost = int((~result.tracked).sum())
     if lost:
         warnings.append(
-            f"{lost} of {len(result.tracked)} frames have too few believable markers to follow the body"
+            f"{lost} of {len(result.tracked)} frames have too few believable markers to follow the body, "
+            "or most of them far from where it was"
         )
     if len(result.starts) > 1:
         warnings.append("the filter started anew at frames " + ", ".join(str(t) for t in result.starts[1:]))

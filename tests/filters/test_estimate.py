@@ -17,6 +17,7 @@ from tests.followed import (
     WHOLE,
     errors,
     estimates,
+    inputs,
     made,
     made_follower,
     recording,
@@ -266,3 +267,21 @@ def test_what_is_expected_is_as_far_off_as_stated(name):
         y = recording().markers_m[t + 1] - markers.positions_m
         squared.append(np.einsum("mi,mij,mj->m", y, np.linalg.inv(S), y))
     assert 0.25 < np.mean(squared) / 3.0 < 1.5
+
+
+@pytest.mark.parametrize(
+    ("name", "jump_m"), [("kinematic", 1.0), ("kinematic", 5.0), ("dynamic", 0.5), ("dynamic", 5.0)]
+)
+def test_a_body_that_is_suddenly_elsewhere_is_found_there(name, jump_m):
+    """Another person, or a recording that begins anew: no plant gets there, so the filter starts once more."""
+    there = FRAMES.stop // 4
+    read = recording(LONG)
+    moved = read.markers_m.copy()
+    moved[there:] += np.array([jump_m, 0.0, 0.0])
+    follower = made_follower(name)
+    found = track(follower, replace(read, markers_m=moved))
+    settled = there + round(2.5 * follower.restart_after_s / DT)
+    assert found.tracked[settled:].all()
+    sensor = inputs().sensor
+    off = np.array([sensor.positions(q) for q in found.q[settled:]]) - moved[settled:]
+    assert np.sqrt(np.mean(off**2)) < 3.0 * MARKER_SD_M

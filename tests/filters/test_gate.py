@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from mbkf.filters.gate import judged
+from mbkf.filters.gate import STRAYED_M, judged
 from mbkf.filters.settings import KinematicSettings
 
 MARKERS, NV = 10, 8
@@ -124,7 +124,7 @@ def test_the_jacobian_is_asked_for_only_of_far_markers(problem):
     reach = float(np.sqrt(np.nanmax((y**2).sum(axis=1))))
     for radius in (reach + 1e-9, 0.9 * reach, 0.0):
         settings, reading = replace(SETTINGS, gate_radius_m=radius), Reading(H)
-        seen, trusted, _ = judged(y, reading, P, noise, settings)
+        seen, trusted, *_ = judged(y, reading, P, noise, settings)
         np.testing.assert_array_equal(seen, np.arange(MARKERS) != 3)
         kept = (y**2).sum(axis=1) <= radius**2
         kept |= mahalanobis(y, H, P, noise) <= settings.gate
@@ -147,3 +147,16 @@ def test_a_segment_all_of_whose_markers_are_off_has_moved():
     alone = judged(y, reading, P, noise, SETTINGS)
     np.testing.assert_array_equal(np.flatnonzero(~alone.trusted), [2])
     assert alone.displaced is None
+
+
+@pytest.mark.parametrize("jump_m", [0.05, 0.2, 5.0])
+def test_markers_that_are_mostly_far_off_have_left_the_state_behind(problem, jump_m):
+    y, H, P, noise = problem
+    near = replace(SETTINGS, gate_radius_m=0.03)
+    y = 0.1 * y
+    assert not judged(y, Reading(H), P, noise, near).strayed
+    for movers in (MARKERS // 2, MARKERS // 2 + 1, MARKERS):
+        moved = y.copy()
+        moved[:movers, 0] += jump_m
+        expected = jump_m > STRAYED_M and 2 * movers > MARKERS
+        assert judged(moved, Reading(H), P, noise, near).strayed == expected

@@ -173,7 +173,8 @@ def test_half_a_second_without_markers_is_restarted_and_told(name):
     lost = found.hidden.all(axis=1)
     assert lost.sum() == 50
     assert "the filter started anew at frames 70" in found.warnings
-    assert "50 of 80 frames have too few believable markers to follow the body" in found.warnings
+    told = [w for w in found.warnings if w.startswith("50 of 80 frames have too few believable markers")]
+    assert len(told) == 1
     np.testing.assert_array_equal(found.tracked, ~lost)
     assert not found.valid[lost].any()
     assert rms(leg_errors(found)[70:]) < np.deg2rad(2.0)
