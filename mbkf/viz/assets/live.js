@@ -69,7 +69,9 @@ class Live {
     const socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/frames${location.search}`);
     socket.binaryType = "arraybuffer";
     socket.onmessage = ({ data }) => (typeof data === "string" ? this.begin(JSON.parse(data)) : this.take(new Float32Array(data)));
+    socket.onopen = () => { this.connected = true; };
     socket.onclose = () => {
+      this.connected = false;
       this.tell("not connected; trying again", "bad");
       setTimeout(() => this.connect(), 1000);
     };
@@ -99,7 +101,7 @@ class Live {
   }
 
   watch() {
-    if (!this.status || !this.arrived) return;
+    if (!this.connected || !this.status || !this.arrived) return;
     const s = this.status;
     this.gauges.time.textContent = `${s.time_s.toFixed(1)} s`;
     this.gauges.rate.textContent = `${s.rate_hz.toFixed(0)} Hz`;
