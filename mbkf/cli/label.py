@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,7 @@ examples:
 
 Points may be shuffled in every frame or come as tracks. Points that are no marker are dropped. The numbers that are
 printed also go to FILE.json. A person scaled on the way is written to FILE.toml, for 'mbkf reconstruct --subject'.
+By the protocol alone some labels may fit nearly as well by another name: warnings name these, and what settles them.
 """
 
 
@@ -78,6 +80,9 @@ def run(args: argparse.Namespace) -> int:
     if args.subject is None:
         write_subject(subject, out.with_suffix(".toml"))
     print_labels(write_labels(raw, found, out, compared), out)
+    if found.doubts is not None:
+        for warning in found.doubts.told():
+            print(f"warning: {warning}", file=sys.stderr)
     if args.subject is None:
         print(
             f"{out.with_suffix('.toml')}: the person, markers fit to {subject.report['marker_rms_mm']:.1f} mm RMS"

@@ -36,6 +36,7 @@ class ProtocolMarker:
         placement_sd_m: How far the marker may sit from that position, per coordinate (1 sd), m.
         noise_m: Measurement noise with skin movement, per coordinate (1 sd), m.
         aliases: Other names for the same marker.
+        static_only: Whether it is usually taken off after the static trial.
     """
 
     name: str
@@ -45,6 +46,7 @@ class ProtocolMarker:
     placement_sd_m: float
     noise_m: float
     aliases: tuple[str, ...] = ()
+    static_only: bool = False
 
 
 @dataclass(frozen=True)
@@ -148,6 +150,7 @@ def _markers(entry: dict[str, Any], body: BodyDescription, path: Path) -> list[P
             own.placement_sd_m,
             own.noise_m,
             tuple(entry.get("mirror_aliases", ())),
+            own.static_only,
         ),
     ]
 
@@ -164,6 +167,7 @@ def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> Protoco
         "aliases",
         "mirror",
         "mirror_aliases",
+        "static_only",
     }
     for key in entry:
         if key not in known:
@@ -181,6 +185,8 @@ def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> Protoco
             raise FileFormatError(path, f"marker {entry['name']}: position_m needs three finite numbers")
     if segment not in {s.name for s in body.segments}:
         raise UnknownName("segment", segment, [s.name for s in body.segments], where)
+    if not isinstance(entry.get("static_only", False), bool):
+        raise FileFormatError(path, f"marker {entry['name']}: static_only is true or false")
     kind = entry.get("kind", "anatomical" if "landmark" in entry else "technical")
     if kind not in KINDS:
         raise UnknownName("marker kind", kind, KINDS, where)
@@ -192,4 +198,5 @@ def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> Protoco
         placement_sd_m=entry.get("placement_sd_mm", 1e3 * DEFAULT_PLACEMENT_SD_M[kind]) / 1e3,
         noise_m=entry.get("noise_mm", 1e3 * DEFAULT_NOISE_M) / 1e3,
         aliases=tuple(entry.get("aliases", ())),
+        static_only=entry.get("static_only", False),
     )

@@ -19,6 +19,7 @@ from mbkf.labelling.running import RunningSettings
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.any_attitude import STAGE, AnyAttitude
 from mbkf.pipelines.label_body import LabelBody, label_body
+from mbkf.pipelines.label_doubts import Doubts
 from mbkf.pipelines.label_redecision import redecided, trajectories
 from mbkf.pipelines.label_score import LabelScore
 
@@ -47,6 +48,7 @@ class Labelling:
         repaired: How many markers had their labels taken back from a wrong point.
         step_seconds: (T,) computing time of each frame's labels, filter not counted; NaN where searched.
         redecided: How many samples lost or changed their label when the whole capture was known.
+        doubts: What may be wrong with the labels, where nobody had measured the person.
     """
 
     markers: MarkerTrajectories
@@ -56,6 +58,7 @@ class Labelling:
     repaired: int
     step_seconds: Array
     redecided: int = 0
+    doubts: Doubts | None = None
 
     @property
     def assigned_fraction(self) -> float:
@@ -71,7 +74,7 @@ class Labelling:
 
 
 def summarise(found: Labelling, compared: LabelScore | None = None) -> dict[str, Any]:
-    """Plain numbers for the summary beside the labelled file; the last three only with a truth."""
+    """Plain numbers for the summary beside the labelled file; doubts and truth only where there are any."""
     summary: dict[str, Any] = {
         "frames": found.markers.frames,
         "markers": int(found.markers.present.any(axis=0).sum()),
@@ -84,6 +87,8 @@ def summarise(found: Labelling, compared: LabelScore | None = None) -> dict[str,
         "starts": list(found.starts),
         "step_seconds_median": _median(found.step_seconds),
     }
+    if found.doubts is not None:
+        summary["doubts"] = found.doubts.summarised()
     if compared is not None:
         summary["correct_fraction"] = compared.correct_fraction
         summary["wrong_fraction"] = compared.wrong_fraction

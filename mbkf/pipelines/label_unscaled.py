@@ -2,6 +2,8 @@
 
 Neither can be had without the other, so both are found by turns: a body of the protocol's own geometry is laid onto
 the capture's tracks, the person is scaled from what that names, and the tracks are named anew by the scaled person.
+Where the protocol lists markers that are not worn, such turns may end with a neighbour's name on a track: scaling puts
+the marker where the track is. So names are then judged by what the person costs that goes with them.
 """
 
 from __future__ import annotations
@@ -13,9 +15,10 @@ import numpy as np
 
 from mbkf.conventions import Array, StageCallback
 from mbkf.errors import InvalidInput, NotConverged, NotObservable
-from mbkf.io.records import Capture
+from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject
 from mbkf.labelling.assignment import HIDDEN, Indices
+from mbkf.labelling.moments import LOOKS, moving
 from mbkf.labelling.naming import name_tracks, trajectories
 from mbkf.labelling.tracks import Tracks, follow
 from mbkf.model.description import load_body
@@ -24,8 +27,11 @@ from mbkf.model.protocol import Protocol, load_protocol
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.any_attitude import STAGE, laid
 from mbkf.pipelines.label import Labelling, Start, label
+from mbkf.pipelines.label_doubts import Doubts, doubts
 from mbkf.scaling.fit import scale_subject
+from mbkf.scaling.naming import Naming, NamingProblem
 from mbkf.scaling.problem import ScalingSettings
+from mbkf.scaling.renaming import in_line, likeliest
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 from mbkf.sensors.posture import PostureSensor
@@ -45,11 +51,17 @@ ROUNDS = 4
 SCALING_FRAMES = 20
 """Frames that a person is scaled from in each round."""
 
+RENAMINGS = 3
+"""How often names are judged by the person that they make, and the tracks named anew, at most."""
+
 SEEN_SD_M = 0.015
 """How far a marker is at most from where scaling found it."""
 
 SAME_WORTH = 0.99
 """Two outcomes agree where they name alike and the lesser is worth so much of the other."""
+
+NAMES = "Judging names"
+"""What the last part of the search calls itself."""
 
 LEAST_NAMED = 0.6
 """Share of the protocol's markers that must be found."""
@@ -57,11 +69,15 @@ LEAST_NAMED = 0.6
 
 @dataclass(frozen=True)
 class _Named:
-    """A person and the tracks' names: ``owner`` (count,) the marker of each, ``worth`` how well all of it fits."""
+    """A person and the tracks' names: ``owner`` (count,) the marker of each, ``worth`` how well all of it fits.
+
+    ``doubts`` are names that may be others.
+    """
 
     subject: Subject
     owner: Indices
     worth: float
+    doubts: Doubts | None = None
 
 
 def label_unscaled(
@@ -95,9 +111,10 @@ def label_unscaled(
         tracks = follow(capture.markers.positions_m, capture.markers.rate_hz)
         search = _Search(capture, tracks, worn, mass, height_m)
         best = search.best(lambda done, total: report(STAGE, done, total))
+        best = search.settled(best, lambda done, total: report(NAMES, done, total))
         start = search.start(best)
     found = label(capture, best.subject, start=start, progress=progress)
-    return found, best.subject
+    return replace(found, doubts=best.doubts), best.subject
 
 
 class _Search:
@@ -138,6 +155,20 @@ class _Search:
             )
         return max(good, key=lambda one: one.worth)
 
+    def settled(self, named: _Named, progress: Callable[[int, int], None]) -> _Named:
+        """The likeliest labels by the person that they make, and those that may be others."""
+        for _ in range(RENAMINGS):
+            problem = self._problem(named.owner)
+            found = likeliest(problem, progress)
+            owner = _renamed(named.owner, problem, found.naming)
+            again = None if (owner == named.owner).all() else self._in_line(owner)
+            if again is None:
+                break
+            named = again
+        else:
+            named = replace(named, owner=owner, subject=self._subject(owner))
+        return replace(named, doubts=doubts(problem, found, self._nameless(named.owner)))
+
     def start(self, named: _Named) -> Start:
         """The frame that shows most named markers, and the pose there."""
         shown = trajectories(self._points_m, self._tracks, named.owner, len(self._markers))
@@ -162,6 +193,24 @@ class _Search:
 
     def _scaled(self, owner: Indices) -> _Named | None:
         """Person and labels brought into line, from first labels (count,); None where no person comes of them."""
+        named = self._in_line(owner)
+        if named is None:
+            return None
+        problem = self._problem(named.owner)
+        owner = _renamed(named.owner, problem, in_line(problem))
+        return named if (owner == named.owner).all() else self._in_line(owner)
+
+    def _nameless(self, owner: Indices) -> int:
+        """How many tracks without a label are seen in half of the frames, and move where most do."""
+        lives, looks = self._tracks.lives(), np.linspace(0, len(self._points_m) - 1, LOOKS).astype(int)
+        moves = moving(self._tracks.positions(self._points_m, np.unique(looks)))
+        return int(((owner == HIDDEN) & (lives.mean(axis=1) >= 0.5) & moves).sum())
+
+    def _problem(self, owner: Indices) -> NamingProblem:
+        return NamingProblem(self._shown(owner), self._protocol, height_m=self._height_m)
+
+    def _in_line(self, owner: Indices) -> _Named | None:
+        """Person and labels brought into line, from first labels (count,); None where no person comes of them."""
         named = None
         for _ in range(ROUNDS):
             try:
@@ -180,16 +229,20 @@ class _Search:
         return named if found >= LEAST_NAMED * len(self._markers) else None
 
     def _subject(self, owner: Indices) -> Subject:
-        names = tuple(marker.name for marker in self._markers)
-        shown = trajectories(self._points_m, self._tracks, owner, len(names))
         return scale_subject(
             [],
-            [replace(self._capture.markers, names=names, positions_m=shown)],
+            [self._shown(owner)],
             self._protocol,
             mass_kg=self._mass_kg,
             height_m=self._height_m,
             settings=ScalingSettings(frames_per_trial=SCALING_FRAMES),
         )
+
+    def _shown(self, owner: Indices) -> MarkerTrajectories:
+        """Trajectories of all markers under labels (count,) of the tracks."""
+        names = tuple(marker.name for marker in self._markers)
+        shown = trajectories(self._points_m, self._tracks, owner, len(names))
+        return replace(self._capture.markers, names=names, positions_m=shown)
 
     def _sensor(self, subject: Subject) -> MarkerSensor:
         model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
@@ -208,6 +261,15 @@ class _Search:
                 for m in subject.markers
             ]
         )
+
+
+def _renamed(owner: Indices, problem: NamingProblem, naming: Naming) -> Indices:
+    """(count,) labels of the tracks, with the trajectories that were judged under their new names."""
+    name = np.arange(len(problem.markers) + 1)  # the last is that of HIDDEN
+    name[-1] = HIDDEN
+    name[np.setdiff1d(naming.marker, problem.first)] = HIDDEN
+    name[problem.first] = naming.marker
+    return name[owner]
 
 
 def _agree(one: _Named, other: _Named | None) -> bool:

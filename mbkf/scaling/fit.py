@@ -61,8 +61,8 @@ def scale_subject(
     if not static and not dynamic:
         raise InvalidInput("scaling needs a static trial or at least one --trial")
     frames = choose_frames([*static, *dynamic], protocol, settings.frames_per_trial)
-    problem = _problem(frames, len(static), protocol, height_m, settings)
-    start = problem.start(_first_poses(problem))
+    problem = scaling_problem(frames, len(static), protocol, height_m, settings)
+    start = problem.start(first_poses(problem))
     solution = _minimise(problem, start, progress)
     dropped = problem.outliers(solution.state, settings.outlier_m)
     if dropped.sum() > 0.5 * problem.seen.sum():
@@ -94,13 +94,14 @@ def _require_upright(standing: Array) -> None:
         )
 
 
-def _problem(
+def scaling_problem(
     frames: ScalingFrames,
     static_trials: int,
     protocol: Protocol,
     height_m: float | None,
     settings: ScalingSettings,
 ) -> ScalingProblem:
+    """The problem that chosen frames pose, those of the static trials first."""
     body = load_body(protocol.body)
     counts = np.bincount(frames.trial)
     looks = np.where(
@@ -121,7 +122,7 @@ def _problem(
     return ScalingProblem(body, frames.markers, frames.measured_m, weight, prior)
 
 
-def _first_poses(problem: ScalingProblem) -> Array:
+def first_poses(problem: ScalingProblem) -> Array:
     """(N, nq) poses from the markers whose place is known beforehand, and all of a segment that has none."""
     state = problem.start(np.zeros((0, problem.posture.model.nq)))
     sensor = problem.sensor(state)

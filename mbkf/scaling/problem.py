@@ -11,6 +11,7 @@ reference place, shared by all frames. Residuals, each divided by its standard d
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -133,6 +134,13 @@ class ScalingProblem:
         """The same problem without some samples (N, M)."""
         kept = np.where(samples[:, :, None], np.nan, self.measured_m)
         return ScalingProblem(self.body, self.markers, kept, self.posture_weight, self.prior)
+
+    def measuring(self, measured_m: Array) -> ScalingProblem:
+        """The same problem with other samples (N, M, 3)."""
+        other = copy(self)
+        other.measured_m = read_only(measured_m)
+        other.seen = np.asarray(~np.isnan(other.measured_m).any(axis=2))
+        return other
 
     def expecting(self, offset_precision: Array) -> ScalingProblem:
         """The same problem with another precision (3 M, 3 M) of the offsets."""

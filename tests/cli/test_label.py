@@ -59,11 +59,16 @@ def test_a_person_scaled_on_the_way_is_written(folder, tmp_path, capsys, who):
     who = [folder / word if word.endswith(".c3d") else word for word in who]
     words = ["label", folder / "raw.c3d", *who, "--mass", "75", "--truth", folder / "trial.c3d", "--out", out]
     assert main([str(word) for word in words]) == 0
-    assert str(tmp_path / "named.toml") in capsys.readouterr().out
+    shown = capsys.readouterr()
+    assert str(tmp_path / "named.toml") in shown.out
     subject = read_subject(tmp_path / "named.toml")
     assert subject.mass_kg == 75.0
     assert {marker.name for marker in subject.markers} >= set(read_capture(out).markers.names)
-    assert json.loads(out.with_suffix(".json").read_text())["correct_fraction"] >= 0.9
+    summary = json.loads(out.with_suffix(".json").read_text())
+    assert summary["correct_fraction"] >= 0.9
+    assert ("doubts" in summary) == ("--protocol" in who)
+    doubtful = summary.get("doubts", {}).get("labels", [])
+    assert ("warning" in shown.err) == bool(doubtful)
 
 
 def test_it_must_be_known_who_wears_the_markers(folder, tmp_path, refused):

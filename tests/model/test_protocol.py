@@ -171,6 +171,7 @@ def test_own_protocol_from_a_file(write):
         (['name = "X"\nlandmark = "c7"', 'name = "X"\nlandmark = "t6"'], FileFormatError, "'X' stands twice"),
         (['name = "X"\nlandmark = "right_heel"\nmirror = "X"'], FileFormatError, "'X' stands twice"),
         (['name = "X"\nsegment = "pelvis"'], FileFormatError, "position_m"),
+        (['name = "X"\nlandmark = "c7"\nstatic_only = "yes"'], FileFormatError, "true or false"),
         (['name = "X'], FileFormatError, "not a valid protocol"),
     ],
 )
@@ -184,3 +185,10 @@ def test_unknown_and_missing_protocols():
         load_protocol("plugin_gait")
     with pytest.raises(FileFormatError, match="cannot be read"):
         load_protocol("no/such/file.toml")
+
+
+def test_markers_for_the_static_trial_only_say_so_on_both_sides():
+    markers = {marker.name: marker for marker in load_protocol("oxford_biomechzoo").markers}
+    off = {name for name, marker in markers.items() if marker.static_only}
+    assert off == {f"{side}{part}" for side in "RL" for part in ("MMA", "PCA", "D1M", "TPF")}
+    assert not any(marker.static_only for marker in load_protocol("plug_in_gait").markers)

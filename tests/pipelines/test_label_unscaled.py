@@ -43,6 +43,22 @@ def test_the_person_is_scaled_on_the_way(found):
     assert subject.report["marker_rms_mm"] < 10.0
     assert subject.protocol == "reference36"
     assert "Searching any attitude" in stages
+    assert "Judging names" in stages
+
+
+def test_markers_that_are_not_worn_are_not_named():
+    """Three markers taken off: their names go to nobody, and no neighbour takes another's."""
+    made, off = walker(), ("RMID", "LTUB", "RHA5")
+    kept = made.trial.markers.select(tuple(n for n in made.trial.markers.names if n not in off))
+    names = tuple(f"*{k}" for k in range(len(kept.names)))
+    raw = replace(made.trial, markers=replace(kept, names=names))
+    labelling, subject = label_unscaled(raw, "reference36", mass_kg=made.subject.mass_kg, height_m=HEIGHT_M)
+    result = score(labelling.markers, kept, subject)
+    assert result.correct_fraction >= 0.995
+    assert result.wrong_fraction <= 0.001
+    assert not set(off) & set(subject.report["markers"])
+    assert labelling.doubts is not None
+    assert set(off) == set(labelling.doubts.unused)
 
 
 def test_points_that_are_nobody_are_refused():

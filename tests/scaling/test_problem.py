@@ -123,6 +123,15 @@ def test_missing_markers_say_nothing(problem, state):
     assert (problem.linearise(state).border[:, :, columns] == 0).all()
 
 
+def test_other_samples_make_the_problem_that_they_alone_would(problem, state):
+    other = np.where(np.isnan(problem.measured_m), 0.1, np.nan)
+    alone = ScalingProblem(BODY, MARKERS, other, problem.posture_weight, problem.prior)
+    found = problem.measuring(other)
+    assert (found.seen == alone.seen).all()
+    assert (found.seen != problem.seen).all()
+    assert found.cost(state) == pytest.approx(alone.cost(state))
+
+
 def test_at_the_expected_state_only_the_markers_cost(problem, state):
     start = problem.start(np.repeat(MODEL.neutral()[None], FRAMES, axis=0))
     noise = np.array([m.noise_m for m in MARKERS])

@@ -1,0 +1,181 @@
+"""The likeliest names of trajectories, searched from names that may be wrong, and the rivals that come near to them.
+
+Poses and names are brought into line by turns: a person is fitted to the names, the names are assigned anew to that
+person. E falls at every turn (:mod:`mbkf.scaling.naming`), but may come to rest where names are best only for poses
+that suit them. So single names are then changed, the most promising first, with the person fitted anew; and where
+markers are still far from their places, whole limbs are exchanged with those of the other side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.model.description import mirrored
+from mbkf.scaling.naming import Indices, Naming, NamingProblem
+
+TURNS = 8
+"""Names and poses are brought into line at most so often."""
+
+LEAST_GAIN = 1.0
+"""Names are changed for a gain in E of more than this."""
+
+TRIED = 60
+"""So many changes of one name are tried before names are taken to be the likeliest."""
+
+MOST_CHANGES = 40
+"""Names that are still not settled after so many changes are left."""
+
+LOOK_STEPS, STEPS, FIRST_STEPS = 2, 6, 40
+"""Steps of a first look at a change, of the fit that judges it, and of one that begins from nothing."""
+
+HOPELESS = 60.0
+"""A change that costs more than this at the first look is not fitted any further."""
+
+
+@dataclass(frozen=True)
+class Renamed:
+    """The likeliest names, and those that were tried instead of them with what they cost, the cheapest first."""
+
+    naming: Naming
+    rivals: tuple[Naming, ...]
+
+
+def likeliest(problem: NamingProblem, progress: Callable[[int, int], None] | None = None) -> Renamed:
+    """The likeliest names that can be reached from the first ones by changing one after the other.
+
+    Args:
+        problem: Trajectories and markers.
+        progress: Called with changes tried and changes to be tried before the names are settled.
+    """
+    report = progress or (lambda *_: None)
+    found = _changed(problem, in_line(problem), report)
+    sided = _on_their_sides(problem, found.naming)
+    if sided is not found.naming:
+        found = _changed(problem, sided, report)
+    report(TRIED, TRIED)
+    return found
+
+
+def _changed(problem: NamingProblem, naming: Naming, report: Callable[[int, int], None]) -> Renamed:
+    """Names with single ones changed as long as that makes them likelier."""
+    rivals: list[Naming] = []
+    for _ in range(MOST_CHANGES):
+        rivals.clear()
+        better = None
+        for done, marker in enumerate(_changes(problem.shares(naming.state)[0], naming.marker)):
+            report(done, TRIED)
+            one = _refitted(problem, naming, marker, LOOK_STEPS)
+            if one.cost < naming.cost + HOPELESS:
+                one = problem.fitted(marker, one.state, STEPS - LOOK_STEPS)
+            if one.cost < naming.cost - LEAST_GAIN:
+                better = one
+                break
+            rivals.append(one)
+        if better is None:
+            break
+        naming = _in_line(problem, better)
+    return Renamed(naming, tuple(sorted(rivals, key=lambda one: one.cost)))
+
+
+def in_line(problem: NamingProblem) -> Naming:
+    """The first names and the poses that go with them brought into line."""
+    return _in_line(problem, problem.fitted(problem.first, None, FIRST_STEPS))
+
+
+def _in_line(problem: NamingProblem, naming: Naming) -> Naming:
+    for _ in range(TURNS):
+        share, _ = problem.shares(naming.state)
+        marker = np.asarray(linear_sum_assignment(share)[1], dtype=np.intp)
+        if (marker == naming.marker).all():
+            break
+        again = _refitted(problem, naming, marker, FIRST_STEPS)
+        if again.cost >= naming.cost - LEAST_GAIN:
+            break
+        naming = again
+    return naming
+
+
+def _on_their_sides(problem: NamingProblem, naming: Naming) -> Naming:
+    """Names with those of whole limbs exchanged between left and right, where that is likelier.
+
+    Looked for only where markers are far from their places. Names brought into line with a limb on the wrong side are
+    scrambled, so that the first ones are exchanged, too.
+    """
+    mirror = _mirror_images(problem)
+    for limb in _limbs(problem):
+        for names in (problem.first, naming.marker):
+            crossed = np.where(limb[names], mirror[names], names)
+            if not problem.far(naming).any() or (crossed == names).all():
+                continue
+            other = _in_line(problem, problem.fitted(crossed, None, FIRST_STEPS))
+            if other.cost < naming.cost - LEAST_GAIN:
+                naming = other
+    return naming
+
+
+def _mirror_images(problem: NamingProblem) -> Indices:
+    """(M,) the marker at the same place of the other side, or the marker itself where there is none."""
+    place = np.array([marker.position_m for marker in problem.markers])
+    segments = [marker.segment for marker in problem.markers]
+    image = np.arange(len(place))
+    for m, segment in enumerate(segments):
+        same = [other == mirrored(segment) for other in segments]
+        near = (np.abs(place - place[m] * [1.0, -1.0, 1.0]) < 1e-9).all(axis=1)
+        others = np.flatnonzero(same & near)
+        image[m] = others[0] if len(others) else m
+    return image
+
+
+def _limbs(problem: NamingProblem) -> list[BoolArray]:
+    """(M,) markers of a segment that has another side, of the segments beyond it, and of the same on that side."""
+    body, segments = problem.body, [marker.segment for marker in problem.markers]
+    found = []
+    for segment in body.segments:
+        if not segment.name.startswith("right_"):
+            continue
+        limb = {segment.name}
+        for other in body.segments:  # parents come first
+            if other.parent in limb:
+                limb.add(other.name)
+        limb |= {mirrored(name) for name in limb}
+        found.append(np.array([name in limb for name in segments]))
+    return found
+
+
+def _refitted(problem: NamingProblem, naming: Naming, marker: Indices, steps: int) -> Naming:
+    """The person that other names make, sought from the poses of those before."""
+    _, offsets = problem.shares(naming.state)
+    start = np.zeros_like(naming.state.offsets_m)
+    start[marker] = offsets[np.arange(len(marker)), marker]
+    return problem.fitted(marker, replace(naming.state, offsets_m=start), steps)
+
+
+def _changes(share: Array, marker: Indices) -> list[Indices]:
+    """Names with one trajectory's changed, the most promising first by what they add to E with the poses fixed.
+
+    The trajectory whose name it takes gets the best of the names that are free then.
+    """
+    owner = {int(one): u for u, one in enumerate(marker)}
+    own = share[np.arange(len(share)), marker]
+    free = [m for m in range(share.shape[1]) if m not in owner]
+    found: dict[bytes, tuple[float, Indices]] = {}
+    for u, old in enumerate(marker):
+        for new in range(share.shape[1]):
+            if new == old:
+                continue
+            changed = marker.copy()
+            changed[u] = new
+            added = share[u, new] - own[u]
+            if new in owner:
+                v = owner[new]
+                rest = np.array([*free, int(old)])
+                changed[v] = rest[share[v, rest].argmin()]
+                added += share[v, changed[v]] - own[v]
+            found[changed.tobytes()] = (float(added), changed)
+    ordered = sorted(found.values(), key=lambda one: one[0])
+    return [changed for _, changed in ordered[:TRIED]]
