@@ -1,8 +1,11 @@
 """Cases of tests/test_jacobians.py: sensors, plants, and the readings of the filters."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from mbkf.filters.dwna import WhiteAccelerationPlant
+from mbkf.filters.dynamic_records import Decision, Expected
 from mbkf.filters.integrators import Motion, runge_kutta
 from mbkf.filters.singer import SingerPlant
 from mbkf.filters.state import FilterState
@@ -149,6 +152,26 @@ def dynamic_readings(rng):
         "filters.dynamic_records.FrameReadings.rows": (found.rows, falls),
         "filters.dynamic.DynamicFilter.linearise": (found.matrix / 1e6, informs / 1e6),
     }
+
+
+@checks("filters.habit.Habit.rows")
+def habit_rows(rng):
+    """Whitened: a row falls by what its innovation gains."""
+    model = random_model(rng)
+    kalman, s = dynamic_filter(model), random_state(model, rng)
+    dofs = np.concatenate(kalman.habit.followers)
+    q = model.integrate(s.q, 0.3 * rng.normal(size=model.nv))
+    v_sd, q_sd = 0.1 + rng.random((2, len(dofs)))
+    expected = Expected(dofs, q, s.v[dofs] + 1.0, q_sd, v_sd, {})
+    decision = Decision(*[None] * len(Decision._fields))._replace(expected=expected)
+    found = [rows for _, rows, _ in kalman.habit.rows(s, decision)]
+
+    def short(state):
+        return [values for _, _, values in kalman.habit.rows(state, decision)]
+
+    by_q = central_difference(model, lambda at: short(replace(s, q=at))[0], s.q)
+    by_v = slope(lambda v: short(replace(s, v=v))[1], s.v)
+    return named("filters.habit.Habit", ("rows", found[0], -by_q), ("rows", found[1], -by_v))
 
 
 def flow(body, now, u, h, x):

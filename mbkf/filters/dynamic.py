@@ -15,6 +15,7 @@ from mbkf.filters.dynamic_settings import DynamicSettings
 from mbkf.filters.estimate import Foresight
 from mbkf.filters.foot_rows import FootRows
 from mbkf.filters.gate import Sight, judged
+from mbkf.filters.habit import Habit
 from mbkf.filters.inertial_part import InertialPart
 from mbkf.filters.singer import DynamicState, SingerPlant
 from mbkf.model.newton_euler import FEET, NewtonEuler
@@ -50,6 +51,7 @@ class DynamicFilter:
         settings: What it believes.
         min_markers: Fewer believed markers than this leave the body untracked, unless inertial sensors read.
         inertial: Inertial sensors on the body, None where there are none.
+        habit: What limbs do that nothing shows; None where that is not asked for.
     """
 
     def __init__(
@@ -90,6 +92,7 @@ class DynamicFilter:
         self._foot_dof = [model.joint(segment).v.start for segment in FEET]
         self._forget = 1.0 - np.exp(-dt_s / s.noise_memory_s)
         self._sight = Sight(sensor, held)
+        self.habit = Habit(model, dt_s, held, s) if s.habit_memory_s > 0.0 else None
 
     def begin(self) -> Memory:
         """Memory before the first frame."""
@@ -179,6 +182,8 @@ class DynamicFilter:
         decision = self._decide(foresight, memory, innovation, plates)
         if imus is not None and self.inertial is not None:
             decision = self.inertial.decide(decision, memory, imus)
+        if self.habit is not None:
+            decision = self.habit.decide(decision, memory, prior)
         self.unsettle(prior.P, decision)
         state, frame = self._updated(prior, decision, reading, innovation)
         lifted = self._pulling_feet(state, decision.load)
@@ -193,6 +198,8 @@ class DynamicFilter:
         )
         if self.inertial is not None:
             after = self.inertial.remember(after, memory, state.q, decision)
+        if self.habit is not None:
+            after = self.habit.remember(after, memory, state, decision)
         enough = decision.imus is not None or bool(np.count_nonzero(decision.trusted) >= self.min_markers)
         return DynamicStep(state, after, decision, enough and not decision.strayed, prior, frame)
 
@@ -332,6 +339,8 @@ class DynamicFilter:
         parts = [(nv, *standing_still(self.model, state.q, state.v, foot, *sds)) for foot in decision.planted]
         if self.inertial is not None:
             parts += self.inertial.parts(state, decision, rows[:6], values[:6])
+        if self.habit is not None:
+            parts += self.habit.rows(state, decision)
         for first, block, short in parts:
             on_state = np.zeros((len(block), size))
             on_state[:, first : first + block.shape[1]] = block

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -11,9 +12,52 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.singer import DynamicState
+from mbkf.filters.synergy import Synergy
 from mbkf.numerics.kalman import Information, correct
 from mbkf.sensors.footing import FootingMemory, FootLoad
 from mbkf.sensors.planted import Planted
+
+
+class ShownFrame(NamedTuple):
+    """A frame that was noted: its block of time, features (p,), posture and velocity (2 nv,), and dofs seen (nv,)."""
+
+    block: int
+    features: Array
+    movement: Array
+    seen: BoolArray
+
+
+class Shown(NamedTuple):
+    """What a trial has shown so far, for joints that will be out of sight (:mod:`mbkf.filters.habit`).
+
+    Attributes:
+        frame: How many frames have passed.
+        noted: Some of the last ones.
+        synergies: What was learned of joints that are out of sight now, by their number.
+    """
+
+    frame: int
+    noted: tuple[ShownFrame, ...]
+    synergies: Mapping[int, Synergy]
+
+
+class Expected(NamedTuple):
+    """What joints out of sight are expected to do.
+
+    Attributes:
+        dofs: (n,) theirs.
+        q: (nq,) a configuration with their posture.
+        v: (n,) their velocities.
+        q_sd, v_sd: (n,) spreads of both, per reading.
+        synergies: By what, for the next frame.
+    """
+
+    dofs: NDArray[np.intp]
+    q: Array
+    v: Array
+    q_sd: Array
+    v_sd: Array
+    synergies: Mapping[int, Synergy]
 
 
 class Memory(NamedTuple):
@@ -25,6 +69,7 @@ class Memory(NamedTuple):
         activity: (nv,) mean square of recent accelerations, m²/s⁴ or rad²/s⁴; None before the first frame.
         markers_m: (M, 3) markers believed, NaN elsewhere; None where skin artefacts are not modelled.
         usual: (nq,) mean posture; None where there are no inertial sensors.
+        shown: What was seen of the joints; None where habits are not asked for.
     """
 
     footing: FootingMemory
@@ -32,6 +77,7 @@ class Memory(NamedTuple):
     activity: Array | None
     markers_m: Array | None
     usual: Array | None = None
+    shown: Shown | None = None
 
 
 class Decision(NamedTuple):
@@ -52,6 +98,7 @@ class Decision(NamedTuple):
         usual: (nq,) mean posture so far, for joints that nothing shows; None where there are no inertial sensors.
         unmarked: Dofs of joints whose segment shows no marker, felt or not, where there are inertial readings.
         lifted: Free feet, 0 right and 1 left, that would end up pulling at the floor and so carry nothing.
+        expected: What joints out of sight are expected to do; None where nothing was learned of them.
     """
 
     trusted: BoolArray
@@ -68,6 +115,7 @@ class Decision(NamedTuple):
     usual: Array | None = None
     unmarked: NDArray[np.intp] | None = None
     lifted: tuple[int, ...] = ()
+    expected: Expected | None = None
 
 
 @dataclass(frozen=True)

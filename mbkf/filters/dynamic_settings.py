@@ -51,6 +51,10 @@ class DynamicSettings:
             markers nor felt by them.
         usual_posture_s: With inertial sensors, the time over which a joint's mean posture is taken while it is seen.
         usual_posture_sd_rad: Its spread about that when nothing shows it, per reading.
+        habit_memory_s: How far back a joint's movement with trunk and legs is looked at, for when it is out of sight
+            (:mod:`mbkf.filters.habit`); 0 for no such habits.
+        habit_ridge_rad: What of trunk and legs varies by less than this hardly tells anything.
+        habit_errs_s: How long what is read off them errs alike.
         gate: Squared Mahalanobis distance (3 readings) above which a marker is not believed.
         gate_radius_m: Distance below which no marker is refused, m.
     """
@@ -94,5 +98,8 @@ class DynamicSettings:
     imu_residual_scale: float = 30.0
     usual_posture_s: float = 1.0
     usual_posture_sd_rad: float = 1.5
+    habit_memory_s: float = 5.0
+    habit_ridge_rad: float = 0.1
+    habit_errs_s: float = 0.25
     gate: float = 60.0
     gate_radius_m: float = 0.03

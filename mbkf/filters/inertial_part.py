@@ -70,6 +70,8 @@ class InertialPart:
             law_values /= self._settings.imu_residual_scale
         found = [(0, *self.block.rows(state.q, state.v, state.a, decision.imus))]
         dofs = decision.unseen[self._limb[decision.unseen]]
+        if decision.expected is not None:
+            dofs = np.setdiff1d(dofs, decision.expected.dofs)
         if decision.usual is not None and len(dofs):
             sd = self._settings.usual_posture_sd_rad
             jacobian = self._model.difference_derivative(decision.usual, state.q)[dofs] / sd

@@ -1,0 +1,90 @@
+"""How parts of a body move together, learned from what was shown: a ridge regression that knows how well it foretells.
+
+Targets y are read off features f as ȳ + Wᵀ (f − f̄), the conditional mean of jointly Gaussian variables with a ridge
+λ² on the features' covariance (Bishop, *Pattern Recognition and Machine Learning*, 2006, 2.3.1 and 3.1.4). Frames that
+follow each other tell nearly the same, so its errors are those on whole blocks of time that it has not seen. A target
+that the plain mean of the other blocks foretells as well keeps that mean.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
+
+from mbkf.conventions import Array
+
+LEAST_BLOCKS = 4
+"""With fewer the spread of a left-out block (Student's t of one degree less) is not finite."""
+
+
+@dataclass(frozen=True)
+class Synergy:
+    """A learned relation.
+
+    Attributes:
+        features: (p,) mean f̄ of the features.
+        targets: (k,) mean ȳ of the targets.
+        weights: (p, k) W; columns of zeros for targets that keep their mean.
+        error_sd: (k,) root mean square error on blocks left out.
+        novelty: (p, p) K: a variance is larger by the factor 1 + 1/B + (f − f̄)ᵀ K (f − f̄).
+        blocks: B, how many were shown.
+    """
+
+    features: Array
+    targets: Array
+    weights: Array
+    error_sd: Array
+    novelty: Array
+    blocks: int
+
+    def expected(self, features: Array) -> tuple[Array, Array]:
+        """Mean (k,) and standard deviation (k,) of the targets at features (p,): wider the less such ones were seen."""
+        away = features - self.features
+        reads = self.weights.any(axis=0)
+        growth = 1.0 + 1.0 / self.blocks + np.where(reads, away @ self.novelty @ away, 0.0)
+        few = (self.blocks - 1) / (self.blocks - 3)
+        return self.targets + away @ self.weights, self.error_sd * np.sqrt(few * growth)
+
+    def only(self, targets: NDArray[np.intp] | slice) -> Synergy:
+        """The same for some targets."""
+        return replace(
+            self,
+            targets=self.targets[targets],
+            weights=self.weights[:, targets],
+            error_sd=self.error_sd[targets],
+        )
+
+
+def learn(features: Array, targets: Array, blocks: NDArray[np.intp], ridge: float) -> Synergy | None:
+    """The relation of targets to features; None where fewer than four blocks were shown.
+
+    A left-out block's error is (I − H_bb)⁻¹ (y − ŷ)_b with the hat matrix H of all frames, without another fit.
+
+    Args:
+        features: (n, p).
+        targets: (n, k).
+        blocks: (n,) number of the block of time that each frame belongs to.
+        ridge: λ, in the features' unit: what varies by less is hardly read.
+    """
+    names = np.unique(blocks)
+    if len(names) < LEAST_BLOCKS:
+        return None
+    n, p = features.shape
+    middle, mean = features.mean(axis=0), targets.mean(axis=0)
+    F, Y = features - middle, targets - mean
+    K = cho_solve(cho_factor(F.T @ F + n * ridge**2 * np.eye(p)), np.eye(p))
+    read = K @ F.T
+    weights = read @ Y
+    short = Y - F @ weights
+    by_features, by_mean = np.empty_like(Y), np.empty_like(Y)
+    for name in names:
+        own = np.flatnonzero(blocks == name)
+        hat = F[own] @ read[:, own] + 1.0 / n
+        by_features[own] = np.linalg.solve(np.eye(len(own)) - hat, short[own])
+        by_mean[own] = Y[own] + Y[own].sum(axis=0) / (n - len(own))
+    sd, plain = (np.sqrt((error**2).mean(axis=0)) for error in (by_features, by_mean))
+    weights[:, sd >= plain] = 0.0
+    return Synergy(middle, mean, weights, np.minimum(sd, plain), n / len(names) * K, len(names))
