@@ -112,11 +112,16 @@ class Habit:
         """The memory with what this frame showed, and with what was learned of joints that are out of sight."""
         last = before.shown or Shown(0, (), {})
         frame, noted = last.frame + 1, last.noted
-        legible = not decision.strayed and not np.isin(self._leading, decision.unseen).any()
-        if frame % self._every == 0 and legible:
+        if frame % self._every == 0 and self._legible(decision):
             noted = (*noted[max(0, len(noted) + 1 - self._keep) :], self._noted(frame, state, decision))
         learned = {} if decision.expected is None else decision.expected.synergies
         return memory._replace(shown=Shown(frame, noted, learned))
+
+    def _legible(self, decision: Decision) -> bool:
+        """Whether trunk and legs are where the state says."""
+        if decision.strayed:
+            return False
+        return not len(decision.unseen) or not np.isin(self._leading, decision.unseen).any()
 
     def _learned(self, gone: NDArray[np.intp], shown: Shown) -> dict[int, Synergy]:
         """What is known of the joints that are out of sight: learned once, when they go; None of those seen too little.
