@@ -20,6 +20,8 @@ _PIPED_WIDTH = 110
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Add the parser of this command."""
+    from mbkf.cli.options import add_axes_options
+
     parser = subparsers.add_parser(
         "info",
         help="what a capture holds: markers, gaps, plates, channels, axes",
@@ -29,8 +31,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("file", metavar="FILE", help="capture (.c3d or .trc)")
     parser.add_argument("--forces", metavar="FILE.mot", help="ground reactions that belong to the capture")
-    parser.add_argument("--up", metavar="AXIS", help="axis of the file that points up: x, y, z, -x, -y or -z")
-    parser.add_argument("--unit", metavar="UNIT", help="length unit of the file: mm, cm or m")
+    add_axes_options(parser)
     parser.add_argument("--json", action="store_true", help="print everything as JSON")
     parser.set_defaults(func=run, run=run)
 

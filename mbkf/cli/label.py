@@ -29,6 +29,8 @@ By the protocol alone some labels may fit nearly as well by another name: warnin
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
+    from mbkf.cli.options import add_axes_options
+
     parser = subparsers.add_parser(
         "label",
         help="unlabelled points to named markers",
@@ -50,8 +52,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("--height", metavar="M", type=float, help="body height of a person to be scaled")
     parser.add_argument("--truth", metavar="LABELLED.c3d", help="the same trial with labels, to compare with")
-    parser.add_argument("--up", metavar="AXIS", help="axis of the file that points up: x, y, z, -x, -y or -z")
-    parser.add_argument("--unit", metavar="UNIT", help="length unit of the file: mm, cm or m")
+    add_axes_options(parser)
     parser.add_argument("--out", required=True, metavar="FILE.c3d|FILE.trc", help="file to write")
     parser.set_defaults(run=run)
 

@@ -163,7 +163,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _check_numbers(args: argparse.Namespace) -> None:
-    from mbkf.cli.replay import check_positive
+    from mbkf.cli.options import check_positive
 
     if args.seconds is not None:
         check_positive("--seconds", args.seconds)
@@ -176,7 +176,7 @@ def _check_numbers(args: argparse.Namespace) -> None:
 
 def _person(args: argparse.Namespace) -> Subject | KnownPerson:
     """The subject of the file, or what is known of somebody who is to be scaled."""
-    from mbkf.cli.replay import check_positive
+    from mbkf.cli.options import check_positive
     from mbkf.errors import InvalidInput
     from mbkf.io.subject import read_subject
     from mbkf.model.protocol import load_protocol

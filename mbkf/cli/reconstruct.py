@@ -24,6 +24,8 @@ writes summary.json, motion.h5, angles.mot, torques.sto, reactions.mot and marke
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
+    from mbkf.cli.options import add_axes_options
+
     parser = subparsers.add_parser(
         "reconstruct",
         help="markers and plates to motion, torques and reactions",
@@ -69,10 +71,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         action="store_true",
         help="keep the subject's marker positions instead of correcting them on this trial",
     )
-    parser.add_argument(
-        "--up", metavar="AXIS", help="axis of the files that points up: x, y, z, -x, -y or -z"
-    )
-    parser.add_argument("--unit", metavar="UNIT", help="length unit of the markers: mm, cm or m")
+    add_axes_options(parser)
     parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
     parser.set_defaults(run=run)
 

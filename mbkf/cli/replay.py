@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -22,6 +21,8 @@ Playing starts when somebody listens, e.g. 'mbkf live --from lsl --subject subje
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
+    from mbkf.cli.options import add_axes_options
+
     parser = subparsers.add_parser(
         "replay",
         help="plays a capture as a live stream",
@@ -62,10 +63,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="S",
         help="play all the same when nobody listens after this (default: 30)",
     )
-    parser.add_argument(
-        "--up", metavar="AXIS", help="axis of the files that points up: x, y, z, -x, -y or -z"
-    )
-    parser.add_argument("--unit", metavar="UNIT", help="length unit of the markers: mm, cm or m")
+    add_axes_options(parser)
     parser.set_defaults(run=run)
 
 
@@ -75,6 +73,7 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         MbkfError: An input is unusable, or a library is missing.
     """
+    from mbkf.cli.options import check_positive, check_share
     from mbkf.cli.progress import stages
     from mbkf.cli.stopping import stopped_by_signal
     from mbkf.io.capture import read_capture
@@ -109,27 +108,3 @@ def _player(args: argparse.Namespace, stream: Played) -> Player:
     from mbkf.stream.natnet_player import NatNetPlayer
 
     return NatNetPlayer(stream, args.address, args.port)
-
-
-def check_positive(option: str, value: float, or_zero: bool = False) -> None:
-    """Refuses what is not a positive number.
-
-    Raises:
-        InvalidInput: It is not.
-    """
-    from mbkf.errors import InvalidInput
-
-    if not math.isfinite(value) or value < 0.0 or (value == 0.0 and not or_zero):
-        raise InvalidInput(f"{option} {value:g}: give a positive number")
-
-
-def check_share(option: str, value: float) -> None:
-    """Refuses what is not a share.
-
-    Raises:
-        InvalidInput: It is not between 0 and 1.
-    """
-    from mbkf.errors import InvalidInput
-
-    if not 0.0 <= value <= 1.0:
-        raise InvalidInput(f"{option} {value:g}: give a share between 0 and 1")

@@ -16,6 +16,8 @@ examples:
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
+    from mbkf.cli.options import add_axes_options
+
     parser = subparsers.add_parser(
         "scale",
         help="fit the body to a person, with the person's mass",
@@ -34,10 +36,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--mass", metavar="KG", type=float, help="body mass; by default what the capture states"
     )
     parser.add_argument("--height", metavar="M", type=float, help="body height, if known")
-    parser.add_argument(
-        "--up", metavar="AXIS", help="axis of the files that points up: x, y, z, -x, -y or -z"
-    )
-    parser.add_argument("--unit", metavar="UNIT", help="length unit of the files: mm, cm or m")
+    add_axes_options(parser)
     parser.add_argument("--out", required=True, metavar="SUBJECT.toml", help="file to write")
     parser.set_defaults(run=run)
 

@@ -42,6 +42,8 @@ _PARAMETERS = """\
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Adds the command to the command line."""
+    from mbkf.cli.options import add_axes_options
+
     parser = subparsers.add_parser(
         "tune",
         help="find a filter's noise settings on trials",
@@ -73,10 +75,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         action="store_true",
         help="keep the subject's marker positions instead of correcting them on each trial",
     )
-    parser.add_argument(
-        "--up", metavar="AXIS", help="axis of the files that points up: x, y, z, -x, -y or -z"
-    )
-    parser.add_argument("--unit", metavar="UNIT", help="length unit of the markers: mm, cm or m")
+    add_axes_options(parser)
     parser.set_defaults(run=run)
 
 

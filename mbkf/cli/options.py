@@ -1,0 +1,40 @@
+"""Options that several commands share, and checks of what they were given."""
+
+from __future__ import annotations
+
+import argparse
+import math
+
+
+def add_axes_options(parser: argparse.ArgumentParser) -> None:
+    """``--up`` and ``--unit``, for files that do not say, or say it wrongly."""
+    parser.add_argument(
+        "--up",
+        metavar="AXIS",
+        help="axis of the files that points up: x, y, z, or downwards --up=-x, --up=-y, --up=-z",
+    )
+    parser.add_argument("--unit", metavar="UNIT", help="length unit of the markers: mm, cm or m")
+
+
+def check_positive(option: str, value: float, or_zero: bool = False) -> None:
+    """Refuses what is not a positive number.
+
+    Raises:
+        InvalidInput: It is not.
+    """
+    from mbkf.errors import InvalidInput
+
+    if not math.isfinite(value) or value < 0.0 or (value == 0.0 and not or_zero):
+        raise InvalidInput(f"{option} {value:g}: give a positive number")
+
+
+def check_share(option: str, value: float) -> None:
+    """Refuses what is not a share.
+
+    Raises:
+        InvalidInput: It is not between 0 and 1.
+    """
+    from mbkf.errors import InvalidInput
+
+    if not 0.0 <= value <= 1.0:
+        raise InvalidInput(f"{option} {value:g}: give a share between 0 and 1")

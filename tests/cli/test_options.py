@@ -1,0 +1,37 @@
+"""Options that several commands share are declared once, and numbers that cannot be are refused by name."""
+
+import argparse
+
+import pytest
+
+from mbkf.cli.options import add_axes_options, check_positive, check_share
+from mbkf.errors import InvalidInput
+
+
+def test_axes_and_unit_are_left_open():
+    parser = argparse.ArgumentParser()
+    add_axes_options(parser)
+    assert vars(parser.parse_args([])) == {"up": None, "unit": None}
+    assert vars(parser.parse_args(["--up=-y", "--unit", "mm"])) == {"up": "-y", "unit": "mm"}
+
+
+@pytest.mark.parametrize("value", [-1.0, float("nan"), float("inf"), 0.0])
+def test_what_is_not_positive_is_refused(value):
+    with pytest.raises(InvalidInput, match="--speed"):
+        check_positive("--speed", value)
+
+
+def test_zero_may_be_allowed():
+    check_positive("--speed", 0.0, or_zero=True)
+    check_positive("--speed", 0.1)
+
+
+@pytest.mark.parametrize("value", [-0.1, 1.1, float("nan")])
+def test_what_is_no_share_is_refused(value):
+    with pytest.raises(InvalidInput, match="--loss"):
+        check_share("--loss", value)
+
+
+def test_shares_are_taken():
+    check_share("--loss", 0.0)
+    check_share("--loss", 1.0)
