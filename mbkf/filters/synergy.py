@@ -16,8 +16,9 @@ from scipy.linalg import cho_factor, cho_solve
 
 from mbkf.conventions import Array
 
-LEAST_BLOCKS = 4
-"""With fewer the spread of a left-out block (Student's t of one degree less) is not finite."""
+LEAST_BLOCKS, FEW_BLOCKS, FEW_SCATTER = 4, 2, 2.0
+"""With fewer than four blocks the spread of a left-out block (Student's t of one degree less) is not finite. From two
+on the plain mean is taken then, with so many times the scatter that was seen for its error on four blocks."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ class Synergy:
 
 
 def learn(features: Array, targets: Array, blocks: NDArray[np.intp], ridge: float) -> Synergy | None:
-    """The relation of targets to features; None where fewer than four blocks were shown.
+    """The relation of targets to features, their mean where too few blocks were shown; None where hardly any were.
 
     A left-out block's error is (I − H_bb)⁻¹ (y − ŷ)_b with the hat matrix H of all frames, without another fit.
 
@@ -70,10 +71,19 @@ def learn(features: Array, targets: Array, blocks: NDArray[np.intp], ridge: floa
         ridge: λ, in the features' unit: what varies by less is hardly read.
     """
     names = np.unique(blocks)
-    if len(names) < LEAST_BLOCKS:
+    if len(names) < FEW_BLOCKS:
         return None
     n, p = features.shape
     middle, mean = features.mean(axis=0), targets.mean(axis=0)
+    if len(names) < LEAST_BLOCKS:
+        return Synergy(
+            middle,
+            mean,
+            np.zeros((p, len(mean))),
+            FEW_SCATTER * targets.std(axis=0),
+            np.zeros((p, p)),
+            LEAST_BLOCKS,
+        )
     F, Y = features - middle, targets - mean
     K = cho_solve(cho_factor(F.T @ F + n * ridge**2 * np.eye(p)), np.eye(p))
     read = K @ F.T

@@ -76,9 +76,19 @@ def test_the_further_from_what_was_shown_the_less_is_known(seed, further):
     assert (far > near).all()
 
 
-def test_three_blocks_tell_nothing():
+@pytest.mark.parametrize("blocks", [2, 3])
+def test_few_blocks_tell_no_more_than_a_vague_mean(blocks):
     features, targets, _ = shown()
-    assert learn(features, targets, np.repeat([0, 1, 2], 30), RIDGE) is None
+    found = learn(features, targets, np.repeat(np.arange(blocks), 90 // blocks), RIDGE)
+    for at in (features[0], features[0] + 10.0):
+        mean, sd = found.expected(at)
+        np.testing.assert_array_equal(mean, targets.mean(axis=0))
+        assert (sd > 3.0 * targets.std(axis=0)).all()
+
+
+def test_one_block_tells_nothing():
+    features, targets, _ = shown()
+    assert learn(features, targets, np.zeros(90, dtype=int), RIDGE) is None
 
 
 def test_some_targets_are_foretold_as_among_all():
