@@ -28,6 +28,16 @@ from mbkf.viz.standing_page import StandingPage
 from tests.captures import MASS_KG, made_capture
 
 
+def begun(words):
+    """The command as a process of its own, with what it says kept."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "mbkf", *map(str, words)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
 def run(words):
     return main([str(word) for word in words])
 
@@ -109,12 +119,7 @@ def test_ctrl_c_leaves_complete_files(person, tmp_path):
         "--out",
         out,
     ]
-    process = subprocess.Popen(
-        [sys.executable, "-m", "mbkf", *map(str, words)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+    process = begun(words)
     until = time.monotonic() + 20.0
     while not (out / LOG_FOLDER).is_dir() and time.monotonic() < until:
         time.sleep(0.02)
@@ -277,12 +282,7 @@ def test_what_the_stream_does_not_tell_is_asked_for(person, tmp_path, capsys, fi
 def test_ctrl_c_before_anybody_stood_still_leaves_a_report(visit, tmp_path):
     out = tmp_path / "out"
     words = ["live", "--from", f"file:{visit}", "--speed", "0.2", "--out", out]
-    process = subprocess.Popen(
-        [sys.executable, "-m", "mbkf", *map(str, words)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+    process = begun(words)
     until = time.monotonic() + 20.0
     while not (out / "live.json").is_file() and time.monotonic() < until:
         time.sleep(0.02)

@@ -266,7 +266,7 @@ def test_what_is_expected_is_as_far_off_as_stated(name):
         S[:, np.arange(3), np.arange(3)] += MARKER_SD_M**2
         y = recording().markers_m[t + 1] - markers.positions_m
         squared.append(np.einsum("mi,mij,mj->m", y, np.linalg.inv(S), y))
-    assert 0.25 < np.mean(squared) / 3.0 < 1.5
+    assert 0.25 < np.mean(squared) / 3.0 < 1.0
 
 
 @pytest.mark.parametrize(
