@@ -162,7 +162,7 @@ class OwnPlant:
         nv = self.model.nv
         e, P = self.kalman.difference(found, true), found.P
         joint = self.balance.torques(found.q, found.v, found.a, found.w)
-        T = np.hstack([joint.by_q, joint.by_v, joint.by_a, joint.by_wrench])[6:]
+        T = joint.by_state[6:]
         tau = self.balance.tau(true.q, true.v, true.a, true.w)[6:] - joint.tau[6:]
         rates = slice(nv, 2 * nv)
         parts = ((e[:nv], P[:nv, :nv]), (e[rates], P[rates, rates]), (tau, T @ P @ T.T))

@@ -96,7 +96,7 @@ def newton_euler_root(rng):
 
 @checks(
     "model.newton_euler.NewtonEuler.torques",
-    *(f"model.newton_euler.JointTorques.by_{x}" for x in ("q", "v", "a", "wrench")),
+    *(f"model.newton_euler.JointTorques.by_{x}" for x in ("q", "v", "a", "wrench", "state")),
     tolerance=1e-6,
 )
 def newton_euler_torques(rng):
@@ -114,7 +114,8 @@ def newton_euler_torques(rng):
             slope(lambda w: balance.tau(s.q, s.v, s.a, w), s.w, 1e-2),
         ),
     )
-    return named("model.newton_euler", ("NewtonEuler.torques", found.by_q, by_q), *pairs)
+    whole = ("JointTorques.by_state", found.by_state, np.hstack([numeric for _, _, numeric in pairs]))
+    return named("model.newton_euler", ("NewtonEuler.torques", found.by_q, by_q), *pairs, whole)
 
 
 # The body of the torque filter.

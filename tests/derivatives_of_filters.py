@@ -12,7 +12,7 @@ from mbkf.filters.state import FilterState
 from mbkf.filters.torque_plant import ForcedState, Scheme, TorquePlant
 from mbkf.sensors.foot_wrench import FootWrenchSensor
 from mbkf.sensors.joint_limits import JointLimits
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture import PostureSensor, pull
 from tests.derivatives import checks, named, slope
 from tests.derivatives_of_bodies import forced_body
 from tests.dynamics import dynamic_filter, markers_of, random_state, standing
@@ -47,17 +47,25 @@ def markers(rng):
     "sensors.posture.PostureReading.jacobian",
     "sensors.posture.PostureSensor.reading",
     "sensors.posture.PostureSensor.deviation",
+    "sensors.posture.pull",
 )
 def posture(rng):
     model = random_model(rng)
     sensor, q = PostureSensor(model), moderate_pose(model, rng, spread=1.0)
     numeric = central_difference(model, lambda at: sensor.deviation(at)[0], q)
     read = central_difference(model, lambda at: sensor.reading(at).deviation, q)
+    weights = rng.uniform(0.5, 2.0, model.nv)
+
+    def squared(at):
+        return 0.5 * np.sum((weights * sensor.deviation(at)[0]) ** 2)
+
     return named(
         "sensors.posture",
         ("PostureReading.jacobian", sensor.reading(q).jacobian, read),
         ("PostureSensor.reading", sensor.reading(q).jacobian, numeric[sensor.dofs]),
         ("PostureSensor.deviation", sensor.deviation(q)[1], numeric),
+        # Half the square of the weighed deviations falls along the vector.
+        ("pull", pull(*sensor.deviation(q), weights).vector, -central_difference(model, squared, q)),
     )
 
 
@@ -154,6 +162,22 @@ def dynamic_readings(rng):
     }
 
 
+@checks("filters.outlook.Outlook.by_q", "filters.outlook.Outlook.law", tolerance=1e-6)
+def outlook(rng):
+    """Newton's law is read as zero, so its rows are what its innovations lose."""
+    model = random_model(rng)
+    kalman = dynamic_filter(model)
+    s = random_state(model, rng, standing(model), spread=0.05)
+    looked = kalman.outlooks.at(s)
+
+    def law(x):
+        return kalman.outlooks.at(kalman.retract(s, x, s.P)).law_values
+
+    by_q = central_difference(model, lambda q: kalman.outlooks.at(replace(s, q=q)).deviation, s.q)
+    falls = -slope(law, np.zeros(len(s.P)), 1e-5)
+    return named("filters.outlook.Outlook", ("by_q", looked.by_q, by_q), ("law", looked.law, falls))
+
+
 @checks("filters.habit.Habit.rows")
 def habit_rows(rng):
     """Whitened: a row falls by what its innovation gains."""
@@ -162,7 +186,7 @@ def habit_rows(rng):
     dofs = np.concatenate(kalman.habit.followers)
     q = model.integrate(s.q, 0.3 * rng.normal(size=model.nv))
     v_sd, q_sd = 0.1 + rng.random((2, len(dofs)))
-    expected = Expected(dofs, q, s.v[dofs] + 1.0, q_sd, v_sd, {})
+    expected = Expected(dofs, q, s.v[dofs] + 1.0, q_sd, v_sd)
     decision = Decision(*[None] * len(Decision._fields))._replace(expected=expected)
     found = [rows for _, rows, _ in kalman.habit.rows(s, decision)]
 

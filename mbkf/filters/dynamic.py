@@ -6,6 +6,9 @@ linear and never stiff, and the pelvis's six Newton–Euler equations enter as r
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,19 +20,22 @@ from mbkf.filters.foot_rows import FootRows
 from mbkf.filters.gate import Sight, judged
 from mbkf.filters.habit import Habit
 from mbkf.filters.inertial_part import InertialPart
+from mbkf.filters.outlook import Outlook, Outlooks, Prediction
 from mbkf.filters.singer import DynamicState, SingerPlant
+from mbkf.filters.synergy import Synergy
 from mbkf.model.newton_euler import FEET, NewtonEuler
 from mbkf.numerics.kalman import Information, informed_with_rows
 from mbkf.sensors.expectation import MarkerExpectation
 from mbkf.sensors.footing import Footing, FootingSensor, FootLoad
-from mbkf.sensors.joint_limits import JointLimits
-from mbkf.sensors.markers import MarkerInformation, MarkerReading, MarkerSensor
+from mbkf.sensors.markers import MarkerInformation, MarkerSensor
 from mbkf.sensors.planted import standing_still
-from mbkf.sensors.posture import PostureSensor
 from mbkf.sensors.skin import SkinMarkers
 
 NOWHERE = np.zeros(0, dtype=np.intp)
 """No dofs."""
+
+FEET_ROWS = slice(6, 18)
+"""Where among a frame's rows those on the feet's wrenches are."""
 
 DISPLACED_SD_RAD = 0.5
 DISPLACED_SD_RAD_S = 3.0
@@ -46,7 +52,7 @@ class DynamicFilter:
         sensor: The markers on the body.
         feet: The plates under it.
         plant: Decaying accelerations.
-        balance: Newton–Euler equations.
+        outlooks: What it says of a frame before reading it.
         held: (nv,) dofs that no marker of the capture moves with.
         settings: What it believes.
         min_markers: Fewer believed markers than this leave the body untracked, unless inertial sensors read.
@@ -72,14 +78,10 @@ class DynamicFilter:
         self.model, self.dt_s = model, dt_s
         acceleration = np.where(held, 0.0, settings.acceleration_scale * model.movement_sd)
         self.plant = SingerPlant(model, dt_s, acceleration, settings.decay_s)
-        self.balance = NewtonEuler(model)
-        self.posture = PostureSensor(model)
-        self.limits = JointLimits(model, held, settings.limit_sd_rad)
+        self.outlooks = Outlooks(sensor, held, settings)
         self._markers = MarkerInformation(sensor, self.noise_m)
         self._certainty = 1.0 / self.noise_m[:, None]
-        self._lean = self.posture.weights(settings.posture_scale, held)
         s = settings
-        self._law = 1.0 / np.repeat([s.residual_force_n, s.residual_moment_nm], 3)
         self._feet = FootRows(3 * model.nv, GRAVITY_M_S2 * model.mass_kg, dt_s, s)
         self._calm = 1.0 - np.exp(-dt_s / s.activity_memory_s)
         usual_speed = s.unseen_velocity_s * self.plant.acceleration_sd
@@ -93,6 +95,11 @@ class DynamicFilter:
         self._forget = 1.0 - np.exp(-dt_s / s.noise_memory_s)
         self._sight = Sight(sensor, held)
         self.habit = Habit(model, dt_s, held, s) if s.habit_memory_s > 0.0 else None
+
+    @property
+    def balance(self) -> NewtonEuler:
+        """Newton–Euler equations."""
+        return self.outlooks.balance
 
     def begin(self) -> Memory:
         """Memory before the first frame."""
@@ -118,17 +125,21 @@ class DynamicFilter:
         every = np.arange(3 * nv, 3 * nv + 12)
         whole[every, every] = START_WRENCH_SD**2
         state = DynamicState(q, v, a, np.zeros(12), whole)
-        known = self._foresight(state, self.plant.acceleration_sd)
+        known = self._foresight(state, self.plant.acceleration_sd, {})
         return self._corrected(known, self.begin(), markers_m, plates)
 
     def expect(self, state: DynamicState, memory: Memory) -> Foresight:
-        """The prediction alone."""
+        """All that can be worked out before the frame is there."""
         sd = self._movement(memory)
-        return self._foresight(self.plant.predict(state, sd), sd)
+        synergies = {} if self.habit is None else self.habit.learned(memory)
+        return self._foresight(self.plant.predict(state, sd), sd, synergies)
 
-    def _foresight(self, prior: DynamicState, acceleration_sd: Array) -> Foresight:
-        nv, reading = self.model.nv, self.sensor.reading(prior.q)
-        return Foresight(prior.q, MarkerExpectation(reading, prior.P[:nv, :nv]), (prior, acceleration_sd))
+    def _foresight(
+        self, prior: DynamicState, acceleration_sd: Array, synergies: Mapping[int, Synergy]
+    ) -> Foresight:
+        nv, outlook = self.model.nv, self.outlooks.at(prior)
+        markers = MarkerExpectation(outlook.reading, prior.P[:nv, :nv])
+        return Foresight(prior.q, markers, Prediction(outlook, acceleration_sd, synergies))
 
     def step(
         self,
@@ -177,19 +188,22 @@ class DynamicFilter:
         plates: Array,
         imus: Array | None = None,
     ) -> DynamicStep:
-        prior, reading = foresight.prior[0], foresight.markers.reading
-        innovation = markers_m - reading.positions_m
+        predicted: Prediction = foresight.prior
+        outlook, prior = predicted.outlook, predicted.outlook.state
+        innovation = markers_m - outlook.reading.positions_m
         decision = self._decide(foresight, memory, innovation, plates)
         if imus is not None and self.inertial is not None:
             decision = self.inertial.decide(decision, memory, imus)
         if self.habit is not None:
-            decision = self.habit.decide(decision, memory, prior)
+            decision = self.habit.decide(decision, predicted.synergies, prior)
         self.unsettle(prior.P, decision)
-        state, frame = self._updated(prior, decision, reading, innovation)
+        frame = self._linearised(outlook, decision, innovation)
+        state = self._updated(prior, frame)
         lifted = self._pulling_feet(state, decision.load)
         if lifted:
             decision = decision._replace(lifted=lifted)
-            state, frame = self._updated(prior, decision, reading, innovation)
+            frame = self._with_feet(frame, prior, decision)
+            state = self._updated(prior, frame)
         after = Memory(
             decision.load.memory,
             self._next_noise_scale(decision, innovation),
@@ -199,16 +213,13 @@ class DynamicFilter:
         if self.inertial is not None:
             after = self.inertial.remember(after, memory, state.q, decision)
         if self.habit is not None:
-            after = self.habit.remember(after, memory, state, decision)
+            after = self.habit.remember(after, memory, state, decision, predicted.synergies)
         enough = decision.imus is not None or bool(np.count_nonzero(decision.trusted) >= self.min_markers)
         return DynamicStep(state, after, decision, enough and not decision.strayed, prior, frame)
 
-    def _updated(
-        self, prior: DynamicState, decision: Decision, reading: MarkerReading, innovation: Array
-    ) -> tuple[DynamicState, FrameReadings]:
-        frame = self._linearised(prior, decision, reading, innovation)
+    def _updated(self, prior: DynamicState, frame: FrameReadings) -> DynamicState:
         P = informed_with_rows(prior.P.T, frame.matrix, frame.rows)
-        return self.retract(prior, P @ frame.whole_vector, P), frame
+        return self.retract(prior, P @ frame.whole_vector, P)
 
     def _pulling_feet(self, state: DynamicState, load: FootLoad) -> tuple[int, ...]:
         """Free feet whose estimated force pulls at the floor, clearly more than it is kept from that."""
@@ -247,11 +258,12 @@ class DynamicFilter:
 
     def linearise(self, state: DynamicState, decision: Decision, markers_m: Array) -> FrameReadings:
         """A frame's readings, decided before, linearised at another state (for smoothing)."""
-        reading = self.sensor.reading(state.q)
-        return self._linearised(state, decision, reading, markers_m - reading.positions_m)
+        outlook = self.outlooks.at(state)
+        return self._linearised(outlook, decision, markers_m - outlook.reading.positions_m)
 
     def _decide(self, foresight: Foresight, memory: Memory, innovation: Array, plates: Array) -> Decision:
-        (prior, acceleration_sd), markers = foresight.prior, foresight.markers
+        predicted, markers = foresight.prior, foresight.markers
+        prior = predicted.outlook.state
         noise = self.noise_m * memory.noise_scale**0.5
         seen, trusted, displaced, strayed = judged(
             innovation, markers.reading, markers.covariance, noise, self.settings
@@ -269,7 +281,7 @@ class DynamicFilter:
             unseen,
             planted,
             moved[moved >= 6],
-            acceleration_sd,
+            predicted.acceleration_sd,
             memory.markers_m,
             strayed,
         )
@@ -285,27 +297,27 @@ class DynamicFilter:
         wanted = min(max(squared / share, low**2), high**2)
         return decision.noise_scale + self._forget * (wanted - decision.noise_scale)
 
-    def _linearised(
-        self, state: DynamicState, decision: Decision, reading: MarkerReading, innovation: Array
-    ) -> FrameReadings:
-        markers = self._marker_information(state, decision, reading, innovation)
-        lean, nv = self._lean, self.model.nv
-        if len(decision.unseen):
-            lean = lean.copy()
-            lean[decision.unseen] *= self.settings.unseen_posture
+    def _linearised(self, outlook: Outlook, decision: Decision, innovation: Array) -> FrameReadings:
+        markers = self._marker_information(outlook, decision, innovation)
+        lean, nv = self.outlooks.lean(outlook, decision.unseen), self.model.nv
         matrix, vector = markers.matrix.copy(), markers.vector.copy()
-        deviation, jacobian = self.posture.lean(state.q, lean, matrix[:nv, :nv], vector[:nv])
-        limit = self.limits.information(deviation, jacobian)
-        if limit is not None:
-            matrix[:nv, :nv] += limit.matrix
-            vector[:nv] += limit.vector
-        rows, values, readings = self._rows(state, decision)
+        matrix[:nv, :nv] += lean.matrix
+        vector[:nv] += lean.vector
+        rows, values, readings = self._rows(outlook, decision)
         return FrameReadings(markers, matrix, vector, rows, values, readings)
 
-    def _marker_information(
-        self, state: DynamicState, decision: Decision, reading: MarkerReading, innovation: Array
-    ) -> Information:
+    def _with_feet(self, frame: FrameReadings, state: DynamicState, decision: Decision) -> FrameReadings:
+        """The same readings where only what the feet carry was decided anew."""
+        rows, values = frame.rows.copy(), frame.values.copy()
+        rows[FEET_ROWS] = 0.0
+        readings = 6 + self._feet.fill(
+            rows[FEET_ROWS], values[FEET_ROWS], state.w, decision.load, decision.lifted
+        )
+        return replace(frame, rows=rows, values=values, readings=readings)
+
+    def _marker_information(self, outlook: Outlook, decision: Decision, innovation: Array) -> Information:
         """Of the configuration; of (q, v, a) where skin artefacts are modelled."""
+        state, reading = outlook.state, outlook.reading
         if self._skin is None or decision.before_m is None:
             found = self._markers.at(state.q, reading, innovation, decision.trusted)
         else:
@@ -313,20 +325,16 @@ class DynamicFilter:
             found = self._skin.at(q, v, a, reading, innovation, decision.trusted, decision.before_m)
         return found.scaled(1.0 / decision.noise_scale)
 
-    def _rows(self, state: DynamicState, decision: Decision) -> tuple[Array, Array, int]:
+    def _rows(self, outlook: Outlook, decision: Decision) -> tuple[Array, Array, int]:
         """Newton–Euler, feet, and what holds back unseen joints, whitened; the pulls come last."""
-        nv, size = self.model.nv, 3 * self.model.nv + 12
-        root = self.balance.root(state.q, state.v, state.a, state.w)
+        state, nv, size = outlook.state, self.model.nv, 3 * self.model.nv + 12
         unseen = decision.unseen
         rows = np.zeros((18 + 2 * len(unseen), size))
         values = np.empty(len(rows))
-        law = self._law[:, None]
-        np.multiply(root.by_q, law, out=rows[:6, :nv])
-        np.multiply(root.by_v, law, out=rows[:6, nv : 2 * nv])
-        np.multiply(root.by_a, law, out=rows[:6, 2 * nv : 3 * nv])
-        rows[:6, 3 * nv : 3 * nv + 6] = rows[:6, 3 * nv + 6 :] = root.by_wrench * law
-        values[:6] = -root.residual * self._law
-        readings = 6 + self._feet.fill(rows[6:18], values[6:18], state.w, decision.load, decision.lifted)
+        rows[:6], values[:6] = outlook.law, outlook.law_values
+        readings = 6 + self._feet.fill(
+            rows[FEET_ROWS], values[FEET_ROWS], state.w, decision.load, decision.lifted
+        )
         if len(unseen):
             k = np.arange(len(unseen))
             rest = self._rest[unseen]

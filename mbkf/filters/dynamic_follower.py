@@ -31,6 +31,7 @@ class DynamicFollower:
         self.restart_after_s = starter.settings.restart_after_s
         self._reader = SpreadReader(self.model)
         self._held = np.flatnonzero(kalman.held)
+        self._anywhere = self.model.posture_sd[self._held] ** 2
 
     def start(self, recording: Recording, t: int, guess: Array | None) -> Estimate | None:
         """The kinematic filter's warm start, corrected by this frame's plates and Newton's law."""
@@ -57,20 +58,29 @@ class DynamicFollower:
 
     def covariance(self, estimate: Estimate) -> Array:
         """(2 nv, 2 nv) of (q, v); dofs that are held may be anywhere a posture is."""
-        nv, held = self.model.nv, self._held
-        P = self.errors(estimate).covariance()[: 2 * nv, : 2 * nv]
-        P[held, held] += self.model.posture_sd[held] ** 2
-        return P
+        nv = self.model.nv
+        return self._configuration(self.errors(estimate).covariance()[: 2 * nv, : 2 * nv])
 
     def spread(self, estimate: Estimate) -> Spread:
         """Standard deviations; torques' from the whole state through Newton–Euler."""
         state: DynamicState = estimate.inner.state
         torque = self.kalman.balance.torques(state.q, state.v, state.a, state.w)
-        T = np.hstack([torque.by_q, torque.by_v, torque.by_a, torque.by_wrench])
-        errors, held = self.errors(estimate), self._held
-        P = errors.position.copy()
-        P[held, held] += self.model.posture_sd[held] ** 2
-        return Spread(self._reader, state.q, P, errors.velocity_variance, root(errors.variance_of(T)))
+        errors = self.errors(estimate)
+        variance = errors.position_variance
+        variance[self._held] += self._anywhere
+        return Spread(
+            self._reader,
+            state.q,
+            variance,
+            errors.velocity_variance,
+            root(errors.variance_of(torque.by_state)),
+            lambda: self._configuration(errors.position),
+        )
+
+    def _configuration(self, P: Array) -> Array:
+        """A covariance (nv, nv) or more with what held dofs may be, in place."""
+        P[self._held, self._held] += self._anywhere
+        return P
 
     def errors(self, estimate: Estimate) -> StatedErrors:
         """Those of the whole state; what the filter itself says where only white noise is expected."""

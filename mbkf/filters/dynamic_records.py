@@ -33,11 +33,13 @@ class Shown(NamedTuple):
     Attributes:
         frame: How many frames have passed.
         noted: Some of the last ones.
-        synergies: What was learned of joints that are out of sight now, by their number.
+        gone: Numbers of the joints that are out of sight now.
+        synergies: What was learned of them, by their number.
     """
 
     frame: int
     noted: tuple[ShownFrame, ...]
+    gone: tuple[int, ...]
     synergies: Mapping[int, Synergy]
 
 
@@ -49,7 +51,6 @@ class Expected(NamedTuple):
         q: (nq,) a configuration with their posture.
         v: (n,) their velocities.
         q_sd, v_sd: (n,) spreads of both, per reading.
-        synergies: By what, for the next frame.
     """
 
     dofs: NDArray[np.intp]
@@ -57,7 +58,6 @@ class Expected(NamedTuple):
     v: Array
     q_sd: Array
     v_sd: Array
-    synergies: Mapping[int, Synergy]
 
 
 class Memory(NamedTuple):

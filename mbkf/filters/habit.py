@@ -7,7 +7,7 @@ these go with those (:mod:`mbkf.filters.synergy`), and reads the joint to move a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,13 +69,21 @@ class Habit:
         posture[self._root.q] = self._neutral[self._root.q]
         return self._model.difference(self._neutral, posture)
 
-    def decide(self, decision: Decision, memory: Memory, prior: DynamicState) -> Decision:
+    def learned(self, memory: Memory) -> Mapping[int, Synergy]:
+        """How the joints that were out of sight in the frame before go with the others, by their number.
+
+        Learned once, when they go; not of those that were seen too little.
+        """
+        if memory.shown is None or not memory.shown.gone:
+            return {}
+        return self._learned(memory.shown)
+
+    def decide(self, decision: Decision, synergies: Mapping[int, Synergy], prior: DynamicState) -> Decision:
         """The decision with what the joints out of sight are expected to do; as it was where there is no habit."""
-        shown = memory.shown
-        if shown is None or not len(decision.unseen):
+        if not synergies:
             return decision
-        gone = np.flatnonzero(np.isin(self._first, decision.unseen))
-        synergies = self._learned(gone, shown)
+        gone = self._gone(decision)
+        synergies = {j: synergy for j, synergy in synergies.items() if j in gone}
         if not synergies:
             return decision
         features = self.features(prior.q, prior.v)
@@ -87,7 +95,7 @@ class Habit:
             v_sd[own] = self._repeat * np.maximum(sd[len(own) :], LEAST_SD_RAD / PACE_S)
         dofs = np.flatnonzero(x_sd)
         q = self._model.integrate(self._neutral, x)
-        return decision._replace(expected=Expected(dofs, q, v[dofs], x_sd[dofs], v_sd[dofs], synergies))
+        return decision._replace(expected=Expected(dofs, q, v[dofs], x_sd[dofs], v_sd[dofs]))
 
     def rows(self, state: DynamicState, decision: Decision) -> list[tuple[int, Array, Array]]:
         """Whitened rows on posture and on velocity, each with its first column's place in the state, and innovations.
@@ -108,14 +116,27 @@ class Habit:
             (nv, by_v, (expected.v - state.v[dofs]) / expected.v_sd),
         ]
 
-    def remember(self, memory: Memory, before: Memory, state: DynamicState, decision: Decision) -> Memory:
+    def remember(
+        self,
+        memory: Memory,
+        before: Memory,
+        state: DynamicState,
+        decision: Decision,
+        synergies: Mapping[int, Synergy],
+    ) -> Memory:
         """The memory with what this frame showed, and with what was learned of joints that are out of sight."""
-        last = before.shown or Shown(0, (), {})
-        frame, noted = last.frame + 1, last.noted
+        last = before.shown or Shown(0, (), (), {})
+        frame, noted, gone = last.frame + 1, last.noted, self._gone(decision)
         if frame % self._every == 0 and self._legible(decision):
             noted = (*noted[max(0, len(noted) + 1 - self._keep) :], self._noted(frame, state, decision))
-        learned = {} if decision.expected is None else decision.expected.synergies
-        return memory._replace(shown=Shown(frame, noted, learned))
+        kept = {j: synergy for j, synergy in synergies.items() if j in gone}
+        return memory._replace(shown=Shown(frame, noted, gone, kept))
+
+    def _gone(self, decision: Decision) -> tuple[int, ...]:
+        """Numbers of the joints that are out of sight."""
+        if not len(decision.unseen):
+            return ()
+        return tuple(np.flatnonzero(np.isin(self._first, decision.unseen)).tolist())
 
     def _legible(self, decision: Decision) -> bool:
         """Whether trunk and legs are where the state says."""
@@ -123,13 +144,10 @@ class Habit:
             return False
         return not len(decision.unseen) or not np.isin(self._leading, decision.unseen).any()
 
-    def _learned(self, gone: NDArray[np.intp], shown: Shown) -> dict[int, Synergy]:
-        """What is known of the joints that are out of sight: learned once, when they go; None of those seen too little.
-
-        Joints that were seen in the same frames are learned together.
-        """
-        found = {int(j): shown.synergies[j] for j in gone if j in shown.synergies}
-        fresh = np.array([j for j in gone if j not in found], dtype=np.intp)
+    def _learned(self, shown: Shown) -> dict[int, Synergy]:
+        """Joints that were seen in the same frames are learned together."""
+        found = dict(shown.synergies)
+        fresh = np.array([j for j in shown.gone if j not in found], dtype=np.intp)
         if not len(fresh) or not shown.noted:
             return found
         seen = np.array([one.seen for one in shown.noted])[:, self._first[fresh]]

@@ -17,7 +17,7 @@ from mbkf.numerics.kalman import Information, correct, informed, read_directly
 from mbkf.sensors.expectation import MarkerExpectation
 from mbkf.sensors.markers import MarkerInformation, MarkerSensor
 from mbkf.sensors.pose_fit import PoseFit, fit_most_markers, segment_by_segment
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture import PostureSensor, pull
 
 START_SPEED_SD_M_S = 2.0
 START_SPEED_SD_RAD_S = 5.0
@@ -151,9 +151,9 @@ class KinematicFilter:
             innovation, reading, predicted.P[:nv, :nv], self.noise_m, self.settings
         )
         markers = self._markers.at(q, reading, innovation, trusted)
-        matrix, vector, rest = markers.matrix.copy(), np.zeros(2 * nv), np.zeros(nv)
-        vector[:nv] = markers.vector
-        self.posture.lean(q, self._lean, matrix, vector[:nv])
+        lean = pull(*self.posture.deviation(q), self._lean)
+        matrix, vector, rest = markers.matrix + lean.matrix, np.zeros(2 * nv), np.zeros(nv)
+        vector[:nv] = markers.vector + lean.vector
         P, unseen = predicted.P, self._sight.unseen(trusted)
         if len(unseen):
             certainty = np.full(len(unseen), 1.0 / self.settings.velocity_sd)

@@ -113,7 +113,7 @@ class KinematicFollower:
         torque = np.full(nv, np.nan)
         if inner.result is not None:
             torque = self._reader.torque(q, inner.result.velocity_step_covariance, self.dt_s)
-        return Spread(self._reader, q, P[:nv, :nv], np.diagonal(P)[nv:], torque)
+        return Spread(self._reader, q, np.diagonal(P)[:nv], np.diagonal(P)[nv:], torque, lambda: P[:nv, :nv])
 
     def wrench_sd(self, estimate: Estimate) -> Array:
         """This filter estimates no wrench."""

@@ -5,6 +5,7 @@ Taken frame by frame, so that long trials need not keep a covariance matrix per 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -54,26 +55,32 @@ class Spread:
     Attributes:
         reader: The body's.
         q: (nq,) configuration.
-        P: (nv, nv) its covariance in the tangent space.
-        velocity_variance: (nv,) variances of the velocities.
+        position_variance: (nv,) of the configuration in its tangent space.
+        velocity_variance: (nv,) of the velocities.
         torque: (nv,) of the generalised forces; NaN where nothing is known of them.
+        covariance: Makes the (nv, nv) covariance of the configuration.
     """
 
     reader: SpreadReader
     q: Array
-    P: Array
+    position_variance: Array
     velocity_variance: Array
     torque: Array
+    covariance: Callable[[], Array]
 
     @property
     def position(self) -> Array:
         """(nv,) of the configuration in its tangent space, rad or m."""
-        return root(np.diagonal(self.P))
+        return root(self.position_variance)
 
     @property
     def velocity(self) -> Array:
         """(nv,) of the velocity."""
         return root(self.velocity_variance)
+
+    @cached_property
+    def _position(self) -> Array:
+        return self.covariance()
 
     @cached_property
     def _rate_matrix(self) -> Array:
@@ -83,7 +90,7 @@ class Spread:
     def angle(self) -> Array:
         """(A,) of the clinical coordinates."""
         E = self._rate_matrix
-        return root(((E @ self.P) * E).sum(axis=1))
+        return root(((E @ self._position) * E).sum(axis=1))
 
     @property
     def rate(self) -> Array:
@@ -93,7 +100,7 @@ class Spread:
     @property
     def foot_height(self) -> Array:
         """(2,) of the height of right and left foot, m."""
-        return self.reader.foot_height(self.q, self.P)
+        return self.reader.foot_height(self.q, self._position)
 
 
 def root(variance: Array) -> Array:

@@ -52,25 +52,31 @@ class StatedErrors:
         return size
 
     @cached_property
-    def repeated(self) -> Array:
-        """(n, n) C of the seen dofs."""
-        seen = self.seen
-        if not len(seen):
-            return np.zeros((0, 0))
-        information = self.information
+    def _root(self) -> Array:
+        """(n, n) W with Wᵀ W the inverse of the information on the seen dofs."""
+        seen, information = self.seen, self.information
         if len(seen) < len(information):
             information = information[seen[:, None], seen]
-        root, failed = lapack.dpotrf(information, lower=True)
-        if failed:
-            return np.asarray(self.skin * np.linalg.inv(information))
-        inverse, _ = lapack.dpotri(root, lower=True)
-        lower = np.tril(inverse)
-        whole = lower + lower.T
-        np.einsum("ii->i", whole)[:] *= 0.5
-        whole *= self.skin
-        return whole
+        if not len(seen):
+            return information
+        factor, failed = lapack.dpotrf(information.T, lower=1)
+        if not failed:
+            return lapack.dtrtri(factor, lower=1, overwrite_c=1)[0]
+        values, vectors = np.linalg.eigh(information)
+        if values[-1] <= 0.0:
+            raise np.linalg.LinAlgError("a frame says nothing of the joints that are seen")
+        return (vectors / np.sqrt(np.maximum(values, 1e-13 * values[-1]))).T
+
+    @property
+    def repeated(self) -> Array:
+        """(n, n) C of the seen dofs."""
+        return self.skin * (self._root.T @ self._root)
 
     @cached_property
+    def _repeated_variance(self) -> Array:
+        return self.skin * np.einsum("ij,ij->j", self._root, self._root)
+
+    @property
     def position(self) -> Array:
         """(nv, nv) block of Σ of the configuration."""
         nv, seen = len(self.information), self.seen
@@ -81,11 +87,19 @@ class StatedErrors:
         return block
 
     @property
+    def position_variance(self) -> Array:
+        """(nv,) diagonal of Σ of the configuration."""
+        return self._variance(0, 1.0)
+
+    @property
     def velocity_variance(self) -> Array:
         """(nv,) diagonal of Σ of the velocities."""
-        velocities = slice(len(self.information), 2 * len(self.information))
-        found: Array = np.diagonal(self.P)[velocities] * self.size[velocities] ** 2
-        found[self.seen] += self.rate_rad_s**2 * np.diagonal(self.repeated)
+        return self._variance(len(self.information), self.rate_rad_s**2)
+
+    def _variance(self, first: int, share: float) -> Array:
+        mine = slice(first, first + len(self.information))
+        found: Array = np.diagonal(self.P)[mine] * self.size[mine] ** 2
+        found[self.seen] += share * self._repeated_variance
         return found
 
     def variance_of(self, T: Array) -> Array:
@@ -96,10 +110,10 @@ class StatedErrors:
         # Positions and accelerations swing in opposition, velocities between them.
         swing = T[:, :nv] - rate**2 * T[:, 2 * nv : 3 * nv]
         quarter = rate * T[:, nv : 2 * nv]
-        if len(self.seen) < nv:
-            swing, quarter = swing[:, self.seen], quarter[:, self.seen]
-        for part in (swing, quarter):
-            variance += np.einsum("ij,ij->i", part @ self.repeated, part)
+        parts = np.concatenate([swing, quarter])
+        repeated = (parts[:, self.seen] if len(self.seen) < nv else parts) @ self._root.T
+        squared = np.einsum("ij,ij->i", repeated, repeated)
+        variance += self.skin * (squared[: len(T)] + squared[len(T) :])
         return variance
 
     def covariance(self) -> Array:

@@ -84,7 +84,9 @@ class TorqueFollower:
         """Standard deviations; torques are states of this filter."""
         state: TorqueState = estimate.inner.state
         P, nv = self.covariance(estimate), self.model.nv
-        return Spread(self._reader, state.q, P[:nv, :nv], np.diagonal(P)[nv:], state.tau_sd)
+        return Spread(
+            self._reader, state.q, np.diagonal(P)[:nv], np.diagonal(P)[nv:], state.tau_sd, lambda: P[:nv, :nv]
+        )
 
     def wrench_sd(self, estimate: Estimate) -> Array:
         """(2, 6) of the state's wrenches, carried to the world's origin."""

@@ -41,13 +41,35 @@ class RootBalance(NamedTuple):
 
 @dataclass(frozen=True)
 class JointTorques:
-    """All generalised forces (nv,) and their derivatives (nv, nv) by q, v, a and (nv, 12) by the feet's wrenches."""
+    """All generalised forces.
+
+    Attributes:
+        tau: (nv,) the forces.
+        by_state: (nv, 3 nv + 12) their derivatives by q (in the tangent space), v, a and the feet's wrenches.
+    """
 
     tau: Array
-    by_q: Array
-    by_v: Array
-    by_a: Array
-    by_wrench: Array
+    by_state: Array
+
+    @property
+    def by_q(self) -> Array:
+        """(nv, nv) by the configuration."""
+        return self.by_state[:, : len(self.tau)]
+
+    @property
+    def by_v(self) -> Array:
+        """(nv, nv) by the velocity."""
+        return self.by_state[:, len(self.tau) : 2 * len(self.tau)]
+
+    @property
+    def by_a(self) -> Array:
+        """(nv, nv) by the acceleration."""
+        return self.by_state[:, 2 * len(self.tau) : 3 * len(self.tau)]
+
+    @property
+    def by_wrench(self) -> Array:
+        """(nv, 12) by the wrenches of right and left foot."""
+        return self.by_state[:, 3 * len(self.tau) :]
 
 
 class NewtonEuler:
@@ -73,20 +95,21 @@ class NewtonEuler:
 
     def torques(self, q: Array, v: Array, a: Array, wrenches: Array) -> JointTorques:
         """All generalised forces with derivatives, for the feet's wrenches (12,)."""
-        by_q, by_v, by_a = self._inverse_dynamics(q, v, a)
-        data = self._data
-        tau, by_q, J = data.tau.copy(), by_q.copy(), data.J
-        by_wrench = np.empty((self.model.nv, 12))
+        data, nv = self._data, self.model.nv
+        by_state = np.empty((nv, 3 * nv + 12))
+        found = JointTorques(np.empty(nv), by_state)
+        found.by_q[:], found.by_v[:], found.by_a[:] = self._inverse_dynamics(q, v, a)
+        found.tau[:], J = data.tau, data.J
         for foot, (chain, moves, after) in enumerate(
             zip(self._chains, self._moves, self._after, strict=True)
         ):
-            wrench = wrenches[6 * foot : 6 * foot + 6]
-            block = -(J * moves).T
-            by_wrench[:, 6 * foot : 6 * foot + 6] = block
-            tau += block @ wrench
+            mine = slice(6 * foot, 6 * foot + 6)
+            wrench, block = wrenches[mine], found.by_wrench[:, mine]
+            np.multiply(J.T, -moves[:, None], out=block)
+            found.tau[:] += block @ wrench
             own = J[:, chain]
-            by_q[np.ix_(chain, chain)] -= after * (own.T @ _turned_wrench(wrench) @ own)
-        return JointTorques(tau, by_q, by_v.copy(), by_a.copy(), by_wrench)
+            by_state[chain[:, None], chain] -= after * (own.T @ _turned_wrench(wrench) @ own)
+        return found
 
     def tau(self, q: Array, v: Array, a: Array, wrenches: Array) -> Array:
         """(nv,) generalised forces alone."""

@@ -64,12 +64,19 @@ class LiveFilter:
         return self.pursuit.estimate
 
     def expect(self) -> Foresight | None:
-        """What the filter expects of the frame pushed next; None while that cannot be answered at once."""
+        """What the filter expects of the frame pushed next; None while that cannot be answered at once.
+
+        Asked before that frame is there, it takes prediction and linearisation off the time the frame waits.
+        """
         if self._waiting:
             return None
         begin = time.perf_counter()
-        found = self.pursuit.expect()
-        self._expecting_s = time.perf_counter() - begin
+        try:
+            with np.errstate(all="ignore"):
+                found = self.pursuit.expect()
+        except NUMERICAL:  # the step itself will say so
+            return None
+        self._expecting_s += time.perf_counter() - begin
         return found
 
     def push(self, number: int, markers_m: Array, plates: Array) -> list[LiveStep]:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mbkf.conventions import GRAVITY_M_S2, Array
+from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.io.records import PlateReadings
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import FEET
@@ -114,9 +114,11 @@ class FootingSensor:
 
     def __init__(self, model: HumanModel, plates: Sequence[PlateReadings], dt_s: float) -> None:
         self._dt_s = dt_s
-        self._thresholds = [plate.threshold_n for plate in plates]
+        self._thresholds = np.array([plate.threshold_n for plate in plates])
         self.surfaces_m = [surface_height(plate) for plate in plates]
         self._outlines = [_corners(plate) for plate in plates]
+        self._outlined = np.array([outline is not None for outline in self._outlines], dtype=bool)
+        self._areas = _Areas([outline for outline in self._outlines if outline is not None])
         self._model, self._soles = model, MarkerSensor(model, *sole_locals(model))
         self._moves = [model.supports[model.joint(segment).joint_id].astype(float) for segment in FEET]
         self._floor = min(self.surfaces_m, default=np.nan)
@@ -137,25 +139,24 @@ class FootingSensor:
             plate_wrench: (K, 6) force N and moment N m about the world's origin; NaN where not recorded.
         """
         positions = self._soles.positions(q).reshape(2, 3, 3)
-        soles, loads = positions.tolist(), plate_wrench.tolist()
-        pressed = [self._pressure(k, load) for k, load in enumerate(loads)]
-        owners = tuple(
-            -1 if point is None else _owner(point, soles, before, self._outlines[k])
-            for k, (point, before) in enumerate(zip(pressed, memory.foot_of_plate, strict=True))
-        )
+        soles = positions.tolist()
+        vertical = plate_wrench[:, 2]
+        loaded: list[int] = (vertical > self._thresholds).nonzero()[0].tolist()
+        latest, foot_of_plate = list(memory.pressed), [-1] * len(vertical)
+        for k in loaded:
+            point = self._pressure(k, plate_wrench[k].tolist())
+            foot_of_plate[k] = _owner(point, soles, memory.foot_of_plate[k], self._outlines[k])
+            latest[k] = Pressed(*point, foot_of_plate[k])
         wrench, footing = np.zeros((2, 6)), [Footing.AIR, Footing.AIR]
-        for k, owner in enumerate(owners):
+        for k in loaded:
+            owner = foot_of_plate[k]
             for foot in (0, 1) if owner == 2 else (owner,) if owner >= 0 else ():
                 wrench[foot] += plate_wrench[k]
                 footing[foot] = Footing.SHARED if owner == 2 else Footing.MEASURED
         height = self._sole_height(memory.sole_height_m, soles, footing)
         touching = (0.0, 0.0)
         if Footing.AIR in footing:
-            idle = [
-                (k, memory.pressed[k])
-                for k, (load, point) in enumerate(zip(loads, pressed, strict=True))
-                if point is None and not isnan(load[2])
-            ]
+            idle = _Idle(vertical <= self._thresholds, memory.pressed)
             in_air = footing == [Footing.AIR, Footing.AIR]
             touching = self._touching(memory.touching_s, footing, soles, (q, v), height, idle)
             carrying = [f for f in (0, 1) if touching[f] > STAND_AFTER_S]
@@ -163,16 +164,12 @@ class FootingSensor:
                 carrying = self._holding(soles, idle)
             for foot in carrying:
                 footing[foot] = Footing.FREE
-        latest = tuple(
-            before if point is None else Pressed(*point, owner)
-            for point, owner, before in zip(pressed, owners, memory.pressed, strict=True)
-        )
         return FootLoad(
             (footing[0], footing[1]),
             wrench,
             0.5 * (positions[:, 0] + positions[:, 2]),
-            any(point is not None and owner < 0 for point, owner in zip(pressed, owners, strict=True)),
-            FootingMemory(owners, latest, height, touching),
+            any(foot_of_plate[k] < 0 for k in loaded),
+            FootingMemory(tuple(foot_of_plate), tuple(latest), height, touching),
         )
 
     def planted(self, load: FootLoad, q: Array, foot: int) -> Planted | None:
@@ -208,7 +205,7 @@ class FootingSensor:
         soles: list,
         motion: tuple[Array, Array],
         height: float,
-        idle: list[tuple[int, Pressed | None]],
+        idle: _Idle,
     ) -> tuple[float, float]:
         """For how long right and left foot have touched the floor where no plate reads, s."""
 
@@ -223,18 +220,16 @@ class FootingSensor:
 
         return since(0), since(1)
 
-    def _holding(self, soles: list, idle: list[tuple[int, Pressed | None]]) -> list[int]:
+    def _holding(self, soles: list, idle: _Idle) -> list[int]:
         """The lower foot or both, on whatever they stand: for a body in the air that does not fall."""
         if any(self._watched(f, soles[f], idle) for f in (0, 1)):
             return []
         lowest = [min(p[2] for p in soles[f][:SOLE_ENDS]) for f in (0, 1)]
         return [f for f in (0, 1) if lowest[f] <= min(lowest) + TOUCH_HEIGHT_M]
 
-    def _pressure(self, k: int, load: list[float]) -> tuple[float, float] | None:
-        """Centre of pressure on plate k (eq. 4.9), or None where it is not loaded."""
+    def _pressure(self, k: int, load: list[float]) -> tuple[float, float]:
+        """Centre of pressure on plate k (eq. 4.9), which is loaded."""
         fx, fy, fz, mx, my, _ = load
-        if not fz > self._thresholds[k]:
-            return None
         z = self.surfaces_m[k]
         return (z * fx - my) / fz, (mx + z * fy) / fz
 
@@ -262,21 +257,43 @@ class FootingSensor:
         speeds = [hypot(vx + wy * z - wz * y, vy + wz * x - wx * z, vz + wx * y - wy * x) for x, y, z in low]
         return min(speeds) < slack * STAND_SPEED_M_S
 
-    def _watched(self, foot: int, sole: list, idle: list[tuple[int, Pressed | None]]) -> bool:
+    def _watched(self, foot: int, sole: list, idle: _Idle) -> bool:
         """Whether a plate that reads nothing lies under a foot, so that it carries nothing.
 
         A plate without an outline lies where its foot last pressed it.
         """
-        middle = [(sole[0][i] + sole[2][i]) / 2 for i in (0, 1)]
-        for k, pressed in idle:
-            outline = self._outlines[k]
-            if outline is not None and _inside(middle, outline):
-                return True
-            if outline is not None or pressed is None or pressed.owner != foot:
+        x, y = ((sole[0][i] + sole[2][i]) / 2 for i in (0, 1))
+        if (self._areas.contain(x, y) & idle.plates[self._outlined]).any():
+            return True
+        for k in (idle.plates & ~self._outlined).nonzero()[0].tolist():
+            pressed = idle.pressed[k]
+            if pressed is None or pressed.owner != foot:
                 continue
             if _distance_to_sole((pressed.x, pressed.y), sole) <= REACH_M:
                 return True
         return False
+
+
+class _Idle(NamedTuple):
+    """Plates (K,) that read and are not loaded, and where all were pressed last."""
+
+    plates: BoolArray
+    pressed: tuple[Pressed | None, ...]
+
+
+class _Areas:
+    """Convex plates seen from above, all at once."""
+
+    def __init__(self, outlines: list[Outline]) -> None:
+        corners = np.array(outlines).reshape(-1, 5, 2)
+        self._from = corners[:, :-1]
+        self._along = np.diff(corners, axis=1)
+
+    def contain(self, x: float, y: float) -> BoolArray:
+        """Whether a point lies over each."""
+        from_x, from_y = self._from[:, :, 0], self._from[:, :, 1]
+        left = self._along[:, :, 0] * (y - from_y) - self._along[:, :, 1] * (x - from_x) >= 0.0
+        return np.asarray(left.all(axis=1) | ~left.any(axis=1))
 
 
 def _falls(q: Array, v: Array, a: Array) -> bool:

@@ -12,6 +12,7 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.human import HumanModel
+from mbkf.numerics.kalman import Information
 
 
 @dataclass(frozen=True)
@@ -44,26 +45,11 @@ class PostureSensor:
         return PostureReading(deviation[self.dofs], jacobian[self.dofs])
 
     def weights(self, scale: float, held: BoolArray) -> Array:
-        """(nv,) 1/sd of each dof's reading, 0 where there is none: for :meth:`lean`."""
+        """(nv,) 1/sd of each dof's reading, 0 where there is none: for :func:`pull`."""
         weights = np.zeros(self.model.nv)
         weights[self.dofs] = 1.0 / (scale * self.sd)
         weights[held] = 0.0
         return weights
-
-    def lean(self, q: Array, weights: Array, matrix: Array, vector: Array) -> tuple[Array, Array]:
-        """Adds what reading zero deviation says about the configuration; returns :meth:`deviation`.
-
-        Args:
-            q: (nq,) configuration.
-            weights: (nv,) 1/sd of each dof's reading, see :meth:`weights`.
-            matrix: (nv, nv) information that it is added to.
-            vector: (nv,) its vector.
-        """
-        deviation, jacobian = self.deviation(q)
-        scaled = jacobian * weights[:, None]
-        matrix += scaled.T @ scaled
-        vector -= (deviation * weights) @ scaled
-        return deviation, jacobian
 
     def deviation(self, q: Array) -> tuple[Array, Array]:
         """Deviation (nv,) of every dof, rad, and its Jacobian (nv, nv).
@@ -75,3 +61,15 @@ class PostureSensor:
         jacobian = self.model.difference_derivative(self._neutral, posture)
         jacobian[self._root_dofs, self._root_dofs] = 0.0
         return self.model.difference(self._neutral, posture), jacobian
+
+
+def pull(deviation: Array, jacobian: Array, weights: Array) -> Information:
+    """What reading zero deviation says about the configuration (nv); no readings of an instrument.
+
+    Args:
+        deviation: (nv,) of every dof, rad (:meth:`PostureSensor.deviation`).
+        jacobian: (nv, nv) its derivative.
+        weights: (nv,) 1/sd of each dof's reading (:meth:`PostureSensor.weights`).
+    """
+    scaled = jacobian * weights[:, None]
+    return Information(scaled.T @ scaled, -(deviation * weights) @ scaled, 0.0, 0)

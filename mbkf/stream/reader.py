@@ -63,10 +63,10 @@ class Reader:
             if frame is None:
                 continue
             ready, samples = self._intake.accept(frame)
-            self._samples(samples)
             for one in ready:
                 gone = [old for old in self._slot.put(one) if not old.lost]
                 if gone:
                     self.overwritten += len(gone)
                     self._note("overwritten", "the filter could not keep up; only the latest frame was kept")
+            self._samples(samples)
         self._slot.close()

@@ -201,6 +201,7 @@ class LiveSession:
             if frame is not None:
                 self._take(frame)
                 self._give_time()
+                self._filter.expect()
             elif self._slot.ended:
                 return "the source ended"
             elif self._latest is not None and now - self._latest.arrival_s > SILENT_S and not self._silent:

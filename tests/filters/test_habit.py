@@ -96,9 +96,19 @@ def test_what_goes_out_of_sight_is_learned_once_from_what_was_seen():
     assert all(one.seen[list(arms)].all() for one in before.noted)
 
 
+def test_a_habit_begins_a_frame_after_what_it_is_of_has_gone():
+    """In that frame nobody has had time to learn; what comes back takes its habit with it at once."""
+    last = round(SEEN_S / DT) - 1
+    gone, after = followed()[last : last + 2]
+    assert len(gone.decision.unseen) and gone.decision.expected is None
+    assert gone.memory.shown.gone and not gone.memory.shown.synergies
+    assert after.decision.expected is not None
+
+
 def test_what_comes_back_is_forgotten_and_what_was_seen_elsewhere_is_learned_by_itself():
     """The second joint was out of sight in the first half of the notes."""
-    habit, rng = dynamic_filter(MODEL).habit, np.random.default_rng(0)
+    kalman, rng = dynamic_filter(MODEL), np.random.default_rng(0)
+    habit, memory = kalman.habit, kalman.begin()
     first, second = habit.followers[:2]
     noted = []
     for block in range(10):
@@ -107,12 +117,14 @@ def test_what_comes_back_is_forgotten_and_what_was_seen_elsewhere_is_learned_by_
         features = rng.normal(size=len(habit.features(standing(MODEL), np.zeros(MODEL.nv))))
         movement = rng.normal(size=2 * MODEL.nv)
         noted += [ShownFrame(block, features, movement, seen)] * 3
-    shown = Shown(30, tuple(noted), {})
-    both = habit._learned(np.array([0, 1]), shown)
+    shown = Shown(30, tuple(noted), (0, 1), {})
+    both = habit.learned(memory._replace(shown=shown))
     assert (both[0].blocks, both[1].blocks) == (10, 5)
     assert len(both[0].targets) == 2 * len(first) and len(both[1].targets) == 2 * len(second)
-    kept = habit._learned(np.array([1]), shown._replace(synergies=both))
+    kept = habit.learned(memory._replace(shown=shown._replace(gone=(1,), synergies={1: both[1]})))
     assert kept.keys() == {1} and kept[1] is both[1]
+    assert not habit.learned(memory._replace(shown=shown._replace(gone=())))
+    assert not habit.learned(memory)
 
 
 def test_memory_ends():
@@ -156,4 +168,4 @@ def test_it_learns_without_the_follower_that_is_never_there():
         held[MODEL.joint(segment).v] = False
     habit = Habit(MODEL, DT, held, DynamicSettings())
     assert habit.followers == []
-    assert not habit._learned(np.zeros(0, dtype=np.intp), Shown(0, (), {}))
+    assert not habit.learned(dynamic_filter(MODEL).begin()._replace(shown=Shown(0, (), (), {})))

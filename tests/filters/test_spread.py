@@ -22,7 +22,8 @@ def case():
     state = FilterState(source.q(0.4), source.v(0.4), A @ A.T)
     reader, nv = SpreadReader(model), model.nv
     torque = reader.torque(state.q, B @ B.T, DT_S)
-    return model, state, B, Spread(reader, state.q, state.P[:nv, :nv], np.diag(state.P)[nv:], torque)
+    variances = np.split(np.diag(state.P), 2)
+    return model, state, B, Spread(reader, state.q, *variances, torque, lambda: state.P[:nv, :nv])
 
 
 def slopes(model, q, read):

@@ -34,6 +34,7 @@ def test_parts_are_those_of_the_whole(seed, new, rate):
     whole, T = errors.covariance(), rng.normal(size=(7, len(P)))
     near = {"rtol": 1e-9, "atol": 1e-9 * np.abs(whole).max()}
     np.testing.assert_allclose(errors.position, whole[:NV, :NV], **near)
+    np.testing.assert_allclose(errors.position_variance, np.diag(whole)[:NV], **near)
     np.testing.assert_allclose(errors.velocity_variance, np.diag(whole)[NV : 2 * NV], **near)
     np.testing.assert_allclose(errors.variance_of(T), np.diag(T @ whole @ T.T), **near)
 
