@@ -9,6 +9,7 @@ import socket
 import subprocess
 import sys
 import threading
+import time
 import uuid
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -60,10 +61,41 @@ class Trial:
 
 @dataclass(frozen=True)
 class Run:
-    """How a run went: live.json, and the folder with results and log."""
+    """How a run went.
+
+    Attributes:
+        report: What live.json says.
+        folder: With results and log.
+        pauses_ms: By how much an idle process woke late on this machine meanwhile.
+    """
 
     report: dict[str, Any]
     folder: Path
+    pauses_ms: Array
+
+
+class Pauses:
+    """A thread that does nothing but wake every few milliseconds, and notes how late it does."""
+
+    EVERY_S = 0.005
+
+    def __init__(self) -> None:
+        self._late: list[float] = []
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def end(self) -> Array:
+        """(n,) how late, ms."""
+        self._ended.set()
+        self._thread.join()
+        return 1e3 * np.array(self._late)
+
+    def _run(self) -> None:
+        while not self._ended.is_set():
+            begin = time.perf_counter()
+            time.sleep(self.EVERY_S)
+            self._late.append(time.perf_counter() - begin - self.EVERY_S)
 
 
 def play(trial: Trial, protocol: str, folder: Path, *, view: bool = False, speed: float = 1.0) -> Run:
@@ -88,6 +120,7 @@ def play(trial: Trial, protocol: str, folder: Path, *, view: bool = False, speed
     played += [] if trial.forces is None else ["--forces", trial.forces]
     played += ["--unlabelled"] if trial.unlabelled else []
     replay = _start(played)
+    pauses = Pauses()
     try:
         for process, what in ((replay, "replay"), (live, "live")):
             if process.wait(trial.seconds / speed + MARGIN_S) != 0:
@@ -95,11 +128,12 @@ def play(trial: Trial, protocol: str, folder: Path, *, view: bool = False, speed
     except subprocess.TimeoutExpired as error:
         raise InvalidInput(f"a run of {trial.name} through {protocol} did not end") from error
     finally:
+        late = pauses.end()
         for process in (replay, live):
             if process.poll() is None:
                 process.kill()
                 process.wait()
-    return Run(json.loads((folder / "live.json").read_text(encoding="utf-8")), folder)
+    return Run(json.loads((folder / "live.json").read_text(encoding="utf-8")), folder, late)
 
 
 def difference(run: Run) -> float:

@@ -89,5 +89,5 @@ def integrals_between(samples: Array, low: Array, high: Array, span: float) -> A
 
 def _hat_until(x: Array) -> Array:
     """Integral from −1 to x of the hat 1 − |x|."""
-    x = np.clip(x, -1.0, 1.0)
+    x = np.minimum(np.maximum(x, -1.0), 1.0)
     return np.where(x < 0.0, 0.5 * (1.0 + x) ** 2, 1.0 - 0.5 * (1.0 - x) ** 2)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import ceil, floor
+
 import numpy as np
 
 from mbkf.conventions import Array
@@ -69,10 +71,10 @@ class PlateBuffer:
         oldest = max(self._oldest, self.newest - len(self._values) + 1)
         if not oldest - OUTSIDE <= position <= self.newest + OUTSIDE:
             return unread
-        low = np.clip(position - self._half, oldest, self.newest)
-        high = np.clip(position + self._half, oldest, self.newest)
-        first = int(np.floor(low))
-        rows = np.arange(first, int(np.ceil(high)) + 1)
+        low = min(max(position - self._half, oldest), self.newest)
+        high = min(max(position + self._half, oldest), self.newest)
+        first = floor(low)
+        rows = np.arange(first, ceil(high) + 1)
         samples = self._values[rows % len(self._values)]
         if high - low > 1e-9:
             area = integrals_between(
@@ -80,9 +82,7 @@ class PlateBuffer:
             )
             loads = (area / (high - low)).reshape(self._count, 6)
         else:
-            loads = samples[round(float(np.clip(position, oldest, self.newest))) - first].reshape(
-                self._count, 6
-            )
+            loads = samples[round(min(max(position, oldest), self.newest)) - first].reshape(self._count, 6)
         loads[np.isnan(loads).any(axis=1)] = np.nan
         x, y, z = self._origins.T
         fx, fy, fz = loads[:, :3].T
