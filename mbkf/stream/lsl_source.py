@@ -25,8 +25,12 @@ OPEN_S = 3.0
 PLATES_S = 3.0
 """How long the plate stream that the markers name is looked for."""
 
-LATE_S = 0.040
-"""Plates may come later than the end of their frame by this, as a busy computer makes them once in a minute."""
+LATE_S = 0.25
+"""Plates may come later than the end of their frame by this: a busy computer pauses for a part of it now and then, and
+what is answered without them stays wrong."""
+
+GIVEN_UP = 4
+"""After so many frames in a row whose plates came too late nobody waits for them, until they are in time again."""
 
 QUIET_S = 0.1
 """Plates that have said nothing for this long are not waited for any more."""
@@ -52,6 +56,7 @@ class LslSource:
         self._first_stamp = 0.0
         self._newest_sample: int | None = None
         self._heard_plates_s = 0.0
+        self._overdue = 0
 
     def connect(self, timeout_s: float) -> StreamDescription | None:
         """The first marker stream that is found, with its plates."""
@@ -164,7 +169,8 @@ class LslSource:
         ratio = stream.plate_rate_hz / stream.rate_hz
         offset = (stream.start_time_s - stream.plates[0].start_time_s) * stream.plate_rate_hz
         until = offset + (number + 0.5) * ratio
-        deadline = arrival_s + 0.5 / stream.rate_hz + LATE_S
+        patience = 0.5 / stream.rate_hz + LATE_S if self._overdue < GIVEN_UP else 0.0
+        deadline = arrival_s + patience
         parts, wait = [], 0.0
         try:
             while True:
@@ -180,6 +186,7 @@ class LslSource:
                 wait = deadline - now
                 enough = self._newest_sample is not None and self._newest_sample >= until
                 if enough or wait <= 0.0 or now - self._heard_plates_s > QUIET_S:
+                    self._overdue = 0 if enough else self._overdue + 1
                     break
         except self._lsl.util.LostError:
             self._lose("plates")

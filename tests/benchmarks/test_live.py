@@ -1,13 +1,15 @@
 """The live benchmark's rows say what a run's report says."""
 
 import math
+import time
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from benchmarks import live
-from benchmarks.live_runs import Run, Trial, largest_difference
+from benchmarks.live_runs import Pauses, Run, Trial, largest_difference
 from tests.io.reconstructions import made_up
 
 TRIAL = Trial("walk", Path("walk.c3d"), None, Path("s.toml"), 1.0)
@@ -21,7 +23,7 @@ def run_of(lost=0, at_start=30, p99=2.5):
         "latency_ms_median": 2.0,
         "latency_ms_p99": p99,
     }
-    return Run(report, Path("run"))
+    return Run(report, Path("run"), np.array([0.1, 0.2, 3.0]))
 
 
 @pytest.mark.parametrize(
@@ -39,6 +41,19 @@ def test_latency_is_only_bounded_through_lsl(monkeypatch):
     monkeypatch.setattr(live, "play", lambda *_, **__: run_of(p99=50.0))
     monkeypatch.setattr(live, "difference", lambda _: 0.0)
     assert all(row.passed for row in live.rows(TRIAL, "natnet", Path(), True))
+
+
+def test_pauses_are_told_beside_latencies_and_bounded_by_nothing():
+    (told,) = [row for row in live.latency("run", run_of(), live.LATENCY_MS) if "woke" in row.name]
+    assert told.value == pytest.approx(np.percentile([0.1, 0.2, 3.0], 99.0)) and told.bound == math.inf
+
+
+def test_nobody_wakes_before_his_time():
+    pauses = Pauses()
+    while len(pauses._late) < 3:
+        time.sleep(0.01)
+    late = pauses.end()
+    assert len(late) >= 3 and (late > -0.1).all()
 
 
 def test_the_highest_rate_is_the_last_that_keeps_up(monkeypatch):

@@ -89,6 +89,55 @@ def test_what_is_sent_arrives_to_the_last_digit(name):
     assert (known >= np.minimum(50 + 10 * (np.arange(30) + 0.5), 299)).all()
 
 
+class Delayed:
+    """Plates that say the same again and again while they are held back; notes how long it was asked to wait."""
+
+    def __init__(self, inlet, held_back):
+        self._inlet, self._held_back, self.waits, self._kept = inlet, held_back, [], []
+
+    def pull_chunk(self, timeout, max_samples, min_samples):
+        self.waits.append(timeout)
+        found, stamps = self._inlet.pull_chunk(timeout=0.0, max_samples=max_samples)
+        self._kept += list(zip(np.array(found), stamps, strict=True))
+        time.sleep(min(timeout, 0.02))
+        given = self._kept
+        if self._held_back(len(self.waits)):
+            given = self._kept[:1]
+        else:
+            self._kept = []
+        return np.array([sample for sample, _ in given]), np.array([stamp for _, stamp in given])
+
+
+def delayed_frames(name, held_back):
+    made = played(CAPTURE)
+    player, source = LslPlayer(made, name), LslSource(name)
+    connected(source)
+    source._plates = plates = Delayed(source._plates, held_back)
+    thread = play(player, made)
+    frames = read(source, 30)
+    thread.join()
+    source.close()
+    player.close()
+    return frames, plates
+
+
+def test_plates_that_come_late_are_waited_for(name):
+    """Later than a frame lasts: each frame is still read with the plates until its end."""
+    frames, plates = delayed_frames(name, lambda asked: 3 <= asked < 9)
+    index = np.concatenate([frame.plates.index for frame in frames])
+    ends = np.array([frame.plates.index.max(initial=0) for frame in frames])
+    assert set(index) >= set(range(290))
+    assert (np.maximum.accumulate(ends) >= np.minimum(10 * (np.arange(30) + 0.5), 299)).all()
+    assert max(plates.waits) > 0.02
+
+
+def test_plates_that_are_never_in_time_do_not_hold_up_the_markers(name):
+    frames, plates = delayed_frames(name, lambda _: True)
+    assert [frame.number for frame in frames] == list(range(30))
+    asked = np.flatnonzero(np.array(plates.waits) > 0.0)
+    assert len(asked) and asked[-1] < len(plates.waits) - 10
+
+
 def test_points_without_names_arrive(name):
     made = played(replace(CAPTURE, plates=()), unlabelled=True)
     player, source = LslPlayer(made, name), LslSource(name)
