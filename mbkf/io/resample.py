@@ -9,6 +9,9 @@ import numpy as np
 from mbkf.conventions import Array, read_only
 from mbkf.io.records import PlateReadings
 
+WHOLE = 1e-6
+"""Times this close to a sample, in samples, are that sample's: frames' times are only known to rounding."""
+
 
 @dataclass(frozen=True)
 class FrameLoads:
@@ -49,7 +52,7 @@ def average_over_frames(plate: PlateReadings, frame_times_s: Array, rate_hz: flo
     last = len(samples) - 1
     position = (times - plate.start_time_s) * plate.rate_hz  # in samples
     half = 0.5 * plate.rate_hz / rate_hz
-    low, high = (np.clip(position + side * half, 0.0, last) for side in (-1.0, 1.0))
+    low, high = (np.clip(end, 0.0, last) for end in window_ends(position, half))
     width = (high - low)[:, None]
     area = integrals_between(samples, low, high, 2.0 * half)
     single = samples[np.clip(np.round(position), 0, last).astype(int)]
@@ -57,6 +60,17 @@ def average_over_frames(plate: PlateReadings, frame_times_s: Array, rate_hz: flo
     inside = (position >= -0.5) & (position <= last + 0.5)
     means = np.where(inside[:, None], means, np.nan)
     return FrameLoads(means[:, :3], means[:, 3:])
+
+
+def window_ends(position: Array, half: float) -> tuple[Array, Array]:
+    """Where the windows around positions (T,) begin and end, in samples; on a sample where only rounding is between.
+
+    Else a live stream would wait for a sample that counts for nothing, or come to other numbers without it.
+    """
+    ends = np.array([position - half, position + half])
+    whole = np.rint(ends)
+    low, high = np.where(np.abs(ends - whole) < WHOLE, whole, ends)
+    return low, high
 
 
 def integrals_between(samples: Array, low: Array, high: Array, span: float) -> Array:

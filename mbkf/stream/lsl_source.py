@@ -9,6 +9,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput, MbkfError
+from mbkf.io.resample import WHOLE
 from mbkf.stream.libraries import lsl
 from mbkf.stream.lsl_format import (
     MARKER_TYPES,
@@ -168,7 +169,7 @@ class LslSource:
             return PlateSamples.none(len(stream.plates))
         ratio = stream.plate_rate_hz / stream.rate_hz
         offset = (stream.start_time_s - stream.plates[0].start_time_s) * stream.plate_rate_hz
-        until = offset + (number + 0.5) * ratio
+        until = offset + (number + 0.5) * ratio - WHOLE
         patience = 0.5 / stream.rate_hz + LATE_S if self._overdue < GIVEN_UP else 0.0
         deadline = arrival_s + patience
         parts, wait = [], 0.0

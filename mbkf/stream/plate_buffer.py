@@ -7,7 +7,7 @@ from math import ceil, floor
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.io.resample import integrals_between
+from mbkf.io.resample import integrals_between, window_ends
 from mbkf.stream.source import PlateSamples, StreamDescription
 
 KEPT_S = 2.0
@@ -71,8 +71,8 @@ class PlateBuffer:
         oldest = max(self._oldest, self.newest - len(self._values) + 1)
         if not oldest - OUTSIDE <= position <= self.newest + OUTSIDE:
             return unread
-        low = min(max(position - self._half, oldest), self.newest)
-        high = min(max(position + self._half, oldest), self.newest)
+        ends = np.concatenate(window_ends(np.array([position]), self._half))
+        low, high = (min(max(end, oldest), self.newest) for end in ends.tolist())
         first = floor(low)
         rows = np.arange(first, ceil(high) + 1)
         samples = self._values[rows % len(self._values)]

@@ -11,10 +11,8 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.records import Capture, PlateReadings
+from mbkf.io.resample import WHOLE
 from mbkf.stream.source import PlateSamples, StreamDescription, without_readings
-
-ROUNDING = 1e-6
-"""An end of a frame this close before a sample needs that one, too, in samples."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +61,7 @@ class Played:
             offset = (stream.start_time_s - stream.plates[0].start_time_s) * stream.plate_rate_hz
         sent = max(0, int(np.floor(offset - 0.5 * ratio)) - 1)
         for number, markers in enumerate(self.markers_m):
-            last = np.ceil(offset + (number + 0.5) * ratio + ROUNDING)
+            last = np.ceil(offset + (number + 0.5) * ratio - WHOLE)
             until = min(int(last) + 1, len(self.wrench))
             index = np.arange(sent, max(until, sent))
             yield PlayedFrame(number, markers, PlateSamples(index, self.wrench[index]))

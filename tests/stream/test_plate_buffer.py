@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbkf.io.records import PlateReadings
+from mbkf.io.resample import WHOLE
 from mbkf.sensors.contacts import plate_wrenches
 from mbkf.stream.plate_buffer import PlateBuffer
 from mbkf.stream.source import PlateSamples, StreamDescription, without_readings
@@ -52,12 +53,25 @@ def test_means_are_those_of_the_whole_trial(rate_hz, frames_from_s, plates_after
     expected = plate_wrenches(plates, frames_from_s + np.arange(40) / RATE_HZ, RATE_HZ)
     buffer, sent = buffer_of(plates, frames_from_s), 0
     for number in range(40):
-        needed = ((number + 0.5) / RATE_HZ - plates_after_s) * rate_hz + 1.0
-        while sent <= needed and sent < len(values):
+        needed = ((number + 0.5) / RATE_HZ - plates_after_s) * rate_hz
+        while sent - 1 < needed - WHOLE and sent < len(values):
             index = np.arange(sent, min(sent + chunk, len(values)))
             buffer.put(PlateSamples(index, values[index]))
             sent = index[-1] + 1
         np.testing.assert_array_equal(buffer.mean(number), expected[number])
+
+
+@pytest.mark.parametrize("number", [403, 1612, 1617])
+def test_a_sample_past_the_end_of_a_frame_changes_nothing(number):
+    """These frames' ends lie a rounding error behind a sample."""
+    assert number / RATE_HZ * 1000.0 + 5.0 > 10 * number + 5
+    plates = plates_of(1000.0, 10 * number + 20)
+    values, index = readings(plates), np.arange(10 * number - 20, 10 * number + 20)
+    (expected,) = plate_wrenches(plates, np.array([number / RATE_HZ]), RATE_HZ)
+    for last in (6, 7, 12):
+        buffer, known = buffer_of(plates), index[: 20 + last]
+        buffer.put(PlateSamples(known, values[known]))
+        np.testing.assert_array_equal(buffer.mean(number), expected)
 
 
 def test_before_the_first_sample_and_far_from_any_nothing_is_read():
