@@ -204,18 +204,22 @@ class DynamicFilter:
             decision = decision._replace(lifted=lifted)
             frame = self._with_feet(frame, prior, decision)
             state = self._updated(prior, frame)
-        after = Memory(
-            decision.load.memory,
-            self._next_noise_scale(decision, innovation),
-            self._next_activity(state, memory, decision.unseen),
-            None if self._skin is None else np.where(decision.trusted[:, None], markers_m, np.nan),
-        )
-        if self.inertial is not None:
-            after = self.inertial.remember(after, memory, state.q, decision)
-        if self.habit is not None:
-            after = self.habit.remember(after, memory, state, decision, predicted.synergies)
+
+        def remember() -> Memory:
+            after = Memory(
+                decision.load.memory,
+                self._next_noise_scale(decision, innovation),
+                self._next_activity(state, memory, decision.unseen),
+                None if self._skin is None else np.where(decision.trusted[:, None], markers_m, np.nan),
+            )
+            if self.inertial is not None:
+                after = self.inertial.remember(after, memory, state.q, decision)
+            if self.habit is not None:
+                after = self.habit.remember(after, memory, state, decision, predicted.synergies)
+            return after
+
         enough = decision.imus is not None or bool(np.count_nonzero(decision.trusted) >= self.min_markers)
-        return DynamicStep(state, after, decision, enough and not decision.strayed, prior, frame)
+        return DynamicStep(state, remember, decision, enough and not decision.strayed, prior, frame)
 
     def _updated(self, prior: DynamicState, frame: FrameReadings) -> DynamicState:
         P = informed_with_rows(prior.P.T, frame.matrix, frame.rows)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -163,11 +163,11 @@ class FrameReadings:
 
 @dataclass(frozen=True)
 class DynamicStep:
-    """One step of the filter; what only a report needs is worked out when asked for.
+    """One step of the filter; what only the next step or a report needs is worked out when asked for.
 
     Attributes:
         state: Posterior.
-        memory: For the next step.
+        remember: Makes the memory for the next step.
         decision: What the frame's readings were taken to be.
         tracked: Whether enough markers were believed, and the state was not far from most of them.
         predicted: Prior of this frame.
@@ -175,11 +175,16 @@ class DynamicStep:
     """
 
     state: DynamicState
-    memory: Memory
+    remember: Callable[[], Memory]
     decision: Decision
     tracked: bool
     predicted: DynamicState
     frame: FrameReadings
+
+    @cached_property
+    def memory(self) -> Memory:
+        """For the next step."""
+        return self.remember()
 
     @property
     def refused(self) -> BoolArray:

@@ -101,9 +101,10 @@ class Intake:
             self._note("lost", "frames were lost on the way", place.number, place.lost)
 
     def _points(self, frame: SourceFrame, number: int) -> tuple[Array | None, Array]:
-        points, wrong = plausible(frame.unlabelled_m)
-        points = points[~np.isnan(points).any(axis=1)]
-        markers = None
+        points, wrong, markers = frame.unlabelled_m, 0, None
+        if len(points):
+            points, wrong = plausible(points)
+            points = points[~np.isnan(points).any(axis=1)]
         if self._columns is not None:
             markers, more = plausible(frame.markers_m[self._columns])
             wrong += more

@@ -66,8 +66,8 @@ class PlateLayout:
     def wrenches(self, samples: Array) -> Array:
         """(S, K, 6) wrenches of samples (S, channels), world axes."""
         found = samples[:, self.loads]
-        force, moment = found[..., :3] @ self.rotation.T, found[..., 3:] @ self.rotation.T
-        return np.concatenate([force, moment], axis=-1)
+        turned: Array = found.reshape(-1, 3) @ self.rotation.T
+        return turned.reshape(found.shape)
 
 
 def marker_info(lsl: Any, stream: StreamDescription, name: str, points: int) -> Any:

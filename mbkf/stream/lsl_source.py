@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from math import ceil
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,9 @@ what is answered without them stays wrong."""
 
 GIVEN_UP = 4
 """After so many frames in a row whose plates came too late nobody waits for them, until they are in time again."""
+
+CHUNK = 64
+"""Samples of the plates fetched at a time; liblsl is given room for so many, whether they come or not."""
 
 QUIET_S = 0.1
 """Plates that have said nothing for this long are not waited for any more."""
@@ -172,23 +176,24 @@ class LslSource:
         until = offset + (number + 0.5) * ratio - WHOLE
         patience = 0.5 / stream.rate_hz + LATE_S if self._overdue < GIVEN_UP else 0.0
         deadline = arrival_s + patience
-        parts, wait = [], 0.0
+        parts: list[PlateSamples] = []
         try:
-            while True:
-                found, stamps = self._plates.pull_chunk(
-                    timeout=wait, max_samples=4096, min_samples=1 if wait else None
-                )
+            while (missing := self._missing(until)) > 0:
                 now = time.perf_counter()
-                if len(found):
-                    self._heard_plates_s = now
-                    part = self._placed(found, stamps)
-                    parts.append(part)
-                    self._newest_sample = int(part.index[-1])
-                wait = deadline - now
-                enough = self._newest_sample is not None and self._newest_sample >= until
-                if enough or wait <= 0.0 or now - self._heard_plates_s > QUIET_S:
-                    self._overdue = 0 if enough else self._overdue + 1
-                    break
+                wait = max(0.0, min(deadline, self._heard_plates_s + QUIET_S) - now)
+                # All that a frame brings in one call: each return waits for the interpreter.
+                found, stamps = self._plates.pull_chunk(
+                    timeout=wait, max_samples=CHUNK, min_samples=max(1, min(missing, int(ratio), CHUNK))
+                )
+                if not len(found):
+                    if wait == 0.0:
+                        break
+                    continue
+                self._heard_plates_s = time.perf_counter()
+                part = self._placed(found, stamps)
+                parts.append(part)
+                self._newest_sample = int(part.index[-1])
+            self._overdue = 0 if missing <= 0 else self._overdue + 1
         except self._lsl.util.LostError:
             self._lose("plates")
         if not parts:
@@ -196,6 +201,10 @@ class LslSource:
         return PlateSamples(
             np.concatenate([part.index for part in parts]), np.concatenate([part.wrench for part in parts])
         )
+
+    def _missing(self, until: float) -> int:
+        """How many samples there are to come until that index."""
+        return 1 if self._newest_sample is None else ceil(until) - self._newest_sample
 
     def _placed(self, samples: Array, stamps: Array) -> PlateSamples:
         assert self._stream is not None

@@ -102,7 +102,7 @@ class Delayed:
         time.sleep(min(timeout, 0.02))
         given = self._kept
         if self._held_back(len(self.waits)):
-            given = self._kept[:1]
+            given = self._kept[:1] if len(found) else []
         else:
             self._kept = []
         return np.array([sample for sample, _ in given]), np.array([stamp for _, stamp in given])
