@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import threading
 import time
 from collections import deque
@@ -33,6 +34,10 @@ SILENT_S = 2.0
 
 MOST_HELD = 64
 """Frames the client may have given us that were not read; the oldest go first."""
+
+ROOM_BYTES = 4 * 1024 * 1024
+"""The system keeps so much of what came and was not yet read, as far as it allows: with many plates its usual 200 kB
+are a tenth of a second, and what comes after that is lost."""
 
 EVERYTHING = "all"
 """Motive's set of all markers; it repeats the others."""
@@ -116,6 +121,7 @@ class NatNetSource:
             return False
         except (self._natnet.NatNetError, OSError) as error:
             raise InvalidInput(f"NatNet: {' '.join(str(error).split())}") from error
+        _make_room(client)
         client.on_data_frame_received_event.handlers.append(self._take)
         client.on_data_description_received_event.handlers.append(self._take_descriptions)
         client.run_async()
@@ -210,6 +216,13 @@ class NatNetSource:
             wrench[:, k, 3:] = values[:, 3:] @ self._axes[k].T
         first = frame.prefix.frame_number * self._samples
         return PlateSamples(np.arange(first, first + self._samples), wrench)
+
+
+def _make_room(client: Any) -> None:
+    """Gives a connected client's sockets a long queue; the client does not say what it calls them."""
+    for own in vars(client).values():
+        if isinstance(own, socket.socket):
+            own.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM_BYTES)
 
 
 def read_all_corners(natnet: Any) -> None:

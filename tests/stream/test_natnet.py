@@ -1,5 +1,6 @@
 """NatNet packets are read back by the client library, and a replay through it loses nothing but digits."""
 
+import socket
 import threading
 import time
 from dataclasses import replace
@@ -13,7 +14,7 @@ from mbkf.errors import InvalidInput
 from mbkf.io.records import MarkerTrajectories
 from mbkf.stream import natnet_packets as packets
 from mbkf.stream.natnet_player import NatNetPlayer, axes_of, plates_in_frames
-from mbkf.stream.natnet_source import NatNetSource, read_all_corners
+from mbkf.stream.natnet_source import ROOM_BYTES, NatNetSource, read_all_corners
 from mbkf.stream.played import played
 from mbkf.stream.replay import ReplaySettings, replay
 from tests.captures import made_capture
@@ -180,6 +181,23 @@ def test_points_without_names_arrive(served):
     assert stream.marker_names == ()
     found, original = np.sort(frame.unlabelled_m, axis=0), np.sort(CAPTURE.markers.positions_m[0], axis=0)
     np.testing.assert_array_equal(found, single(original))
+
+
+def test_what_comes_while_nobody_reads_is_kept_for_long(served):
+    """Both sockets have as much room as the system gives to whoever asks."""
+    source = NatNetSource("127.0.0.1", "127.0.0.1", served().port, None)
+    connected(source)
+    sockets = [held for held in vars(source._client).values() if isinstance(held, socket.socket)]
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        usual = room_of(other)
+        other.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM_BYTES)
+        assert [room_of(one) for one in sockets] == 2 * [room_of(other)]
+        assert room_of(other) > usual
+    source.close()
+
+
+def room_of(one):
+    return one.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
 
 
 def test_a_server_that_dies_and_returns_is_taken_up_again(served, monkeypatch):
