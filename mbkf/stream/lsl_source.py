@@ -177,6 +177,9 @@ class LslSource:
         patience = 0.5 / stream.rate_hz + LATE_S if self._overdue < GIVEN_UP else 0.0
         deadline = arrival_s + patience
         parts: list[PlateSamples] = []
+        before = self._newest_sample
+        if not self._heard_plates_s:
+            self._heard_plates_s = arrival_s
         try:
             while (missing := self._missing(until)) > 0:
                 now = time.perf_counter()
@@ -193,7 +196,7 @@ class LslSource:
                 part = self._placed(found, stamps)
                 parts.append(part)
                 self._newest_sample = int(part.index[-1])
-            self._overdue = 0 if missing <= 0 else self._overdue + 1
+            self._judge_plates(missing, before, waited_out=time.perf_counter() >= deadline)
         except self._lsl.util.LostError:
             self._lose("plates")
         if not parts:
@@ -201,6 +204,17 @@ class LslSource:
         return PlateSamples(
             np.concatenate([part.index for part in parts]), np.concatenate([part.wrench for part in parts])
         )
+
+    def _judge_plates(self, missing: int, before: int | None, waited_out: bool) -> None:
+        """Whether plates are still worth waiting for: those that only came a little too late are again."""
+        assert self._stream is not None
+        comes = self._newest_sample is not None and self._newest_sample != before
+        if missing <= 0:
+            self._overdue = 0
+        elif self._overdue < GIVEN_UP:
+            self._overdue += waited_out
+        elif comes and missing < LATE_S * self._stream.plate_rate_hz:
+            self._overdue = 0
 
     def _missing(self, until: float) -> int:
         """How many samples there are to come until that index."""
@@ -251,7 +265,7 @@ class LslSource:
             return
         inlet = self._again("plates", 0.0)
         if inlet is not None:
-            self._plates = inlet
+            self._plates, self._heard_plates_s = inlet, 0.0
             self._news.append(("plates back", f"the stream '{self._plates_name}' is back"))
             del self._finders["plates"]
 

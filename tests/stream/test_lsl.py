@@ -15,13 +15,14 @@ from mbkf.io.records import MarkerTrajectories
 from mbkf.model.human import HumanModel
 from mbkf.stream import libraries
 from mbkf.stream.libraries import library, lsl
-from mbkf.stream.lsl_format import plates_name, read_marker_info, read_plates_info
+from mbkf.stream.lsl_format import PlateLayout, plates_name, read_marker_info, read_plates_info
 from mbkf.stream.lsl_player import LslPlayer
 from mbkf.stream.lsl_results import LslResults
-from mbkf.stream.lsl_source import LslSource
+from mbkf.stream.lsl_source import GIVEN_UP, LslSource
 from mbkf.stream.played import played
 from mbkf.stream.replay import ReplaySettings, replay
 from mbkf.stream.result_values import ResultValues
+from mbkf.stream.source import StreamDescription
 from tests.captures import made_capture
 from tests.stream.test_websocket_results import shown_frame
 
@@ -89,53 +90,46 @@ def test_what_is_sent_arrives_to_the_last_digit(name):
     assert (known >= np.minimum(50 + 10 * (np.arange(30) + 0.5), 299)).all()
 
 
-class Delayed:
-    """Plates that say the same again and again while they are held back; notes how long it was asked to wait."""
+class Scripted:
+    """Plates whose samples are there up to an index, and after a wait up to a later one; notes the waits."""
 
-    def __init__(self, inlet, held_back):
-        self._inlet, self._held_back, self.waits, self._kept = inlet, held_back, [], []
+    def __init__(self):
+        self.there = self.soon = self._given = 0
+        self.waits = []
 
     def pull_chunk(self, timeout, max_samples, min_samples):
         self.waits.append(timeout)
-        found, stamps = self._inlet.pull_chunk(timeout=0.0, max_samples=max_samples)
-        self._kept += list(zip(np.array(found), stamps, strict=True))
-        time.sleep(min(timeout, 0.02))
-        given = self._kept
-        if self._held_back(len(self.waits)):
-            given = self._kept[:1] if len(found) else []
-        else:
-            self._kept = []
-        return np.array([sample for sample, _ in given]), np.array([stamp for _, stamp in given])
+        until = self.there
+        if until <= self._given and timeout > 0.0:
+            time.sleep(timeout if self.soon <= self._given else 0.0)
+            until = self.soon
+        index = np.arange(self._given, max(until, self._given))[:max_samples]
+        self._given += len(index)
+        return np.column_stack([np.zeros((len(index), 6)), index]), 0.0 * index
 
 
-def delayed_frames(name, held_back):
-    made = played(CAPTURE)
-    player, source = LslPlayer(made, name), LslSource(name)
-    connected(source)
-    source._plates = plates = Delayed(source._plates, held_back)
-    thread = play(player, made)
-    frames = read(source, 30)
-    thread.join()
-    source.close()
-    player.close()
-    return frames, plates
+def test_late_plates_are_waited_for_given_up_and_waited_for_again(name, monkeypatch):
+    """Four frames in vain are enough; once samples are nearly in time again, they are waited for."""
+    monkeypatch.setattr("mbkf.stream.lsl_source.LATE_S", 0.02)
+    monkeypatch.setattr("mbkf.stream.lsl_source.QUIET_S", 60.0)
+    source, plates = LslSource(name), Scripted()
+    plate = replace(CAPTURE.plates[0], start_time_s=0.0)
+    source._stream = StreamDescription("x", ("A",), 100.0, 0.0, (plate,))
+    source._plates, source._counted = plates, True
+    source._plate_layout = PlateLayout(np.arange(6)[None], 6, np.eye(3))
 
+    def newest(number, there, soon):
+        plates.there, plates.soon, before = there, soon, len(plates.waits)
+        samples = source._samples(number, time.perf_counter())
+        return samples.index.max(initial=-1), any(wait > 0.0 for wait in plates.waits[before:])
 
-def test_plates_that_come_late_are_waited_for(name):
-    """Later than a frame lasts: each frame is still read with the plates until its end."""
-    frames, plates = delayed_frames(name, lambda asked: 3 <= asked < 9)
-    index = np.concatenate([frame.plates.index for frame in frames])
-    ends = np.array([frame.plates.index.max(initial=0) for frame in frames])
-    assert set(index) >= set(range(290))
-    assert (np.maximum.accumulate(ends) >= np.minimum(10 * (np.arange(30) + 0.5), 299)).all()
-    assert max(plates.waits) > 0.02
-
-
-def test_plates_that_are_never_in_time_do_not_hold_up_the_markers(name):
-    frames, plates = delayed_frames(name, lambda _: True)
-    assert [frame.number for frame in frames] == list(range(30))
-    asked = np.flatnonzero(np.array(plates.waits) > 0.0)
-    assert len(asked) and asked[-1] < len(plates.waits) - 10
+    assert newest(0, 0, 6) == (5, True)
+    assert newest(1, 6, 16) == (15, True)
+    for number in range(2, 2 + GIVEN_UP):
+        assert newest(number, 16, 16) == (-1, True)
+    assert newest(6, 16, 66) == (-1, False)
+    assert newest(7, 66, 76) == (65, False)
+    assert newest(8, 76, 86) == (85, True)
 
 
 def test_points_without_names_arrive(name):
