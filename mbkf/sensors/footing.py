@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
-from itertools import pairwise
 from math import hypot, isnan
 from typing import NamedTuple
 
@@ -22,8 +21,6 @@ from mbkf.model.newton_euler import FEET
 from mbkf.sensors.contacts import FALL_SHARE, REACH_M, TOUCH_HEIGHT_M, sole_locals, surface_height
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.sensors.planted import Planted
-
-Outline = list[list[float]]
 
 KEEP_M = 0.04
 """A plate stays with its foot until the other one is nearer by this."""
@@ -116,9 +113,7 @@ class FootingSensor:
         self._dt_s = dt_s
         self._thresholds = np.array([plate.threshold_n for plate in plates])
         self.surfaces_m = [surface_height(plate) for plate in plates]
-        self._outlines = [_corners(plate) for plate in plates]
-        self._outlined = np.array([outline is not None for outline in self._outlines], dtype=bool)
-        self._areas = _Areas([outline for outline in self._outlines if outline is not None])
+        self._areas = _Areas(plates)
         self._model, self._soles = model, MarkerSensor(model, *sole_locals(model))
         self._moves = [model.supports[model.joint(segment).joint_id].astype(float) for segment in FEET]
         self._floor = min(self.surfaces_m, default=np.nan)
@@ -145,7 +140,7 @@ class FootingSensor:
         latest, foot_of_plate = list(memory.pressed), [-1] * len(vertical)
         for k in loaded:
             point = self._pressure(k, plate_wrench[k].tolist())
-            foot_of_plate[k] = _owner(point, soles, memory.foot_of_plate[k], self._outlines[k])
+            foot_of_plate[k] = self._owner(k, point, soles, memory.foot_of_plate[k])
             latest[k] = Pressed(*point, foot_of_plate[k])
         wrench, footing = np.zeros((2, 6)), [Footing.AIR, Footing.AIR]
         for k in loaded:
@@ -227,6 +222,26 @@ class FootingSensor:
         lowest = [min(p[2] for p in soles[f][:SOLE_ENDS]) for f in (0, 1)]
         return [f for f in (0, 1) if lowest[f] <= min(lowest) + TOUCH_HEIGHT_M]
 
+    def _owner(self, k: int, point: tuple[float, float], soles: list, before: int) -> int:
+        """Foot of plate k with this centre of pressure: 0 right, 1 left, 2 both, -1 nobody."""
+        away = [_distance_to_sole(point, sole) for sole in soles]
+        if self._between(k, soles, away):
+            return 2
+        nearest = 0 if away[0] <= away[1] else 1
+        if before in (0, 1) and away[before] <= away[nearest] + KEEP_M:
+            nearest = before
+        return nearest if away[nearest] <= REACH_M else -1
+
+    def _between(self, k: int, soles: list, away: list[float]) -> bool:
+        """Whether both feet stand flat on plate k: both soles inside it, the centre of pressure between them."""
+        if not self._areas.known[k] or min(away) <= BETWEEN_M:
+            return False
+        heights = [min(p[2] for p in sole) for sole in soles]
+        if abs(heights[0] - heights[1]) >= TOUCH_HEIGHT_M:
+            return False
+        ends = np.array([end[:2] for sole in soles for end in (sole[0], sole[2])])
+        return bool(self._areas.contain(ends)[:, k].all())
+
     def _pressure(self, k: int, load: list[float]) -> tuple[float, float]:
         """Centre of pressure on plate k (eq. 4.9), which is loaded."""
         fx, fy, fz, mx, my, _ = load
@@ -262,10 +277,10 @@ class FootingSensor:
 
         A plate without an outline lies where its foot last pressed it.
         """
-        x, y = ((sole[0][i] + sole[2][i]) / 2 for i in (0, 1))
-        if (self._areas.contain(x, y) & idle.plates[self._outlined]).any():
+        middle = np.array([[(sole[0][i] + sole[2][i]) / 2 for i in (0, 1)]])
+        if (self._areas.contain(middle)[0] & idle.plates).any():
             return True
-        for k in (idle.plates & ~self._outlined).nonzero()[0].tolist():
+        for k in (idle.plates & ~self._areas.known).nonzero()[0].tolist():
             pressed = idle.pressed[k]
             if pressed is None or pressed.owner != foot:
                 continue
@@ -282,18 +297,25 @@ class _Idle(NamedTuple):
 
 
 class _Areas:
-    """Convex plates seen from above, all at once."""
+    """Convex plates seen from above, all at once.
 
-    def __init__(self, outlines: list[Outline]) -> None:
-        corners = np.array(outlines).reshape(-1, 5, 2)
-        self._from = corners[:, :-1]
-        self._along = np.diff(corners, axis=1)
+    Attributes:
+        known: (K,) plates whose corners are.
+    """
 
-    def contain(self, x: float, y: float) -> BoolArray:
-        """Whether a point lies over each."""
-        from_x, from_y = self._from[:, :, 0], self._from[:, :, 1]
-        left = self._along[:, :, 0] * (y - from_y) - self._along[:, :, 1] * (x - from_x) >= 0.0
-        return np.asarray(left.all(axis=1) | ~left.any(axis=1))
+    def __init__(self, plates: Sequence[PlateReadings]) -> None:
+        self.known = np.array([plate.corners_m is not None for plate in plates], dtype=bool)
+        corners = np.zeros((len(plates), 4, 2))
+        for own, plate in zip(corners, plates, strict=True):
+            if plate.corners_m is not None:
+                own[:] = plate.corners_m[:, :2]
+        self._from, self._along = corners, np.roll(corners, -1, axis=1) - corners
+
+    def contain(self, points_m: Array) -> BoolArray:
+        """(n, K) whether points (n, 2) lie over each; never over one that is not known."""
+        away = points_m[:, None, None] - self._from
+        left = self._along[:, :, 0] * away[..., 1] - self._along[:, :, 1] * away[..., 0] >= 0.0
+        return np.asarray((left.all(axis=-1) | ~left.any(axis=-1)) & self.known)
 
 
 def _falls(q: Array, v: Array, a: Array) -> bool:
@@ -304,44 +326,6 @@ def _falls(q: Array, v: Array, a: Array) -> bool:
     up = (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))
     rise = (ax + wy * vz - wz * vy, ay + wz * vx - wx * vz, az + wx * vy - wy * vx)
     return sum(u * r for u, r in zip(up, rise, strict=True)) < -FALL_SHARE * GRAVITY_M_S2
-
-
-def _owner(point: tuple[float, float], soles: list, before: int, outline: Outline | None) -> int:
-    """Foot of a plate with this centre of pressure: 0 right, 1 left, 2 both, -1 nobody."""
-    away = [_distance_to_sole(point, sole) for sole in soles]
-    if outline is not None and _between(soles, away, outline):
-        return 2
-    nearest = 0 if away[0] <= away[1] else 1
-    if before in (0, 1) and away[before] <= away[nearest] + KEEP_M:
-        nearest = before
-    return nearest if away[nearest] <= REACH_M else -1
-
-
-def _between(soles: list, away: list[float], outline: Outline) -> bool:
-    """Whether both feet stand flat on one plate: both soles inside it, the centre of pressure between them."""
-    if min(away) <= BETWEEN_M:
-        return False
-    heights = [min(p[2] for p in sole) for sole in soles]
-    if abs(heights[0] - heights[1]) >= TOUCH_HEIGHT_M:
-        return False
-    return all(_inside(end, outline) for sole in soles for end in (sole[0], sole[2]))
-
-
-def _corners(plate: PlateReadings) -> Outline | None:
-    """The plate's corners (x, y), the first one again at the end, or None where they are not known."""
-    if plate.corners_m is None:
-        return None
-    corners: Outline = plate.corners_m[:, :2].tolist()
-    return corners + corners[:1]
-
-
-def _inside(point: Sequence[float], outline: Outline) -> bool:
-    """Whether a point lies over a convex plate."""
-    x, y = point[0], point[1]
-    signs = []
-    for (ax, ay), (bx, by) in pairwise(outline):
-        signs.append((bx - ax) * (y - ay) - (by - ay) * (x - ax) >= 0)
-    return all(signs) or not any(signs)
 
 
 def _distance_to_sole(point: tuple[float, float], sole: list) -> float:
