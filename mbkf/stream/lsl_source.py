@@ -181,21 +181,21 @@ class LslSource:
         if not self._heard_plates_s:
             self._heard_plates_s = arrival_s
         try:
-            while (missing := self._missing(until)) > 0:
-                now = time.perf_counter()
-                wait = max(0.0, min(deadline, self._heard_plates_s + QUIET_S) - now)
+            missing = self._missing(until)
+            while True:  # asked once at least: a source that counts anew is ahead of itself
+                heard_until = min(deadline, self._heard_plates_s + QUIET_S)
+                wait = max(0.0, heard_until - time.perf_counter()) if missing > 0 else 0.0
                 # All that a frame brings in one call: each return waits for the interpreter.
                 found, stamps = self._plates.pull_chunk(
                     timeout=wait, max_samples=CHUNK, min_samples=max(1, min(missing, int(ratio), CHUNK))
                 )
-                if not len(found):
-                    if wait == 0.0:
-                        break
-                    continue
-                self._heard_plates_s = time.perf_counter()
-                part = self._placed(found, stamps)
-                parts.append(part)
-                self._newest_sample = int(part.index[-1])
+                if len(found):
+                    self._heard_plates_s = time.perf_counter()
+                    parts.append(self._placed(found, stamps))
+                    self._newest_sample = int(parts[-1].index[-1])
+                    missing = self._missing(until)
+                if missing <= 0 or not (len(found) or wait):
+                    break
             self._judge_plates(missing, before, waited_out=time.perf_counter() >= deadline)
         except self._lsl.util.LostError:
             self._lose("plates")

@@ -108,15 +108,30 @@ class Scripted:
         return np.column_stack([np.zeros((len(index), 6)), index]), 0.0 * index
 
 
-def test_late_plates_are_waited_for_given_up_and_waited_for_again(name, monkeypatch):
-    """Four frames in vain are enough; once samples are nearly in time again, they are waited for."""
-    monkeypatch.setattr("mbkf.stream.lsl_source.LATE_S", 0.02)
-    monkeypatch.setattr("mbkf.stream.lsl_source.QUIET_S", 60.0)
+def scripted(name):
     source, plates = LslSource(name), Scripted()
     plate = replace(CAPTURE.plates[0], start_time_s=0.0)
     source._stream = StreamDescription("x", ("A",), 100.0, 0.0, (plate,))
     source._plates, source._counted = plates, True
     source._plate_layout = PlateLayout(np.arange(6)[None], 6, np.eye(3))
+    return source, plates
+
+
+def test_a_source_that_counts_anew_goes_on_with_its_plates(name):
+    """What was read until then has higher numbers than what follows."""
+    source, plates = scripted(name)
+    source._newest_sample = 5000
+    for number in range(3):
+        plates.there = 10 * number + 6
+        samples = source._samples(number, time.perf_counter())
+        assert samples.index[-1] == 10 * number + 5
+
+
+def test_late_plates_are_waited_for_given_up_and_waited_for_again(name, monkeypatch):
+    """Four frames in vain are enough; once samples are nearly in time again, they are waited for."""
+    monkeypatch.setattr("mbkf.stream.lsl_source.LATE_S", 0.02)
+    monkeypatch.setattr("mbkf.stream.lsl_source.QUIET_S", 60.0)
+    source, plates = scripted(name)
 
     def newest(number, there, soon):
         plates.there, plates.soon, before = there, soon, len(plates.waits)
