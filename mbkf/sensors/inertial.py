@@ -1,101 +1,87 @@
-"""What inertial sensors on a body read: angular velocity and specific force in their own axes, with derivatives.
+"""Inertial sensors on the body, as a block: z = (ω, f)(q, v, a) + r, r ~ N(0, diag(σ_ω² I₃, σ_f² I₃)) per sensor.
 
-ω = Rᵀ ω_segment and f = Rᵀ (p̈ − g) at the sensor's place p, from the body's positions, velocities and accelerations
-(the source's eqs. 38–43 take finite differences instead). A turn of the world about the vertical changes neither.
+ω and f are angular velocity and specific force in the sensor's own axes (:mod:`mbkf.sensors.inertial_sensor`).
+Readings that are missing are left out, component by component.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-import pinocchio as pin
 
-from mbkf.conventions import GRAVITY_M_S2, Array
-from mbkf.io.imu_mount import ImuMount
+from mbkf.conventions import Array, BoolArray
 from mbkf.model.human import HumanModel
-from mbkf.numerics.cardan import quaternion_matrices
-from mbkf.numerics.rotations import skew
-
-_UP = np.array([0.0, 0.0, GRAVITY_M_S2])
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+from mbkf.sensors.inertial_sensor import InertialSensor
 
 
-class InertialReading(NamedTuple):
-    """Expected readings of S sensors.
-
-    Attributes:
-        values: (S, 6) angular velocity rad/s, then specific force m/s², in sensor axes.
-        by_q, by_v, by_a: (S, 6, nv) derivatives; by q in the tangent space.
-    """
-
-    values: Array
-    by_q: Array
-    by_v: Array
-    by_a: Array
-
-
-class InertialSensor:
-    """Inertial sensors on a body.
+@dataclass(frozen=True)
+class InertialSettings:
+    """Noise of inertial sensors, skin movement included.
 
     Attributes:
-        model: The body.
-        mounts: Where they sit.
-
-    Raises:
-        UnknownName: A sensor sits on a segment that the body does not have.
+        imu_rate_sd_rad_s, imu_force_sd_mps2: How far a reading is from that of its segment, rad/s and m/s² per
+            component and reading.
     """
 
-    def __init__(self, model: HumanModel, mounts: Sequence[ImuMount]) -> None:
-        self.model, self.mounts = model, tuple(mounts)
-        self._data = model.pin_model.createData()
-        self._joints = [model.joint(mount.segment).joint_id for mount in mounts]
-        rotations = quaternion_matrices(np.array([mount.rotation for mount in mounts]).reshape(-1, 4))
-        self._to_sensor = rotations.transpose(0, 2, 1)
-        self._cross_place = skew(np.array([mount.position_m for mount in mounts]).reshape(-1, 3))
-        self._places = [
-            pin.SE3(rotation, np.array(mount.position_m))
-            for rotation, mount in zip(rotations, mounts, strict=True)
-        ]
+    imu_rate_sd_rad_s: float = 0.05
+    imu_force_sd_mps2: float = 0.5
 
-    def values(self, q: Array, v: Array, a: Array) -> Array:
-        """(S, 6) angular velocity rad/s and specific force m/s² in sensor axes."""
-        pin.forwardKinematics(self.model.pin_model, self._data, q, v, a)
-        return self._read()[0]
 
-    def orientations(self, q: Array) -> Array:
-        """(S, 3, 3) rotations sensor → world."""
-        rotations, _ = self.model.placements(q)
-        return rotations[self._joints] @ self._to_sensor.transpose(0, 2, 1)
+class InertialSensors(Block[Any, None, Array | None, None]):
+    """Gyroscopes and accelerometers, on a state that begins with (q, v, a).
 
-    def reading(self, q: Array, v: Array, a: Array) -> InertialReading:
-        """Expected readings with their derivatives by q, v and a."""
-        model, data = self.model.pin_model, self._data
-        pin.computeForwardKinematicsDerivatives(model, data, q, v, a)
-        values, up = self._read()
-        shape = (len(self._joints), 6, self.model.nv)
-        by_q, by_v, by_a = np.empty(shape), np.empty(shape), np.zeros(shape)
-        for k, (joint, place) in enumerate(zip(self._joints, self._places, strict=True)):
-            velocity = pin.getJointVelocityDerivatives(model, data, joint, pin.LOCAL)
-            force = pin.getPointClassicAccelerationDerivatives(model, data, joint, place, pin.LOCAL)
-            by_q[k, :3], by_v[k, :3] = velocity[0][3:], velocity[1][3:]
-            by_q[k, 3:], by_v[k, 3:], by_a[k, 3:] = force[1], force[2], force[3]
-        by_q[:, :3] = self._to_sensor @ by_q[:, :3]
-        by_v[:, :3] = self._to_sensor @ by_v[:, :3]
-        by_q[:, 3:] += skew(up) @ by_v[:, :3]  # gravity turns against the sensor
-        return InertialReading(values, by_q, by_v, by_a)
+    Attributes:
+        sensor: The sensors on the body.
+        observed: (nv,) dofs of the joints that carry a segment with a sensor.
+    """
 
-    def _read(self) -> tuple[Array, Array]:
-        """(S, 6) values from the kinematics at hand, and g upwards (S, 3) in sensor axes."""
-        data = self._data
-        velocity = np.array([data.v[j].vector for j in self._joints]).reshape(-1, 6)
-        acceleration = np.array([data.a[j].vector for j in self._joints]).reshape(-1, 6)
-        up = np.array([_UP @ data.oMi[j].rotation for j in self._joints]).reshape(-1, 3)
-        omega = velocity[:, 3:, None]
-        turning = skew(velocity[:, 3:])
-        # Spatial to classical acceleration, then to the sensor's place.
-        here = turning @ (velocity[:, :3, None] - self._cross_place @ omega)
-        here += acceleration[:, :3, None] - self._cross_place @ acceleration[:, 3:, None]
-        up = self._to_sensor @ up[:, :, None]
-        values = np.concatenate([self._to_sensor @ omega, self._to_sensor @ here + up], axis=1)
-        return values[:, :, 0], up[:, :, 0]
+    def __init__(self, sensor: InertialSensor, settings: InertialSettings = InertialSettings()) -> None:
+        self.sensor, self.settings = sensor, settings
+        deviations = np.repeat([settings.imu_rate_sd_rad_s, settings.imu_force_sd_mps2], 3)
+        self._weight = np.tile(1.0 / deviations, len(sensor.mounts))
+        self.observed = observed_dofs(sensor.model, [mount.segment for mount in sensor.mounts])
+
+    def decide(
+        self, at: OperatingPoint[Any, None], frame: Frame, memory: None, notes: Notes
+    ) -> Array | None:
+        """The frame's readings (S, 6), None where none was read; joints they observe are noted."""
+        if frame.imus is None or not np.isfinite(frame.imus).any():
+            return None
+        notes.imus, notes.observed = frame.imus, True
+        notes.unobserved = notes.unmarked[~self.observed[notes.unmarked]]
+        return frame.imus
+
+    def linearise(self, at: OperatingPoint[Any, None], decision: Array | None) -> Rows | None:
+        """Rows on (q, v, a)."""
+        if decision is None:
+            return None
+        state = at.state
+        return Rows(*self.rows(state.q, state.v, state.a, decision))
+
+    def rows(self, q: Array, v: Array, a: Array, measured: Array) -> tuple[Array, Array]:
+        """Whitened Jacobian (m, 3 nv) by (q, v, a) and innovations (m,) of one frame.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            a: (nv,) acceleration.
+            measured: (S, 6) angular velocity rad/s and specific force m/s²; NaN are left out.
+        """
+        reading = self.sensor.reading(q, v, a)
+        short = (measured - reading.values).reshape(-1)
+        there = np.flatnonzero(np.isfinite(short))
+        jacobian = np.concatenate([reading.by_q, reading.by_v, reading.by_a], axis=2)
+        weight = self._weight[there]
+        return jacobian.reshape(len(short), -1)[there] * weight[:, None], short[there] * weight
+
+
+def observed_dofs(model: HumanModel, segments: Sequence[str]) -> BoolArray:
+    """(nv,) dofs of the joints that carry these segments; joints between two of them are observed in sum only."""
+    observed = np.zeros(model.nv, dtype=bool)
+    for segment in segments:
+        observed[model.joint(segment).v] = True
+    return observed

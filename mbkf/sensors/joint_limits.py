@@ -1,15 +1,33 @@
-"""How far joints turn: beyond a limit it is read softly as passed by nothing (an inequality, one block a frame)."""
+"""Joint limits, as a block: a joint beyond a limit θ_max is read to be at it, 0 = θ(q) − θ_max + r, r ~ N(0, σ²).
+
+An inequality: a joint inside its limits is not read at all.
+"""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.model.human import HumanModel
 from mbkf.numerics.kalman import Information
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
+from mbkf.sensors.posture import PostureSensor
 
 
-class JointLimits:
+@dataclass(frozen=True)
+class JointLimitSettings:
+    """Softness of the limits.
+
+    Attributes:
+        limit_sd_rad: Standard deviation σ of a reading at a limit.
+    """
+
+    limit_sd_rad: float = 0.03
+
+
+class JointLimits(Block[Any, Information | None, None, None]):
     """Least and greatest rotation of every joint about its axes, from the neutral posture.
 
     Attributes:
@@ -17,11 +35,42 @@ class JointLimits:
         sd_rad: Softness.
     """
 
-    def __init__(self, model: HumanModel, held: BoolArray, sd_rad: float) -> None:
-        self.lower = np.where(held, -np.inf, model.limits[:, 0])
-        self.upper = np.where(held, np.inf, model.limits[:, 1])
-        self.sd_rad = sd_rad
+    prior = True
+
+    def __init__(
+        self,
+        sensor: PostureSensor,
+        unobservable: BoolArray,
+        settings: JointLimitSettings = JointLimitSettings(),
+    ) -> None:
+        """Makes the block.
+
+        Args:
+            sensor: Deviation of every joint from neutral.
+            unobservable: (nv,) dofs that no marker of the capture moves with; they have no limit.
+            settings: Softness.
+        """
+        model = sensor.model
+        self._sensor, self.sd_rad = sensor, settings.limit_sd_rad
+        self.lower = np.where(unobservable, -np.inf, model.limits[:, 0])
+        self.upper = np.where(unobservable, np.inf, model.limits[:, 1])
         self._turning = [joint.v for joint in model.joints.values() if joint.kind == "spherical"]
+
+    def prepare(self, state: Any, memory: None) -> Information | None:
+        """What the passed limits say; it does not depend on the frame."""
+        del memory
+        return self.information(*self._sensor.deviation(state.q))
+
+    def decide(
+        self, at: OperatingPoint[Any, Information | None], frame: Frame, memory: None, notes: Notes
+    ) -> None:
+        """Nothing is to be decided."""
+        del at, frame, memory, notes
+
+    def linearise(self, at: OperatingPoint[Any, Information | None], decision: None) -> Information | None:
+        """Information on the configuration, None where no limit is passed."""
+        del decision
+        return at.prepared
 
     def information(self, deviation: Array, jacobian: Array) -> Information | None:
         """What the passed limits say about the configuration (nv), or None where none is passed; no readings.

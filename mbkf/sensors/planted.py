@@ -1,26 +1,88 @@
-"""A foot that carries weight does not slide: what is known of a loaded foot while none of its markers is seen.
+"""Planted foot, as a block: 0 = ṗ + r_p and 0 = ω + r_ω for a foot that carries weight while none of its markers is seen.
 
-The point under the centre of pressure stands still, whether the foot is flat or rolls; a flat foot does not turn
-either, nor do the toes once the load is on them and the heel rises. Read as zero velocity; its derivative by the
-configuration vanishes where the reading is met.
+The point p under the centre of pressure stands still, whether the foot is flat or rolls; a flat foot does not turn
+either, nor do the toes once the load is on them and the heel rises. The derivative by the configuration vanishes where
+the reading is met and is left out.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.human import HumanModel
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.sensors.contact.records import Planted
+from mbkf.sensors.layout import Layout
 
 
-class Planted(NamedTuple):
-    """What stands: a foot or its toes, the world point (3,) of it that does not move, and whether it lies flat."""
+@dataclass(frozen=True)
+class PlantedSettings:
+    """How still a loaded foot stands.
 
-    segment: str
-    point_m: Array
-    flat: bool
+    Attributes:
+        planted_speed_sd, planted_turn_sd: Standard deviations of the point's velocity, m/s, and of the turning of what
+            lies flat, rad/s.
+    """
+
+    planted_speed_sd: float = 0.03
+    planted_turn_sd: float = 0.2
+
+
+class PlantedFeet(Block[Any, None, tuple[Planted, ...], None]):
+    """Loaded feet without a marker in sight.
+
+    Attributes:
+        detector: Finds what the feet stand on.
+        settings: How still they stand.
+    """
+
+    prior = True
+
+    def __init__(
+        self,
+        model: HumanModel,
+        detector: ContactDetector,
+        feet: tuple[str, ...],
+        settings: PlantedSettings = PlantedSettings(),
+    ) -> None:
+        """Makes the block.
+
+        Args:
+            model: The body.
+            detector: Finds what the feet stand on; a block before this one asks it in every frame.
+            feet: Segments of right and left foot.
+            settings: How still they stand.
+        """
+        self._model, self.detector, self.settings = model, detector, settings
+        self._dof = [model.joint(segment).v.start for segment in feet]
+        self._v = 0
+
+    def bind(self, layout: Layout) -> None:
+        """Where velocities stand in the state."""
+        self._v = layout.v.start
+
+    def decide(
+        self, at: OperatingPoint[Any, None], frame: Frame, memory: None, notes: Notes
+    ) -> tuple[Planted, ...]:
+        """What of which foot stands still."""
+        if not len(notes.unmarked) or notes.contact is None:
+            return ()
+        lost = [foot for foot, dof in enumerate(self._dof) if dof in notes.unmarked]
+        found = [self.detector.planted(notes.contact, at.state.q, foot) for foot in lost]
+        return tuple(one for one in found if one is not None)
+
+    def linearise(self, at: OperatingPoint[Any, None], decision: tuple[Planted, ...]) -> list[Rows]:
+        """Rows on the velocity."""
+        s, state = self.settings, at.state
+        sds = s.planted_speed_sd, s.planted_turn_sd
+        return [
+            Rows(*standing_still(self._model, state.q, state.v, foot, *sds), self._v) for foot in decision
+        ]
 
 
 def standing_still(

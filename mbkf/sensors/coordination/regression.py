@@ -1,4 +1,4 @@
-"""How parts of a body move together, learned from what was shown: a ridge regression that knows how well it foretells.
+"""How parts of a body move together, learned from noted frames: a ridge regression with its error on frames left out.
 
 Targets y are read off features f as ȳ + Wᵀ (f − f̄), the conditional mean of jointly Gaussian variables with a ridge
 λ² on the features' covariance (Bishop, *Pattern Recognition and Machine Learning*, 2006, 2.3.1 and 3.1.4). Frames that
@@ -22,7 +22,7 @@ on the plain mean is taken then, with so many times the scatter that was seen fo
 
 
 @dataclass(frozen=True)
-class Synergy:
+class Coordination:
     """A learned relation.
 
     Attributes:
@@ -41,7 +41,7 @@ class Synergy:
     novelty: Array
     blocks: int
 
-    def expected(self, features: Array) -> tuple[Array, Array]:
+    def predicted(self, features: Array) -> tuple[Array, Array]:
         """Mean (k,) and standard deviation (k,) of the targets at features (p,): wider the less such ones were seen."""
         away = features - self.features
         reads = self.weights.any(axis=0)
@@ -49,7 +49,7 @@ class Synergy:
         few = (self.blocks - 1) / (self.blocks - 3)
         return self.targets + away @ self.weights, self.error_sd * np.sqrt(few * growth)
 
-    def only(self, targets: NDArray[np.intp] | slice) -> Synergy:
+    def only(self, targets: NDArray[np.intp] | slice) -> Coordination:
         """The same for some targets."""
         return replace(
             self,
@@ -59,7 +59,7 @@ class Synergy:
         )
 
 
-def learn(features: Array, targets: Array, blocks: NDArray[np.intp], ridge: float) -> Synergy | None:
+def learn(features: Array, targets: Array, blocks: NDArray[np.intp], ridge: float) -> Coordination | None:
     """The relation of targets to features, their mean where too few blocks were shown; None where hardly any were.
 
     A left-out block's error is (I − H_bb)⁻¹ (y − ŷ)_b with the hat matrix H of all frames, without another fit.
@@ -76,7 +76,7 @@ def learn(features: Array, targets: Array, blocks: NDArray[np.intp], ridge: floa
     n, p = features.shape
     middle, mean = features.mean(axis=0), targets.mean(axis=0)
     if len(names) < LEAST_BLOCKS:
-        return Synergy(
+        return Coordination(
             middle,
             mean,
             np.zeros((p, len(mean))),
@@ -97,4 +97,4 @@ def learn(features: Array, targets: Array, blocks: NDArray[np.intp], ridge: floa
         by_mean[own] = Y[own] + Y[own].sum(axis=0) / (n - len(own))
     sd, plain = (np.sqrt((error**2).mean(axis=0)) for error in (by_features, by_mean))
     weights[:, sd >= plain] = 0.0
-    return Synergy(middle, mean, weights, np.minimum(sd, plain), n / len(names) * K, len(names))
+    return Coordination(middle, mean, weights, np.minimum(sd, plain), n / len(names) * K, len(names))

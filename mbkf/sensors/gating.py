@@ -1,104 +1,97 @@
-"""Which markers of a frame to believe: an innovation gate per marker."""
+"""Gating: which markers of a frame are used, by the Mahalanobis distance of each marker's innovation.
+
+A marker passes where yᵀ S⁻¹ y ≤ gate with S = H P⁻ Hᵀ + R, or where it lies within a radius of its prediction.
+"""
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.sensors.markers import MarkerReading, MarkerSensor
+from mbkf.sensors.block import NO_DOFS
+from mbkf.sensors.marker_sensor import MarkerReading, MarkerSensor
 
-STRAYED_M = 0.10
-"""Where more than half of the markers lie so far off their prediction, the body has jumped or it is another one, and
-the filter has to start anew. Fast limbs are mispredicted by a third of that, most markers by a tenth."""
-
-_NONE = np.zeros(0, dtype=np.intp)
-
-
-class GateSettings(Protocol):
-    """What a filter's settings say about markers that misbehave."""
-
-    @property
-    def gate(self) -> float:
-        """Squared Mahalanobis distance (3 readings) above which a marker is not believed."""
-
-    @property
-    def gate_radius_m(self) -> float:
-        """Distance below which no marker is refused, m."""
+TRACK_LOSS_M = 0.10
+"""Where more than half of the markers lie so far off their prediction, the track is lost: the body has jumped, or it is
+another one. Fast limbs are mispredicted by a third of that, most markers by a tenth."""
 
 
-class Sight:
-    """Which dofs belong to segments that are out of sight."""
+class ObservedDofs:
+    """Which dofs belong to segments none of whose markers is used."""
 
-    def __init__(self, sensor: MarkerSensor, held: BoolArray) -> None:
+    def __init__(self, sensor: MarkerSensor, unobservable: BoolArray) -> None:
+        """Args: the markers on the body, and dofs (nv,) that no marker of the capture moves with."""
         joints = np.empty(sensor.model.nv, dtype=int)
         for joint in sensor.model.joints.values():
             joints[joint.v] = joint.joint_id
-        self._on_segment = (sensor.joint_ids[:, None] == joints) & ~held
+        self._on_segment = (sensor.joint_ids[:, None] == joints) & ~unobservable
         self._watched = self._on_segment.any(axis=0)
         # Markers come and go seldom, so the last answer is kept.
-        self._asked, self._unseen = b"", _NONE
+        self._asked, self._answer = b"", NO_DOFS
 
     def carriers(self, markers: BoolArray) -> NDArray[np.intp]:
         """Dofs of the joints whose segments carry any of the ``markers`` (M,)."""
         return np.flatnonzero(markers @ self._on_segment)
 
-    def unseen(self, trusted: BoolArray) -> NDArray[np.intp]:
+    def unmarked(self, trusted: BoolArray) -> NDArray[np.intp]:
         """Dofs whose segment carries markers none of which is ``trusted`` (M,) now."""
         asked = trusted.tobytes()
         if asked != self._asked:
             self._asked = asked
-            self._unseen = np.flatnonzero(self._watched & ~(trusted @ self._on_segment))
-        return self._unseen
+            self._answer = np.flatnonzero(self._watched & ~(trusted @ self._on_segment))
+        return self._answer
 
 
-class Belief(NamedTuple):
+class Gated(NamedTuple):
     """Markers of a frame (M,): those ``seen``, those of them ``trusted``, and those of segments found elsewhere.
 
-    ``displaced`` markers, all that are seen of a segment, lie far from where it was expected, so that the state is
-    wrong there and not they; None where there are none. ``strayed``: most markers are far from the state.
+    ``displaced`` markers are all that are seen of a segment and lie far from where it was predicted, so that the state
+    is wrong there and not they; None where there are none. ``lost``: most markers lie far from their prediction.
     """
 
     seen: BoolArray
     trusted: BoolArray
     displaced: BoolArray | None
-    strayed: bool = False
+    lost: bool = False
 
 
-def judged(
+def gated(
     innovation_m: Array,
     reading: MarkerReading,
     covariance: Array,
     noise_m: Array,
-    settings: GateSettings,
-) -> Belief:
-    """Seen and believable markers: those inside their gate, yᵀ S⁻¹ y ≤ gate with S = H P Hᵀ + R, or near enough.
+    gate: float,
+    radius_m: float,
+) -> Gated:
+    """Sorts the markers of a frame.
 
-    When more than half of the markers fall outside, the state is wrong and not the markers, and all are believed.
-    The Jacobian is asked for only of markers that lie far off.
+    When more than half of the markers fall outside, the state is wrong and not the markers, and all are used.
+    The Jacobian is asked for only of markers outside the radius.
 
     Args:
         innovation_m: (M, 3) measured minus predicted, NaN where missing.
         reading: The prediction.
-        covariance: (nv, nv) predicted covariance P of the configuration.
+        covariance: (nv, nv) predicted covariance P⁻ of the configuration.
         noise_m: (M,) marker noise.
-        settings: Gate and radius.
+        gate: Largest squared Mahalanobis distance (3 readings).
+        radius_m: Distance below which no marker is refused.
     """
     squared = np.einsum("ij,ij->i", innovation_m, innovation_m)
-    near = squared <= settings.gate_radius_m**2
+    near = squared <= radius_m**2
     seen = squared == squared  # noqa: PLR0124, a missing marker's is NaN
     if np.count_nonzero(near) == np.count_nonzero(seen):
-        return Belief(seen, near, None)
-    strayed = bool(2 * np.count_nonzero(squared > STRAYED_M**2) > np.count_nonzero(seen))
+        return Gated(seen, near, None)
+    lost = bool(2 * np.count_nonzero(squared > TRACK_LOSS_M**2) > np.count_nonzero(seen))
     far = seen & ~near
     distance = _distance(innovation_m[far], reading.only(far).jacobian, covariance, noise_m[far])
-    trusted = _with_far(seen, near, far, distance, settings.gate)
+    trusted = _with_far(seen, near, far, distance, gate)
     if trusted.all():
-        return Belief(seen, trusted, None, strayed)
+        return Gated(seen, trusted, None, lost)
     displaced = _whole_segments(seen, trusted, reading.moves)
-    return Belief(seen, trusted | displaced, displaced if displaced.any() else None, strayed)
+    return Gated(seen, trusted | displaced, displaced if displaced.any() else None, lost)
 
 
 def _whole_segments(seen: BoolArray, trusted: BoolArray, moves: Array) -> BoolArray:

@@ -1,0 +1,363 @@
+"""The filter: a plant predicts, blocks decide and speak, one update follows; no block is known here by name.
+
+    x⁻ = f(x),  P⁻ = Φ P Φᵀ + Q                        plant
+    Λ = Σ HᵀR⁻¹H,  λ = Σ HᵀR⁻¹y                         blocks, linearised at x⁻
+    P⁺ = (P⁻⁻¹ + Λ)⁻¹,  x⁺ = x⁻ ⊕ P⁺ λ                  update, without inverting P⁻ (mbkf.numerics.kalman)
+
+The kinematic, torque and dynamic filters are this class with another plant and other blocks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Generic, NamedTuple, Protocol, TypeVar
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.numerics.kalman import Information, correct, informed, informed_with_rows
+from mbkf.sensors.block import AnyBlock, Frame, Notes, OperatingPoint, Rows, State, Statement
+from mbkf.sensors.layout import Layout
+
+StateT = TypeVar("StateT", bound=State)
+NoiseT = TypeVar("NoiseT")
+
+
+class Plant(Protocol[StateT]):
+    """How a state moves from one frame to the next.
+
+    Attributes:
+        layout: Slices of its tangent state.
+        dt_s: Time step.
+    """
+
+    layout: Layout
+    dt_s: float
+
+    def begin(self) -> Any:
+        """Memory before the first frame."""
+
+    def noise(self, memory: Any) -> Any:
+        """Process noise of the next step, adapted to what the motion was like."""
+
+    def predict(self, state: StateT, noise: Any) -> StateT:
+        """The state one step later, P⁻ = Φ P Φᵀ + Q exactly symmetric, new and in Fortran order."""
+
+    def transition(self, state: StateT) -> Array:
+        """(N, N) Φ at a state."""
+
+    def retract(self, state: StateT, step: Array, P: Array) -> StateT:
+        """The state moved by a tangent vector (N,), with another covariance."""
+
+    def difference(self, origin: StateT, state: StateT) -> Array:
+        """(N,) tangent vector from one state's mean to another's."""
+
+    def remember(self, posterior: StateT, notes: Notes, memory: Any) -> Any:
+        """Memory for the next frame."""
+
+
+class Memory(NamedTuple):
+    """What a frame leaves for the next besides its estimate: the plant's memory and each block's."""
+
+    plant: Any
+    blocks: tuple[Any, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Prior(Generic[StateT]):
+    """A predicted state with what blocks worked out at it, before the frame is there.
+
+    Attributes:
+        state: x⁻ and P⁻.
+        noise: Process noise it was predicted with.
+        points: The state as each block sees it.
+    """
+
+    state: StateT
+    noise: Any
+    points: tuple[OperatingPoint[StateT, Any], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Decisions:
+    """What a frame's readings were taken to be; with it a smoother linearises the same readings elsewhere.
+
+    Attributes:
+        noise: Process noise of the step into the frame.
+        blocks: Decision of each block.
+        notes: What blocks told each other.
+    """
+
+    noise: Any
+    blocks: tuple[Any, ...]
+    notes: Notes
+
+
+@dataclass(frozen=True)
+class Readings:
+    """A frame's readings linearised at a state: information on its first components, and whitened rows.
+
+    Attributes:
+        instruments: Information of instruments and laws alone.
+        matrix: (n, n) information on the first n components, priors included.
+        vector: (n,) its vector.
+        rows: (k, N) R^(-1/2) H of all else.
+        values: (k,) their innovations R^(-1/2) y.
+        parts: The rows as their blocks gave them.
+    """
+
+    instruments: Information
+    matrix: Array
+    vector: Array
+    rows: Array
+    values: Array
+    parts: tuple[tuple[Rows, ...], ...]
+
+    @property
+    def whole_matrix(self) -> Array:
+        """(N, N) Hᵀ R⁻¹ H of all readings."""
+        total = self.rows.T @ self.rows
+        n = len(self.vector)
+        total[:n, :n] += self.matrix
+        return total
+
+    def apply(self, vector: Array) -> Array:
+        """(N,) Hᵀ R⁻¹ H times a vector (N,)."""
+        total = (self.rows @ vector) @ self.rows
+        n = len(self.vector)
+        total[:n] += self.matrix @ vector[:n]
+        return total
+
+    @property
+    def whole_vector(self) -> Array:
+        """(N,) Hᵀ R⁻¹ y of all readings."""
+        total = self.values @ self.rows
+        total[: len(self.vector)] += self.vector
+        return total
+
+    @cached_property
+    def counted(self) -> tuple[Array, Array]:
+        """(m, N) rows and (m,) innovations of instruments and laws: those that NIS and likelihood count."""
+        kept, first = [], 0
+        for part in (one for parts in self.parts for one in parts):
+            kept += range(first, first + part.readings)
+            first += len(part.innovation)
+        return self.rows[kept], self.values[kept]
+
+
+@dataclass(frozen=True)
+class Step(Generic[StateT]):
+    """One step of a filter; what only the next step or a report needs is worked out when asked for.
+
+    Attributes:
+        state: Posterior.
+        prior: Prediction it came from.
+        decisions: What the frame's readings were taken to be.
+        readings: They, linearised at the prior.
+        recall: Makes the memory for the next step.
+    """
+
+    state: StateT
+    prior: Prior[StateT]
+    decisions: Decisions
+    readings: Readings
+    recall: Callable[[], Memory]
+
+    @cached_property
+    def memory(self) -> Memory:
+        """For the next step."""
+        return self.recall()
+
+    @property
+    def tracked(self) -> bool:
+        """Whether enough instruments read, and the prediction was not far from most markers."""
+        return self.decisions.notes.observed and not self.decisions.notes.lost
+
+    @property
+    def refused(self) -> BoolArray:
+        """(M,) markers seen but outside their gate."""
+        return self.decisions.notes.seen & ~self.decisions.notes.trusted
+
+    @property
+    def count(self) -> int:
+        """Number of readings in :attr:`nis`."""
+        return self.readings.instruments.readings + len(self.readings.counted[1])
+
+    @cached_property
+    def nis(self) -> float:
+        """Normalised innovation squared of instruments and laws; priors are no readings."""
+        rows, values = self.readings.counted
+        after = correct(self.prior.state.P, self.readings.instruments)
+        if not len(values):
+            return after.nis
+        innovation = values - rows @ after.step
+        S = rows @ after.covariance @ rows.T + np.eye(len(rows))
+        return after.nis + float(innovation @ np.linalg.solve(S, innovation))
+
+
+class Filter(Generic[StateT]):
+    """Extended Kalman filter on a manifold.
+
+    Attributes:
+        plant: How the state moves.
+        blocks: Instruments, laws and priors, in the order in which they decide.
+        layout: Slices of the tangent state.
+    """
+
+    def __init__(self, plant: Plant[StateT], blocks: Sequence[AnyBlock]) -> None:
+        self.plant, self.blocks, self.layout = plant, tuple(blocks), plant.layout
+        for block in self.blocks:
+            block.bind(self.layout)
+
+    def begin(self) -> Memory:
+        """Memory before the first frame."""
+        return Memory(self.plant.begin(), tuple(block.begin() for block in self.blocks))
+
+    def predict(self, state: StateT, memory: Memory) -> Prior[StateT]:
+        """All that can be worked out before the frame is there."""
+        noise = self.plant.noise(memory.plant)
+        return self.prepared(self.plant.predict(state, noise), noise, memory)
+
+    def prepared(self, state: StateT, noise: Any, memory: Memory) -> Prior[StateT]:
+        """A state as a prior: what blocks work out at it without the frame.
+
+        Args:
+            state: The state; its covariance is changed in place by :meth:`correct`.
+            noise: Process noise it was predicted with.
+            memory: Of the frame before.
+        """
+        points = tuple(
+            OperatingPoint(state, block.prepare(state, kept))
+            for block, kept in zip(self.blocks, memory.blocks, strict=True)
+        )
+        return Prior(state, noise, points)
+
+    def step(
+        self, state: StateT, memory: Memory, frame: Frame, prior: Prior[StateT] | None = None
+    ) -> Step[StateT]:
+        """Prediction and correction by one frame.
+
+        Args:
+            state: Posterior of the frame before.
+            memory: Of the frame before.
+            frame: The readings.
+            prior: What :meth:`predict` made of state and memory; used up.
+        """
+        return self.correct(prior or self.predict(state, memory), memory, frame)
+
+    def correct(self, prior: Prior[StateT], memory: Memory, frame: Frame) -> Step[StateT]:
+        """Correction of a prior by one frame.
+
+        Args:
+            prior: The prediction; its covariance is changed in place.
+            memory: Of the frame before.
+            frame: The readings.
+        """
+        state, points, notes = prior.state, prior.points, Notes()
+        blocks = self.blocks
+        chosen = [
+            block.decide(at, frame, kept, notes)
+            for block, at, kept in zip(blocks, points, memory.blocks, strict=True)
+        ]
+        self.inflate(state.P, chosen)
+        said = [block.linearise(at, one) for block, at, one in zip(blocks, points, chosen, strict=True)]
+        readings = self._summed(said)
+        posterior = self._updated(state, readings)
+        again = [block.review(posterior, one) for block, one in zip(blocks, chosen, strict=True)]
+        if any(one is not None for one in again):
+            for k, one in enumerate(again):
+                if one is not None:
+                    chosen[k] = one
+                    said[k] = blocks[k].linearise(points[k], one)
+            readings = self._summed(said)
+            posterior = self._updated(state, readings)
+
+        def recall() -> Memory:
+            kept = zip(blocks, points, chosen, memory.blocks, strict=True)
+            return Memory(
+                self.plant.remember(posterior, notes, memory.plant),
+                tuple(block.remember(posterior, at, one, before) for block, at, one, before in kept),
+            )
+
+        return Step(posterior, prior, Decisions(prior.noise, tuple(chosen), notes), readings, recall)
+
+    def inflate(self, P: Array, chosen: Sequence[Any]) -> None:
+        """Adds to a predicted covariance, in place, the process noise that depends on the blocks' decisions."""
+        for block, one in zip(self.blocks, chosen, strict=True):
+            block.inflate(P, one)
+
+    def linearise(self, state: StateT, decisions: Decisions) -> Readings:
+        """A frame's readings, decided before, linearised at another state (for smoothing)."""
+        return self._summed(
+            [
+                block.linearise(OperatingPoint(state, block.prepare(state, None)), one)
+                for block, one in zip(self.blocks, decisions.blocks, strict=True)
+            ]
+        )
+
+    def _updated(self, prior: StateT, readings: Readings) -> StateT:
+        if len(readings.values):
+            P = informed_with_rows(prior.P, readings.matrix, readings.rows)
+            return self.plant.retract(prior, P @ readings.whole_vector, P)
+        P = informed(prior.P, readings.matrix)
+        return self.plant.retract(prior, P[:, : len(readings.vector)] @ readings.vector, P)
+
+    def _summed(self, said: Sequence[Statement]) -> Readings:
+        """All statements together: information of instruments first, then of priors, then rows in order."""
+        known: list[Information] = []
+        believed: list[Information] = []
+        parts: list[tuple[Rows, ...]] = []
+        for block, one in zip(self.blocks, said, strict=True):
+            if isinstance(one, Information):
+                (believed if block.prior else known).append(one)
+                parts.append(())
+            elif isinstance(one, Rows):
+                parts.append((one,))
+            else:
+                parts.append(tuple(one) if one else ())
+        instruments = _sum(known, self.layout.nv)
+        matrix, vector = instruments.matrix, instruments.vector
+        if believed:
+            prior = _sum(believed, self.layout.nv)
+            size, n = max(len(vector), len(prior.vector)), len(prior.vector)
+            matrix, vector = _padded(matrix, vector, size)
+            matrix[:n, :n] += prior.matrix
+            vector[:n] += prior.vector
+        return Readings(instruments, matrix, vector, *self._stacked(parts), tuple(parts))
+
+    def _stacked(self, parts: Sequence[Sequence[Rows]]) -> tuple[Array, Array]:
+        """(k, N) rows on the whole state and (k,) innovations."""
+        flat = [one for part in parts for one in part]
+        total = sum(len(one.innovation) for one in flat)
+        rows, values, at = np.zeros((total, self.layout.size)), np.empty(total), 0
+        for one in flat:
+            here = slice(at, at + len(one.innovation))
+            rows[here, one.first : one.first + one.jacobian.shape[1]] = one.jacobian
+            values[here] = one.innovation
+            at = here.stop
+        return rows, values
+
+
+def _sum(parts: Sequence[Information], nv: int) -> Information:
+    """All of them, on as many components as the longest; nothing about the first ``nv`` where there are none."""
+    if not parts:
+        return Information(np.zeros((nv, nv)), np.zeros(nv), 0.0, 0)
+    total = parts[0]
+    for one in parts[1:]:
+        size = max(len(total.vector), len(one.vector))
+        grown = Information(*_padded(total.matrix, total.vector, size), total.innovation, total.readings)
+        added = Information(*_padded(one.matrix, one.vector, size), one.innovation, one.readings)
+        total = grown + added
+    return total
+
+
+def _padded(matrix: Array, vector: Array, size: int) -> tuple[Array, Array]:
+    """New arrays (size, size) and (size,) that begin with these and end in zeros."""
+    n = len(vector)
+    if n == size:
+        return matrix.copy(), vector.copy()
+    larger, longer = np.zeros((size, size)), np.zeros(size)
+    larger[:n, :n], longer[:n] = matrix, vector
+    return larger, longer

@@ -1,0 +1,283 @@
+"""Coordination prior, as a block: 0 = q_j ⊖ q̂_j(f) + r and 0 = v_j − v̂_j(f) + r', for joints j out of sight.
+
+Arms swing with the legs, toes bend with the foot. Many times a second the block notes the features f, pose and rates of
+trunk and legs, and of every other observed joint its rotation and velocity. When a joint goes out of sight, a ridge
+regression on the last seconds (:mod:`mbkf.sensors.coordination.regression`) predicts it from f; the noise is the
+regression's error on blocks of time left out, as long as such errors last.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.model.human import HumanModel
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+from mbkf.sensors.coordination.regression import Coordination, learn
+from mbkf.sensors.layout import Layout
+
+LEADING = ("torso", *(f"{side}_{part}" for side in ("right", "left") for part in ("thigh", "shank", "foot")))
+"""Segments whose joints, with the pelvis, lead; the others follow."""
+
+NOTED_HZ, BLOCK_S = 25.0, 0.5
+"""How often frames are noted, and how long a block of them is that is left out at a time."""
+
+PACE_S = 0.15
+"""A velocity counts as much as the angle it covers in this time: about the inverse rate of a stride."""
+
+LEAST_SD_RAD = 0.02
+"""No joint follows more exactly than this, nor its velocity than this per PACE_S."""
+
+
+@dataclass(frozen=True)
+class CoordinationSettings:
+    """How the regression is learnt and trusted. Tuned on public walks and a run with the right arm hidden for 1 s.
+
+    Attributes:
+        coordination_memory_s: How far back a joint's movement with trunk and legs is looked at; 0 for no such prior.
+        coordination_ridge_rad: Features that vary by less than this hardly predict.
+        coordination_errs_s: How long an error of the prediction lasts.
+    """
+
+    coordination_memory_s: float = 5.0
+    coordination_ridge_rad: float = 0.1
+    coordination_errs_s: float = 0.25
+
+
+class NotedFrame(NamedTuple):
+    """A noted frame: its block of time, features (p,), posture and velocity (2 nv,), and dofs observed (nv,)."""
+
+    block: int
+    features: Array
+    movement: Array
+    observed: BoolArray
+
+
+class CoordinationMemory(NamedTuple):
+    """What a trial has shown so far.
+
+    Attributes:
+        frame: How many frames have passed.
+        noted: Some of the last ones.
+        gone: Numbers of the joints that are out of sight now.
+        learned: What was learned of them, by their number.
+    """
+
+    frame: int
+    noted: tuple[NotedFrame, ...]
+    gone: tuple[int, ...]
+    learned: Mapping[int, Coordination]
+
+
+class CoordinationDecision(NamedTuple):
+    """What joints out of sight are predicted to do, as far as it was learned.
+
+    Attributes:
+        dofs: (n,) theirs.
+        q: (nq,) a configuration with their posture.
+        v: (n,) their velocities.
+        q_sd, v_sd: (n,) standard deviations of both, per reading.
+        gone: Numbers of the joints out of sight.
+        legible: Whether trunk and legs are observed, so that the frame may be noted.
+        unobserved: Dofs that nothing observes.
+    """
+
+    dofs: NDArray[np.intp]
+    q: Array
+    v: Array
+    q_sd: Array
+    v_sd: Array
+    gone: tuple[int, ...]
+    legible: bool
+    unobserved: NDArray[np.intp]
+
+
+NONE = np.zeros(0)
+"""No numbers."""
+
+
+class CoordinationPrior(
+    Block[Any, Mapping[int, Coordination], CoordinationDecision, CoordinationMemory]
+):
+    """Head, arms and toes as they went with trunk and legs.
+
+    Attributes:
+        followers: Dofs of each joint that follows.
+    """
+
+    prior = True
+
+    def __init__(
+        self,
+        model: HumanModel,
+        dt_s: float,
+        unobservable: BoolArray,
+        settings: CoordinationSettings = CoordinationSettings(),
+    ) -> None:
+        """Makes the block.
+
+        Args:
+            model: The body.
+            dt_s: Time between frames.
+            unobservable: (nv,) dofs that no marker of the capture moves with; they are not predicted.
+            settings: How it learns.
+        """
+        self._model, self._ridge = model, settings.coordination_ridge_rad
+        joints = [joint for joint in model.joints.values() if joint.kind != "free"]
+        dofs = {joint.segment: np.arange(joint.v.start, joint.v.stop) for joint in joints}
+        self._leading = np.concatenate([dofs[segment] for segment in LEADING])
+        self.followers = [
+            own for name, own in dofs.items() if name not in LEADING and not unobservable[own].all()
+        ]
+        self._root = next(joint for joint in model.joints.values() if joint.kind == "free")
+        self._neutral = model.neutral()
+        self._every = max(1, round(1.0 / (NOTED_HZ * dt_s)))
+        noted_s = self._every * dt_s
+        self._block = max(1, round(BLOCK_S / noted_s))
+        self._keep = max(1, round(settings.coordination_memory_s / noted_s))
+        self._first = np.array([own[0] for own in self.followers], dtype=np.intp)
+        # A reading that errs alike for a while counts once in that time, not in every frame.
+        self._repeat = max(1.0, settings.coordination_errs_s / dt_s) ** 0.5
+        self._v = 0
+
+    def bind(self, layout: Layout) -> None:
+        """Where velocities stand in the state."""
+        self._v = layout.v.start
+
+    def begin(self) -> CoordinationMemory:
+        """Nothing was shown yet."""
+        return CoordinationMemory(0, (), (), {})
+
+    def prepare(self, state: Any, memory: CoordinationMemory | None) -> Mapping[int, Coordination]:
+        """How the joints that were out of sight in the frame before go with the others, by their number.
+
+        Learned once, when they go; not of those that were observed too little.
+        """
+        if memory is None or not memory.gone:
+            return {}
+        return self._learned(memory)
+
+    def decide(
+        self,
+        at: OperatingPoint[Any, Mapping[int, Coordination]],
+        frame: Frame,
+        memory: CoordinationMemory,
+        notes: Notes,
+    ) -> CoordinationDecision:
+        """What the joints out of sight are predicted to do."""
+        gone, legible = self._gone(notes.unobserved), self._legible(notes)
+        learned = {j: one for j, one in at.prepared.items() if j in gone}
+        if not learned:
+            return CoordinationDecision(
+                notes.unobserved[:0], NONE, NONE, NONE, NONE, gone, legible, notes.unobserved
+            )
+        features = self.features(at.state.q, at.state.v)
+        x, v, x_sd, v_sd = np.zeros((4, self._model.nv))
+        for j, one in learned.items():
+            own, (mean, sd) = self.followers[j], one.predicted(features)
+            x[own], v[own] = mean[: len(own)], mean[len(own) :]
+            x_sd[own] = self._repeat * np.maximum(sd[: len(own)], LEAST_SD_RAD)
+            v_sd[own] = self._repeat * np.maximum(sd[len(own) :], LEAST_SD_RAD / PACE_S)
+        dofs = np.flatnonzero(x_sd)
+        notes.coordinated = dofs
+        q = self._model.integrate(self._neutral, x)
+        return CoordinationDecision(
+            dofs, q, v[dofs], x_sd[dofs], v_sd[dofs], gone, legible, notes.unobserved
+        )
+
+    def linearise(
+        self, at: OperatingPoint[Any, Mapping[int, Coordination]], decision: CoordinationDecision
+    ) -> list[Rows]:
+        """Whitened rows on the configuration and on the velocity."""
+        dofs, state = decision.dofs, at.state
+        if not len(dofs):
+            return []
+        away = self._model.difference(decision.q, state.q)[dofs]
+        by_q = self._model.difference_derivative(decision.q, state.q)[dofs] / decision.q_sd[:, None]
+        by_v = np.eye(self._model.nv)[dofs] / decision.v_sd[:, None]
+        return [
+            Rows(by_q, -away / decision.q_sd),
+            Rows(by_v, (decision.v - state.v[dofs]) / decision.v_sd, self._v),
+        ]
+
+    def remember(
+        self,
+        posterior: Any,
+        at: OperatingPoint[Any, Mapping[int, Coordination]],
+        decision: CoordinationDecision,
+        memory: CoordinationMemory,
+    ) -> CoordinationMemory:
+        """What this frame showed, and what was learned of joints that are out of sight."""
+        frame, noted, gone = memory.frame + 1, memory.noted, decision.gone
+        if frame % self._every == 0 and decision.legible:
+            note = self._noted(frame, posterior, decision.unobserved)
+            noted = (*noted[max(0, len(noted) + 1 - self._keep) :], note)
+        kept = {j: one for j, one in at.prepared.items() if j in gone}
+        return CoordinationMemory(frame, noted, gone, kept)
+
+    def features(self, q: Array, v: Array) -> Array:
+        """(p,) pose of trunk and legs and its rates, wherever the body is and whichever way it faces."""
+        up = self._model.placements(q)[0][self._root.joint_id][2, :2]
+        turn = v[self._root.v][3:]
+        rates = np.concatenate([turn, v[self._leading]])
+        return np.concatenate([up, self.posture(q)[self._leading], PACE_S * rates])
+
+    def posture(self, q: Array) -> Array:
+        """(nv,) rotation of every joint from neutral."""
+        posture = q.copy()
+        posture[self._root.q] = self._neutral[self._root.q]
+        return self._model.difference(self._neutral, posture)
+
+    def _gone(self, unobserved: NDArray[np.intp]) -> tuple[int, ...]:
+        """Numbers of the joints that are out of sight."""
+        if not len(unobserved):
+            return ()
+        return tuple(np.flatnonzero(np.isin(self._first, unobserved)).tolist())
+
+    def _legible(self, notes: Notes) -> bool:
+        """Whether trunk and legs are where the state has them."""
+        if notes.lost:
+            return False
+        return not len(notes.unobserved) or not np.isin(self._leading, notes.unobserved).any()
+
+    def _learned(self, memory: CoordinationMemory) -> dict[int, Coordination]:
+        """Joints that were observed in the same frames are learned together."""
+        found = dict(memory.learned)
+        fresh = np.array([j for j in memory.gone if j not in found], dtype=np.intp)
+        if not len(fresh) or not memory.noted:
+            return found
+        observed = np.array([one.observed for one in memory.noted])[:, self._first[fresh]]
+        for pattern in np.unique(observed, axis=1).T:
+            there = np.flatnonzero(pattern)
+            if len(there):
+                alike = fresh[(observed == pattern[:, None]).all(axis=0)]
+                found |= self._learned_together(alike, [memory.noted[i] for i in there])
+        return found
+
+    def _learned_together(
+        self, joints: NDArray[np.intp], frames: Sequence[NotedFrame]
+    ) -> dict[int, Coordination]:
+        columns = [np.r_[self.followers[j], self._model.nv + self.followers[j]] for j in joints]
+        movements = np.array([one.movement for one in frames])[:, np.concatenate(columns)]
+        features = np.array([one.features for one in frames])
+        blocks = np.array([one.block for one in frames])
+        learned = learn(features, movements, blocks, self._ridge)
+        if learned is None:
+            return {}
+        ends = np.cumsum([len(own) for own in columns])
+        return {
+            int(j): learned.only(slice(end - len(own), end))
+            for j, own, end in zip(joints, columns, ends, strict=True)
+        }
+
+    def _noted(self, frame: int, state: Any, unobserved: NDArray[np.intp]) -> NotedFrame:
+        observed = np.ones(self._model.nv, dtype=bool)
+        observed[unobserved] = False
+        movement = np.concatenate([self.posture(state.q), state.v])
+        block = frame // (self._every * self._block)
+        return NotedFrame(block, self.features(state.q, state.v), movement, observed)

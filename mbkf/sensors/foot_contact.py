@@ -1,0 +1,211 @@
+"""Plates and foot contact, as a block: what each foot's wrench w is read to be, by what the foot stands on.
+
+    measured    X w = X w_plate + r       r ~ N(0, diag(σ_F², σ_M²)) of the plate, moments about the middle of the sole
+    shared      X (w_r + w_l) = X w_plate + r, and each foot weakly half of it
+    air         X w = r                   a foot in the air carries nothing
+    unmeasured  X w = X w_share + r       weakly its share of the weight; its wrench is otherwise free
+
+X moves a wrench from the world's origin to the middle of the sole. Between frames wrenches are random walks about that
+point. Which foot stands on what is decided by :class:`mbkf.sensors.contact.causal.ContactDetector`. An unmeasured foot
+whose posterior force pulls at the floor is read again as carrying nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
+from mbkf.sensors.layout import Layout
+
+
+@dataclass(frozen=True)
+class FootContactSettings:
+    """Noise of plates and of feet that stand elsewhere; moments about the middle of the sole.
+
+    Attributes:
+        plate_force_n, plate_moment_nm: Noise of a plate's reading.
+        wrench_force, wrench_moment: Random walk of a foot's wrench, N/√s and N m/√s: a heel strike loads a foot with
+            a body weight in a tenth of a second.
+        air_force_n, air_moment_nm: How exactly a foot in the air carries nothing.
+        free_force_share, free_lever_m: Spread of an unmeasured foot's force about its share of the weight, in body
+            weights, and of its lever about the middle of the sole, m, per reading: what keeps two such feet from
+            pulling against each other.
+        pulling_force_n: How softly an unmeasured foot is kept from pulling at the floor, N.
+    """
+
+    plate_force_n: float = 3.0
+    plate_moment_nm: float = 1.0
+    wrench_force: float = 3000.0
+    wrench_moment: float = 300.0
+    air_force_n: float = 0.5
+    air_moment_nm: float = 0.2
+    free_force_share: float = 2.0
+    free_lever_m: float = 0.3
+    pulling_force_n: float = 10.0
+
+
+class FootDecision(NamedTuple):
+    """What the feet stand on, and which unmeasured feet, 0 right and 1 left, were seen to carry nothing."""
+
+    contact: ContactDecision
+    lifted: tuple[int, ...] = ()
+
+
+class FootContact(Block[Any, None, FootDecision, ContactMemory]):
+    """Force plates under the feet: twelve rows on the wrenches of right and left foot.
+
+    Attributes:
+        detector: Finds what the feet stand on.
+        settings: Noise.
+    """
+
+    def __init__(
+        self,
+        detector: ContactDetector,
+        weight_n: float,
+        dt_s: float,
+        settings: FootContactSettings = FootContactSettings(),
+    ) -> None:
+        """Makes the block.
+
+        Args:
+            detector: Finds what the feet stand on.
+            weight_n: The body's weight.
+            dt_s: Time between frames.
+            settings: Noise.
+        """
+        self.detector, self.settings, self._weight_n = detector, settings, weight_n
+        s = settings
+        self._plate = 1.0 / np.repeat([s.plate_force_n, s.plate_moment_nm], 3)
+        self._air = 1.0 / np.repeat([s.air_force_n, s.air_moment_nm], 3)
+        self._free = 1.0 / np.repeat([s.free_force_share * weight_n, s.free_lever_m * weight_n], 3)
+        self._pulling = self._free.copy()
+        self._pulling[2] = 1.0 / s.pulling_force_n
+        self._walk = np.repeat([s.wrench_force, s.wrench_moment], 3) * dt_s**0.5
+        self._first = 0
+
+    def bind(self, layout: Layout) -> None:
+        """Where the wrenches stand in the state."""
+        self._first = layout.wrench.start
+
+    def begin(self) -> ContactMemory:
+        """No plate was loaded yet."""
+        return self.detector.begin()
+
+    def decide(
+        self, at: OperatingPoint[Any, None], frame: Frame, memory: ContactMemory, notes: Notes
+    ) -> FootDecision:
+        """Plates to feet, and feet that stand elsewhere."""
+        state = at.state
+        notes.contact = self.detector.decide(memory, state.q, state.v, state.a, frame.plates)
+        return FootDecision(notes.contact)
+
+    def inflate(self, P: Array, decision: FootDecision) -> None:
+        """The wrenches' random walk about the middles of the soles."""
+        shift = _about(-decision.contact.centres_m) * self._walk
+        walk = shift @ shift.transpose(0, 2, 1)
+        for foot in (0, 1):
+            mine = slice(self._first + 6 * foot, self._first + 6 * foot + 6)
+            own = P[mine, mine]
+            own += walk[foot]
+
+    def linearise(self, at: OperatingPoint[Any, None], decision: FootDecision) -> Rows:
+        """Twelve rows; readings of plates come first."""
+        w, contact, lifted = at.state.w, decision.contact, decision.lifted
+        kinds, rows, values, plates = contact.contacts, np.zeros((12, 12)), np.empty(12), 0
+        if Contact.SHARED in kinds:
+            return self._shared(w, contact)
+        about = _about(contact.centres_m)
+        only_left = kinds[0] != Contact.MEASURED and kinds[1] == Contact.MEASURED
+        for place, foot in enumerate((1, 0) if only_left else (0, 1)):
+            wrench, mine = w[6 * foot : 6 * foot + 6], slice(6 * place, 6 * place + 6)
+            pulls = wrench[2] < 0.0 or foot in lifted
+            X = about[foot] * self._weight(kinds[foot], pulls)[:, None]
+            rows[mine, 6 * foot : 6 * foot + 6] = X
+            values[mine] = X @ (self._expected(contact, foot, pulls) - wrench)
+            plates += 6 * (kinds[foot] == Contact.MEASURED)
+        return Rows(rows, values, self._first, plates)
+
+    def review(self, posterior: Any, decision: FootDecision) -> FootDecision | None:
+        """Unmeasured feet whose force pulls at the floor, clearly more than it is kept from that, carry nothing."""
+        kinds = decision.contact.contacts
+        if Contact.UNMEASURED not in kinds:
+            return None
+        least = -3.0 * self.settings.pulling_force_n
+        lifted = tuple(
+            f for f in (0, 1) if kinds[f] == Contact.UNMEASURED and posterior.w[6 * f + 2] < least
+        )
+        return decision._replace(lifted=lifted) if lifted else None
+
+    def remember(
+        self,
+        posterior: Any,
+        at: OperatingPoint[Any, None],
+        decision: FootDecision,
+        memory: ContactMemory,
+    ) -> ContactMemory:
+        """What the detector keeps."""
+        return decision.contact.memory
+
+    def log_noise(self, decision: FootDecision) -> float:
+        """Log det R of the plates' readings."""
+        kinds = decision.contact.contacts
+        plates = 1 if Contact.SHARED in kinds else kinds.count(Contact.MEASURED)
+        return -2.0 * plates * float(np.log(self._plate).sum())
+
+    def _expected(self, contact: ContactDecision, foot: int, pulls: bool) -> Array:
+        """(6,) wrench a foot is read to carry: its plate's, nothing, or its share of what no plate carries.
+
+        An unmeasured foot that would pull at the floor is held at nothing instead.
+        """
+        if contact.contacts[foot] != Contact.UNMEASURED or pulls:
+            return contact.wrench[foot]
+        other = contact.contacts[1 - foot]
+        carried = float(contact.wrench[1 - foot, 2]) if other == Contact.MEASURED else 0.0
+        rest = max(self._weight_n - carried, 0.0) * (0.5 if other == Contact.UNMEASURED else 1.0)
+        x, y, _ = contact.centres_m[foot].tolist()
+        return np.array([0.0, 0.0, rest, y * rest, -x * rest, 0.0])
+
+    def _weight(self, kind: Contact, pulls: bool) -> Array:
+        """(6,) 1/sd of a foot's rows; an unmeasured foot that would pull at the floor is held at no vertical force."""
+        if kind == Contact.MEASURED:
+            return self._plate
+        if kind == Contact.AIR:
+            return self._air
+        return self._pulling if pulls else self._free
+
+    def _shared(self, w: Array, contact: ContactDecision) -> Rows:
+        """One plate reads the sum of both wrenches; each is weakly held near a half of it."""
+        rows, values = np.zeros((12, 12)), np.empty(12)
+        middle = _about(contact.centres_m.mean(axis=0, keepdims=True))[0] * self._plate[:, None]
+        rows[:6, :6] = rows[:6, 6:] = middle
+        values[:6] = middle @ (contact.wrench[0] - w[:6] - w[6:])
+        half = _about(contact.centres_m[:1])[0] * self._free[:, None]
+        rows[6:, :6] = half
+        values[6:] = half @ (0.5 * contact.wrench[0] - w[:6])
+        return Rows(rows, values, self._first, 6)
+
+
+def _about(points_m: Array) -> Array:
+    """(k, 6, 6) that take a wrench about the world's origin to one about each of the points (k, 3): n − c × f."""
+    found = points_m @ _LEVERS
+    found += _UNMOVED
+    return found.reshape(-1, 6, 6)
+
+
+def _levers() -> Array:
+    """(3, 36) by which a unit shift along each axis changes :func:`_about`."""
+    table = np.zeros((3, 6, 6))
+    for x, y, z in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        table[x, 3 + z, y], table[x, 3 + y, z] = -1.0, 1.0
+    return table.reshape(3, 36)
+
+
+_LEVERS = _levers()
+_UNMOVED = np.eye(6).ravel()

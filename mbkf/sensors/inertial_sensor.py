@@ -1,0 +1,101 @@
+"""What inertial sensors on a body read: angular velocity and specific force in their own axes, with derivatives.
+
+ω = Rᵀ ω_segment and f = Rᵀ (p̈ − g) at the sensor's place p, from the body's positions, velocities and accelerations
+(the source's eqs. 38–43 take finite differences instead). A turn of the world about the vertical changes neither.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import pinocchio as pin
+
+from mbkf.conventions import GRAVITY_M_S2, Array
+from mbkf.io.imu_mount import ImuMount
+from mbkf.model.human import HumanModel
+from mbkf.numerics.cardan import quaternion_matrices
+from mbkf.numerics.rotations import skew
+
+_UP = np.array([0.0, 0.0, GRAVITY_M_S2])
+
+
+class InertialReading(NamedTuple):
+    """Expected readings of S sensors.
+
+    Attributes:
+        values: (S, 6) angular velocity rad/s, then specific force m/s², in sensor axes.
+        by_q, by_v, by_a: (S, 6, nv) derivatives; by q in the tangent space.
+    """
+
+    values: Array
+    by_q: Array
+    by_v: Array
+    by_a: Array
+
+
+class InertialSensor:
+    """Inertial sensors on a body.
+
+    Attributes:
+        model: The body.
+        mounts: Where they sit.
+
+    Raises:
+        UnknownName: A sensor sits on a segment that the body does not have.
+    """
+
+    def __init__(self, model: HumanModel, mounts: Sequence[ImuMount]) -> None:
+        self.model, self.mounts = model, tuple(mounts)
+        self._data = model.pin_model.createData()
+        self._joints = [model.joint(mount.segment).joint_id for mount in mounts]
+        rotations = quaternion_matrices(np.array([mount.rotation for mount in mounts]).reshape(-1, 4))
+        self._to_sensor = rotations.transpose(0, 2, 1)
+        self._cross_place = skew(np.array([mount.position_m for mount in mounts]).reshape(-1, 3))
+        self._places = [
+            pin.SE3(rotation, np.array(mount.position_m))
+            for rotation, mount in zip(rotations, mounts, strict=True)
+        ]
+
+    def values(self, q: Array, v: Array, a: Array) -> Array:
+        """(S, 6) angular velocity rad/s and specific force m/s² in sensor axes."""
+        pin.forwardKinematics(self.model.pin_model, self._data, q, v, a)
+        return self._read()[0]
+
+    def orientations(self, q: Array) -> Array:
+        """(S, 3, 3) rotations sensor → world."""
+        rotations, _ = self.model.placements(q)
+        return rotations[self._joints] @ self._to_sensor.transpose(0, 2, 1)
+
+    def reading(self, q: Array, v: Array, a: Array) -> InertialReading:
+        """Expected readings with their derivatives by q, v and a."""
+        model, data = self.model.pin_model, self._data
+        pin.computeForwardKinematicsDerivatives(model, data, q, v, a)
+        values, up = self._read()
+        shape = (len(self._joints), 6, self.model.nv)
+        by_q, by_v, by_a = np.empty(shape), np.empty(shape), np.zeros(shape)
+        for k, (joint, place) in enumerate(zip(self._joints, self._places, strict=True)):
+            velocity = pin.getJointVelocityDerivatives(model, data, joint, pin.LOCAL)
+            force = pin.getPointClassicAccelerationDerivatives(model, data, joint, place, pin.LOCAL)
+            by_q[k, :3], by_v[k, :3] = velocity[0][3:], velocity[1][3:]
+            by_q[k, 3:], by_v[k, 3:], by_a[k, 3:] = force[1], force[2], force[3]
+        by_q[:, :3] = self._to_sensor @ by_q[:, :3]
+        by_v[:, :3] = self._to_sensor @ by_v[:, :3]
+        by_q[:, 3:] += skew(up) @ by_v[:, :3]  # gravity turns against the sensor
+        return InertialReading(values, by_q, by_v, by_a)
+
+    def _read(self) -> tuple[Array, Array]:
+        """(S, 6) values from the kinematics at hand, and g upwards (S, 3) in sensor axes."""
+        data = self._data
+        velocity = np.array([data.v[j].vector for j in self._joints]).reshape(-1, 6)
+        acceleration = np.array([data.a[j].vector for j in self._joints]).reshape(-1, 6)
+        up = np.array([_UP @ data.oMi[j].rotation for j in self._joints]).reshape(-1, 3)
+        omega = velocity[:, 3:, None]
+        turning = skew(velocity[:, 3:])
+        # Spatial to classical acceleration, then to the sensor's place.
+        here = turning @ (velocity[:, :3, None] - self._cross_place @ omega)
+        here += acceleration[:, :3, None] - self._cross_place @ acceleration[:, 3:, None]
+        up = self._to_sensor @ up[:, :, None]
+        values = np.concatenate([self._to_sensor @ omega, self._to_sensor @ here + up], axis=1)
+        return values[:, :, 0], up[:, :, 0]

@@ -1,0 +1,124 @@
+"""What the cameras should see: marker positions and their derivatives (eqs. 3.4, 3.5)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray, read_only
+from mbkf.errors import ShapeError
+from mbkf.model.human import HumanModel
+from mbkf.model.point_masses import PointMasses
+from mbkf.numerics.kalman import Information
+
+
+@dataclass(frozen=True)
+class MarkerReading:
+    """Predicted markers at one configuration; its arrays are its own.
+
+    Attributes:
+        positions_m: (M, 3) in the world.
+        _spatial: (6, nv) velocity at the world origin of what each dof moves, (linear, angular).
+        _moves: (M, nv) whether a dof moves a marker.
+    """
+
+    positions_m: Array
+    _spatial: Array
+    _moves: BoolArray
+
+    @property
+    def moves(self) -> Array:
+        """(M, nv) 1 where a dof moves a marker: markers of one segment have the same row."""
+        return np.asarray(self._moves, dtype=float)
+
+    def only(self, markers: BoolArray) -> MarkerReading:
+        """The reading of some of the markers (M,)."""
+        return MarkerReading(self.positions_m[markers], self._spatial, self._moves[markers])
+
+    @cached_property
+    def jacobian(self) -> Array:
+        """(M, 3, nv) in the tangent space: δm = (v + ω × m) δq for the dofs below the marker; built when asked for."""
+        x, y, z = self.positions_m.T
+        velocity = np.zeros((len(x), 3, 6))
+        velocity[:, (0, 1, 2), (0, 1, 2)] = 1.0
+        velocity[:, 0, 4], velocity[:, 0, 5] = z, -y
+        velocity[:, 1, 3], velocity[:, 1, 5] = -z, x
+        velocity[:, 2, 3], velocity[:, 2, 4] = y, -x
+        moved = (velocity.reshape(-1, 6) @ self._spatial).reshape(len(x), 3, self._spatial.shape[1])
+        moved *= self._moves[:, None, :]
+        return moved
+
+    def pull(self, forces: Array) -> Array:
+        """(nv,) Σ Hᵀ f of forces (M, 3) at the markers, without the Jacobian H."""
+        x, y, z = self.positions_m.T
+        fx, fy, fz = forces.T
+        wrench = np.empty((6, len(x)))
+        wrench[:3] = forces.T
+        np.subtract(y * fz, z * fy, out=wrench[3])
+        np.subtract(z * fx, x * fz, out=wrench[4])
+        np.subtract(x * fy, y * fx, out=wrench[5])
+        return np.einsum("ik,ik->k", self._spatial, wrench @ self._moves)
+
+
+class MarkerSensor:
+    """Markers fixed to segments of a body: m = r_b + A_b m̄ (eq. 3.4).
+
+    Attributes:
+        model: The body.
+        segments: Segment of each of the M markers.
+        local_m: (M, 3) positions in the segments' frames, m.
+        joint_ids: (M,) Pinocchio joints that carry them.
+    """
+
+    def __init__(self, model: HumanModel, segments: Sequence[str], local_m: Array) -> None:
+        self.model = model
+        self.segments = tuple(segments)
+        self.local_m = read_only(local_m)
+        if self.local_m.shape != (len(self.segments), 3):
+            raise ShapeError("local_m", f"({len(self.segments)}, 3)", self.local_m.shape)
+        self.joint_ids = np.array([model.joint(name).joint_id for name in self.segments], dtype=int)
+        self._moves = model.supports[self.joint_ids].astype(float)
+        places = np.zeros((len(self.segments), len(model.supports), 4))
+        places[np.arange(len(self.segments)), self.joint_ids] = np.insert(self.local_m, 3, 1.0, axis=1)
+        self._places = places.reshape(len(self.segments), 4 * len(model.supports))
+
+    def positions(self, q: Array) -> Array:
+        """(M, 3) world positions at the configuration q (nq,)."""
+        return self._places @ self.model.frames(q)
+
+    def reading(self, q: Array) -> MarkerReading:
+        """Positions and their Jacobian at q (nq,)."""
+        frames, jacobian = self.model.frames_and_jacobian(q)
+        return MarkerReading(self._places @ frames, jacobian, self._moves)
+
+
+class MarkerInformation:
+    """What frames of markers say about the configuration, without their Jacobian.
+
+    Attributes:
+        sensor: The markers on the body.
+        noise_m: (M,) standard deviation of each.
+    """
+
+    def __init__(self, sensor: MarkerSensor, noise_m: Array) -> None:
+        self.sensor, self.noise_m = sensor, noise_m
+        self._weight = noise_m[:, None] ** -2
+        self._masses = PointMasses(sensor.model, sensor.joint_ids, sensor.local_m, self._weight[:, 0])
+
+    def at(self, q: Array, reading: MarkerReading, innovation_m: Array, trusted: BoolArray) -> Information:
+        """Information on the configuration (nv).
+
+        Args:
+            q: (nq,) configuration.
+            reading: The sensor's at q.
+            innovation_m: (M, 3) measured minus predicted, NaN where missing.
+            trusted: (M,) markers that count; none of them missing.
+        """
+        y = np.where(trusted[:, None], innovation_m, 0.0)
+        forces = y * self._weight
+        matrix = self._masses.mass_matrix(q, trusted)
+        readings = 3 * int(np.count_nonzero(trusted))
+        return Information(matrix, reading.pull(forces), float(np.vdot(forces, y)), readings)

@@ -1,0 +1,75 @@
+"""Newton's law at the pelvis, as a block: 0 = [ID(q, v, a) − Σ J_fᵀ w_f]₁…₆ + r, r ~ N(0, diag(σ_F² I₃, σ_M² I₃)).
+
+The six rows of the root are what no joint torque can balance (:mod:`mbkf.model.newton_euler`); for a body whose every
+contact is in the state they vanish. They are read as zero. Torques of the joints follow from the state.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mbkf.model.newton_euler import NewtonEuler
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+
+
+@dataclass(frozen=True)
+class NewtonEulerSettings:
+    """How exactly Newton's law holds for a body of rigid segments.
+
+    Attributes:
+        residual_force_n, residual_moment_nm: Standard deviation of the residual at the pelvis, per component. The law
+            itself is exact; these allow for what the segments' masses and inertias are wrong by.
+        imu_residual_scale: Factor on both where inertial sensors read and a limb has neither marker nor sensor: else
+            that limb would be thrown about to make up for the sensors' errors.
+    """
+
+    residual_force_n: float = 2.0
+    residual_moment_nm: float = 1.0
+    imu_residual_scale: float = 30.0
+
+
+class NewtonEulerLaw(Block[Any, Rows, Notes, None]):
+    """Newton's law at the root, on a state (q, v, a, wrenches).
+
+    Attributes:
+        balance: Newton–Euler equations.
+        settings: How exactly they hold.
+    """
+
+    def __init__(self, balance: NewtonEuler, settings: NewtonEulerSettings = NewtonEulerSettings()) -> None:
+        self.balance, self.settings = balance, settings
+        self._sharp = 1.0 / np.repeat([settings.residual_force_n, settings.residual_moment_nm], 3)
+
+    def prepare(self, state: Any, memory: None) -> Rows:
+        """The law's rows at a state; they do not depend on the frame."""
+        del memory
+        nv = len(state.v)
+        root, sharp = self.balance.root(state.q, state.v, state.a, state.w), self._sharp[:, None]
+        rows = np.empty((6, 3 * nv + 12))
+        np.multiply(root.by_q, sharp, out=rows[:, :nv])
+        np.multiply(root.by_v, sharp, out=rows[:, nv : 2 * nv])
+        np.multiply(root.by_a, sharp, out=rows[:, 2 * nv : 3 * nv])
+        rows[:, 3 * nv : 3 * nv + 6] = rows[:, 3 * nv + 6 :] = root.by_wrench * sharp
+        return Rows(rows, -root.residual * self._sharp, readings=6)
+
+    def decide(self, at: OperatingPoint[Any, Rows], frame: Frame, memory: None, notes: Notes) -> Notes:
+        """Depends on what the blocks after this one observe."""
+        del at, frame, memory
+        return notes
+
+    def linearise(self, at: OperatingPoint[Any, Rows], decision: Notes) -> Rows:
+        """The prepared rows, loosened where a limb is observed by nothing while inertial sensors read."""
+        rows = at.prepared
+        if decision.imus is None or not len(decision.unobserved):
+            return rows
+        scale = self.settings.imu_residual_scale
+        return Rows(rows.jacobian / scale, rows.innovation / scale, readings=6)
+
+    def log_noise(self, decision: Notes) -> float:
+        """Log det R of the six equations."""
+        del decision
+        return -2.0 * float(np.log(self._sharp).sum())
+

@@ -1,0 +1,74 @@
+"""Joints that nothing observes, as a block: 0 = v + r_v and 0 = a + r_a, for the dofs of segments out of sight.
+
+Without it their velocity would go on for ever. The spreads are wide, so that it fades within a few frames:
+σ_v is the joint's movement acceleration over a time, σ_a a multiple of that acceleration.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+from mbkf.sensors.layout import Layout
+
+
+@dataclass(frozen=True)
+class UnobservedSettings:
+    """Damping of joints that nothing observes.
+
+    Attributes:
+        unseen_velocity_s, unseen_velocity_range: σ_v is the movement acceleration over that time, s, within the range,
+            rad/s.
+        unseen_acceleration_share: σ_a as a share of the movement acceleration.
+    """
+
+    unseen_velocity_s: float = 0.075
+    unseen_velocity_range: tuple[float, float] = (10.0, 30.0)
+    unseen_acceleration_share: float = 10.0
+
+
+class UnobservedJoints(Block[Any, None, Notes, None]):
+    """Damping of velocity, and of acceleration where the state holds one, per reading."""
+
+    prior = True
+
+    def __init__(self, velocity_sd: Array, acceleration_sd: Array | None = None) -> None:
+        """Args: standard deviations (nv,) of velocities and accelerations about zero; None for no acceleration."""
+        self._rest = 1.0 / velocity_sd
+        self._calm = None if acceleration_sd is None else 1.0 / np.maximum(acceleration_sd, 1e-300)
+
+    @classmethod
+    def of(cls, movement_sd: Array, settings: UnobservedSettings) -> UnobservedJoints:
+        """The block for a body's movement accelerations (nv,); 0 for dofs that no marker of the capture moves with."""
+        s = settings
+        velocity = np.clip(s.unseen_velocity_s * movement_sd, *s.unseen_velocity_range)
+        return cls(velocity, s.unseen_acceleration_share * movement_sd)
+
+    def bind(self, layout: Layout) -> None:
+        """Where velocities, and accelerations after them, stand in the state."""
+        self._v = layout.v.start
+
+    def decide(self, at: OperatingPoint[Any, None], frame: Frame, memory: None, notes: Notes) -> Notes:
+        """Depends on which joints are observed."""
+        del at, frame, memory
+        return notes
+
+    def linearise(self, at: OperatingPoint[Any, None], decision: Notes) -> Rows | None:
+        """A row on the velocity, and one on the acceleration, of each unobserved dof."""
+        dofs, state = decision.unobserved, at.state
+        if not len(dofs):
+            return None
+        nv, k, rest = len(state.v), np.arange(len(dofs)), self._rest[dofs]
+        kinds = 1 if self._calm is None else 2
+        rows, values = np.zeros((kinds * len(dofs), kinds * nv)), np.empty(kinds * len(dofs))
+        rows[k, dofs] = rest
+        values[k] = -rest * state.v[dofs]
+        if self._calm is not None:
+            calm = self._calm[dofs]
+            rows[len(dofs) + k, nv + dofs] = calm
+            values[len(dofs) + k] = -calm * state.a[dofs]
+        return Rows(rows, values, self._v)
