@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.sensors.contacts import plate_wrenches
+from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.stream.intake import BRIDGED_S, Intake
 from mbkf.stream.reader import Reader
 from mbkf.stream.slot import Slot
