@@ -19,10 +19,10 @@ from benchmarks.checks import Check
 from benchmarks.dynamic_methods import Mapper
 from benchmarks.dynamic_synthetic import within
 from mbkf.conventions import Array
-from mbkf.filters.dynamic import DynamicFilter
-from mbkf.filters.dynamic_settings import DynamicSettings
-from mbkf.filters.dynamic_smoothing import Frame, smooth
-from mbkf.filters.singer import DynamicState
+from mbkf.filters.dynamic.filter import DynamicFilter
+from mbkf.filters.dynamic.settings import DynamicSettings
+from mbkf.filters.dynamic.smoother import Frame, smooth
+from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.model.protocol import load_protocol
@@ -30,7 +30,7 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
 from mbkf.sensors.contact.soles import sole_points
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 
 DT_S, MARKER_SD_M, FRAMES = 0.01, 0.001, 60
 RUNS, SMOOTHED_RUNS = 20, 8

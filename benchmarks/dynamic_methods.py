@@ -18,7 +18,7 @@ import numpy as np
 
 from benchmarks.checks import Check
 from mbkf.errors import InvalidInput, MbkfError
-from mbkf.filters.settings import KinematicSettings
+from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.io.records import Capture, PlateReadings
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject

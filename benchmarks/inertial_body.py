@@ -30,7 +30,7 @@ from mbkf.pipelines.imu_body import ImuOnBody
 from mbkf.pipelines.imu_synth import BodyMotion
 from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
 from mbkf.pipelines.scale import scale
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.cameras import occlusions
 from mbkf.synthesis.capture import SyntheticCapture, synthesise_capture
 from mbkf.synthesis.motion import synthesise_motion

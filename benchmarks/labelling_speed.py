@@ -12,14 +12,14 @@ from benchmarks.checks import Check
 from benchmarks.speed import PRODUCT_SIZE
 from mbkf.conventions import Array
 from mbkf.filters.estimate import Estimate, Recording
-from mbkf.filters.kinematic import KinematicFilter
-from mbkf.filters.kinematic_follower import KinematicFollower
-from mbkf.filters.settings import KinematicSettings
+from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.tracking import KinematicTracking
+from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.labelling.running import RunningLabeller
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.synth import synthesise
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 
 MARKERS, POINTS = 36, 50
 PARTS = ("prediction", "assignment", "correction", "memory")
@@ -38,7 +38,7 @@ class TimedWalk:
         self.markers = made.trial.markers
         dt = 1.0 / self.markers.rate_hz
         nowhere = np.zeros(model.nv, dtype=bool)
-        self.follower = KinematicFollower(
+        self.follower = KinematicTracking(
             KinematicFilter(self.sensor, noise, dt, nowhere, KinematicSettings())
         )
         self.recording = Recording(self.markers.positions_m, np.zeros((self.markers.frames, 0, 6)), dt)
@@ -60,11 +60,11 @@ class TimedWalk:
     def labelled(self, before: Estimate, t: int, points: Array) -> tuple[Estimate, Array]:
         """The step with labels between prediction and correction, and the seconds of its parts (4,)."""
         ticks = [perf_counter()]
-        foresight = self.follower.expect(before)
+        prediction = self.follower.expect(before)
         ticks.append(perf_counter())
-        labels = self.labeller.label(foresight.markers, points)
+        labels = self.labeller.label(prediction.markers, points)
         ticks.append(perf_counter())
-        estimate = self.follower.step(before, self.recording, t, foresight)
+        estimate = self.follower.step(before, self.recording, t, prediction)
         ticks.append(perf_counter())
         on_body = self.sensor.positions(estimate.q) if self.labeller.learns else points[:0]
         self.labeller.remember(labels, points, on_body)

@@ -14,17 +14,17 @@ import numpy as np
 from benchmarks.checks import Check, Context
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.errors import InvalidInput
-from mbkf.filters.dynamic import DynamicFilter
-from mbkf.filters.dynamic_settings import DynamicSettings
+from mbkf.filters.dynamic.filter import DynamicFilter
+from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.inverse_dynamics import TorqueSolver
-from mbkf.filters.kinematic import KinematicFilter
-from mbkf.filters.settings import KinematicSettings
+from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.reconstruct import subject_markers
 from mbkf.pipelines.synth import synthesise
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.plates import plate_wrenches
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.person import body_of
 
 PRODUCT_SIZE = 168

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from mbkf.filters.dwna import WhiteAccelerationPlant
+from mbkf.filters.kinematic.plant import WhiteAccelerationPlant
 from mbkf.filters.dynamic_records import Decision, Expected
-from mbkf.filters.integrators import Motion, runge_kutta
-from mbkf.filters.singer import SingerPlant
-from mbkf.filters.state import FilterState
-from mbkf.filters.torque_plant import ForcedState, Scheme, TorquePlant
+from mbkf.filters.torque.integrators import Motion, runge_kutta
+from mbkf.filters.dynamic.plant import SingerPlant
+from mbkf.filters.kinematic.plant import KinematicState
+from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant
 from mbkf.sensors.foot_wrench import FootWrenchSensor
 from mbkf.sensors.joint_limits import JointLimits
 from mbkf.sensors.posture import PostureSensor, pull
@@ -113,13 +113,13 @@ def kinematic_plant(rng):
     model = random_model(rng)
     plant, s = WhiteAccelerationPlant(model, 0.1, model.acceleration_sd), random_state(model, rng)
     P, nv = np.eye(2 * model.nv), model.nv
-    end = plant.predict(FilterState(s.q, s.v, P))
+    end = plant.predict(KinematicState(s.q, s.v, P))
 
     def tangent(x):
-        at = plant.predict(FilterState(model.integrate(s.q, x[:nv]), s.v + x[nv:], P))
+        at = plant.predict(KinematicState(model.integrate(s.q, x[:nv]), s.v + x[nv:], P))
         return np.concatenate([model.difference(end.q, at.q), at.v - end.v])
 
-    stated = plant.transition(FilterState(s.q, s.v, P))
+    stated = plant.transition(KinematicState(s.q, s.v, P))
     return named(
         "filters.dwna.WhiteAccelerationPlant", ("transition", stated, slope(tangent, np.zeros(2 * nv)))
     )

@@ -3,7 +3,7 @@
 import numpy as np
 
 from mbkf.io.imu_mount import ImuMount
-from mbkf.sensors.inertial import InertialSensor
+from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.inertial_rows import InertialRows
 from tests.derivatives import checks, named, slope
 from tests.motions import central_difference, moderate_pose, random_model

@@ -6,15 +6,15 @@ from functools import cache
 import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2
-from mbkf.filters.dynamic import DynamicFilter
-from mbkf.filters.dynamic_settings import DynamicSettings
-from mbkf.filters.singer import DynamicState
+from mbkf.filters.dynamic.filter import DynamicFilter
+from mbkf.filters.dynamic.settings import DynamicSettings
+from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.io.records import PlateReadings
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.soles import sole_points
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.motion import TrueMotion, synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
 from tests.motions import moderate_pose, protocol_sensor

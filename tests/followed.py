@@ -5,15 +5,15 @@ from functools import cache
 
 import numpy as np
 
-from mbkf.filters.dynamic_settings import DynamicSettings
+from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.estimate import Recording
 from mbkf.filters.inverse_dynamics import inverse_dynamics
-from mbkf.filters.settings import KinematicSettings
-from mbkf.filters.stretches import SmoothingSettings
-from mbkf.filters.torque_settings import TorqueSettings
+from mbkf.filters.kinematic.settings import KinematicSettings
+from mbkf.filters.fixed_lag import SmoothingSettings
+from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.filters.tracking import track
 from mbkf.pipelines.followers import FilterInputs, follower
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.dynamics import DT, MARKER_SD_M, trial
 from tests.motions import angle_errors, marker_positions
 

@@ -12,7 +12,7 @@ from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 
 
 @cache

@@ -16,7 +16,7 @@ from benchmarks.double_pendulum.kinematic import PlainManifold, joint_torque
 from benchmarks.double_pendulum.torque import START_VARIANCE
 from benchmarks.double_pendulum.trials import Estimate, Trial
 from mbkf.conventions import Array
-from mbkf.filters.singer import DynamicState, SingerPlant
+from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
 from mbkf.model.double_pendulum import ROOT, DoublePendulum, PendulumShape
 from mbkf.numerics.kalman import Information, correct, information
 from mbkf.numerics.smoothing import BackwardPass

@@ -7,7 +7,7 @@ import numpy as np
 from benchmarks.double_pendulum.bands import OPEN, Band, Findings
 from benchmarks.double_pendulum.thesis import ANNEX, STUDY
 from mbkf.conventions import Array
-from mbkf.filters.torque_plant import Scheme, TorquePlant
+from mbkf.filters.torque.plant import Scheme, TorquePlant
 from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
 from mbkf.model.double_pendulum_pin import PinocchioPendulum
 from mbkf.synthesis.pendulum import MOTIONS, pendulum_motion

@@ -16,9 +16,9 @@ from benchmarks.double_pendulum.laboratory import Laboratory
 from benchmarks.double_pendulum.thesis import STUDY
 from benchmarks.double_pendulum.torque import START_VARIANCE, Belief, PendulumFilter
 from mbkf.conventions import Array
-from mbkf.filters.integrators import Motion, runge_kutta
-from mbkf.filters.torque_plant import Scheme
-from mbkf.filters.torque_settings import SCHEMES
+from mbkf.filters.torque.integrators import Motion, runge_kutta
+from mbkf.filters.torque.plant import Scheme
+from mbkf.filters.torque.settings import SCHEMES
 from mbkf.model.double_pendulum import DoublePendulum
 from mbkf.numerics.threads import single_threaded
 from mbkf.synthesis.pendulum import (

@@ -10,8 +10,8 @@ import numpy as np
 from benchmarks.double_pendulum.torque import START_VARIANCE
 from benchmarks.double_pendulum.trials import Estimate, Trial
 from mbkf.conventions import Array
-from mbkf.filters.dwna import WhiteAccelerationPlant
-from mbkf.filters.state import FilterState
+from mbkf.filters.kinematic.plant import WhiteAccelerationPlant
+from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
 from mbkf.model.human import HumanModel
 from mbkf.numerics.kalman import correct, information
@@ -66,7 +66,7 @@ class KinematicMethod:
         """Follows a trial; accelerations are differences of filtered velocities (eq. 3.7)."""
         body, dt, truth = DoublePendulum(self.shape, residual=False), trial.dt_s, trial.motion
         plant = WhiteAccelerationPlant(PlainManifold.as_model(), dt, np.full(4, self.acceleration))
-        state = FilterState(truth.q[0], truth.v[0], np.diag(np.repeat(START_VARIANCE[:2], 4)))
+        state = KinematicState(truth.q[0], truth.v[0], np.diag(np.repeat(START_VARIANCE[:2], 4)))
         frames = len(truth.times_s)
         q, v, nis = np.empty((frames, 4)), np.empty((frames, 4)), np.full(frames, np.nan)
         q[0], v[0] = state.q, state.v
@@ -79,7 +79,7 @@ class KinematicMethod:
             rows = ~np.isnan(innovation)
             sd = np.full(int(rows.sum()), self.marker_m)
             found = correct(prior.P, information(innovation[rows], seen.jacobian[rows], sd))
-            state = FilterState(prior.q + found.step[:4], prior.v + found.step[4:], found.covariance)
+            state = KinematicState(prior.q + found.step[:4], prior.v + found.step[4:], found.covariance)
             q[t], v[t], nis[t] = state.q, state.v, found.nis
             efforts[t, 0] = joint_torque(body, q[t], v[t], (v[t] - v[t - 1]) / dt, trial.read.efforts[t, 1:])
         return Estimate(q, v, efforts, nis)

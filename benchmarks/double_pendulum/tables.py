@@ -19,7 +19,7 @@ from benchmarks.double_pendulum.thesis import (
 from benchmarks.double_pendulum.torque import Belief, TorqueMethod
 from benchmarks.double_pendulum.trials import Recipe, Scores
 from mbkf.conventions import Array
-from mbkf.filters.torque_plant import Scheme
+from mbkf.filters.torque.plant import Scheme
 from mbkf.numerics.threads import single_threaded
 from mbkf.synthesis.pendulum import PendulumNoise
 

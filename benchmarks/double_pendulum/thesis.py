@@ -8,8 +8,8 @@ from benchmarks.double_pendulum.bands import Row, Sheet
 from benchmarks.double_pendulum.kinematic import KinematicMethod
 from benchmarks.double_pendulum.torque import Belief, TorqueMethod
 from benchmarks.double_pendulum.trials import Recipe
-from mbkf.filters.torque_plant import Scheme
-from mbkf.filters.torque_settings import SCHEMES
+from mbkf.filters.torque.plant import Scheme
+from mbkf.filters.torque.settings import SCHEMES
 from mbkf.model.double_pendulum import PendulumShape
 from mbkf.synthesis.pendulum import PendulumNoise
 

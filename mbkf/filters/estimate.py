@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -11,7 +11,8 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.spread import Spread
 from mbkf.model.human import HumanModel
-from mbkf.sensors.expectation import MarkerExpectation
+from mbkf.sensors.block import NO_READINGS, Frame
+from mbkf.sensors.marker_prediction import MarkerPrediction
 
 
 @dataclass(frozen=True)
@@ -24,12 +25,20 @@ class Recording:
         dt_s: Time between frames.
         imus: (T, S, 6) angular velocity rad/s and specific force m/s² of inertial sensors in their own axes, NaN where
             missing; None where there are none.
+        readings: (T, …) of instruments of one's own, by the name that their block knows.
     """
 
     markers_m: Array
     plates: Array
     dt_s: float
     imus: Array | None = None
+    readings: Mapping[str, Array] = field(default_factory=dict)
+
+    def frame(self, t: int) -> Frame:
+        """The readings of frame t."""
+        imus = None if self.imus is None else self.imus[t]
+        own = {name: read[t] for name, read in self.readings.items()} if self.readings else NO_READINGS
+        return Frame(self.markers_m[t], self.plates[t], imus, own)
 
     def __len__(self) -> int:
         return len(self.markers_m)
@@ -45,8 +54,8 @@ class Estimate:
         wrench: (2, 6) estimated wrench on right and left foot about the world's origin, NaN where the filter has none.
         contact: (2,) what the feet stand on, see :class:`mbkf.sensors.contact.records.Contact`; None where the
             filter does not ask.
-        refused: (M,) markers seen but not believed.
-        tracked: Whether enough markers were believed.
+        refused: (M,) markers seen but outside their gate.
+        tracked: Whether enough instruments read.
         started: Whether the filter was started in this frame.
         inner: The filter's own record of the step.
     """
@@ -62,8 +71,8 @@ class Estimate:
     inner: Any
 
 
-class Foresight(NamedTuple):
-    """What a filter expects of the next frame, before it is known which point is which marker.
+class Prediction(NamedTuple):
+    """What a filter predicts of the next frame, before it is known which point is which marker.
 
     Attributes:
         q: (nq,) predicted configuration.
@@ -73,11 +82,11 @@ class Foresight(NamedTuple):
     """
 
     q: Array
-    markers: MarkerExpectation
+    markers: MarkerPrediction
     prior: Any
 
 
-class Follower(Protocol):
+class TrackingFilter(Protocol):
     """A filter as trials and streams drive it."""
 
     model: HumanModel
@@ -87,11 +96,11 @@ class Follower(Protocol):
     def start(self, recording: Recording, t: int, guess: Array | None) -> Estimate | None:
         """An estimate at frame t that already knows its velocity from the next frames, or None where nothing fits."""
 
-    def expect(self, before: Estimate) -> Foresight:
+    def predict(self, before: Estimate) -> Prediction:
         """What the frame after an estimate should show: what a labeller needs between prediction and correction."""
 
     def step(
-        self, before: Estimate, recording: Recording, t: int, foresight: Foresight | None = None
+        self, before: Estimate, recording: Recording, t: int, prediction: Prediction | None = None
     ) -> Estimate:
         """The estimate of frame t from that of the frame before.
 
@@ -99,7 +108,7 @@ class Follower(Protocol):
             before: That estimate.
             recording: The readings.
             t: The frame.
-            foresight: What :meth:`expect` made of ``before``, where it was asked; good for one step.
+            prediction: What :meth:`predict` made of ``before``, where it was asked; good for one step.
         """
 
     def covariance(self, estimate: Estimate) -> Array:

@@ -188,10 +188,11 @@ class Step(Generic[StateT]):
     @cached_property
     def nis(self) -> float:
         """Normalised innovation squared of instruments and laws; priors are no readings."""
-        rows, values = self.readings.counted
-        after = correct(self.prior.state.P, self.readings.instruments)
+        (rows, values), known, P = self.readings.counted, self.readings.instruments, self.prior.state.P
         if not len(values):
-            return after.nis
+            n = len(known.vector)
+            return correct(P[:n, :n], known).nis
+        after = correct(P, known)
         innovation = values - rows @ after.step
         S = rows @ after.covariance @ rows.T + np.eye(len(rows))
         return after.nis + float(innovation @ np.linalg.solve(S, innovation))
@@ -233,6 +234,17 @@ class Filter(Generic[StateT]):
             for block, kept in zip(self.blocks, memory.blocks, strict=True)
         )
         return Prior(state, noise, points)
+
+    def prepared_by(self, kind: type[AnyBlock], prior: Prior[StateT]) -> Any:
+        """What the first block of a kind has worked out at a prior.
+
+        Raises:
+            LookupError: The filter has no such block.
+        """
+        for block, at in zip(self.blocks, prior.points, strict=True):
+            if isinstance(block, kind):
+                return at.prepared
+        raise LookupError(f"the filter has no block {kind.__name__}")
 
     def step(
         self, state: StateT, memory: Memory, frame: Frame, prior: Prior[StateT] | None = None

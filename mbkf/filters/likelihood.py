@@ -8,17 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput
-from mbkf.filters.dynamic import DynamicFilter
-from mbkf.filters.dynamic_follower import DynamicFollower
-from mbkf.filters.dynamic_records import DynamicStep
-from mbkf.filters.estimate import Estimate, Follower, Recording
-from mbkf.filters.following import followed
-from mbkf.filters.kinematic_follower import KinematicFollower
+from mbkf.filters.dynamic.tracking import DynamicTracking
+from mbkf.filters.estimate import Estimate, Recording, TrackingFilter
+from mbkf.filters.filter import Filter, Step
+from mbkf.filters.tracking_loop import followed
+from mbkf.filters.kinematic.tracking import KinematicTracking
 from mbkf.numerics.likelihood import LogLikelihood, log_likelihood
 
 OUTLIER = 0.0
@@ -44,7 +44,7 @@ class TrialLikelihood:
 
 
 def trial_likelihood(
-    follower: Follower, recording: Recording, progress: Callable[[int, int], None] | None = None
+    follower: TrackingFilter, recording: Recording, progress: Callable[[int, int], None] | None = None
 ) -> TrialLikelihood:
     """Runs a filter over a trial for its likelihood.
 
@@ -65,7 +65,7 @@ def trial_likelihood(
     for t, estimate, _ in followed(follower, recording):
         first = min(first, t)
         if not estimate.started:
-            found, load_readings[t] = frame_likelihood(follower, estimate, seen[t])
+            found, load_readings[t] = frame_likelihood(follower, estimate)
             outliers = 3.0 * np.count_nonzero(estimate.refused)
             markers[t], loads[t] = found.readings + OUTLIER * outliers, found.rows
         if progress is not None and (t % 20 == 0 or t == frames - 1):
@@ -73,42 +73,44 @@ def trial_likelihood(
     return TrialLikelihood(markers, loads, 3 * seen.sum(axis=1), load_readings, first)
 
 
-def frame_likelihood(follower: Follower, estimate: Estimate, seen: BoolArray) -> tuple[LogLikelihood, int]:
+def frame_likelihood(follower: TrackingFilter, estimate: Estimate) -> tuple[LogLikelihood, int]:
     """Of one frame's believed markers, and of its loads and how many numbers those are.
 
     Args:
         follower: A kinematic or dynamic filter.
         estimate: Its posterior of the frame, not a start.
-        seen: (M,) markers seen.
 
     Raises:
         InvalidInput: It is another filter.
         LinAlgError: The prior covariance is none.
     """
-    trusted = seen & ~estimate.refused
-    if isinstance(follower, DynamicFollower):
-        step: DynamicStep = estimate.inner
-        return dynamic_likelihood(follower.kalman, step), step.frame.readings
-    if isinstance(follower, KinematicFollower):
-        known = estimate.inner.result.evidence
-        noise = _log_det(follower.kalman.noise_m[trusted], 3)
-        return log_likelihood(known.predicted.P, known.markers, noise), 0
+    if isinstance(follower, DynamicTracking):
+        return step_likelihood(follower.kalman, estimate.inner)
+    if isinstance(follower, KinematicTracking):
+        return step_likelihood(follower.kalman, estimate.inner.step)
     raise InvalidInput("the likelihood is known of the kinematic and the dynamic filter only")
 
 
-def dynamic_likelihood(kalman: DynamicFilter, step: DynamicStep) -> LogLikelihood:
-    """Of markers, plates and Newton's law in one step; pulls and limits are no readings."""
-    decision, frame, s = step.decision, step.frame, kalman.settings
-    noise = _log_det(kalman.noise_m[decision.trusted] * decision.noise_scale**0.5, 3)
-    law = _log_det(np.array([s.residual_force_n, s.residual_moment_nm]), 3)
-    plate = _log_det(np.array([s.plate_force_n, s.plate_moment_nm]), 3)
-    count = frame.readings
-    rows, values = frame.rows[:count], frame.values[:count]
-    return log_likelihood(
-        step.predicted.P, frame.markers, noise, rows, values, law + (count - 6) // 6 * plate
-    )
+def step_likelihood(kalman: Filter[Any], step: Step[Any]) -> tuple[LogLikelihood, int]:
+    """Of instruments and laws in one step, priors left out, and how many of them are rows.
 
+    Args:
+        kalman: The filter.
+        step: A step of it.
 
-def _log_det(sd: Array, times: int) -> float:
-    """Log det of a diagonal R in which each standard deviation stands so many times."""
-    return 2.0 * times * float(np.log(sd).sum())
+    Raises:
+        LinAlgError: The prior covariance is not finite or not positive.
+    """
+    compressed, others = 0.0, 0.0
+    for block, decision, rows in zip(
+        kalman.blocks, step.decisions.blocks, step.readings.parts, strict=True
+    ):
+        if any(one.readings for one in rows):
+            others += block.log_noise(decision)
+        else:
+            compressed += block.log_noise(decision)
+    (rows_counted, values), known = step.readings.counted, step.readings.instruments
+    P = step.prior.state.P
+    if not len(values):
+        return log_likelihood(P, known, compressed), 0
+    return log_likelihood(P, known, compressed, rows_counted, values, others), len(values)

@@ -1,33 +1,46 @@
-"""Settings of the kinematic filter: one default set for every capture."""
+"""Settings of filters: frozen records of their blocks' settings, whose leaves have names that occur once.
+
+A preset file, ``mbkf tune`` and ``summary.json`` name a setting by its leaf alone, as ``plate_force_n``.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import fields, is_dataclass, replace
+from typing import Any, TypeVar
+
+from mbkf.errors import UnknownName
+
+SettingsT = TypeVar("SettingsT")
 
 
-@dataclass(frozen=True)
-class KinematicSettings:
-    """What the kinematic filter believes of noise and of markers that misbehave.
+def flat(settings: object) -> dict[str, object]:
+    """Every leaf of a record of settings by its name."""
+    found: dict[str, object] = {}
+    for one in fields(settings):  # type: ignore[arg-type]
+        value = getattr(settings, one.name)
+        found |= flat(value) if is_dataclass(value) else {one.name: value}
+    return found
 
-    Attributes:
-        acceleration_scale: Factor on the body's table of typical accelerations (σ_a per dof).
-        marker_noise_scale: Factor on the markers' own noise.
-        gate: Squared Mahalanobis distance (3 readings) above which a marker is not believed.
-        gate_radius_m: Distance below which no marker is refused, m.
-        posture_scale: The posture prior's spread is the body's table times this, per reading.
-        velocity_sd: Spread of a velocity about rest, rad/s or m/s, per reading; holds back the joints of segments
-            none of whose markers is seen.
-        restart_rms_m: A pose fit better than this is accepted to start or restart the filter, m.
-        restart_after_s: Time without enough believable markers after which the filter starts anew.
-        min_markers: Fewer markers than this in a frame leave the body untracked.
+
+def changed(settings: SettingsT, **values: object) -> SettingsT:
+    """The settings with some leaves changed, wherever they stand.
+
+    Raises:
+        UnknownName: There is no such setting.
     """
+    known = flat(settings)
+    for name in values:
+        if name not in known:
+            raise UnknownName("setting", name, known)
+    return _changed(settings, values)
 
-    acceleration_scale: float = 1.0
-    marker_noise_scale: float = 1.0
-    gate: float = 60.0
-    gate_radius_m: float = 0.03
-    posture_scale: float = 10.0
-    velocity_sd: float = 20.0
-    restart_rms_m: float = 0.05
-    restart_after_s: float = 0.2
-    min_markers: int = 6
+
+def _changed(settings: Any, values: dict[str, object]) -> Any:
+    changes: dict[str, object] = {}
+    for one in fields(settings):
+        value = getattr(settings, one.name)
+        if is_dataclass(value):
+            changes[one.name] = _changed(value, values)
+        elif one.name in values:
+            changes[one.name] = values[one.name]
+    return replace(settings, **changes)

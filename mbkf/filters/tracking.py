@@ -9,9 +9,9 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import NotObservable
-from mbkf.filters.estimate import Estimate, Follower, Recording
-from mbkf.filters.following import followed
-from mbkf.filters.stretches import SmoothingSettings, StretchSmoother
+from mbkf.filters.estimate import Estimate, TrackingFilter, Recording
+from mbkf.filters.tracking_loop import followed
+from mbkf.filters.fixed_lag import SmoothingSettings, FixedLagSmoother
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Track:
 
 
 def track(
-    follower: Follower,
+    follower: TrackingFilter,
     recording: Recording,
     *,
     smoothing: SmoothingSettings | None = None,
@@ -83,7 +83,7 @@ def track(
     """
     record = _Recorder(follower, recording, keep_covariance)
     frames = len(recording)
-    smoother = None if smoothing is None else StretchSmoother(follower, recording, smoothing)
+    smoother = None if smoothing is None else FixedLagSmoother(follower, recording, smoothing)
     for t, fresh, seconds in followed(follower, recording):
         record.step(t, fresh, seconds)
         if smoother is None:
@@ -105,7 +105,7 @@ def track(
 class _Recorder:
     """Fills the arrays of a track, frame by frame."""
 
-    def __init__(self, follower: Follower, recording: Recording, keep_covariance: bool) -> None:
+    def __init__(self, follower: TrackingFilter, recording: Recording, keep_covariance: bool) -> None:
         self._follower = follower
         model, frames = follower.model, len(recording)
         self.starts: list[int] = []

@@ -14,7 +14,7 @@ from mbkf.imu.frames import matrix_quaternion
 from mbkf.io.imu import ImuReadings
 from mbkf.io.imu_mount import ImuMount
 from mbkf.model.human import HumanModel
-from mbkf.sensors.inertial import InertialSensor
+from mbkf.sensors.inertial_sensor import InertialSensor
 
 FIELD_UT = (24.0, 0.0, -39.0)
 """A field of middle Europe in NWU, µT: 46 µT, dip 58°."""

@@ -18,7 +18,7 @@ from mbkf.labelling.growing import GrownBody, grow, regrow
 from mbkf.labelling.placing import likeness
 from mbkf.labelling.seeds import anyhow, upright
 from mbkf.labelling.skeleton import clusters, limbs
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import PoseFit, fit_pose, segment_by_segment
 from mbkf.sensors.posture import PostureSensor
 

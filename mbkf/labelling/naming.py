@@ -10,7 +10,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.placing import likeness
 from mbkf.labelling.tracks import Tracks
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 from mbkf.sensors.posture import PostureSensor
 

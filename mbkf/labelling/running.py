@@ -16,7 +16,7 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.labelling.assignment import HIDDEN, AssignmentSettings, Indices, assign, marker_of_point, pair_costs
-from mbkf.sensors.expectation import MarkerExpectation
+from mbkf.sensors.marker_prediction import MarkerPrediction
 
 MOST_STRANGE = 0.2
 """Where a larger share of the labelled markers is far from the corrected body, the pose is wrong and not they."""
@@ -88,7 +88,7 @@ class RunningLabeller:
         return self._frames <= 2 * every or self._frames % every == 0
 
     def label(
-        self, expected: MarkerExpectation, points_m: Array, follows: Callable[[], Indices] | None = None
+        self, expected: MarkerPrediction, points_m: Array, follows: Callable[[], Indices] | None = None
     ) -> Indices:
         """(M,) the point of every marker in this frame, ``HIDDEN`` where it has none.
 
@@ -158,7 +158,7 @@ class RunningLabeller:
         forgetting = np.maximum(variance, self._keep**2 * variance + self._forgetting)
         self._variance = np.where(seen, np.maximum(fixed, 0.3 * variance), forgetting)
 
-    def _doubt(self, labels: Indices, expected: MarkerExpectation, points_m: Array) -> Indices:
+    def _doubt(self, labels: Indices, expected: MarkerPrediction, points_m: Array) -> Indices:
         """The labels, or those without memory where these are much likelier for the second time running."""
 
         def covariance(chosen: BoolArray) -> Array:

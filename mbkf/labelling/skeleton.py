@@ -8,7 +8,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.labelling.assignment import Indices
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 
 UNGUESSED_POSTURE_RAD = 1.0
 """Spread taken for joints without a posture prior."""

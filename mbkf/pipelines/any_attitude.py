@@ -14,7 +14,7 @@ from mbkf.labelling.moment_growing import lay
 from mbkf.labelling.moments import moments
 from mbkf.labelling.skeleton import clusters
 from mbkf.labelling.tracks import Tracks, follow
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 
 STAGE = "Searching any attitude"
 """What the search calls itself; it takes seconds."""

@@ -7,21 +7,20 @@ from dataclasses import dataclass
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import UnknownName
-from mbkf.filters.dynamic import DynamicFilter
-from mbkf.filters.dynamic_follower import DynamicFollower
-from mbkf.filters.dynamic_settings import DynamicSettings
-from mbkf.filters.estimate import Follower
-from mbkf.filters.inertial_part import InertialPart
-from mbkf.filters.kinematic import KinematicFilter
-from mbkf.filters.kinematic_follower import KinematicFollower
-from mbkf.filters.settings import KinematicSettings
-from mbkf.filters.torque import TorqueFilter
-from mbkf.filters.torque_follower import TorqueFollower
-from mbkf.filters.torque_settings import TorqueSettings
+from mbkf.filters.dynamic.filter import DynamicFilter, dynamic_blocks
+from mbkf.filters.dynamic.tracking import DynamicTracking
+from mbkf.filters.dynamic.settings import DynamicSettings
+from mbkf.filters.estimate import TrackingFilter
+from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.tracking import KinematicTracking
+from mbkf.filters.kinematic.settings import KinematicSettings
+from mbkf.filters.torque.filter import TorqueFilter
+from mbkf.filters.torque.tracking import TorqueTracking
+from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.io.records import PlateReadings
 from mbkf.sensors.contact.causal import ContactDetector
-from mbkf.sensors.inertial import InertialSensor
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.inertial_sensor import InertialSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 
 
 @dataclass(frozen=True)
@@ -49,37 +48,30 @@ class FilterInputs:
     inertial: InertialSensor | None = None
 
 
-def _kinematic(inputs: FilterInputs) -> Follower:
-    return KinematicFollower(_starter(inputs))
+def _kinematic(inputs: FilterInputs) -> TrackingFilter:
+    return KinematicTracking(_starter(inputs))
 
 
-def _dynamic(inputs: FilterInputs) -> Follower:
-    model, dynamic, felt = inputs.sensor.model, inputs.dynamic, None
-    if inputs.inertial is not None:
-        felt = InertialPart(inputs.inertial, inputs.dt_s, dynamic)
-    kalman = DynamicFilter(
-        inputs.sensor,
-        inputs.noise_m,
-        ContactDetector(model, inputs.plates, inputs.dt_s),
-        inputs.dt_s,
-        inputs.held,
-        dynamic,
-        inertial=felt,
-    )
-    return DynamicFollower(kalman, _starter(inputs))
+def _dynamic(inputs: FilterInputs) -> TrackingFilter:
+    model, settings = inputs.sensor.model, inputs.dynamic
+    known = inputs.sensor, inputs.noise_m
+    detector = ContactDetector(model, inputs.plates, inputs.dt_s)
+    blocks = dynamic_blocks(*known, detector, inputs.dt_s, inputs.held, settings, inputs.inertial)
+    kalman = DynamicFilter(*known, inputs.dt_s, inputs.held, settings, blocks)
+    return DynamicTracking(kalman, _starter(inputs))
 
 
-def _torque(inputs: FilterInputs) -> Follower:
+def _torque(inputs: FilterInputs) -> TrackingFilter:
     kalman = TorqueFilter(inputs.sensor, inputs.noise_m, inputs.dt_s, inputs.held, inputs.torque)
     feet = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
-    return TorqueFollower(kalman, feet, _starter(inputs))
+    return TorqueTracking(kalman, feet, _starter(inputs))
 
 
 def _starter(inputs: FilterInputs) -> KinematicFilter:
     return KinematicFilter(inputs.sensor, inputs.noise_m, inputs.dt_s, inputs.held, inputs.kinematic)
 
 
-_MAKERS: dict[str, Callable[[FilterInputs], Follower]] = {
+_MAKERS: dict[str, Callable[[FilterInputs], TrackingFilter]] = {
     "kinematic": _kinematic,
     "torque": _torque,
     "dynamic": _dynamic,
@@ -89,7 +81,7 @@ FILTERS = tuple(_MAKERS)
 """Names of the filters."""
 
 
-def follower(name: str, inputs: FilterInputs) -> Follower:
+def follower(name: str, inputs: FilterInputs) -> TrackingFilter:
     """The filter of that name.
 
     Raises:

@@ -26,7 +26,7 @@ from mbkf.io.imu_mount import ImuMount
 from mbkf.model.human import HumanModel
 from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.pipelines.followers import FilterInputs, follower
-from mbkf.sensors.inertial import InertialSensor
+from mbkf.sensors.inertial_sensor import InertialSensor
 
 LEAST_TURNING_RAD_S = 0.3
 """A sensor whose segment turns less than this (root mean square) is not calibrated on its motion."""

@@ -9,9 +9,9 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import MbkfError
-from mbkf.filters.kinematic import KinematicFilter
-from mbkf.filters.kinematic_follower import KinematicFollower
-from mbkf.filters.settings import KinematicSettings
+from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.tracking import KinematicTracking
+from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.labelling.first_frame import FirstFrameSearch
@@ -20,7 +20,7 @@ from mbkf.model.human import HumanModel
 from mbkf.pipelines.any_attitude import AnyAttitude
 from mbkf.pipelines.labelling_pass import LabellingPass
 from mbkf.scaling.correction import correct_markers
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 
 CORRECTED_SD_M = 0.006
 """How far a marker sits from where a first pass over the capture found it."""
@@ -54,10 +54,10 @@ class LabelBody:
         """Of the M markers."""
         return tuple(m.name for m in self.markers)
 
-    def follower(self, dt_s: float) -> KinematicFollower:
+    def follower(self, dt_s: float) -> KinematicTracking:
         """A kinematic filter of the body."""
         held = ~self.sensor.model.supports[self.sensor.joint_ids].any(axis=0)
-        return KinematicFollower(KinematicFilter(self.sensor, self.noise_m, dt_s, held, KinematicSettings()))
+        return KinematicTracking(KinematicFilter(self.sensor, self.noise_m, dt_s, held, KinematicSettings()))
 
     def labeller(self, dt_s: float) -> RunningLabeller:
         """A labeller that knows nothing yet."""

@@ -9,8 +9,8 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.filters.estimate import Estimate, Recording
-from mbkf.filters.following import followed
-from mbkf.filters.stretches import SmoothingSettings, StretchSmoother
+from mbkf.filters.tracking_loop import followed
+from mbkf.filters.fixed_lag import SmoothingSettings, FixedLagSmoother
 from mbkf.io.records import MarkerTrajectories
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.neighbours import exchanged, renamed
@@ -106,7 +106,7 @@ def course(body: LabelBody, markers: MarkerTrajectories, progress: Callable[[int
     positions, dt = markers.positions_m, 1.0 / markers.rate_hz
     follower, sensor = body.follower(dt), body.sensor
     recording = Recording(positions, np.zeros((len(positions), 0, 6)), dt)
-    smoother = StretchSmoother(follower, recording, SmoothingSettings())
+    smoother = FixedLagSmoother(follower, recording, SmoothingSettings())
     places = Course(
         np.full(positions.shape, np.nan),
         np.full((*positions.shape, 3), np.nan),

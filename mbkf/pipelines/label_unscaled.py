@@ -32,7 +32,7 @@ from mbkf.scaling.fit import scale_subject
 from mbkf.scaling.naming import Naming, NamingProblem
 from mbkf.scaling.problem import ScalingSettings
 from mbkf.scaling.renaming import in_line, likeliest
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 from mbkf.sensors.posture import PostureSensor
 

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.estimate import Estimate, Follower, Foresight, Recording
+from mbkf.filters.estimate import Estimate, TrackingFilter, Prediction, Recording
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.first_frame import FirstFrame, labelled
 from mbkf.labelling.running import RunningLabeller
 from mbkf.labelling.tracks import continued
 from mbkf.pipelines.any_attitude import AnyAttitude
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 
 START_FRAMES = 6
 """A filter is started on so many frames labelled pose by pose, from which it learns its velocity."""
@@ -60,14 +60,14 @@ class LabellingPass:
 
     def __init__(
         self,
-        follower: Follower,
+        follower: TrackingFilter,
         sensor: MarkerSensor,
         anyhow: AnyAttitude,
         labeller: RunningLabeller,
         positions_m: Array,
     ) -> None:
         """Args: filter, markers on its body, search, labeller, and the capture's points (T, C, 3), NaN where empty."""
-        self._follower, self._sensor, self._search, self._anyhow = follower, sensor, anyhow.search, anyhow
+        self._filter, self._sensor, self._search, self._anyhow = follower, sensor, anyhow.search, anyhow
         self.labeller, self._positions_m = labeller, positions_m
         frames, markers = len(positions_m), len(sensor.segments)
         self.markers_m = np.full((frames, markers, 3), np.nan)
@@ -88,7 +88,7 @@ class LabellingPass:
             progress: Called with the frames done.
         """
         t, frames, tries = start, len(self._positions_m), 0
-        wait = max(1, round(RETRY_S / self._follower.dt_s))
+        wait = max(1, round(RETRY_S / self._filter.dt_s))
         while t < frames:
             if t > start and np.count_nonzero(~np.isnan(self._positions_m[t, :, 0])) < self._search.least:
                 t += 1
@@ -126,9 +126,9 @@ class LabellingPass:
             poses.append(then.q)
             last = k
         known = Recording(
-            self.markers_m[t : last + 1], self._recording.plates[t : last + 1], self._follower.dt_s
+            self.markers_m[t : last + 1], self._recording.plates[t : last + 1], self._filter.dt_s
         )
-        estimate = self._follower.start(known, 0, found.q)
+        estimate = self._filter.start(known, 0, found.q)
         self._forget(t if estimate is None else t + 1, last + 1)
         if estimate is None:
             return None
@@ -142,14 +142,14 @@ class LabellingPass:
         lost = 0
         while t < len(self._positions_m):
             points = self._points(t)
-            foresight = self._follower.expect(estimate)
-            labels = self._labels(t, points, foresight, lost)
+            prediction = self._filter.predict(estimate)
+            labels = self._labels(t, points, prediction, lost)
             could = min(len(labels), len(points.positions_m))
             few = np.count_nonzero(labels != HIDDEN) < max(LOST_SHARE * could, 6)
             lost = lost + 1 if few else 0
-            if lost * self._follower.dt_s > LOST_S:
+            if lost * self._filter.dt_s > LOST_S:
                 return t
-            estimate, labels = self._corrected(t, points, labels, estimate, foresight)
+            estimate, labels = self._corrected(t, points, labels, estimate, prediction)
             self._remember(t, points, labels, estimate)
             if progress is not None:
                 progress(t + 1)
@@ -157,28 +157,28 @@ class LabellingPass:
         return t
 
     def _corrected(
-        self, t: int, points: Points, labels: Indices, before: Estimate, foresight: Foresight
+        self, t: int, points: Points, labels: Indices, before: Estimate, prediction: Prediction
     ) -> tuple[Estimate, Indices]:
         """The filter's step with these labels, or with those of them that go with where it came to."""
         self._note(t, points, labels)
-        estimate = self._follower.step(before, self._recording, t, foresight)
+        estimate = self._filter.step(before, self._recording, t, prediction)
         on_body = self._sensor.positions(estimate.q)
         strange = self.labeller.contradicted(labels, points.positions_m, on_body)
         if not strange.any():
             return estimate, labels
         labels = np.where(strange, HIDDEN, labels)
         self._note(t, points, labels)
-        return self._follower.step(before, self._recording, t), labels
+        return self._filter.step(before, self._recording, t), labels
 
-    def _labels(self, t: int, points: Points, foresight: Foresight, lost: int) -> Indices:
+    def _labels(self, t: int, points: Points, prediction: Prediction, lost: int) -> Indices:
         """By prediction; after a blackout by the pose first, since the prediction has grown vague."""
         begin = time.perf_counter()
         if lost and len(points.positions_m) >= self._search.least:
-            found = self._search.about(points.positions_m, foresight.q)
+            found = self._search.about(points.positions_m, prediction.q)
             if found is not None:
                 return found.points
         labels = self.labeller.label(
-            foresight.markers, points.positions_m, lambda: self._follows(t, points.columns)
+            prediction.markers, points.positions_m, lambda: self._follows(t, points.columns)
         )
         self.step_seconds[t] = time.perf_counter() - begin
         return labels

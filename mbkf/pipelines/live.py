@@ -14,9 +14,9 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import MbkfError
-from mbkf.filters.estimate import Estimate, Follower, Foresight, Recording
-from mbkf.filters.following import Pursuit
-from mbkf.filters.kinematic_follower import warm_up_frames
+from mbkf.filters.estimate import Estimate, TrackingFilter, Prediction, Recording
+from mbkf.filters.tracking_loop import TrackingLoop
+from mbkf.filters.kinematic.tracking import warm_up_frames
 from mbkf.io.records import MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject, match_names
 from mbkf.pipelines.followers import FilterInputs
@@ -49,8 +49,8 @@ class LiveStep:
 class LiveFilter:
     """Takes frames in order, one by one, and gives back the steps that are due."""
 
-    def __init__(self, follower: Follower) -> None:
-        self.pursuit = Pursuit(follower)
+    def __init__(self, follower: TrackingFilter) -> None:
+        self.loop = TrackingLoop(follower)
         self._follower = follower
         self._ahead = warm_up_frames(follower.dt_s)
         self._waiting: deque[tuple[int, Array, Array]] = deque()
@@ -59,11 +59,11 @@ class LiveFilter:
     @property
     def latest(self) -> Estimate | None:
         """The estimate of the frame pushed last; None while there is none, or the next frame has to start anew."""
-        if self._waiting or self.pursuit.must_start:
+        if self._waiting or self.loop.must_start:
             return None
-        return self.pursuit.estimate
+        return self.loop.estimate
 
-    def expect(self) -> Foresight | None:
+    def expect(self) -> Prediction | None:
         """What the filter expects of the frame pushed next; None while that cannot be answered at once.
 
         Asked before that frame is there, it takes prediction and linearisation off the time the frame waits.
@@ -73,7 +73,7 @@ class LiveFilter:
         begin = time.perf_counter()
         try:
             with np.errstate(all="ignore"):
-                found = self.pursuit.expect()
+                found = self.loop.predict()
         except NUMERICAL:  # the step itself will say so
             return None
         self._expecting_s += time.perf_counter() - begin
@@ -100,21 +100,21 @@ class LiveFilter:
     def cut(self) -> list[LiveStep]:
         """The same, before a gap that cannot be bridged: what follows starts anew."""
         steps = self._due(0)
-        self.pursuit.forget()
+        self.loop.forget()
         return steps
 
     def _due(self, ahead: int) -> list[LiveStep]:
         awaited, steps = len(self._waiting) > 1, []
         while self._waiting:
-            if self.pursuit.must_start and len(self._waiting) <= ahead:
+            if self.loop.must_start and len(self._waiting) <= ahead:
                 break
-            steps.append(self._step(awaited or self.pursuit.must_start))
+            steps.append(self._step(awaited or self.loop.must_start))
         return steps
 
     def _step(self, awaited: bool) -> LiveStep:
         begin, self._expecting_s = time.perf_counter() - self._expecting_s, 0.0
         number = self._waiting[0][0]
-        seen = list(self._waiting) if self.pursuit.must_start else [self._waiting[0]]
+        seen = list(self._waiting) if self.loop.must_start else [self._waiting[0]]
         recording = Recording(
             np.array([markers for _, markers, _ in seen]),
             np.array([plates for _, _, plates in seen]),
@@ -123,11 +123,11 @@ class LiveFilter:
         self._waiting.popleft()
         try:
             with np.errstate(all="ignore"):  # what comes of it is looked at
-                estimate = self.pursuit.advance(recording, 0)
+                estimate = self.loop.advance(recording, 0)
             if estimate is not None and not np.isfinite(estimate.q).all():
                 raise ArithmeticError("the estimate is not a number")
         except NUMERICAL as error:
-            self.pursuit.forget()
+            self.loop.forget()
             return LiveStep(number, None, awaited, time.perf_counter() - begin, str(error))
         return LiveStep(number, estimate, awaited, time.perf_counter() - begin)
 

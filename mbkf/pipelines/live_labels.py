@@ -13,7 +13,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.estimate import Foresight
+from mbkf.filters.estimate import Prediction
 from mbkf.io.subject import Subject
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.first_frame import FirstFrame, labelled
@@ -77,18 +77,18 @@ class LiveLabels:
         self._points_m = np.zeros((0, 3))
         self._labels = np.full(len(body.markers), HIDDEN, dtype=np.intp)
 
-    def push(self, points_m: Array, foresight: Foresight | None) -> list[Array]:
+    def push(self, points_m: Array, prediction: Prediction | None) -> list[Array]:
         """Markers (M, 3) of the frames that are due, in order: this one, or none, or those that waited and this one.
 
         Args:
             points_m: (N, 3) the frame's points in any order; NaN rows are no points.
-            foresight: What the filter expects of this frame, None where it will start anew.
+            prediction: What the filter expects of this frame, None where it will start anew.
         """
         self._frame += 1
         missing = np.isnan(points_m)
         present = points_m[~missing.any(axis=1)] if missing.any() else points_m
-        if foresight is not None and self._lost <= self._patience:
-            return [self._taken(present, self._predicted(present, foresight))]
+        if prediction is not None and self._lost <= self._patience:
+            return [self._taken(present, self._predicted(present, prediction))]
         carried = self._carried(present, self._poses) if self._poses else None
         if carried is not None:
             self._poses = [*self._poses[-1:], carried.q]
@@ -124,13 +124,13 @@ class LiveLabels:
         self._points_m, self._labels = points_m, labels
         return labelled(points_m, labels)
 
-    def _predicted(self, points_m: Array, foresight: Foresight) -> Indices:
+    def _predicted(self, points_m: Array, prediction: Prediction) -> Indices:
         """By the filter's prediction; after a blackout by the pose first, since the prediction has grown vague."""
         if self._lost and len(points_m) >= self.body.search.least:
-            found = self.body.search.about(points_m, foresight.q)
+            found = self.body.search.about(points_m, prediction.q)
             if found is not None:
                 return found.points
-        return self._labeller.label(foresight.markers, points_m, lambda: self._follows(points_m))
+        return self._labeller.label(prediction.markers, points_m, lambda: self._follows(points_m))
 
     def _follows(self, points_m: Array) -> Indices:
         """(N,) the point of the frame before that stood in the same place of the list, where that is the same one."""

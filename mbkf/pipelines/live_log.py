@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
-from mbkf.filters.estimate import Estimate, Follower
+from mbkf.filters.estimate import Estimate, TrackingFilter
 from mbkf.filters.spread import Spread
 from mbkf.filters.tracking import Track
 from mbkf.io.frame_log import FrameLogWriter, read_frame_log
@@ -47,7 +47,7 @@ class LiveStream:
 class LiveRows:
     """Makes rows of estimates."""
 
-    def __init__(self, follower: Follower, markers: int, coordinates: int) -> None:
+    def __init__(self, follower: TrackingFilter, markers: int, coordinates: int) -> None:
         """Args: the filter, the number of markers and that of clinical coordinates."""
         self._follower = follower
         nq, nv = follower.model.nq, follower.model.nv

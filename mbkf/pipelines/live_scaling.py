@@ -22,7 +22,7 @@ from mbkf.pipelines.scale import scale
 from mbkf.scaling.frames import MIN_MARKERS
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 from mbkf.sensors.posture import PostureSensor
 

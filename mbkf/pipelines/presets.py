@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from mbkf.errors import FileFormatError, InvalidInput, UnknownName
-from mbkf.filters.torque_settings import SCHEMES, preset
+from mbkf.filters.torque.settings import SCHEMES, preset
 from mbkf.io.preset import SUFFIX, Preset, preset_folder, read_preset, saved_presets
 from mbkf.pipelines.followers import FILTERS
 from mbkf.pipelines.reconstruct import ReconstructSettings

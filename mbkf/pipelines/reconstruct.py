@@ -10,10 +10,10 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray, StageCallback
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
-from mbkf.filters.dynamic_settings import DynamicSettings
-from mbkf.filters.settings import KinematicSettings
-from mbkf.filters.stretches import SmoothingSettings
-from mbkf.filters.torque_settings import TorqueSettings
+from mbkf.filters.dynamic.settings import DynamicSettings
+from mbkf.filters.kinematic.settings import KinematicSettings
+from mbkf.filters.fixed_lag import SmoothingSettings
+from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.filters.tracking import Track, track
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results import Reconstruction
@@ -28,7 +28,7 @@ from mbkf.pipelines.trial_inputs import trial_inputs
 from mbkf.scaling.correction import correct_markers
 from mbkf.scaling.frames import MIN_MARKERS
 from mbkf.sensors.gap_filling import filled
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.version import __version__
 
 FOOT_SD_M = 0.03

@@ -6,16 +6,16 @@ from typing import Protocol
 
 import numpy as np
 
-from mbkf.filters.dynamic_settings import DynamicSettings
+from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.estimate import Recording
-from mbkf.filters.settings import KinematicSettings
-from mbkf.filters.torque_settings import TorqueSettings
+from mbkf.filters.kinematic.settings import KinematicSettings
+from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.io.records import MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
 from mbkf.pipelines.followers import FilterInputs
 from mbkf.sensors.contact.plates import plate_wrenches
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 
 MIN_PRESENT = 0.02
 """A marker seen in a smaller share of the frames than this does not count for what can be observed."""

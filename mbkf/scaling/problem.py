@@ -21,7 +21,7 @@ from mbkf.model.description import BodyDescription
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import ProtocolMarker
 from mbkf.numerics.levenberg_marquardt import ArrowEquations
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.posture import PostureSensor
 
 FACTOR_BOUNDS = (0.5, 1.6)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 
 SKIN_MEMORY_S = 0.3
 """How long skin stays where it slid: the swing of a step."""

@@ -12,7 +12,7 @@ from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.errors import ShapeError
 from mbkf.model.clinical import dof_names
 from mbkf.model.human import HumanModel
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 
 RANK_TOLERANCE = 1e-6
 """Singular values below this part of the largest one count as zero."""

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import Array
 from mbkf.numerics.levenberg_marquardt import ArrowEquations, minimise
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.posture import PostureSensor
 
 _TRUNK_WEIGHT = 0.05

@@ -11,7 +11,7 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.numerics.kalman import Information, information
-from mbkf.sensors.markers import MarkerInformation, MarkerReading, MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerInformation, MarkerReading, MarkerSensor
 
 
 class SkinMarkers:

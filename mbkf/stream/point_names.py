@@ -7,7 +7,7 @@ from collections import deque
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.estimate import Estimate, Foresight
+from mbkf.filters.estimate import Estimate, Prediction
 from mbkf.io.subject import Subject
 from mbkf.pipelines.live import NUMERICAL
 from mbkf.pipelines.live_labels import LiveLabels, live_body
@@ -29,16 +29,16 @@ class PointNames:
         self._waiting: deque[ReadyFrame] = deque()
         self._labels = self._fresh()
 
-    def push(self, frame: ReadyFrame, foresight: Foresight | None) -> Named:
+    def push(self, frame: ReadyFrame, prediction: Prediction | None) -> Named:
         """A new frame; gives back those that are due.
 
         Args:
             frame: The frame.
-            foresight: What the filter expects of the frame, None where it has to start anew.
+            prediction: What the filter expects of the frame, None where it has to start anew.
         """
         self._waiting.append(frame)
         try:
-            return self._due(self._labels.push(frame.unlabelled_m, foresight))
+            return self._due(self._labels.push(frame.unlabelled_m, prediction))
         except NUMERICAL as error:
             self._note("labels", f"labels are searched anew ({error})", frame.number, 1)
             self._labels = self._fresh()

@@ -26,7 +26,7 @@ from benchmarks.double_pendulum.torque import (
 )
 from benchmarks.double_pendulum.trials import Recipe, Trial, score
 from mbkf.errors import UnknownName
-from mbkf.filters.singer import DynamicState
+from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.model.double_pendulum import DoublePendulum
 from mbkf.synthesis.pendulum import PendulumNoise, PendulumReadings
 from tests.derivatives import slope

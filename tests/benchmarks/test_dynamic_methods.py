@@ -20,7 +20,7 @@ from benchmarks.dynamic_methods import (
     tared,
 )
 from mbkf.errors import InvalidInput, MbkfError
-from mbkf.filters.settings import KinematicSettings
+from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.io.records import Capture
 from mbkf.model.protocol import load_protocol
 from mbkf.pipelines.reconstruct import ReconstructSettings

@@ -15,7 +15,7 @@ from benchmarks.dynamic_offline import (
 from benchmarks.references import rms
 from mbkf.errors import NotObservable
 from mbkf.pipelines.synth import synthesise
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.capture import CaptureSettings
 from mbkf.synthesis.person import body_of
 

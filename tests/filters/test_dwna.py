@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from mbkf.filters.dwna import WhiteAccelerationPlant
-from mbkf.filters.state import FilterState
+from mbkf.filters.kinematic.plant import WhiteAccelerationPlant
+from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.model.human import HumanModel
 from tests.motions import assert_near, moderate_pose, random_model, reference_model
 
@@ -18,12 +18,12 @@ def rng():
 
 def random_state(model, rng, speed=3.0):
     A = rng.normal(size=(2 * model.nv, 2 * model.nv))
-    return FilterState(moderate_pose(model, rng), speed * rng.normal(size=model.nv), A @ A.T)
+    return KinematicState(moderate_pose(model, rng), speed * rng.normal(size=model.nv), A @ A.T)
 
 
 def moved(model, state, step):
     """The state displaced by a tangent step of (q, v)."""
-    return FilterState(model.integrate(state.q, step[: model.nv]), state.v + step[model.nv :], state.P)
+    return KinematicState(model.integrate(state.q, step[: model.nv]), state.v + step[model.nv :], state.P)
 
 
 def test_transition_is_the_derivative_of_the_prediction(rng):
@@ -33,7 +33,7 @@ def test_transition_is_the_derivative_of_the_prediction(rng):
     still = np.zeros_like(state.P)
 
     def predicted(step):
-        return plant.predict(moved(model, FilterState(state.q, state.v, still), step))
+        return plant.predict(moved(model, KinematicState(state.q, state.v, still), step))
 
     centre, columns = predicted(np.zeros(2 * model.nv)), []
     for e in np.eye(2 * model.nv):
@@ -48,12 +48,12 @@ def test_transition_of_resting_and_of_straight_moving_dofs_is_the_textbook_one(r
     model = reference_model()
     plant, nv = WhiteAccelerationPlant(model, DT, model.acceleration_sd), model.nv
     textbook = np.block([[np.eye(nv), DT * np.eye(nv)], [np.zeros((nv, nv)), np.eye(nv)]])
-    at_rest = FilterState(moderate_pose(model, rng), np.zeros(nv), np.eye(2 * nv))
+    at_rest = KinematicState(moderate_pose(model, rng), np.zeros(nv), np.eye(2 * nv))
     assert_near(plant.transition(at_rest), textbook, 1e-15)
     straight = np.r_[0:3, 9:11, [model.joint(f"{side}_toes").v.start for side in ("right", "left")]]
     v = np.zeros(nv)
     v[straight] = rng.normal(size=len(straight))
-    phi, own = plant.transition(FilterState(at_rest.q, v, np.eye(2 * nv))), np.r_[straight, nv + straight]
+    phi, own = plant.transition(KinematicState(at_rest.q, v, np.eye(2 * nv))), np.r_[straight, nv + straight]
     assert_near(phi[np.ix_(own, own)], textbook[np.ix_(own, own)], 1e-15)
 
 
@@ -61,7 +61,7 @@ def test_noise_is_gamma_gamma_transposed(rng):
     """Q = Γ σ² Γᵀ with Γ = [Δt²/2, Δt] per dof and nothing between dofs (eqs. 3.2, 3.3)."""
     model = reference_model()
     sd, nv = rng.uniform(1, 300, model.nv), model.nv
-    state = FilterState(moderate_pose(model, rng), np.zeros(nv), np.zeros((2 * nv, 2 * nv)))
+    state = KinematicState(moderate_pose(model, rng), np.zeros(nv), np.zeros((2 * nv, 2 * nv)))
     plant = WhiteAccelerationPlant(model, DT, sd)
     Q = plant.predict(state).P
     gamma = np.array([DT**2 / 2, DT])
@@ -86,7 +86,7 @@ def test_a_held_dof_gets_no_noise(rng):
     model = reference_model()
     held = np.arange(model.nv) % 3 == 0
     plant = WhiteAccelerationPlant(model, DT, np.where(held, 0.0, model.acceleration_sd))
-    state = FilterState(model.neutral(), np.zeros(model.nv), np.zeros((2 * model.nv, 2 * model.nv)))
+    state = KinematicState(model.neutral(), np.zeros(model.nv), np.zeros((2 * model.nv, 2 * model.nv)))
     P = plant.predict(state).P
     both = np.r_[held, held]
     assert not P[both].any()

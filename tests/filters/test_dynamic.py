@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from mbkf.filters.dynamic import DynamicFilter
-from mbkf.filters.dynamic_settings import DynamicSettings
+from mbkf.filters.dynamic.filter import DynamicFilter
+from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.contact.soles import sole_points
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.posture import PostureSensor
 from tests.dynamics import (
     DT,

@@ -8,7 +8,7 @@ eigenvalue of the correlations was 5e-7, early on, and fell no further.)
 import numpy as np
 import pytest
 
-from mbkf.filters.singer import DynamicState, SingerPlant
+from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
 from mbkf.numerics.kalman import informed_with_rows
 from tests.dynamics import follow, trial
 

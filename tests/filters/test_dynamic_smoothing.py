@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from mbkf.filters.dynamic_smoothing import Frame, smooth
+from mbkf.filters.dynamic.smoother import Frame, smooth
 from tests.dynamics import follow, trial
 from tests.motions import angle_errors, assert_near, worst
 

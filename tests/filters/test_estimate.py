@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.filters.estimate import NO_WRENCH, Follower
-from mbkf.filters.kinematic_follower import WARM_UP_S
+from mbkf.filters.estimate import NO_WRENCH, TrackingFilter
+from mbkf.filters.kinematic.tracking import WARM_UP_S
 from mbkf.filters.spread import SpreadReader
 from mbkf.filters.tracking import track
 from mbkf.pipelines.followers import FILTERS
@@ -38,7 +38,7 @@ every_filter = pytest.mark.parametrize("name", FILTERS)
 
 
 def two(name):
-    """Follower, its start and the estimate of the next frame."""
+    """TrackingFilter, its start and the estimate of the next frame."""
     one, found = estimates(name)
     return one, found[0], found[1]
 
@@ -46,11 +46,11 @@ def two(name):
 @every_filter
 def test_everything_asked_of_a_follower_is_there(name):
     one = made_follower(name)
-    for asked, member in inspect.getmembers(Follower, inspect.isfunction):
+    for asked, member in inspect.getmembers(TrackingFilter, inspect.isfunction):
         if not asked.startswith("_"):
             mine = list(inspect.signature(getattr(one, asked)).parameters)
             assert mine == list(inspect.signature(member).parameters)[1:], asked
-    for attribute in Follower.__annotations__:
+    for attribute in TrackingFilter.__annotations__:
         assert getattr(one, attribute) is not None
     assert one.dt_s == DT
 
@@ -248,9 +248,9 @@ def test_a_short_loss_is_bridged_with_growing_spreads(name):
 def test_a_step_with_what_was_expected_is_the_same_step(name):
     follower, found = estimates(name)
     for t in (5, 30):
-        foresight = follower.expect(found[t])
+        prediction = follower.expect(found[t])
         np.testing.assert_array_equal(
-            follower.step(found[t], recording(), t + 1, foresight).q, found[t + 1].q
+            follower.step(found[t], recording(), t + 1, prediction).q, found[t + 1].q
         )
 
 

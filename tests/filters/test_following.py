@@ -3,10 +3,10 @@
 import numpy as np
 
 from mbkf.filters.estimate import Recording
-from mbkf.filters.following import followed
-from mbkf.filters.kinematic import KinematicFilter
-from mbkf.filters.kinematic_follower import KinematicFollower
-from mbkf.filters.settings import KinematicSettings
+from mbkf.filters.tracking_loop import followed
+from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.tracking import KinematicTracking
+from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.tracking import track
 from tests.motions import marker_positions, protocol_sensor, reference_model, smooth_motion
 
@@ -24,7 +24,7 @@ def test_it_is_what_a_track_records():
     recording = Recording(markers, np.zeros((FRAMES, 0, 6)), 1.0 / RATE_HZ)
     held = np.zeros(MODEL.nv, dtype=bool)
     kalman = KinematicFilter(sensor, np.full(36, 0.005), recording.dt_s, held, KinematicSettings())
-    follower = KinematicFollower(kalman)
+    follower = KinematicTracking(kalman)
     recorded = track(follower, recording)
     course = list(followed(follower, recording))
     assert [t for t, _, _ in course] == list(range(3, FRAMES))

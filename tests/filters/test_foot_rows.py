@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from mbkf.filters.dynamic_settings import DynamicSettings
+from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.foot_rows import FootRows
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
 

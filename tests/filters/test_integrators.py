@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.errors import UnknownName
-from mbkf.filters.integrators import INTEGRATORS, Motion, integrator
+from mbkf.filters.torque.integrators import INTEGRATORS, Motion, integrator
 from mbkf.model.human_dynamics import HumanDynamics
 from tests.forced_bodies import Cart, DampedPendulum
 from tests.motions import moderate_pose, random_model, worst

@@ -5,11 +5,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 from scipy.stats import chi2
 
-from mbkf.filters.kinematic import KinematicFilter
-from mbkf.filters.settings import KinematicSettings
-from mbkf.filters.state import FilterState
+from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.settings import KinematicSettings
+from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.numerics.kalman import correct, information
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.motions import (
     assert_near,
     moderate_pose,
@@ -72,7 +72,7 @@ def test_a_translating_pelvis_is_the_exact_kalman_filter(yaw, velocity_sd):
     v[:3] = R.T @ x0[3:]
     free = np.r_[0:3, NV : NV + 3]
     P[np.ix_(free, free)] = turn.T @ P0 @ turn
-    state = FilterState(q, v, P)
+    state = KinematicState(q, v, P)
     points = np.cumsum(0.01 * rng.normal(size=(50, 1, 3)), axis=0) + noise * rng.normal(size=(50, 4, 3))
     points[20:24] = np.nan
     reference = textbook_filter(x0, P0, points.reshape(50, -1), noise, MODEL.acceleration_sd[:3], velocity_sd)
@@ -98,7 +98,7 @@ def test_the_covariance_of_a_velocity_step_is_that_of_the_error_of_eq_3_7():
     for axis in range(3):
         P[np.ix_([axis, NV + axis], [axis, NV + axis])] = one
     q = MODEL.neutral()
-    found = kalman.step(FilterState(q, np.zeros(NV), P), sensor.positions(q)).velocity_step_covariance
+    found = kalman.step(KinematicState(q, np.zeros(NV), P), sensor.positions(q)).velocity_step_covariance
     phi, gamma = np.array([[1, DT], [0, 1]]), np.array([[DT**2 / 2], [DT]])
     Q, H = sd**2 * gamma @ gamma.T, np.array([[1.0, 0.0]] * 4)
     before = phi @ one @ phi.T + Q
@@ -126,7 +126,7 @@ class Simulation:
         P[self.states, self.states] = np.r_[np.full(len(self.free), 0.02**2), np.full(len(self.free), 1.0**2)]
         self.q, self.v = moderate_pose(MODEL, self.rng), np.zeros(NV)
         error = np.sqrt(np.diag(P)) * self.rng.normal(size=2 * NV)
-        self.state = FilterState(MODEL.integrate(self.q, error[:NV]), error[NV:], P)
+        self.state = KinematicState(MODEL.integrate(self.q, error[:NV]), error[NV:], P)
 
     def step(self):
         """One step of truth and filter; NEES, NIS and the number of readings."""
@@ -220,7 +220,7 @@ def test_held_dofs_stay_where_they_are():
     P = np.zeros((2 * NV, 2 * NV))
     free = np.r_[~held, ~held]
     P[free, free] = 0.1
-    state = FilterState(MODEL.neutral(), np.zeros(NV), P)
+    state = KinematicState(MODEL.neutral(), np.zeros(NV), P)
     for _ in range(5):
         state = kalman.step(state, sensor.positions(moderate_pose(MODEL, rng, spread=0.1, heading=0.0))).state
     assert worst(MODEL.difference(MODEL.neutral(), state.q)[held]) < 1e-9

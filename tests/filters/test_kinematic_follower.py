@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mbkf.filters.kinematic_follower import SETTLING_S, WARM_UP_S, warm_start
+from mbkf.filters.kinematic.tracking import SETTLING_S, WARM_UP_S, warm_start
 from tests.dynamics import DT
 from tests.followed import FRAMES, WHOLE, estimates, made, made_follower, recording, tracked, without
 from tests.motions import worst

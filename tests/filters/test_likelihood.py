@@ -7,13 +7,13 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from mbkf.errors import InvalidInput
-from mbkf.filters.dynamic_follower import DynamicFollower
+from mbkf.filters.dynamic.tracking import DynamicTracking
 from mbkf.filters.estimate import Recording
-from mbkf.filters.following import followed
-from mbkf.filters.kinematic import KinematicFilter
-from mbkf.filters.kinematic_follower import KinematicFollower
+from mbkf.filters.tracking_loop import followed
+from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.tracking import KinematicTracking
 from mbkf.filters.likelihood import dynamic_likelihood, frame_likelihood, trial_likelihood
-from mbkf.filters.settings import KinematicSettings
+from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.sensors.contact.records import Contact
 from tests.dynamics import DT, dynamic_filter, half_weight, random_state, standing
 from tests.motions import marker_positions, protocol_sensor, reference_model, smooth_motion
@@ -79,7 +79,7 @@ def recording():
 @pytest.fixture(scope="module")
 def kinematic():
     sensor = protocol_sensor(MODEL)[0]
-    return KinematicFollower(KinematicFilter(sensor, np.full(36, 0.004), DT, HELD, KinematicSettings()))
+    return KinematicTracking(KinematicFilter(sensor, np.full(36, 0.004), DT, HELD, KinematicSettings()))
 
 
 def test_frames_of_the_kinematic_filter(kinematic, recording):
@@ -111,7 +111,7 @@ def test_a_refused_marker_counts_as_an_outlier(kinematic, recording):
 
 def test_trials_of_the_dynamic_filter(kinematic, recording):
     done = []
-    follower = DynamicFollower(dynamic_filter(MODEL), kinematic.kalman)
+    follower = DynamicTracking(dynamic_filter(MODEL), kinematic.kalman)
     found = trial_likelihood(follower, recording, lambda at, total: done.append((at, total)))
     assert done[-1] == (40, 40)
     assert np.isfinite(found.markers).all()

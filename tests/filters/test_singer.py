@@ -10,7 +10,7 @@ import scipy.linalg
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbkf.filters.singer import DynamicState, SingerPlant
+from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
 from tests.dynamics import DT, random_state
 from tests.motions import assert_near, random_model, reference_model, worst
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.filters.spread import Spread, SpreadReader
-from mbkf.filters.state import FilterState
+from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.model.clinical import ClinicalAngles
 from tests.motions import random_model, smooth_motion
 
@@ -19,7 +19,7 @@ def case():
     source = smooth_motion(model, rng)
     A = 1e-3 * rng.normal(size=(2 * model.nv, 2 * model.nv))
     B = 0.01 * rng.normal(size=(model.nv, model.nv))
-    state = FilterState(source.q(0.4), source.v(0.4), A @ A.T)
+    state = KinematicState(source.q(0.4), source.v(0.4), A @ A.T)
     reader, nv = SpreadReader(model), model.nv
     torque = reader.torque(state.q, B @ B.T, DT_S)
     variances = np.split(np.diag(state.P), 2)

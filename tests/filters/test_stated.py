@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mbkf.filters.stated import StatedErrors
+from mbkf.filters.error_covariance import ErrorCovariance
 
 NV = 5
 EVERYBODY = np.arange(NV)
@@ -21,7 +21,7 @@ def made(seed):
 def test_it_is_symmetric_and_positive(seed, new, rate):
     rng, P, information = made(seed)
     seen = np.flatnonzero(rng.random(NV) > 0.3)
-    stated = StatedErrors(P, information, seen, 0.2, new, rate).covariance()
+    stated = ErrorCovariance(P, information, seen, 0.2, new, rate).covariance()
     np.testing.assert_allclose(stated, stated.T, rtol=1e-12, atol=1e-9 * np.abs(stated).max())
     assert np.linalg.eigvalsh(stated).min() > -1e-9 * np.abs(stated).max()
 
@@ -30,7 +30,7 @@ def test_it_is_symmetric_and_positive(seed, new, rate):
 def test_parts_are_those_of_the_whole(seed, new, rate):
     """What is read off without the whole covariance is what the whole says."""
     rng, P, information = made(seed)
-    errors = StatedErrors(P, information, np.flatnonzero(rng.random(NV) > 0.3), 0.2, new, rate)
+    errors = ErrorCovariance(P, information, np.flatnonzero(rng.random(NV) > 0.3), 0.2, new, rate)
     whole, T = errors.covariance(), rng.normal(size=(7, len(P)))
     near = {"rtol": 1e-9, "atol": 1e-9 * np.abs(whole).max()}
     np.testing.assert_allclose(errors.position, whole[:NV, :NV], **near)
@@ -43,12 +43,12 @@ def test_a_frame_that_says_nothing_of_a_joint_says_so():
     """Where nothing is known of a seen dof its information cannot be inverted: LinAlgError, nothing made up."""
     _, P, _ = made(4)
     with pytest.raises(np.linalg.LinAlgError):
-        StatedErrors(P, np.zeros((NV, NV)), EVERYBODY, 0.2, 0.04, 4.0).covariance()
+        ErrorCovariance(P, np.zeros((NV, NV)), EVERYBODY, 0.2, 0.04, 4.0).covariance()
 
 
 def test_without_skin_it_is_the_share_that_is_new():
     _, P, information = made(1)
-    stated = StatedErrors(P, information, EVERYBODY, 0.0, 0.04, 4.0).covariance()
+    stated = ErrorCovariance(P, information, EVERYBODY, 0.0, 0.04, 4.0).covariance()
     np.testing.assert_allclose(stated[: 3 * NV, : 3 * NV], 0.04 * P[: 3 * NV, : 3 * NV])
     np.testing.assert_array_equal(stated[3 * NV :, 3 * NV :], P[3 * NV :, 3 * NV :])
 
@@ -56,7 +56,7 @@ def test_without_skin_it_is_the_share_that_is_new():
 def test_unknown_joints_keep_what_the_filter_says():
     _, P, information = made(2)
     unknown = np.array([1, 3])
-    stated = StatedErrors(P, information, np.array([0, 2, 4]), 0.3, 0.04, 4.0).covariance()
+    stated = ErrorCovariance(P, information, np.array([0, 2, 4]), 0.3, 0.04, 4.0).covariance()
     for block in (0, NV, 2 * NV):
         own = np.ix_(block + unknown, block + unknown)
         np.testing.assert_array_equal(stated[own], P[own])
@@ -73,7 +73,7 @@ def test_skin_that_swings_has_the_stated_covariance():
     x = np.hstack([skin @ fit.T, rates @ fit.T, -(rate**2) * skin @ fit.T])
     measured = x.T @ x / runs
     P = np.zeros((3 * NV + 12,) * 2)
-    errors = StatedErrors(P, H.T @ H, EVERYBODY, amplitude**2, 0.04, rate)
+    errors = ErrorCovariance(P, H.T @ H, EVERYBODY, amplitude**2, 0.04, rate)
     stated = errors.covariance()[: 3 * NV, : 3 * NV]
     scale = np.sqrt(np.diag(stated))
     np.testing.assert_allclose(measured / scale / scale[:, None], stated / scale / scale[:, None], atol=0.03)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.filters.stretches import SmoothingSettings, StretchSmoother
+from mbkf.filters.fixed_lag import SmoothingSettings, FixedLagSmoother
 from mbkf.filters.tracking import track
 from mbkf.pipelines.followers import FILTERS
 from tests.dynamics import DT
@@ -41,7 +41,7 @@ class Told:
 def returned(frames, settings, starts=(0,)):
     """The frames that come back, with the frame that was put in when they did, and what was asked of the smoother."""
     follower = Counter()
-    smoother = StretchSmoother(follower, None, settings)
+    smoother = FixedLagSmoother(follower, None, settings)
     found = []
     for t in frames:
         found += [(t, k, e) for k, e in smoother.push(t, Told(t, t in starts))]
@@ -78,7 +78,7 @@ def test_a_restart_ends_a_run():
 
 
 def test_nothing_comes_of_nothing():
-    assert StretchSmoother(Counter(), None, SHORT).finish() == []
+    assert FixedLagSmoother(Counter(), None, SHORT).finish() == []
 
 
 def test_the_default_lag_is_below_two_seconds():
@@ -106,7 +106,7 @@ def test_the_last_stretch_is_the_whole(name):
 
 def test_pushing_is_what_a_trial_does():
     one, found = estimates("kinematic")
-    smoother = StretchSmoother(one, recording(), SHORT)
+    smoother = FixedLagSmoother(one, recording(), SHORT)
     back = [
         pair for t, estimate in enumerate(found) for pair in smoother.push(t, estimate)
     ] + smoother.finish()

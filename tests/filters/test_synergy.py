@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mbkf.filters.synergy import learn
+from mbkf.sensors.coordination.regression import learn
 
 RIDGE = 0.05
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.filters.state import FilterState
-from mbkf.filters.torque import FootReading, TorqueFilter
-from mbkf.filters.torque_settings import TorqueSettings, preset
+from mbkf.filters.kinematic.plant import KinematicState
+from mbkf.filters.torque.filter import FootReading, TorqueFilter
+from mbkf.filters.torque.settings import TorqueSettings, preset
 from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
 from tests.motions import assert_near, marker_positions, protocol_sensor
@@ -45,7 +45,7 @@ class Run:
         spread = np.array([1.0, 1.0, 1.0, 0.2, 0.2, 0.2])
         self.wrench = motion.foot_wrench[:frames] + loaded * spread * rng.normal(size=(frames, 2, 6))
         P = np.diag(np.repeat([0.01, 0.5], model.nv) ** 2)
-        start = FilterState(motion.q[0], motion.v[0], P)
+        start = KinematicState(motion.q[0], motion.v[0], P)
         states = [self.filter.start(start, motion.a[0], self.wrench[0], measured)]
         self.steps = []
         for t in range(1, frames):
@@ -93,7 +93,7 @@ def test_start_agrees_with_plates_and_motion(model, motions):
     run = Run(model, motion, settings, frames=1)
     P = np.diag(np.repeat([0.003, 0.1], model.nv) ** 2)
     guess = motion.a[0] + np.random.default_rng(0).normal(size=model.nv)
-    state = run.filter.start(FilterState(motion.q[0], motion.v[0], P), guess, motion.foot_wrench[0], BOTH)
+    state = run.filter.start(KinematicState(motion.q[0], motion.v[0], P), guess, motion.foot_wrench[0], BOTH)
     assert np.abs(state.tau[:3]).max() < 5.0
     n = len(state.filtered.P)
     assert n == 166

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.filters.torque_noise import ForceNoise, condition
-from mbkf.filters.torque_plant import ForcedState
-from mbkf.filters.torque_settings import TorqueSettings, preset
+from mbkf.filters.torque.noise import ForceNoise, condition
+from mbkf.filters.torque.plant import ForcedState
+from mbkf.filters.torque.settings import TorqueSettings, preset
 from mbkf.model.human_dynamics import FORCE_STATES, HumanDynamics
 from tests.motions import assert_near, moderate_pose, random_model, worst
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from mbkf.filters.integrators import Motion, runge_kutta
-from mbkf.filters.torque_plant import ForcedState, Scheme, TorquePlant, on_state, update
+from mbkf.filters.torque.integrators import Motion, runge_kutta
+from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant, on_state, update
 from mbkf.model.forced_body import WithIdleStates
 from mbkf.model.human_dynamics import FORCE_STATES, HumanDynamics
 from mbkf.numerics.discretisation import COVARIANCES, PROPAGATIONS

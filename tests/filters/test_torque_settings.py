@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 
 from mbkf.errors import InvalidInput, UnknownName
-from mbkf.filters.torque_plant import Scheme
-from mbkf.filters.torque_settings import TorqueSettings, preset
+from mbkf.filters.torque.plant import Scheme
+from mbkf.filters.torque.settings import TorqueSettings, preset
 
 
 def test_the_default_is_the_exact_filter():

@@ -5,9 +5,9 @@ import pytest
 
 from mbkf.errors import NotObservable
 from mbkf.filters.estimate import Recording
-from mbkf.filters.kinematic import KinematicFilter
-from mbkf.filters.kinematic_follower import SETTLING_S, KinematicFollower
-from mbkf.filters.settings import KinematicSettings
+from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.tracking import SETTLING_S, KinematicTracking
+from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.tracking import track
 from tests.motions import (
     angle_errors,
@@ -35,7 +35,7 @@ def kalman(**settings):
 def follow(measured, **options):
     """A trial of markers (T, M, 3) through the kinematic filter."""
     return track(
-        KinematicFollower(kalman()),
+        KinematicTracking(kalman()),
         Recording(measured, np.zeros((len(measured), 0, 6)), 1 / RATE_HZ),
         **options,
     )

@@ -7,7 +7,7 @@ import numpy as np
 from mbkf.labelling.assignment import HIDDEN
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from mbkf.labelling.moments import moments
 from mbkf.labelling.skeleton import clusters
 from mbkf.labelling.tracks import follow
 from mbkf.model.human import HumanModel
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.labelling.bodies import reference_sensor
 from tests.labelling.movement import RATE_HZ, movement, shuffled
 

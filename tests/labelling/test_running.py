@@ -5,14 +5,14 @@ import pytest
 
 from mbkf.labelling.assignment import HIDDEN
 from mbkf.labelling.running import RunningLabeller, RunningSettings
-from mbkf.sensors.expectation import MarkerExpectation
+from mbkf.sensors.marker_prediction import MarkerPrediction
 from tests.labelling.bodies import posture, reference_sensor
 
 SENSOR = reference_sensor()
 COUNT = len(SENSOR.segments)
 Q = posture(SENSOR.model, np.random.default_rng(0), 0.1)
 ON_BODY = SENSOR.positions(Q)
-EXPECTED = MarkerExpectation(SENSOR.reading(Q), 1e-6 * np.eye(SENSOR.model.nv))
+EXPECTED = MarkerPrediction(SENSOR.reading(Q), 1e-6 * np.eye(SENSOR.model.nv))
 
 
 def labeller(placement_m=0.01, **changes):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput
-from mbkf.filters.integrators import Motion, runge_kutta
+from mbkf.filters.torque.integrators import Motion, runge_kutta
 from mbkf.model.double_pendulum import ROOT, DoublePendulum, PendulumShape
 from tests.derivatives import slope
 

@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 from mbkf.errors import UnknownName
-from mbkf.filters.dynamic_follower import DynamicFollower
-from mbkf.filters.dynamic_settings import DynamicSettings
-from mbkf.filters.kinematic_follower import KinematicFollower
-from mbkf.filters.settings import KinematicSettings
-from mbkf.filters.torque_follower import TorqueFollower
-from mbkf.filters.torque_settings import preset
+from mbkf.filters.dynamic.tracking import DynamicTracking
+from mbkf.filters.dynamic.settings import DynamicSettings
+from mbkf.filters.kinematic.tracking import KinematicTracking
+from mbkf.filters.kinematic.settings import KinematicSettings
+from mbkf.filters.torque.tracking import TorqueTracking
+from mbkf.filters.torque.settings import preset
 from mbkf.pipelines.followers import FILTERS, follower
 from tests.dynamics import DT
 from tests.followed import inputs, made
 
-CLASSES = {"kinematic": KinematicFollower, "torque": TorqueFollower, "dynamic": DynamicFollower}
+CLASSES = {"kinematic": KinematicTracking, "torque": TorqueTracking, "dynamic": DynamicTracking}
 every_filter = pytest.mark.parametrize("name", FILTERS)
 
 

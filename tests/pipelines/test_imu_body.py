@@ -13,7 +13,7 @@ from mbkf.imu.placement import typical_mounts
 from mbkf.imu.virtual import ImuErrors, virtual_imus
 from mbkf.io.imu import ImuReadings
 from mbkf.pipelines.imu_body import ImuOnBody, calibrated, frame_readings, with_imus
-from mbkf.sensors.inertial import InertialSensor
+from mbkf.sensors.inertial_sensor import InertialSensor
 from tests.dynamics import trial
 from tests.followed import FRAMES, inputs, made, recording, tracked
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mbkf.errors import FileFormatError, NotObservable
-from mbkf.filters.following import followed
-from mbkf.filters.kinematic_follower import warm_up_frames
+from mbkf.filters.tracking_loop import followed
+from mbkf.filters.kinematic.tracking import warm_up_frames
 from mbkf.io.subject import write_subject
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.pipelines.followers import FILTERS, follower
@@ -79,11 +79,11 @@ def test_what_the_filter_cannot_digest_makes_it_start_anew(monkeypatch):
     chosen = follower("kinematic", inputs)
     step, left = chosen.step, [3]
 
-    def failing(before, recording, t, foresight):
+    def failing(before, recording, t, prediction):
         left[0] -= 1
         if left[0] == 0:
             raise np.linalg.LinAlgError("singular matrix")
-        return step(before, recording, t, foresight)
+        return step(before, recording, t, prediction)
 
     monkeypatch.setattr(chosen, "step", failing)
     steps, _ = steps_of(LiveFilter(chosen), recording)

@@ -18,7 +18,7 @@ from mbkf.pipelines.live_scaling import (
     worn_markers,
 )
 from mbkf.pipelines.scale import scale
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.captures import MASS_KG, made_capture, made_markers
 
 RATE_HZ = 20.0

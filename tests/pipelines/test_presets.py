@@ -3,7 +3,7 @@
 import pytest
 
 from mbkf.errors import FileFormatError, InvalidInput, UnknownName
-from mbkf.filters.torque_settings import preset as torque_preset
+from mbkf.filters.torque.settings import preset as torque_preset
 from mbkf.io.preset import Preset, write_preset
 from mbkf.pipelines.presets import BUILT_IN, check_name, place_of, with_preset
 from mbkf.pipelines.reconstruct import ReconstructSettings

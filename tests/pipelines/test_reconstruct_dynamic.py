@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from mbkf.filters.torque_settings import preset
+from mbkf.filters.torque.settings import preset
 from mbkf.pipelines.reconstruct import Hidden, ReconstructSettings, reconstruct
 from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
 from tests.dynamics import trial

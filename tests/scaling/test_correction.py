@@ -10,7 +10,7 @@ from mbkf.io.records import MarkerTrajectories
 from mbkf.model.protocol import load_protocol
 from mbkf.scaling import correction
 from mbkf.scaling.correction import correct_markers, rigid_displacements
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.motions import marker_positions, moderate_pose, random_model, subject_of
 
 SHIFTED = ("RTHI", "LTHI", "RTUB")

@@ -11,7 +11,7 @@ from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
 from mbkf.scaling.fit import scale_subject
 from mbkf.scaling.problem import ScalingSettings
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.motions import marker_positions, moderate_pose, reference_model
 
 PROTOCOL = load_protocol("reference36")

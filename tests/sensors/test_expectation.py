@@ -3,8 +3,8 @@
 import numpy as np
 
 from mbkf.model.human import HumanModel
-from mbkf.sensors.expectation import MarkerExpectation
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_prediction import MarkerPrediction
+from mbkf.sensors.marker_sensor import MarkerSensor
 
 
 def test_spread_is_the_covariance_carried_to_the_markers():
@@ -12,7 +12,7 @@ def test_spread_is_the_covariance_carried_to_the_markers():
     sensor = MarkerSensor(model, ["pelvis", "right_foot"], np.array([[0.1, 0.0, 0.0], [0.0, 0.05, 0.0]]))
     root = np.random.default_rng(0).normal(size=(model.nv, model.nv))
     reading = sensor.reading(model.neutral())
-    expected = MarkerExpectation(reading, root @ root.T)
+    expected = MarkerPrediction(reading, root @ root.T)
     assert np.array_equal(expected.positions_m, sensor.positions(model.neutral()))
     for chosen in ([True, False], [False, True], [True, True]):
         mask = np.array(chosen)

@@ -7,7 +7,7 @@ from mbkf.conventions import GRAVITY_M_S2
 from mbkf.errors import UnknownName
 from mbkf.io.imu_mount import ImuMount
 from mbkf.model.human import HumanModel
-from mbkf.sensors.inertial import InertialSensor
+from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.inertial_rows import InertialRows, felt_dofs
 
 MODEL = HumanModel.scaled()

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.errors import ShapeError, UnknownName
 from mbkf.numerics.kalman import information
-from mbkf.sensors.markers import MarkerInformation, MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerInformation, MarkerSensor
 from tests.motions import assert_near, moderate_pose, protocol_sensor, random_model, reference_model
 
 

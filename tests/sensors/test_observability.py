@@ -5,7 +5,7 @@ import pytest
 
 from mbkf.errors import ShapeError
 from mbkf.model.human import HumanModel
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.observability import (
     analyse,
     generic_postures,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_most_markers, fit_pose, segment_by_segment
 from mbkf.sensors.posture import PostureSensor
 from tests.motions import assert_near, moderate_pose, protocol_sensor, random_model, reference_model, worst

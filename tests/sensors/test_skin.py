@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.numerics.kalman import correct
-from mbkf.sensors.markers import MarkerInformation
+from mbkf.sensors.marker_sensor import MarkerInformation
 from mbkf.sensors.skin import SkinMarkers
 from tests.motions import assert_near, moderate_pose, protocol_sensor, reference_model
 

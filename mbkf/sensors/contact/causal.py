@@ -34,7 +34,7 @@ from mbkf.sensors.contact.thresholds import (
     STAND_SPEED_M_S,
     TOUCH_HEIGHT_M,
 )
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 
 TOES = ("right_toes", "left_toes")
 

@@ -9,7 +9,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import FEET
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 
 
 def sole_locals(model: HumanModel) -> tuple[tuple[str, ...], Array]:

@@ -1,7 +1,8 @@
-"""Smoothing the dynamic filter: later frames correct earlier ones, again and again until Newton's law holds (fact 5).
+"""Smoother of the dynamic filter: later frames correct earlier ones, iterated until Newton's law holds.
 
-Each round is an exact linear smoother around the trajectory of the round before (Bell 1994, the iterated Kalman
-smoother, a Gauss–Newton method). Long trials are smoothed in stretches that look a little beyond their ends.
+Each round is an exact linear smoother around the trajectory of the round before (the iterated Kalman
+smoother, a Gauss–Newton method: B. M. Bell, SIAM Journal on Optimization 4 (1994) 626–636). Long trials are smoothed in stretches
+that look a little beyond their ends (:mod:`mbkf.filters.fixed_lag`).
 """
 
 from __future__ import annotations
@@ -12,9 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.dynamic import DynamicFilter
-from mbkf.filters.dynamic_records import Decision, FrameReadings
-from mbkf.filters.singer import DynamicState
+from mbkf.filters.dynamic.plant import DynamicState
+from mbkf.filters.filter import Decisions, Filter, Readings, Step
 from mbkf.numerics.kalman import informed_with_rows
 from mbkf.numerics.smoothing import BackwardPass
 
@@ -23,29 +23,19 @@ FURTHEST_RAD = 0.5
 
 
 @dataclass(frozen=True)
-class Frame:
-    """A frame to smooth: its estimate so far (without its covariance), what its readings were, its markers (M, 3)."""
-
-    state: DynamicState
-    decision: Decision
-    markers_m: Array
-
-
-@dataclass(frozen=True)
 class _Forward:
     """One frame of a forward pass: posterior covariance, correction of the mean, readings, Φ to the next frame."""
 
     P: Array
     delta: Array
-    readings: FrameReadings | None
+    readings: Readings | None
     vector: Array
     transition: Array | None
 
 
 def smooth(
-    kalman: DynamicFilter,
-    begin: DynamicState,
-    frames: Sequence[Frame],
+    kalman: Filter[DynamicState],
+    run: Sequence[Step[DynamicState]],
     rounds: int,
     wanted: int | None = None,
 ) -> Iterator[DynamicState]:
@@ -53,22 +43,24 @@ def smooth(
 
     Args:
         kalman: The filter that ran through it.
-        begin: Its posterior at the first frame.
-        frames: The stretch with what the filter found in it.
+        run: Its steps; the first one's state is taken as it is.
         rounds: How often to linearise anew.
         wanted: Only the first ``wanted`` frames are returned; the others are looked at.
     """
-    means = [frame.state for frame in frames]
+    begin, decided = run[0].state, [step.decisions for step in run]
+    means = [step.state for step in run]
     for _ in range(rounds - 1):
-        forward = _forward(kalman, begin, means, frames)
+        forward = _forward(kalman, begin, means, decided)
         steps = [step for step, _ in _backward(forward, covariances=False)]
-        share = _damping(steps, kalman.model.nv)
-        means = [kalman.retract(x, share * step, x.P) for x, step in zip(means, reversed(steps), strict=True)]
-    forward = _forward(kalman, begin, means, frames)
+        share = _damping(steps, kalman.layout.nv)
+        means = [
+            kalman.plant.retract(x, share * step, x.P) for x, step in zip(means, reversed(steps), strict=True)
+        ]
+    forward = _forward(kalman, begin, means, decided)
     steps_and_covariances = list(_backward(forward, covariances=True))[::-1]
     for mean, (step, P) in list(zip(means, steps_and_covariances, strict=True))[:wanted]:
         if P is not None:
-            yield kalman.retract(mean, step, P)
+            yield kalman.plant.retract(mean, step, P)
 
 
 def _damping(steps: Sequence[Array], nv: int) -> float:
@@ -78,19 +70,23 @@ def _damping(steps: Sequence[Array], nv: int) -> float:
 
 
 def _forward(
-    kalman: DynamicFilter, begin: DynamicState, means: Sequence[DynamicState], frames: Sequence[Frame]
+    kalman: Filter[DynamicState],
+    begin: DynamicState,
+    means: Sequence[DynamicState],
+    decided: Sequence[Decisions],
 ) -> list[_Forward]:
     """The filter in corrections δ of the trajectory ``means``."""
-    delta, P = kalman.difference(means[0], begin), begin.P
+    plant = kalman.plant
+    delta, P = plant.difference(means[0], begin), begin.P
     passed = [_Forward(P, delta, None, np.zeros_like(delta), None)]
-    for last, mean, frame in zip(means[:-1], means[1:], frames[1:], strict=True):
+    for last, mean, decisions in zip(means[:-1], means[1:], decided[1:], strict=True):
         before = replace(last, P=P)
-        transition = kalman.plant.transition(before)
-        prior = kalman.plant.predict(before, frame.decision.acceleration_sd)
-        kalman.unsettle(prior.P, frame.decision)
-        delta = transition @ delta + kalman.difference(mean, prior)
-        readings = kalman.linearise(mean, frame.decision, frame.markers_m)
-        P = informed_with_rows(prior.P.T, readings.matrix, readings.rows)
+        transition = plant.transition(before)
+        prior = plant.predict(before, decisions.noise)
+        kalman.inflate(prior.P, decisions.blocks)
+        delta = transition @ delta + plant.difference(mean, prior)
+        readings = kalman.linearise(mean, decisions)
+        P = informed_with_rows(prior.P, readings.matrix, readings.rows)
         vector = readings.whole_vector - readings.apply(delta)
         delta = delta + P @ vector
         passed[-1] = replace(passed[-1], transition=transition)

@@ -8,14 +8,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.filters.estimate import Estimate, Foresight, Recording
-from mbkf.filters.kinematic import KinematicFilter
-from mbkf.filters.kinematic_follower import warm_start
-from mbkf.filters.prediction import steady_motion
+from mbkf.filters.estimate import Estimate, Prediction, Recording
+from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.tracking import warm_start
 from mbkf.filters.spread import Spread, SpreadReader
-from mbkf.filters.torque import TorqueFilter, TorqueState, TorqueStep
-from mbkf.filters.torque_plant import ForcedState
+from mbkf.filters.torque.filter import TorqueFilter, TorqueState, TorqueStep
+from mbkf.filters.torque.plant import ForcedState
 from mbkf.numerics.smoothing import BackwardPass
+from mbkf.sensors.marker_prediction import MarkerPrediction
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, ContactMemory
 
@@ -30,8 +31,8 @@ class _Followed:
     memory: ContactMemory
 
 
-class TorqueFollower:
-    """Drives a :class:`TorqueFilter`; see :class:`mbkf.filters.estimate.Follower`."""
+class TorqueTracking:
+    """Drives a :class:`TorqueFilter`; see :class:`mbkf.filters.estimate.TrackingFilter`."""
 
     def __init__(self, kalman: TorqueFilter, feet: ContactDetector, starter: KinematicFilter) -> None:
         self.kalman, self.feet, self._starter = kalman, feet, starter
@@ -50,15 +51,15 @@ class TorqueFollower:
         nobody = np.zeros(recording.markers_m.shape[1], dtype=bool)
         return self._estimate(_Followed(state, None, None, load.memory), load.contacts, nobody, True)
 
-    def expect(self, before: Estimate) -> Foresight:
+    def predict(self, before: Estimate) -> Prediction:
         """By steady motion: the filter's own plant waits for the plates, which say what the torques do."""
         return steady_motion(before, self.covariance(before), self.kalman.sensor, self.dt_s)
 
     def step(
-        self, before: Estimate, recording: Recording, t: int, foresight: Foresight | None = None
+        self, before: Estimate, recording: Recording, t: int, prediction: Prediction | None = None
     ) -> Estimate:
         """One frame on; the feet's footing is decided where the motion before would carry them."""
-        del foresight
+        del prediction
         was: _Followed = before.inner
         state = was.state
         q = self.model.integrate(state.q, self.dt_s * state.v)
@@ -130,3 +131,23 @@ def _known(footing: tuple[Contact, Contact]) -> tuple[BoolArray, BoolArray]:
     """Feet (2,) whose wrench is known, and those in the air. A shared plate is no reading of either foot."""
     airborne = np.array([foot == Contact.AIR for foot in footing])
     return np.array([foot == Contact.MEASURED for foot in footing]) | airborne, airborne
+
+
+def steady_motion(estimate: Estimate, covariance: Array, sensor: MarkerSensor, dt_s: float) -> Prediction:
+    """The frame after an estimate by steady velocity (thesis eqs. 3.1–3.3).
+
+    P⁻ = P_qq + Δt (P_qv + P_vq) + Δt² P_vv + Δt⁴/4 σ_a², with the body's own table of accelerations.
+
+    Args:
+        estimate: A posterior.
+        covariance: (2 nv, 2 nv) its covariance P of (q, v).
+        sensor: The markers on the body.
+        dt_s: Time step Δt.
+    """
+    model, P = sensor.model, covariance
+    nv = model.nv
+    cross = dt_s * P[:nv, nv:]
+    predicted: Array = P[:nv, :nv] + cross + cross.T + dt_s**2 * P[nv:, nv:]
+    predicted[np.arange(nv), np.arange(nv)] += 0.25 * dt_s**4 * model.acceleration_sd**2
+    q = model.integrate(estimate.q, dt_s * estimate.v)
+    return Prediction(q, MarkerPrediction(sensor.reading(q), predicted), None)

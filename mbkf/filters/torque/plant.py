@@ -15,7 +15,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
-from mbkf.filters.integrators import Motion, integrator
+from mbkf.filters.torque.integrators import Motion, integrator
 from mbkf.model.forced_body import ForcedBody, LinearAcceleration
 from mbkf.numerics.discretisation import Discrete, discretise, symmetric
 from mbkf.numerics.kalman import Information, correct
@@ -32,7 +32,7 @@ class ForcedState:
 
 
 @dataclass(frozen=True)
-class Prediction:
+class ForcedPrediction:
     """A predicted ``state`` and the transition ``phi`` (n, n) from the state before, as a smoother needs them."""
 
     state: ForcedState
@@ -107,7 +107,7 @@ class TorquePlant:
             F[2 * nv :, 2 * nv :] = self.drift
         return F
 
-    def predict(self, state: ForcedState) -> Prediction:
+    def predict(self, state: ForcedState) -> ForcedPrediction:
         """The state one frame later (eqs. 2.48, 2.49)."""
         parts = max(1, self.scheme.substeps)
         h, density = self.dt_s / parts, self.density(state)
@@ -123,7 +123,7 @@ class TorquePlant:
                 u = self._fade @ u
         assert whole is not None
         P = symmetric(whole.phi @ state.P @ whole.phi.T + whole.noise)
-        return Prediction(ForcedState(now.q, now.v, u, P), whole.phi)
+        return ForcedPrediction(ForcedState(now.q, now.v, u, P), whole.phi)
 
     def _slope(self, now: Motion, later: Motion, u: Array) -> Array:
         F = self.sensitivity(now.v, self.body.linearise(now.q, now.v, u))

@@ -14,8 +14,8 @@ import numpy as np
 import scipy.linalg
 
 from mbkf.conventions import Array
-from mbkf.filters.torque_plant import ForcedState
-from mbkf.filters.torque_settings import MASS_OF_TABLE_KG, TorqueSettings
+from mbkf.filters.torque.plant import ForcedState
+from mbkf.filters.torque.settings import MASS_OF_TABLE_KG, TorqueSettings
 from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.numerics.discretisation import symmetric
 

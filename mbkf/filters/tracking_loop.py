@@ -5,45 +5,45 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 
-from mbkf.filters.estimate import Estimate, Follower, Foresight, Recording
+from mbkf.filters.estimate import Estimate, TrackingFilter, Prediction, Recording
 
 
-class Pursuit:
+class TrackingLoop:
     """Drives a filter from frame to frame, through a whole trial or a live stream alike.
 
     Attributes:
-        follower: The filter.
+        filter: The filter.
         estimate: The latest estimate, None before the first start.
     """
 
-    def __init__(self, follower: Follower) -> None:
-        self.follower = follower
+    def __init__(self, filter: TrackingFilter) -> None:
+        self.filter = filter
         self.estimate: Estimate | None = None
         self._lost_for = 0
-        self._foresight: Foresight | None = None
+        self._prediction: Prediction | None = None
 
     @property
     def must_start(self) -> bool:
         """Whether the next frame tries a start, which looks at the frames after it, too."""
-        lost = self._lost_for * self.follower.dt_s > self.follower.restart_after_s
+        lost = self._lost_for * self.filter.dt_s > self.filter.restart_after_s
         return self.estimate is None or lost
 
-    def expect(self) -> Foresight | None:
+    def predict(self) -> Prediction | None:
         """What the next frame should show, None where it has to start; the step into that frame goes on from it."""
         if self.estimate is None or self.must_start:
             return None
-        if self._foresight is None:
-            self._foresight = self.follower.expect(self.estimate)
-        return self._foresight
+        if self._prediction is None:
+            self._prediction = self.filter.predict(self.estimate)
+        return self._prediction
 
     def advance(self, recording: Recording, t: int) -> Estimate | None:
         """The estimate of frame t, the one after the latest; None as long as no start has succeeded."""
         before, fresh = self.estimate, None
-        foresight, self._foresight = self._foresight, None
+        prediction, self._prediction = self._prediction, None
         if self.must_start:
-            fresh = self.follower.start(recording, t, None if before is None else before.q)
+            fresh = self.filter.start(recording, t, None if before is None else before.q)
         if fresh is None and before is not None:
-            fresh = self.follower.step(before, recording, t, foresight)
+            fresh = self.filter.step(before, recording, t, prediction)
         if fresh is not None:
             self.estimate = fresh
             self._lost_for = 0 if fresh.tracked else self._lost_for + 1
@@ -51,14 +51,14 @@ class Pursuit:
 
     def forget(self) -> None:
         """Nothing is known any more; the next frame has to start anew."""
-        self.estimate, self._lost_for, self._foresight = None, 0, None
+        self.estimate, self._lost_for, self._prediction = None, 0, None
 
 
-def followed(follower: Follower, recording: Recording) -> Iterator[tuple[int, Estimate, float]]:
+def followed(filter: TrackingFilter, recording: Recording) -> Iterator[tuple[int, Estimate, float]]:
     """The estimates with their frames and computing times, s; frames before the first start have none."""
-    pursuit = Pursuit(follower)
+    loop = TrackingLoop(filter)
     for t in range(len(recording)):
         begin = time.perf_counter()
-        fresh = pursuit.advance(recording, t)
+        fresh = loop.advance(recording, t)
         if fresh is not None:
             yield t, fresh, time.perf_counter() - begin

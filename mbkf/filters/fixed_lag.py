@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from mbkf.filters.estimate import Estimate, Follower, Recording
+from mbkf.filters.estimate import Estimate, TrackingFilter, Recording
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class SmoothingSettings:
         return self.stretch_s + self.ahead_s
 
 
-class StretchSmoother:
+class FixedLagSmoother:
     """Takes estimates frame by frame and gives smoothed ones back as soon as they are due.
 
     A stretch begins with the last frame of the one before, so that differences over time have both their ends.
@@ -40,7 +40,7 @@ class StretchSmoother:
         recording: The readings the estimates came from.
     """
 
-    def __init__(self, follower: Follower, recording: Recording, settings: SmoothingSettings) -> None:
+    def __init__(self, follower: TrackingFilter, recording: Recording, settings: SmoothingSettings) -> None:
         self.follower, self.recording = follower, recording
         self._stretch = max(1, round(settings.stretch_s / follower.dt_s))
         self._ahead = max(1, round(settings.ahead_s / follower.dt_s))

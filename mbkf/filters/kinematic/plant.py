@@ -1,13 +1,40 @@
-"""Discrete white noise acceleration: the plant of the kinematic filter (SPEC §5, eqs. 3.1–3.3)."""
+"""Plant of the kinematic filter: discrete white noise acceleration (thesis eqs. 3.1–3.3).
+
+Bar-Shalom, Li, Kirubarajan, *Estimation with Applications to Tracking and Navigation*, 2001, 6.3.2.
+"""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import blas
 
 from mbkf.conventions import Array
-from mbkf.filters.state import FilterState
 from mbkf.model.human import HumanModel
+from mbkf.sensors.block import Notes
+from mbkf.sensors.layout import Layout
+
+
+@dataclass(frozen=True)
+class KinematicState:
+    """Positions and velocities.
+
+    Attributes:
+        q: (nq,) configuration.
+        v: (nv,) velocity, rad/s and m/s in the joints' own axes.
+        P: (2 nv, 2 nv) covariance of (q, v) in the tangent space.
+    """
+
+    q: Array
+    v: Array
+    P: Array
+
+    def reversed_in_time(self) -> KinematicState:
+        """The same instant of the motion played backwards: v changes sign, and its covariance with q."""
+        nv = len(self.v)
+        sign = np.concatenate([np.ones(nv), -np.ones(nv)])
+        return KinematicState(self.q, -self.v, sign[:, None] * self.P * sign)
 
 
 class WhiteAccelerationPlant:
@@ -18,6 +45,7 @@ class WhiteAccelerationPlant:
 
     Attributes:
         model: The body.
+        layout: Slices of the tangent state.
         dt_s: Time step Δt.
         acceleration_sd: (nv,) σ_a of each dof; 0 holds a dof where it is.
         position_noise, cross_noise, velocity_noise: (nv,) diagonals of the three blocks of the noise covariance.
@@ -25,13 +53,34 @@ class WhiteAccelerationPlant:
 
     def __init__(self, model: HumanModel, dt_s: float, acceleration_sd: Array) -> None:
         self.model, self.dt_s = model, dt_s
+        self.layout = Layout.of(model.nv, q=model.nv, v=model.nv)
         self.acceleration_sd = acceleration_sd
         variance = acceleration_sd**2
         self.position_noise = variance * dt_s**4 / 4.0
         self.cross_noise = variance * dt_s**3 / 2.0
         self.velocity_noise = variance * dt_s**2
 
-    def transition(self, state: FilterState) -> Array:
+    def begin(self) -> None:
+        """The noise is constant."""
+
+    def noise(self, memory: None) -> Array:
+        """(nv,) σ_a."""
+        del memory
+        return self.acceleration_sd
+
+    def remember(self, posterior: KinematicState, notes: Notes, memory: None) -> None:
+        """The noise is constant."""
+
+    def difference(self, origin: KinematicState, state: KinematicState) -> Array:
+        """(2 nv,) tangent vector from one state's mean to another's."""
+        return np.concatenate([self.model.difference(origin.q, state.q), state.v - origin.v])
+
+    def retract(self, state: KinematicState, step: Array, P: Array) -> KinematicState:
+        """The state moved by a tangent vector (2 nv,), with another covariance."""
+        nv = self.model.nv
+        return KinematicState(self.model.integrate(state.q, step[:nv]), state.v + step[nv:], P)
+
+    def transition(self, state: KinematicState) -> Array:
         """(2 nv, 2 nv) Φ at a state."""
         nv = self.model.nv
         phi = np.eye(2 * nv)
@@ -39,8 +88,9 @@ class WhiteAccelerationPlant:
         phi[:nv, nv:] *= self.dt_s
         return phi
 
-    def predict(self, state: FilterState) -> FilterState:
+    def predict(self, state: KinematicState, noise: Array | None = None) -> KinematicState:
         """The state one step later; its P = Φ P Φᵀ + Q is exactly symmetric and in Fortran order."""
+        del noise
         nv, step = self.model.nv, state.v * self.dt_s
         A, B = self.model.integration_derivatives(state.q, step)
         # In Fortran order the second product with them takes half the time.
@@ -54,7 +104,7 @@ class WhiteAccelerationPlant:
         np.add(half, half.T, out=P[:nv, :nv])
         P[nv:, nv:] = state.P[nv:, nv:]
         self._add_noise(P)
-        return FilterState(self.model.integrate(state.q, step), state.v, P.T)
+        return KinematicState(self.model.integrate(state.q, step), state.v, P.T)
 
     def _add_noise(self, P: Array) -> None:
         """Adds Q along the diagonals of P's four blocks."""

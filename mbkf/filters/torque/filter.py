@@ -13,15 +13,15 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.filters.gate import judged
-from mbkf.filters.state import FilterState
-from mbkf.filters.torque_noise import ForceNoise, condition, load_variance, residual_variance
-from mbkf.filters.torque_plant import ForcedState, Prediction, TorquePlant, on_state, update
-from mbkf.filters.torque_settings import MASS_OF_TABLE_KG, TorqueSettings
+from mbkf.sensors.gating import gated
+from mbkf.filters.kinematic.plant import KinematicState
+from mbkf.filters.torque.noise import ForceNoise, condition, load_variance, residual_variance
+from mbkf.filters.torque.plant import ForcedState, ForcedPrediction, TorquePlant, on_state, update
+from mbkf.filters.torque.settings import MASS_OF_TABLE_KG, TorqueSettings
 from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.numerics.kalman import Information, correct, information
 from mbkf.sensors.foot_wrench import FootWrenchSensor
-from mbkf.sensors.markers import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.posture import PostureSensor
 
 
@@ -65,7 +65,7 @@ class TorqueStep:
     """
 
     state: TorqueState
-    prediction: Prediction
+    prediction: ForcedPrediction
     refused: BoolArray
     nis: float
     readings: int
@@ -126,7 +126,7 @@ class TorqueFilter:
 
     def start(
         self,
-        motion: FilterState,
+        motion: KinematicState,
         acceleration: Array,
         foot_wrench: Array,
         measured: BoolArray,
@@ -181,7 +181,7 @@ class TorqueFilter:
         measured: BoolArray,
         airborne: BoolArray | None = None,
     ) -> TorqueStep:
-        """Prediction and correction by one frame.
+        """ForcedPrediction and correction by one frame.
 
         A filter that has diverged until nothing can be computed keeps its state and is untracked.
 
@@ -200,7 +200,7 @@ class TorqueFilter:
         if found is not None and np.isfinite(found.state.q).all() and np.isfinite(found.state.tau).all():
             return found
         nothing = np.zeros(len(measured_m), dtype=bool)
-        stay = Prediction(state.filtered, np.eye(len(state.filtered.P)))
+        stay = ForcedPrediction(state.filtered, np.eye(len(state.filtered.P)))
         return TorqueStep(state, stay, nothing, np.nan, 0, tracked=False, evidence=None)
 
     def _step(self, state: ForcedState, measured_m: Array, feet: FootReading) -> TorqueStep:
@@ -209,7 +209,7 @@ class TorqueFilter:
         reading = self.sensor.reading(prior.q)
         innovation = measured_m - reading.positions_m
         P, settings = prior.P[:nv, :nv], self.settings.tracking
-        seen, trusted, *_ = judged(innovation, reading, P, self.noise_m, settings)
+        seen, trusted, *_ = gated(innovation, reading, P, self.noise_m, settings.gate, settings.gate_radius_m)
         sd = np.repeat(self.noise_m[trusted], 3)
         markers = information(innovation[trusted].ravel(), reading.jacobian[trusted].reshape(-1, nv), sd)
         columns, sensed = self._sensed(prior, markers, feet)

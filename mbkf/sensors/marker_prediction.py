@@ -1,15 +1,15 @@
-"""Where a filter expects the markers of the next frame, and how surely (eq. 4.5 with its covariance)."""
+"""Predicted markers of the next frame with their covariance (thesis eq. 4.5)."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.sensors.markers import MarkerReading
+from mbkf.sensors.marker_sensor import MarkerReading
 
 
 @dataclass(frozen=True)
-class MarkerExpectation:
+class MarkerPrediction:
     """Markers predicted from a state.
 
     Attributes:

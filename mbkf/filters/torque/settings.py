@@ -27,8 +27,8 @@ import math
 from dataclasses import dataclass, field, replace
 
 from mbkf.errors import InvalidInput, UnknownName
-from mbkf.filters.settings import KinematicSettings
-from mbkf.filters.torque_plant import Scheme
+from mbkf.filters.kinematic.settings import KinematicSettings
+from mbkf.filters.torque.plant import Scheme
 
 MASS_OF_TABLE_KG = 100.0
 """Covariances of forces scale with the subject's mass over this (eq. 4.18)."""

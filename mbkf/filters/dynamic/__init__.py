@@ -1,0 +1,1 @@
+"""The dynamic filter: plant, settings, standard blocks, start and smoother."""

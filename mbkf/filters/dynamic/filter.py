@@ -1,0 +1,137 @@
+"""The dynamic filter: positions, velocities, accelerations and foot wrenches that obey Newton's law together.
+
+For given q and v, (a, w) and (τ, w) tell the same, τ = ID(q, v, a) − Jᵀw. A state of accelerations instead of torques
+has a linear plant that is never stiff; Newton's law at the pelvis is one of its readings, and torques follow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
+from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
+from mbkf.filters.dynamic.settings import DynamicSettings
+from mbkf.filters.filter import Filter, Step
+from mbkf.model.newton_euler import FEET, NewtonEuler
+from mbkf.sensors.block import AnyBlock, Frame
+from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.sensors.coordination.prior import CoordinationPrior
+from mbkf.sensors.foot_contact import FootContact
+from mbkf.sensors.inertial import InertialSensors
+from mbkf.sensors.inertial_sensor import InertialSensor
+from mbkf.sensors.joint_limits import JointLimits
+from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.sensors.markers import Markers
+from mbkf.sensors.mean_posture import MeanPosture
+from mbkf.sensors.newton_euler import NewtonEulerLaw
+from mbkf.sensors.planted import PlantedFeet
+from mbkf.sensors.posture import PosturePrior, PostureSensor
+from mbkf.sensors.unobserved import UnobservedJoints
+
+START_WRENCH_SD = 1000.0
+"""Standard deviation of a wrench before the first reading, N and N m."""
+
+
+def dynamic_blocks(
+    sensor: MarkerSensor,
+    noise_m: Array,
+    detector: ContactDetector,
+    dt_s: float,
+    unobservable: BoolArray,
+    settings: DynamicSettings,
+    inertial: InertialSensor | None = None,
+) -> list[AnyBlock]:
+    """The standard blocks, in the order in which they decide.
+
+    Args:
+        sensor: The markers on the body.
+        noise_m: (M,) their noise, m.
+        detector: Finds what the feet stand on.
+        dt_s: Time between frames.
+        unobservable: (nv,) dofs that no marker of the capture moves with.
+        settings: Settings of every block.
+        inertial: Inertial sensors on the body.
+    """
+    model, s, posture = sensor.model, settings, PostureSensor(sensor.model)
+    movement = np.where(unobservable, 0.0, s.motion.acceleration_scale * model.movement_sd)
+    blocks: list[AnyBlock] = [
+        Markers(sensor, noise_m, dt_s, unobservable, s.markers),
+        NewtonEulerLaw(NewtonEuler(model), s.law),
+        FootContact(detector, GRAVITY_M_S2 * model.mass_kg, dt_s, s.contact),
+        UnobservedJoints.of(movement, s.unobserved),
+        PlantedFeet(model, detector, FEET, s.planted),
+    ]
+    if inertial is not None:
+        blocks += [InertialSensors(inertial, s.inertial), MeanPosture(model, dt_s, s.mean_posture)]
+    if s.coordination.coordination_memory_s > 0.0:
+        blocks.append(CoordinationPrior(model, dt_s, unobservable, s.coordination))
+    return [
+        *blocks,
+        PosturePrior(posture, unobservable, s.posture),
+        JointLimits(posture, unobservable, s.limits),
+    ]
+
+
+class DynamicFilter(Filter[DynamicState]):
+    """A :class:`mbkf.filters.filter.Filter` with decaying accelerations and blocks on (q, v, a, wrenches).
+
+    Attributes:
+        sensor: The markers on the body.
+        noise_m: (M,) their noise, m.
+        unobservable: (nv,) dofs that no marker of the capture moves with.
+        settings: Settings of plant and blocks.
+        model: The body.
+        dt_s: Time between frames.
+        balance: Newton–Euler equations, for torques.
+    """
+
+    plant: SingerPlant
+
+    def __init__(
+        self,
+        sensor: MarkerSensor,
+        noise_m: Array,
+        dt_s: float,
+        unobservable: BoolArray,
+        settings: DynamicSettings,
+        blocks: Sequence[AnyBlock],
+    ) -> None:
+        """Makes the filter.
+
+        Args:
+            sensor: The markers on the body.
+            noise_m: (M,) their noise, m.
+            dt_s: Time between frames.
+            unobservable: (nv,) dofs that no marker of the capture moves with.
+            settings: Settings of plant and error covariance.
+            blocks: Instruments, laws and priors; :func:`dynamic_blocks` for the standard ones.
+        """
+        extras = [extra for block in blocks for extra in block.states()]
+        super().__init__(SingerPlant(sensor.model, dt_s, unobservable, settings.motion, extras), blocks)
+        self.sensor, self.unobservable, self.settings = sensor, unobservable, settings
+        self.noise_m = noise_m * settings.markers.marker_noise_scale
+        self.model, self.dt_s, self.balance = sensor.model, dt_s, NewtonEuler(sensor.model)
+
+    def first(self, q: Array, v: Array, a: Array, P: Array, frame: Frame) -> Step[DynamicState]:
+        """A first estimate from a pose and velocity, corrected by a frame.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            a: (nv,) acceleration.
+            P: (2 nv, 2 nv) covariance of (q, v).
+            frame: Readings of the frame; inertial ones are left out.
+        """
+        nv, layout = self.model.nv, self.layout
+        whole, sd = np.zeros((layout.size, layout.size)), np.zeros(layout.size)
+        free = np.tile(~self.unobservable, 2)
+        whole[: 2 * nv, : 2 * nv] = P * np.outer(free, free)
+        sd[layout.a] = np.where(self.unobservable, 0.0, self.model.acceleration_sd)
+        sd[layout.wrench] = START_WRENCH_SD
+        extra, sd[layout.wrench.stop :] = layout.start()
+        whole.reshape(-1)[:: layout.size + 1][2 * nv :] = sd[2 * nv :] ** 2
+        state, memory = DynamicState(q, v, a, np.zeros(12), whole.T, extra), self.begin()
+        prior = self.prepared(state, self.plant.acceleration_sd, memory)
+        return self.correct(prior, memory, frame._replace(imus=None))

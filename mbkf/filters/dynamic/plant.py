@@ -1,0 +1,245 @@
+"""Plant of the dynamic filter: decaying accelerations (Singer 1970) and foot wrenches that are random walks.
+
+Each dof's acceleration is a first-order Gauss–Markov process, ȧ = −a/T + jerk noise, with a stationary standard
+deviation σ_a; T → ∞ with σ_a²/T fixed is the constant-acceleration plant:
+
+    q' = q ⊕ (v Δt + a c₂),  v' = v + a c₁,  a' = ρ a,  w' = w
+    ρ = e^(−Δt/T),  c₁ = T(1 − ρ),  c₂ = T(Δt − c₁)
+
+σ_a follows the motion: a joint at rest is expected to stay so, a busy one to change quickly. How wrenches wander
+depends on where the feet then are and is the contact block's (:mod:`mbkf.sensors.foot_contact`).
+R. A. Singer, "Estimating optimal tracking filter performance for manned maneuvering targets", IEEE Transactions on
+Aerospace and Electronic Systems AES-6 (1970) 473–483.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.linalg import expm
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.model.human import HumanModel
+from mbkf.sensors.block import Notes
+from mbkf.sensors.layout import WRENCH, ExtraState, Layout
+
+
+@dataclass(frozen=True)
+class SingerSettings:
+    """Process noise of the dynamic filter.
+
+    Attributes:
+        acceleration_scale: Factor on the body's table of movement accelerations (``movement_sd``).
+        quiet_share: σ_a of a joint that rests, as a share of the table.
+        activity_gain, activity_rate: σ_a of one that moves is this times the root mean square of its recent
+            acceleration and of its velocity times the rate (1/s); gain 0 keeps the table.
+        activity_memory_s: Time over which that mean is taken.
+        busy_shares: σ_a is at most this many times the table, for the pelvis's translation and for all else.
+        decay_s: Time T in which an unobserved acceleration fades.
+    """
+
+    acceleration_scale: float = 1.0
+    quiet_share: float = 0.1
+    activity_gain: float = 6.0
+    activity_rate: float = 5.0
+    activity_memory_s: float = 0.05
+    busy_shares: tuple[float, float] = (2.0, 8.0)
+    decay_s: float = 0.04
+
+
+@dataclass(frozen=True)
+class DynamicState:
+    """Mean and covariance of positions, velocities, accelerations and foot wrenches.
+
+    Attributes:
+        q: (nq,) configuration.
+        v, a: (nv,) velocity and acceleration in the joints' own axes: rad/s, m/s, rad/s², m/s².
+        w: (12,) wrench of the ground on right and left foot: force N, moment N m about the world's origin, world axes.
+        P: (N, N) covariance of (q, v, a, w, extra) in the tangent space.
+        extra: (m,) states that blocks add.
+    """
+
+    q: Array
+    v: Array
+    a: Array
+    w: Array
+    P: Array
+    extra: Array = field(default_factory=lambda: np.zeros(0))
+
+
+class SingerPlant:
+    """Predicts a :class:`DynamicState`.
+
+    Attributes:
+        model: The body.
+        layout: Slices of the tangent state.
+        dt_s: Time step Δt.
+        acceleration_sd: (nv,) the table's σ_a; 0 holds a dof where it is.
+        settings: How σ_a adapts, and T.
+        rho, c1, c2: The factors above.
+        covariance: (3, 3) covariance of (q, v, a) after one step for σ_a = 1.
+    """
+
+    def __init__(
+        self,
+        model: HumanModel,
+        dt_s: float,
+        unobservable: BoolArray,
+        settings: SingerSettings = SingerSettings(),
+        extras: Sequence[ExtraState] = (),
+    ) -> None:
+        """Makes the plant.
+
+        Args:
+            model: The body.
+            dt_s: Time step.
+            unobservable: (nv,) dofs that no marker of the capture moves with; they stay where they are.
+            settings: Process noise.
+            extras: States that blocks add.
+        """
+        s, nv = settings, model.nv
+        self.model, self.dt_s, self.settings = model, dt_s, settings
+        self.layout = Layout.of(nv, q=nv, v=nv, a=nv, **{WRENCH: 12}).with_extras(extras)
+        self.acceleration_sd = np.where(unobservable, 0.0, s.acceleration_scale * model.movement_sd)
+        self.rho = float(np.exp(-dt_s / s.decay_s))
+        self.c1 = -s.decay_s * float(np.expm1(-dt_s / s.decay_s))
+        self.c2 = s.decay_s * (dt_s - self.c1)
+        self.covariance = _singer_noise(dt_s, s.decay_s)
+        self._calm = 1.0 - np.exp(-dt_s / s.activity_memory_s)
+        self._quiet = (s.quiet_share * self.acceleration_sd) ** 2
+        self._busiest = self.acceleration_sd * np.where(np.arange(nv) < 3, *s.busy_shares)
+        self._walk = self.layout.walk_variance(dt_s)
+        # Where in P the diagonals of the nine blocks of q, v and a lie.
+        row, column, dof = np.ogrid[:3, :3, :nv]
+        self._diagonals = (row * nv + dof) * self.layout.size + column * nv + dof
+
+    def begin(self) -> Array | None:
+        """No motion was seen yet."""
+        return None
+
+    def noise(self, memory: Array | None) -> Array:
+        """(nv,) σ_a of the next step."""
+        if memory is None:
+            return self.acceleration_sd
+        busy = np.sqrt(self._quiet + self.settings.activity_gain**2 * memory)
+        return np.minimum(busy, self._busiest)
+
+    def remember(self, posterior: DynamicState, notes: Notes, memory: Array | None) -> Array | None:
+        """(nv,) mean square of recent accelerations, m²/s⁴ or rad²/s⁴.
+
+        What nothing observes moves as the table says, or it would feed on its own guesses.
+        """
+        s, unobserved = self.settings, notes.unobserved
+        if s.activity_gain <= 0.0:
+            return None
+        now: Array = posterior.a**2 + (s.activity_rate * posterior.v) ** 2
+        if len(unobserved):
+            now[unobserved] = (self.acceleration_sd[unobserved] / s.activity_gain) ** 2
+        return now if memory is None else memory + self._calm * (now - memory)
+
+    def transition(self, state: DynamicState) -> Array:
+        """(N, N) Φ at a state."""
+        nv, n = self.model.nv, self.layout.size
+        phi = np.eye(n)
+        A, B = self.model.integration_derivatives(state.q, self.dt_s * state.v + self.c2 * state.a)
+        phi[:nv, :nv] = A
+        phi[:nv, nv : 2 * nv] = B * self.dt_s
+        phi[:nv, 2 * nv : 3 * nv] = B * self.c2
+        every = np.arange(nv)
+        phi[nv + every, 2 * nv + every] = self.c1
+        phi[2 * nv + every, 2 * nv + every] = self.rho
+        return phi
+
+    def predict(self, state: DynamicState, noise: Array | None = None) -> DynamicState:
+        """The state one step later; its P = Φ P Φᵀ + Q is exactly symmetric, new, and in Fortran order.
+
+        Args:
+            state: State.
+            noise: (nv,) σ_a for this step; None for the table's.
+        """
+        step = self.dt_s * state.v + self.c2 * state.a
+        A, B = self.model.integration_derivatives(state.q, step)
+        sd = self.acceleration_sd if noise is None else noise
+        P = self._carried(A, B, state.P if state.P.flags.c_contiguous else state.P.T)
+        P.reshape(-1)[self._diagonals] += self.covariance[:, :, None] * (sd * sd)
+        if len(self._walk):
+            P.reshape(-1)[:: len(P) + 1][-len(self._walk) :] += self._walk
+        q = self.model.integrate(state.q, step)
+        return DynamicState(q, state.v + self.c1 * state.a, self.rho * state.a, state.w, P.T, state.extra)
+
+    def difference(self, origin: DynamicState, state: DynamicState) -> Array:
+        """(N,) tangent vector from one state's mean to another's."""
+        q = self.model.difference(origin.q, state.q)
+        rest = (state.v - origin.v, state.a - origin.a, state.w - origin.w, state.extra - origin.extra)
+        return np.concatenate([q, *rest])
+
+    def retract(self, state: DynamicState, step: Array, P: Array) -> DynamicState:
+        """The state moved by a tangent vector (N,), with another covariance."""
+        nv = self.model.nv
+        w = 3 * nv + 12
+        return DynamicState(
+            self.model.integrate(state.q, step[:nv]),
+            state.v + step[nv : 2 * nv],
+            state.a + step[2 * nv : 3 * nv],
+            state.w + step[3 * nv : w],
+            P,
+            state.extra + step[w:],
+        )
+
+    def _carried(self, A: Array, B: Array, P: Array) -> Array:
+        """(N, N) Φ P Φᵀ from the blocks of a symmetric P, with Φ_q = [A, B Δt, B c₂, 0]."""
+        nv = self.model.nv
+        q, v, a, w = slice(nv), slice(nv, 2 * nv), slice(2 * nv, 3 * nv), slice(3 * nv, None)
+        new = np.empty(P.shape)
+        self._carry_rates(P, new)
+        by_step = B * self.dt_s
+        rows = A @ P[q]
+        rows += by_step @ self._pushed(P[v], P[a])
+        half = rows[:, q] @ A.T
+        half += self._pushed(rows[:, v], rows[:, a]) @ by_step.T
+        half *= 0.5
+        np.add(half, half.T, out=new[q, q])
+        ahead = new[q, v]
+        np.multiply(rows[:, a], self.c1, out=ahead)
+        ahead += rows[:, v]
+        np.multiply(rows[:, a], self.rho, out=new[q, a])
+        new[q, w] = rows[:, w]
+        new[nv:, q] = new[q, nv:].T
+        return new
+
+    def _pushed(self, v: Array, a: Array) -> Array:
+        """What velocities and accelerations add to positions, per Δt: v + a c₂ / Δt."""
+        pushed = a * (self.c2 / self.dt_s)
+        pushed += v
+        return pushed
+
+    def _carry_rates(self, P: Array, new: Array) -> None:
+        """The blocks of v, a and w, into ``new``."""
+        nv, c1, rho = self.model.nv, self.c1, self.rho
+        v, a, w = slice(nv, 2 * nv), slice(2 * nv, 3 * nv), slice(3 * nv, None)
+        ahead = P[a] * c1
+        ahead += P[v]
+        half = ahead[:, a] * c1
+        half += ahead[:, v]
+        half *= 0.5
+        np.add(half, half.T, out=new[v, v])
+        np.multiply(ahead[:, a], rho, out=new[v, a])
+        new[v, w] = ahead[:, w]
+        np.multiply(P[a, a], rho * rho, out=new[a, a])
+        np.multiply(P[a, w], rho, out=new[a, w])
+        new[w, w] = P[w, w]
+        new[2 * nv :, v] = new[v, 2 * nv :].T
+        new[w, a] = new[a, w].T
+
+
+def _singer_noise(dt_s: float, decay_s: float) -> Array:
+    """(3, 3) ∫ e^(Fs) G Gᵀ e^(Fᵀs) ds over Δt for unit stationary variance (Van Loan 1978)."""
+    F = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0 / decay_s]])
+    blocks = np.zeros((6, 6))
+    blocks[:3, :3], blocks[3:, 3:] = -F, F.T
+    blocks[2, 5] = 2.0 / decay_s
+    exponential = expm(blocks * dt_s)
+    noise = exponential[3:, 3:].T @ exponential[:3, 3:]
+    return 0.5 * (noise + noise.T)

@@ -1,0 +1,146 @@
+"""The dynamic filter on trials: started by the kinematic one, smoothed until Newton's law holds again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.filters.dynamic.filter import DynamicFilter
+from mbkf.filters.dynamic.plant import DynamicState
+from mbkf.filters.dynamic.smoother import smooth
+from mbkf.filters.error_covariance import ErrorCovariance
+from mbkf.filters.estimate import Estimate, Prediction, Recording
+from mbkf.filters.filter import Step
+from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.tracking import warm_start
+from mbkf.filters.spread import Spread, SpreadReader, root
+from mbkf.sensors.block import NO_DOFS
+from mbkf.sensors.marker_prediction import MarkerPrediction
+from mbkf.sensors.markers import Markers
+
+DynamicStep = Step[DynamicState]
+"""A step of the dynamic filter."""
+
+ROUNDS = 2
+"""How often a smoothed stretch is linearised; a third round changes the residual by less than 0.1 N."""
+
+
+class DynamicTracking:
+    """Drives a :class:`DynamicFilter`; see :class:`mbkf.filters.estimate.TrackingFilter`."""
+
+    def __init__(self, kalman: DynamicFilter, starter: KinematicFilter) -> None:
+        self.kalman, self._starter = kalman, starter
+        self.model, self.dt_s = kalman.model, kalman.dt_s
+        self.restart_after_s = starter.settings.restart_after_s
+        self._reader = SpreadReader(self.model)
+        self._unobservable = np.flatnonzero(kalman.unobservable)
+        self._anywhere = self.model.posture_sd[self._unobservable] ** 2
+
+    def start(self, recording: Recording, t: int, guess: Array | None) -> Estimate | None:
+        """The kinematic filter's warm start, corrected by this frame's plates and Newton's law."""
+        found = warm_start(self._starter, recording, t, guess)
+        if found is None:
+            return None
+        state, a = found.state, found.accelerations.mean(axis=0)
+        first = self.kalman.first(state.q, state.v, a, state.P, recording.frame(t))
+        return replace(self._estimate(first), tracked=True, started=True)
+
+    def predict(self, before: Estimate) -> Prediction:
+        """By the filter's own plant."""
+        was: DynamicStep = before.inner
+        prior = self.kalman.predict(was.state, was.memory)
+        nv = self.model.nv
+        reading = self.kalman.prepared_by(Markers, prior)
+        return Prediction(prior.state.q, MarkerPrediction(reading, prior.state.P[:nv, :nv]), prior)
+
+    def step(
+        self, before: Estimate, recording: Recording, t: int, prediction: Prediction | None = None
+    ) -> Estimate:
+        """One frame on."""
+        was: DynamicStep = before.inner
+        prior = None if prediction is None else prediction.prior
+        return self._estimate(self.kalman.step(was.state, was.memory, recording.frame(t), prior))
+
+    def covariance(self, estimate: Estimate) -> Array:
+        """(2 nv, 2 nv) of (q, v); dofs that no marker moves with may be anywhere a posture is."""
+        nv = self.model.nv
+        return self._configuration(self.errors(estimate).covariance()[: 2 * nv, : 2 * nv])
+
+    def spread(self, estimate: Estimate) -> Spread:
+        """Standard deviations; torques' from the whole state through Newton–Euler."""
+        state: DynamicState = estimate.inner.state
+        torque = self.kalman.balance.torques(state.q, state.v, state.a, state.w)
+        errors = self.errors(estimate)
+        variance = errors.position_variance
+        variance[self._unobservable] += self._anywhere
+        return Spread(
+            self._reader,
+            state.q,
+            variance,
+            errors.velocity_variance,
+            root(errors.variance_of(torque.by_state)),
+            lambda: self._configuration(errors.position),
+        )
+
+    def _configuration(self, P: Array) -> Array:
+        """A covariance (nv, nv) or more with what unobservable dofs may be, in place."""
+        P[self._unobservable, self._unobservable] += self._anywhere
+        return P
+
+    def errors(self, estimate: Estimate) -> ErrorCovariance:
+        """Those of the whole state; what the filter itself states where only white noise is expected."""
+        step: DynamicStep = estimate.inner
+        s, P, notes = self.kalman.settings, step.state.P, step.decisions.notes
+        share = s.markers.innovation_share
+        if share <= 0.0:
+            return ErrorCovariance(P, step.readings.matrix, NO_DOFS, 0.0, 1.0, 0.0)
+        known = ~self.kalman.unobservable
+        known[notes.unmarked] = False
+        seen = np.flatnonzero(known)
+        # A pose takes up part of what its markers err by, so innovations show less than that.
+        readings = 3 * int(np.count_nonzero(notes.trusted))
+        over = max(readings - len(seen), readings // 4)
+        skin = share * readings / max(over, 1)
+        return ErrorCovariance(
+            P, step.readings.matrix, seen, skin, s.errors.new_share, s.errors.skin_rate_rad_s
+        )
+
+    def wrench_sd(self, estimate: Estimate) -> Array:
+        """(2, 6) from the state's covariance."""
+        return np.sqrt(np.diag(estimate.inner.state.P)[self.kalman.layout.wrench]).reshape(2, 6)
+
+    def innovation(self, estimate: Estimate) -> tuple[float, int]:
+        """Of markers, plates and Newton's law."""
+        if estimate.started:
+            return np.nan, 0
+        step: DynamicStep = estimate.inner
+        return step.nis, step.count
+
+    def smooth(
+        self, run: Sequence[Estimate], recording: Recording, first: int, wanted: int
+    ) -> list[Estimate]:
+        """Iterated smoother; see :mod:`mbkf.filters.dynamic.smoother`."""
+        del recording, first
+        states = smooth(self.kalman, [estimate.inner for estimate in run], ROUNDS, wanted)
+        return [
+            replace(e, q=s.q, v=s.v, a=s.a, wrench=s.w.reshape(2, 6), inner=replace(e.inner, state=s))
+            for e, s in zip(run, states, strict=False)
+        ]
+
+    def _estimate(self, step: DynamicStep) -> Estimate:
+        state, notes = step.state, step.decisions.notes
+        contact = None if notes.contact is None else notes.contact.contacts
+        return Estimate(
+            state.q,
+            state.v,
+            state.a,
+            state.w.reshape(2, 6),
+            None if contact is None else (int(contact[0]), int(contact[1])),
+            step.refused,
+            step.tracked,
+            False,
+            step,
+        )

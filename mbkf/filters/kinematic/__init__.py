@@ -1,0 +1,1 @@
+"""The kinematic filter: plant, settings, start and smoother; torques afterwards by inverse dynamics."""

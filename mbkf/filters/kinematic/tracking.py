@@ -1,0 +1,187 @@
+"""The kinematic filter on trials: warm start, accelerations by differences (thesis eq. 3.7), linear smoother."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.filters.estimate import NO_WRENCH, Estimate, Prediction, Recording
+from mbkf.filters.filter import Memory, Step
+from mbkf.filters.kinematic.filter import KinematicFilter, VelocityStep
+from mbkf.filters.kinematic.plant import KinematicState
+from mbkf.filters.spread import Spread, SpreadReader
+from mbkf.numerics.smoothing import BackwardPass
+from mbkf.sensors.block import Frame
+from mbkf.sensors.marker_prediction import MarkerPrediction
+from mbkf.sensors.markers import Markers
+
+KinematicStep = Step[KinematicState]
+"""A step of the kinematic filter."""
+
+WARM_UP_S = 0.25
+"""Stretch of a trial that is first run through backwards to start with a velocity."""
+
+SETTLING_S = 0.05
+"""While a started filter settles, accelerations are those of the backward run."""
+
+
+def warm_up_frames(dt_s: float) -> int:
+    """How many frames after its own a warm start looks at."""
+    return round(WARM_UP_S / dt_s)
+
+
+@dataclass(frozen=True)
+class WarmStart:
+    """A first state, and the accelerations (n, nv) of the n frames from it on while the filter settles."""
+
+    state: KinematicState
+    accelerations: Array
+
+
+@dataclass(frozen=True)
+class KinematicRecord:
+    """The filter's own record of a frame.
+
+    Attributes:
+        state: Its state.
+        memory: For the next step.
+        step: The step to it, None at a start.
+        before: State of the frame before, None at a start.
+        settling: (n, nv) accelerations of the first frames after a start.
+        since: Frames since the start.
+    """
+
+    state: KinematicState
+    memory: Memory
+    step: KinematicStep | None
+    before: KinematicState | None
+    settling: Array
+    since: int
+
+
+def warm_start(
+    kalman: KinematicFilter, recording: Recording, t: int, guess: Array | None
+) -> WarmStart | None:
+    """A state at frame t that already knows its velocity: the next frames are run through backwards first.
+
+    Args:
+        kalman: The filter.
+        recording: The readings.
+        t: The frame.
+        guess: (nq,) configuration to start the pose fit from besides the segment-by-segment one.
+
+    Returns:
+        None where the frame's markers do not fit the body.
+    """
+    markers, dt = recording.markers_m, recording.dt_s
+    last = min(t + warm_up_frames(dt), len(markers) - 1)
+    here = kalman.start(markers[t], guess)
+    state = None if here is None else kalman.start(markers[last], here.q)
+    if here is None:
+        return None
+    if state is None or last == t:
+        return WarmStart(here, np.zeros((1, len(here.v))))
+    backwards, memory, no_plates = [state.v], kalman.begin(), np.zeros((0, 6))
+    for seen in markers[t:last][::-1]:
+        state = kalman.step(state, memory, Frame(seen, no_plates)).state
+        backwards.append(state.v)
+    accelerations = -np.diff(np.array(backwards)[::-1], axis=0) / dt
+    return WarmStart(state.reversed_in_time(), accelerations[: max(1, round(SETTLING_S / dt))])
+
+
+class KinematicTracking:
+    """Drives a :class:`KinematicFilter`; see :class:`mbkf.filters.estimate.TrackingFilter`."""
+
+    def __init__(self, kalman: KinematicFilter) -> None:
+        self.kalman = kalman
+        self.model = kalman.model
+        self.dt_s = kalman.plant.dt_s
+        self.restart_after_s = kalman.settings.restart_after_s
+        self._reader = SpreadReader(self.model)
+
+    def start(self, recording: Recording, t: int, guess: Array | None) -> Estimate | None:
+        """A warm start."""
+        found = warm_start(self.kalman, recording, t, guess)
+        if found is None:
+            return None
+        inner = KinematicRecord(found.state, self.kalman.begin(), None, None, found.accelerations, 0)
+        none = np.zeros(recording.markers_m.shape[1], dtype=bool)
+        q, v = found.state.q, found.state.v
+        return Estimate(q, v, found.accelerations[0], NO_WRENCH, None, none, True, True, inner)
+
+    def predict(self, before: Estimate) -> Prediction:
+        """By the filter's own plant."""
+        was: KinematicRecord = before.inner
+        prior, nv = self.kalman.predict(was.state, was.memory), self.model.nv
+        markers = MarkerPrediction(self.kalman.prepared_by(Markers, prior), prior.state.P[:nv, :nv])
+        return Prediction(prior.state.q, markers, prior)
+
+    def step(
+        self, before: Estimate, recording: Recording, t: int, prediction: Prediction | None = None
+    ) -> Estimate:
+        """One frame on."""
+        was: KinematicRecord = before.inner
+        prior = None if prediction is None else prediction.prior
+        step = self.kalman.step(was.state, was.memory, recording.frame(t), prior)
+        state, since = step.state, was.since + 1
+        settled = since >= len(was.settling)
+        a = (state.v - was.state.v) / self.dt_s if settled else was.settling[since]
+        inner = KinematicRecord(state, step.memory, step, was.state, was.settling, since)
+        return Estimate(
+            state.q, state.v, a, NO_WRENCH, None, step.refused, step.tracked, False, inner
+        )
+
+    def covariance(self, estimate: Estimate) -> Array:
+        """(2 nv, 2 nv) of (q, v)."""
+        return estimate.inner.state.P
+
+    def spread(self, estimate: Estimate) -> Spread:
+        """Standard deviations; torques as far as accelerations cause them, NaN at a start."""
+        inner: KinematicRecord = estimate.inner
+        q, P, nv = inner.state.q, inner.state.P, self.model.nv
+        torque = np.full(nv, np.nan)
+        if inner.step is not None and inner.before is not None:
+            change = VelocityStep(inner.before, inner.step, self.kalman.plant).covariance
+            torque = self._reader.torque(q, change, self.dt_s)
+        return Spread(self._reader, q, np.diagonal(P)[:nv], np.diagonal(P)[nv:], torque, lambda: P[:nv, :nv])
+
+    def wrench_sd(self, estimate: Estimate) -> Array:
+        """This filter estimates no wrench."""
+        del estimate
+        return NO_WRENCH
+
+    def innovation(self, estimate: Estimate) -> tuple[float, int]:
+        """Of the markers."""
+        step: KinematicStep | None = estimate.inner.step
+        return (np.nan, 0) if step is None else (step.nis, step.count)
+
+    def smooth(
+        self, run: Sequence[Estimate], recording: Recording, first: int, wanted: int
+    ) -> list[Estimate]:
+        """Linear smoother about the filter's own course; accelerations are central differences.
+
+        Torques keep the filter's standard deviations, which are larger than the smoothed ones.
+        """
+        del recording, first
+        states: list[KinematicState] = []
+        back = BackwardPass(2 * self.model.nv)
+        for k in range(len(run) - 1, -1, -1):
+            inner: KinematicRecord = run[k].inner
+            state = inner.state
+            states.append(
+                self.kalman.plant.retract(state, back.step(state.P), back.covariance(state.P))
+            )
+            if k and inner.step is not None and inner.before is not None:
+                known = inner.step.readings
+                back.through_readings(state.P, known.whole_matrix, known.whole_vector)
+                back.through_plant(self.kalman.plant.transition(inner.before))
+        states.reverse()
+        v = np.array([state.v for state in states])
+        a = np.gradient(v, self.dt_s, axis=0) if len(v) > 1 else np.zeros_like(v)
+        return [
+            replace(e, q=s.q, v=s.v, a=acc, inner=replace(e.inner, state=s))
+            for e, s, acc in list(zip(run, states, a, strict=True))[:wanted]
+        ]
