@@ -12,7 +12,7 @@ from mbkf.filters.settings import KinematicSettings
 from mbkf.filters.stretches import SmoothingSettings
 from mbkf.filters.torque_settings import TorqueSettings
 from mbkf.filters.tracking import track
-from mbkf.pipelines.followers import FilterInputs, follower
+from mbkf.pipelines.trial.followers import FilterInputs, follower
 from mbkf.sensors.markers import MarkerSensor
 from tests.dynamics import DT, MARKER_SD_M, trial
 from tests.motions import angle_errors, marker_positions

@@ -9,7 +9,7 @@ from mbkf.filters.stretches import SmoothingSettings
 from mbkf.filters.tracking import track
 from mbkf.imu.placement import typical_mounts
 from mbkf.imu.virtual import ImuErrors, virtual_imus
-from mbkf.pipelines.followers import follower
+from mbkf.pipelines.trial.followers import follower
 from mbkf.sensors.inertial import InertialSensor
 from tests.followed import FRAMES, inputs, made, recording, without
 

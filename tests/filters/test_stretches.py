@@ -7,7 +7,7 @@ import pytest
 
 from mbkf.filters.stretches import SmoothingSettings, StretchSmoother
 from mbkf.filters.tracking import track
-from mbkf.pipelines.followers import FILTERS
+from mbkf.pipelines.trial.followers import FILTERS
 from tests.dynamics import DT
 from tests.followed import WHOLE, errors, estimates, made, made_follower, recording, tracked, without
 from tests.motions import angle_errors
