@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.inertial.stride_measured import SMOOTHER_MM, compare_one, reference_strides
+from benchmarks.inertial.stride import SMOOTHER_MM
+from benchmarks.inertial.stride_measured import compare_one, reference_strides
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.imu.foot_filter import FootFilterSettings
 from mbkf.imu.key_points import KeyPointSettings
