@@ -1,5 +1,6 @@
-"""Measured promises: each module holds one benchmark, whose numbers must stay within stated bounds.
+"""Measured promises: each benchmark's numbers must stay within stated bounds.
 
-A benchmark is a module of this package with ``run(context: Context) -> list[Check]``; its name on the command
-line is the module's name, and the first sentence of its docstring says what it measures.
+A benchmark is a module or a package of this package that defines ``run(context: Context) -> list[Check]``; its name on
+the command line is the module's name, and the first sentence of its docstring says what it measures. Modules without
+``run`` are shared by several benchmarks or run alone (``picture``, ``screenshots``).
 """

@@ -6,13 +6,14 @@ Exit code 2: wrong usage, an unknown name, or reference captures that are missin
 from __future__ import annotations
 
 import argparse
+import ast
 import importlib
 import json
 import math
 import os
 import pkgutil
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from time import perf_counter
@@ -26,36 +27,21 @@ from mbkf.errors import InvalidInput, MbkfError, UnknownName
 
 DATA_VARIABLE = "MBKF_DATA"
 _PIPED_WIDTH = 120
-NOT_BENCHMARKS = {
-    "__main__",
-    "checks",
-    "commands",
-    "dynamic_captures",
-    "dynamic_consistency",
-    "dynamic_losses",
-    "dynamic_methods",
-    "dynamic_offline",
-    "dynamic_synthetic",
-    "live_runs",
-    "inertial_body",
-    "inertial_orientation",
-    "inertial_stride",
-    "inertial_stride_page",
-    "inertial_stride_study",
-    "labelling_any_attitude",
-    "labelling_live",
-    "labelling_rows",
-    "labelling_speed",
-    "picture",
-    "references",
-    "screenshots",
-}
+ENTRY_POINT = "run"
+"""A module or package at the top of this package that defines a function of this name is a benchmark."""
 
 
 def names() -> tuple[str, ...]:
-    """Names of all benchmarks, in alphabetical order."""
-    found = (module.name for module in pkgutil.iter_modules(benchmarks.__path__))
-    return tuple(sorted(set(found) - NOT_BENCHMARKS))
+    """Names of all benchmarks, in alphabetical order; read from the sources, so that none has to be imported."""
+    return tuple(sorted(name for folder in benchmarks.__path__ for name in _found_in(Path(folder))))
+
+
+def _found_in(folder: Path) -> Iterator[str]:
+    for module in pkgutil.iter_modules([str(folder)]):
+        source = folder / module.name / "__init__.py" if module.ispkg else folder / f"{module.name}.py"
+        tree = ast.parse(source.read_text(encoding="utf-8"), str(source))
+        if any(isinstance(node, ast.FunctionDef) and node.name == ENTRY_POINT for node in tree.body):
+            yield module.name
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -119,7 +105,7 @@ def _run(args: argparse.Namespace) -> list[Check]:
         out.mkdir(parents=True, exist_ok=True)
         start = perf_counter()
         module = importlib.import_module(f"benchmarks.{name}")
-        results[name] = module.run(Context(data=args.data, out=out, quick=args.quick))
+        results[name] = getattr(module, ENTRY_POINT)(Context(data=args.data, out=out, quick=args.quick))
         console.print(_table(name, results[name], perf_counter() - start))
     _write(args.out / "checks.json", results, args.quick)
     return [check for checks in results.values() for check in checks]

@@ -19,8 +19,8 @@ from mbkf.cli.main import main as mbkf_command
 from mbkf.io.results import Reconstruction
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.model.human import HumanModel
-from mbkf.stream.frame import LiveFrame
-from mbkf.viz.live_page import LivePage
+from mbkf.stream.results.frame import LiveFrame
+from mbkf.viz.live.page import LivePage
 
 FLAGS = ("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 LIVE_S = 9.0

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from mbkf.io.subject import read_subject, write_subject
     from mbkf.model.human import HumanModel
     from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
+    from mbkf.pipelines.results.summary import summarise
     from mbkf.pipelines.scale import scale
-    from mbkf.pipelines.summary import summarise
 
 _HOMES = {
     "HumanModel": "mbkf.model.human",
@@ -29,7 +29,7 @@ _HOMES = {
     "read_subject": "mbkf.io.subject",
     "reconstruct": "mbkf.pipelines.reconstruct",
     "scale": "mbkf.pipelines.scale",
-    "summarise": "mbkf.pipelines.summary",
+    "summarise": "mbkf.pipelines.results.summary",
     "write_reconstruction": "mbkf.io.results_folder",
     "write_subject": "mbkf.io.subject",
 }

@@ -3,12 +3,11 @@
 from dataclasses import replace
 
 import numpy as np
-
-from mbkf.filters.kinematic.plant import WhiteAccelerationPlant
 from mbkf.filters.dynamic_records import Decision, Expected
-from mbkf.filters.torque.integrators import Motion, runge_kutta
+
 from mbkf.filters.dynamic.plant import SingerPlant
-from mbkf.filters.kinematic.plant import KinematicState
+from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
+from mbkf.filters.torque.integrators import Motion, runge_kutta
 from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant
 from mbkf.sensors.foot_wrench import FootWrenchSensor
 from mbkf.sensors.joint_limits import JointLimits

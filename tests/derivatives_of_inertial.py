@@ -1,10 +1,10 @@
 """Cases of tests/test_jacobians.py: inertial sensors on the body, and what they add to the dynamic filter."""
 
 import numpy as np
+from mbkf.sensors.inertial_rows import InertialRows
 
 from mbkf.io.imu_mount import ImuMount
 from mbkf.sensors.inertial_sensor import InertialSensor
-from mbkf.sensors.inertial_rows import InertialRows
 from tests.derivatives import checks, named, slope
 from tests.motions import central_difference, moderate_pose, random_model
 

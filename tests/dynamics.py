@@ -7,8 +7,8 @@ import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.filters.dynamic.filter import DynamicFilter
-from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.dynamic.plant import DynamicState
+from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.io.records import PlateReadings
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel

@@ -4,15 +4,16 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+from mbkf.pipelines.followers import FilterInputs, follower
 
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.estimate import Recording
+from mbkf.filters.fixed_lag import SmoothingSettings
 from mbkf.filters.inverse_dynamics import inverse_dynamics
 from mbkf.filters.kinematic.settings import KinematicSettings
-from mbkf.filters.fixed_lag import SmoothingSettings
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.filters.tracking import track
-from mbkf.pipelines.followers import FilterInputs, follower
+from mbkf.pipelines.trial.followers import FilterInputs, follower
 from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.dynamics import DT, MARKER_SD_M, trial
 from tests.motions import angle_errors, marker_positions

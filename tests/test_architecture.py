@@ -40,7 +40,8 @@ UNTESTED: dict[str, str] = {}
 """Modules without a test of their own, each with its reason: {"mbkf/io/x.py": "where it is tested"}."""
 
 SOURCES = sorted(PACKAGE.rglob("*.py"))
-LINTED = sorted(chain(SOURCES, (ROOT / "benchmarks").rglob("*.py"), TESTS.rglob("*.py")))
+BENCHMARKS = sorted((ROOT / "benchmarks").rglob("*.py"))
+LINTED = sorted(chain(SOURCES, BENCHMARKS, TESTS.rglob("*.py")))
 
 
 def relative(path: Path) -> str:
@@ -129,6 +130,41 @@ def test_file_imports_only_from_rooms_to_its_left(path):
 )
 def test_the_import_rule_sees_what_it_should(room, source, bad):
     assert forbidden(room, imported_modules(ast.parse(source), f"mbkf.{room}")) == bad
+
+
+def imported_files(path: Path, modules: dict[str, Path]) -> set[Path]:
+    """Files that a file imports anywhere, for types only or inside a function included; itself left out."""
+    found = {modules.get(name) or modules.get(name.rpartition(".")[0]) for name in imports_of(path)}
+    return {other for other in found if other is not None and other != path}
+
+
+def circle_in(edges: dict[Path, set[Path]]) -> list[str]:
+    """One circle of files, the first of them named again at the end; empty where there is none."""
+    done: set[Path] = set()
+
+    def visit(path: Path, way: list[Path]) -> list[Path]:
+        if path in way:
+            return [*way[way.index(path) :], path]
+        if path in done:
+            return []
+        for other in sorted(edges[path]):
+            if found := visit(other, [*way, path]):
+                return found
+        done.add(path)
+        return []
+
+    return next(([relative(one) for one in found] for path in edges if (found := visit(path, []))), [])
+
+
+def test_no_files_import_each_other_in_a_circle():
+    modules = {module_name(path): path for path in chain(SOURCES, BENCHMARKS)}
+    assert circle_in({path: imported_files(path, modules) for path in modules.values()}) == []
+
+
+def test_a_circle_is_found():
+    a, b, c = (ROOT / name for name in ("a.py", "b.py", "c.py"))
+    assert circle_in({a: {b}, b: {c}, c: set()}) == []
+    assert circle_in({a: {b}, b: {c}, c: {b}}) == ["b.py", "c.py", "b.py"]
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=relative)

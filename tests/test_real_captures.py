@@ -18,8 +18,8 @@ from mbkf.io.results import Reconstruction
 from mbkf.io.results_opensim import angles_table, torques_table
 from mbkf.io.storage import read_storage
 from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
+from mbkf.pipelines.results.summary import summarise
 from mbkf.pipelines.scale import scale
-from mbkf.pipelines.summary import summarise
 
 
 def followed(

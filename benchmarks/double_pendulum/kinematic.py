@@ -10,8 +10,7 @@ import numpy as np
 from benchmarks.double_pendulum.torque import START_VARIANCE
 from benchmarks.double_pendulum.trials import Estimate, Trial
 from mbkf.conventions import Array
-from mbkf.filters.kinematic.plant import WhiteAccelerationPlant
-from mbkf.filters.kinematic.plant import KinematicState
+from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
 from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
 from mbkf.model.human import HumanModel
 from mbkf.numerics.kalman import correct, information

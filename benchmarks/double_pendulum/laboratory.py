@@ -10,7 +10,7 @@ from time import perf_counter
 from typing import TypeVar
 
 from benchmarks.double_pendulum.trials import Method, Recipe, Scores, score
-from benchmarks.dynamic_methods import WORKERS, Mapper, in_parallel
+from benchmarks.dynamic.methods import WORKERS, Mapper, in_parallel
 from mbkf.cli.progress import stages
 from mbkf.conventions import StageCallback
 from mbkf.numerics.threads import single_threaded

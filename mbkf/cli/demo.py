@@ -67,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _write_report(demo: Demo) -> None:
-    from mbkf.viz.report import labels_of, write_report
+    from mbkf.viz.report.document import labels_of, write_report
 
     path = demo.folder / "report.html"
     write_report(demo.result, demo.summary, path, labels_of(demo.folder / "result", demo.result.trial))

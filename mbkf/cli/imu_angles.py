@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from mbkf.conventions import Array
     from mbkf.io.imu import ImuReadings
     from mbkf.model.human import HumanModel
-    from mbkf.pipelines.imu_angles import ImuAngles
+    from mbkf.pipelines.imu.angles import ImuAngles
 
 _EPILOG = """\
 examples:
@@ -78,7 +78,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.atomic import check_folder
     from mbkf.io.subject import read_subject
     from mbkf.model.human import HumanModel
-    from mbkf.pipelines.imu_angles import AnglesSettings, imu_angles
+    from mbkf.pipelines.imu.angles import AnglesSettings, imu_angles
 
     folder = check_folder(args.out)
     model = HumanModel.scaled()
@@ -130,7 +130,7 @@ def _standing(args: argparse.Namespace) -> tuple[float, float] | tuple[ImuReadin
 def _posture(path: str, model: HumanModel) -> Array:
     """(nq,) configuration in the middle of a motion of somebody who stands."""
     from mbkf.errors import InvalidInput
-    from mbkf.pipelines.imu_synth import read_motion
+    from mbkf.pipelines.imu.synth import read_motion
 
     motion = read_motion(path)
     if motion.model.nq != model.nq:

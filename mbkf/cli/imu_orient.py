@@ -74,7 +74,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.imu.orientation_ekf import OrientationSettings
     from mbkf.io.atomic import check_folder, replacing
     from mbkf.io.imu_write import write_orientation_csv
-    from mbkf.pipelines.imu_orient import orient, summarise
+    from mbkf.pipelines.imu.orient import orient, summarise
 
     settings = OrientSettings(
         args.filter,
@@ -102,7 +102,7 @@ def run(args: argparse.Namespace) -> int:
             course.sd_rad, note,
         )  # fmt: skip
         if result.compared:
-            from mbkf.viz.orientation_plots import write_comparison
+            from mbkf.viz.imu.orientation import write_comparison
 
             write_comparison(course, result.compared[k], folder / f"{stem}_compare.png")
     with replacing(folder / "orientation.json") as partial:

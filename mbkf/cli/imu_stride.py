@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from mbkf.io.imu import ImuReadings
-    from mbkf.pipelines.stride import StrideMeasurement, StrideSettings
+    from mbkf.pipelines.imu.stride import StrideMeasurement, StrideSettings
 
 PICTURE_FILE = "feet.png"
 _MOST_FEET = 2
@@ -81,9 +81,9 @@ def run(args: argparse.Namespace) -> int:
     """
     from mbkf.cli.progress import stages
     from mbkf.io.atomic import check_folder
-    from mbkf.pipelines.stride import measure_strides
-    from mbkf.pipelines.stride_folder import write_strides
-    from mbkf.viz.foot_path import write_foot_path
+    from mbkf.pipelines.imu.stride import measure_strides
+    from mbkf.pipelines.imu.stride_folder import write_strides
+    from mbkf.viz.imu.foot_path import write_foot_path
 
     check_folder(args.out)
     settings = _settings(args)
@@ -100,7 +100,7 @@ def _settings(args: argparse.Namespace) -> StrideSettings:
     from mbkf.errors import InvalidInput
     from mbkf.imu.foot_filter import LEVEL_M, FootFilterSettings
     from mbkf.imu.key_points import KeyPointSettings
-    from mbkf.pipelines.stride import StrideSettings
+    from mbkf.pipelines.imu.stride import StrideSettings
 
     own = {name: getattr(args, name) for name in ("threshold", "window") if getattr(args, name) is not None}
     if args.weights is not None:
@@ -144,7 +144,7 @@ def _print(measured: StrideMeasurement, out: str) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from mbkf.pipelines.stride import STRAIGHT_DEG, summarise
+    from mbkf.pipelines.imu.stride import STRAIGHT_DEG, summarise
 
     summary = summarise(measured)
     table = Table(title=f"{out}: {summary['method_meaning']}", title_justify="left")

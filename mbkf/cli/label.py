@@ -67,8 +67,8 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
     from mbkf.io.subject import write_subject
-    from mbkf.pipelines.label_files import write_labels
-    from mbkf.pipelines.label_score import score
+    from mbkf.pipelines.labelling.files import write_labels
+    from mbkf.pipelines.labelling.score import score
 
     out = _checked(Path(args.out), Path(args.raw))
     check_folder(out.parent)

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mbkf.io.subject import Subject
-    from mbkf.stream.frame import FrameSink
-    from mbkf.stream.session import LiveOutcome, LiveSession
+    from mbkf.stream.results.frame import FrameSink
+    from mbkf.stream.run.session import LiveOutcome, LiveSession
+    from mbkf.stream.run.standing import KnownPerson, ScaledPerson, StandingStart
     from mbkf.stream.source import FrameSource
-    from mbkf.stream.standing import KnownPerson, ScaledPerson, StandingStart
-    from mbkf.viz.standing_page import StandingPage
+    from mbkf.viz.live.standing_page import StandingPage
 
 LEAST_PATIENCE_S = 30.0
 """With a time limit, a stream that never appears is waited for at least so long."""
@@ -123,8 +123,8 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.subject import Subject
     from mbkf.pipelines.presets import with_preset
     from mbkf.pipelines.reconstruct import ReconstructSettings
-    from mbkf.stream.session import LiveSession
-    from mbkf.stream.standing import StandingStart
+    from mbkf.stream.run.session import LiveSession
+    from mbkf.stream.run.standing import StandingStart
 
     if args.recover is not None:
         return _recover(Path(args.recover))
@@ -180,7 +180,7 @@ def _person(args: argparse.Namespace) -> Subject | KnownPerson:
     from mbkf.errors import InvalidInput
     from mbkf.io.subject import read_subject
     from mbkf.model.protocol import load_protocol
-    from mbkf.stream.standing import KnownPerson
+    from mbkf.stream.run.standing import KnownPerson
 
     if args.subject is None:
         if args.mass is not None:
@@ -198,7 +198,7 @@ def _waiting_page(args: argparse.Namespace) -> Iterator[StandingPage | None]:
     if not args.view or args.subject is not None:
         yield None
         return
-    from mbkf.viz.standing_page import StandingPage
+    from mbkf.viz.live.standing_page import StandingPage
 
     page = StandingPage(address=args.view_address, port=args.view_port, token=args.token)
     try:
@@ -243,11 +243,11 @@ def _source(args: argparse.Namespace) -> FrameSource:
 
     kind: str = args.source
     if kind == "lsl":
-        from mbkf.stream.lsl_source import LslSource
+        from mbkf.stream.lsl.source import LslSource
 
         return LslSource(args.stream, args.plates_stream)
     if kind == "natnet":
-        from mbkf.stream.natnet_source import NatNetSource
+        from mbkf.stream.natnet.source import NatNetSource
 
         return NatNetSource(args.server, args.local, args.port, args.multicast, args.up or "y")
     if not kind.startswith(FILE_PREFIX):
@@ -266,11 +266,11 @@ def _source(args: argparse.Namespace) -> FrameSource:
 def _sinks(args: argparse.Namespace, session: LiveSession, waiting: StandingPage | None) -> list[FrameSink]:
     sinks: list[FrameSink] = []
     if args.publish is not None:
-        from mbkf.stream.lsl_results import LslResults
+        from mbkf.stream.lsl.results import LslResults
 
         sinks.append(LslResults(session.model, args.publish, session.stream.rate_hz))
     if args.websocket is not None:
-        from mbkf.stream.websocket_results import WebSocketResults, parse_address
+        from mbkf.stream.results.websocket import WebSocketResults, parse_address
 
         address, port = parse_address(args.websocket)
         served = WebSocketResults(session.model, address, port, args.token)
@@ -283,7 +283,7 @@ def _sinks(args: argparse.Namespace, session: LiveSession, waiting: StandingPage
 
 def _live_page(args: argparse.Namespace, session: LiveSession, waiting: StandingPage | None) -> FrameSink:
     """The live page, where the waiting page was if there was one."""
-    from mbkf.viz.live_page import LivePage
+    from mbkf.viz.live.page import LivePage
 
     port, token = (args.view_port, args.token) if waiting is None else waiting.hand_over()
     page = LivePage(
@@ -302,7 +302,7 @@ def _live_page(args: argparse.Namespace, session: LiveSession, waiting: Standing
 
 def _recover(folder: Path) -> int:
     from mbkf.errors import InvalidInput
-    from mbkf.stream.run_folder import write_results
+    from mbkf.stream.run.folder import write_results
 
     summary, problem = write_results(folder, ("live: made from the log of a run that broke off",))
     if summary is None:

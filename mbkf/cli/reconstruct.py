@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from mbkf.pipelines.imu_body import ImuOnBody
+    from mbkf.pipelines.imu.on_body import ImuOnBody
     from mbkf.pipelines.reconstruct import Hidden
 
 _EPILOG = """\
@@ -89,8 +89,8 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.subject import read_subject
     from mbkf.pipelines.presets import with_preset
     from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
-    from mbkf.pipelines.summary import summarise
-    from mbkf.pipelines.truth import truth_beside
+    from mbkf.pipelines.results.summary import summarise
+    from mbkf.pipelines.results.truth import truth_beside
 
     hide = tuple(parse_hide(text) for text in args.hide)
     subject = read_subject(args.subject)
@@ -120,7 +120,7 @@ def _imus(args: argparse.Namespace) -> ImuOnBody | None:
     from mbkf.errors import InvalidInput
     from mbkf.io.imu_files import read_imu
     from mbkf.io.imu_mount import read_mounts
-    from mbkf.pipelines.imu_body import ImuOnBody
+    from mbkf.pipelines.imu.on_body import ImuOnBody
 
     if not args.imu:
         if args.imu_mounts is not None:

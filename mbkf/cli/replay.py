@@ -102,9 +102,9 @@ def run(args: argparse.Namespace) -> int:
 
 def _player(args: argparse.Namespace, stream: Played) -> Player:
     if args.to == "lsl":
-        from mbkf.stream.lsl_player import LslPlayer
+        from mbkf.stream.lsl.player import LslPlayer
 
         return LslPlayer(stream, args.name, args.speed)
-    from mbkf.stream.natnet_player import NatNetPlayer
+    from mbkf.stream.natnet.player import NatNetPlayer
 
     return NatNetPlayer(stream, args.address, args.port)

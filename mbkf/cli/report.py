@@ -42,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
         OSError: The page cannot be written.
     """
     from mbkf.io.results_folder import read_reconstruction, read_summary
-    from mbkf.viz.report import labels_of, read_labels, write_report
+    from mbkf.viz.report.document import labels_of, read_labels, write_report
 
     folder = Path(args.folder)
     result = read_reconstruction(folder)

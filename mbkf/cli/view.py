@@ -42,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
     import webbrowser
 
     from mbkf.io.results_folder import read_reconstruction
-    from mbkf.viz.playback import playback_page, write_playback
+    from mbkf.viz.scene.playback import playback_page, write_playback
     from mbkf.viz.server import PageServer, checked_port
 
     port = checked_port(args.port)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from mbkf.filters.estimate import Estimate, TrackingFilter, Recording
+from mbkf.filters.estimate import Estimate, Recording, TrackingFilter
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,8 @@ from mbkf.errors import InvalidInput
 from mbkf.filters.dynamic.tracking import DynamicTracking
 from mbkf.filters.estimate import Estimate, Recording, TrackingFilter
 from mbkf.filters.filter import Filter, Step
-from mbkf.filters.tracking_loop import followed
 from mbkf.filters.kinematic.tracking import KinematicTracking
+from mbkf.filters.tracking_loop import followed
 from mbkf.numerics.likelihood import LogLikelihood, log_likelihood
 
 OUTLIER = 0.0
@@ -102,9 +102,7 @@ def step_likelihood(kalman: Filter[Any], step: Step[Any]) -> tuple[LogLikelihood
         LinAlgError: The prior covariance is not finite or not positive.
     """
     compressed, others = 0.0, 0.0
-    for block, decision, rows in zip(
-        kalman.blocks, step.decisions.blocks, step.readings.parts, strict=True
-    ):
+    for block, decision, rows in zip(kalman.blocks, step.decisions.blocks, step.readings.parts, strict=True):
         if any(one.readings for one in rows):
             others += block.log_noise(decision)
         else:

@@ -9,9 +9,9 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import NotObservable
-from mbkf.filters.estimate import Estimate, TrackingFilter, Recording
+from mbkf.filters.estimate import Estimate, Recording, TrackingFilter
+from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
 from mbkf.filters.tracking_loop import followed
-from mbkf.filters.fixed_lag import SmoothingSettings, FixedLagSmoother
 
 
 @dataclass(frozen=True)

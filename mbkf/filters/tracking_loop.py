@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 
-from mbkf.filters.estimate import Estimate, TrackingFilter, Prediction, Recording
+from mbkf.filters.estimate import Estimate, Prediction, Recording, TrackingFilter
 
 
 class TrackingLoop:

@@ -30,7 +30,7 @@ def write_reconstruction(
 
     Args:
         reconstruction: What was found.
-        summary: Plain data for summary.json (see ``mbkf.pipelines.summary``); NaN becomes null.
+        summary: Plain data for summary.json (see ``mbkf.pipelines.results.summary``); NaN becomes null.
         folder: Where to write; made where missing.
 
     Returns:

@@ -18,11 +18,11 @@ from mbkf.io.truth import Truth
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.pipelines.label import label
-from mbkf.pipelines.label_files import write_labels
-from mbkf.pipelines.label_score import score
+from mbkf.pipelines.labelling.files import write_labels
+from mbkf.pipelines.labelling.score import score
 from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
+from mbkf.pipelines.results.summary import summarise
 from mbkf.pipelines.scale import scale
-from mbkf.pipelines.summary import summarise
 from mbkf.pipelines.synth import synthesise, write_folder
 
 COORDINATES = (

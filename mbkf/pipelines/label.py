@@ -17,11 +17,11 @@ from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.first_frame import FirstFrame, labelled
 from mbkf.labelling.running import RunningSettings
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.any_attitude import STAGE, AnyAttitude
-from mbkf.pipelines.label_body import LabelBody, label_body
-from mbkf.pipelines.label_doubts import Doubts
-from mbkf.pipelines.label_redecision import redecided, trajectories
-from mbkf.pipelines.label_score import LabelScore
+from mbkf.pipelines.labelling.any_attitude import STAGE, AnyAttitude
+from mbkf.pipelines.labelling.body import LabelBody, label_body
+from mbkf.pipelines.labelling.doubts import Doubts
+from mbkf.pipelines.labelling.redecision import redecided, trajectories
+from mbkf.pipelines.labelling.score import LabelScore
 
 CANDIDATES = 8
 """Frames, spread over the capture, that are looked at for a start."""

@@ -11,8 +11,8 @@ from typing import Any
 from mbkf.errors import FileFormatError, InvalidInput, UnknownName
 from mbkf.filters.torque.settings import SCHEMES, preset
 from mbkf.io.preset import SUFFIX, Preset, preset_folder, read_preset, saved_presets
-from mbkf.pipelines.followers import FILTERS
 from mbkf.pipelines.reconstruct import ReconstructSettings
+from mbkf.pipelines.trial.followers import FILTERS
 
 LITERAL = "-literal"
 BUILT_IN = tuple(name + end for name in SCHEMES for end in ("", LITERAL))

@@ -11,8 +11,8 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray, StageCallback
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
 from mbkf.filters.dynamic.settings import DynamicSettings
-from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.fixed_lag import SmoothingSettings
+from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.filters.tracking import Track, track
 from mbkf.io.records import Capture, MarkerTrajectories
@@ -20,11 +20,11 @@ from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject, match_names
 from mbkf.model.clinical import dof_names
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.clinical import clinical_motion
-from mbkf.pipelines.followers import FILTERS, FilterInputs, follower
-from mbkf.pipelines.imu_body import ImuOnBody, with_imus
-from mbkf.pipelines.reactions import reactions
-from mbkf.pipelines.trial_inputs import trial_inputs
+from mbkf.pipelines.imu.on_body import ImuOnBody, with_imus
+from mbkf.pipelines.results.clinical import clinical_motion
+from mbkf.pipelines.results.reactions import reactions
+from mbkf.pipelines.trial.followers import FILTERS, FilterInputs, follower
+from mbkf.pipelines.trial.inputs import trial_inputs
 from mbkf.scaling.correction import correct_markers
 from mbkf.scaling.frames import MIN_MARKERS
 from mbkf.sensors.gap_filling import filled

@@ -35,9 +35,9 @@ from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
 from mbkf.numerics.line_search import maximise
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.followers import FilterInputs, follower
 from mbkf.pipelines.reconstruct import ReconstructSettings, subject_markers
-from mbkf.pipelines.trial_inputs import trial_inputs
+from mbkf.pipelines.trial.followers import FilterInputs, follower
+from mbkf.pipelines.trial.inputs import trial_inputs
 from mbkf.scaling.correction import correct_markers
 from mbkf.version import __version__
 

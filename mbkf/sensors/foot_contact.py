@@ -138,9 +138,7 @@ class FootContact(Block[Any, None, FootDecision, ContactMemory]):
         if Contact.UNMEASURED not in kinds:
             return None
         least = -3.0 * self.settings.pulling_force_n
-        lifted = tuple(
-            f for f in (0, 1) if kinds[f] == Contact.UNMEASURED and posterior.w[6 * f + 2] < least
-        )
+        lifted = tuple(f for f in (0, 1) if kinds[f] == Contact.UNMEASURED and posterior.w[6 * f + 2] < least)
         return decision._replace(lifted=lifted) if lifted else None
 
     def remember(

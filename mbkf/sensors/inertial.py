@@ -45,9 +45,7 @@ class InertialSensors(Block[Any, None, Array | None, None]):
         self._weight = np.tile(1.0 / deviations, len(sensor.mounts))
         self.observed = observed_dofs(sensor.model, [mount.segment for mount in sensor.mounts])
 
-    def decide(
-        self, at: OperatingPoint[Any, None], frame: Frame, memory: None, notes: Notes
-    ) -> Array | None:
+    def decide(self, at: OperatingPoint[Any, None], frame: Frame, memory: None, notes: Notes) -> Array | None:
         """The frame's readings (S, 6), None where none was read; joints they observe are noted."""
         if frame.imus is None or not np.isfinite(frame.imus).any():
             return None

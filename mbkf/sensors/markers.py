@@ -22,7 +22,6 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.numerics.kalman import Information
 from mbkf.sensors.block import NO_DOFS, Block, Frame, Notes, OperatingPoint
 from mbkf.sensors.gating import ObservedDofs, gated
-from mbkf.sensors.layout import Layout
 from mbkf.sensors.marker_sensor import MarkerInformation, MarkerReading, MarkerSensor
 from mbkf.sensors.skin import SkinMarkers
 
@@ -151,9 +150,7 @@ class Markers(Block[Any, MarkerReading, MarkerDecision, MarkerMemory]):
         innovation, s = frame.markers_m - at.prepared.positions_m, self.settings
         noise = self.noise_m if memory.noise_scale == 1.0 else self.noise_m * memory.noise_scale**0.5
         P = at.state.P[: self._nv, : self._nv]
-        seen, trusted, displaced, lost = gated(
-            innovation, at.prepared, P, noise, s.gate, s.gate_radius_m
-        )
+        seen, trusted, displaced, lost = gated(innovation, at.prepared, P, noise, s.gate, s.gate_radius_m)
         notes.seen, notes.trusted = seen, trusted
         notes.unmarked = notes.unobserved = self._observed.unmarked(trusted)
         notes.observed = bool(np.count_nonzero(trusted) >= s.min_markers)

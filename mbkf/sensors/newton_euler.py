@@ -72,4 +72,3 @@ class NewtonEulerLaw(Block[Any, Rows, Notes, None]):
         """Log det R of the six equations."""
         del decision
         return -2.0 * float(np.log(self._sharp).sum())
-

@@ -130,9 +130,7 @@ class PosturePrior(Block[Any, PreparedPosture, Notes, None]):
         """What the prior says while every segment is observed."""
         del memory
         deviation, jacobian = self.sensor.deviation(state.q)
-        return PreparedPosture(
-            deviation, jacobian, posture_information(deviation, jacobian, self._weights)
-        )
+        return PreparedPosture(deviation, jacobian, posture_information(deviation, jacobian, self._weights))
 
     def decide(
         self, at: OperatingPoint[Any, PreparedPosture], frame: Frame, memory: None, notes: Notes

@@ -22,8 +22,8 @@ def page(recording: dict[str, Any] | None = None) -> str:
     """The page.
 
     Args:
-        recording: What to play: ``scene`` and ``rows`` (see :mod:`mbkf.viz.recording`); the page asks its server for a
-            live stream when None.
+        recording: What to play: ``scene`` and ``rows`` (see :mod:`mbkf.viz.scene.recording`); the page asks its
+            server for a live stream when None.
 
     Raises:
         FileFormatError: The installed meshcat brings no viewer.

@@ -14,7 +14,7 @@ from benchmarks.double_pendulum.page import Report
 from benchmarks.double_pendulum.sweeps import Sweep, sweep_findings
 from benchmarks.double_pendulum.thesis import FCDI, STUDY, STUDY_RECIPE
 from benchmarks.double_pendulum.trials import Estimate, Recipe, Scores, delay, rms, score
-from benchmarks.dynamic_methods import in_turn
+from benchmarks.dynamic.methods import in_turn
 
 
 @pytest.mark.parametrize("lag_s", [-0.013, 0.0, 0.0042, 0.061])

@@ -21,10 +21,10 @@ from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture import read_capture
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.subject import read_subject
-from mbkf.pipelines.live_results import live_results
-from mbkf.stream.run_folder import LOG_FOLDER
-from mbkf.viz.live_page import LivePage
-from mbkf.viz.standing_page import StandingPage
+from mbkf.pipelines.live.results import live_results
+from mbkf.stream.run.folder import LOG_FOLDER
+from mbkf.viz.live.page import LivePage
+from mbkf.viz.live.standing_page import StandingPage
 from tests.captures import MASS_KG, made_capture
 
 
@@ -212,7 +212,7 @@ class Watched(StandingPage):
 @pytest.fixture
 def watched(monkeypatch):
     Watched.made = []
-    monkeypatch.setattr("mbkf.viz.standing_page.StandingPage", Watched)
+    monkeypatch.setattr("mbkf.viz.live.standing_page.StandingPage", Watched)
     return Watched.made
 
 
@@ -227,7 +227,7 @@ def test_who_is_to_stand_still_is_told_on_the_page_that_the_live_page_replaces(
             super().__init__(*args, **options)
             live.append(self.url)
 
-    monkeypatch.setattr("mbkf.viz.live_page.LivePage", Page)
+    monkeypatch.setattr("mbkf.viz.live.page.LivePage", Page)
     words = ["live", "--from", f"file:{visit}", "--mass", MASS_KG, "--speed", 0, "--view"]
     assert run([*words, "--view-address", address, "--out", tmp_path / "out"]) == 0
     told = capsys.readouterr().err.splitlines()

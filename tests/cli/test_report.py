@@ -6,7 +6,7 @@ import pytest
 
 from mbkf.cli.main import main
 from mbkf.io.results_folder import write_reconstruction
-from mbkf.pipelines.summary import summarise
+from mbkf.pipelines.results.summary import summarise
 from tests.recordings import walk
 
 

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from mbkf.filters.kinematic.plant import WhiteAccelerationPlant
-from mbkf.filters.kinematic.plant import KinematicState
+from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
 from mbkf.model.human import HumanModel
 from tests.motions import assert_near, moderate_pose, random_model, reference_model
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from benchmarks.dynamic_consistency import (
+from benchmarks.dynamic.consistency import (
     FRAMES,
     QUANTITIES,
     RUNS,

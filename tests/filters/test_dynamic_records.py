@@ -1,8 +1,8 @@
 """Readings of a frame as one whole: information, its product with vectors, and the innovations' vector."""
 
 import numpy as np
-
 from mbkf.filters.dynamic_records import FrameReadings
+
 from mbkf.numerics.kalman import information
 
 N, n = 9, 4

@@ -3,11 +3,11 @@
 import numpy as np
 
 from mbkf.filters.estimate import Recording
-from mbkf.filters.tracking_loop import followed
 from mbkf.filters.kinematic.filter import KinematicFilter
-from mbkf.filters.kinematic.tracking import KinematicTracking
 from mbkf.filters.kinematic.settings import KinematicSettings
+from mbkf.filters.kinematic.tracking import KinematicTracking
 from mbkf.filters.tracking import track
+from mbkf.filters.tracking_loop import followed
 from tests.motions import marker_positions, protocol_sensor, reference_model, smooth_motion
 
 MODEL = reference_model()

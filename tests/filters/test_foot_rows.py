@@ -4,9 +4,9 @@ from itertools import product
 
 import numpy as np
 import pytest
+from mbkf.filters.foot_rows import FootRows
 
 from mbkf.filters.dynamic.settings import DynamicSettings
-from mbkf.filters.foot_rows import FootRows
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
 
 FIRST, WEIGHT_N, DT = 6, 700.0, 0.01

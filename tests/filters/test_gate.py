@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from mbkf.sensors.gating import STRAYED_M, judged
 from mbkf.filters.kinematic.settings import KinematicSettings
+from mbkf.sensors.gating import STRAYED_M, judged
 
 MARKERS, NV = 10, 8
 SETTINGS = KinematicSettings(gate=30.0, gate_radius_m=0.0)

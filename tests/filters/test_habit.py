@@ -5,9 +5,9 @@ from functools import cache
 
 import numpy as np
 import pytest
+from mbkf.filters.dynamic_records import Shown, ShownFrame
 from scipy.spatial.transform import Rotation
 
-from mbkf.filters.dynamic_records import Shown, ShownFrame
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.sensors.coordination.prior import BLOCK_S, LEADING, SHOWN_HZ, Habit
 from mbkf.synthesis.motion import synthesise_motion

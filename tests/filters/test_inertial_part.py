@@ -4,12 +4,13 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+from mbkf.pipelines.followers import follower
 
 from mbkf.filters.fixed_lag import SmoothingSettings
 from mbkf.filters.tracking import track
 from mbkf.imu.placement import typical_mounts
 from mbkf.imu.virtual import ImuErrors, virtual_imus
-from mbkf.pipelines.followers import follower
+from mbkf.pipelines.trial.followers import follower
 from mbkf.sensors.inertial_sensor import InertialSensor
 from tests.followed import FRAMES, inputs, made, recording, without
 

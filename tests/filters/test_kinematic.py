@@ -6,8 +6,8 @@ from scipy.spatial.transform import Rotation
 from scipy.stats import chi2
 
 from mbkf.filters.kinematic.filter import KinematicFilter
-from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.kinematic.plant import KinematicState
+from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.numerics.kalman import correct, information
 from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.motions import (

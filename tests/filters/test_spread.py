@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from mbkf.filters.spread import Spread, SpreadReader
 from mbkf.filters.kinematic.plant import KinematicState
+from mbkf.filters.spread import Spread, SpreadReader
 from mbkf.model.clinical import ClinicalAngles
 from tests.motions import random_model, smooth_motion
 

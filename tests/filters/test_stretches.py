@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.filters.fixed_lag import SmoothingSettings, FixedLagSmoother
+from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
 from mbkf.filters.tracking import track
-from mbkf.pipelines.followers import FILTERS
+from mbkf.pipelines.trial.followers import FILTERS
 from tests.dynamics import DT
 from tests.followed import WHOLE, errors, estimates, made, made_follower, recording, tracked, without
 from tests.motions import angle_errors

@@ -6,8 +6,8 @@ import pytest
 from mbkf.errors import NotObservable
 from mbkf.filters.estimate import Recording
 from mbkf.filters.kinematic.filter import KinematicFilter
-from mbkf.filters.kinematic.tracking import SETTLING_S, KinematicTracking
 from mbkf.filters.kinematic.settings import KinematicSettings
+from mbkf.filters.kinematic.tracking import SETTLING_S, KinematicTracking
 from mbkf.filters.tracking import track
 from tests.motions import (
     angle_errors,

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
-from mbkf.pipelines.label_score import score
 from mbkf.pipelines.label_unscaled import label_unscaled
+from mbkf.pipelines.labelling.score import score
 from mbkf.pipelines.scale import scale
 from tests.walker import walker
 

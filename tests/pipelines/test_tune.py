@@ -10,7 +10,7 @@ from mbkf.errors import InvalidInput, NotObservable, UnknownName
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.pipelines.reconstruct import ReconstructSettings, subject_markers
-from mbkf.pipelines.trial_inputs import trial_inputs
+from mbkf.pipelines.trial.inputs import trial_inputs
 from mbkf.pipelines.tune import PARAMETERS, Tuned, TunedParameter, TuneSettings, tune
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.person import body_of, synthesise_subject

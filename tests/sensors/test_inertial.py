@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from mbkf.sensors.inertial_rows import InertialRows, felt_dofs
 
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.errors import UnknownName
 from mbkf.io.imu_mount import ImuMount
 from mbkf.model.human import HumanModel
 from mbkf.sensors.inertial_sensor import InertialSensor
-from mbkf.sensors.inertial_rows import InertialRows, felt_dofs
 
 MODEL = HumanModel.scaled()
 STRAIGHT = np.array([0.0, 0.0, 0.0, 1.0])

@@ -15,7 +15,7 @@ from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.subject import Subject
 from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
 from mbkf.stream.played import played
-from mbkf.stream.session import LiveOutcome, LiveSession
+from mbkf.stream.run.session import LiveOutcome, LiveSession
 from mbkf.stream.source import PlateSamples, SourceFrame
 
 SETTINGS = ReconstructSettings(correct_markers=False)

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from mbkf.errors import InvalidInput
 from mbkf.io.records import MarkerTrajectories
 from mbkf.stream.file_source import FileSource
-from mbkf.stream.plate_buffer import PlateBuffer
 from mbkf.stream.played import played
+from mbkf.stream.receiving.plate_buffer import PlateBuffer
 from mbkf.stream.replay import ReplaySettings, replay
 from tests.captures import made_capture
 

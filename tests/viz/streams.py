@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from mbkf.stream.frame import LiveFrame
+from mbkf.stream.results.frame import LiveFrame
 from tests.recordings import walk
 
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from mbkf.pipelines.summary import summarise
-from mbkf.viz.live_page import LivePage
-from mbkf.viz.playback import write_playback
-from mbkf.viz.report import write_report
+from mbkf.pipelines.results.summary import summarise
+from mbkf.viz.live.page import LivePage
+from mbkf.viz.report.document import write_report
+from mbkf.viz.scene.playback import write_playback
 from tests.recordings import PLATE, broken_walk, walk, walker
 from tests.viz.browsing import PATIENCE_S, until
 from tests.viz.streams import feeding

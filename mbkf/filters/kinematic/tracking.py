@@ -130,9 +130,7 @@ class KinematicTracking:
         settled = since >= len(was.settling)
         a = (state.v - was.state.v) / self.dt_s if settled else was.settling[since]
         inner = KinematicRecord(state, step.memory, step, was.state, was.settling, since)
-        return Estimate(
-            state.q, state.v, a, NO_WRENCH, None, step.refused, step.tracked, False, inner
-        )
+        return Estimate(state.q, state.v, a, NO_WRENCH, None, step.refused, step.tracked, False, inner)
 
     def covariance(self, estimate: Estimate) -> Array:
         """(2 nv, 2 nv) of (q, v)."""
@@ -171,9 +169,7 @@ class KinematicTracking:
         for k in range(len(run) - 1, -1, -1):
             inner: KinematicRecord = run[k].inner
             state = inner.state
-            states.append(
-                self.kalman.plant.retract(state, back.step(state.P), back.covariance(state.P))
-            )
+            states.append(self.kalman.plant.retract(state, back.step(state.P), back.covariance(state.P)))
             if k and inner.step is not None and inner.before is not None:
                 known = inner.step.readings
                 back.through_readings(state.P, known.whole_matrix, known.whole_vector)

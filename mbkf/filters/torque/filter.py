@@ -13,14 +13,14 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.sensors.gating import gated
 from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.filters.torque.noise import ForceNoise, condition, load_variance, residual_variance
-from mbkf.filters.torque.plant import ForcedState, ForcedPrediction, TorquePlant, on_state, update
+from mbkf.filters.torque.plant import ForcedPrediction, ForcedState, TorquePlant, on_state, update
 from mbkf.filters.torque.settings import MASS_OF_TABLE_KG, TorqueSettings
 from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.numerics.kalman import Information, correct, information
 from mbkf.sensors.foot_wrench import FootWrenchSensor
+from mbkf.sensors.gating import gated
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.posture import PostureSensor
 

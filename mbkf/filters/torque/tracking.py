@@ -15,10 +15,10 @@ from mbkf.filters.spread import Spread, SpreadReader
 from mbkf.filters.torque.filter import TorqueFilter, TorqueState, TorqueStep
 from mbkf.filters.torque.plant import ForcedState
 from mbkf.numerics.smoothing import BackwardPass
-from mbkf.sensors.marker_prediction import MarkerPrediction
-from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, ContactMemory
+from mbkf.sensors.marker_prediction import MarkerPrediction
+from mbkf.sensors.marker_sensor import MarkerSensor
 
 
 @dataclass(frozen=True)

@@ -101,9 +101,7 @@ NONE = np.zeros(0)
 """No numbers."""
 
 
-class CoordinationPrior(
-    Block[Any, Mapping[int, Coordination], CoordinationDecision, CoordinationMemory]
-):
+class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecision, CoordinationMemory]):
     """Head, arms and toes as they went with trunk and legs.
 
     Attributes:
@@ -186,9 +184,7 @@ class CoordinationPrior(
         dofs = np.flatnonzero(x_sd)
         notes.coordinated = dofs
         q = self._model.integrate(self._neutral, x)
-        return CoordinationDecision(
-            dofs, q, v[dofs], x_sd[dofs], v_sd[dofs], gone, legible, notes.unobserved
-        )
+        return CoordinationDecision(dofs, q, v[dofs], x_sd[dofs], v_sd[dofs], gone, legible, notes.unobserved)
 
     def linearise(
         self, at: OperatingPoint[Any, Mapping[int, Coordination]], decision: CoordinationDecision

@@ -3,7 +3,7 @@
 "use strict";
 
 class BodyScene {
-  // pane: the element to fill; description: the page's first message (mbkf/viz/scene.py).
+  // pane: the element to fill; description: the page's first message (mbkf/viz/scene/description.py).
   constructor(pane, description) {
     this.pane = pane;
     this.THREE = MeshCat.THREE;

@@ -1,0 +1,23 @@
+"""Inertial sensors: orientation against optical truth, the source's comparison, joint angles, markers, strides.
+
+The rows stand in modules of their own, one per question.
+"""
+
+from __future__ import annotations
+
+from benchmarks.checks import Check, Context
+from benchmarks.inertial import body, orientation, stride
+from mbkf.numerics.threads import single_threaded
+
+
+def run(context: Context) -> list[Check]:
+    """All rows of the inertial table."""
+    with single_threaded():
+        return [
+            *orientation.broad_rows(context),
+            *orientation.source_rows(context),
+            *orientation.fault_rows(context),
+            *body.angle_rows(context),
+            *body.marker_rows(context),
+            *stride.rows(context),
+        ]

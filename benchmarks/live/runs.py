@@ -1,0 +1,197 @@
+"""One live run for the benchmark: `mbkf live` and `mbkf replay` as processes of their own, as a laboratory has them."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import socket
+import subprocess
+import sys
+import threading
+import time
+import uuid
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+from websockets.exceptions import WebSocketException
+from websockets.sync.client import connect
+from websockets.typing import Origin
+
+from mbkf.conventions import Array
+from mbkf.errors import InvalidInput
+from mbkf.io.records import Capture, MarkerTrajectories
+from mbkf.io.results import Reconstruction
+from mbkf.io.results_folder import read_reconstruction
+from mbkf.io.subject import read_subject
+from mbkf.pipelines.live.log import SUBJECT_FILE, read_live_log
+from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
+from mbkf.stream.run.folder import LOG_FOLDER
+
+MARGIN_S = 60.0
+"""Beyond the length of the capture, so much time may pass before a run is given up."""
+
+COMPARED = ("q", "v", "a", "tau", "foot_wrench", "angles", "moments", "sd_q", "sd_v", "sd_tau", "predicted_m")
+PAGE = re.compile(r"page: (http://\S+)")
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What is played.
+
+    Attributes:
+        name: For people.
+        path: The capture.
+        forces: Ground reactions beside it.
+        subject: The person's file.
+        seconds: Its length.
+        unlabelled: Whether its points go without names.
+    """
+
+    name: str
+    path: Path
+    forces: Path | None
+    subject: Path
+    seconds: float
+    unlabelled: bool = False
+
+
+@dataclass(frozen=True)
+class Run:
+    """How a run went.
+
+    Attributes:
+        report: What live.json says.
+        folder: With results and log.
+        pauses_ms: By how much an idle process woke late on this machine meanwhile.
+    """
+
+    report: dict[str, Any]
+    folder: Path
+    pauses_ms: Array
+
+
+class Pauses:
+    """A thread that does nothing but wake every few milliseconds, and notes how late it does."""
+
+    EVERY_S = 0.005
+
+    def __init__(self) -> None:
+        self._late: list[float] = []
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def end(self) -> Array:
+        """(n,) how late, ms."""
+        self._ended.set()
+        self._thread.join()
+        return 1e3 * np.array(self._late)
+
+    def _run(self) -> None:
+        while not self._ended.is_set():
+            begin = time.perf_counter()
+            time.sleep(self.EVERY_S)
+            self._late.append(time.perf_counter() - begin - self.EVERY_S)
+
+
+def play(trial: Trial, protocol: str, folder: Path, *, view: bool = False, speed: float = 1.0) -> Run:
+    """Plays the trial into a live run with the dynamic filter; with ``view`` a page follows it, too.
+
+    Raises:
+        InvalidInput: One of the commands failed.
+    """
+    shutil.rmtree(folder, ignore_errors=True)
+    name = f"mbkf-benchmark-{uuid.uuid4().hex[:8]}"
+    port = str(_free_port())
+    receive, send = (
+        (["--stream", name], ["--name", name]) if protocol == "lsl" else (["--port", port], ["--port", port])
+    )
+    words: list[str | Path] = ["live", "--from", protocol, "--subject", trial.subject, "--filter", "dynamic"]
+    words += ["--seconds", f"{trial.seconds:.6f}", "--keep-log", "--out", folder, *receive]
+    words += ["--view"] if view else []
+    live = _start(words)
+    watching = threading.Thread(target=_watch, args=(live.stderr, view), daemon=True)
+    watching.start()
+    played: list[str | Path] = ["replay", trial.path, "--to", protocol, "--speed", f"{speed:g}", *send]
+    played += [] if trial.forces is None else ["--forces", trial.forces]
+    played += ["--unlabelled"] if trial.unlabelled else []
+    replay = _start(played)
+    pauses = Pauses()
+    try:
+        for process, what in ((replay, "replay"), (live, "live")):
+            if process.wait(trial.seconds / speed + MARGIN_S) != 0:
+                raise InvalidInput(f"mbkf {what} failed on {trial.name}")
+    except subprocess.TimeoutExpired as error:
+        raise InvalidInput(f"a run of {trial.name} through {protocol} did not end") from error
+    finally:
+        late = pauses.end()
+        for process in (replay, live):
+            if process.poll() is None:
+                process.kill()
+                process.wait()
+    return Run(json.loads((folder / "live.json").read_text(encoding="utf-8")), folder, late)
+
+
+def difference(run: Run) -> float:
+    """Largest difference between a run's results and `reconstruct` on the frames it received.
+
+    Relative to the value where that is larger than one; NaN where different samples are known.
+    """
+    logged = read_live_log(run.folder / LOG_FOLDER)
+    start_s = logged.stream.start_time_s + logged.first / logged.stream.rate_hz
+    markers = MarkerTrajectories(logged.names, logged.rows["measured_m"], logged.stream.rate_hz, start_s)
+    capture = Capture(logged.stream.trial, markers, logged.stream.plates)
+    subject = read_subject(run.folder / LOG_FOLDER / SUBJECT_FILE)
+    again = reconstruct(capture, subject, settings=ReconstructSettings(correct_markers=False))
+    return largest_difference(read_reconstruction(run.folder), again)
+
+
+def largest_difference(one: Reconstruction, other: Reconstruction) -> float:
+    """Over the quantities compared."""
+    return max(_difference(getattr(one, name), getattr(other, name)) for name in COMPARED)
+
+
+def _difference(one: Array, other: Array) -> float:
+    if one.shape != other.shape or (np.isnan(one) != np.isnan(other)).any():
+        return float("nan")
+    apart = np.abs(one - other) / np.maximum(1.0, np.abs(other))
+    return float(np.nanmax(apart, initial=0.0))
+
+
+def _start(words: Sequence[str | Path]) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-m", "mbkf", *map(str, words)],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def _watch(errors: IO[str] | None, view: bool) -> None:
+    """Reads what a run says, and follows its page as a browser does."""
+    for line in errors or ():
+        found = PAGE.search(line)
+        if view and found:
+            threading.Thread(target=_follow, args=(found[1],), daemon=True).start()
+
+
+def _follow(url: str) -> None:
+    address, _, query = url.partition("?")
+    origin = Origin(address.rstrip("/"))
+    stream = f"ws{origin.removeprefix('http')}/frames" + (f"?{query}" if query else "")
+    try:
+        with connect(stream, origin=origin, max_size=None) as client:
+            for _ in client:
+                pass
+    except (OSError, WebSocketException):
+        return
+
+
+def _free_port() -> int:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        one.bind(("127.0.0.1", 0))
+        return int(one.getsockname()[1])

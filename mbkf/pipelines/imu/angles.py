@@ -1,0 +1,322 @@
+"""Joint angles of pelvis and legs from sensors on them: orientations, a standing calibration, one segment model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from scipy.spatial.transform import Rotation, Slerp
+
+from mbkf.conventions import Array, StageCallback
+from mbkf.errors import InvalidInput
+from mbkf.imu.frames import attitude, conjugate, matrix_quaternion, multiply
+from mbkf.imu.heading import HeadingSettings, held_headings, turned
+from mbkf.imu.orientation import OrientSettings, orientations
+from mbkf.imu.orientation_ekf import OrientationSettings
+from mbkf.imu.placement import EIGHT, typical_mounts, usual_place
+from mbkf.imu.segments import segment_of
+from mbkf.imu.sensor_to_segment import alignments, facing, mean_orientation
+from mbkf.io.imu import ImuReadings
+from mbkf.io.imu_mount import ImuMount
+from mbkf.model.clinical import ClinicalAngles
+from mbkf.model.human import HumanModel
+from mbkf.numerics.cardan import quaternion_matrices
+from mbkf.numerics.threads import single_threaded
+from mbkf.pipelines.imu.orient import prepared
+
+ROOT = "pelvis"
+_DOUBT_RAD, _DOUBT_SHARE, _DOUBT_EVERY = np.radians(15.0), 0.02, 5
+STILL_RAD_S, STILL_S = 0.15, 1.0
+"""Standing: no sensor turns faster (root mean square) for so long."""
+
+
+@dataclass(frozen=True)
+class AnglesSettings:
+    """How angles are found.
+
+    Attributes:
+        orient: Filter of the orientations; sensors lie still while standing, so that their bias is read there.
+        from_file: Whether the file's own orientations are used instead (they share one heading).
+        hold_headings: Whether joints hold the headings.
+        heading: How.
+    """
+
+    orient: OrientSettings = field(
+        default_factory=lambda: OrientSettings("smooth", ekf=OrientationSettings(rest_bias=True))
+    )
+    from_file: bool = False
+    hold_headings: bool = True
+    heading: HeadingSettings = field(default_factory=HeadingSettings)
+
+
+@dataclass(frozen=True)
+class ImuAngles:
+    """Angles over a recording.
+
+    Attributes:
+        time_s: (T,) s.
+        q: (T, nq) configurations, at the origin, facing x where the person stood; joints without sensors are neutral.
+        names: (A,) clinical coordinates that sensors determine.
+        angles: (T, A) rad.
+        mounts: How the sensors were found to sit.
+        warnings: What was noticed.
+    """
+
+    time_s: Array
+    q: Array
+    names: tuple[str, ...]
+    angles: Array
+    mounts: tuple[ImuMount, ...]
+    warnings: tuple[str, ...]
+
+
+def imu_angles(
+    readings: Sequence[ImuReadings],
+    model: HumanModel | None = None,
+    *,
+    standing: tuple[float, float] | Sequence[ImuReadings] | None = None,
+    posture: Array | None = None,
+    settings: AnglesSettings | None = None,
+    progress: StageCallback | None = None,
+) -> ImuAngles:
+    """Angles of hips, knees, ankles and trunk.
+
+    Args:
+        readings: Sensors named after their segments; a pelvis sensor is needed.
+        model: The body; the reference body when None.
+        standing: Times of standing still in the recording, s, or a recording of it with the same magnetometers; by
+            default the first second in which no sensor turns.
+        posture: (nq,) the posture while standing; the neutral one when None.
+        settings: How.
+        progress: Called as samples are done.
+
+    Raises:
+        InvalidInput: Readings cannot be right, no pelvis sensor, or nobody stands still.
+        UnknownName: A sensor's segment is not known.
+    """
+    chosen, body = settings or AnglesSettings(), model or HumanModel.scaled()
+    sensors, warnings = tuple(readings), tuple[str, ...]()
+    if not chosen.from_file:
+        sensors, warnings = prepared(readings)
+    names = [segment_of(one.name, body.joints) for one in sensors]
+    order = _order(names)
+    sensors, segments = tuple(sensors[k] for k in order), [names[k] for k in order]
+    with single_threaded():
+        still = None
+        if isinstance(standing, Sequence) and standing and isinstance(standing[0], ImuReadings):
+            still = _standing_sensors(standing, [one.name for one in sensors])
+            sensors = tuple(_unbiased(one, rest) for one, rest in zip(sensors, still, strict=True))
+        time_s = sensors[0].time_s
+        q, common = _orientations(sensors, chosen, time_s, progress)
+        window = None if still is not None else _window(sensors, time_s, standing)
+        upright = mean_orientation(q[window]) if window is not None else _attitudes(still or ())
+        rest = _posture(body, posture, segments)
+        headings = _headings(body, segments, q, time_s, upright, rest, common)
+        q, upright = turned(q, -headings[None]), turned(upright[None], -headings[None])[0]
+        aligned = alignments(upright, rest, 0.0)
+        course = multiply(q, conjugate(aligned))
+        if chosen.hold_headings and len(segments) > 1:
+            dt = 1.0 / sensors[0].rate_hz
+            course = turned(course, held_headings(segments, course, dt, chosen.heading))
+        motion = _configurations(body, segments, course)
+    clinical = ClinicalAngles(body)
+    values = clinical.angles(motion)
+    wanted = [k for k, name in enumerate(clinical.names) if _determined(clinical, name, segments)]
+    mounts = tuple(
+        ImuMount(one.name, segment, usual_place(body, segment), turn)
+        for one, segment, turn in zip(sensors, segments, aligned, strict=True)
+    )
+    found = tuple(clinical.names[k] for k in wanted)
+    told = (*warnings, *_doubts(body, segments, motion, common))
+    return ImuAngles(time_s, motion, found, values[:, wanted], mounts, told)
+
+
+def _order(names: Sequence[str]) -> list[int]:
+    """The pelvis first.
+
+    Raises:
+        InvalidInput: There is none, or a segment has two sensors.
+    """
+    if ROOT not in names:
+        raise InvalidInput(f"joint angles need a sensor on the pelvis; there are {', '.join(names)}")
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise InvalidInput(f"two sensors sit on {twice[0]}; keep one of them with --sensor")
+    return sorted(range(len(names)), key=lambda k: names[k] != ROOT)
+
+
+def _standing_sensors(standing: Sequence[object], names: Sequence[str]) -> list[ImuReadings]:
+    by_name = {one.name: one for one in standing if isinstance(one, ImuReadings)}
+    missing = [name for name in names if name not in by_name or by_name[name].magnetic_field is None]
+    if missing:
+        raise InvalidInput(
+            f"the standing recording lacks sensor {missing[0]} or its magnetometer; stand still in the trial itself"
+        )
+    return [by_name[name] for name in names]
+
+
+def _unbiased(one: ImuReadings, rest: ImuReadings) -> ImuReadings:
+    bias = np.nanmean(rest.angular_velocity_rad_s, axis=0)
+    return replace(one, angular_velocity_rad_s=one.angular_velocity_rad_s - bias)
+
+
+def _attitudes(standing: Sequence[ImuReadings]) -> Array:
+    found = []
+    for one in standing:
+        assert one.magnetic_field is not None
+        found.append(
+            attitude(np.nanmean(one.specific_force_mps2, axis=0), np.nanmean(one.magnetic_field, axis=0))
+        )
+    return np.array(found)
+
+
+def _orientations(
+    sensors: Sequence[ImuReadings], settings: AnglesSettings, time_s: Array, progress: StageCallback | None
+) -> tuple[Array, bool]:
+    """(T, S, 4) sensor → world at common times, and whether all have one heading."""
+    if settings.from_file:
+        if any(one.orientation is None for one in sensors):
+            raise InvalidInput("the file brings no orientations; leave --from-file out")
+        courses = [one.orientation for one in sensors]
+        common = not any("arbitrary" in one.frame for one in sensors)
+    else:
+        found = orientations(sensors, frame="NWU", settings=settings.orient, progress=progress)
+        courses = [one.quaternion for one in found]
+        common = settings.orient.magnetometer and all(one.magnetic_field is not None for one in sensors)
+    return np.stack(
+        [_at(one.time_s, course, time_s) for one, course in zip(sensors, courses, strict=True)], axis=1
+    ), common
+
+
+def _at(times: Array, course: Array | None, wanted: Array) -> Array:
+    """(T, 4) orientations at other times; missing ones are bridged."""
+    assert course is not None
+    there = np.all(np.isfinite(course), axis=1)
+    if there.all() and len(times) == len(wanted) and np.array_equal(times, wanted):
+        return course
+    between = Slerp(times[there], Rotation.from_quat(course[there]))
+    return between(np.clip(wanted, times[there][0], times[there][-1])).as_quat()
+
+
+def _window(sensors: Sequence[ImuReadings], time_s: Array, standing: object) -> slice:
+    """Samples of standing."""
+    if isinstance(standing, tuple):
+        first, last = (float(one) for one in standing)
+        chosen = np.flatnonzero((time_s >= first) & (time_s <= last))
+        if not len(chosen):
+            raise InvalidInput(f"nobody is recorded from {first:g} to {last:g} s; correct --standing")
+        return slice(int(chosen[0]), int(chosen[-1]) + 1)
+    width = max(2, round(STILL_S * sensors[0].rate_hz))
+    worst = np.zeros(len(time_s))
+    for one in sensors:
+        rates = np.sqrt((np.nan_to_num(one.angular_velocity_rad_s) ** 2).sum(axis=1))
+        worst = np.maximum(worst, np.interp(time_s, one.time_s, rates))
+    if len(worst) >= width:
+        mean = np.convolve(worst**2, np.ones(width) / width, mode="valid")
+        calm = np.flatnonzero(mean < STILL_RAD_S**2)
+        if len(calm):
+            return slice(int(calm[0]), int(calm[0]) + width)
+    raise InvalidInput(
+        "nobody stands still for a second; stand at the start, or say when with --standing T0:T1"
+    )
+
+
+def _posture(body: HumanModel, posture: Array | None, segments: Sequence[str]) -> Array:
+    """(S, 4) segment → world while standing, the pelvis facing x."""
+    q = body.neutral() if posture is None else posture
+    rotations, _ = body.placements(q)
+    turns = matrix_quaternion(np.array([rotations[body.joint(name).joint_id] for name in segments]))
+    forward = rotations[body.joint(ROOT).joint_id][:, 0]
+    heading = float(np.arctan2(forward[1], forward[0]))
+    return turned(turns[None], np.full((1, len(segments)), -heading))[0]
+
+
+def _headings(
+    body: HumanModel,
+    segments: Sequence[str],
+    q: Array,
+    time_s: Array,
+    upright: Array,
+    rest: Array,
+    common: bool,
+) -> Array:
+    """(S,) where each sensor's world sees the person face: one heading where they share it, else one each."""
+    usual = _by_custom(body, segments, upright, rest)
+    if not common:
+        return usual
+    seen = facing(segments, q, _turning(q, time_s), upright)
+    if seen is None:
+        seen = float(np.arctan2(np.sin(usual).mean(), np.cos(usual).mean()))
+    return np.full(len(segments), seen)
+
+
+def _turning(q: Array, time_s: Array) -> Array:
+    """(T, S, 3) angular velocities, rad/s in sensor axes, of orientations (T, S, 4); the last one is repeated."""
+    between = multiply(conjugate(q[:-1]), q[1:])
+    between = np.where(between[..., 3:] < 0.0, -between, between)
+    rates = 2.0 * between[..., :3] / np.diff(time_s)[:, None, None]
+    return np.concatenate([rates, rates[-1:]])
+
+
+def _by_custom(body: HumanModel, segments: Sequence[str], upright: Array, rest: Array) -> Array:
+    """(S,) headings if every sensor were strapped on as people usually do."""
+    worn = [name for name in segments if name in EIGHT]
+    mounts = {mount.segment: mount.rotation for mount in typical_mounts(body, tuple(worn))}
+    found = np.zeros(len(segments))
+    for k, name in enumerate(segments):
+        if name in mounts:
+            off = multiply(upright[k], conjugate(multiply(rest[k], mounts[name])))
+            found[k] = 2.0 * np.arctan2(off[2], off[3])
+    return found
+
+
+def _configurations(body: HumanModel, segments: Sequence[str], course: Array) -> Array:
+    """(T, nq) from orientations of segments (T, S, 4); a joint turns as its nearest sensors above and below say."""
+    motion = np.tile(body.neutral(), (len(course), 1))
+    parents = {segment.name: segment.parent for segment in body.description.segments}
+    for k, name in enumerate(segments):
+        joint = body.joint(name)
+        above = parents[name]
+        while above != "world" and above not in segments:
+            above = parents[above]
+        turn = course[:, k]
+        if above != "world":
+            turn = multiply(conjugate(course[:, segments.index(above)]), turn)
+        turn = np.where(turn[:, 3:] < 0.0, -turn, turn)
+        if joint.kind in ("free", "spherical"):
+            motion[:, joint.q.stop - 4 : joint.q.stop] = turn
+        elif joint.kind == "hinge":
+            R = quaternion_matrices(turn)
+            motion[:, joint.q.start] = np.arctan2(R[:, 0, 2], R[:, 0, 0])
+    return motion
+
+
+def _doubts(body: HumanModel, segments: Sequence[str], motion: Array, common: bool) -> list[str]:
+    """What makes the calibration doubtful: headings by custom only, joints that turn further than joints can."""
+    told = []
+    if not common:
+        told.append(
+            "the sensors share no heading (no magnetometers): each is taken to be strapped on as usual, "
+            "z away from the body and x up the limb; angles are wrong where one is not"
+        )
+    turns = np.array([body.difference(body.neutral(), q) for q in motion[::_DOUBT_EVERY]])
+    beyond = np.maximum(turns - body.limits[:, 1], body.limits[:, 0] - turns)
+    for name in segments[1:]:
+        flexion = min(body.joint(name).v.start + 1, body.joint(name).v.stop - 1)
+        share = float((beyond[:, flexion] > _DOUBT_RAD).mean())
+        if share > _DOUBT_SHARE:
+            told.append(
+                f"the joint above {name} bends more than 15 deg beyond its range in {100 * share:.0f} % of the time; "
+                "check --standing, which sensor is which, and how they were put on"
+            )
+    return told
+
+
+def _determined(clinical: ClinicalAngles, name: str, segments: Sequence[str]) -> bool:
+    """Whether sensors on both sides of a joint tell its angle."""
+    for joint in clinical.joints:
+        if name in {angle.name for angle in joint.angles}:
+            proximal = joint.proximal == "world" or joint.proximal in segments
+            return joint.distal in segments and proximal
+    return False

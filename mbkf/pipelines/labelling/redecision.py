@@ -1,0 +1,179 @@
+"""Labels re-decided offline: filter and smoother over the labelled capture, then every tracklet judged as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.filters.estimate import Estimate, Recording
+from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
+from mbkf.filters.tracking_loop import followed
+from mbkf.io.records import MarkerTrajectories
+from mbkf.labelling.assignment import HIDDEN, Indices
+from mbkf.labelling.neighbours import exchanged, renamed
+from mbkf.labelling.redecision import Course, RedecisionSettings, decided, doubtful, voted, worn
+from mbkf.labelling.tracklets import Tracklets, linked
+from mbkf.pipelines.labelling.body import LabelBody, corrected_body
+
+ROUNDS = 4
+"""Labels and smoothed body are brought into line at most so often."""
+
+
+@dataclass(frozen=True)
+class Redecided:
+    """Labels after a second look.
+
+    Attributes:
+        label_of_point: (T, C) marker of every point, ``HIDDEN`` where none; markers as the body given has them.
+        changed: Samples whose label was taken away or is another now.
+    """
+
+    label_of_point: Indices
+    changed: int
+
+
+def redecided(
+    body: LabelBody,
+    points: MarkerTrajectories,
+    label_of_point: Indices,
+    q: Array,
+    progress: Callable[[int, int], None],
+) -> Redecided:
+    """Looks again at labels that a pass gave, in the light of all frames.
+
+    Args:
+        body: The subject as scaled, on whose markers the labels count.
+        points: The capture.
+        label_of_point: (T, C) labels of its points.
+        q: (T, nq) poses of the pass, NaN where the body was not followed.
+        progress: Called with frames done and frames in all.
+    """
+    settings = RedecisionSettings()
+    tracklets = linked(points.positions_m)
+    looked = 0
+
+    def shown(labels: Indices) -> MarkerTrajectories:
+        return trajectories(points, labels, body.names)
+
+    def smoothed(labels: Indices) -> tuple[LabelBody, Course] | None:
+        nonlocal looked
+        corrected = corrected_body(body, shown(labels))
+        if corrected is None:
+            return None
+        begin, all_ = looked * points.frames, (ROUNDS + 1) * points.frames
+        looked += 1
+        own = shown(labels).select(corrected.names)
+        return corrected, course(corrected, own, lambda done: progress(begin + done, all_))
+
+    label = voted(label_of_point, len(body.markers), tracklets, settings)
+    name = renamed(body.search, shown(tracklets.points(label)).positions_m, q)
+    label = np.where(label == HIDDEN, HIDDEN, name[label])
+    label = exchanged(body.search, shown(tracklets.points(label)).positions_m, q, label, tracklets)
+    labels = tracklets.points(label)
+    found = smoothed(labels)
+    if found is not None:
+        labels, sure = _sure(points, tracklets, labels, body, *found, settings)
+        found = smoothed(sure)
+    for _ in range(ROUNDS):
+        if found is None:
+            break
+        fresh = _decided(points, tracklets, labels, body, *found, settings)
+        settled = bool((fresh == labels).all())
+        labels = fresh
+        if settled:
+            break
+        found = smoothed(labels)
+    progress(1, 1)
+    had = label_of_point != HIDDEN
+    return Redecided(labels, int((had & (labels != label_of_point)).sum()))
+
+
+def trajectories(
+    points: MarkerTrajectories, label_of_point: Indices, names: tuple[str, ...]
+) -> MarkerTrajectories:
+    """The capture's points (T, C) under their markers' names."""
+    positions = np.full((points.frames, len(names), 3), np.nan)
+    frames, columns = np.nonzero(label_of_point != HIDDEN)
+    positions[frames, label_of_point[frames, columns]] = points.positions_m[frames, columns]
+    return replace(points, names=names, positions_m=positions)
+
+
+def course(body: LabelBody, markers: MarkerTrajectories, progress: Callable[[int], None]) -> Course:
+    """Where the smoothed body has its markers in every frame of labelled trajectories."""
+    positions, dt = markers.positions_m, 1.0 / markers.rate_hz
+    follower, sensor = body.follower(dt), body.sensor
+    recording = Recording(positions, np.zeros((len(positions), 0, 6)), dt)
+    smoother = FixedLagSmoother(follower, recording, SmoothingSettings())
+    places = Course(
+        np.full(positions.shape, np.nan),
+        np.full((*positions.shape, 3), np.nan),
+        np.full(positions.shape[:2], np.nan),
+    )
+
+    def keep(done: list[tuple[int, Estimate]]) -> None:
+        nv = sensor.model.nv
+        for t, estimate in done:
+            reading = sensor.reading(estimate.q)
+            H = reading.jacobian
+            rotations, _ = sensor.model.placements(estimate.q)
+            places.on_body_m[t] = reading.positions_m
+            places.rotations[t] = rotations[sensor.joint_ids]
+            HP = H @ follower.covariance(estimate)[:nv, :nv]
+            places.variance_m2[t] = np.einsum("mij,mij->m", HP, H) / 3.0
+
+    for t, estimate, _ in followed(follower, recording):
+        keep(smoother.push(t, estimate))
+        progress(t)
+    keep(smoother.finish())
+    return places
+
+
+def _sure(
+    points: MarkerTrajectories,
+    tracklets: Tracklets,
+    labels: Indices,
+    body: LabelBody,
+    corrected: LabelBody,
+    places: Course,
+    settings: RedecisionSettings,
+) -> tuple[Indices, Indices]:
+    """(T, C) labels of markers that were worn, and those of them that are in no doubt.
+
+    A ghost takes a segment of few markers with it; what is in doubt is judged on a body that it did not move.
+    """
+    own, place = _numbered(labels, body, corrected)
+    shown = trajectories(points, own, corrected.names).positions_m
+    there = worn(places, shown, corrected.noise_m, corrected.sensor.segments, settings)
+    labels = np.where(np.isin(labels, place[there]), labels, HIDDEN)
+    dt = 1.0 / points.rate_hz
+    astray = doubtful(own, points.positions_m, tracklets, places, corrected.noise_m, dt, settings)
+    return labels, np.where(tracklets.points(astray.astype(np.intp)) == 1, HIDDEN, labels)
+
+
+def _decided(
+    points: MarkerTrajectories,
+    tracklets: Tracklets,
+    labels: Indices,
+    body: LabelBody,
+    corrected: LabelBody,
+    places: Course,
+    settings: RedecisionSettings,
+) -> Indices:
+    """(T, C) labels as the tracklets' judgement has them."""
+    own, place = _numbered(labels, body, corrected)
+    shown = trajectories(points, own, corrected.names).positions_m
+    there = worn(places, shown, corrected.noise_m, corrected.sensor.segments, settings)
+    noise, dt = np.where(there, corrected.noise_m, np.nan), 1.0 / points.rate_hz
+    found = decided(own, points.positions_m, tracklets, places, noise, dt, settings)
+    return tracklets.points(np.where(found == HIDDEN, HIDDEN, place[found]))
+
+
+def _numbered(labels: Indices, body: LabelBody, corrected: LabelBody) -> tuple[Indices, Indices]:
+    """(T, C) labels counted among the corrected body's markers, and the place of each of these among all."""
+    place = np.array([body.names.index(one) for one in corrected.names], dtype=np.intp)
+    own = np.full(len(body.markers) + 1, HIDDEN, dtype=np.intp)  # the last is that of HIDDEN
+    own[place] = np.arange(len(place))
+    return own[labels], place

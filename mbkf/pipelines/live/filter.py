@@ -1,0 +1,175 @@
+"""The filter on a live stream: frames in as they come, estimates out, by the very steps a whole trial takes.
+
+A start looks a quarter of a second ahead, so the frames it needs are awaited and then caught up with; from then on each
+frame is answered at once. Where no frame was lost the results are those of ``reconstruct`` on the same frames.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.errors import MbkfError
+from mbkf.filters.estimate import Estimate, Prediction, Recording, TrackingFilter
+from mbkf.filters.kinematic.tracking import warm_up_frames
+from mbkf.filters.tracking_loop import TrackingLoop
+from mbkf.io.records import MarkerTrajectories, PlateReadings
+from mbkf.io.subject import Subject, match_names
+from mbkf.pipelines.reconstruct import subject_markers
+from mbkf.pipelines.trial.followers import FilterInputs
+from mbkf.pipelines.trial.inputs import Beliefs, trial_inputs
+
+NUMERICAL = (np.linalg.LinAlgError, ArithmeticError, ValueError, MbkfError)
+"""What arithmetic raises on readings it cannot digest; the filter then starts anew."""
+
+
+@dataclass(frozen=True)
+class LiveStep:
+    """The answer to one frame.
+
+    Attributes:
+        number: The frame.
+        estimate: Of that frame, None as long as no start has succeeded.
+        awaited: Whether a start, which needs later frames, kept the frame waiting.
+        seconds: Computing time.
+        trouble: What went wrong, if something did.
+    """
+
+    number: int
+    estimate: Estimate | None
+    awaited: bool
+    seconds: float
+    trouble: str | None = None
+
+
+class LiveFilter:
+    """Takes frames in order, one by one, and gives back the steps that are due."""
+
+    def __init__(self, follower: TrackingFilter) -> None:
+        self.loop = TrackingLoop(follower)
+        self._follower = follower
+        self._ahead = warm_up_frames(follower.dt_s)
+        self._waiting: deque[tuple[int, Array, Array]] = deque()
+        self._expecting_s = 0.0
+
+    @property
+    def latest(self) -> Estimate | None:
+        """The estimate of the frame pushed last; None while there is none, or the next frame has to start anew."""
+        if self._waiting or self.loop.must_start:
+            return None
+        return self.loop.estimate
+
+    def expect(self) -> Prediction | None:
+        """What the filter expects of the frame pushed next; None while that cannot be answered at once.
+
+        Asked before that frame is there, it takes prediction and linearisation off the time the frame waits.
+        """
+        if self._waiting:
+            return None
+        begin = time.perf_counter()
+        try:
+            with np.errstate(all="ignore"):
+                found = self.loop.predict()
+        except NUMERICAL:  # the step itself will say so
+            return None
+        self._expecting_s += time.perf_counter() - begin
+        return found
+
+    def push(self, number: int, markers_m: Array, plates: Array) -> list[LiveStep]:
+        """The next frame.
+
+        Args:
+            number: Its number.
+            markers_m: (M, 3) positions, NaN where missing.
+            plates: (K, 6) wrenches about the world's origin, NaN where not recorded.
+
+        Returns:
+            Answers to this frame and to those that waited for it.
+        """
+        self._waiting.append((number, markers_m, plates))
+        return self._due(self._ahead)
+
+    def finish(self) -> list[LiveStep]:
+        """Answers to the frames that still wait, when no more follow."""
+        return self._due(0)
+
+    def cut(self) -> list[LiveStep]:
+        """The same, before a gap that cannot be bridged: what follows starts anew."""
+        steps = self._due(0)
+        self.loop.forget()
+        return steps
+
+    def _due(self, ahead: int) -> list[LiveStep]:
+        awaited, steps = len(self._waiting) > 1, []
+        while self._waiting:
+            if self.loop.must_start and len(self._waiting) <= ahead:
+                break
+            steps.append(self._step(awaited or self.loop.must_start))
+        return steps
+
+    def _step(self, awaited: bool) -> LiveStep:
+        begin, self._expecting_s = time.perf_counter() - self._expecting_s, 0.0
+        number = self._waiting[0][0]
+        seen = list(self._waiting) if self.loop.must_start else [self._waiting[0]]
+        recording = Recording(
+            np.array([markers for _, markers, _ in seen]),
+            np.array([plates for _, _, plates in seen]),
+            self._follower.dt_s,
+        )
+        self._waiting.popleft()
+        try:
+            with np.errstate(all="ignore"):  # what comes of it is looked at
+                estimate = self.loop.advance(recording, 0)
+            if estimate is not None and not np.isfinite(estimate.q).all():
+                raise ArithmeticError("the estimate is not a number")
+        except NUMERICAL as error:
+            self.loop.forget()
+            return LiveStep(number, None, awaited, time.perf_counter() - begin, str(error))
+        return LiveStep(number, estimate, awaited, time.perf_counter() - begin)
+
+
+@dataclass(frozen=True)
+class LiveInputs:
+    """What a stream's filter is built from.
+
+    Attributes:
+        names: (M,) the subject's markers that are followed.
+        columns: (M,) where they stand among the stream's markers.
+        inputs: Body, markers, plates and settings.
+    """
+
+    names: tuple[str, ...]
+    columns: Array
+    inputs: FilterInputs
+
+
+def live_inputs(
+    stream_names: tuple[str, ...],
+    rate_hz: float,
+    plates: tuple[PlateReadings, ...],
+    subject: Subject,
+    beliefs: Beliefs,
+) -> LiveInputs:
+    """Body, markers and plates of a stream.
+
+    Every marker of the subject that the stream names counts for what can be observed: it may appear at any time.
+
+    Args:
+        stream_names: Markers of the stream, or those that are looked for among its points.
+        rate_hz: Its frame rate.
+        plates: Its plates; their readings are not looked at.
+        subject: The person.
+        beliefs: Settings of the filters.
+
+    Raises:
+        NotObservable: Too few of the subject's markers are among the stream's.
+    """
+    everywhere = MarkerTrajectories(stream_names, np.zeros((1, len(stream_names), 3)), rate_hz)
+    shown = subject_markers(everywhere, subject)
+    columns = np.array([stream_names.index(name) for name in match_names(stream_names, subject.markers)])
+    inputs, _ = trial_inputs(shown, plates, subject, beliefs)
+    return LiveInputs(shown.names, columns, inputs)

@@ -1,0 +1,92 @@
+"""The chosen filter for a trial: body, markers, plates and settings put together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.errors import UnknownName
+from mbkf.filters.dynamic.filter import DynamicFilter, dynamic_blocks
+from mbkf.filters.dynamic.settings import DynamicSettings
+from mbkf.filters.dynamic.tracking import DynamicTracking
+from mbkf.filters.estimate import TrackingFilter
+from mbkf.filters.kinematic.filter import KinematicFilter
+from mbkf.filters.kinematic.settings import KinematicSettings
+from mbkf.filters.kinematic.tracking import KinematicTracking
+from mbkf.filters.torque.filter import TorqueFilter
+from mbkf.filters.torque.settings import TorqueSettings
+from mbkf.filters.torque.tracking import TorqueTracking
+from mbkf.io.records import PlateReadings
+from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.sensors.inertial_sensor import InertialSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
+
+
+@dataclass(frozen=True)
+class FilterInputs:
+    """What every filter is built from.
+
+    Attributes:
+        sensor: The markers on the scaled body.
+        noise_m: (M,) marker noise.
+        plates: The plates.
+        dt_s: Time between frames.
+        held: (nv,) dofs that no marker of the trial moves with.
+        kinematic, dynamic, torque: What each filter believes.
+        inertial: Inertial sensors on the body, None where there are none.
+    """
+
+    sensor: MarkerSensor
+    noise_m: Array
+    plates: tuple[PlateReadings, ...]
+    dt_s: float
+    held: BoolArray
+    kinematic: KinematicSettings
+    dynamic: DynamicSettings
+    torque: TorqueSettings
+    inertial: InertialSensor | None = None
+
+
+def _kinematic(inputs: FilterInputs) -> TrackingFilter:
+    return KinematicTracking(_starter(inputs))
+
+
+def _dynamic(inputs: FilterInputs) -> TrackingFilter:
+    model, settings = inputs.sensor.model, inputs.dynamic
+    known = inputs.sensor, inputs.noise_m
+    detector = ContactDetector(model, inputs.plates, inputs.dt_s)
+    blocks = dynamic_blocks(*known, detector, inputs.dt_s, inputs.held, settings, inputs.inertial)
+    kalman = DynamicFilter(*known, inputs.dt_s, inputs.held, settings, blocks)
+    return DynamicTracking(kalman, _starter(inputs))
+
+
+def _torque(inputs: FilterInputs) -> TrackingFilter:
+    kalman = TorqueFilter(inputs.sensor, inputs.noise_m, inputs.dt_s, inputs.held, inputs.torque)
+    feet = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
+    return TorqueTracking(kalman, feet, _starter(inputs))
+
+
+def _starter(inputs: FilterInputs) -> KinematicFilter:
+    return KinematicFilter(inputs.sensor, inputs.noise_m, inputs.dt_s, inputs.held, inputs.kinematic)
+
+
+_MAKERS: dict[str, Callable[[FilterInputs], TrackingFilter]] = {
+    "kinematic": _kinematic,
+    "torque": _torque,
+    "dynamic": _dynamic,
+}
+
+FILTERS = tuple(_MAKERS)
+"""Names of the filters."""
+
+
+def follower(name: str, inputs: FilterInputs) -> TrackingFilter:
+    """The filter of that name.
+
+    Raises:
+        UnknownName: There is none.
+    """
+    if name not in _MAKERS:
+        raise UnknownName("filter", name, FILTERS)
+    return _MAKERS[name](inputs)

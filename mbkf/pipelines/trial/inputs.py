@@ -1,0 +1,69 @@
+"""What a filter is built from and reads, made of a trial's markers and plates and of its subject."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from mbkf.filters.dynamic.settings import DynamicSettings
+from mbkf.filters.estimate import Recording
+from mbkf.filters.kinematic.settings import KinematicSettings
+from mbkf.filters.torque.settings import TorqueSettings
+from mbkf.io.records import MarkerTrajectories, PlateReadings
+from mbkf.io.subject import Subject
+from mbkf.model.human import HumanModel
+from mbkf.pipelines.followers import FilterInputs
+from mbkf.pipelines.trial.followers import FilterInputs
+from mbkf.sensors.contact.plates import plate_wrenches
+from mbkf.sensors.contacts import plate_wrenches
+from mbkf.sensors.marker_sensor import MarkerSensor
+
+MIN_PRESENT = 0.02
+"""A marker seen in a smaller share of the frames than this does not count for what can be observed."""
+
+
+class Beliefs(Protocol):
+    """What each filter believes."""
+
+    @property
+    def kinematic(self) -> KinematicSettings:
+        """Of the kinematic filter."""
+
+    @property
+    def dynamic(self) -> DynamicSettings:
+        """Of the dynamic filter."""
+
+    @property
+    def torque(self) -> TorqueSettings:
+        """Of the torque filter."""
+
+
+def trial_inputs(
+    shown: MarkerTrajectories, plates: tuple[PlateReadings, ...], subject: Subject, beliefs: Beliefs
+) -> tuple[FilterInputs, Recording]:
+    """Body, markers and plates of a trial, and its readings.
+
+    Args:
+        shown: (T, M, 3) m, under the subject's own names; what is hidden is NaN.
+        plates: The plates that are read.
+        subject: The person, with marker positions as they are to be used.
+        beliefs: Settings of the filters.
+    """
+    model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
+    by_name = {marker.name: marker for marker in subject.markers}
+    followed = [by_name[name] for name in shown.names]
+    sensor = MarkerSensor(model, [m.segment for m in followed], np.array([m.position_m for m in followed]))
+    present = shown.present.mean(axis=0) >= MIN_PRESENT
+    inputs = FilterInputs(
+        sensor,
+        np.array([m.noise_m for m in followed]),
+        plates,
+        1.0 / shown.rate_hz,
+        ~model.supports[sensor.joint_ids[present]].any(axis=0),
+        beliefs.kinematic,
+        beliefs.dynamic,
+        beliefs.torque,
+    )
+    wrenches = plate_wrenches(plates, shown.times_s, shown.rate_hz)
+    return inputs, Recording(shown.positions_m, wrenches, inputs.dt_s)

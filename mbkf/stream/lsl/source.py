@@ -1,0 +1,277 @@
+"""Frames from Lab Streaming Layer: a marker stream, and a plate stream at its own rate beside it."""
+
+from __future__ import annotations
+
+import time
+from math import ceil
+from typing import Any
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.errors import InvalidInput, MbkfError
+from mbkf.io.resample import WHOLE
+from mbkf.stream.libraries import lsl
+from mbkf.stream.lsl.format import (
+    MARKER_TYPES,
+    MarkerLayout,
+    PlateLayout,
+    read_marker_info,
+    read_plates_info,
+)
+from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription
+
+OPEN_S = 3.0
+"""How long a stream that was found may take to answer."""
+
+PLATES_S = 3.0
+"""How long the plate stream that the markers name is looked for."""
+
+LATE_S = 0.25
+"""Plates may come later than the end of their frame by this: a busy computer pauses for a part of it now and then, and
+what is answered without them stays wrong."""
+
+GIVEN_UP = 4
+"""After so many frames in a row whose plates came too late nobody waits for them, until they are in time again."""
+
+CHUNK = 64
+"""Samples of the plates fetched at a time; liblsl is given room for so many, whether they come or not."""
+
+QUIET_S = 0.1
+"""Plates that have said nothing for this long are not waited for any more."""
+
+KEPT_S = 10
+"""What liblsl keeps for us while we are busy."""
+
+
+class LslSource:
+    """A :class:`mbkf.stream.source.FrameSource`."""
+
+    patient = False
+
+    def __init__(self, name: str | None = None, plates_name: str | None = None) -> None:
+        """Args: name of the marker stream (default: the first), and of the plates' (default: what that says)."""
+        self._lsl = lsl()
+        self._name, self._plates_name = name, plates_name
+        self._markers: Any = None
+        self._plates: Any = None
+        self._stream: StreamDescription | None = None
+        self._finders: dict[str, Any] = {}
+        self._news: list[tuple[str, str]] = []
+        self._first_stamp = 0.0
+        self._newest_sample: int | None = None
+        self._heard_plates_s = 0.0
+        self._overdue = 0
+
+    def connect(self, timeout_s: float) -> StreamDescription | None:
+        """The first marker stream that is found, with its plates."""
+        info = self._resolve(self._name, MARKER_TYPES, timeout_s)
+        if info is None:
+            return None
+        try:
+            return self._connected(info)
+        except (self._lsl.util.LostError, self._lsl.util.TimeoutError):  # gone again
+            return None
+
+    def _connected(self, info: Any) -> StreamDescription | None:
+        inlet = self._inlet(info, counted=True)
+        if inlet is None:
+            return None
+        full = inlet.info(OPEN_S)
+        description, self._layout, wanted = read_marker_info(full)
+        self._name = info.name()
+        self._plates_name = self._plates_name or wanted or None
+        plates = self._connect_plates(self._layout)
+        self._counted = self._layout.counter is not None and (plates is None or plates[1].counter is not None)
+        self._markers = inlet if self._counted else self._inlet(info, counted=False)
+        self._stream = StreamDescription(
+            description.trial,
+            description.marker_names,
+            description.rate_hz,
+            description.start_time_s if self._counted else 0.0,
+            () if plates is None else plates[0],
+        )
+        return self._stream
+
+    def read(self, timeout_s: float) -> SourceFrame | None:
+        """The next marker frame with what the plates read until its end."""
+        assert self._stream is not None, "connect first"
+        self._found_plates_again()
+        if self._markers is None and not self._found_again(timeout_s):
+            return None
+        try:
+            sample, stamp = self._markers.pull_sample(timeout_s)
+        except self._lsl.util.LostError:
+            self._lose("markers")
+            return None
+        arrival_s = time.perf_counter()
+        if sample is None:
+            return None
+        number = self._number(sample, stamp)
+        markers, points = self._layout.points(sample)
+        return SourceFrame(number, arrival_s, markers, points, self._samples(number, arrival_s))
+
+    def news(self) -> list[tuple[str, str]]:
+        """What happened to the connection."""
+        told, self._news = self._news, []
+        return told
+
+    def close(self) -> None:
+        """Drops both streams."""
+        self._markers = self._plates = None
+        self._finders.clear()
+
+    def _resolve(self, name: str | None, types: tuple[str, ...], timeout_s: float) -> Any:
+        if name is not None:
+            found = self._lsl.resolve_byprop("name", name, 1, timeout_s)
+            return found[0] if found else None
+        found = [s for s in self._lsl.resolve_streams(timeout_s) if s.type().lower() in types]
+        return sorted(found, key=lambda stream: stream.name())[0] if found else None
+
+    def _inlet(self, info: Any, counted: bool) -> Any:
+        """An open inlet, or None where the stream does not answer; stamps are corrected where they are what counts."""
+        flags = 0
+        if not counted:
+            # Even stamps tell samples apart; those of frames are left as they are, since evened ones hide lost frames.
+            plates = self._lsl.proc_dejitter if info.name() == self._plates_name else 0
+            flags = self._lsl.proc_clocksync | plates
+        inlet = self._lsl.StreamInlet(
+            info, max_buflen=KEPT_S, recover=False, processing_flags=flags, as_numpy=True
+        )
+        try:
+            inlet.open_stream(OPEN_S)
+        except (self._lsl.util.LostError, self._lsl.util.TimeoutError):
+            return None
+        return inlet
+
+    def _connect_plates(self, markers: MarkerLayout) -> tuple[tuple, PlateLayout] | None:
+        wanted = self._plates_name
+        if wanted is None:
+            return None
+        info = self._resolve(wanted, (), PLATES_S)
+        inlet = None if info is None else self._inlet(info, counted=markers.counter is not None)
+        if info is None or inlet is None:
+            self._news.append(("plates", f"the plate stream '{wanted}' is missing; going on without plates"))
+            return None
+        plates, self._plate_layout = read_plates_info(inlet.info(OPEN_S))
+        self._plates = inlet
+        return plates, self._plate_layout
+
+    def _number(self, sample: Array, stamp: float) -> int:
+        if self._counted:
+            return int(sample[self._layout.counter])
+        if not self._first_stamp:
+            self._first_stamp = stamp
+        assert self._stream is not None
+        return round((stamp - self._first_stamp) * self._stream.rate_hz)
+
+    def _samples(self, number: int, arrival_s: float) -> PlateSamples:
+        """What the plates read since the frame before, waited for until the end of this frame."""
+        assert self._stream is not None
+        stream = self._stream
+        if self._plates is None:
+            return PlateSamples.none(len(stream.plates))
+        ratio = stream.plate_rate_hz / stream.rate_hz
+        offset = (stream.start_time_s - stream.plates[0].start_time_s) * stream.plate_rate_hz
+        until = offset + (number + 0.5) * ratio - WHOLE
+        patience = 0.5 / stream.rate_hz + LATE_S if self._overdue < GIVEN_UP else 0.0
+        deadline = arrival_s + patience
+        parts: list[PlateSamples] = []
+        before = self._newest_sample
+        if not self._heard_plates_s:
+            self._heard_plates_s = arrival_s
+        try:
+            missing = self._missing(until)
+            while True:  # asked once at least: a source that counts anew is ahead of itself
+                heard_until = min(deadline, self._heard_plates_s + QUIET_S)
+                wait = max(0.0, heard_until - time.perf_counter()) if missing > 0 else 0.0
+                # All that a frame brings in one call: each return waits for the interpreter.
+                found, stamps = self._plates.pull_chunk(
+                    timeout=wait, max_samples=CHUNK, min_samples=max(1, min(missing, int(ratio), CHUNK))
+                )
+                if len(found):
+                    self._heard_plates_s = time.perf_counter()
+                    parts.append(self._placed(found, stamps))
+                    self._newest_sample = int(parts[-1].index[-1])
+                    missing = self._missing(until)
+                if missing <= 0 or not (len(found) or wait):
+                    break
+            self._judge_plates(missing, before, waited_out=time.perf_counter() >= deadline)
+        except self._lsl.util.LostError:
+            self._lose("plates")
+        if not parts:
+            return PlateSamples.none(len(stream.plates))
+        return PlateSamples(
+            np.concatenate([part.index for part in parts]), np.concatenate([part.wrench for part in parts])
+        )
+
+    def _judge_plates(self, missing: int, before: int | None, waited_out: bool) -> None:
+        """Whether plates are still worth waiting for: those that only came a little too late are again."""
+        assert self._stream is not None
+        comes = self._newest_sample is not None and self._newest_sample != before
+        if missing <= 0:
+            self._overdue = 0
+        elif self._overdue < GIVEN_UP:
+            self._overdue += waited_out
+        elif comes and missing < LATE_S * self._stream.plate_rate_hz:
+            self._overdue = 0
+
+    def _missing(self, until: float) -> int:
+        """How many samples there are to come until that index."""
+        return 1 if self._newest_sample is None else ceil(until) - self._newest_sample
+
+    def _placed(self, samples: Array, stamps: Array) -> PlateSamples:
+        assert self._stream is not None
+        if self._counted:
+            index = samples[:, self._plate_layout.counter].astype(int)
+        else:
+            index = np.round((stamps - self._first_stamp) * self._stream.plate_rate_hz).astype(int)
+        rising = np.concatenate([[True], np.diff(np.maximum.accumulate(index)) > 0])
+        return PlateSamples(index[rising], self._plate_layout.wrenches(samples[rising]))
+
+    def _lose(self, what: str) -> None:
+        """A stream broke off; it is looked for in the background."""
+        name = self._name if what == "markers" else self._plates_name
+        self._news.append((f"{what} gone", f"the stream '{name}' broke off and is looked for"))
+        if what == "plates":
+            self._plates, self._newest_sample = None, None
+        else:
+            self._markers = None
+            if self._plates is not None:
+                self._lose("plates")
+        self._finders[what] = self._lsl.ContinuousResolver("name", name, forget_after=2.0)
+
+    def _found_again(self, timeout_s: float) -> bool:
+        """Whether the marker stream is back, and is the one it was."""
+        inlet = self._again("markers", timeout_s)
+        if inlet is None:
+            return False
+        assert self._stream is not None
+        try:
+            description, layout, _ = read_marker_info(inlet.info(OPEN_S))
+            same = description.marker_names == self._stream.marker_names
+            if not same or description.rate_hz != self._stream.rate_hz:
+                raise InvalidInput(f"the stream '{self._name}' came back with other markers or another rate")
+        except (MbkfError, self._lsl.util.LostError, self._lsl.util.TimeoutError) as error:
+            self._news.append(("refused", str(error)))
+            return False
+        self._markers, self._layout = inlet, layout
+        self._news.append(("markers back", f"the stream '{self._name}' is back"))
+        del self._finders["markers"]
+        return True
+
+    def _found_plates_again(self) -> None:
+        if "plates" not in self._finders:
+            return
+        inlet = self._again("plates", 0.0)
+        if inlet is not None:
+            self._plates, self._heard_plates_s = inlet, 0.0
+            self._news.append(("plates back", f"the stream '{self._plates_name}' is back"))
+            del self._finders["plates"]
+
+    def _again(self, what: str, timeout_s: float) -> Any:
+        found = self._finders[what].results()
+        if not found:
+            time.sleep(timeout_s)
+            return None
+        return self._inlet(found[0], counted=self._counted)

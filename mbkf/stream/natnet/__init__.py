@@ -1,0 +1,1 @@
+"""OptiTrack NatNet: packets, player and source."""

@@ -1,0 +1,148 @@
+"""From a source's frames to the filter's: numbered upwards, gaps filled, plates averaged, nonsense removed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.stream.receiving.numbering import Numbered, Numbering
+from mbkf.stream.receiving.plate_buffer import PlateBuffer
+from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription, plausible
+
+BRIDGED_S = 1.0
+"""A gap up to this long is filled with empty frames, which keep the filter's clock true; after a longer one it starts
+anew."""
+
+ALIGNED_S = 0.25
+"""After a count was set back, plates whose count fits the frames' within this are taken at their word."""
+
+Note = Callable[[str, str, int | None, int], None]
+"""Told of what happened: kind, sentence, frame, how often."""
+
+
+@dataclass(frozen=True)
+class ReadyFrame:
+    """A frame for the filter.
+
+    Attributes:
+        number: It never goes back.
+        arrival_s: When it arrived, or for a lost one the frame after it.
+        markers_m: (M, 3) the subject's markers, NaN where missing; None where they have to be labelled.
+        unlabelled_m: (N, 3) points without names.
+        plates: (K, 6) mean wrenches about the world's origin, NaN where not read.
+        lost: Whether the frame never came.
+    """
+
+    number: int
+    arrival_s: float
+    markers_m: Array | None
+    unlabelled_m: Array
+    plates: Array
+    lost: bool = False
+
+
+class Intake:
+    """Makes a stream's frames ready, one by one.
+
+    Attributes:
+        frames_in: Frames that arrived.
+        lost: Frames that did not, or came too late.
+    """
+
+    def __init__(self, stream: StreamDescription, columns: Array | None, note: Note) -> None:
+        """Args: the stream, where the subject's markers stand in it (None: unlabelled), and whom to tell."""
+        self._stream, self._columns, self._note = stream, columns, note
+        self._numbering = Numbering(stream.rate_hz)
+        self._plates = PlateBuffer(stream)
+        self._ratio = stream.plate_rate_hz / stream.rate_hz
+        self._plate_shift = 0
+        self._heard_s: float | None = None
+        self._plates_silent = False
+        self.frames_in = 0
+        self.lost = 0
+
+    def accept(self, frame: SourceFrame) -> tuple[list[ReadyFrame], PlateSamples]:
+        """The frames that are ready with a new one, lost ones before it included, and the plates' new samples."""
+        self.frames_in += 1
+        place = self._numbering.place(frame.number, frame.arrival_s)
+        if place.number is None:
+            self._note("late", "frames arrived late, twice or out of order and were left out", None, 1)
+            return [], self._take_plates(frame, place)
+        self._tell(place)
+        samples = self._take_plates(frame, place)
+        first = place.number - place.lost
+        gap = range(first, place.number) if place.lost <= BRIDGED_S * self._stream.rate_hz else range(0)
+        nothing = np.zeros((0, 3))
+        unseen = None if self._columns is None else np.full((len(self._columns), 3), np.nan)
+        ready = [
+            ReadyFrame(n, frame.arrival_s, unseen, nothing, self._plates.mean(n), lost=True) for n in gap
+        ]
+        markers, points = self._points(frame, place.number)
+        self._check_plates(frame, place.number)
+        return [
+            *ready,
+            ReadyFrame(place.number, frame.arrival_s, markers, points, self._plates.mean(place.number)),
+        ], samples
+
+    def _tell(self, place: Numbered) -> None:
+        if place.reset:
+            way = "back" if place.backwards else "ahead"
+            self._note(
+                "clock",
+                f"the source's count jumped {way}; time here decides how many frames are missing",
+                place.number,
+                1,
+            )
+        if place.lost:
+            self.lost += place.lost
+            self._note("lost", "frames were lost on the way", place.number, place.lost)
+
+    def _points(self, frame: SourceFrame, number: int) -> tuple[Array | None, Array]:
+        points, wrong, markers = frame.unlabelled_m, 0, None
+        if len(points):
+            points, wrong = plausible(points)
+            points = points[~np.isnan(points).any(axis=1)]
+        if self._columns is not None:
+            markers, more = plausible(frame.markers_m[self._columns])
+            wrong += more
+        if wrong:
+            self._note("nonsense", "points too far away to be true were left out", number, wrong)
+        return markers, points
+
+    def _take_plates(self, frame: SourceFrame, place: Numbered) -> PlateSamples:
+        samples = frame.plates
+        if place.reset and place.number is not None and len(samples.index):
+            self._realign(frame, place.number)
+        before = self._plates.missing
+        taken = self._plates.put(PlateSamples(samples.index + self._plate_shift, samples.wrench))
+        if self._plates.missing > before:
+            self._note(
+                "plates lost",
+                "samples of the plates were lost on the way",
+                place.number,
+                self._plates.missing - before,
+            )
+        return taken
+
+    def _realign(self, frame: SourceFrame, number: int) -> None:
+        """Plates follow the frames' new count: by their own where it fits, else the latest belongs to this frame."""
+        newest = int(frame.plates.index[-1])
+        fitting = round((number - frame.number) * self._ratio)
+        wanted = round((number + 0.5) * self._ratio) - newest
+        fits = abs(fitting - wanted) <= ALIGNED_S * self._stream.plate_rate_hz
+        self._plate_shift = fitting if fits else wanted
+
+    def _check_plates(self, frame: SourceFrame, number: int) -> None:
+        if not self._stream.plates:
+            return
+        if len(frame.plates.index) or self._heard_s is None:
+            if self._plates_silent and len(frame.plates.index):
+                self._note("plates", "the plates are back", number, 1)
+                self._plates_silent = False
+            self._heard_s = frame.arrival_s
+        elif not self._plates_silent and frame.arrival_s - self._heard_s > BRIDGED_S:
+            self._plates_silent = True
+            self._note("plates", "the plates fell silent; reactions are estimated from the motion", number, 1)

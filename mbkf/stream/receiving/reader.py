@@ -1,0 +1,72 @@
+"""The thread that reads a source, whatever happens to it, and lays its frames ready for the filter."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+
+from mbkf.stream.receiving.alignment import Intake, ReadyFrame
+from mbkf.stream.receiving.ring_buffer import Slot
+from mbkf.stream.source import FrameSource, PlateSamples
+
+READ_S = 0.1
+"""How long a read may take, so that the thread notices when it is to stop."""
+
+PAUSE_S = 0.5
+"""After a source that failed in an unforeseen way, this long until it is asked again."""
+
+
+class Reader:
+    """Reads until it is told to stop or the source ends.
+
+    Attributes:
+        overwritten: Frames that the filter was too slow for.
+    """
+
+    def __init__(
+        self,
+        source: FrameSource,
+        intake: Intake,
+        slot: Slot[ReadyFrame],
+        samples: Callable[[PlateSamples], None],
+        note: Callable[[str, str], None],
+    ) -> None:
+        """Args: source, what makes its frames ready, where they go, where plate samples go, and whom to tell."""
+        self._source, self._intake, self._slot = source, intake, slot
+        self._samples, self._note = samples, note
+        self.overwritten = 0
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="mbkf-reader", daemon=True)
+
+    def start(self) -> None:
+        """Begins to read."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Ends the thread; frames that were read can still be taken."""
+        self._stopping.set()
+        self._slot.close()
+        self._thread.join(timeout=5.0)
+
+    def _run(self) -> None:
+        while not self._stopping.is_set():
+            try:
+                frame = self._source.read(READ_S)
+            except EOFError:
+                break
+            except Exception as error:  # a stream must not end a recording, whatever its library does
+                self._note("source", f"the source failed ({type(error).__name__}: {error})")
+                self._stopping.wait(PAUSE_S)
+                continue
+            for kind, what in self._source.news():
+                self._note(kind, what)
+            if frame is None:
+                continue
+            ready, samples = self._intake.accept(frame)
+            for one in ready:
+                gone = [old for old in self._slot.put(one) if not old.lost]
+                if gone:
+                    self.overwritten += len(gone)
+                    self._note("overwritten", "the filter could not keep up; only the latest frame was kept")
+            self._samples(samples)
+        self._slot.close()

@@ -1,0 +1,1 @@
+"""Results sent on to other programs while a run goes on."""

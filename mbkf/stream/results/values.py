@@ -1,0 +1,70 @@
+"""A live frame as the numbers people use: clinical angles and moments with their spreads, and the reactions."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import SIDES, Array
+from mbkf.model.clinical import ClinicalAngles
+from mbkf.model.human import HumanModel
+from mbkf.stream.results.frame import LiveFrame
+
+_LOAD = ("fx", "fy", "fz", "mx", "my", "mz")
+
+
+class ResultValues:
+    """Turns frames into rows of named numbers, one after another.
+
+    Angles in rad (the pelvis's translations in m), moments in N m (N), reactions in N and N m about the world's origin,
+    z up.
+
+    Attributes:
+        names: Of the numbers.
+        units: Their units.
+    """
+
+    def __init__(self, model: HumanModel) -> None:
+        self._clinical = ClinicalAngles(model)
+        self._before: Array | None = None
+        self._axis = np.concatenate([np.arange(j.v.stop - j.v.start) % 3 for j in model.joints.values()])
+        angles = self._clinical.names
+        rad = ["rad" if turns else "m" for turns in self._clinical.rotational]
+        nm = ["N m" if turns else "N" for turns in self._clinical.rotational]
+        loads = [f"reaction_{side}_{part}" for side in SIDES for part in _LOAD]
+        newton = ["N", "N", "N", "N m", "N m", "N m"] * 2
+        groups = [
+            (angles, rad),
+            ([f"{name}_sd" for name in angles], rad),
+            ([f"{name}_moment" for name in angles], nm),
+            ([f"{name}_moment_sd" for name in angles], nm),
+            (loads, newton),
+            ([f"{name}_sd" for name in loads], newton),
+        ]
+        self.names: tuple[str, ...] = tuple(name for names, _ in groups for name in names)
+        self.units: tuple[str, ...] = tuple(unit for _, units in groups for unit in units)
+
+    def row(self, frame: LiveFrame) -> Array:
+        """(len(names),) the numbers of a frame, NaN where the body is not followed.
+
+        Angles stay continuous with the row before. Standard deviations are those of independent tangent dofs, since a
+        frame carries no covariance.
+        """
+        count = len(self._clinical.names)
+        values = np.full(len(self.names), np.nan)
+        if np.isfinite(frame.q).all():
+            q = frame.q[None]
+            angles = self._clinical.angles(q, self._before)
+            self._before = angles[0]
+            E = self._clinical.rate_matrices(q, angles)[0]
+            values[:count] = angles[0]
+            values[count : 2 * count] = np.sqrt(E**2 @ frame.angle_sd**2)
+            values[2 * count : 3 * count] = self._clinical.moments(q, frame.torques[None], angles)[0]
+            values[3 * count : 4 * count] = self._moments_sd(frame, angles)
+        values[4 * count :] = np.concatenate([frame.wrench.ravel(), frame.wrench_sd.ravel()])
+        return values
+
+    def _moments_sd(self, frame: LiveFrame, angles: Array) -> Array:
+        """(A,) √Σ B² sd² per joint, one axis of every joint at a time (no coordinate mixes two joints)."""
+        by_axis = np.where(self._axis == np.arange(3)[:, None], frame.torques_sd, 0.0)
+        shares = self._clinical.moments(np.tile(frame.q, (3, 1)), by_axis, np.tile(angles, (3, 1)))
+        return np.asarray(np.sqrt(np.square(shares).sum(axis=0)))

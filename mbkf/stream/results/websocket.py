@@ -1,0 +1,150 @@
+"""Results as JSON over WebSocket: a greeting with names and units, then the newest frame again and again."""
+
+from __future__ import annotations
+
+import hmac
+import ipaddress
+import json
+import math
+import re
+import secrets
+import threading
+from http import HTTPStatus
+from typing import Any
+from urllib.parse import parse_qs, urlparse
+
+from websockets.exceptions import ConnectionClosed
+from websockets.http11 import Request, Response
+from websockets.sync.server import ServerConnection, serve
+
+from mbkf.conventions import Array
+from mbkf.errors import InvalidInput
+from mbkf.model.human import HumanModel
+from mbkf.stream.results.frame import LiveFrame
+from mbkf.stream.results.sending import SendingThread
+from mbkf.stream.results.values import ResultValues
+
+LOOPBACK = "127.0.0.1"
+
+ORIGINS = (None, re.compile(r"https?://(localhost|127\.0\.0\.1)(:\d+)?"))
+"""Who may listen: programs, and pages that came from this computer; not any page a browser has open."""
+
+WAIT_S = 0.5
+SENT_FRAMES = 8
+"""Frames that may wait to be made into text."""
+
+
+def parse_address(text: str) -> tuple[str, int]:
+    """Address and port of ``[ADDRESS:]PORT``.
+
+    Raises:
+        InvalidInput: It is not of that form.
+    """
+    address, _, port = text.rpartition(":")
+    if not port.isdigit() or int(port) > 65535:
+        raise InvalidInput(f"--websocket '{text}': write PORT or ADDRESS:PORT")
+    return address or LOOPBACK, int(port)
+
+
+class WebSocketResults:
+    """A :class:`mbkf.stream.results.frame.FrameSink`. A listener that is slow gets the newest frame and misses others.
+
+    Attributes:
+        url: Where to listen, with the token where one is needed.
+    """
+
+    def __init__(self, model: HumanModel, address: str, port: int, token: str | None = None) -> None:
+        """Listens for clients; another address than this computer's own needs a token, made up where none is given.
+
+        Raises:
+            InvalidInput: The address or port cannot be listened on.
+        """
+        own = _is_loopback(address)
+        self._token = token if own else token or secrets.token_urlsafe(16)
+        self._values = ResultValues(model)
+        self._changed = threading.Condition()
+        self._newest, self._count, self._closed = "", 0, False
+        try:
+            self._server = serve(
+                self._serve,
+                address,
+                port,
+                origins=ORIGINS if own else None,
+                process_request=self._check,
+                compression=None,
+            )
+        except (OSError, OverflowError) as error:
+            raise InvalidInput(f"--websocket: cannot listen on {address}, port {port} ({error})") from error
+        host, taken = self._server.socket.getsockname()[:2]
+        query = f"?token={self._token}" if self._token else ""
+        self.url = f"ws://{host}:{taken}/{query}"
+        self._thread = threading.Thread(target=self._server.serve_forever, name="mbkf-websocket", daemon=True)
+        self._thread.start()
+        self._sending = SendingThread(self._prepare, "mbkf-websocket-json", SENT_FRAMES)
+
+    def take(self, frame: LiveFrame) -> None:
+        """Hands the frame over."""
+        self._sending.take(frame)
+
+    def close(self) -> None:
+        """Ends the server and its connections."""
+        self._sending.close()
+        with self._changed:
+            self._closed = True
+            self._changed.notify_all()
+        self._server.shutdown()
+        self._thread.join(timeout=5.0)
+
+    def _check(self, _connection: ServerConnection, request: Request) -> Response | None:
+        """Refuses who does not know the token."""
+        if self._token is None:
+            return None
+        given = parse_qs(urlparse(request.path).query).get("token", [""])[0]
+        if hmac.compare_digest(given.encode(), self._token.encode()):
+            return None
+        return _connection.respond(HTTPStatus.FORBIDDEN, "a token is needed\n")
+
+    def _serve(self, connection: ServerConnection) -> None:
+        greeting = {"names": self._values.names, "units": self._values.units}
+        sent = 0
+        try:
+            connection.send(json.dumps(greeting))
+            while True:
+                with self._changed:
+                    if not self._closed and self._count == sent:
+                        self._changed.wait(WAIT_S)
+                    if self._closed:
+                        return
+                    fresh, text = self._count > sent, self._newest
+                    sent = self._count
+                if fresh:
+                    connection.send(text)
+        except ConnectionClosed:
+            return
+
+    def _prepare(self, frame: LiveFrame) -> None:
+        message: dict[str, Any] = {
+            "frame": frame.number,
+            "time_s": frame.time_s,
+            "tracked": frame.tracked,
+            "latency_s": frame.latency_s,
+            "lost": frame.lost,
+            "rate_hz": frame.rate_hz,
+            "values": _numbers(self._values.row(frame)),
+        }
+        text = json.dumps(message)
+        with self._changed:
+            self._newest, self._count = text, self._count + 1
+            self._changed.notify_all()
+
+
+def _numbers(values: Array) -> list[float | None]:
+    """Plain numbers, None for what is not known."""
+    return [value if math.isfinite(value) else None for value in values.tolist()]
+
+
+def _is_loopback(address: str) -> bool:
+    try:
+        return ipaddress.ip_address(address).is_loopback
+    except ValueError:
+        return address == "localhost"

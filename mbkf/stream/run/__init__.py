@@ -1,0 +1,1 @@
+"""One live run: connecting, scaling a standing person, filtering, logging, reporting."""

@@ -1,0 +1,94 @@
+"""From a row of the log to what listeners are shown: torques, wrenches and markers of the estimated body."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mbkf.conventions import Array
+from mbkf.filters.inverse_dynamics import TorqueSolver
+from mbkf.pipelines.live import LiveInputs
+from mbkf.pipelines.live.filter import LiveInputs
+from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.stream.frame import LiveFrame
+from mbkf.stream.intake import ReadyFrame
+from mbkf.stream.receiving.alignment import ReadyFrame
+from mbkf.stream.results.frame import LiveFrame
+
+RATE_OVER_S = 1.0
+"""The rate is counted over this time."""
+
+
+class FrameMaker:
+    """Makes :class:`LiveFrame` records."""
+
+    def __init__(self, live: LiveInputs, rate_hz: float) -> None:
+        """Args: what the filter was built from, and the stream's rate."""
+        inputs = live.inputs
+        self._sensor, self._rate_hz = inputs.sensor, rate_hz
+        self._solver = TorqueSolver(inputs.sensor.model)
+        self._feet = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
+        self._memory = self._feet.begin()
+        self._arrivals: deque[float] = deque()
+        self._first: int | None = None
+
+    def arrived(self, arrival_s: float) -> None:
+        """A frame came, for the rate."""
+        self._arrivals.append(arrival_s)
+        while arrival_s - self._arrivals[0] > RATE_OVER_S:
+            self._arrivals.popleft()
+
+    def frame(self, ready: ReadyFrame, row: NDArray, latency_s: float, lost: int) -> LiveFrame:
+        """What is shown of a frame.
+
+        Args:
+            ready: Its readings.
+            row: (1,) the log's row of it.
+            latency_s: From arrival to result.
+            lost: Frames lost so far.
+        """
+        if self._first is None:
+            self._first = ready.number
+        found = row[0]
+        q, v, a = found["q"], found["v"], found["a"]
+        torques, predicted = np.full(len(v), np.nan), np.full((len(found["measured_m"]), 3), np.nan)
+        wrench, wrench_sd = found["wrench"], found["wrench_sd"]
+        if found["known"]:
+            if np.isnan(wrench).any():
+                wrench = self._measured(q, v, a, ready.plates)
+            torques = self._solver.torques(q, v, a, wrench)
+            predicted = self._sensor.positions(q)
+        return LiveFrame(
+            number=ready.number - self._first,
+            time_s=(ready.number - self._first) / self._rate_hz,
+            q=q,
+            v=v,
+            torques=torques,
+            torques_sd=found["torque_sd"],
+            wrench=wrench,
+            wrench_sd=wrench_sd,
+            plates=ready.plates,
+            measured_m=found["measured_m"],
+            predicted_m=predicted,
+            unlabelled_m=ready.unlabelled_m,
+            angle_sd=found["position_sd"],
+            latency_s=latency_s,
+            lost=lost,
+            rate_hz=self._rate(),
+            tracked=bool(found["tracked"]),
+            started=bool(found["started"]),
+        )
+
+    def _rate(self) -> float:
+        if len(self._arrivals) < 2:
+            return 0.0
+        passed = self._arrivals[-1] - self._arrivals[0]
+        return (len(self._arrivals) - 1) / passed if passed > 0.0 else 0.0
+
+    def _measured(self, q: Array, v: Array, a: Array, plates: Array) -> Array:
+        """(2, 6) measured wrench per foot, for a filter that estimates none."""
+        load = self._feet.decide(self._memory, q, v, a, plates)
+        self._memory = load.memory
+        return load.wrench

@@ -1,0 +1,123 @@
+"""Writes the log of a live run in a thread of its own, so that a slow or full disk never stalls the filter."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mbkf.io.frame_log import FrameLogWriter
+from mbkf.pipelines.live.log import LiveLog
+from mbkf.stream.source import PlateSamples
+
+EVERY_S = 0.2
+"""How often what has gathered is written."""
+
+AGAIN_S = 1.0
+"""How long after a failure writing is tried again."""
+
+REPORTED_S = 5.0
+"""How often the state of the run is reported meanwhile."""
+
+MOST_HELD_BYTES = 256 * 1024 * 1024
+"""While nothing can be written, no more than this is held in memory; the oldest rows go first."""
+
+
+@dataclass
+class _Log:
+    """Rows on their way into one file."""
+
+    writer: FrameLogWriter
+    rows: deque[NDArray] = field(default_factory=deque)
+    waiting: int = 0
+    dropped: int = 0
+
+    def put(self, rows: NDArray) -> None:
+        self.rows.append(rows)
+        self.waiting += rows.nbytes
+
+    def shed(self) -> None:
+        """Forgets the oldest rows where too many wait."""
+        while self.waiting > MOST_HELD_BYTES:
+            gone = self.rows.popleft()
+            self.waiting -= gone.nbytes
+            self.dropped += len(gone)
+
+
+class LogWriter:
+    """A thread that appends rows to a :class:`LiveLog`."""
+
+    def __init__(
+        self, log: LiveLog, failed: Callable[[OSError], None], report: Callable[[], None] | None = None
+    ) -> None:
+        """Args: the log, whom to tell that writing failed, and what to call every few seconds."""
+        self._log, self._failed, self._report = log, failed, report
+        self._logs = (_Log(log.frames), _Log(log.plates))
+        self._changed = threading.Condition()
+        self._closing = False
+        self._thread = threading.Thread(target=self._run, name="mbkf-log", daemon=True)
+        self._thread.start()
+
+    def put_row(self, row: NDArray) -> None:
+        """An answered frame."""
+        with self._changed:
+            self._logs[0].put(row)
+
+    def put_samples(self, samples: PlateSamples) -> None:
+        """Readings of the plates."""
+        if not len(samples.index):
+            return
+        rows = np.zeros(len(samples.index), dtype=self._log.plates.dtype)
+        rows["index"], rows["wrench"] = samples.index, samples.wrench
+        with self._changed:
+            self._logs[1].put(rows)
+
+    def close(self) -> int:
+        """Writes what is left, as far as it can be, and returns how many frames are not in the log."""
+        with self._changed:
+            self._closing = True
+            self._changed.notify_all()
+        self._thread.join()
+        self._log.close()
+        frames = self._logs[0]
+        return frames.dropped + sum(len(rows) for rows in frames.rows)
+
+    def _run(self) -> None:
+        pause, told = EVERY_S, 0.0
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._closing, pause)
+                closing = self._closing
+            pause = EVERY_S if all([self._flush(log) for log in self._logs]) else AGAIN_S
+            told += pause
+            if self._report is not None and told >= REPORTED_S:
+                told = 0.0
+                self._report()
+            if closing:
+                return
+
+    def _flush(self, log: _Log) -> bool:
+        """Writes what waits for one file; False where that failed."""
+        with self._changed:
+            rows = list(log.rows)
+        if not rows:
+            return True
+        together = np.concatenate(rows)
+        before = log.writer.rows
+        try:
+            log.writer.append(together)
+        except OSError as error:
+            self._failed(error)
+        left = together[log.writer.rows - before :]
+        with self._changed:
+            for _ in rows:
+                log.waiting -= log.rows.popleft().nbytes
+            if len(left):
+                log.rows.appendleft(left)
+                log.waiting += left.nbytes
+                log.shed()
+        return not len(left)

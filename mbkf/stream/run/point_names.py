@@ -1,0 +1,62 @@
+"""Names for the points of a stream that has none, and the frames that wait for them."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.filters.estimate import Estimate, Prediction
+from mbkf.io.subject import Subject
+from mbkf.pipelines.live.filter import NUMERICAL
+from mbkf.pipelines.live.labels import LiveLabels, live_body
+from mbkf.stream.receiving.alignment import Note, ReadyFrame
+
+Named = list[tuple[ReadyFrame, Array]]
+"""Frames with their markers (M, 3)."""
+
+
+class PointNames:
+    """Holds frames until their points have names."""
+
+    def __init__(
+        self, subject: Subject, names: tuple[str, ...], dt_s: float, patient: bool, note: Note
+    ) -> None:
+        """Args: the person, the markers followed, the time step, whether the source waits, and whom to tell."""
+        self._body = live_body(subject, names)
+        self._dt_s, self._patient, self._note = dt_s, patient, note
+        self._waiting: deque[ReadyFrame] = deque()
+        self._labels = self._fresh()
+
+    def push(self, frame: ReadyFrame, prediction: Prediction | None) -> Named:
+        """A new frame; gives back those that are due.
+
+        Args:
+            frame: The frame.
+            prediction: What the filter expects of the frame, None where it has to start anew.
+        """
+        self._waiting.append(frame)
+        try:
+            return self._due(self._labels.push(frame.unlabelled_m, prediction))
+        except NUMERICAL as error:
+            self._note("labels", f"labels are searched anew ({error})", frame.number, 1)
+            self._labels = self._fresh()
+            nobody = np.full((len(self._body.names), 3), np.nan)
+            unnamed = [(one, nobody) for one in self._waiting]
+            self._waiting.clear()
+            return unnamed
+
+    def learn(self, estimate: Estimate) -> None:
+        """What the filter made of the frame pushed last."""
+        self._labels.learn(estimate.q)
+
+    def finish(self) -> Named:
+        """The frames that still wait, when no more follow."""
+        return self._due(self._labels.finish())
+
+    def _fresh(self) -> LiveLabels:
+        return LiveLabels(self._body, self._dt_s, patient=self._patient)
+
+    def _due(self, found: list[Array]) -> Named:
+        return [(self._waiting.popleft(), markers) for markers in found]

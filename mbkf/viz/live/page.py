@@ -1,0 +1,88 @@
+"""The live page: a sink of frames that shows the newest one in every open browser."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.model.human import HumanModel
+from mbkf.stream.results.frame import LiveFrame
+from mbkf.viz.live.rows import LiveRows
+from mbkf.viz.page import page
+from mbkf.viz.scene.description import scene_description
+from mbkf.viz.server import LOOPBACK, PageServer
+
+
+class LivePage:
+    """A web page that follows a live reconstruction (a ``FrameSink``).
+
+    A frame is only kept here; the server's own thread makes a row of the newest one, at most 30 times a second, just
+    after a frame has come and only while a page is open, so the filter never waits. The page may be closed and opened
+    again at any time.
+
+    Args:
+        model: The body.
+        marker_names: (M,) markers of the frames, in their order.
+        plate_corners_m: (K, 4, 3) corners of the force plates, NaN where not known; None without plates.
+        title: What the page is headed.
+        address: Where to listen; this computer alone by default.
+        port: 0 for any that is free.
+        token: What the page's address must carry. Another address than this computer's always has one: the given
+            one, or one that is made up.
+
+    Attributes:
+        url: What to open in a browser, token included.
+
+    Raises:
+        InvalidInput: The address or port cannot be listened on.
+    """
+
+    def __init__(
+        self,
+        model: HumanModel,
+        marker_names: tuple[str, ...],
+        plate_corners_m: Array | None = None,
+        *,
+        title: str = "live",
+        address: str = LOOPBACK,
+        port: int = 0,
+        token: str | None = None,
+    ) -> None:
+        corners = np.empty((0, 4, 3)) if plate_corners_m is None else np.asarray(plate_corners_m)
+        heights = corners[..., 2][np.isfinite(corners[..., 2])]
+        self._rows = LiveRows(model, len(marker_names), float(heights.mean()) if heights.size else 0.0)
+        self._newest: LiveFrame | None = None
+        self._sent: tuple[LiveFrame, int, bytes] | None = None
+        greeting = scene_description(
+            title, model, marker_names, self._rows.clinical.names, corners, self._rows.layout, streamed=True
+        )
+        self._server = PageServer(
+            page(),
+            greeting=json.dumps(greeting),
+            newest=self._packed,
+            address=address,
+            port=port,
+            token=token,
+        )
+        self.url = self._server.url
+
+    def take(self, frame: LiveFrame) -> None:
+        """Keeps the frame as the newest one; returns at once."""
+        self._newest = frame
+        self._server.wake()
+
+    def close(self) -> None:
+        """Ends the server; open pages say that they are not connected."""
+        self._server.close()
+
+    def _packed(self) -> tuple[int, bytes] | None:
+        """The newest frame's row as 32-bit numbers; made once for all open pages."""
+        frame = self._newest
+        if frame is None:
+            return None
+        if self._sent is None or self._sent[0] is not frame:
+            count = 0 if self._sent is None else self._sent[1] + 1
+            self._sent = (frame, count, self._rows.row(frame).astype("<f4").tobytes())
+        return self._sent[1:]

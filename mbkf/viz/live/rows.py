@@ -1,0 +1,96 @@
+"""Frames of a live reconstruction as rows to draw: clinical angles and torques with their spreads, poses, markers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.model.clinical import ClinicalAngles
+from mbkf.model.human import HumanModel
+from mbkf.sensors.contact.plates import pressure_and_free_moment
+from mbkf.sensors.contacts import pressure_and_free_moment
+from mbkf.stream.frame import LiveFrame
+from mbkf.stream.results.frame import LiveFrame
+from mbkf.viz.channels import Layout, marker_states
+from mbkf.viz.scene import segment_poses
+from mbkf.viz.scene.channels import Layout, marker_states
+from mbkf.viz.scene.description import segment_poses
+
+MOST_UNLABELLED = 60
+"""Points without a name that are drawn at most."""
+
+PRESSURE_FROM_N = 20.0
+"""Vertical force from which a reaction is drawn."""
+
+
+class LiveRows:
+    """Turns frames into rows, one after another.
+
+    Attributes:
+        clinical: The coordinates shown.
+        layout: Of the rows.
+    """
+
+    def __init__(self, model: HumanModel, markers: int, surface_m: float = 0.0) -> None:
+        self.clinical = ClinicalAngles(model)
+        self.layout = Layout(len(model.joints), markers, len(self.clinical.names), MOST_UNLABELLED)
+        self._model, self._surface_m = model, surface_m
+        self._before: Array | None = None
+
+    def row(self, frame: LiveFrame) -> Array:
+        """(width,) the row of a frame.
+
+        Angles stay continuous with the row before. Standard deviations of angles are those of independent tangent
+        dofs, since a frame carries no covariance.
+        """
+        put, rows = self.layout.put, self.layout.blank(1)
+        status = (
+            frame.time_s, frame.number, 1e3 * frame.latency_s, frame.rate_hz, frame.lost, frame.tracked,
+        )  # fmt: skip
+        put(rows, "status", np.array([status], dtype=float))
+        measured = frame.measured_m
+        put(rows, "measured", measured[None])
+        nowhere = np.zeros(len(measured), dtype=bool)
+        put(rows, "state", marker_states(measured, nowhere, nowhere)[None])
+        if frame.tracked and np.isfinite(frame.q).all():
+            put(rows, "predicted", frame.predicted_m[None])
+            put(rows, "segments", segment_poses(self._model, frame.q[None]))
+            self._put_curves(rows, frame)
+        self._put_reactions(rows, frame)
+        first, _ = self.layout.parts["unlabelled"]
+        points = frame.unlabelled_m[:MOST_UNLABELLED].ravel()
+        rows[0, first : first + len(points)] = points
+        row: Array = rows[0]
+        return row
+
+    def _put_curves(self, rows: Array, frame: LiveFrame) -> None:
+        q = frame.q[None]
+        angles = self.clinical.angles(q, self._before)
+        self._before = angles[0]
+        self.layout.put(rows, "angles", angles)
+        self.layout.put(rows, "angles_sd", self._angles_sd(frame, angles)[None])
+        moments, moments_sd = self._moments(frame, angles)
+        self.layout.put(rows, "moments", moments[None])
+        self.layout.put(rows, "moments_sd", moments_sd[None])
+
+    def _angles_sd(self, frame: LiveFrame, angles: Array) -> Array:
+        """(A,) √Σ E² sd²; NaN where a dof with unknown spread takes part."""
+        weights = self.clinical.rate_matrices(frame.q[None], angles)[0] ** 2
+        known = np.isfinite(frame.angle_sd)
+        variance = weights[:, known] @ frame.angle_sd[known] ** 2
+        variance[(weights[:, ~known] > 0).any(axis=1)] = np.nan
+        return np.asarray(np.sqrt(variance))
+
+    def _moments(self, frame: LiveFrame, angles: Array) -> tuple[Array, Array]:
+        """(A,) moments, and √Σ B² sd² by one axis of every joint at a time (no coordinate mixes two joints)."""
+        axis = np.concatenate([np.arange(j.v.stop - j.v.start) % 3 for j in self._model.joints.values()])
+        by_axis = np.where(axis == np.arange(3)[:, None], frame.torques_sd, 0.0)
+        loads = np.concatenate([frame.torques[None], by_axis])
+        found = self.clinical.moments(np.tile(frame.q, (4, 1)), loads, np.tile(angles, (4, 1)))
+        return found[0], np.asarray(np.sqrt(np.square(found[1:]).sum(axis=0)))
+
+    def _put_reactions(self, rows: Array, frame: LiveFrame) -> None:
+        pressure, _ = pressure_and_free_moment(frame.wrench[None], self._surface_m, PRESSURE_FROM_N)
+        self.layout.put(rows, "force", frame.wrench[None, :, :3])
+        self.layout.put(rows, "force_sd", frame.wrench_sd[None, :, :3])
+        self.layout.put(rows, "pressure", pressure)

@@ -1,0 +1,87 @@
+"""The waiting page: tells whoever is to be scaled what the terminal tells, until the live page takes its place."""
+
+from __future__ import annotations
+
+import json
+
+from mbkf.viz.page import asset
+from mbkf.viz.server import LOOPBACK, PageServer
+
+
+class StandingPage:
+    """A web page that shows the newest sentence, large, and how much of the standing is done.
+
+    What is said before it is opened is shown then. An open page that loses its server asks at the same address until
+    another page answers, and becomes that one.
+
+    Args:
+        address: Where to listen; this computer alone by default.
+        port: 0 for any that is free.
+        token: What the page's address must carry, as for :class:`mbkf.viz.live.page.LivePage`.
+    """
+
+    def __init__(self, *, address: str = LOOPBACK, port: int = 0, token: str | None = None) -> None:
+        self._address, self._port, self._token = address, port, token
+        self._newest: tuple[int, str, float | None] = (0, "", None)
+        self._server: PageServer | None = None
+
+    def open(self, title: str) -> str:
+        """Serves the page; returns its address, token included.
+
+        Args:
+            title: What the page is headed.
+
+        Raises:
+            InvalidInput: The address or port cannot be listened on.
+        """
+        self._server = PageServer(
+            standing_page(),
+            greeting=json.dumps({"title": title}),
+            newest=self._packed,
+            address=self._address,
+            port=self._port,
+            token=self._token,
+        )
+        return self._server.url
+
+    def say(self, text: str) -> None:
+        """Shows a sentence instead of the one before; returns at once."""
+        self._show(text, self._newest[2])
+
+    def progress(self, share: float | None) -> None:
+        """Shows how much of the standing is done, 0 to 1; None hides it, as no frames come. Returns at once."""
+        self._show(self._newest[1], share)
+
+    def hand_over(self) -> tuple[int, str]:
+        """Frees the port at once; returns it and the token, for the page that follows at the same address."""
+        assert self._server is not None
+        self._server.free()
+        return self._server.port, self._server.token
+
+    def close(self) -> None:
+        """Ends the server if there is one; open pages say so."""
+        if self._server is not None:
+            self._server.close()
+
+    def _show(self, text: str, share: float | None) -> None:
+        number, *shown = self._newest
+        if shown != [text, share]:
+            self._newest = (number + 1, text, share)
+            if self._server is not None:
+                self._server.wake()
+
+    def _packed(self) -> tuple[int, bytes]:
+        """The newest sentence and share as a numbered row of JSON."""
+        number, text, share = self._newest
+        return number, json.dumps({"text": text, "share": share}, ensure_ascii=False).encode("utf-8")
+
+
+def standing_page() -> str:
+    """The page as one piece of text, in the look of the live page."""
+    text = asset("standing.html")
+    for name, part in (
+        ("style", asset("page.css") + asset("standing.css")),
+        ("script", asset("standing.js")),
+    ):
+        text = text.replace("{{" + name + "}}", part, 1)
+    return text

@@ -1,0 +1,146 @@
+"""One self-contained page about a reconstruction: quality first, then gait, motion, reactions and settings."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from mbkf.errors import FileFormatError
+from mbkf.io.atomic import replacing
+from mbkf.io.results import Reconstruction
+from mbkf.pipelines.gait.cycles import find_gait
+from mbkf.viz.markup import folded, paragraph, section, table
+from mbkf.viz.page import asset
+from mbkf.viz.report.gait import gait_section
+from mbkf.viz.report.motion import motion_section, reaction_section
+from mbkf.viz.report.quality import quality_section
+
+NAVIGATION = (
+    ("quality", "Quality"), ("gait", "Gait"), ("motion", "Angles and torques"), ("reactions", "Reactions"),
+    ("settings", "Settings"),
+)  # fmt: skip
+
+
+def report_page(
+    reconstruction: Reconstruction, summary: Mapping[str, Any], labels: Mapping[str, Any] | None = None
+) -> str:
+    """The report.
+
+    Args:
+        reconstruction: What was found.
+        summary: Its summary.json.
+        labels: What ``mbkf label`` wrote beside the labelled capture (its JSON), or None.
+    """
+    r = reconstruction
+    gait = find_gait(r) if r.tracked.any() else None
+    sections = [quality_section(r, summary, labels)]
+    if r.tracked.any():
+        sections += [gait_section(gait, r.times_s), motion_section(r, gait), reaction_section(r, gait)]
+    sections.append(_settings(r, summary))
+    there = [entry for entry in NAVIGATION if any(f'<section id="{entry[0]}"' in s for s in sections)]
+    links = "".join(f'<a href="#{name}">{title}</a>' for name, title in there)
+    policy = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n<link rel="icon" href="data:,">\n'
+        f"<title>{escape(r.trial)} · mbkf report</title>\n<style>{asset('report.css')}</style>\n</head>\n<body>\n"
+        f"<nav><b>mbkf</b>{links}</nav>\n<main>\n{_heading(r)}\n{''.join(sections)}\n</main>\n</body>\n</html>\n"
+    )
+
+
+def write_report(
+    reconstruction: Reconstruction,
+    summary: Mapping[str, Any],
+    path: str | Path,
+    labels: Mapping[str, Any] | None = None,
+) -> None:
+    """Writes :func:`report_page`, whole or not at all.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    text = report_page(reconstruction, summary, labels)
+    with replacing(path) as partial:
+        partial.write_text(text, encoding="utf-8")
+
+
+def read_labels(path: str | Path) -> dict[str, Any]:
+    """What ``mbkf label`` wrote beside a labelled capture.
+
+    Raises:
+        FileFormatError: The file is missing, no JSON, or something else.
+    """
+    source = Path(path)
+    try:
+        found = json.loads(source.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise FileFormatError(source, f"cannot be read ({error}); make it with 'mbkf label'") from error
+    if not isinstance(found, dict) or "ghosts_dropped" not in found:
+        raise FileFormatError(source, "is not what 'mbkf label' writes beside a labelled capture")
+    return found
+
+
+def labels_of(folder: str | Path, trial: str) -> dict[str, Any] | None:
+    """What ``mbkf label`` wrote for a trial: TRIAL.json in a result's folder or beside it, None where there is none."""
+    place = Path(folder)
+    for path in (place / f"{trial}.json", place.absolute().parent / f"{trial}.json"):
+        if path.is_file():
+            try:
+                return read_labels(path)
+            except FileFormatError:
+                continue  # another program's file of that name
+    return None
+
+
+def _heading(r: Reconstruction) -> str:
+    height = f", {r.subject.height_m:.2f} m" if r.subject.height_m else ""
+    duration = r.frames / r.rate_hz
+    facts = (
+        f"{r.subject.mass_kg:.1f} kg{height}",
+        f"{r.frames} frames at {r.rate_hz:g} Hz, {duration:.2f} s",
+        f"{len(r.marker_names)} markers, protocol {r.protocol}",
+        f"{r.filter} filter{', smoothed' if r.smoothed else ', frame by frame'}",
+        f"mbkf {r.version}",
+    )
+    return f"<h1>{escape(r.trial)}</h1><p class='facts'>{' · '.join(escape(fact) for fact in facts)}</p>"
+
+
+def _settings(r: Reconstruction, summary: Mapping[str, Any]) -> str:
+    speed = summary.get("realtime_factor")
+    seconds = summary.get("step_seconds_median")
+    run = [("filter", r.filter), ("smoothed", "yes" if r.smoothed else "no"), ("version", r.version)]
+    if speed and seconds:
+        run.append(
+            ("computing time", f"{1e3 * seconds:.2f} ms a frame (median), {speed:.1f} times real time")
+        )
+    chosen = r.settings.get(r.filter, {})
+    others = {k: v for k, v in r.settings.items() if k not in ("kinematic", "dynamic", "torque", "filter")}
+    return section(
+        "settings",
+        "Settings",
+        table(("this run", ""), run, "small"),
+        folded(f"Settings of the {r.filter} filter", table(("setting", "value"), _flat(chosen), "small")),
+        folded("Other settings", table(("setting", "value"), _flat(others), "small")),
+        folded(
+            "Subject",
+            table(
+                ("scale factor", "value"),
+                [(k.replace("_", " "), f"{v:.3f}") for k, v in r.subject.scale_factors.items()],
+                "small",
+            ),
+        ),
+        paragraph("Angles follow the ISB recommendations; world axes: x forward, y left, z up."),
+    )
+
+
+def _flat(value: Any, prefix: str = "") -> list[tuple[str, str]]:
+    """Nested plain data as rows of name and text."""
+    if isinstance(value, Mapping):
+        return [row for k, v in value.items() for row in _flat(v, f"{prefix} · {k}" if prefix else str(k))]
+    if isinstance(value, float):
+        return [(prefix.replace("_", " "), f"{value:g}")]
+    return [(prefix.replace("_", " "), "–" if value in (None, (), []) else str(value))]

@@ -1,0 +1,102 @@
+"""The report's spatiotemporal parameters, right against left, and when each foot stood."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import SIDES, Array
+from mbkf.pipelines.gait.cycles import Gait, Parameter
+from mbkf.pipelines.gait.events import FootEvents
+from mbkf.viz.markup import paragraph, section, table
+from mbkf.viz.svg import number, ticks
+from mbkf.viz.wording import SIDE_NAMES
+
+WIDTH, NAME, ROW = 1000.0, 60.0, 20.0
+"""Measures of the drawing of the stance phases."""
+
+DIGITS = {"steps/min": 1, "m/s": 2, "m": 3, "s": 3, "%": 1}
+
+
+def gait_section(gait: Gait | None, times_s: Array) -> str:
+    """Stance phases and the table, or why there are none."""
+    if gait is None:
+        return section(
+            "gait",
+            "Gait",
+            paragraph("No gait cycle was found: no foot strikes, leaves the floor and strikes again "
+                      "with the other foot's strike in between."),
+        )  # fmt: skip
+    rows = [_row(parameter) for parameter in gait.parameters]
+    ground = f"On a treadmill at {gait.belt_m_s:.2f} m/s. " if gait.belt_m_s else ""
+    counts = ", ".join(f"{len(gait.of(side))} {name}" for side, name in ((0, "right"), (1, "left")))
+    note = (
+        f"{ground}Whole cycles: {counts}. Mean ± standard deviation between cycles. Strikes and toe-offs come from the "
+        "feet's loads where these are known, else from their motion. A step belongs to the foot that ends it."
+    )
+    heads = ("", "right", "left", "difference")
+    return section("gait", "Gait", paragraph(note), stance_chart(gait, times_s), table(heads, rows))
+
+
+def stance_chart(gait: Gait, times_s: Array) -> str:
+    """When each foot stood, as bars over time; a stance that the trial cuts off is pale."""
+    first, last = float(times_s[0]), float(max(times_s[-1], times_s[0] + 1e-3))
+    per_second = (WIDTH - NAME - 10.0) / (last - first)
+    parts = []
+    for row, (side, events) in enumerate(zip(SIDES, gait.events, strict=True)):
+        y = ROW * row
+        parts.append(f'<text class="name" x="{NAME - 8:g}" y="{y + 13:g}">{SIDE_NAMES[side]} foot</text>')
+        for start, end, whole in _stances(events, first, last):
+            x = NAME + (start - first) * per_second
+            cut = "" if whole else " cut"
+            parts.append(
+                f'<rect class="{side}{cut}" x="{x:.1f}" y="{y + 4:g}" width="{(end - start) * per_second:.1f}" '
+                f'height="{ROW - 8:g}" rx="2"/>'
+            )
+    found, digits = ticks(first, last, 10)
+    for value in found:
+        unit = " s" if value == found[-1] else ""
+        x = NAME + (value - first) * per_second
+        parts.append(f'<text class="x" x="{x:.1f}" y="{2 * ROW + 12:g}">{number(value, digits)}{unit}</text>')
+    return (
+        f'<svg class="feet" viewBox="0 0 {WIDTH:g} {2 * ROW + 16:g}" role="img" '
+        f'aria-label="When each foot stood">{"".join(parts)}</svg>'
+    )
+
+
+def _stances(events: FootEvents, first: float, last: float) -> list[tuple[float, float, bool]]:
+    """From, to, and whether both ends were seen."""
+    found = []
+    for strike in events.strikes_s:
+        after = events.offs_s[events.offs_s > strike]
+        found.append((float(strike), float(after[0]) if len(after) else last, bool(len(after))))
+    if len(events.offs_s) and not (events.strikes_s < events.offs_s[0]).any():
+        found.insert(0, (first, float(events.offs_s[0]), False))
+    return found
+
+
+def _row(parameter: Parameter) -> tuple[str, str, str, str]:
+    digits = DIGITS[parameter.unit]
+    right, left = parameter.values
+    return (
+        f"{parameter.name}, {parameter.unit}",
+        _mean(right, digits),
+        _mean(left, digits),
+        _difference(right, left),
+    )
+
+
+def _mean(values: Array, digits: int) -> str:
+    known = values[np.isfinite(values)]
+    if not len(known):
+        return "–"
+    spread = f" ± {number(float(known.std(ddof=1)), digits)}" if len(known) > 1 else ""
+    return number(float(known.mean()), digits) + spread
+
+
+def _difference(right: Array, left: Array) -> str:
+    """Right minus left over their mean."""
+    right, left = right[np.isfinite(right)], left[np.isfinite(left)]
+    if not len(right) or not len(left):
+        return "–"
+    middle = 0.5 * (right.mean() + left.mean())
+    return f"{number(100.0 * float(right.mean() - left.mean()) / middle, 1)} %" if middle else "–"

@@ -1,0 +1,262 @@
+"""The report's curves: joint angles, torques and reactions, over gait cycles and against time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from mbkf.conventions import GRAVITY_M_S2, SIDES, Array
+from mbkf.io.results import Reconstruction
+from mbkf.model.clinical_table import load_clinical_joints
+from mbkf.pipelines.gait.cycles import POINTS, Gait, over_cycle
+from mbkf.pipelines.gait.events import feet_in_motion
+from mbkf.viz.markup import folded, grid, key, paragraph, section, table
+from mbkf.viz.svg import WIDTH, Line, Mark, chart, number
+from mbkf.viz.wording import SIDE_NAMES, wordings
+
+LEGS = ("pelvis", "hip", "knee", "ankle", "mtp")
+LOADED = (
+    "hip",
+    "knee",
+    "ankle",
+)  # the reaction acts on the foot as a whole, so toes have no torque of their own
+UPPER = ("lumbar", "neck", "head", "shoulder", "elbow", "wrist")
+
+MOST_SINGLE = 8
+"""Of more cycles than this, so many are drawn one by one, evenly chosen; the mean is that of all."""
+
+LONG_S, BROAD = 15.0, 1110.0
+"""Curves over a longer time are drawn so broad."""
+
+FACING_S = 0.5
+"""Standard deviation of the window over which the direction a person faces is averaged."""
+
+Curve = tuple[Array, Array | None]
+"""(T,) values and (T,) standard deviations, or None."""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One chart: a quantity of both sides, or of the midline.
+
+    Attributes:
+        title, unit, positive: As written.
+        curves: By side: "r" and "l", or "" alone.
+    """
+
+    title: str
+    unit: str
+    positive: str
+    curves: dict[str, Curve]
+
+
+def motion_section(r: Reconstruction, gait: Gait | None) -> str:
+    """Angles and torques: over the cycle where there is gait, then against time."""
+    body = [_unobserved(r), _ranges(r)]
+    if gait is not None:
+        body += _curves(r, "over the gait cycle", partial(cycle_chart, r.times_s, gait), gait, broad=False)
+    against = _curves(r, "against time", partial(time_chart, r.times_s), None, broad=_long(r))
+    body += [folded("Angles and torques against time", *against)] if gait and _long(r) else against
+    return section("motion", "Joint angles and torques", *body)
+
+
+def _curves(
+    r: Reconstruction, how: str, draw: Callable[[Cell], str], gait: Gait | None, broad: bool
+) -> list[str]:
+    return [
+        f"<h3>Joint angles {how}</h3>",
+        _key(gait),
+        _charts(angle_cells(r, LEGS), draw, broad),
+        folded("Trunk, head and arms: angles", _charts(angle_cells(r, UPPER), draw, broad)),
+        f"<h3>Joint torques {how}</h3>",
+        paragraph(_TORQUE_NOTE),
+        _charts(torque_cells(r, LOADED), draw, broad),
+        folded("Trunk, head and arms: torques", _charts(torque_cells(r, UPPER), draw, broad)),
+    ]
+
+
+_TORQUE_NOTE = (
+    "Torques of the muscles and ligaments about the axis of each angle, positive in the angle's direction, per kg of "
+    "body mass: pushing off with the foot is a negative ankle dorsiflexion torque."
+)
+
+
+def reaction_section(r: Reconstruction, gait: Gait | None) -> str:
+    """Ground reactions of both feet."""
+    weight = r.subject.mass_kg * GRAVITY_M_S2
+    body = []
+    if gait is not None:
+        cells = reaction_cells(r, 100.0 / weight, "% body weight")
+        body += [
+            "<h3>Over the gait cycle</h3>",
+            _charts([cells], partial(cycle_chart, r.times_s, gait), False),
+        ]
+    cells = reaction_cells(r, 1.0, "N")
+    body += ["<h3>Against time</h3>", _charts([cells], partial(time_chart, r.times_s), _long(r))]
+    return section("reactions", "Ground reactions", _key(gait), *body)
+
+
+def angle_cells(r: Reconstruction, joints: Sequence[str]) -> list[list[Cell]]:
+    """Charts of angles, one row for each joint."""
+    return _cells(r, joints, "", lambda name, w: (w.factor * r.angle(name), w.factor * r.angle_sd(name)))
+
+
+def torque_cells(r: Reconstruction, joints: Sequence[str]) -> list[list[Cell]]:
+    """Charts of torques per body mass, one row for each joint."""
+    per_kg = 1.0 / r.subject.mass_kg
+    return _cells(r, joints, "N m/kg", lambda name, _: (per_kg * r.moment(name), per_kg * r.moment_sd(name)))
+
+
+def reaction_cells(r: Reconstruction, factor: float, unit: str) -> list[Cell]:
+    """Charts of the three components of the reactions: upward, in the direction the person faces, to the left."""
+    axes = _facing(r)
+    force = np.einsum("tij,tfj->tfi", axes, r.foot_wrench[..., :3])
+    sd = np.full_like(force, np.nan)
+    if r.foot_wrench_sd is not None:
+        sd = np.sqrt(np.einsum("tij,tfj->tfi", axes**2, r.foot_wrench_sd[..., :3] ** 2))
+    return [
+        Cell(title, unit, positive, {
+            side: (factor * force[:, foot, axis], factor * sd[:, foot, axis]) for foot, side in enumerate(SIDES)
+        })
+        for title, axis, positive in (
+            ("Vertical", 2, "upward"), ("Fore-aft", 0, "forward"), ("Sideways", 1, "to the left"),
+        )
+    ]  # fmt: skip
+
+
+def _facing(r: Reconstruction) -> Array:
+    """(T, 3, 3) rows: horizontally forward as the pelvis faces on average over a second or so, left, up."""
+    forward = feet_in_motion(r).forward
+    known = np.flatnonzero(~np.isnan(forward).any(axis=1))
+    frames = np.arange(r.frames)
+    held = np.column_stack([np.interp(frames, known, forward[known, axis]) for axis in range(2)])
+    x, y = gaussian_filter1d(held, FACING_S * r.rate_hz, axis=0, mode="nearest").T
+    n = np.maximum(np.hypot(x, y), 1e-9)
+    axes = np.zeros((r.frames, 3, 3))
+    axes[:, 0, 0], axes[:, 0, 1] = x / n, y / n
+    axes[:, 1, 0], axes[:, 1, 1] = -y / n, x / n
+    axes[:, 2, 2] = 1.0
+    return axes
+
+
+def _cells(
+    r: Reconstruction, joints: Sequence[str], unit: str, curve: Callable[..., Curve]
+) -> list[list[Cell]]:
+    words, rows = wordings(), []
+    segments = {entry.main: entry.distal for entry in load_clinical_joints()}
+    for joint in joints:
+        entries = [e for e in load_clinical_joints() if e.name in (joint, f"{joint}_r")]
+        if not entries or _held(r, segments[entries[0].main]):
+            continue
+        row = []
+        for angle in entries[0].angles:
+            w = words[angle.name]
+            names = {"r": angle.name, "l": angle.name[:-2] + "_l"} if w.side else {"": angle.name}
+            known = {side: name for side, name in names.items() if name in r.coordinate_names}
+            curves = {side: curve(name, words[name]) for side, name in known.items()}
+            if any(np.isfinite(values).any() for values, _ in curves.values()):
+                row.append(Cell(w.title, unit or w.unit, w.positive, curves))
+        if row:
+            rows.append(row)
+    return rows
+
+
+def _held(r: Reconstruction, segment: str) -> bool:
+    return any(name.startswith(f"{segment}_") for name in r.held_dofs)
+
+
+def _charts(rows: list[list[Cell]], draw: Callable[[Cell], str], broad: bool) -> str:
+    """Three in a row, as many rows as joints; broad ones one below the other."""
+    if not rows:
+        return paragraph("Not known: no force plate measured this trial.")
+    if broad:
+        return grid((draw(cell) for row in rows for cell in row), columns=1)
+    return grid(chart for row in rows for chart in [*(draw(cell) for cell in row), "", ""][:3])
+
+
+def time_chart(times_s: Array, cell: Cell) -> str:
+    """A cell against time; as broad as the page where the trial is long."""
+    lines = [Line(times_s, values, sd, side) for side, (values, sd) in cell.curves.items()]
+    span = (float(times_s[0]), float(max(times_s[-1], times_s[0] + 1e-3)))
+    width = BROAD if span[1] - span[0] > LONG_S else WIDTH
+    return chart(cell.title, cell.unit, lines, span, "s", note=f"positive: {cell.positive}", width=width)
+
+
+def cycle_chart(times_s: Array, gait: Gait, cell: Cell) -> str:
+    """A cell over 0–100 % of the cycles of each side: every cycle lightly, their mean with its band.
+
+    The midline is shown over the cycles of the right foot, or of the left where there are none.
+    """
+    percent = np.linspace(0.0, 100.0, POINTS)
+    thin, bold, marks = [], [], []
+    for side, (values, sd) in cell.curves.items():
+        cycles = gait.of(SIDES.index(side)) if side else gait.of(0) or gait.of(1)
+        if not cycles:
+            continue
+        each = np.array([over_cycle(times_s, values, cycle) for cycle in cycles])
+        wide = None
+        if sd is not None:
+            variances = np.array([over_cycle(times_s, sd, cycle) ** 2 for cycle in cycles])
+            wide = np.sqrt(variances.mean(axis=0))
+        if len(cycles) > 1:
+            some = np.unique(np.linspace(0, len(cycles) - 1, MOST_SINGLE).astype(int))
+            thin += [Line(percent, one, None, side, thin=True) for one in each[some]]
+        bold.append(Line(percent, each.mean(axis=0), wide, side))
+        if side:
+            marks.append(Mark(float(np.mean([cycle.off_percent for cycle in cycles])), side))
+    note = f"positive: {cell.positive}"
+    return chart(cell.title, cell.unit, [*thin, *bold], (0.0, 100.0), "%", marks=marks, note=note)
+
+
+def _long(r: Reconstruction) -> bool:
+    return float(np.ptp(r.times_s)) > LONG_S
+
+
+def _key(gait: Gait | None) -> str:
+    entries = [("swatch r", "right"), ("swatch l", "left"), ("swatch band", "± 2 standard deviations")]
+    if gait is not None:
+        counts = " and ".join(f"{_some(len(gait.of(i)))} {SIDE_NAMES[side]}" for i, side in enumerate(SIDES))
+        if len(gait.cycles) > 2:
+            entries.append(("swatch thin", f"single cycles ({counts}), their mean in bold"))
+        entries.append(("swatch off", "toe-off"))
+    return key(*entries)
+
+
+def _some(count: int) -> str:
+    return str(count) if count <= MOST_SINGLE else f"{MOST_SINGLE} of {count}"
+
+
+def _unobserved(r: Reconstruction) -> str:
+    if not r.held_dofs:
+        return ""
+    segments = sorted({name.rpartition("_")[0].replace("_", " ") for name in r.held_dofs})
+    return paragraph(f"Not shown, because no marker tells: {', '.join(segments)}.")
+
+
+def _ranges(r: Reconstruction) -> str:
+    """Least and greatest angle and torque of the main angle of each joint of the legs."""
+    rows = []
+    loads = {torque.title: torque.curves for torque, *_ in torque_cells(r, LOADED)}
+    for angle, *_ in angle_cells(r, LOADED):
+        for side, name in SIDE_NAMES.items():
+            load = _extremes(loads.get(angle.title, {}).get(side), 2)
+            rows.append((f"{angle.title}, {name}", *_extremes(angle.curves.get(side), 1), *load))
+    if not rows:
+        return ""
+    heads = ("", "least angle °", "greatest angle °", "least torque N m/kg", "greatest torque N m/kg")
+    return "<h3>Ranges (± 2 standard deviations)</h3>" + table(heads, rows)
+
+
+def _extremes(curve: Curve | None, digits: int) -> tuple[str, str]:
+    if curve is None or not np.isfinite(curve[0]).any():
+        return "–", "–"
+    values, sd = curve
+    found = []
+    for at in (int(np.nanargmin(values)), int(np.nanargmax(values))):
+        band = "" if sd is None or not np.isfinite(sd[at]) else f" ± {number(2 * sd[at], digits)}"
+        found.append(number(float(values[at]), digits) + band)
+    return found[0], found[1]

@@ -1,0 +1,205 @@
+"""The report's first section: whether the result can be believed, and why not where it cannot."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from mbkf.conventions import GRAVITY_M_S2, Array
+from mbkf.io.results import Reconstruction
+from mbkf.viz.markup import grid, key, paragraph, section, table
+from mbkf.viz.report.marker_chart import CLASSES, LABELS, longest_gap_s, marker_chart, states
+from mbkf.viz.svg import Line, chart, number
+
+MARKER_RMS_MM, MARKER_MAX_MM = 20.0, 40.0
+FORCE_SHARE, MOMENT_SHARE = 0.05, 0.01
+"""What Hicks et al. (J. Biomech. Eng. 137, 2015, 020905) accept: marker errors, peak residual force over peak external
+force, peak residual moment over that force times the height of the centre of mass."""
+
+CENTRE_OF_MASS_SHARE = 0.55
+"""Height of a standing person's centre of mass over body height."""
+
+NIS_RANGE = (0.4, 1.6)
+"""Normalised innovation squared per reading: 1 where the stated noise is right."""
+
+MANY = 6
+"""More remarks than this are set in two columns."""
+
+GOOD, CARE, NONE = "good", "care", "none"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One number with its judgement: ``kind`` is "good", "care" or "none" (not judged)."""
+
+    title: str
+    value: str
+    kind: str
+    remark: str
+
+
+def quality_section(r: Reconstruction, summary: Mapping[str, Any], labels: Mapping[str, Any] | None) -> str:
+    """The section.
+
+    Args:
+        r: The reconstruction.
+        summary: Its summary.json.
+        labels: What ``mbkf label`` wrote beside the labelled file, or None.
+    """
+    ghosts = None if labels is None else labels.get("ghosts_per_frame")
+    shown = set(np.unique(states(r)).tolist())
+    legend = [(CLASSES[i], LABELS[i]) for i in range(len(CLASSES)) if i == 0 or i in shown]
+    return section(
+        "quality",
+        "Quality",
+        '<div class="tiles">' + "".join(_tile(v) for v in verdicts(r, summary)) + "</div>",
+        f'<div class="beside"><div>{_flags(r)}</div>{_truth(summary)}</div>',
+        grid(_curves(r), 3),
+        "<h3>Markers</h3>",
+        _labelling(labels),
+        key(*legend),
+        marker_chart(r, None if ghosts is None or len(ghosts) != r.frames else np.array(ghosts, float)),
+    )
+
+
+def verdicts(r: Reconstruction, summary: Mapping[str, Any]) -> list[Verdict]:
+    """The numbers a reader looks at first, judged."""
+    gap = float(longest_gap_s(r).max(initial=0.0))
+    missing = summary.get("missing_fraction") or 0.0
+    followed = 100.0 * float(r.tracked.mean()) if r.frames else 0.0
+    return [
+        _markers(summary),
+        *_residuals(r, summary),
+        _nis(summary.get("nis_per_dof")),
+        Verdict(
+            "Markers missing", f"{100 * missing:.1f} %", NONE, f"longest gap of one marker {gap:.2f} s"
+        ),
+        Verdict(
+            "Frames followed", f"{followed:.1f} %", GOOD if followed > 99.9 else CARE,
+            f"all reactions measured in {int(r.valid.sum())} of {r.frames} frames",
+        ),
+    ]  # fmt: skip
+
+
+def _markers(summary: Mapping[str, Any]) -> Verdict:
+    rms, largest = summary.get("marker_rms_mm"), summary.get("marker_max_mm")
+    if rms is None or largest is None:
+        return Verdict("Marker error", "–", NONE, "no marker was followed")
+    good = rms <= MARKER_RMS_MM and largest <= MARKER_MAX_MM
+    remark = f"RMS; largest {largest:.1f} mm. Accepted practice: 20 and 40 mm"
+    return Verdict("Marker error", f"{rms:.1f} mm", GOOD if good else CARE, remark)
+
+
+def _residuals(r: Reconstruction, summary: Mapping[str, Any]) -> list[Verdict]:
+    force, moment = summary.get("residual_force_rms_n"), summary.get("residual_moment_rms_nm")
+    if force is None or moment is None:
+        remark = "needs frames in which plates measure every contact"
+        return [Verdict(f"Residual {what}", "–", NONE, remark) for what in ("force", "moment")]
+    external = float(np.nanmax(np.linalg.norm(r.foot_wrench[r.valid, :, :3].sum(axis=1), axis=1)))
+    height = r.subject.height_m or 1.75
+    found = []
+    for what, rms, vectors, allowed, unit in (
+        ("force", force, r.residual_force_n, FORCE_SHARE * external, "N"),
+        ("moment", moment, r.residual_moment_nm, MOMENT_SHARE * external * CENTRE_OF_MASS_SHARE * height, "N m"),
+    ):  # fmt: skip
+        peak = float(np.nanmax(np.linalg.norm(vectors[r.valid], axis=1)))
+        remark = (
+            f"RMS at the pelvis; peak {peak:.1f} {unit}. Accepted practice: peak below {allowed:.0f} {unit}"
+        )
+        kind = GOOD if peak <= allowed else CARE
+        found.append(Verdict(f"Residual {what}", f"{rms:.1f} {unit}", kind, remark))
+    return found
+
+
+def _nis(value: float | None) -> Verdict:
+    title = "Innovation (NIS)"
+    if value is None:
+        return Verdict(title, "–", NONE, "not known")
+    if value > NIS_RANGE[1]:
+        return Verdict(
+            title, f"{value:.2f}", CARE, "per reading; above 1: readings stray more than the stated noise"
+        )
+    if value < NIS_RANGE[0]:
+        return Verdict(
+            title, f"{value:.2f}", NONE, "per reading; below 1: the stated noise is larger than the real one"
+        )
+    return Verdict(title, f"{value:.2f}", GOOD, "per reading; 1 where the stated noise is right")
+
+
+def _tile(v: Verdict) -> str:
+    sign = {GOOD: "✓", CARE: "!", NONE: ""}[v.kind]
+    mark = f'<i title="{"as it should be" if v.kind == GOOD else "look closer"}">{sign}</i>' if sign else ""
+    return (
+        f'<div class="tile {v.kind}"><span>{escape(v.title)}{mark}</span><b>{escape(v.value)}</b>'
+        f"<small>{escape(v.remark)}</small></div>"
+    )
+
+
+def _flags(r: Reconstruction) -> str:
+    if not r.warnings:
+        return paragraph("No remarks.")
+    items = "".join(f"<li>{escape(text)}</li>" for text in r.warnings)
+    many = " many" if len(r.warnings) > MANY else ""
+    return f'<h3>Remarks</h3><ul class="flags{many}">{items}</ul>'
+
+
+def _truth(summary: Mapping[str, Any]) -> str:
+    truth = summary.get("truth")
+    if not truth:
+        return ""
+    names = {
+        "angle_rms_deg": ("posture, per dof", "°"),
+        "velocity_rms_rad_s": ("velocity", "rad/s"),
+        "torque_rms_nm": ("torque", "N m"),
+        "reaction_rms_n": ("reaction", "N"),
+        "nees_per_dof": ("error² / stated variance (1 is right)", ""),
+    }
+    rows = [(text, f"{truth[name]:.3g} {unit}") for name, (text, unit) in names.items() if truth.get(name)]
+    found = table(("RMS error of", ""), rows, "small")
+    return f"<div><h3>Against the known truth (synthetic capture)</h3>{found}</div>"
+
+
+def _curves(r: Reconstruction) -> list[str]:
+    t = r.times_s
+    if not r.frames:
+        return []
+    span = (float(t[0]), float(max(t[-1], t[0] + 1e-3)))
+    per_reading = np.where(r.nis_readings > 0, r.nis / np.maximum(r.nis_readings, 1), np.nan)
+    error = 1e3 * np.linalg.norm(r.measured_m - r.predicted_m, axis=2)
+    counted = r.present & r.tracked[:, None]
+    mean_square = np.where(counted, error**2, 0.0).sum(axis=1) / np.maximum(counted.sum(axis=1), 1)
+    rms = np.where(counted.any(axis=1), np.sqrt(mean_square), np.nan)
+    weight = r.subject.mass_kg * GRAVITY_M_S2
+    found = [
+        chart("Marker error, RMS over markers", "mm", [Line(t, rms)], span, "s"),
+        chart("Innovation squared per reading", "", [Line(t, per_reading)], span, "s", level=1.0),
+    ]
+    force = _norm_where(r.residual_force_n, r)
+    if np.isfinite(force).any():
+        share = f"body weight is {number(weight, 0)} N"
+        found.insert(1, chart("Residual force at the pelvis", "N", [Line(t, force)], span, "s", note=share))
+    return found
+
+
+def _norm_where(vectors: Array, r: Reconstruction) -> Array:
+    return np.where(r.valid, np.linalg.norm(vectors, axis=1), np.nan)
+
+
+def _labelling(labels: Mapping[str, Any] | None) -> str:
+    if labels is None:
+        return ""
+    text = (
+        f"Labelled by mbkf from points without names: {100 * labels.get('assigned_fraction', 0.0):.2f} % of "
+        f"marker-frames assigned, {labels.get('ghosts_dropped', 0)} ghost points dropped, "
+        f"{labels.get('swaps_repaired', 0)} swaps repaired."
+    )
+    if labels.get("correct_fraction") is not None:
+        text += (
+            f" Against the known labels: {100 * labels['correct_fraction']:.3f} % correct, "
+            f"{100 * labels['wrong_fraction']:.3f} % wrong, {100 * labels['missed_fraction']:.3f} % missed."
+        )
+    return paragraph(text)

@@ -1,0 +1,124 @@
+"""Synthetic cases: errors against the truth, consistency, the bounds' ratios."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks.dynamic import synthetic as dynamic_synthetic
+from benchmarks.dynamic.methods import in_turn
+from benchmarks.dynamic.synthetic import (
+    FCDI,
+    MATCHED,
+    Baseline,
+    Consistency,
+    Errors,
+    baseline,
+    consistency_of,
+    consistency_rows,
+    differences,
+    errors_of,
+    make_case,
+    method_rows,
+    within,
+)
+from mbkf.pipelines.results.summary import compare_with_truth
+
+BASE = Baseline(torque_nm=5.0, torque_scale=0.1, velocity_rad_s=1.0, velocity_scale=0.6, offline_nm=2.0)
+FOUND = Errors(
+    torque_nm=2.5, torque_inside_nm=1.8, velocity_rad_s=0.9, angle_deg=3.0, farthest_mm=40.0, untracked=0
+)
+
+
+@pytest.fixture(scope="module")
+def case():
+    return make_case(("squat", 0), MATCHED, correct=False)
+
+
+def test_a_case_is_made_the_same_every_time_and_states_its_noise(case):
+    again = make_case(("squat", 0), MATCHED, correct=False)
+    np.testing.assert_array_equal(again.capture.markers.positions_m, case.capture.markers.positions_m)
+    assert {marker.noise_m for marker in case.subject.markers} == {MATCHED.markers_sd_m}
+    assert case.given is case.subject
+
+
+def test_errors_are_those_of_the_summary(case):
+    found = FCDI.run(case.capture, case.subject)
+    summary = compare_with_truth(found, case.truth)
+    errors = errors_of(case, FCDI)
+    assert errors.torque_nm == pytest.approx(summary["torque_rms_nm"])
+    assert errors.velocity_rad_s == pytest.approx(summary["velocity_rms_rad_s"])
+    assert errors.angle_deg == pytest.approx(summary["angle_rms_deg"])
+    assert 0.0 < errors.farthest_mm < 50.0
+    assert errors.untracked == 0
+
+
+def test_untracked_frames_are_left_out(case):
+    found = FCDI.run(case.capture, case.subject)
+    tracked = found.tracked.copy()
+    tracked[10:20] = False
+    for error in differences(replace(found, tracked=tracked), case.truth):
+        assert error.shape == (found.frames, 46)
+        assert np.isnan(error[10:20]).all()
+        assert np.isfinite(error[20:]).all()
+
+
+def test_consistency_of_a_result_that_says_the_truth(case, monkeypatch):
+    found = FCDI.run(case.capture, case.subject)
+    rng = np.random.default_rng(1)
+    wrong = tuple(rng.normal(0.0, 0.1, (found.frames, 46)) for _ in range(3))
+    spread = np.full_like(found.sd_q, 0.1)
+    honest = replace(found, sd_q=spread, sd_v=2.0 * spread, sd_tau=0.5 * spread)
+    monkeypatch.setattr(dynamic_synthetic.Method, "run", lambda *_, **__: honest)
+    monkeypatch.setattr(dynamic_synthetic, "differences", lambda *_: wrong)
+    judged = consistency_of(case, FCDI)
+    assert judged.nees == pytest.approx((1.0, 0.25, 4.0), rel=0.05)
+    assert judged.coverage == pytest.approx((0.95, 0.99991, 0.673), abs=0.01)
+    assert math.isnan(judged.joint_nees)
+    assert judged.nis == pytest.approx(np.mean(found.nis[50:] / found.nis_readings[50:]))
+
+
+def test_a_method_is_bounded_by_its_ratio_to_others():
+    rows = method_rows("m", [FOUND, FOUND], BASE, smooth=False)
+    ratios = {row.name: (row.value, row.bound, row.passed) for row in rows if row.bounded}
+    assert ratios["m, torque RMS / FCDI"] == (pytest.approx(0.5), 0.6, True)
+    assert ratios["m, velocity RMS / FCDI"] == (pytest.approx(0.9), 0.8, False)
+    smoothed = {row.name: row for row in method_rows("m", [FOUND], BASE, smooth=True)}
+    assert smoothed["m, torque RMS / FCDI"].bound == 0.45
+    assert smoothed["m, torque RMS / 6 Hz offline"].value == pytest.approx(0.9)
+
+
+@pytest.mark.parametrize("bad", [{"farthest_mm": 250.0}, {"farthest_mm": math.nan}, {"untracked": 3}])
+def test_divergence_in_one_seed_is_not_averaged_away(bad):
+    rows = method_rows("m", [FOUND, replace(FOUND, **bad)], BASE, smooth=False)
+    assert not all(row.passed for row in rows[3:])
+
+
+def test_fcdi_is_compared_at_its_own_best(monkeypatch):
+    def errors(trials, method, mapper):
+        torque, velocity = abs(method.scale - 0.3) + 1.0, abs(method.scale - 1.2) + 0.5
+        return [replace(FOUND, torque_nm=torque, velocity_rad_s=velocity) for _ in trials]
+
+    monkeypatch.setattr(dynamic_synthetic, "errors", errors)
+    monkeypatch.setattr(dynamic_synthetic, "offline_torque_nm", lambda trial: 2.0)
+    found = baseline([None] * 6, in_turn)
+    assert found == Baseline(1.0, 0.3, 0.5, 1.2, 2.0)
+
+
+def test_a_band_has_two_checks():
+    low, high = within("x", 0.7, 0.8, 1.25)
+    assert (low.passed, high.passed) == (False, True)
+
+
+def test_consistency_of_the_defaults_is_shown_without_bounds(monkeypatch):
+    monkeypatch.setattr(dynamic_synthetic, "make_case", lambda key, **_: key)
+    said = Consistency((1.0, 1.0, 2.0), (0.95, 0.95, 0.8), 1.0, 3.0)
+    monkeypatch.setattr(dynamic_synthetic, "consistency_of", lambda case, method: said)
+    rows = consistency_rows([("squat", 0)], [FCDI], in_turn)
+    assert not any(row.bounded for row in rows)
+    assert [row.value for row in rows] == [1.0, 95.0, 1.0, 95.0, 2.0, 80.0, 1.0, 3.0]
+
+
+def test_joint_consistency_uses_the_whole_covariance(case):
+    assert 0.1 < consistency_of(case, FCDI).joint_nees < 10.0

@@ -1,0 +1,176 @@
+"""Reactions and torques of a followed trial: known wrenches, what a person is told, and which frames count."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from mbkf.pipelines.reactions import PRESSURE_FROM_N, reactions
+from mbkf.sensors.contacts import plate_wrenches
+
+from mbkf.pipelines.results.reactions import PRESSURE_FROM_N, reactions
+from mbkf.sensors.contact.plates import plate_wrenches
+from mbkf.sensors.contact.records import Contact
+from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
+from tests.dynamics import trial
+from tests.motions import assert_near, track_of
+
+EXACT = CaptureSettings(0.0, 0.0, 0.8, 0.0, 0, 0.0, 0.0, (0.0, 0.0))
+SOME = slice(20, 70)
+FRAMES = SOME.stop - SOME.start
+RATE_HZ = 100.0
+RIGHT, LEFT = 0, 1
+STANDING = [Contact.MEASURED, Contact.MEASURED]
+
+
+def motion():
+    return trial("squat").motion
+
+
+@cache
+def plates():
+    """Two plates that read the truth, each with its own origin."""
+    made = trial("squat")
+    return synthesise_capture(made.subject, made.motion, EXACT).trial.plates
+
+
+def followed(wrench=None, contact=None, **known):
+    """A track of the true squat; the kinematic filter's unless it has wrenches (T, 2, 6)."""
+    q, v, a = (getattr(motion(), name)[SOME] for name in ("q", "v", "a"))
+    if wrench is not None:
+        contact = np.tile(STANDING, (FRAMES, 1)) if contact is None else contact
+        known |= {"wrench": wrench, "wrench_sd": np.ones((FRAMES, 2, 6)), "contact": np.array(contact)}
+    return track_of(q, v, a, **known)
+
+
+def truly():
+    """The feet's true wrenches, mean over a frame as plates give them."""
+    return plate_wrenches(plates(), motion().times_s[SOME], RATE_HZ)
+
+
+def found_with(track, plates=()):
+    return reactions(trial("squat").model, track, motion().times_s[SOME], RATE_HZ, plates)
+
+
+def test_measured_and_estimated_reactions_agree_where_the_estimate_is_exact():
+    measured, estimated = found_with(followed(), plates()), found_with(followed(truly()), plates())
+    assert_near(measured.wrench, truly(), 1e-9)
+    assert_near(estimated.tau, measured.tau, 1e-9)
+    assert_near(estimated.centre_of_pressure_m, measured.centre_of_pressure_m, 1e-12)
+    assert_near(estimated.free_moment_nm, measured.free_moment_nm, 1e-9)
+    assert_near(estimated.residual_force_n, measured.residual_force_n, 1e-9)
+    assert estimated.valid.all() and measured.valid.all()
+    assert estimated.warnings == measured.warnings == ()
+
+
+def test_torques_and_residuals_are_those_of_the_true_motion():
+    """What is left is that plates average over a frame."""
+    found = found_with(followed(truly()), plates())
+    assert_near(found.tau, motion().tau[SOME], 3.0)
+    assert_near(found.residual_force_n, 0.0, 3.0)
+    assert_near(found.residual_moment_nm, 0.0, 3.0)
+
+
+def test_residuals_are_the_measured_plates_whatever_was_estimated():
+    wrong = found_with(followed(truly() + 50.0), plates())
+    right = found_with(followed(truly()), plates())
+    assert_near(wrong.residual_force_n, right.residual_force_n, 0.0)
+    assert_near(wrong.residual_moment_nm, right.residual_moment_nm, 0.0)
+    assert np.abs(wrong.tau - right.tau).max() > 10.0
+
+
+def test_plates_are_unchanged_when_the_estimate_is_what_they_read():
+    assert_near(found_with(followed(truly()), plates()).plate_change, 0.0, 1e-9)
+
+
+def test_changes_are_about_the_plates_own_origins():
+    """A force that changes by F at the world's origin changes the moment about o by −o × F."""
+    added = np.array([3.0, -2.0, 7.0, 0.0, 0.0, 0.0])
+    change = found_with(followed(truly() + added), plates()).plate_change
+    for p, plate in enumerate(plates()):
+        assert np.linalg.norm(plate.origin_m) > 0.05
+        assert_near(change[:, p, :3] - added[:3], 0.0, 1e-9)
+        assert_near(change[:, p, 3:] + np.cross(plate.origin_m, added[:3]), 0.0, 1e-9)
+
+
+def test_a_foot_on_two_plates_is_compared_with_neither():
+    """The plates' readings cannot be told apart in one wrench."""
+    one = plates()[RIGHT]
+    halves = [replace(one, name=n, force_n=0.5 * one.force_n, moment_nm=0.5 * one.moment_nm) for n in "ab"]
+    change = found_with(followed(truly()), (*halves, plates()[LEFT])).plate_change
+    assert np.isnan(change[:, :2]).all()
+    assert_near(change[:, 2], 0.0, 1e-9)
+
+
+def test_the_centre_of_pressure_of_a_known_wrench():
+    point, force, free = np.array([0.3, -0.1, 0.0]), np.array([40.0, 30.0, 600.0]), 5.0
+    wrench = np.zeros((FRAMES, 2, 6))
+    wrench[:, RIGHT, :3] = force
+    wrench[:, RIGHT, 3:] = np.cross(point, force)
+    wrench[:, RIGHT, 5] += free
+    wrench[:, LEFT, 2] = 0.9 * PRESSURE_FROM_N
+    found = found_with(followed(wrench))
+    assert_near(found.centre_of_pressure_m[:, RIGHT], np.tile(point, (FRAMES, 1)), 1e-12)
+    assert_near(found.free_moment_nm[:, RIGHT], free, 1e-12)
+    assert np.isnan(found.centre_of_pressure_m[:, LEFT]).all()
+    assert np.isnan(found.free_moment_nm[:, LEFT]).all()
+
+
+def test_without_plates_only_estimates_are_known():
+    none = found_with(followed())
+    for name in ("tau", "residual_force_n", "residual_moment_nm"):
+        assert np.isnan(getattr(none, name)).all()
+    assert none.warnings == ("no force plates: torques and residuals are not computed",)
+    assert none.wrench_sd is None and none.plate_change is None
+    guessed = found_with(followed(truly()))
+    assert np.isfinite(guessed.tau).all()
+    assert np.isnan(guessed.residual_force_n).all()
+    assert guessed.warnings == (
+        "no force plates: reactions are estimated from the motion, residuals are not computed",
+    )
+    assert not none.valid.any() and not guessed.valid.any()
+
+
+def feet(*changes):
+    """Both feet on plates but for these (frames, foot, contact)."""
+    contact = np.tile(STANDING, (FRAMES, 1))
+    for frames, foot, what in changes:
+        contact[frames, foot] = what
+    return contact
+
+
+@pytest.mark.parametrize(
+    ("contact", "said", "unsaid"),
+    [
+        (feet(), "", "foot"),
+        (feet((slice(5), LEFT, Contact.AIR)), "", "foot"),
+        (
+            feet((slice(7), LEFT, Contact.UNMEASURED)),
+            "in 7 of 50 frames a foot carries weight where no plate",
+            "both",
+        ),
+        (feet((slice(7), [0, 1], Contact.UNMEASURED)), "in 7 frames both feet do", "one plate"),
+        (feet((slice(9), [0, 1], Contact.SHARED)), "in 9 frames both feet stand on one plate", "no plate"),
+    ],
+)
+def test_what_the_feet_do_is_told(contact, said, unsaid):
+    words = " ".join(found_with(followed(truly(), contact), plates()).warnings)
+    assert said in words
+    assert unsaid not in words
+
+
+def test_frames_with_an_unread_loaded_foot_do_not_count():
+    contact = feet((slice(10, 20), LEFT, Contact.UNMEASURED), (slice(30, 33), RIGHT, Contact.AIR))
+    found = found_with(followed(truly(), contact), plates())
+    np.testing.assert_array_equal(np.flatnonzero(~found.valid), np.arange(10, 20))
+
+
+def test_frames_not_followed_stay_unknown():
+    track = followed(truly())
+    broken = replace(track, **{n: np.array(getattr(track, n)) for n in ("q", "v", "a", "wrench")})
+    for name in ("q", "v", "a", "wrench"):
+        getattr(broken, name)[3] = np.nan
+    found = found_with(broken, plates())
+    assert np.isnan(found.tau[3]).all() and np.isnan(found.residual_force_n[3]).all()
+    assert np.isfinite(np.delete(found.tau, 3, axis=0)).all()
+    assert np.isnan(found.plate_change[3]).all()

@@ -1,0 +1,39 @@
+"""What a filter is built from: the trial's markers in their order, and the dofs that none of them shows."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from mbkf.pipelines.reconstruct import ReconstructSettings
+from mbkf.pipelines.trial.inputs import MIN_PRESENT, trial_inputs
+from tests.walker import walker
+
+
+def shown(names):
+    trial, subject = walker().trial, walker().subject
+    columns = [trial.markers.names.index(name) for name in names]
+    positions = trial.markers.positions_m[:, columns]
+    return replace(trial.markers, names=tuple(names), positions_m=positions), trial.plates, subject
+
+
+def test_markers_keep_the_order_of_the_trial():
+    names = ["RKNE", "LKNE", "LASI", "RASI", "SACR"]
+    names = [name for name in names if name in walker().trial.markers.names]
+    markers, plates, subject = shown(names)
+    inputs, recording = trial_inputs(markers, plates, subject, ReconstructSettings())
+    noise = {marker.name: marker.noise_m for marker in subject.markers}
+    np.testing.assert_array_equal(inputs.noise_m, [noise[name] for name in names])
+    assert inputs.dt_s == recording.dt_s == 1.0 / markers.rate_hz
+    assert recording.plates.shape == (markers.frames, len(plates), 6)
+    assert recording.markers_m is markers.positions_m
+
+
+def test_a_marker_that_is_hardly_seen_shows_no_dof():
+    markers, plates, subject = shown(walker().trial.markers.names)
+    complete, _ = trial_inputs(markers, plates, subject, ReconstructSettings())
+    assert complete.held.sum() < complete.held.size
+    positions = np.full_like(markers.positions_m, np.nan)
+    positions[0] = markers.positions_m[0]
+    assert MIN_PRESENT * markers.frames > 1.0
+    hidden, _ = trial_inputs(replace(markers, positions_m=positions), plates, subject, ReconstructSettings())
+    assert hidden.held.all()

@@ -1,0 +1,123 @@
+"""Means over frames are those of a whole trial, bit for bit, and what was not read is NaN."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mbkf.sensors.contacts import plate_wrenches
+from mbkf.stream.plate_buffer import PlateBuffer
+
+from mbkf.io.records import PlateReadings
+from mbkf.io.resample import WHOLE
+from mbkf.sensors.contact.plates import plate_wrenches
+from mbkf.stream.receiving.plate_buffer import PlateBuffer
+from mbkf.stream.source import PlateSamples, StreamDescription, without_readings
+
+RATE_HZ = 100.0
+
+
+def plates_of(rate_hz, samples, start_s=0.0, seed=0):
+    rng = np.random.default_rng(seed)
+    return tuple(
+        PlateReadings(
+            str(k),
+            rate_hz,
+            start_s,
+            rng.normal(size=3),
+            rng.normal(0.0, 300.0, (samples, 3)),
+            rng.normal(0.0, 50.0, (samples, 3)),
+            np.full((samples, 3), np.nan),
+            20.0,
+        )
+        for k in range(2)
+    )
+
+
+def buffer_of(plates, start_s=0.0):
+    described = tuple(without_readings(plate) for plate in plates)
+    return PlateBuffer(StreamDescription("x", ("A",), RATE_HZ, start_s, described))
+
+
+def readings(plates):
+    return np.stack([np.hstack([p.force_n, p.moment_nm]) for p in plates], axis=1)
+
+
+@settings(deadline=None, max_examples=30)
+@given(
+    rate_hz=st.sampled_from([100.0, 300.0, 1000.0, 1234.5]),
+    frames_from_s=st.sampled_from([0.0, 1.25, -0.5]),
+    plates_after_s=st.sampled_from([0.0, 0.003, -0.2]),
+    chunk=st.integers(1, 40),
+)
+def test_means_are_those_of_the_whole_trial(rate_hz, frames_from_s, plates_after_s, chunk):
+    plates = plates_of(rate_hz, int(0.6 * rate_hz), frames_from_s + plates_after_s)
+    values = readings(plates)
+    expected = plate_wrenches(plates, frames_from_s + np.arange(40) / RATE_HZ, RATE_HZ)
+    buffer, sent = buffer_of(plates, frames_from_s), 0
+    for number in range(40):
+        needed = ((number + 0.5) / RATE_HZ - plates_after_s) * rate_hz
+        while sent - 1 < needed - WHOLE and sent < len(values):
+            index = np.arange(sent, min(sent + chunk, len(values)))
+            buffer.put(PlateSamples(index, values[index]))
+            sent = index[-1] + 1
+        np.testing.assert_array_equal(buffer.mean(number), expected[number])
+
+
+@pytest.mark.parametrize("number", [403, 1612, 1617])
+def test_a_sample_past_the_end_of_a_frame_changes_nothing(number):
+    """These frames' ends lie a rounding error behind a sample."""
+    assert number / RATE_HZ * 1000.0 + 5.0 > 10 * number + 5
+    plates = plates_of(1000.0, 10 * number + 20)
+    values, index = readings(plates), np.arange(10 * number - 20, 10 * number + 20)
+    (expected,) = plate_wrenches(plates, np.array([number / RATE_HZ]), RATE_HZ)
+    for last in (6, 7, 12):
+        buffer, known = buffer_of(plates), index[: 20 + last]
+        buffer.put(PlateSamples(known, values[known]))
+        np.testing.assert_array_equal(buffer.mean(number), expected)
+
+
+def test_before_the_first_sample_and_far_from_any_nothing_is_read():
+    plates = plates_of(1000.0, 200)
+    buffer = buffer_of(plates)
+    assert np.isnan(buffer.mean(0)).all()
+    buffer.put(PlateSamples(np.arange(100), readings(plates)[:100]))
+    assert np.isfinite(buffer.mean(5)).all()
+    assert np.isnan(buffer.mean(30)).all()
+
+
+@pytest.mark.parametrize("at_once", [True, False])
+def test_lost_samples_leave_their_frames_unread(at_once):
+    plates = plates_of(1000.0, 300)
+    index = np.delete(np.arange(300), np.arange(100, 105))
+    buffer = buffer_of(plates)
+    for part in [index] if at_once else np.array_split(index, 30):
+        buffer.put(PlateSamples(part, readings(plates)[part]))
+    unread = [np.isnan(buffer.mean(number)).any() for number in range(29)]
+    assert np.flatnonzero(unread).tolist() == [10]
+    assert buffer.missing == 5
+
+
+def test_old_samples_are_not_taken_again():
+    plates = plates_of(1000.0, 300)
+    buffer, values = buffer_of(plates), readings(plates)
+    buffer.put(PlateSamples(np.arange(100), values[:100]))
+    assert not len(buffer.put(PlateSamples(np.arange(50, 90), 0.0 * values[50:90])).index)
+    fresh = buffer.put(PlateSamples(np.arange(90, 120), values[90:120]))
+    assert fresh.index.tolist() == list(range(100, 120))
+    expected = plate_wrenches(plates, np.arange(10) / RATE_HZ, RATE_HZ)
+    np.testing.assert_array_equal([buffer.mean(n) for n in range(10)], expected)
+
+
+def test_after_a_long_silence_what_was_before_is_forgotten():
+    plates = plates_of(1000.0, 100)
+    buffer, values = buffer_of(plates), readings(plates)
+    buffer.put(PlateSamples(np.arange(100), values))
+    buffer.put(PlateSamples(np.arange(100) + 50_000, values))
+    assert np.isnan(buffer.mean(5)).all()
+    assert np.isfinite(buffer.mean(5005)).all()
+
+
+def test_without_plates_there_is_nothing_to_read():
+    buffer = PlateBuffer(StreamDescription("x", ("A",), RATE_HZ))
+    assert buffer.mean(0).shape == (0, 6)
+    assert not len(buffer.put(PlateSamples.none(0)).index)

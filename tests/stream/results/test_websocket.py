@@ -1,0 +1,147 @@
+"""Results over WebSocket: names first, then the newest frame; strangers are refused."""
+
+import json
+import time
+
+import numpy as np
+import pytest
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+
+from mbkf.errors import InvalidInput
+from mbkf.model.clinical import ClinicalAngles
+from mbkf.model.human import HumanModel
+from mbkf.stream.results.frame import LiveFrame
+from mbkf.stream.results.values import ResultValues
+from mbkf.stream.results.websocket import WebSocketResults, parse_address
+
+MODEL = HumanModel.scaled(mass_kg=75.0)
+
+
+def shown_frame(model, number=0, followed=True):
+    rng = np.random.default_rng(number)
+    nv = model.nv
+    q = model.integrate(model.neutral(), rng.normal(0.0, 0.2, nv))
+    return LiveFrame(
+        number=number,
+        time_s=number / 100.0,
+        q=q if followed else np.full(model.nq, np.nan),
+        v=rng.normal(size=nv),
+        torques=rng.normal(size=nv),
+        torques_sd=rng.uniform(1.0, 2.0, nv),
+        wrench=rng.normal(size=(2, 6)),
+        wrench_sd=np.full((2, 6), np.nan),
+        plates=np.zeros((1, 6)),
+        measured_m=np.zeros((3, 3)),
+        predicted_m=np.zeros((3, 3)),
+        unlabelled_m=np.zeros((0, 3)),
+        angle_sd=rng.uniform(0.01, 0.02, nv),
+        latency_s=0.002,
+        lost=0,
+        rate_hz=100.0,
+        tracked=followed,
+        started=False,
+    )
+
+
+@pytest.fixture
+def served():
+    results = WebSocketResults(MODEL, "127.0.0.1", 0)
+    yield results
+    results.close()
+
+
+def next_frame(client, results, frame):
+    """The next message after the frame was taken, given again until it is there."""
+    until = time.monotonic() + 5.0
+    while time.monotonic() < until:
+        results.take(frame)
+        try:
+            return json.loads(client.recv(timeout=0.2))
+        except TimeoutError:
+            continue
+    raise AssertionError("nothing came")
+
+
+def test_values_are_clinical_and_carry_their_spread():
+    values, clinical = ResultValues(MODEL), ClinicalAngles(MODEL)
+    frame = shown_frame(MODEL)
+    row = dict(zip(values.names, values.row(frame), strict=True))
+    angles = clinical.angles(frame.q[None])
+    moments = clinical.moments(frame.q[None], frame.torques[None], angles)[0]
+    k = clinical.names.index("knee_angle_r")
+    assert row["knee_angle_r"] == angles[0, k]
+    assert row["knee_angle_r_moment"] == moments[k]
+    E = clinical.rate_matrices(frame.q[None], angles)[0]
+    spread = np.diag(E @ np.diag(frame.angle_sd**2) @ E.T)
+    assert row["knee_angle_r_sd"] == pytest.approx(np.sqrt(spread[k]))
+    assert row["reaction_r_fz"] == frame.wrench[0, 2]
+    assert row["reaction_l_mx"] == frame.wrench[1, 3]
+    assert np.isnan(row["reaction_l_mx_sd"])
+    # m = Bᵀ τ is linear, so the spread of moments follows from unit torques.
+    B = np.array([clinical.moments(frame.q[None], unit[None], angles)[0] for unit in np.eye(MODEL.nv)])
+    expected = np.sqrt(B.T**2 @ frame.torques_sd**2)
+    found = [row[f"{name}_moment_sd"] for name in clinical.names]
+    np.testing.assert_allclose(found, expected, atol=1e-12)
+    assert len(values.units) == len(values.names) == len(set(values.names))
+
+
+def test_where_nobody_is_followed_there_are_no_angles():
+    row = ResultValues(MODEL).row(shown_frame(MODEL, followed=False))
+    assert np.isnan(row[: 4 * MODEL.nv]).all()
+    assert np.isfinite(row[4 * MODEL.nv : 4 * MODEL.nv + 12]).all()
+
+
+def test_a_client_gets_names_and_then_frames(served):
+    with connect(served.url) as client:
+        greeting = json.loads(client.recv(timeout=5.0))
+        assert greeting["names"][0] == "pelvis_tilt"
+        assert len(greeting["units"]) == len(greeting["names"])
+        message = next_frame(client, served, shown_frame(MODEL, 7))
+    expected = ResultValues(MODEL).row(shown_frame(MODEL, 7))
+    assert (message["frame"], message["tracked"]) == (7, True)
+    found = np.array(message["values"], dtype=float)
+    np.testing.assert_array_equal(found, expected)
+
+
+def test_a_client_may_leave_and_come_back(served):
+    for number in range(2):
+        with connect(served.url) as client:
+            client.recv(timeout=5.0)
+            assert next_frame(client, served, shown_frame(MODEL, number))["frame"] in (0, number)
+
+
+def test_a_page_of_another_site_may_not_listen(served):
+    with pytest.raises(InvalidStatus, match="403"):
+        connect(served.url, origin="https://example.org")
+    with connect(served.url, origin="http://localhost:8000") as client:
+        assert client.recv(timeout=5.0)
+
+
+def test_another_address_needs_a_token():
+    results = WebSocketResults(MODEL, "0.0.0.0", 0)
+    try:
+        address, _, token = results.url.partition("?token=")
+        assert len(token) > 16
+        with pytest.raises(InvalidStatus, match="403"):
+            connect(address)
+        with pytest.raises(InvalidStatus, match="403"):
+            connect(f"{address}?token=wrong")
+        with connect(results.url) as client:
+            assert client.recv(timeout=5.0)
+    finally:
+        results.close()
+
+
+def test_a_port_that_is_taken_is_refused(served):
+    port = int(served.url.split(":")[2].strip("/"))
+    with pytest.raises(InvalidInput, match="cannot listen"):
+        WebSocketResults(MODEL, "127.0.0.1", port)
+
+
+def test_addresses_are_read():
+    assert parse_address("8765") == ("127.0.0.1", 8765)
+    assert parse_address("0.0.0.0:80") == ("0.0.0.0", 80)
+    for bad in ("", "x", "1:2:x", "99999"):
+        with pytest.raises(InvalidInput, match="--websocket"):
+            parse_address(bad)

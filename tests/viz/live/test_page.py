@@ -1,0 +1,77 @@
+"""The live page as a sink: takes frames without waiting, tells the page what it needs, draws the newest."""
+
+import json
+
+import numpy as np
+import pytest
+from websockets.sync.client import connect
+
+from mbkf.errors import InvalidInput
+from mbkf.viz.live.page import LivePage
+from tests.motions import assert_near
+from tests.recordings import PLATE, walk, walker
+from tests.viz.streams import feeding, frame
+
+
+@pytest.fixture
+def live():
+    made = LivePage(walker()[1], walk().marker_names, PLATE[None], title="a walk")
+    yield made
+    made.close()
+
+
+def socket_of(live):
+    return connect("ws" + live.url[4:] + "frames")
+
+
+def rows_of(socket, count):
+    return [np.frombuffer(socket.recv(5), "<f4") for _ in range(count)]
+
+
+def test_the_greeting_describes_the_rows_that_follow(live):
+    live.take(frame(7))
+    with socket_of(live) as socket:
+        scene = json.loads(socket.recv(5))
+        (row,) = rows_of(socket, 1)
+    assert scene["title"] == "a walk" and scene["plates"] == [PLATE.tolist()]
+    assert len(row) == scene["width"]
+    knee = next(q for q in scene["quantities"] if q["id"] == "angle:knee_angle_r")
+    assert row[knee["column"]] * knee["factor"] == pytest.approx(
+        np.rad2deg(walk().angle("knee_angle_r")[7]), 1e-5
+    )
+    status = dict(zip(scene["status"], row, strict=False))
+    assert (status["number"], status["lost"], status["tracked"]) == (7, 0, 1)
+    assert status["latency_ms"] == pytest.approx(1.5)
+
+
+def test_rows_follow_the_stream_and_leave_frames_out(live):
+    with feeding(live, 0.002), socket_of(live) as socket:
+        socket.recv(5)
+        numbers = [row[1] for row in rows_of(socket, 8)]
+    assert (np.diff(numbers) > 1).any() and (np.diff(numbers) > 0).all()
+
+
+def test_nothing_is_computed_while_nobody_looks(live):
+    made = []
+    rows = live._rows.row
+    live._rows.row = lambda f: (made.append(f.number), rows(f))[1]
+    for k in range(300):
+        live.take(frame(k))
+    assert made == []
+    with socket_of(live) as socket:
+        socket.recv(5)
+        socket.recv(5)
+    assert made == [299]
+
+
+def test_pages_share_one_row(live):
+    live.take(frame(3))
+    with socket_of(live) as one, socket_of(live) as two:
+        for socket in (one, two):
+            socket.recv(5)
+        assert_near(rows_of(one, 1)[0], rows_of(two, 1)[0], 0.0)
+
+
+def test_an_address_that_is_not_ours_is_refused():
+    with pytest.raises(InvalidInput, match=r"192\.0\.2\.1"):
+        LivePage(walker()[1], walk().marker_names, address="192.0.2.1")

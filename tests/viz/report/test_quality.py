@@ -1,0 +1,67 @@
+"""The quality section: verdicts follow their bounds, remarks and labels are shown."""
+
+from dataclasses import replace
+
+import pytest
+
+from mbkf.pipelines.results.summary import summarise
+from mbkf.viz.report.quality import CARE, GOOD, NONE, quality_section, verdicts
+from tests.recordings import broken_walk, walk
+
+
+def judged(r, **changes):
+    return {v.title: v for v in verdicts(r, {**summarise(r), **changes})}
+
+
+def test_a_good_result_is_called_good():
+    found = judged(walk())
+    assert {v.kind for title, v in found.items() if title != "Markers missing"} == {GOOD}
+    assert found["Residual force"].value == "1.7 N", "one newton in each of three axes"
+
+
+@pytest.mark.parametrize(
+    ("changes", "title", "kind"),
+    [
+        ({"marker_rms_mm": 21.0}, "Marker error", CARE),
+        ({"marker_max_mm": 41.0}, "Marker error", CARE),
+        ({"marker_rms_mm": None}, "Marker error", NONE),
+        ({"nis_per_dof": 1.7}, "Innovation (NIS)", CARE),
+        ({"nis_per_dof": 0.3}, "Innovation (NIS)", NONE),
+        ({"nis_per_dof": None}, "Innovation (NIS)", NONE),
+        ({"residual_force_rms_n": None}, "Residual force", NONE),
+    ],
+)
+def test_verdicts_follow_their_bounds(changes, title, kind):
+    assert judged(walk(), **changes)[title].kind == kind
+
+
+def test_one_large_residual_is_noticed():
+    r = walk()
+    force, moment = r.residual_force_n.copy(), r.residual_moment_nm.copy()
+    force[50], moment[50] = 60.0, 20.0
+    found = judged(replace(r, residual_force_n=force, residual_moment_nm=moment))
+    assert found["Residual force"].kind == found["Residual moment"].kind == CARE
+    unseen = r.valid.copy()
+    unseen[50] = False
+    found = judged(replace(r, residual_force_n=force, residual_moment_nm=moment, valid=unseen))
+    assert found["Residual force"].kind == GOOD, "only frames with every contact measured are judged"
+
+
+def test_losses_are_told():
+    found = judged(broken_walk())
+    assert found["Frames followed"].kind == CARE
+    assert found["Markers missing"].remark == "longest gap of one marker 0.30 s"
+
+
+def test_remarks_truth_and_labels():
+    r = walk()
+    summary = {**summarise(r), "truth": {"angle_rms_deg": 1.25, "nees_per_dof": None}}
+    labels = {
+        "assigned_fraction": 0.99, "ghosts_dropped": 7, "swaps_repaired": 0, "correct_fraction": 0.9987,
+        "wrong_fraction": 0.0, "missed_fraction": 0.0013, "ghosts_per_frame": [1] * r.frames,
+    }  # fmt: skip
+    text = quality_section(r, summary, labels)
+    for words in ("known truth", "1.25 °", "99.870 % correct", "ghosts dropped", "a remark with &lt;b&gt;"):
+        assert words in text
+    assert "ghosts dropped" not in quality_section(r, summary, {**labels, "ghosts_per_frame": [1, 2]})
+    assert "No remarks." in quality_section(replace(r, warnings=()), summary, None)

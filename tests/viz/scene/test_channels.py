@@ -1,0 +1,72 @@
+"""The row: parts lie side by side, and every quantity points at its own numbers."""
+
+import numpy as np
+
+from mbkf.viz.scene.channels import (
+    GROUPS,
+    REFUSED,
+    SEEN,
+    STATUS,
+    UNSEEN,
+    Layout,
+    as_plain,
+    marker_states,
+    quantities,
+)
+
+NAMES = ("pelvis_tilt", "pelvis_ty", "knee_angle_r", "knee_angle_l")
+
+
+def test_parts_cover_the_row_without_overlap():
+    layout = Layout(18, 36, len(NAMES), unlabelled=5)
+    taken = np.zeros(layout.width, int)
+    for first, width in layout.parts.values():
+        taken[first : first + width] += 1
+    assert (taken == 1).all()
+    assert layout.parts["unlabelled"][1] == 15
+    assert layout.parts["status"] == (0, len(STATUS))
+
+
+def test_what_is_put_in_a_part_is_found_there():
+    layout = Layout(2, 3, 4)
+    rows = layout.blank(5)
+    values = np.arange(45.0).reshape(5, 3, 3)
+    layout.put(rows, "measured", values)
+    first, width = layout.parts["measured"]
+    np.testing.assert_array_equal(rows[:, first : first + width], values.reshape(5, 9))
+    assert np.isnan(np.delete(rows, np.s_[first : first + width], axis=1)).all()
+
+
+def test_quantities_point_at_their_numbers():
+    layout = Layout(18, 36, len(NAMES))
+    found = {q.id: q for q in quantities(layout, NAMES, streamed=False)}
+    rows = layout.blank(1)
+    layout.put(rows, "angles", np.deg2rad([[1.0, 0.0, 20.0, 30.0]]))
+    layout.put(rows, "moments_sd", np.array([[1.0, 2.0, 3.0, 4.0]]))
+    layout.put(rows, "force", np.array([[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]]))
+    knee = found["angle:knee_angle_r"]
+    assert np.isclose(rows[0, knee.column] * knee.factor, 20.0)
+    assert (knee.unit, knee.side, knee.title) == ("°", "r", "Knee flexion, right")
+    torque = found["torque:knee_angle_l"]
+    assert rows[0, torque.sd_column] == 4.0
+    assert (torque.title, torque.unit) == ("Knee flexion torque, left", "N m")
+    assert rows[0, found["reaction:vertical_l"].column] == 6.0
+    assert found["torque:pelvis_ty"].group == "Residuals at the pelvis"
+    assert found["torque:pelvis_ty"].unit == "N"
+
+
+def test_every_quantity_is_listed_once_under_a_known_heading():
+    layout = Layout(18, 36, len(NAMES))
+    recorded, live = (quantities(layout, NAMES, streamed) for streamed in (False, True))
+    assert len({q.id for q in live}) == len(live) == len(recorded) + 3
+    groups = [GROUPS.index(q.group) for q in live]
+    assert groups == sorted(groups)
+    assert {q["id"] for q in as_plain(live)} == {q.id for q in live}
+
+
+def test_marker_states():
+    measured = np.zeros((4, 3))
+    measured[1, 2] = np.nan
+    hidden = np.array([False, False, True, False])
+    refused = np.array([False, True, True, True])
+    assert marker_states(measured, hidden, refused).tolist() == [SEEN, UNSEEN, UNSEEN, REFUSED]
