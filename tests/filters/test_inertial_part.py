@@ -4,7 +4,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-from mbkf.pipelines.followers import follower
 
 from mbkf.filters.fixed_lag import SmoothingSettings
 from mbkf.filters.tracking import track

@@ -25,7 +25,6 @@ from mbkf.io.imu import ImuReadings, on_regular_grid
 from mbkf.io.imu_mount import ImuMount
 from mbkf.model.human import HumanModel
 from mbkf.numerics.cardan import quaternion_matrices
-from mbkf.pipelines.followers import FilterInputs, follower
 from mbkf.pipelines.trial.followers import FilterInputs, follower
 from mbkf.sensors.inertial_sensor import InertialSensor
 

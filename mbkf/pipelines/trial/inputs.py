@@ -13,10 +13,8 @@ from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.io.records import MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
-from mbkf.pipelines.followers import FilterInputs
 from mbkf.pipelines.trial.followers import FilterInputs
 from mbkf.sensors.contact.plates import plate_wrenches
-from mbkf.sensors.contacts import plate_wrenches
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 MIN_PRESENT = 0.02

@@ -12,8 +12,6 @@ from mbkf.filters.inverse_dynamics import TorqueSolver
 from mbkf.pipelines.live import LiveInputs
 from mbkf.pipelines.live.filter import LiveInputs
 from mbkf.sensors.contact.causal import ContactDetector
-from mbkf.stream.frame import LiveFrame
-from mbkf.stream.intake import ReadyFrame
 from mbkf.stream.receiving.alignment import ReadyFrame
 from mbkf.stream.results.frame import LiveFrame
 

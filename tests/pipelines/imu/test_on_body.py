@@ -6,7 +6,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from mbkf.pipelines.imu_body import ImuOnBody, calibrated, frame_readings, with_imus
 from scipy.spatial.transform import Rotation
 
 from mbkf.errors import InvalidInput

@@ -5,8 +5,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from mbkf.pipelines.reactions import PRESSURE_FROM_N, reactions
-from mbkf.sensors.contacts import plate_wrenches
 
 from mbkf.pipelines.results.reactions import PRESSURE_FROM_N, reactions
 from mbkf.sensors.contact.plates import plate_wrenches

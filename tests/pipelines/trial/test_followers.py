@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mbkf.pipelines.followers import FILTERS, follower
 
 from mbkf.errors import UnknownName
 from mbkf.filters.dynamic.settings import DynamicSettings

@@ -4,10 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mbkf.sensors.contacts import plate_wrenches
-from mbkf.stream.intake import BRIDGED_S, Intake
-from mbkf.stream.reader import Reader
-from mbkf.stream.slot import Slot
 
 from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.stream.receiving.alignment import BRIDGED_S, Intake

@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mbkf.sensors.contacts import plate_wrenches
-from mbkf.stream.plate_buffer import PlateBuffer
 
 from mbkf.io.records import PlateReadings
 from mbkf.io.resample import WHOLE
