@@ -11,7 +11,7 @@ import scipy.linalg
 from benchmarks.double_pendulum.trials import Estimate, Trial
 from mbkf.conventions import Array
 from mbkf.errors import UnknownName
-from mbkf.filters.torque.plant import ForcedState, Prediction, Scheme, TorquePlant, update
+from mbkf.filters.torque.plant import ForcedState, ForcedPrediction, Scheme, TorquePlant, update
 from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
 from mbkf.model.forced_body import ForcedBody, WithIdleStates
 from mbkf.numerics.kalman import Information, information
@@ -91,7 +91,7 @@ class Step:
     """One step: posterior ``state``, its ``prediction``, the ``evidence`` between them and its ``nis``."""
 
     state: ForcedState
-    prediction: Prediction
+    prediction: ForcedPrediction
     evidence: Information
     nis: float
 
@@ -144,7 +144,7 @@ class PendulumFilter:
         return ForcedState(q, v, u, np.diag(variance))
 
     def step(self, state: ForcedState, markers_m: Array, efforts: Array) -> Step:
-        """Prediction and correction by one frame; markers (8,) and efforts (4,) that are NaN say nothing."""
+        """ForcedPrediction and correction by one frame; markers (8,) and efforts (4,) that are NaN say nothing."""
         prediction = self.plant.predict(state)
         prior = prediction.state
         seen = self.pendulum.on_bars(prior.q, MARKER_SHARES, MARKER_BARS)

@@ -17,11 +17,10 @@ from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.first_frame import FirstFrame, labelled
 from mbkf.labelling.running import RunningSettings
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.label_redecision import relabel_offline, trajectories
 from mbkf.pipelines.labelling.any_attitude import STAGE, AnyAttitude
 from mbkf.pipelines.labelling.body import LabelBody, label_body
 from mbkf.pipelines.labelling.doubts import Doubts
-from mbkf.pipelines.labelling.redecision import trajectories
+from mbkf.pipelines.labelling.redecision import relabel_offline, trajectories
 from mbkf.pipelines.labelling.score import LabelScore
 
 CANDIDATES = 8

@@ -25,9 +25,8 @@ from mbkf.model.description import load_body
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import Protocol, load_protocol
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.any_attitude import STAGE, name_tracks_of_frame
 from mbkf.pipelines.label import Labelling, Start, label
-from mbkf.pipelines.labelling.any_attitude import STAGE
+from mbkf.pipelines.labelling.any_attitude import STAGE, name_tracks_of_frame
 from mbkf.pipelines.labelling.doubts import Doubts, doubts
 from mbkf.scaling.fit import scale_subject
 from mbkf.scaling.naming import Naming, NamingProblem

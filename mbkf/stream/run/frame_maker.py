@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.filters.inverse_dynamics import TorqueSolver
-from mbkf.pipelines.live import LiveInputs
 from mbkf.pipelines.live.filter import LiveInputs
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.stream.receiving.alignment import ReadyFrame

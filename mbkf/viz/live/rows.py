@@ -9,7 +9,6 @@ from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.sensors.contact.plates import pressure_and_free_moment
 from mbkf.stream.results.frame import LiveFrame
-from mbkf.viz.scene import segment_poses
 from mbkf.viz.scene.channels import Layout, marker_states
 from mbkf.viz.scene.description import segment_poses
 

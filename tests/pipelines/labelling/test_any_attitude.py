@@ -4,13 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mbkf.pipelines.any_attitude import AnyAttitude, name_tracks_of_frame
 
 from mbkf.labelling.assignment import HIDDEN
 from mbkf.labelling.running import RunningSettings
 from mbkf.labelling.tracks import follow
 from mbkf.pipelines.label import label
-from mbkf.pipelines.labelling.any_attitude import AnyAttitude
+from mbkf.pipelines.labelling.any_attitude import AnyAttitude, name_tracks_of_frame
 from mbkf.pipelines.labelling.body import label_body
 from tests.labelling.movement import RATE_HZ, movement, shuffled
 from tests.walker import walker

@@ -4,13 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mbkf.pipelines.label_redecision import course, relabel_offline, trajectories
 
 from mbkf.labelling.assignment import HIDDEN
 from mbkf.labelling.running import RunningSettings
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.labelling.body import label_body
-from mbkf.pipelines.labelling.redecision import course, trajectories
+from mbkf.pipelines.labelling.redecision import course, relabel_offline, trajectories
 from tests.walker import walker
 
 
