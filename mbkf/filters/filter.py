@@ -17,12 +17,14 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.numerics.kalman import Information, correct, informed, informed_with_rows
+from mbkf.numerics.kalman import Information, correct, informed_with_rows
 from mbkf.sensors.block import AnyBlock, Frame, Notes, OperatingPoint, Rows, State, Statement
 from mbkf.sensors.layout import Layout
 
+Update = Callable[[Array, Array, Array], Array]
+"""P⁺ (N, N) of a prior P⁻ (N, N), information Λ (n, n) on its first components and whitened rows (k, N)."""
+
 StateT = TypeVar("StateT", bound=State)
-NoiseT = TypeVar("NoiseT")
 
 
 class Plant(Protocol[StateT]):
@@ -140,7 +142,8 @@ class Readings:
     @cached_property
     def counted(self) -> tuple[Array, Array]:
         """(m, N) rows and (m,) innovations of instruments and laws: those that NIS and likelihood count."""
-        kept, first = [], 0
+        kept: list[int] = []
+        first = 0
         for part in (one for parts in self.parts for one in parts):
             kept += range(first, first + part.readings)
             first += len(part.innovation)
@@ -207,8 +210,17 @@ class Filter(Generic[StateT]):
         layout: Slices of the tangent state.
     """
 
-    def __init__(self, plant: Plant[StateT], blocks: Sequence[AnyBlock]) -> None:
-        self.plant, self.blocks, self.layout = plant, tuple(blocks), plant.layout
+    def __init__(
+        self, plant: Plant[StateT], blocks: Sequence[AnyBlock], update: Update = informed_with_rows
+    ) -> None:
+        """Makes the filter.
+
+        Args:
+            plant: How the state moves.
+            blocks: Instruments, laws and priors, in the order in which they decide.
+            update: Arithmetic of the update; all give the same up to rounding, and differ in speed.
+        """
+        self.plant, self.blocks, self.layout, self.update = plant, tuple(blocks), plant.layout, update
         for block in self.blocks:
             block.bind(self.layout)
 
@@ -310,11 +322,8 @@ class Filter(Generic[StateT]):
         )
 
     def _updated(self, prior: StateT, readings: Readings) -> StateT:
-        if len(readings.values):
-            P = informed_with_rows(prior.P, readings.matrix, readings.rows)
-            return self.plant.retract(prior, P @ readings.whole_vector, P)
-        P = informed(prior.P, readings.matrix)
-        return self.plant.retract(prior, P[:, : len(readings.vector)] @ readings.vector, P)
+        P = self.update(prior.P, readings.matrix, readings.rows)
+        return self.plant.retract(prior, P @ readings.whole_vector, P)
 
     def _summed(self, said: Sequence[Statement]) -> Readings:
         """All statements together: information of instruments first, then of priors, then rows in order."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import blas, lapack
 
 from mbkf.conventions import Array
@@ -136,16 +135,18 @@ def _informed_with_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
     return _reduced(covariance, halves)
 
 
-def read_directly(covariance: Array, components: NDArray[np.intp], sd_inverse: Array) -> Array:
-    """(N, N) posterior covariance after one reading of each of k components, whatever was read.
+def informed_after_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
+    """The same as :func:`informed_with_rows`, one after the other: quicker where there are hardly ever rows.
 
     Args:
         covariance: (N, N) prior covariance P.
-        components: (k,) indices of what is read.
-        sd_inverse: (k,) 1/sd of each reading.
+        matrix: (n, n) information Λ on the first n components.
+        rows: (m, N) whitened Jacobian of the other readings, whatever was read.
     """
-    W = np.asfortranarray(covariance[:, components] * sd_inverse)
-    return _reduced(covariance, _half(W, np.asfortranarray(W[components] * sd_inverse[:, None])))
+    if len(rows):
+        W = blas.dgemm(1.0, covariance, rows.T)
+        covariance = _reduced(covariance, _half(W, blas.dgemm(1.0, rows.T, W, trans_a=1)))
+    return informed(covariance, matrix)
 
 
 def _informed_root(covariance: Array, matrix: Array) -> Array:

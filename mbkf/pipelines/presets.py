@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from mbkf.errors import FileFormatError, InvalidInput, UnknownName
+from mbkf.filters.settings import changed, flat
 from mbkf.filters.torque.settings import SCHEMES, preset
 from mbkf.io.preset import SUFFIX, Preset, preset_folder, read_preset, saved_presets
 from mbkf.pipelines.reconstruct import ReconstructSettings
@@ -43,8 +44,8 @@ def with_preset(
     if found.filter not in FILTERS:
         raise UnknownName("filter", found.filter, FILTERS, str(path))
     _check_filter(name, found.filter, wanted_filter)
-    changed = with_values(getattr(settings, found.filter), found, str(path))
-    changes: dict[str, Any] = {"filter": found.filter, found.filter: changed}
+    own = with_values(getattr(settings, found.filter), found, str(path))
+    changes: dict[str, Any] = {"filter": found.filter, found.filter: own}
     return replace(settings, **changes)
 
 
@@ -55,9 +56,8 @@ def with_values(settings: Any, found: Preset, where: str) -> Any:
         UnknownName: There is no such setting, or it is no number.
         InvalidInput: A value is not positive.
     """
-    numbers = [one.name for one in fields(settings) if isinstance(getattr(settings, one.name), int | float)]
-    kinds = {key: type(getattr(settings, key)) for key in numbers}
-    known = [key for key in numbers if kinds[key] is not bool]
+    kinds = {key: type(value) for key, value in flat(settings).items() if isinstance(value, int | float)}
+    known = [key for key, kind in kinds.items() if kind is not bool]
     values: dict[str, float] = {}
     for key, value in found.values.items():
         if key not in known:
@@ -65,7 +65,7 @@ def with_values(settings: Any, found: Preset, where: str) -> Any:
         if value <= 0.0 and not (value == 0.0 and key == "innovation_share"):
             raise InvalidInput(f"{where}: {key} must be positive, got {value:g}")
         values[key] = kinds[key](value)
-    return replace(settings, **values)
+    return changed(settings, **values)
 
 
 def preset_path(name: str) -> Path:

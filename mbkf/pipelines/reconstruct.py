@@ -13,6 +13,7 @@ from mbkf.errors import InvalidInput, NotObservable, UnknownName
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.fixed_lag import SmoothingSettings
 from mbkf.filters.kinematic.settings import KinematicSettings
+from mbkf.filters.settings import flat
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.filters.tracking import Track, track
 from mbkf.io.records import Capture, MarkerTrajectories
@@ -70,6 +71,11 @@ class ReconstructSettings:
     hide: tuple[Hidden, ...] = ()
     without_plates: tuple[str, ...] = ()
     keep_covariance: bool = False
+
+
+def recorded(settings: ReconstructSettings) -> dict[str, object]:
+    """The settings as result files hold them; those of the dynamic filter by their leaves' names."""
+    return {**asdict(settings), "dynamic": flat(settings.dynamic)}
 
 
 def reconstruct(
@@ -228,7 +234,7 @@ def assemble(
         nis_readings=result.readings,
         step_seconds=result.step_seconds,
         warnings=(*capture.notes, *ground.warnings, *_warnings(result, names, held)),
-        settings=asdict(settings),
+        settings=recorded(settings),
         plate_change=ground.plate_change,
         foot_wrench_sd=ground.wrench_sd,
         footing=result.contact,

@@ -30,6 +30,7 @@ from mbkf.conventions import Array, BoolArray, StageCallback
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
 from mbkf.filters.estimate import Recording
 from mbkf.filters.likelihood import TrialLikelihood, trial_likelihood
+from mbkf.filters.settings import changed, flat
 from mbkf.io.preset import Preset
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
@@ -277,8 +278,7 @@ class _Stretch:
         Frames whose feet are taken to stand on something else than with the defaults have other readings; their loads
         count as unchanged.
         """
-        changed: Any = replace(getattr(self._inputs, self._kind), **values)
-        changes: dict[str, Any] = {self._kind: changed}
+        changes: dict[str, Any] = {self._kind: changed(getattr(self._inputs, self._kind), **values)}
         try:
             with np.errstate(all="ignore"):
                 found = self._run(replace(self._inputs, **changes))
@@ -304,7 +304,8 @@ class _Objective:
         most: int,
         report: Callable[[str, int, int], None],
     ) -> None:
-        self._stretches, self._parameters, self._base = stretches, parameters, base
+        self._stretches, self._parameters = stretches, parameters
+        self._base: Any = flat(base)
         self._most, self._report = most, report
         self.runs = 0
 
@@ -318,7 +319,7 @@ class _Objective:
     def values(self, x: Array) -> dict[str, float]:
         """Settings by name, to three digits."""
         return {
-            name: float(f"{getattr(self._base, name) * math.exp(power):.3g}")
+            name: float(f"{self._base[name] * math.exp(power):.3g}")
             for one, power in zip(self._parameters, x, strict=True)
             for name in one.fields
         }

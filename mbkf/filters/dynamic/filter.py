@@ -114,6 +114,21 @@ class DynamicFilter(Filter[DynamicState]):
         self.noise_m = noise_m * settings.markers.marker_noise_scale
         self.model, self.dt_s, self.balance = sensor.model, dt_s, NewtonEuler(sensor.model)
 
+    @classmethod
+    def standard(
+        cls,
+        sensor: MarkerSensor,
+        noise_m: Array,
+        detector: ContactDetector,
+        dt_s: float,
+        unobservable: BoolArray,
+        settings: DynamicSettings,
+        inertial: InertialSensor | None = None,
+    ) -> DynamicFilter:
+        """The filter with :func:`dynamic_blocks`, whose arguments these are."""
+        blocks = dynamic_blocks(sensor, noise_m, detector, dt_s, unobservable, settings, inertial)
+        return cls(sensor, noise_m, dt_s, unobservable, settings, blocks)
+
     def first(self, q: Array, v: Array, a: Array, P: Array, frame: Frame) -> Step[DynamicState]:
         """A first estimate from a pose and velocity, corrected by a frame.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,7 @@ from mbkf.io.results_folder import write_reconstruction
 from mbkf.io.subject import Subject, write_subject
 from mbkf.pipelines.live.log import SUBJECT_FILE, LiveLog, LiveStream
 from mbkf.pipelines.live.results import live_results
-from mbkf.pipelines.reconstruct import ReconstructSettings
+from mbkf.pipelines.reconstruct import ReconstructSettings, recorded
 from mbkf.pipelines.results.summary import summarise
 from mbkf.stream.source import StreamDescription
 
@@ -49,7 +48,7 @@ def open_log(
         earlier = (folder / f"{LOG_FOLDER}-{k}" for k in range(1, 1_000_000))
         place.rename(next(path for path in earlier if not path.exists()))
     kept = LiveStream(stream.trial, stream.rate_hz, stream.start_time_s, stream.plates)
-    log = LiveLog(place, kept, rows, asdict(settings), list(names))
+    log = LiveLog(place, kept, rows, recorded(settings), list(names))
     with replacing(place / SUBJECT_FILE) as partial:
         write_subject(subject, partial)
     return log
