@@ -60,7 +60,7 @@ class TimedWalk:
     def labelled(self, before: Estimate, t: int, points: Array) -> tuple[Estimate, Array]:
         """The step with labels between prediction and correction, and the seconds of its parts (4,)."""
         ticks = [perf_counter()]
-        prediction = self.follower.expect(before)
+        prediction = self.follower.predict(before)
         ticks.append(perf_counter())
         labels = self.labeller.label(prediction.markers, points)
         ticks.append(perf_counter())
