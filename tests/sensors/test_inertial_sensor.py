@@ -1,8 +1,7 @@
-"""Inertial sensors on a body: free fall, rest, turning on the spot; rows whitened and silent where nothing was read."""
+"""Inertial sensors on a body: free fall, rest, turning on the spot."""
 
 import numpy as np
 import pytest
-from mbkf.sensors.inertial_rows import InertialRows, felt_dofs
 
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.errors import UnknownName
@@ -57,28 +56,6 @@ def test_orientations_are_those_of_the_segments():
     np.testing.assert_allclose(SENSOR.orientations(q)[1], rotations[MODEL.joint("left_foot").joint_id])
 
 
-def test_rows_are_whitened_and_missing_readings_are_left_out():
-    rng = np.random.default_rng(3)
-    q = MODEL.integrate(MODEL.neutral(), rng.normal(0, 0.3, MODEL.nv))
-    v, a = rng.normal(0, 1, (2, MODEL.nv))
-    block = InertialRows(SENSOR, 0.1, 2.0)
-    expected = SENSOR.values(q, v, a)
-    measured = expected + np.repeat([0.1, 2.0], 3)
-    measured[1, 4] = np.nan
-    rows, values = block.rows(q, v, a, measured)
-    assert rows.shape == (11, 3 * MODEL.nv)
-    np.testing.assert_allclose(values, 1.0, atol=1e-9)
-    step = 1e-6 * rng.normal(size=3 * MODEL.nv)
-    n = MODEL.nv
-    moved = SENSOR.values(MODEL.integrate(q, step[:n]), v + step[n : 2 * n], a + step[2 * n :])
-    weight = np.repeat([10.0, 0.5], 3)
-    change = ((moved - expected) * weight).ravel()
-    np.testing.assert_allclose(rows @ step, np.delete(change, 10), atol=1e-9)
-
-
-def test_only_joints_of_carrying_segments_are_felt():
-    felt = felt_dofs(MODEL, ["pelvis", "left_foot"])
-    assert felt[:6].all()
-    assert felt.sum() == 6 + 3
+def test_a_segment_that_the_body_does_not_have_is_refused():
     with pytest.raises(UnknownName):
         InertialSensor(MODEL, [ImuMount("a", "tail", np.zeros(3), STRAIGHT)])
