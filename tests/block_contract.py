@@ -283,8 +283,11 @@ class Shown:
         return self.plant.retract(state, step, state.P)
 
 
-def shown(kind, name, seed=None):
-    """A block of a kind after a situation."""
+def shown(kind, name, seed=None, off=3):
+    """A block of a kind after a situation.
+
+    ``seed`` shuffles the instruments, ``off`` chooses how wrong the state is at which the block is linearised.
+    """
     here = scene(seed)
     happened, block = here.situation(name), here.made(kind)
     plant, memory = here.plant(block), block.begin()
@@ -294,7 +297,7 @@ def shown(kind, name, seed=None):
         state = replace(true, extra=extra, P=P)
         at = OperatingPoint(state, block.prepare(state, memory))
         memory = block.remember(state, at, block.decide(at, frame, memory, happened.noted(t)), memory)
-    state, frame = here.near(happened.states[-1], plant), happened.frames[-1]
+    state, frame = here.near(happened.states[-1], plant, off), happened.frames[-1]
     at = OperatingPoint(state, block.prepare(state, memory))
     decision = block.decide(at, frame, memory, happened.noted())
     return Shown(block, plant, state, frame, memory, decision, happened)
