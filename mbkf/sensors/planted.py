@@ -1,4 +1,4 @@
-"""Planted foot, as a block: 0 = ṗ + r_p and 0 = ω + r_ω for a foot that carries weight while none of its markers is seen.
+"""Planted foot, as a block: 0 = ṗ + r_p and 0 = ω + r_ω, for a loaded foot none of whose markers is seen.
 
 The point p under the centre of pressure stands still, whether the foot is flat or rolls; a flat foot does not turn
 either, nor do the toes once the load is on them and the heel rises. The derivative by the configuration vanishes where

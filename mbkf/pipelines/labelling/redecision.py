@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.estimate import Estimate, Recording
+from mbkf.filters.estimate import Posterior, Recording
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
 from mbkf.filters.tracking_loop import followed
 from mbkf.io.records import MarkerTrajectories
@@ -120,7 +120,7 @@ def course(body: LabelBody, markers: MarkerTrajectories, progress: Callable[[int
         np.full(positions.shape[:2], np.nan),
     )
 
-    def keep(done: list[tuple[int, Estimate]]) -> None:
+    def keep(done: list[tuple[int, Posterior]]) -> None:
         nv = sensor.model.nv
         for t, estimate in done:
             reading = sensor.reading(estimate.q)

@@ -14,7 +14,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import MbkfError
-from mbkf.filters.estimate import Estimate, Prediction, Recording, TrackingFilter
+from mbkf.filters.estimate import Posterior, Prediction, Recording, TrackingFilter
 from mbkf.filters.kinematic.tracking import warm_up_frames
 from mbkf.filters.tracking_loop import TrackingLoop
 from mbkf.io.records import MarkerTrajectories, PlateReadings
@@ -40,7 +40,7 @@ class LiveStep:
     """
 
     number: int
-    estimate: Estimate | None
+    estimate: Posterior | None
     awaited: bool
     seconds: float
     trouble: str | None = None
@@ -57,7 +57,7 @@ class LiveFilter:
         self._expecting_s = 0.0
 
     @property
-    def latest(self) -> Estimate | None:
+    def latest(self) -> Posterior | None:
         """The estimate of the frame pushed last; None while there is none, or the next frame has to start anew."""
         if self._waiting or self.loop.must_start:
             return None

@@ -63,7 +63,7 @@ class ContactDecision:
 
 
 class Planted(NamedTuple):
-    """What stands still: a foot or its toes, the world point (3,) of it that does not move, and whether it lies flat."""
+    """What stands still: a foot or its toes, its world point (3,) that does not move, and whether it lies flat."""
 
     segment: str
     point_m: Array

@@ -14,12 +14,11 @@ from typing import Any
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.filters.record import FrameRecorder
 from mbkf.io.subject import Subject
-from mbkf.model.clinical import ClinicalAngles
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.live.filter import LiveFilter, LiveStep, live_inputs
 from mbkf.pipelines.live.labels import live_body
-from mbkf.pipelines.live.log import LiveRows
 from mbkf.pipelines.reconstruct import ReconstructSettings
 from mbkf.pipelines.trial.followers import follower
 from mbkf.stream.receiving.alignment import BRIDGED_S, Intake, ReadyFrame
@@ -128,7 +127,7 @@ class LiveSession:
         self.model = self._live.inputs.sensor.model
         self._filter = LiveFilter(self._follower)
         self._maker = FrameMaker(self._live, stream.rate_hz)
-        self._rows = LiveRows(self._follower, len(self.names), len(ClinicalAngles(self.model).names))
+        self._rows = FrameRecorder(self._follower, len(self.names))
         self._named_here = None
         if not stream.marker_names:
             patient = self._source.patient
@@ -284,7 +283,7 @@ class LiveSession:
                 if self._starts > 1:
                     self._note("start", "the filter started anew", step.number, 1)
             self._show(ready, row, latency)
-            self._rows.judge(row, step.estimate, spread)
+            self._rows.complete(row, step.estimate, spread)
             self._writer.put_row(row)
 
     def _show(self, ready: ReadyFrame, row: np.ndarray, latency_s: float) -> None:
