@@ -17,7 +17,7 @@ class InverseDynamics:
     """Generalised forces of a followed trial; NaN where it is not followed.
 
     Attributes:
-        tau: (T, nv) generalised forces by thesis eq. 3.12, M a − Q_g − B_pᵀ p; the first six are the pelvis residual in pelvis axes.
+        tau: (T, nv) generalised forces by thesis eq. 3.12; the first six are the pelvis residual in pelvis axes.
         residual_force_n: (T, 3) residual force, world axes.
         residual_moment_nm: (T, 3) residual moment about the pelvis origin, world axes.
     """
