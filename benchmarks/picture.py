@@ -21,7 +21,7 @@ from mbkf.io.truth import Truth, read_truth
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.pipelines.reconstruct import reconstruct
-from mbkf.sensors.contacts import sole_points
+from mbkf.sensors.contact.soles import sole_points
 
 MEASURED, BODY, FORCE, TRUTH = "#7a869a", "#1f3a5f", "#c8553d", "#111111"
 CHAINS = (

@@ -22,8 +22,8 @@ from mbkf.filters.settings import KinematicSettings
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.reconstruct import subject_markers
 from mbkf.pipelines.synth import synthesise
-from mbkf.sensors.contacts import plate_wrenches
-from mbkf.sensors.footing import FootingSensor
+from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.synthesis.person import body_of
 
@@ -104,7 +104,7 @@ def make_walk(seconds: float) -> Walk:
     wrench[:, 2] = 0.5 * model.mass_kg * GRAVITY_M_S2
     plates = capture.trial.plates
     loads = plate_wrenches(plates, measured.times_s, measured.rate_hz)
-    feet = FootingSensor(model, plates, kalman.plant.dt_s)
+    feet = ContactDetector(model, plates, kalman.plant.dt_s)
     dynamic = DynamicFilter(sensor, noise, feet, kalman.plant.dt_s, held, DynamicSettings())
     return Walk(kalman, dynamic, loads, TorqueSolver(model), measured.positions_m, wrench)
 

@@ -15,7 +15,7 @@ from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
 from mbkf.io.trc import write_trc
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
-from mbkf.sensors.contacts import sole_points
+from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.markers import MarkerSensor
 
 RATE_HZ = 100.0

@@ -12,8 +12,8 @@ from mbkf.filters.singer import DynamicState
 from mbkf.io.records import PlateReadings
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
-from mbkf.sensors.contacts import sole_points
-from mbkf.sensors.footing import FootingSensor
+from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.synthesis.motion import TrueMotion, synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
@@ -80,7 +80,7 @@ def dynamic_filter(
     noise = np.full(len(sensor.segments), noise_m)
     held = np.zeros(model.nv, dtype=bool) if held is None else held
     return DynamicFilter(
-        sensor, noise, FootingSensor(model, plates, dt_s), dt_s, held, DynamicSettings(**settings)
+        sensor, noise, ContactDetector(model, plates, dt_s), dt_s, held, DynamicSettings(**settings)
     )
 
 
@@ -123,8 +123,10 @@ class Trial:
     plates: tuple[PlateReadings, ...]
 
     def feet(self, plates=None):
-        """The footing sensor over these plates, or over others."""
-        return FootingSensor(self.model, self.plates if plates is None else plates, 1.0 / self.motion.rate_hz)
+        """The contact detector over these plates, or over others."""
+        return ContactDetector(
+            self.model, self.plates if plates is None else plates, 1.0 / self.motion.rate_hz
+        )
 
     def kalman(self, noise_m=MARKER_SD_M, plates=None, **settings):
         """A filter that knows body, markers and plates exactly."""

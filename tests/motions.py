@@ -157,7 +157,7 @@ def track_of(q, v, a, **known):
     fields |= {
         "wrench": np.full((frames, 2, 6), np.nan),
         "wrench_sd": np.full((frames, 2, 6), np.nan),
-        "footing": None,
+        "contact": None,
         "foot_height_sd": np.zeros((frames, 2)),
         "refused": np.zeros((frames, 0), bool),
         "tracked": np.ones(frames, bool),

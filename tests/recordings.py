@@ -7,7 +7,7 @@ import numpy as np
 
 from mbkf.io.results import Reconstruction
 from mbkf.model.clinical import ClinicalAngles, dof_names
-from mbkf.sensors.footing import Footing
+from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
@@ -55,7 +55,7 @@ def walk():
         valid=np.ones(T, bool), held_dofs=(), nis=np.full(T, 90.0), nis_readings=np.full(T, 100),
         step_seconds=np.full(T, 1e-3), warnings=("a remark with <b>markup</b>",),
         settings={"dynamic": {"jerk": 200.0}, "hide": []}, foot_wrench_sd=np.full((T, 2, 6), 5.0),
-        footing=np.where(force[..., 2] > 0, Footing.MEASURED, Footing.AIR), plate_corners_m=PLATE[None],
+        footing=np.where(force[..., 2] > 0, Contact.MEASURED, Contact.AIR), plate_corners_m=PLATE[None],
     )  # fmt: skip
 
 

@@ -27,8 +27,9 @@ from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.model.protocol import load_protocol
 from mbkf.numerics.threads import single_threaded
-from mbkf.sensors.contacts import sole_points
-from mbkf.sensors.footing import Footing, FootingMemory, FootingSensor, FootLoad
+from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
+from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.markers import MarkerSensor
 
 DT_S, MARKER_SD_M, FRAMES = 0.01, 0.001, 60
@@ -79,26 +80,26 @@ class Run:
     readings: Array
 
 
-class AlwaysMeasured(FootingSensor):
+class AlwaysMeasured(ContactDetector):
     """Two feet that stay on their plates whatever the body does."""
 
     def __init__(self, centres_m: Array) -> None:
         self.centres_m = centres_m
 
-    def begin(self) -> FootingMemory:
+    def begin(self) -> ContactMemory:
         """Nothing to remember."""
-        return FootingMemory((), (), float("nan"), (0.0, 0.0))
+        return ContactMemory((), (), float("nan"), (0.0, 0.0))
 
     def decide(
         self,
-        memory: FootingMemory,
+        memory: ContactMemory,
         q: Array,  # noqa: ARG002
         v: Array,  # noqa: ARG002
         a: Array,  # noqa: ARG002
         plate_wrench: Array,
-    ) -> FootLoad:
+    ) -> ContactDecision:
         """Each foot on its own plate."""
-        return FootLoad((Footing.MEASURED,) * 2, plate_wrench, self.centres_m, False, memory)
+        return ContactDecision((Contact.MEASURED,) * 2, plate_wrench, self.centres_m, False, memory)
 
 
 class OwnPlant:

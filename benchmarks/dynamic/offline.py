@@ -20,9 +20,10 @@ from mbkf.errors import NotObservable
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
+from mbkf.model.newton_euler import FEET
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.reconstruct import subject_markers
-from mbkf.sensors.contacts import FEET, assign_feet
+from mbkf.sensors.contact.offline import assign_feet
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 from mbkf.sensors.posture import PostureSensor

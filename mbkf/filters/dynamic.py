@@ -25,8 +25,9 @@ from mbkf.filters.singer import DynamicState, SingerPlant
 from mbkf.filters.synergy import Synergy
 from mbkf.model.newton_euler import FEET, NewtonEuler
 from mbkf.numerics.kalman import Information, informed_with_rows
+from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.sensors.contact.records import Contact, ContactDecision
 from mbkf.sensors.expectation import MarkerExpectation
-from mbkf.sensors.footing import Footing, FootingSensor, FootLoad
 from mbkf.sensors.markers import MarkerInformation, MarkerSensor
 from mbkf.sensors.planted import standing_still
 from mbkf.sensors.skin import SkinMarkers
@@ -64,7 +65,7 @@ class DynamicFilter:
         self,
         sensor: MarkerSensor,
         noise_m: Array,
-        feet: FootingSensor,
+        feet: ContactDetector,
         dt_s: float,
         held: BoolArray,
         settings: DynamicSettings,
@@ -225,12 +226,14 @@ class DynamicFilter:
         P = informed_with_rows(prior.P.T, frame.matrix, frame.rows)
         return self.retract(prior, P @ frame.whole_vector, P)
 
-    def _pulling_feet(self, state: DynamicState, load: FootLoad) -> tuple[int, ...]:
+    def _pulling_feet(self, state: DynamicState, load: ContactDecision) -> tuple[int, ...]:
         """Free feet whose estimated force pulls at the floor, clearly more than it is kept from that."""
-        if Footing.FREE not in load.footing:
+        if Contact.UNMEASURED not in load.contacts:
             return ()
         least = -3.0 * self.settings.pulling_force_n
-        return tuple(f for f in (0, 1) if load.footing[f] == Footing.FREE and state.w[6 * f + 2] < least)
+        return tuple(
+            f for f in (0, 1) if load.contacts[f] == Contact.UNMEASURED and state.w[6 * f + 2] < least
+        )
 
     def unsettle(self, P: Array, decision: Decision) -> None:
         """Adds to a predicted covariance, in place, what the plant does not know.

@@ -123,7 +123,7 @@ class DynamicFollower:
 
 
 def _estimate(step: DynamicStep) -> Estimate:
-    state, (right, left) = step.state, step.decision.load.footing
+    state, (right, left) = step.state, step.decision.load.contacts
     return Estimate(
         state.q,
         state.v,

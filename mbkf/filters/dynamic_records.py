@@ -14,7 +14,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.filters.singer import DynamicState
 from mbkf.filters.synergy import Synergy
 from mbkf.numerics.kalman import Information, correct
-from mbkf.sensors.footing import FootingMemory, FootLoad
+from mbkf.sensors.contact.records import ContactDecision, ContactMemory
 from mbkf.sensors.planted import Planted
 
 
@@ -72,7 +72,7 @@ class Memory(NamedTuple):
         shown: What was seen of the joints; None where habits are not asked for.
     """
 
-    footing: FootingMemory
+    footing: ContactMemory
     noise_scale: float
     activity: Array | None
     markers_m: Array | None
@@ -103,7 +103,7 @@ class Decision(NamedTuple):
 
     trusted: BoolArray
     seen: BoolArray
-    load: FootLoad
+    load: ContactDecision
     noise_scale: float
     unseen: NDArray[np.intp]
     planted: tuple[Planted, ...]

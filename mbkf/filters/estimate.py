@@ -43,8 +43,8 @@ class Estimate:
         q: (nq,) configuration.
         v, a: (nv,) velocity and acceleration.
         wrench: (2, 6) estimated wrench on right and left foot about the world's origin, NaN where the filter has none.
-        footing: (2,) what the feet stand on, see :class:`mbkf.sensors.footing.Footing`; None where the filter does
-            not ask.
+        contact: (2,) what the feet stand on, see :class:`mbkf.sensors.contact.records.Contact`; None where the
+            filter does not ask.
         refused: (M,) markers seen but not believed.
         tracked: Whether enough markers were believed.
         started: Whether the filter was started in this frame.
@@ -55,7 +55,7 @@ class Estimate:
     v: Array
     a: Array
     wrench: Array
-    footing: tuple[int, int] | None
+    contact: tuple[int, int] | None
     refused: BoolArray
     tracked: bool
     started: bool

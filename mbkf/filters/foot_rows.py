@@ -6,7 +6,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.filters.dynamic_settings import DynamicSettings
-from mbkf.sensors.footing import Footing, FootLoad
+from mbkf.sensors.contact.records import Contact, ContactDecision
 
 
 class FootRows:
@@ -26,13 +26,15 @@ class FootRows:
         self._pulling[2] = 1.0 / s.pulling_force_n
         self._walk = np.repeat([s.wrench_force, s.wrench_moment], 3) * dt_s**0.5
 
-    def wander(self, load: FootLoad) -> Array:
+    def wander(self, load: ContactDecision) -> Array:
         """(2, 6, 6) covariance by which the feet's wrenches about the world's origin wander in a step."""
         shift = _about(-load.centres_m) * self._walk
         wander: Array = shift @ shift.transpose(0, 2, 1)
         return wander
 
-    def fill(self, rows: Array, values: Array, w: Array, load: FootLoad, lifted: tuple[int, ...]) -> int:
+    def fill(
+        self, rows: Array, values: Array, w: Array, load: ContactDecision, lifted: tuple[int, ...]
+    ) -> int:
         """Fills the rows (12, N) and innovations (12,); returns how many, the first ones, are plates' readings.
 
         Args:
@@ -42,42 +44,42 @@ class FootRows:
             load: What the feet stand on.
             lifted: Free feet, 0 right and 1 left, that carry nothing.
         """
-        if Footing.SHARED in load.footing:
+        if Contact.SHARED in load.contacts:
             return self._shared(rows, values, w, load)
         first, plates = self._first, 0
         about = _about(load.centres_m)
-        only_left = load.footing[0] != Footing.MEASURED and load.footing[1] == Footing.MEASURED
+        only_left = load.contacts[0] != Contact.MEASURED and load.contacts[1] == Contact.MEASURED
         for place, foot in enumerate((1, 0) if only_left else (0, 1)):
             wrench, mine = w[6 * foot : 6 * foot + 6], slice(6 * place, 6 * place + 6)
             pulls = wrench[2] < 0.0 or foot in lifted
-            X = about[foot] * self._weight(load.footing[foot], pulls)[:, None]
+            X = about[foot] * self._weight(load.contacts[foot], pulls)[:, None]
             rows[mine, first + 6 * foot : first + 6 * foot + 6] = X
             values[mine] = X @ (self._expected(load, foot, pulls) - wrench)
-            plates += 6 * (load.footing[foot] == Footing.MEASURED)
+            plates += 6 * (load.contacts[foot] == Contact.MEASURED)
         return plates
 
-    def _expected(self, load: FootLoad, foot: int, pulls: bool) -> Array:
+    def _expected(self, load: ContactDecision, foot: int, pulls: bool) -> Array:
         """(6,) wrench a foot is read to carry: its plate's, nothing, or its share of what no plate carries.
 
         A free foot that would pull at the floor is held at nothing instead.
         """
-        if load.footing[foot] != Footing.FREE or pulls:
+        if load.contacts[foot] != Contact.UNMEASURED or pulls:
             return load.wrench[foot]
-        other = load.footing[1 - foot]
-        carried = float(load.wrench[1 - foot, 2]) if other == Footing.MEASURED else 0.0
-        rest = max(self._weight_n - carried, 0.0) * (0.5 if other == Footing.FREE else 1.0)
+        other = load.contacts[1 - foot]
+        carried = float(load.wrench[1 - foot, 2]) if other == Contact.MEASURED else 0.0
+        rest = max(self._weight_n - carried, 0.0) * (0.5 if other == Contact.UNMEASURED else 1.0)
         x, y, _ = load.centres_m[foot].tolist()
         return np.array([0.0, 0.0, rest, y * rest, -x * rest, 0.0])
 
-    def _weight(self, footing: Footing, pulls: bool) -> Array:
+    def _weight(self, footing: Contact, pulls: bool) -> Array:
         """(6,) 1/sd of a foot's rows; a free foot that would pull at the floor is held at no vertical force."""
-        if footing == Footing.MEASURED:
+        if footing == Contact.MEASURED:
             return self._plate
-        if footing == Footing.AIR:
+        if footing == Contact.AIR:
             return self._air
         return self._pulling if pulls else self._free
 
-    def _shared(self, rows: Array, values: Array, w: Array, load: FootLoad) -> int:
+    def _shared(self, rows: Array, values: Array, w: Array, load: ContactDecision) -> int:
         """One plate reads the sum of both wrenches; each is weakly held near a half of it."""
         first = self._first
         middle = _about(load.centres_m.mean(axis=0, keepdims=True))[0] * self._plate[:, None]

@@ -9,7 +9,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.tracking import Track
 from mbkf.model.human import HumanModel
-from mbkf.sensors.contacts import FEET
+from mbkf.model.newton_euler import FEET
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
-from mbkf.sensors.contacts import FEET
+from mbkf.model.newton_euler import FEET
 
 
 class SpreadReader:

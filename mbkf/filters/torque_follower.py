@@ -16,7 +16,8 @@ from mbkf.filters.spread import Spread, SpreadReader
 from mbkf.filters.torque import TorqueFilter, TorqueState, TorqueStep
 from mbkf.filters.torque_plant import ForcedState
 from mbkf.numerics.smoothing import BackwardPass
-from mbkf.sensors.footing import Footing, FootingMemory, FootingSensor
+from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.sensors.contact.records import Contact, ContactMemory
 
 
 @dataclass(frozen=True)
@@ -26,13 +27,13 @@ class _Followed:
     state: TorqueState
     step: TorqueStep | None
     before: ForcedState | None
-    memory: FootingMemory
+    memory: ContactMemory
 
 
 class TorqueFollower:
     """Drives a :class:`TorqueFilter`; see :class:`mbkf.filters.estimate.Follower`."""
 
-    def __init__(self, kalman: TorqueFilter, feet: FootingSensor, starter: KinematicFilter) -> None:
+    def __init__(self, kalman: TorqueFilter, feet: ContactDetector, starter: KinematicFilter) -> None:
         self.kalman, self.feet, self._starter = kalman, feet, starter
         self.model, self.dt_s = kalman.sensor.model, kalman.plant.dt_s
         self.restart_after_s = starter.settings.restart_after_s
@@ -45,9 +46,9 @@ class TorqueFollower:
             return None
         motion, a = found.state, found.accelerations.mean(axis=0)
         load = self.feet.decide(self.feet.begin(), motion.q, motion.v, a, recording.plates[t])
-        state = self.kalman.start(motion, a, load.wrench, *_known(load.footing))
+        state = self.kalman.start(motion, a, load.wrench, *_known(load.contacts))
         nobody = np.zeros(recording.markers_m.shape[1], dtype=bool)
-        return self._estimate(_Followed(state, None, None, load.memory), load.footing, nobody, True)
+        return self._estimate(_Followed(state, None, None, load.memory), load.contacts, nobody, True)
 
     def expect(self, before: Estimate) -> Foresight:
         """By steady motion: the filter's own plant waits for the plates, which say what the torques do."""
@@ -62,12 +63,12 @@ class TorqueFollower:
         state = was.state
         q = self.model.integrate(state.q, self.dt_s * state.v)
         load = self.feet.decide(was.memory, q, state.v + self.dt_s * state.a, state.a, recording.plates[t])
-        step = self.kalman.step(state, recording.markers_m[t], load.wrench, *_known(load.footing))
+        step = self.kalman.step(state, recording.markers_m[t], load.wrench, *_known(load.contacts))
         inner = _Followed(step.state, step, state.filtered, load.memory)
-        return self._estimate(inner, load.footing, step.refused, step.tracked)
+        return self._estimate(inner, load.contacts, step.refused, step.tracked)
 
     def _estimate(
-        self, inner: _Followed, footing: tuple[Footing, Footing], refused: BoolArray, tracked: bool
+        self, inner: _Followed, footing: tuple[Contact, Contact], refused: BoolArray, tracked: bool
     ) -> Estimate:
         state = inner.state
         feet = (int(footing[0]), int(footing[1]))
@@ -125,7 +126,7 @@ class TorqueFollower:
         return replace(estimate, q=state.q, v=state.v, a=state.a, wrench=state.foot_wrench, inner=inner)
 
 
-def _known(footing: tuple[Footing, Footing]) -> tuple[BoolArray, BoolArray]:
+def _known(footing: tuple[Contact, Contact]) -> tuple[BoolArray, BoolArray]:
     """Feet (2,) whose wrench is known, and those in the air. A shared plate is no reading of either foot."""
-    airborne = np.array([foot == Footing.AIR for foot in footing])
-    return np.array([foot == Footing.MEASURED for foot in footing]) | airborne, airborne
+    airborne = np.array([foot == Contact.AIR for foot in footing])
+    return np.array([foot == Contact.MEASURED for foot in footing]) | airborne, airborne

@@ -24,7 +24,7 @@ class Track:
         wrench: (T, 2, 6) estimated wrenches on right and left foot about the world's origin; NaN where the filter
             estimates none.
         wrench_sd: (T, 2, 6) their standard deviations.
-        footing: (T, 2) what the feet stand on (``mbkf.sensors.footing.Footing``); None where the filter does not ask.
+        contact: (T, 2) what the feet stand on (``mbkf.sensors.contact.records.Contact``); None where not decided.
         position_sd, velocity_sd: (T, nv) standard deviations in the tangent space.
         angle_sd, rate_sd: (T, A) of the clinical coordinates and their rates.
         torque_sd: (T, nv) of generalised forces; NaN where not known.
@@ -44,7 +44,7 @@ class Track:
     a: Array
     wrench: Array
     wrench_sd: Array
-    footing: Array | None
+    contact: Array | None
     position_sd: Array
     velocity_sd: Array
     angle_sd: Array
@@ -121,7 +121,7 @@ class _Recorder:
                 "step_seconds": (),
             }.items()
         }
-        self._footing: np.ndarray | None = None
+        self._contact: np.ndarray | None = None
         self._arrays["refused"] = np.zeros((frames, recording.markers_m.shape[1]), dtype=bool)
         self._arrays["tracked"] = np.zeros(frames, dtype=bool)
         self._arrays["readings"] = np.zeros(frames, dtype=int)
@@ -137,10 +137,10 @@ class _Recorder:
         self._arrays["refused"][t] = estimate.refused
         self._arrays["tracked"][t] = estimate.tracked
         self._arrays["nis"][t], self._arrays["readings"][t] = self._follower.innovation(estimate)
-        if estimate.footing is not None:
-            if self._footing is None:
-                self._footing = np.zeros((self._frames, 2), dtype=int)
-            self._footing[t] = estimate.footing
+        if estimate.contact is not None:
+            if self._contact is None:
+                self._contact = np.zeros((self._frames, 2), dtype=int)
+            self._contact[t] = estimate.contact
 
     def estimates(self, found: list[tuple[int, Estimate]]) -> None:
         """Estimates of several frames."""
@@ -165,7 +165,7 @@ class _Recorder:
         """What was recorded."""
         return Track(
             **self._arrays,
-            footing=self._footing,
+            contact=self._contact,
             starts=tuple(self.starts),
             smoothed=smoothed,
             covariance=self._covariance,

@@ -231,7 +231,7 @@ def assemble(
         settings=asdict(settings),
         plate_change=ground.plate_change,
         foot_wrench_sd=ground.wrench_sd,
-        footing=result.footing,
+        footing=result.contact,
         covariance=result.covariance,
         plate_corners_m=_corners(capture),
     )

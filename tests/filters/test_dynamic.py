@@ -9,8 +9,9 @@ import scipy.linalg
 from mbkf.filters.dynamic import DynamicFilter
 from mbkf.filters.dynamic_settings import DynamicSettings
 from mbkf.model.newton_euler import NewtonEuler
-from mbkf.sensors.contacts import sole_points
-from mbkf.sensors.footing import Footing, FootingSensor
+from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.sensors.contact.records import Contact
+from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.sensors.posture import PostureSensor
 from tests.dynamics import (
@@ -89,7 +90,7 @@ def test_a_step_is_the_textbook_update(seed):
     frame = Frame(seed, limit_sd_rad=1e6)
     found = frame.step()
     prior = found.predicted
-    assert found.decision.load.footing == (Footing.MEASURED, Footing.MEASURED)
+    assert found.decision.load.contacts == (Contact.MEASURED, Contact.MEASURED)
     assert found.decision.trusted.all()
     y, H, sd, instruments = dense_readings(frame, prior)
     R, P = np.diag(sd**2), prior.P
@@ -151,7 +152,7 @@ def with_markers(kalman, chosen):
     """The same filter with some of its markers, in this order."""
     sensor = kalman.sensor
     less = MarkerSensor(MODEL, [sensor.segments[k] for k in chosen], sensor.local_m[chosen])
-    feet = FootingSensor(MODEL, PLATES, DT)
+    feet = ContactDetector(MODEL, PLATES, DT)
     return DynamicFilter(less, kalman.noise_m[chosen], feet, DT, kalman.held, kalman.settings)
 
 
@@ -288,7 +289,7 @@ def test_the_first_estimate_takes_up_the_frame():
     kalman = dynamic_filter(MODEL, PLATES)
     P = np.diag(np.concatenate([np.full(NV, 0.02), np.full(NV, 1.0)]) ** 2)
     found = kalman.first(STANDING, np.zeros(NV), np.zeros(NV), P, kalman.sensor.positions(STANDING), HALF)
-    assert found.tracked and found.decision.load.footing == (Footing.MEASURED, Footing.MEASURED)
+    assert found.tracked and found.decision.load.contacts == (Contact.MEASURED, Contact.MEASURED)
     assert worst(found.state.w[:3] - HALF[0, :3]) < 1.0
     root = kalman.balance.root(found.state.q, found.state.v, found.state.a, found.state.w)
     assert worst(root.residual) < 5.0

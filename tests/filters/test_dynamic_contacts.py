@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mbkf.conventions import GRAVITY_M_S2
-from mbkf.sensors.contacts import sole_points
-from mbkf.sensors.footing import Footing
+from mbkf.sensors.contact.records import Contact
+from mbkf.sensors.contact.soles import sole_points
 from tests.dynamics import (
     about,
     at_rest,
@@ -35,8 +35,8 @@ def walked(plates=2, name="walk", frames=(20, 90)):
     return follow(made, range(*frames), made.plates[:plates])
 
 
-def footings(run):
-    return np.array([step.decision.load.footing for step in run.steps])
+def contacts(run):
+    return np.array([step.decision.load.contacts for step in run.steps])
 
 
 def wrenches(run):
@@ -51,7 +51,7 @@ def residuals(run, which):
 @pytest.mark.parametrize("name", ["walk", "jump"])
 def test_feet_in_the_air_carry_nothing(name):
     run = walked(2, name, {"walk": (20, 90), "jump": (85, 125)}[name])
-    air = footings(run) == Footing.AIR
+    air = contacts(run) == Contact.AIR
     assert air.sum() > 20
     assert worst(wrenches(run)[air]) < 1.0
 
@@ -69,7 +69,7 @@ def test_newtons_law_holds_after_every_step(plates):
 
 def test_the_plates_are_believed():
     run = walked()
-    measured = footings(run) == Footing.MEASURED
+    measured = contacts(run) == Contact.MEASURED
     true = run.trial.motion.foot_wrench[run.frames.start : run.frames.stop]
     moved = (wrenches(run) - true)[measured][:, :3]
     assert np.sqrt((moved**2).mean()) < 1.5
@@ -78,7 +78,7 @@ def test_the_plates_are_believed():
 def test_a_withheld_plate_is_estimated():
     """The left foot's vertical force, from its landing on, by markers and the other plate."""
     run = walked(1, frames=(60, 150))
-    free = footings(run)[:, 1] == Footing.FREE
+    free = contacts(run)[:, 1] == Contact.UNMEASURED
     true = run.trial.motion.foot_wrench[run.frames.start : run.frames.stop, 1, 2]
     found = wrenches(run)[:, 1, 2]
     assert free.sum() > 30
@@ -87,7 +87,7 @@ def test_a_withheld_plate_is_estimated():
 
 
 def test_a_free_foot_pulls_at_the_floor_only_softly():
-    assert wrenches(walked(1))[footings(walked(1)) == Footing.FREE][:, 2].min() > -30.0
+    assert wrenches(walked(1))[contacts(walked(1)) == Contact.UNMEASURED][:, 2].min() > -30.0
 
 
 def test_a_free_foot_does_not_take_what_a_plate_reads_too_much():
@@ -103,7 +103,7 @@ def test_a_free_foot_does_not_take_what_a_plate_reads_too_much():
         step = kalman.step(state, memory, markers, load[None])
         state, memory = step.state, step.memory
         pulls.append(state.w[8])
-    assert step.decision.load.footing[1] == Footing.FREE
+    assert step.decision.load.contacts[1] == Contact.UNMEASURED
     assert np.mean(pulls[10:]) > -30.0
 
 
@@ -119,7 +119,7 @@ def test_two_feet_on_one_plate_carry_what_it_reads():
     for _ in range(10):
         step = kalman.step(state, memory, markers, both[None])
         state, memory = step.state, step.memory
-    assert step.decision.load.footing == (Footing.SHARED, Footing.SHARED)
+    assert step.decision.load.contacts == (Contact.SHARED, Contact.SHARED)
     assert_near(about(middle) @ (state.w[:6] + state.w[6:] - both), 0.0, 5.0)
     assert (state.w[[2, 8]] > 0.2 * both[2]).all()
     sd = np.sqrt(np.diag(state.P)[3 * NV :])

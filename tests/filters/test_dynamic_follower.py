@@ -7,7 +7,7 @@ import pytest
 
 from mbkf.filters.dynamic_follower import ROUNDS
 from mbkf.filters.singer import DynamicState
-from mbkf.sensors.footing import Footing
+from mbkf.sensors.contact.records import Contact
 from tests.followed import FRAMES, SETTLED, WHOLE, estimates, made, made_follower, recording, torques, tracked
 from tests.motions import worst
 
@@ -28,7 +28,7 @@ def test_a_start_agrees_with_the_plates():
     first = found[0]
     off = first.wrench - recording().plates[0]
     assert worst(off[:, :3]) < 15.0
-    assert first.footing == (Footing.MEASURED, Footing.MEASURED)
+    assert first.contact == (Contact.MEASURED, Contact.MEASURED)
     root = follower.kalman.balance.root(first.q, first.v, first.a, first.wrench.ravel())
     assert worst(root.residual) < 5.0
 
@@ -101,7 +101,7 @@ def test_smoothing_moves_wrenches_and_shrinks_their_spread_where_a_plate_is_with
         for run in (found, smoothed)
     ]
     assert error[1] < error[0]
-    assert found[20].footing == (Footing.MEASURED, Footing.FREE)
+    assert found[20].contact == (Contact.MEASURED, Contact.UNMEASURED)
 
 
 @pytest.mark.parametrize("t", [0, 30])
@@ -109,6 +109,6 @@ def test_smoothing_keeps_decisions(t):
     """What was refused and what the feet stood on is the filter's word."""
     follower, found = estimates("dynamic")
     smoothed = follower.smooth(found, recording(), 0, len(found))
-    assert smoothed[t].footing == found[t].footing
+    assert smoothed[t].contact == found[t].contact
     np.testing.assert_array_equal(smoothed[t].refused, found[t].refused)
     assert smoothed[t].started == found[t].started

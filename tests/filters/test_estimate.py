@@ -124,10 +124,10 @@ def test_wrenches_have_a_spread_where_there_are_wrenches(name):
         assert sd.shape == (2, 6)
         assert (np.isnan(sd) == np.isnan(estimate.wrench)).all()
         if name == "kinematic":
-            assert np.isnan(sd).all() and estimate.footing is None
+            assert np.isnan(sd).all() and estimate.contact is None
             assert estimate.wrench is NO_WRENCH
         else:
-            assert (sd > 0).all() and estimate.footing == (1, 1)
+            assert (sd > 0).all() and estimate.contact == (1, 1)
 
 
 @every_filter

@@ -7,22 +7,22 @@ import pytest
 
 from mbkf.filters.dynamic_settings import DynamicSettings
 from mbkf.filters.foot_rows import FootRows
-from mbkf.sensors.footing import Footing, FootingMemory, FootLoad
+from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
 
 FIRST, WEIGHT_N, DT = 6, 700.0, 0.01
 SETTINGS = DynamicSettings()
 ROWS = FootRows(FIRST, WEIGHT_N, DT, SETTINGS)
-MEMORY = FootingMemory((), (), float("nan"), (0.0, 0.0))
-SINGLE = (Footing.FREE, Footing.AIR, Footing.MEASURED)
-PAIRS = [*product(SINGLE, repeat=2), (Footing.SHARED, Footing.SHARED)]
+MEMORY = ContactMemory((), (), float("nan"), (0.0, 0.0))
+SINGLE = (Contact.UNMEASURED, Contact.AIR, Contact.MEASURED)
+PAIRS = [*product(SINGLE, repeat=2), (Contact.SHARED, Contact.SHARED)]
 
 
-def load(footing, seed=0):
+def load(contacts, seed=0):
     rng = np.random.default_rng(seed)
     wrench = rng.normal(0.0, 100.0, (2, 6))
     wrench[:, 2] = 300.0
-    wrench[[foot in (Footing.AIR, Footing.FREE) for foot in footing]] = 0.0
-    return FootLoad(footing, wrench, rng.uniform(-0.5, 0.5, (2, 3)), False, MEMORY)
+    wrench[[foot in (Contact.AIR, Contact.UNMEASURED) for foot in contacts]] = 0.0
+    return ContactDecision(contacts, wrench, rng.uniform(-0.5, 0.5, (2, 3)), False, MEMORY)
 
 
 def filled(loaded, w, lifted=()):
@@ -35,11 +35,11 @@ def about(centre_m, wrench):
     return np.concatenate([wrench[:3], wrench[3:] - np.cross(centre_m, wrench[:3])])
 
 
-@pytest.mark.parametrize("footing", PAIRS)
-def test_rows_are_minus_the_derivative_of_the_innovations(footing):
-    loaded, w = load(footing), np.tile([10.0, -5.0, 200.0, 3.0, 2.0, 1.0], 2)
+@pytest.mark.parametrize("contacts", PAIRS)
+def test_rows_are_minus_the_derivative_of_the_innovations(contacts):
+    loaded, w = load(contacts), np.tile([10.0, -5.0, 200.0, 3.0, 2.0, 1.0], 2)
     rows, values, plates = filled(loaded, w)
-    assert plates == 6 * sum(foot == Footing.MEASURED for foot in footing) or Footing.SHARED in footing
+    assert plates == 6 * sum(foot == Contact.MEASURED for foot in contacts) or Contact.SHARED in contacts
     assert (rows[:, :FIRST] == 0.0).all()
     step = np.random.default_rng(1).normal(size=12)
     moved = filled(loaded, w + step)[1]
@@ -47,7 +47,7 @@ def test_rows_are_minus_the_derivative_of_the_innovations(footing):
 
 
 def test_a_plate_reads_the_wrench_about_the_sole_with_its_own_noise():
-    loaded, w = load((Footing.AIR, Footing.MEASURED)), np.arange(12.0)
+    loaded, w = load((Contact.AIR, Contact.MEASURED)), np.arange(12.0)
     _, values, plates = filled(loaded, w)
     assert plates == 6
     noise = np.repeat([SETTINGS.plate_force_n, SETTINGS.plate_moment_nm], 3)
@@ -56,7 +56,7 @@ def test_a_plate_reads_the_wrench_about_the_sole_with_its_own_noise():
 
 
 def test_a_shared_plate_reads_the_sum():
-    loaded, w = load((Footing.SHARED, Footing.SHARED)), np.arange(12.0)
+    loaded, w = load((Contact.SHARED, Contact.SHARED)), np.arange(12.0)
     _, values, plates = filled(loaded, w)
     assert plates == 6
     noise = np.repeat([SETTINGS.plate_force_n, SETTINGS.plate_moment_nm], 3)
@@ -65,7 +65,7 @@ def test_a_shared_plate_reads_the_sum():
 
 
 def test_a_free_foot_carries_what_the_plates_do_not_under_its_sole():
-    loaded = load((Footing.MEASURED, Footing.FREE))
+    loaded = load((Contact.MEASURED, Contact.UNMEASURED))
     rest = WEIGHT_N - loaded.wrench[0, 2]
     w = np.concatenate([loaded.wrench[0], np.zeros(6)])
     w[8] = rest
@@ -75,7 +75,7 @@ def test_a_free_foot_carries_what_the_plates_do_not_under_its_sole():
 
 @pytest.mark.parametrize("lifted", [(), (0,)])
 def test_a_free_foot_that_pulls_is_held_at_nothing(lifted):
-    loaded, w = load((Footing.FREE, Footing.AIR)), np.zeros(12)
+    loaded, w = load((Contact.UNMEASURED, Contact.AIR)), np.zeros(12)
     w[2] = -50.0 if not lifted else 20.0
     rows, values, _ = filled(loaded, w, lifted)
     assert values[2] == pytest.approx(-w[2] / SETTINGS.pulling_force_n)
@@ -83,7 +83,7 @@ def test_a_free_foot_that_pulls_is_held_at_nothing(lifted):
 
 
 def test_wrenches_wander_about_the_soles():
-    loaded = load((Footing.FREE, Footing.FREE))
+    loaded = load((Contact.UNMEASURED, Contact.UNMEASURED))
     sd = np.repeat([SETTINGS.wrench_force, SETTINGS.wrench_moment], 3) * DT**0.5
     for centre, wander in zip(loaded.centres_m, ROWS.wander(loaded), strict=True):
         to_sole = np.array([about(centre, one) for one in np.eye(6)]).T

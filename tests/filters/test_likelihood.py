@@ -14,7 +14,7 @@ from mbkf.filters.kinematic import KinematicFilter
 from mbkf.filters.kinematic_follower import KinematicFollower
 from mbkf.filters.likelihood import dynamic_likelihood, frame_likelihood, trial_likelihood
 from mbkf.filters.settings import KinematicSettings
-from mbkf.sensors.footing import Footing
+from mbkf.sensors.contact.records import Contact
 from tests.dynamics import DT, dynamic_filter, half_weight, random_state, standing
 from tests.motions import marker_positions, protocol_sensor, reference_model, smooth_motion
 
@@ -49,7 +49,7 @@ def test_a_step_of_the_dynamic_filter(missing):
     points = kalman.feet.decide(kalman.feet.begin(), state.q, state.v, state.a, np.zeros((2, 6))).centres_m
     memory = kalman.begin()._replace(noise_scale=1.7)
     step = kalman.step(state, memory, markers, half_weight(MODEL, points))
-    assert step.decision.load.footing == (Footing.MEASURED, Footing.MEASURED)
+    assert step.decision.load.contacts == (Contact.MEASURED, Contact.MEASURED)
     prior, s, seen = step.predicted, kalman.settings, step.decision.trusted
     H, sd, y = marker_part(kalman, prior, seen, markers, kalman.noise_m * 1.7**0.5)
     rest = np.repeat([s.residual_force_n, s.residual_moment_nm], 3)

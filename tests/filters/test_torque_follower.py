@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.sensors.footing import Footing
+from mbkf.sensors.contact.records import Contact
 from tests.followed import (
     FRAMES,
     SETTLED,
@@ -36,7 +36,7 @@ def test_a_start_agrees_with_the_plates_and_newton():
     first = found[0].inner.state
     assert worst(first.foot_wrench[:, :3] - recording().plates[0][:, :3]) < 10.0
     assert worst(first.tau[:3]) < 15.0
-    assert found[0].footing == (Footing.MEASURED, Footing.MEASURED)
+    assert found[0].contact == (Contact.MEASURED, Contact.MEASURED)
 
 
 def test_torques_are_states_with_their_spread():
@@ -79,7 +79,7 @@ def test_a_foot_without_a_plate_is_inferred():
     found = [follower.start(read, 0, None)]
     for t in range(1, 40):
         found.append(follower.step(found[-1], read, t))
-    assert found[20].footing == (Footing.MEASURED, Footing.FREE)
+    assert found[20].contact == (Contact.MEASURED, Contact.UNMEASURED)
     vertical = np.array([one.wrench[LEFT, 2] for one in found]) - truth("foot_wrench")[:40, LEFT, 2]
     sd = np.array([follower.wrench_sd(one)[LEFT, 2] for one in found])
     assert rms(vertical[20:]) < 80.0
@@ -93,7 +93,7 @@ def test_a_loss_of_markers_leaves_the_plates():
     step = follower.step(found[20], blind, 21)
     assert not step.tracked
     assert follower.innovation(step)[1] == 12
-    assert step.footing == found[21].footing
+    assert step.contact == found[21].contact
 
 
 @pytest.mark.parametrize("keep", [1, 5])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.model.newton_euler import FEET
-from mbkf.sensors.contacts import sole_locals
+from mbkf.sensors.contact.soles import sole_locals
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.sensors.planted import Planted, standing_still
 from tests.motions import moderate_pose, reference_model

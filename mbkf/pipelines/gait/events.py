@@ -15,7 +15,7 @@ from scipy.signal import find_peaks
 from mbkf.conventions import Array, BoolArray
 from mbkf.io.results import Reconstruction
 from mbkf.model.human import HumanModel
-from mbkf.sensors.contacts import sole_points
+from mbkf.sensors.contact.soles import sole_points
 
 LOADED_N = 20.0
 """Vertical force from which a foot stands."""

@@ -24,7 +24,7 @@ FRAMES_FILE, PLATES_FILE, SUBJECT_FILE = "frames.log", "plates.log", "subject.to
 """Files of the log's folder."""
 
 UNASKED = -9
-"""Footing of a filter that does not ask for it."""
+"""Contact of the feet as a filter logs it that does not decide it."""
 
 
 @dataclass(frozen=True)
@@ -98,8 +98,8 @@ class LiveRows:
         row["known"], row["step_seconds"] = True, step_seconds
         row["started"], row["tracked"] = estimate.started, estimate.tracked
         row["refused"] = estimate.refused
-        if estimate.footing is not None:
-            row["footing"] = estimate.footing
+        if estimate.contact is not None:
+            row["footing"] = estimate.contact
         for name in ("q", "v", "a", "wrench"):
             row[name] = getattr(estimate, name)
         row["wrench_sd"] = self._follower.wrench_sd(estimate)
@@ -210,7 +210,7 @@ def track_of(rows: NDArray) -> Track:
     spread = ("position", "velocity", "angle", "rate", "torque", "foot_height")
     return Track(
         **{name: np.array(rows[name]) for name in (*names, *(f"{name}_sd" for name in spread))},
-        footing=np.where(asked[:, None], rows["footing"], 0) if asked.any() else None,
+        contact=np.where(asked[:, None], rows["footing"], 0) if asked.any() else None,
         starts=tuple(int(t) for t in np.flatnonzero(rows["started"])),
         smoothed=False,
         covariance=None,

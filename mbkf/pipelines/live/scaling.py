@@ -20,7 +20,8 @@ from mbkf.pipelines.label_unscaled import label_unscaled
 from mbkf.pipelines.reconstruct import subject_markers
 from mbkf.pipelines.scale import scale
 from mbkf.scaling.frames import MIN_MARKERS
-from mbkf.sensors.footing import Footing, FootingSensor
+from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 from mbkf.sensors.posture import PostureSensor
@@ -45,7 +46,7 @@ BENDING = ("hip_flexion_r", "hip_flexion_l", "knee_angle_r", "knee_angle_l")
 MOST_BENT_DEG = 60.0
 """Who sits or kneels bends hips or knees by 90°; who stands with crouched knees by 40° at most."""
 
-ON_PLATE = (Footing.MEASURED, Footing.SHARED)
+ON_PLATE = (Contact.MEASURED, Contact.SHARED)
 
 
 @dataclass(frozen=True)
@@ -212,11 +213,11 @@ def _require_feet_on_plates(model: HumanModel, q: Array, plates: Sequence[PlateR
     Raises:
         NotObservable: A foot is on no loaded plate.
     """
-    feet = FootingSensor(model, plates, STILL_S)
+    feet = ContactDetector(model, plates, STILL_S)
     wrench = np.array([_mean_wrench(plate) for plate in plates])
     still = np.zeros(model.nv)
-    footing = feet.decide(feet.begin(), q, still, still, wrench).footing
-    beside = [side for side, on in zip(("right", "left"), footing, strict=True) if on not in ON_PLATE]
+    contacts = feet.decide(feet.begin(), q, still, still, wrench).contacts
+    beside = [side for side, on in zip(("right", "left"), contacts, strict=True) if on not in ON_PLATE]
     if beside:
         raise NotObservable(
             f"the {' and the '.join(beside)} foot is on no plate, so plates do not tell the mass; stand on them with "

@@ -11,8 +11,9 @@ from mbkf.filters.inverse_dynamics import inverse_dynamics
 from mbkf.filters.tracking import Track
 from mbkf.io.records import PlateReadings
 from mbkf.model.human import HumanModel
-from mbkf.sensors.contacts import FootLoads, assign_feet, pressure_and_free_moment, surface_height
-from mbkf.sensors.footing import Footing
+from mbkf.sensors.contact.offline import FootLoads, assign_feet
+from mbkf.sensors.contact.plates import pressure_and_free_moment, surface_height
+from mbkf.sensors.contact.records import Contact
 
 PRESSURE_FROM_N = 20.0
 """Vertical force from which an estimated wrench has a centre of pressure."""
@@ -64,7 +65,7 @@ def reactions(
     measured = inverse_dynamics(model, track, loads.wrench)
     known = np.where(bool(plates), 1.0, np.nan)
     force, moment = measured.residual_force_n * known, measured.residual_moment_nm * known
-    if track.footing is None:
+    if track.contact is None:
         return Reactions(
             loads.wrench,
             None,
@@ -79,7 +80,7 @@ def reactions(
         )
     surface = np.mean([surface_height(plate) for plate in plates]) if plates else 0.0
     pressure, free = pressure_and_free_moment(track.wrench, float(surface), PRESSURE_FROM_N)
-    unread = (track.footing == Footing.FREE).any(axis=1)
+    unread = (track.contact == Contact.UNMEASURED).any(axis=1)
     return Reactions(
         track.wrench,
         track.wrench_sd,
@@ -90,7 +91,7 @@ def reactions(
         moment,
         _plate_change(track.wrench, loads, plates) if plates else None,
         loads.valid & ~unread,
-        (*loads.warnings, *_footing_warnings(track.footing, plates)),
+        (*loads.warnings, *_contact_warnings(track.contact, plates)),
     )
 
 
@@ -106,10 +107,10 @@ def _plate_change(wrench: Array, loads: FootLoads, plates: tuple[PlateReadings, 
     return change
 
 
-def _footing_warnings(footing: Array, plates: tuple[PlateReadings, ...]) -> list[str]:
-    free = footing == Footing.FREE
-    one, both = int(free.any(axis=1).sum()), int(free.all(axis=1).sum())
-    shared = int((footing == Footing.SHARED).any(axis=1).sum())
+def _contact_warnings(contact: Array, plates: tuple[PlateReadings, ...]) -> list[str]:
+    unread = contact == Contact.UNMEASURED
+    one, both = int(unread.any(axis=1).sum()), int(unread.all(axis=1).sum())
+    shared = int((contact == Contact.SHARED).any(axis=1).sum())
     warnings = []
     if not plates:
         warnings.append(
@@ -117,7 +118,7 @@ def _footing_warnings(footing: Array, plates: tuple[PlateReadings, ...]) -> list
         )
     if one:
         warnings.append(
-            f"in {one} of {len(footing)} frames a foot carries weight where no plate reads: its reaction is estimated "
+            f"in {one} of {len(contact)} frames a foot carries weight where no plate reads: its reaction is estimated "
             "from the motion"
         )
     if both:

@@ -19,7 +19,7 @@ from mbkf.filters.torque import TorqueFilter
 from mbkf.filters.torque_follower import TorqueFollower
 from mbkf.filters.torque_settings import TorqueSettings
 from mbkf.io.records import PlateReadings
-from mbkf.sensors.footing import FootingSensor
+from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.inertial import InertialSensor
 from mbkf.sensors.markers import MarkerSensor
 
@@ -60,7 +60,7 @@ def _dynamic(inputs: FilterInputs) -> Follower:
     kalman = DynamicFilter(
         inputs.sensor,
         inputs.noise_m,
-        FootingSensor(model, inputs.plates, inputs.dt_s),
+        ContactDetector(model, inputs.plates, inputs.dt_s),
         inputs.dt_s,
         inputs.held,
         dynamic,
@@ -71,7 +71,7 @@ def _dynamic(inputs: FilterInputs) -> Follower:
 
 def _torque(inputs: FilterInputs) -> Follower:
     kalman = TorqueFilter(inputs.sensor, inputs.noise_m, inputs.dt_s, inputs.held, inputs.torque)
-    feet = FootingSensor(inputs.sensor.model, inputs.plates, inputs.dt_s)
+    feet = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
     return TorqueFollower(kalman, feet, _starter(inputs))
 
 

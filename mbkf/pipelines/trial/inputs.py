@@ -14,7 +14,7 @@ from mbkf.io.records import MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
 from mbkf.pipelines.trial.followers import FilterInputs
-from mbkf.sensors.contacts import plate_wrenches
+from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.sensors.markers import MarkerSensor
 
 MIN_PRESENT = 0.02

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array
 from mbkf.filters.inverse_dynamics import TorqueSolver
 from mbkf.pipelines.live.filter import LiveInputs
-from mbkf.sensors.footing import FootingSensor
+from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.stream.receiving.alignment import ReadyFrame
 from mbkf.stream.results.frame import LiveFrame
 
@@ -26,7 +26,7 @@ class FrameMaker:
         inputs = live.inputs
         self._sensor, self._rate_hz = inputs.sensor, rate_hz
         self._solver = TorqueSolver(inputs.sensor.model)
-        self._feet = FootingSensor(inputs.sensor.model, inputs.plates, inputs.dt_s)
+        self._feet = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
         self._memory = self._feet.begin()
         self._arrivals: deque[float] = deque()
         self._first: int | None = None

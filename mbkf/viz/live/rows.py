@@ -7,7 +7,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
-from mbkf.sensors.contacts import pressure_and_free_moment
+from mbkf.sensors.contact.plates import pressure_and_free_moment
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.viz.scene.channels import Layout, marker_states
 from mbkf.viz.scene.description import segment_poses

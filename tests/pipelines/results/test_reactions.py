@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from mbkf.pipelines.results.reactions import PRESSURE_FROM_N, reactions
-from mbkf.sensors.contacts import plate_wrenches
-from mbkf.sensors.footing import Footing
+from mbkf.sensors.contact.plates import plate_wrenches
+from mbkf.sensors.contact.records import Contact
 from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
 from tests.dynamics import trial
 from tests.motions import assert_near, track_of
@@ -18,7 +18,7 @@ SOME = slice(20, 70)
 FRAMES = SOME.stop - SOME.start
 RATE_HZ = 100.0
 RIGHT, LEFT = 0, 1
-STANDING = [Footing.MEASURED, Footing.MEASURED]
+STANDING = [Contact.MEASURED, Contact.MEASURED]
 
 
 def motion():
@@ -32,12 +32,12 @@ def plates():
     return synthesise_capture(made.subject, made.motion, EXACT).trial.plates
 
 
-def followed(wrench=None, footing=None, **known):
+def followed(wrench=None, contact=None, **known):
     """A track of the true squat; the kinematic filter's unless it has wrenches (T, 2, 6)."""
     q, v, a = (getattr(motion(), name)[SOME] for name in ("q", "v", "a"))
     if wrench is not None:
-        footing = np.tile(STANDING, (FRAMES, 1)) if footing is None else footing
-        known |= {"wrench": wrench, "wrench_sd": np.ones((FRAMES, 2, 6)), "footing": np.array(footing)}
+        contact = np.tile(STANDING, (FRAMES, 1)) if contact is None else contact
+        known |= {"wrench": wrench, "wrench_sd": np.ones((FRAMES, 2, 6)), "contact": np.array(contact)}
     return track_of(q, v, a, **known)
 
 
@@ -130,36 +130,36 @@ def test_without_plates_only_estimates_are_known():
 
 
 def feet(*changes):
-    """Both feet on plates but for these (frames, foot, footing)."""
-    footing = np.tile(STANDING, (FRAMES, 1))
+    """Both feet on plates but for these (frames, foot, contact)."""
+    contact = np.tile(STANDING, (FRAMES, 1))
     for frames, foot, what in changes:
-        footing[frames, foot] = what
-    return footing
+        contact[frames, foot] = what
+    return contact
 
 
 @pytest.mark.parametrize(
-    ("footing", "said", "unsaid"),
+    ("contact", "said", "unsaid"),
     [
         (feet(), "", "foot"),
-        (feet((slice(5), LEFT, Footing.AIR)), "", "foot"),
+        (feet((slice(5), LEFT, Contact.AIR)), "", "foot"),
         (
-            feet((slice(7), LEFT, Footing.FREE)),
+            feet((slice(7), LEFT, Contact.UNMEASURED)),
             "in 7 of 50 frames a foot carries weight where no plate",
             "both",
         ),
-        (feet((slice(7), [0, 1], Footing.FREE)), "in 7 frames both feet do", "one plate"),
-        (feet((slice(9), [0, 1], Footing.SHARED)), "in 9 frames both feet stand on one plate", "no plate"),
+        (feet((slice(7), [0, 1], Contact.UNMEASURED)), "in 7 frames both feet do", "one plate"),
+        (feet((slice(9), [0, 1], Contact.SHARED)), "in 9 frames both feet stand on one plate", "no plate"),
     ],
 )
-def test_what_the_feet_do_is_told(footing, said, unsaid):
-    words = " ".join(found_with(followed(truly(), footing), plates()).warnings)
+def test_what_the_feet_do_is_told(contact, said, unsaid):
+    words = " ".join(found_with(followed(truly(), contact), plates()).warnings)
     assert said in words
     assert unsaid not in words
 
 
 def test_frames_with_an_unread_loaded_foot_do_not_count():
-    footing = feet((slice(10, 20), LEFT, Footing.FREE), (slice(30, 33), RIGHT, Footing.AIR))
-    found = found_with(followed(truly(), footing), plates())
+    contact = feet((slice(10, 20), LEFT, Contact.UNMEASURED), (slice(30, 33), RIGHT, Contact.AIR))
+    found = found_with(followed(truly(), contact), plates())
     np.testing.assert_array_equal(np.flatnonzero(~found.valid), np.arange(10, 20))
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.sensors.contacts import plate_wrenches
+from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.stream.receiving.alignment import BRIDGED_S, Intake
 from mbkf.stream.receiving.reader import Reader
 from mbkf.stream.receiving.ring_buffer import Slot

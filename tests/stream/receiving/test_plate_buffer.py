@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from mbkf.io.records import PlateReadings
 from mbkf.io.resample import WHOLE
-from mbkf.sensors.contacts import plate_wrenches
+from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.stream.receiving.plate_buffer import PlateBuffer
 from mbkf.stream.source import PlateSamples, StreamDescription, without_readings
 

@@ -6,7 +6,8 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.io.records import PlateReadings
-from mbkf.sensors.contacts import assign_feet, sole_points, stretches
+from mbkf.sensors.contact.offline import assign_feet, stretches
+from mbkf.sensors.contact.soles import sole_points
 from tests.motions import assert_near, moderate_pose, random_model, reference_model
 
 MODEL = reference_model()

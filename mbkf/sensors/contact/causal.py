@@ -7,8 +7,6 @@ plate reads (its wrench is then unknown, not zero), and otherwise in the *air*. 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from enum import IntEnum
 from math import hypot, isnan
 from typing import NamedTuple
 
@@ -18,91 +16,31 @@ from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.io.records import PlateReadings
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import FEET
-from mbkf.sensors.contacts import FALL_SHARE, REACH_M, TOUCH_HEIGHT_M, sole_locals, surface_height
+from mbkf.sensors.contact.plates import PlateAreas, surface_height
+from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, Pressed
+from mbkf.sensors.contact.soles import distance_to_sole, sole_locals
+from mbkf.sensors.contact.thresholds import (
+    BETWEEN_M,
+    FALL_SHARE,
+    FLAT_FROM,
+    FLAT_TO,
+    FLOOR_SHARE,
+    KEEP_M,
+    LEAVE_SLACK,
+    REACH_M,
+    SOLE_ENDS,
+    STAND_AFTER_S,
+    STAND_HEIGHT_M,
+    STAND_SPEED_M_S,
+    TOUCH_HEIGHT_M,
+)
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.sensors.planted import Planted
 
-KEEP_M = 0.04
-"""A plate stays with its foot until the other one is nearer by this."""
-
-BETWEEN_M = 0.02
-"""A centre of pressure nearer to a sole than this is that foot's, and not between two."""
-
-LEAVE_SLACK = 1.7
-"""A standing foot has left the floor when it is higher or faster than the above times this."""
-
 TOES = ("right_toes", "left_toes")
 
-SOLE_ENDS = 2
-"""Points of a sole that tell its height: heel and ball; its toe end dips below the floor when the toes bend."""
 
-STAND_HEIGHT_M = 0.045
-STAND_SPEED_M_S = 0.8
-STAND_AFTER_S = 0.025
-"""A foot lower and slower than this for that long carries, unless a plate below it says no. Landing heels are pitched,
-so that they touch a little above a flat sole; the delay lets a plate speak first."""
-
-FLAT_FROM, FLAT_TO = 0.1, 0.6
-"""A foot whose load lies between these shares of its sole, from heel to toe end, lies flat."""
-
-FLOOR_SHARE = 0.1
-"""How fast the height of the floor under a loaded foot is learnt, per frame."""
-
-
-class Footing(IntEnum):
-    """What a foot stands on."""
-
-    FREE = -1
-    AIR = 0
-    MEASURED = 1
-    SHARED = 2
-
-
-class Pressed(NamedTuple):
-    """A centre of pressure (world x, y in m) and its foot (0 right, 1 left, 2 both, -1 nobody)."""
-
-    x: float
-    y: float
-    owner: int
-
-
-@dataclass(frozen=True)
-class FootingMemory:
-    """What a decision remembers from the frame before.
-
-    Attributes:
-        foot_of_plate: (K,) 0 right, 1 left, 2 both, -1 nobody.
-        pressed: (K,) last centre of pressure on each plate and the foot it belonged to, or None.
-        sole_height_m: Height of a loaded sole point of our body, NaN before one was loaded.
-        touching_s: For how long right and left foot have touched the floor without a reading.
-    """
-
-    foot_of_plate: tuple[int, ...]
-    pressed: tuple[Pressed | None, ...]
-    sole_height_m: float
-    touching_s: tuple[float, float]
-
-
-@dataclass(frozen=True)
-class FootLoad:
-    """A frame's decision.
-
-    Attributes:
-        footing: What right and left foot stand on.
-        wrench: (2, 6) measured wrench per foot about the world's origin (of both together where shared).
-        centres_m: (2, 3) middle of right and left sole.
-        stray: Whether a loaded plate belongs to no foot.
-        memory: For the next frame.
-    """
-
-    footing: tuple[Footing, Footing]
-    wrench: Array
-    centres_m: Array
-    stray: bool
-    memory: FootingMemory
-
-
-class FootingSensor:
+class ContactDetector:
     """Sorts plates to feet and finds feet that stand elsewhere.
 
     Attributes:
@@ -113,17 +51,19 @@ class FootingSensor:
         self._dt_s = dt_s
         self._thresholds = np.array([plate.threshold_n for plate in plates])
         self.surfaces_m = [surface_height(plate) for plate in plates]
-        self._areas = _Areas(plates)
+        self._areas = PlateAreas(plates)
         self._model, self._soles = model, MarkerSensor(model, *sole_locals(model))
         self._moves = [model.supports[model.joint(segment).joint_id].astype(float) for segment in FEET]
         self._floor = min(self.surfaces_m, default=np.nan)
 
-    def begin(self) -> FootingMemory:
+    def begin(self) -> ContactMemory:
         """Memory before the first frame."""
         plates = len(self.surfaces_m)
-        return FootingMemory((-1,) * plates, (None,) * plates, float("nan"), (STAND_AFTER_S, STAND_AFTER_S))
+        return ContactMemory((-1,) * plates, (None,) * plates, float("nan"), (STAND_AFTER_S, STAND_AFTER_S))
 
-    def decide(self, memory: FootingMemory, q: Array, v: Array, a: Array, plate_wrench: Array) -> FootLoad:
+    def decide(
+        self, memory: ContactMemory, q: Array, v: Array, a: Array, plate_wrench: Array
+    ) -> ContactDecision:
         """What the feet stand on.
 
         Args:
@@ -142,49 +82,49 @@ class FootingSensor:
             point = self._pressure(k, plate_wrench[k].tolist())
             foot_of_plate[k] = self._owner(k, point, soles, memory.foot_of_plate[k])
             latest[k] = Pressed(*point, foot_of_plate[k])
-        wrench, footing = np.zeros((2, 6)), [Footing.AIR, Footing.AIR]
+        wrench, contacts = np.zeros((2, 6)), [Contact.AIR, Contact.AIR]
         for k in loaded:
             owner = foot_of_plate[k]
             for foot in (0, 1) if owner == 2 else (owner,) if owner >= 0 else ():
                 wrench[foot] += plate_wrench[k]
-                footing[foot] = Footing.SHARED if owner == 2 else Footing.MEASURED
-        height = self._sole_height(memory.sole_height_m, soles, footing)
+                contacts[foot] = Contact.SHARED if owner == 2 else Contact.MEASURED
+        height = self._sole_height(memory.sole_height_m, soles, contacts)
         touching = (0.0, 0.0)
-        if Footing.AIR in footing:
+        if Contact.AIR in contacts:
             idle = _Idle(vertical <= self._thresholds, memory.pressed)
-            in_air = footing == [Footing.AIR, Footing.AIR]
-            touching = self._touching(memory.touching_s, footing, soles, (q, v), height, idle)
+            in_air = contacts == [Contact.AIR, Contact.AIR]
+            touching = self._touching(memory.touching_s, contacts, soles, (q, v), height, idle)
             carrying = [f for f in (0, 1) if touching[f] > STAND_AFTER_S]
             if not carrying and in_air and not _falls(q, v, a):
                 carrying = self._holding(soles, idle)
             for foot in carrying:
-                footing[foot] = Footing.FREE
-        return FootLoad(
-            (footing[0], footing[1]),
+                contacts[foot] = Contact.UNMEASURED
+        return ContactDecision(
+            (contacts[0], contacts[1]),
             wrench,
             0.5 * (positions[:, 0] + positions[:, 2]),
             any(foot_of_plate[k] < 0 for k in loaded),
-            FootingMemory(tuple(foot_of_plate), tuple(latest), height, touching),
+            ContactMemory(tuple(foot_of_plate), tuple(latest), height, touching),
         )
 
-    def planted(self, load: FootLoad, q: Array, foot: int) -> Planted | None:
+    def planted(self, decision: ContactDecision, q: Array, foot: int) -> Planted | None:
         """The point on which a foot of that frame's decision stands still, or None for one that carries nothing.
 
         Flat is a foot loaded between heel and ball, behind that it rolls; loaded before the ball it stands on its toes.
 
         Args:
-            load: The decision.
+            decision: The decision.
             q: (nq,) configuration it was taken for.
             foot: 0 right, 1 left.
         """
-        if load.footing[foot] == Footing.AIR:
+        if decision.contacts[foot] == Contact.AIR:
             return None
         sole = self._soles.positions(q).reshape(2, 3, 3)[foot]
-        if load.footing[foot] != Footing.MEASURED:
+        if decision.contacts[foot] != Contact.MEASURED:
             lowest = sole[:SOLE_ENDS][np.argmin(sole[:SOLE_ENDS, 2])]
             return Planted(FEET[foot], lowest, flat=False)
-        surface = self.surfaces_m[load.memory.foot_of_plate.index(foot)]
-        fx, fy, fz, mx, my, _ = load.wrench[foot].tolist()
+        surface = self.surfaces_m[decision.memory.foot_of_plate.index(foot)]
+        fx, fy, fz, mx, my, _ = decision.wrench[foot].tolist()
         pressed = np.array([(fx * surface - my) / fz, (fy * surface + mx) / fz, surface])
         heel, ball, end = sole[:, :2]
         along = (end - heel) / ((end - heel) @ (end - heel))
@@ -196,7 +136,7 @@ class FootingSensor:
     def _touching(
         self,
         before_s: tuple[float, float],
-        footing: list[Footing],
+        contacts: list[Contact],
         soles: list,
         motion: tuple[Array, Array],
         height: float,
@@ -205,7 +145,7 @@ class FootingSensor:
         """For how long right and left foot have touched the floor where no plate reads, s."""
 
         def since(f: int) -> float:
-            if footing[f] != Footing.AIR:
+            if contacts[f] != Contact.AIR:
                 return 0.0
             # One that stood must clearly leave.
             slack = LEAVE_SLACK if before_s[f] > STAND_AFTER_S else 1.0
@@ -224,7 +164,7 @@ class FootingSensor:
 
     def _owner(self, k: int, point: tuple[float, float], soles: list, before: int) -> int:
         """Foot of plate k with this centre of pressure: 0 right, 1 left, 2 both, -1 nobody."""
-        away = [_distance_to_sole(point, sole) for sole in soles]
+        away = [distance_to_sole(point, sole) for sole in soles]
         if self._between(k, soles, away):
             return 2
         nearest = 0 if away[0] <= away[1] else 1
@@ -248,9 +188,9 @@ class FootingSensor:
         z = self.surfaces_m[k]
         return (z * fx - my) / fz, (mx + z * fy) / fz
 
-    def _sole_height(self, known: float, soles: list, footing: list[Footing]) -> float:
+    def _sole_height(self, known: float, soles: list, contacts: list[Contact]) -> float:
         """Height at which our body's loaded soles lie: its soles and the plates need not agree to the centimetre."""
-        loaded = [min(p[2] for p in soles[f][:SOLE_ENDS]) for f in (0, 1) if footing[f] == Footing.MEASURED]
+        loaded = [min(p[2] for p in soles[f][:SOLE_ENDS]) for f in (0, 1) if contacts[f] == Contact.MEASURED]
         for lowest in loaded:
             known = lowest if isnan(known) else known + FLOOR_SHARE * (lowest - known)
         if isnan(self._floor):  # without plates, the lowest that a sole ever was
@@ -284,7 +224,7 @@ class FootingSensor:
             pressed = idle.pressed[k]
             if pressed is None or pressed.owner != foot:
                 continue
-            if _distance_to_sole((pressed.x, pressed.y), sole) <= REACH_M:
+            if distance_to_sole((pressed.x, pressed.y), sole) <= REACH_M:
                 return True
         return False
 
@@ -296,28 +236,6 @@ class _Idle(NamedTuple):
     pressed: tuple[Pressed | None, ...]
 
 
-class _Areas:
-    """Convex plates seen from above, all at once.
-
-    Attributes:
-        known: (K,) plates whose corners are.
-    """
-
-    def __init__(self, plates: Sequence[PlateReadings]) -> None:
-        self.known = np.array([plate.corners_m is not None for plate in plates], dtype=bool)
-        corners = np.zeros((len(plates), 4, 2))
-        for own, plate in zip(corners, plates, strict=True):
-            if plate.corners_m is not None:
-                own[:] = plate.corners_m[:, :2]
-        self._from, self._along = corners, np.roll(corners, -1, axis=1) - corners
-
-    def contain(self, points_m: Array) -> BoolArray:
-        """(n, K) whether points (n, 2) lie over each; never over one that is not known."""
-        away = points_m[:, None, None] - self._from
-        left = self._along[:, :, 0] * away[..., 1] - self._along[:, :, 1] * away[..., 0] >= 0.0
-        return np.asarray((left.all(axis=-1) | ~left.any(axis=-1)) & self.known)
-
-
 def _falls(q: Array, v: Array, a: Array) -> bool:
     """Whether the pelvis falls as nobody does whom a floor carries: a_z + (ω × v)_z in world axes."""
     x, y, z, w = q[3:7].tolist()
@@ -326,12 +244,3 @@ def _falls(q: Array, v: Array, a: Array) -> bool:
     up = (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))
     rise = (ax + wy * vz - wz * vy, ay + wz * vx - wx * vz, az + wx * vy - wy * vx)
     return sum(u * r for u, r in zip(up, rise, strict=True)) < -FALL_SHARE * GRAVITY_M_S2
-
-
-def _distance_to_sole(point: tuple[float, float], sole: list) -> float:
-    """Horizontal distance from a point to the line from heel to toe end."""
-    (hx, hy, _), (tx, ty, _) = sole[0], sole[2]
-    ax, ay = tx - hx, ty - hy
-    along = ((point[0] - hx) * ax + (point[1] - hy) * ay) / (ax * ax + ay * ay)
-    along = min(max(along, 0.0), 1.0)
-    return hypot(point[0] - hx - along * ax, point[1] - hy - along * ay)

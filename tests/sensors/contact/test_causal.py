@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from mbkf.conventions import GRAVITY_M_S2
-from mbkf.sensors.contacts import sole_points
-from mbkf.sensors.footing import STAND_AFTER_S, Footing, FootingSensor
+from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.sensors.contact.records import Contact
+from mbkf.sensors.contact.soles import sole_points
+from mbkf.sensors.contact.thresholds import STAND_AFTER_S
 from tests.dynamics import DT, half_weight, plate, plates_under, standing, trial
 from tests.motions import reference_model
 
@@ -18,13 +20,13 @@ each_motion = pytest.mark.parametrize("name", ["squat", "walk", "jump"])
 
 
 def decisions(made, loads, plates=None):
-    """(T, 2) footings over a true motion whose plates read ``loads`` (T, K, 6)."""
+    """(T, 2) contacts over a true motion whose plates read ``loads`` (T, K, 6)."""
     feet, m = made.feet(plates), made.motion
     memory, found = feet.begin(), []
     for q, v, a, load in zip(m.q, m.v, m.a, loads, strict=True):
         decided = feet.decide(memory, q, v, a, load)
         memory = decided.memory
-        found.append(decided.footing)
+        found.append(decided.contacts)
     return np.array(found)
 
 
@@ -37,8 +39,8 @@ def test_loaded_feet_are_measured_and_hanging_ones_in_the_air(name):
     """A plate per foot that reads the truth; the plates' threshold is 20 N."""
     made = trial(name)
     found, load = decisions(made, made.motion.foot_wrench), vertical(made)
-    assert (found[load >= 40.0] == Footing.MEASURED).all()
-    assert (found[load == 0.0] == Footing.AIR).all()
+    assert (found[load >= 40.0] == Contact.MEASURED).all()
+    assert (found[load == 0.0] == Contact.AIR).all()
 
 
 def test_all_flight_is_in_the_air():
@@ -46,7 +48,7 @@ def test_all_flight_is_in_the_air():
     off, on = made.motion.flight_s
     flying = (made.motion.times_s > off) & (made.motion.times_s < on)
     assert flying.sum() > 20
-    assert (decisions(made, made.motion.foot_wrench)[flying] == Footing.AIR).all()
+    assert (decisions(made, made.motion.foot_wrench)[flying] == Contact.AIR).all()
 
 
 @each_motion
@@ -58,7 +60,7 @@ def test_a_measured_foot_gets_its_own_plate(name):
         decided = feet.decide(memory, m.q[t], m.v[t], m.a[t], m.foot_wrench[t])
         memory = decided.memory
         for foot in (RIGHT, LEFT):
-            expected = m.foot_wrench[t, foot] if decided.footing[foot] == Footing.MEASURED else np.zeros(6)
+            expected = m.foot_wrench[t, foot] if decided.contacts[foot] == Contact.MEASURED else np.zeros(6)
             np.testing.assert_array_equal(decided.wrench[foot], expected)
         assert not decided.stray
 
@@ -74,15 +76,15 @@ def test_a_foot_off_the_plates_is_free_while_it_carries(name, recorded):
     else:
         found = decisions(made, loads[:, :1], made.plates[:1])
     load = vertical(made)
-    assert (found[load[:, LEFT] > 100.0, LEFT] == Footing.FREE).mean() >= 0.9
-    assert (found[load[:, RIGHT] >= 40.0, RIGHT] == Footing.MEASURED).all()
+    assert (found[load[:, LEFT] > 100.0, LEFT] == Contact.UNMEASURED).mean() >= 0.9
+    assert (found[load[:, RIGHT] >= 40.0, RIGHT] == Contact.MEASURED).all()
     hanging = load[:, LEFT] == 0.0
-    assert not hanging.any() or (found[hanging, LEFT] == Footing.AIR).mean() > 0.5
+    assert not hanging.any() or (found[hanging, LEFT] == Contact.AIR).mean() > 0.5
 
 
 def stand_on(plates, loads, q=None, frames=1, v=STILL, a=STILL):
     """Decision of the last of some frames of one pose."""
-    feet = FootingSensor(MODEL, plates, DT)
+    feet = ContactDetector(MODEL, plates, DT)
     memory, q = feet.begin(), standing(MODEL) if q is None else q
     for _ in range(frames):
         decided = feet.decide(memory, q, v, a, np.asarray(loads, dtype=float).reshape(len(plates), 6))
@@ -95,7 +97,7 @@ def test_both_feet_on_one_plate_share_it():
     both = half_weight(MODEL, middles).sum(axis=0)
     x, y = middles.mean(axis=0)[:2]
     decided = stand_on([plate(x, y)], [both])
-    assert decided.footing == (Footing.SHARED, Footing.SHARED)
+    assert decided.contacts == (Contact.SHARED, Contact.SHARED)
     np.testing.assert_array_equal(decided.wrench, [both, both])
     assert not decided.stray
 
@@ -104,7 +106,7 @@ def test_two_plates_are_not_shared():
     q = standing(MODEL)
     middles = sole_points(MODEL, q[None])[0].mean(axis=1)
     decided = stand_on(plates_under(MODEL, q), half_weight(MODEL, middles))
-    assert decided.footing == (Footing.MEASURED, Footing.MEASURED)
+    assert decided.contacts == (Contact.MEASURED, Contact.MEASURED)
     np.testing.assert_array_equal(decided.wrench, half_weight(MODEL, middles))
 
 
@@ -112,10 +114,10 @@ def test_who_stands_on_a_box_is_carried_and_who_falls_off_it_is_not():
     """The plates read nothing, the feet are half a metre above them and the pelvis does not fall."""
     q = standing(MODEL, 0.5)
     beside = [plate(3.0, 0.0)]
-    assert stand_on(beside, np.zeros(6), q).footing == (Footing.FREE, Footing.FREE)
+    assert stand_on(beside, np.zeros(6), q).contacts == (Contact.UNMEASURED, Contact.UNMEASURED)
     falls = STILL.copy()
     falls[2] = -GRAVITY_M_S2
-    assert stand_on(beside, np.zeros(6), q, a=falls).footing == (Footing.AIR, Footing.AIR)
+    assert stand_on(beside, np.zeros(6), q, a=falls).contacts == (Contact.AIR, Contact.AIR)
 
 
 def test_falling_is_judged_in_the_world_whatever_the_pelvis_points_at():
@@ -124,11 +126,11 @@ def test_falling_is_judged_in_the_world_whatever_the_pelvis_points_at():
     a = STILL.copy()
     a[1] = -GRAVITY_M_S2
     beside = [plate(3.0, 0.0)]
-    assert stand_on(beside, np.zeros(6), q, a=a).footing == (Footing.AIR, Footing.AIR)
+    assert stand_on(beside, np.zeros(6), q, a=a).contacts == (Contact.AIR, Contact.AIR)
     v, a = STILL.copy(), STILL.copy()
     v[:6] = [0.0, 0.0, 2.0, 5.0, 0.0, 0.0]  # ω × v is −10 along y
-    assert stand_on(beside, np.zeros(6), q, v=v, a=a).footing == (Footing.AIR, Footing.AIR)
-    assert Footing.FREE in stand_on(beside, np.zeros(6), q).footing
+    assert stand_on(beside, np.zeros(6), q, v=v, a=a).contacts == (Contact.AIR, Contact.AIR)
+    assert Contact.UNMEASURED in stand_on(beside, np.zeros(6), q).contacts
 
 
 def test_a_plate_that_reads_nothing_says_the_foot_above_it_carries_nothing():
@@ -136,9 +138,9 @@ def test_a_plate_that_reads_nothing_says_the_foot_above_it_carries_nothing():
     over = plates_under(MODEL, q)
     half = half_weight(MODEL, sole_points(MODEL, q[None])[0].mean(axis=1))
     decided = stand_on(over, [half[RIGHT] * 2, np.zeros(6)], frames=20)
-    assert decided.footing == (Footing.MEASURED, Footing.AIR)
+    assert decided.contacts == (Contact.MEASURED, Contact.AIR)
     decided = stand_on(over, [half[RIGHT], np.full(6, np.nan)], frames=20)
-    assert decided.footing == (Footing.MEASURED, Footing.FREE)
+    assert decided.contacts == (Contact.MEASURED, Contact.UNMEASURED)
 
 
 def test_a_foot_on_the_floor_is_given_time_for_its_plate_to_speak():
@@ -146,7 +148,7 @@ def test_a_foot_on_the_floor_is_given_time_for_its_plate_to_speak():
     half = half_weight(MODEL, sole_points(MODEL, q[None])[0].mean(axis=1))
     one = plates_under(MODEL, q)[:1]
     wait = int(STAND_AFTER_S / DT)
-    feet, v = FootingSensor(MODEL, one, DT), np.zeros(MODEL.nv)
+    feet, v = ContactDetector(MODEL, one, DT), np.zeros(MODEL.nv)
     lifted = q.copy()
     lifted[2] += 0.3
     memory = feet.decide(feet.begin(), lifted, v, v, np.zeros((1, 6))).memory
@@ -154,15 +156,15 @@ def test_a_foot_on_the_floor_is_given_time_for_its_plate_to_speak():
     for _ in range(wait + 2):
         decided = feet.decide(memory, q, v, v, half[RIGHT][None])
         memory = decided.memory
-        found.append(decided.footing[LEFT])
-    assert found[wait - 1] == Footing.AIR
-    assert found[-1] == Footing.FREE
+        found.append(decided.contacts[LEFT])
+    assert found[wait - 1] == Contact.AIR
+    assert found[-1] == Contact.UNMEASURED
 
 
 def test_a_trial_may_begin_on_unread_feet():
     q = standing(MODEL)
     half = half_weight(MODEL, sole_points(MODEL, q[None])[0].mean(axis=1))
-    assert stand_on(plates_under(MODEL, q)[:1], half[RIGHT], frames=1).footing[LEFT] == Footing.FREE
+    assert stand_on(plates_under(MODEL, q)[:1], half[RIGHT], frames=1).contacts[LEFT] == Contact.UNMEASURED
 
 
 def test_a_loaded_plate_without_a_foot_is_stray():
@@ -173,7 +175,7 @@ def test_a_loaded_plate_without_a_foot_is_stray():
 
 def test_no_plates_at_all():
     decided = stand_on([], np.zeros((0, 6)))
-    assert decided.footing == (Footing.FREE, Footing.FREE)
+    assert decided.contacts == (Contact.UNMEASURED, Contact.UNMEASURED)
     assert decided.wrench.shape == (2, 6)
 
 
@@ -188,7 +190,7 @@ def test_decisions_repeat_and_leave_their_inputs_alone(name):
         before = first.memory
         feet.decide(first.memory, *(inputs[:3]), 0.5 * inputs[3])
         again = feet.decide(memory, *inputs)
-        assert again.footing == first.footing
+        assert again.contacts == first.contacts
         assert repr(again.memory) == repr(first.memory) == repr(before)
         for given, kept in zip(inputs, (m.q[t], m.v[t], m.a[t], m.foot_wrench[t]), strict=True):
             np.testing.assert_array_equal(given, kept)
@@ -231,7 +233,7 @@ def test_who_rises_on_the_toes_stands_on_them():
     ):
         at = soles[RIGHT, 0] + share * (soles[RIGHT, 2] - soles[RIGHT, 0])
         loads = half_weight(MODEL, np.array([at, soles[LEFT].mean(axis=0)]))
-        feet = FootingSensor(MODEL, plates_under(MODEL, q), DT)
+        feet = ContactDetector(MODEL, plates_under(MODEL, q), DT)
         planted = feet.planted(feet.decide(feet.begin(), q, STILL, STILL, loads), q, RIGHT)
         assert (planted.segment, planted.flat) == (segment, flat)
         np.testing.assert_allclose(planted.point_m[:2], at[:2], atol=1e-9)

@@ -10,26 +10,18 @@ from scipy.signal import savgol_filter
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.io.records import PlateReadings
-from mbkf.io.resample import average_over_frames
-from mbkf.io.wrench import centre_of_pressure
 from mbkf.model.human import HumanModel
-from mbkf.model.newton_euler import FEET
-from mbkf.sensors.markers import MarkerSensor
-
-REACH_M = 0.20
-"""A centre of pressure further than this from a sole belongs to no foot."""
-
-TOUCH_HEIGHT_M = 0.025
-TOUCH_SPEED_M_S = 0.4
-"""A sole point lower and slower than this touches the floor."""
-
-STANDING_SHARE = 0.05
-"""Share of body weight that the plates must carry when someone stands on the floor."""
-
-FALL_SHARE = 0.4
-FALL_WINDOW_S = 0.07
-FALL_EDGE_S = 0.02
-"""Flight: the pelvis falls with this share of gravity, judged over a short window, give or take an edge."""
+from mbkf.sensors.contact.plates import about_world_origin, pressure_on, surface_height
+from mbkf.sensors.contact.soles import distances_to_sole, sole_points
+from mbkf.sensors.contact.thresholds import (
+    FALL_EDGE_S,
+    FALL_SHARE,
+    FALL_WINDOW_S,
+    REACH_M,
+    STANDING_SHARE,
+    TOUCH_HEIGHT_M,
+    TOUCH_SPEED_M_S,
+)
 
 
 @dataclass(frozen=True)
@@ -55,30 +47,6 @@ class FootLoads:
     warnings: tuple[str, ...]
 
 
-def sole_locals(model: HumanModel) -> tuple[tuple[str, ...], Array]:
-    """Heel, ball and toe end of right and left sole: their segments (6) and places (6, 3) in those, m."""
-    sole = model.description.sole
-    middle = 0.5 * (sole.inner_y_m + sole.outer_y_m)
-    segments, places = [], []
-    for segment, sign in zip(FEET, (1.0, -1.0), strict=True):
-        toes = model.description.segment(segment.replace("foot", "toes"))
-        for x in (sole.heel_x_m, toes.origin_m[0], sole.toe_x_m):
-            segments.append(segment)
-            places.append(np.array([x, sign * middle, sole.height_m]))
-        scale = model.axis_scale(model.description.segment(segment))
-        places[-3:] = [place * scale for place in places[-3:]]
-    return tuple(segments), np.array(places)
-
-
-def sole_points(model: HumanModel, q: Array) -> Array:
-    """(T, 2, 3, 3) world positions of heel, ball and toe end of right and left sole; NaN where q is NaN."""
-    sensor = MarkerSensor(model, *sole_locals(model))
-    points = np.full((len(q), 2, 3, 3), np.nan)
-    for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
-        points[t] = sensor.positions(q[t]).reshape(2, 3, 3)
-    return points
-
-
 def assign_feet(
     model: HumanModel, q: Array, times_s: Array, rate_hz: float, plates: tuple[PlateReadings, ...]
 ) -> FootLoads:
@@ -97,8 +65,8 @@ def assign_feet(
     pressure = np.full((len(q), len(plates), 3), np.nan)
     foot = np.full((len(q), len(plates)), -1)
     for p, plate in enumerate(plates):
-        wrench[:, p], recorded[:, p] = _about_world_origin(plate, times_s, rate_hz)
-        pressure[:, p] = _pressure(wrench[:, p], surface_height(plate), plate.threshold_n)
+        wrench[:, p], recorded[:, p] = about_world_origin(plate, times_s, rate_hz)
+        pressure[:, p] = pressure_on(wrench[:, p], surface_height(plate), plate.threshold_n)
         foot[:, p] = _nearest_foot(pressure[:, p], soles, wrench[:, p, 2], rate_hz)
     total = np.zeros((len(q), 2, 6))
     for side in range(2):
@@ -110,54 +78,10 @@ def assign_feet(
     return FootLoads(total, at_feet, free, wrench, foot, valid, warnings)
 
 
-def plate_wrenches(plates: tuple[PlateReadings, ...], times_s: Array, rate_hz: float) -> Array:
-    """(T, P, 6) mean force N and moment N m about the world's origin of every plate over each frame.
-
-    NaN where a plate was not recorded.
-
-    Args:
-        plates: The plates.
-        times_s: (T,) times of the frames.
-        rate_hz: Frame rate.
-    """
-    wrench = np.full((len(times_s), len(plates), 6), np.nan)
-    for p, plate in enumerate(plates):
-        found, recorded = _about_world_origin(plate, times_s, rate_hz)
-        wrench[recorded, p] = found[recorded]
-    return wrench
-
-
-def surface_height(plate: PlateReadings) -> float:
-    """Height of a plate's surface in the world, m."""
-    return float(plate.origin_m[2] if plate.corners_m is None else plate.corners_m[:, 2].mean())
-
-
-def pressure_and_free_moment(wrench: Array, surface_m: float, threshold_n: float) -> tuple[Array, Array]:
-    """(T, 2, 3) centre of pressure at a height and (T, 2) free moment of feet's wrenches (T, 2, 6); NaN unloaded."""
-    pressure = np.stack([_pressure(wrench[:, foot], surface_m, threshold_n) for foot in range(2)], axis=1)
-    free = wrench[..., 5] - (pressure[..., 0] * wrench[..., 1] - pressure[..., 1] * wrench[..., 0])
-    return pressure, free
-
-
-def _about_world_origin(plate: PlateReadings, times_s: Array, rate_hz: float) -> tuple[Array, BoolArray]:
-    loads = average_over_frames(plate, times_s, rate_hz)
-    recorded = np.asarray(~np.isnan(loads.force_n).any(axis=1))
-    force = np.nan_to_num(loads.force_n)
-    moment = np.nan_to_num(loads.moment_nm) + np.cross(plate.origin_m, force)
-    return np.concatenate([force, moment], axis=1), recorded
-
-
-def _pressure(wrench: Array, surface_m: float, threshold_n: float) -> Array:
-    """(T, 3) centre of pressure on a horizontal surface from wrenches about the world's origin (eq. 4.9)."""
-    below = np.array([0.0, 0.0, surface_m])
-    moment = wrench[:, 3:] - np.cross(below, wrench[:, :3])
-    return centre_of_pressure(wrench[:, :3], moment, below, np.array([0.0, 0.0, 1.0]), threshold_n)
-
-
 def _nearest_foot(pressure: Array, soles: Array, vertical_n: Array, rate_hz: float) -> Array:
     """(T,) foot on one plate: the nearer sole, decided per stretch of loading."""
     foot = np.full(len(pressure), -1)
-    distance = np.stack([_distance_to_sole(pressure, soles[:, side]) for side in range(2)], axis=1)
+    distance = np.stack([distances_to_sole(pressure, soles[:, side]) for side in range(2)], axis=1)
     usable = np.asarray(~np.isnan(distance).any(axis=1))
     for stretch in stretches(~np.isnan(pressure[:, 0])):
         frames = stretch[usable[stretch]]
@@ -174,14 +98,6 @@ def _nearest_foot(pressure: Array, soles: Array, vertical_n: Array, rate_hz: flo
         if not changes and near[best] > REACH_M:
             foot[frames] = -1
     return foot
-
-
-def _distance_to_sole(point: Array, sole: Array) -> Array:
-    """(T,) horizontal distance from a point (T, 3) to the line from heel to toe end (T, 3, 3)."""
-    heel, toe = sole[:, 0, :2], sole[:, 2, :2]
-    along = toe - heel
-    share = np.clip(((point[:, :2] - heel) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
-    return np.linalg.norm(point[:, :2] - heel - share[:, None] * along, axis=1)
 
 
 def stretches(mask: BoolArray) -> list[Array]:

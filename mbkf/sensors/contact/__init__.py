@@ -1,0 +1,1 @@
+"""Foot contact: which foot stands on which plate, on the floor or on nothing; causally and offline."""
