@@ -13,7 +13,7 @@ PLATE = plate(0.0, 0.0)
 
 
 def test_a_surface_lies_where_its_corners_are_and_without_them_at_the_origin():
-    raised = replace(PLATE, corners_m=PLATE.corners_m + [0.0, 0.0, 0.3])
+    raised = replace(PLATE, corners_m=PLATE.corners_m + np.array([0.0, 0.0, 0.3]))
     assert surface_height(raised) == PLATE.corners_m[0, 2] + 0.3
     bare = replace(PLATE, corners_m=None, origin_m=np.array([0.0, 0.0, -0.04]))
     assert surface_height(bare) == -0.04
@@ -37,7 +37,7 @@ def test_an_unloaded_foot_has_neither():
 def test_points_are_over_the_plates_whose_outline_holds_them():
     corners = PLATE.corners_m
     middle = corners[:, :2].mean(axis=0)
-    beside = middle + [np.ptp(corners[:, 0]), 0.0]
+    beside = middle + np.array([np.ptp(corners[:, 0]), 0.0])
     other_way = replace(PLATE, corners_m=corners[::-1])
     areas = PlateAreas([PLATE, other_way, replace(PLATE, corners_m=None)])
     assert areas.known.tolist() == [True, True, False]
