@@ -6,7 +6,13 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mbkf.sensors.contact.plates import PlateAreas, pressure_and_free_moment, surface_height
+from mbkf.sensors.contact.plates import (
+    PlateAreas,
+    centres_of_pressure,
+    least_load,
+    pressure_and_free_moment,
+    surface_height,
+)
 from tests.dynamics import plate
 
 PLATE = plate(0.0, 0.0)
@@ -32,6 +38,14 @@ def test_a_wrench_is_its_force_at_the_centre_of_pressure_and_its_free_moment(see
 def test_an_unloaded_foot_has_neither():
     point, free = pressure_and_free_moment(np.full((1, 2, 6), 19.0), 0.0, 20.0)
     assert np.isnan(point).all() and np.isnan(free).all()
+
+
+def test_a_plate_is_loaded_from_its_threshold_and_never_without_a_force():
+    wrench = np.array([[0.0, 0.0, fz, 0.0, 0.0, 0.0] for fz in (-30.0, 0.0, 19.9, 20.0)])
+    loaded = ~np.isnan(centres_of_pressure(wrench, 0.0, 20.0)).any(axis=1)
+    assert loaded.tolist() == [False, False, False, True]
+    assert not np.isfinite(centres_of_pressure(wrench[:2], 0.0, 0.0)).any()
+    assert least_load(20.0) == 20.0 and least_load(0.0) > 0.0
 
 
 def test_points_are_over_the_plates_whose_outline_holds_them():
