@@ -235,7 +235,8 @@ class _Idle(NamedTuple):
 
 def _height(sole: Sole) -> float:
     """Height of the lower one of heel and ball, m."""
-    return min(point[2] for point in sole[:SOLE_ENDS])
+    heel, ball, _ = sole
+    return min(heel[2], ball[2])
 
 
 def _falls(q: Array, v: Array, a: Array) -> bool:
