@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot
+from math import hypot, nan
 
 import numpy as np
 
@@ -44,6 +44,8 @@ def sole_points(model: HumanModel, q: Array) -> Array:
 def share_along(x: float, y: float, sole: Sole) -> float:
     """Where a point of the floor lies along a sole, seen from above: 0 at the heel, 1 at the toe end.
 
+    NaN for a sole without length, which a body has that is lost so far away that numbers no longer resolve it.
+
     Args:
         x: World coordinate of the point, m.
         y: The other one.
@@ -51,11 +53,12 @@ def share_along(x: float, y: float, sole: Sole) -> float:
     """
     (hx, hy, _), (tx, ty, _) = sole[0], sole[2]
     ax, ay = tx - hx, ty - hy
-    return ((x - hx) * ax + (y - hy) * ay) / (ax * ax + ay * ay)
+    length = ax * ax + ay * ay
+    return ((x - hx) * ax + (y - hy) * ay) / length if length else nan
 
 
 def distance_to_sole(x: float, y: float, sole: Sole) -> float:
-    """Horizontal distance of a point of the floor from the line between heel and toe end, m.
+    """Horizontal distance of a point of the floor from the line between heel and toe end, m; NaN without length.
 
     Args:
         x: World coordinate of the point, m.
@@ -68,7 +71,7 @@ def distance_to_sole(x: float, y: float, sole: Sole) -> float:
 
 
 def distances_to_soles(points_m: Array, soles: Array) -> Array:
-    """(T, 2) :func:`distance_to_sole` of points (T, 3) from soles (T, 2, 3, 3); NaN where either is unknown."""
+    """(T, 2) :func:`distance_to_sole` of points (T, 3) from soles (T, 2, 3, 3); NaN where not known."""
     found = np.full((len(points_m), 2), np.nan)
     for t in np.flatnonzero(~np.isnan(points_m[:, 0]) & ~np.isnan(soles[:, 0, 0, 0])):
         x, y, _ = points_m[t].tolist()

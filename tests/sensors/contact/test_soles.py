@@ -67,6 +67,13 @@ def test_distances_are_known_where_point_and_soles_are():
     assert found[0].tolist() == [distance_to_sole(0.0, 0.0, sole) for sole in SOLES.tolist()]
 
 
+def test_no_pressure_belongs_to_soles_so_far_away_that_they_have_no_length():
+    lost = np.full((1, 2, 3, 3), 1e21)
+    away = distances_to_soles(np.zeros((1, 3)), lost)[0]
+    assert np.isnan(away).all()
+    assert nearer_foot(away.tolist(), RIGHT) == NEITHER
+
+
 @pytest.mark.parametrize(
     ("away", "before", "foot"),
     [
