@@ -13,6 +13,7 @@ from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.posture import PostureSensor
 from tests.dynamics import (
     DT,

@@ -14,6 +14,7 @@ from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.kinematic.tracking import KinematicTracking
 from mbkf.filters.likelihood import dynamic_likelihood, frame_likelihood, trial_likelihood
 from mbkf.filters.tracking_loop import followed
+from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.sensors.contact.records import Contact
 from tests.dynamics import DT, dynamic_filter, half_weight, random_state, standing
 from tests.motions import marker_positions, protocol_sensor, reference_model, smooth_motion
