@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -36,11 +36,13 @@ class Verdict:
         value: The largest of all differences, each as a share of its array's largest value.
         worst: The array where it was found, with the reason where no difference could be taken.
         arrays: How many arrays were compared.
+        beyond: The arrays beyond the bound and their differences.
     """
 
     value: float
     worst: str
     arrays: int
+    beyond: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def equal(self) -> bool:
@@ -71,14 +73,16 @@ def difference(old: np.ndarray, new: np.ndarray) -> tuple[float, str]:
 
 def verdict(old: Mapping[str, np.ndarray], new: Mapping[str, np.ndarray]) -> Verdict:
     """Compares every array of the old tree; what only the new one has is an addition, not a difference."""
-    worst, value = "", -1.0
+    if not old:
+        return Verdict(np.inf, "nothing to compare", 0)
+    worst, value, beyond = "", 0.0, {}
     for name, array in old.items():
         found, why = difference(array, new[name]) if name in new else (np.inf, "missing")
         if found > value:
             worst, value = f"{name} ({why})" if why else name, found
-    if not old:
-        return Verdict(np.inf, "nothing to compare", 0)
-    return Verdict(value, worst if value > 0.0 else "", len(old))
+        if found > BOUND:
+            beyond[name] = found
+    return Verdict(value, worst, len(old), beyond)
 
 
 def numbers_in_folder(folder: Path, renamed: Mapping[str, str] | None = None) -> Numbers:

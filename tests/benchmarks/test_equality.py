@@ -5,9 +5,10 @@ import h5py
 import numpy as np
 import pytest
 
-from benchmarks.equality.__main__ import compared_folders, main
+from benchmarks.equality.__main__ import main
 from benchmarks.equality.captures import CAPTURES, LEFT_OUT
 from benchmarks.equality.compare import BOUND, difference, numbers_in_folder, verdict
+from benchmarks.equality.comparison import Beyond, Row, compared_folders, nudged, with_rounding
 from benchmarks.equality.runs import Outcome, Tree
 from mbkf.errors import InvalidInput
 
@@ -131,3 +132,20 @@ def test_wrong_usage_ends_with_2(tmp_path, capsys):
     assert main(["--old", str(tmp_path), "--data", str(tmp_path), "--out", str(tmp_path / "out")]) == 2
     assert "no source tree" in capsys.readouterr().err
     assert main(["--old", str(tmp_path), "--data", str(tmp_path), "--only", "nothing"]) == 2
+
+
+def test_a_nudge_moves_mass_and_positions_by_their_last_digit_and_nothing_else():
+    text = 'height_m = 1.8\nmass_kg = 70.5\nname = "R.MT1"\nposition_m = [0.1, -0.2e-1, 0.0]\n'
+    lines = nudged(text, np.inf).splitlines()
+    assert lines[0::2] == ["height_m = 1.8", 'name = "R.MT1"']
+    assert float(lines[1].split("=")[1]) == np.nextafter(70.5, np.inf)
+    moved = json.loads(lines[3].split("=")[1])
+    assert moved == [np.nextafter(x, np.inf) for x in (0.1, -0.02, 0.0)]
+
+
+def test_a_difference_is_set_against_what_rounding_does():
+    row = Row("c", "r", 4e-6, "a", 3, False, (Beyond("a", 4e-6, np.nan), Beyond("b", 3e-9, np.nan)))
+    found = with_rounding(row, {"a": 2e-6, "b": 1e-12})
+    assert found.times_rounding == pytest.approx(3.0)
+    assert [array.rounding for array in found.beyond] == [2e-6, 1e-12]
+    assert not found.passed
