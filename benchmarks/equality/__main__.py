@@ -143,11 +143,15 @@ def _compared(args: argparse.Namespace) -> Iterator[Row]:
 
 
 def _chosen(parts: Sequence[str] | None) -> list[Captured]:
+    """The captures of these names; a word that is no name stands for all names it is a part of."""
     names = [capture.name for capture in CAPTURES]
-    for part in parts or ():
-        if not any(part in name for name in names):
+    chosen: set[str] = set()
+    for part in names if parts is None else parts:
+        found = {part} if part in names else {name for name in names if part in name}
+        if not found:
             raise UnknownName("capture", part, names)
-    return [c for c in CAPTURES if not parts or c.name in parts or any(part in c.name for part in parts)]
+        chosen |= found
+    return [capture for capture in CAPTURES if capture.name in chosen]
 
 
 def _line(row: Row) -> str:

@@ -5,7 +5,7 @@ import h5py
 import numpy as np
 import pytest
 
-from benchmarks.equality.__main__ import main
+from benchmarks.equality.__main__ import _chosen, main
 from benchmarks.equality.captures import CAPTURES, LEFT_OUT
 from benchmarks.equality.compare import BOUND, difference, numbers_in_folder, verdict
 from benchmarks.equality.comparison import Beyond, Row, compared_folders, nudged, with_rounding
@@ -149,3 +149,9 @@ def test_a_difference_is_set_against_what_rounding_does():
     assert found.times_rounding == pytest.approx(3.0)
     assert [array.rounding for array in found.beyond] == [2e-6, 1e-12]
     assert not found.passed
+
+
+def test_a_name_chooses_one_capture_and_a_part_of_names_all_of_them():
+    assert [capture.name for capture in _chosen(["gaitalytics"])] == ["gaitalytics"]
+    assert [capture.name for capture in _chosen(["stoop"])] == [f"stoop_lift_{n}" for n in (1, 2, 3)]
+    assert _chosen(None) == list(CAPTURES)
