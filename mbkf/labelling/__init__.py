@@ -1,1 +1,1 @@
-"""Which measured point is which marker: the first frame by geometry, then frame by frame by prediction (SPEC §7)."""
+"""Which measured point is which marker: the first frame by geometry, then frame by frame by prediction."""

@@ -1,12 +1,13 @@
 """Measured points to predicted markers, all at once: the most likely assignment inside every marker's gate.
 
-A point that marker i made lies about its prediction with covariance S_i; one that nobody made (a ghost) may lie
-anywhere, λ of them per m³. Twice the log-likelihood ratio of the two, with squared distances by Mahalanobis instead
-of eq. 4.6's, is the cost of a pair (Blackman & Popoli 1999, ch. 6):
+The point of marker i lies about its prediction with innovation covariance S_i; a point of no marker (a ghost) may lie
+anywhere, with density λ per m³. The cost of a pair is minus twice the log-likelihood ratio of the two hypotheses
+(Blackman & Popoli, *Design and Analysis of Modern Tracking Systems*, 1999, ch. 6), with d²_ij the squared Mahalanobis
+distance where the thesis (eq. 4.6) has the Euclidean one:
 
     c_ij = d²_ij + ln det(2π S_i) + 2 ln λ
 
-A pair that costs less than nothing is better than a hidden marker and a ghost; ``linear_sum_assignment`` finds the
+A negative cost is better than a hidden marker and a ghost; ``linear_sum_assignment`` finds the
 cheapest set of pairs, so that no point gets two labels and no marker two points.
 """
 
@@ -25,14 +26,14 @@ from scipy.spatial.distance import cdist
 from mbkf.conventions import Array, BoolArray
 
 HIDDEN = -1
-"""The point of a marker that has none, and the marker of a point that is nobody's."""
+"""Index that stands for no point (of a hidden marker) and for no marker (of a ghost point)."""
 
 Indices = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
 class AssignmentSettings:
-    """What an assignment believes.
+    """Gates and prior probabilities of an assignment.
 
     Attributes:
         gate: Squared Mahalanobis distance (3 coordinates) beyond which a point is not the marker's.
@@ -98,7 +99,7 @@ def assign(
 
 
 def squared_distances(predicted_m: Array, points_m: Array) -> Array:
-    """(M, N) squared distances, eq. 4.6."""
+    """(M, N) squared Euclidean distances of points from predicted markers (thesis eq. 4.6)."""
     return np.asarray(cdist(predicted_m, points_m, "sqeuclidean"))
 
 

@@ -1,9 +1,9 @@
-"""Labels for a frame nobody knows anything about: relative positions, then a pose fit that must be good (SPEC §7).
+"""Labels of a first frame without any prediction: relative positions of points, then a pose fit that must be good.
 
 The thesis sorts the markers of a standing pose by height and side. Here the subject's own marker geometry takes the
 place of such rules, so that any protocol will do: the root's markers are found by their distances, the other segments
-by the distances of their markers from each other and from the joint, and the pose fitted to that (eq. 4.1 with
-positions only) says where the rest should be.
+by the distances of their markers from each other and from the joint, and the pose fitted to these (the least squares
+of thesis eq. 4.1 with positions only) predicts the rest.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.labelling.assignment import HIDDEN, AssignmentSettings, Indices, assign
-from mbkf.labelling.growing import GrownBody, grow, regrow
+from mbkf.labelling.beam_search import PartialBody, search_bodies, search_limb
 from mbkf.labelling.placing import likeness
-from mbkf.labelling.seeds import anyhow, upright
+from mbkf.labelling.seeds import any_attitude, upright
 from mbkf.labelling.skeleton import clusters, limbs
 from mbkf.sensors.markers import MarkerSensor
 from mbkf.sensors.pose_fit import PoseFit, fit_pose, segment_by_segment
@@ -29,25 +29,25 @@ MIN_MARKERS = 6
 """Fewer do not place a body."""
 
 STRANGE = 2.5
-"""A point further than so many standard deviations from its marker does not take part in the fit that judges it."""
+"""A point further than so many standard deviations from its marker does not take part in the fit."""
 
 
 DOUBTFUL = 2.0
-"""A limb with a marker further off than so many standard deviations, or without one, is grown anew."""
+"""A limb with a marker further off than so many standard deviations, or without one, is searched again."""
 
 LIMB_CANDIDATES = 3
-"""How many ways to grow it are fitted."""
+"""How many alternatives of such a limb are fitted."""
 
 
 @dataclass(frozen=True)
 class FirstFrameSettings:
-    """When a first frame is believed.
+    """When a first frame is accepted.
 
     Attributes:
         rms_m: Greatest RMS distance of the labelled points from the fitted body.
         least_share: Least share of the body's markers that must be found.
         least_explained: Least share of the points, or of the body's markers where these are fewer, that must be.
-        candidates: How many grown bodies are fitted.
+        candidates: How many bodies of the beam search are fitted.
         rounds: How often labels and pose are brought into line.
         radius_m: Hard radius of the assignment while the pose is not settled.
     """
@@ -68,7 +68,7 @@ class FirstFrame:
         points: (M,) point of every marker, ``HIDDEN`` where none.
         q: (nq,) fitted pose.
         rms_m: RMS distance of the labelled points from it.
-        worth: How much more likely its labels are than that all points are ghosts (twice the log), posture included.
+        worth: Twice the log-likelihood ratio of its labels and of ghosts only, posture included.
     """
 
     points: Indices
@@ -88,7 +88,7 @@ class FirstFrameSearch:
     Attributes:
         sensor: The markers on the subject's body.
         sd_m: (M,) how far a marker may be from its place on the body, noise and placement together, m.
-        settings: When to believe what was found.
+        settings: When a labelled frame is accepted.
     """
 
     def __init__(self, sensor: MarkerSensor, sd_m: Array, settings: FirstFrameSettings | None = None) -> None:
@@ -105,16 +105,16 @@ class FirstFrameSearch:
         return max(MIN_MARKERS, int(np.ceil(self.settings.least_share * len(self.sd_m))))
 
     def standing(self, points_m: Array) -> FirstFrame | None:
-        """Labels of points (N, 3) where the body is upright and faces anywhere, or None where none are believed."""
+        """Labels of points (N, 3) of an upright body of any heading, or None where they do not fit."""
         return self._search(points_m, upright(self._body[0], points_m))
 
-    def anyhow(self, points_m: Array) -> FirstFrame | None:
-        """The same for a body in any attitude (prone, kneeling); slower by the number of roots that may be."""
-        return self._search(points_m, anyhow(self._body[0], points_m))
+    def any_attitude(self, points_m: Array) -> FirstFrame | None:
+        """The same for a body in any attitude (prone, kneeling); slower, since the root has more candidate poses."""
+        return self._search(points_m, any_attitude(self._body[0], points_m))
 
     def _search(self, points_m: Array, seeds: tuple[Array, Array]) -> FirstFrame | None:
-        grown = grow(self._body, points_m, seeds, self.settings.candidates)
-        fitted = [self._fitted(points_m, one.points, None) for one in grown]
+        candidates = search_bodies(self._body, points_m, seeds, self.settings.candidates)
+        fitted = [self._fitted(points_m, one.points, None) for one in candidates]
         near = [one for one in fitted if one.rms_m <= 2.0 * self.settings.rms_m] or fitted
         if not near:
             return None
@@ -137,7 +137,7 @@ class FirstFrameSearch:
         return found if self.believed(found, len(points_m)) else None
 
     def _improved(self, points_m: Array, found: FirstFrame) -> FirstFrame:
-        """Labels with every doubtful limb grown anew from the fitted body, from the fingers and toes inwards."""
+        """Labels with every doubtful limb searched again from the fitted body, from the fingers and toes inwards."""
         for limb in reversed(limbs(self._body)):
             own = np.concatenate([self._body[number].markers for number in limb])
             distance = np.linalg.norm(
@@ -147,15 +147,15 @@ class FirstFrameSearch:
                 continue
             others = [
                 self._fitted(points_m, one.points, None)
-                for one in regrow(self._body, points_m, self._placed(found), limb, LIMB_CANDIDATES)
+                for one in search_limb(self._body, points_m, self._placed(found), limb, LIMB_CANDIDATES)
             ]
             found = max(found, *others, key=lambda one: one.worth)
         return found
 
-    def _placed(self, found: FirstFrame) -> GrownBody:
+    def _placed(self, found: FirstFrame) -> PartialBody:
         rotations, origins = self.sensor.model.placements(found.q)
         joints = [self.sensor.model.joint(cluster.segment).joint_id for cluster in self._body]
-        return GrownBody(rotations[joints], origins[joints], found.points, 0.0)
+        return PartialBody(rotations[joints], origins[joints], found.points, 0.0)
 
     def believed(self, found: FirstFrame, points: int) -> bool:
         """Whether enough markers of a frame with so many points fit well enough."""
@@ -183,9 +183,9 @@ class FirstFrameSearch:
         return found
 
     def worth(self, markers_m: Array, q: Array) -> float:
-        """How much likelier markers (M, 3) of a body in the pose q (nq,) are than ghosts, and the pose than none.
+        """Twice the log-likelihood ratio of markers (M, 3) on a body in the pose q (nq,) and of ghosts, plus the posture's.
 
-        Exchanged markers of a wrist fit as well, but turn the forearm the other way round: the posture tells.
+        Exchanged markers of a wrist fit as well, but turn the forearm by half a turn: its posture is unlikely.
         """
         away = self.sensor.positions(q) - markers_m
         posture = self.posture.reading(q).deviation / self.posture.sd

@@ -1,4 +1,4 @@
-"""Whole tracks named by a body: which marker a track is near at many moments, not which is nearest in one frame."""
+"""Whole tracks named by a body: which marker a track is near in many frames, not which is nearest in one frame."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 from mbkf.sensors.posture import PostureSensor
 
 LOOKS = 60
-"""Moments, spread over the capture, at which tracks are compared with the body."""
+"""Frames, spread over the capture, at which tracks are compared with the body."""
 
 MOST_AGAINST = -15.0
-"""What one moment can say against a pair at most: a limb may be placed wrongly there."""
+"""Least log-likelihood ratio of a pair in one frame: the limb may be placed wrongly there."""
 
 MIN_MARKERS = 6
-"""A moment with fewer named tracks places no body."""
+"""A frame with fewer named tracks places no body."""
 
 
 def trajectories(points_m: Array, tracks: Tracks, owner: Indices, markers: int) -> Array:
@@ -30,7 +30,7 @@ def trajectories(points_m: Array, tracks: Tracks, owner: Indices, markers: int) 
     Args:
         points_m: (T, C, 3) points of the capture.
         tracks: Their tracks.
-        owner: (count,) marker of every track, ``HIDDEN`` for those that are nobody's.
+        owner: (count,) marker of every track, ``HIDDEN`` for those of no marker.
         markers: How many markers there are.
     """
     found = np.full((len(points_m), markers, 3), np.nan)
@@ -45,7 +45,7 @@ def name_tracks(
 ) -> tuple[Indices, float]:
     """Marker of every track (count,) by a body whose pose follows from the tracks named before, and what it is worth.
 
-    Pairs of track and marker are taken by their likelihood over all moments at which the track is seen, the likeliest
+    Pairs of track and marker are taken by their likelihood over all frames in which the track is seen, the likeliest
     first; two tracks that are seen at once are not the same marker.
 
     Args:
@@ -65,7 +65,7 @@ def name_tracks(
 
 
 def _evidence(sensor: MarkerSensor, sd_m: Array, seen_m: Array, known_m: Array) -> Array:
-    """(count, M) what all moments together say for a track (F, count, 3) being a marker, by known markers (F, M, 3)."""
+    """(count, M) evidence of all frames that a track (F, count, 3) is a marker, by known markers (F, M, 3)."""
     posture = PostureSensor(sensor.model)
     total = np.zeros((seen_m.shape[1], len(sd_m)))
     for points, measured in zip(seen_m, known_m, strict=True):

@@ -1,8 +1,8 @@
-"""Neighbours' names: markers of one segment that only the whole body's posture tells apart.
+"""Names of neighbouring markers: those of one segment that only the posture of the whole body tells apart.
 
-Of two markers a few centimetres apart a trial may show one: which? Two markers of a wrist, exchanged, fit the forearm
-as well, but the other way round. A first frame or a gap may get such names wrong; here a few frames are fitted with
-either name, and the likelier posture wins.
+A trial may show only one of two markers a few centimetres apart. Two exchanged markers of a wrist fit the forearm as
+well, turned by half a turn. A first frame or a gap may get such names wrong; here a few frames are fitted with either
+name, and the likelier posture wins.
 """
 
 from __future__ import annotations
@@ -40,12 +40,12 @@ MOST_CHANGES = 6
 
 
 def renamed(search: FirstFrameSearch, markers_m: Array, q: Array) -> Indices:
-    """(M,) under which marker's name the trajectory now called by each marker belongs.
+    """(M,) the corrected marker of the trajectory that each marker labels now.
 
     Args:
-        search: The body, its markers and what they are worth.
+        search: The body, its markers and their spreads.
         markers_m: (T, M, 3) labelled trajectories, NaN where hidden.
-        q: (T, nq) poses, NaN where the body was not followed.
+        q: (T, nq) poses, NaN where the body was not tracked.
     """
     looks = _spread(np.flatnonzero(~np.isnan(q).any(axis=1)), LOOKS)
     name = np.arange(markers_m.shape[1])
@@ -71,11 +71,11 @@ def exchanged(
     """(n,) labels of the tracklets, with two markers' names exchanged while that makes the posture likelier.
 
     Args:
-        search: The body, its markers and what they are worth.
+        search: The body, its markers and their spreads.
         markers_m: (T, M, 3) labelled trajectories, NaN where hidden.
-        q: (T, nq) poses, NaN where the body was not followed.
+        q: (T, nq) poses, NaN where the body was not tracked.
         label: (n,) labels of the tracklets.
-        tracklets: They.
+        tracklets: Links of the points.
     """
     label, segments = label.copy(), np.array(search.sensor.segments)
     followed = ~np.isnan(q).any(axis=1)
@@ -110,7 +110,7 @@ def _likelier_exchanged(search: FirstFrameSearch, markers_m: Array, q: Array, a:
 
 
 def _freely(search: FirstFrameSearch, markers_m: Array, q: Array) -> float:
-    """Mean worth of frames (n, M, 3), fitted from poses (n, nq) and from the markers alone, whichever is better."""
+    """Mean worth of frames (n, M, 3), fitted from poses (n, nq) or from the markers alone, the better of both."""
     total = 0.0
     for frame, pose in zip(markers_m, q, strict=True):
         fits = [_fit(search, frame, start) for start in (pose, segment_by_segment(search.sensor, frame))]

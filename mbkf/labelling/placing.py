@@ -1,4 +1,4 @@
-"""Poses of one segment that lay its marker cluster onto unlabelled points, by distances between points."""
+"""Poses of one segment that match its marker cluster with unlabelled points, by distances between points."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PLACING_SD_M = 0.008
 """How far a segment placed by two points is off, besides the spread of its markers."""
 
 MOST_POSTURE = 8.0
-"""What an unusual turn of a joint costs at most: people squat and kneel."""
+"""Greatest cost of an unusual turn of a joint: people squat and kneel."""
 
 JOINT_TOLERANCE_M = 0.045
 """How far a joint may be from where the chain placed it."""
@@ -37,7 +37,7 @@ class Placing:
     Attributes:
         rotation: (3, 3) its orientation in the world.
         points: (k,) the point of each of its markers, ``HIDDEN`` where none.
-        score: What it is worth: matches less distances and the joint's turn.
+        score: Log-likelihood ratio of its matches, less the cost of the joint's turn.
     """
 
     rotation: Array
@@ -97,7 +97,13 @@ def match(placed: Array, points_m: Array) -> tuple[Indices, Array]:
 
 
 def worths(cluster: Cluster, matched: Indices, squared: Array) -> Array:
-    """(n,) what matches (n, k) at squared distances (n, k) are worth, see :func:`likeness`."""
+    """(n,) log-likelihood ratios of alternative matches, summed over their markers, see :func:`likeness`.
+
+    Args:
+        cluster: The segment.
+        matched: (n, k) point of each marker, ``HIDDEN`` where none.
+        squared: (n, k) squared distances of these points from the placed markers, m².
+    """
     worth = likeness(squared, np.hypot(cluster.sd_m, PLACING_SD_M))
     return np.asarray(np.where(matched != HIDDEN, np.maximum(worth, 0.0), 0.0).sum(axis=1))
 

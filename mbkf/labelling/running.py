@@ -1,9 +1,9 @@
-"""Labels from frame to frame, between a filter's prediction and its correction (thesis 4.1.3).
+"""Labels from frame to frame, between a filter's prediction and its correction (thesis section 4.1.3).
 
 Besides the filter's prediction the labeller knows three things: how far each marker lay off the body when last seen
 (skin and placement, which outlive a short gap), which label each point's own track carried, and what the labels would
-be without either. The last is asked now and then: memory that geometry contradicts twice running is wrong, so that
-markers whose labels were exchanged get them back.
+be without either. The last is computed every few frames: a memory that geometry contradicts twice in a row is wrong,
+and markers whose labels were exchanged get them back.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from mbkf.labelling.assignment import HIDDEN, AssignmentSettings, Indices, assig
 from mbkf.sensors.expectation import MarkerExpectation
 
 MOST_STRANGE = 0.2
-"""Where a larger share of the labelled markers is far from the corrected body, the pose is wrong and not they."""
+"""Where a larger share of the labelled markers is far from the corrected body, the pose is wrong and not the labels."""
 
 
 @dataclass(frozen=True)
@@ -27,15 +27,15 @@ class RunningSettings:
     """How labels are kept from frame to frame.
 
     Attributes:
-        assignment: Gate, radius and what a known track is worth.
+        assignment: Gate, radius and the bonus of a known track.
         memory_s: How long an offset from the body is remembered while a marker is not seen, and how long it takes to
             learn one.
-        offset_sd_m: How far a marker strays from its remembered offset between frames while it is seen.
+        offset_sd_m: How far a marker moves from its remembered offset between frames while it is seen.
         unseen_sd_m: How much further off a marker may be that was never seen since the start.
         strange: Standard deviations by which a point may miss its remembered place on the corrected body.
-        every: Frames between two lessons of the memory, after which it asks what the labels are without it.
+        every: Frames between two updates of the memory; the labels without memory are then computed, too.
         doubt_margin: How much less the labels without memory must cost to count as a contradiction.
-        doubts: Contradictions running that overrule the memory.
+        doubts: Contradictions in a row that overrule the memory.
     """
 
     assignment: AssignmentSettings = field(default_factory=lambda: AssignmentSettings(radius_m=0.10))
@@ -53,15 +53,23 @@ class RunningLabeller:
     """Assigns the points of one frame after the other.
 
     Attributes:
-        noise_m: (M,) marker noise.
-        placement_m: (M,) how far a marker may sit from its place on the body.
-        settings: How.
+        noise_m: (M,) marker noise, m.
+        placement_m: (M,) standard deviation of a marker's place on the body, m.
+        settings: Gates and memory.
         repaired: How many markers had their labels taken back from a wrong point so far.
     """
 
     def __init__(
         self, noise_m: Array, placement_m: Array, dt_s: float, settings: RunningSettings | None = None
     ) -> None:
+        """Creates a labeller without memory.
+
+        Args:
+            noise_m: (M,) marker noise, m.
+            placement_m: (M,) standard deviation of a marker's place on the body, m.
+            dt_s: Time between frames.
+            settings: Gates and memory.
+        """
         self.noise_m, self.placement_m = noise_m, placement_m
         self._forgotten = noise_m**2 + placement_m**2
         self.settings = settings or RunningSettings()
@@ -74,7 +82,7 @@ class RunningLabeller:
         self.restart()
 
     def restart(self) -> None:
-        """Forgets offsets and tracks; what the next frame's points are is told by :meth:`remember`."""
+        """Forgets offsets and tracks; :meth:`remember` gives the labels of the next frame."""
         self._offset_m = np.zeros((len(self.noise_m), 3))
         self._variance = self._forgotten + self.settings.unseen_sd_m**2
         self._before = (np.full(len(self.noise_m), HIDDEN, dtype=np.intp), 0)
@@ -88,12 +96,12 @@ class RunningLabeller:
         return self._frames <= 2 * every or self._frames % every == 0
 
     def label(
-        self, expected: MarkerExpectation, points_m: Array, follows: Callable[[], Indices] | None = None
+        self, prediction: MarkerExpectation, points_m: Array, follows: Callable[[], Indices] | None = None
     ) -> Indices:
         """(M,) the point of every marker in this frame, ``HIDDEN`` where it has none.
 
         Args:
-            expected: Where the filter expects the markers.
+            prediction: The filter's predicted markers.
             points_m: (N, 3) measured points in any order, none missing.
             follows: Gives the point of the frame before that each continues (N,), ``HIDDEN`` where that is not known;
                 asked only where labels are in dispute.
@@ -106,20 +114,20 @@ class RunningLabeller:
             return np.where(before != HIDDEN, marker_of_point(*self._before)[before], HIDDEN)
 
         def covariance(chosen: BoolArray) -> Array:
-            return _with_own(expected.spread(chosen), self._variance[chosen])
+            return _with_own(prediction.spread(chosen), self._variance[chosen])
 
-        predicted = expected.positions_m + self._offset_m
+        predicted = prediction.positions_m + self._offset_m
         labels = assign(predicted, points_m, covariance, self.settings.assignment, known)
         self._frames += 1
         if self._frames % self.settings.every == 0:
-            labels = self._doubt(labels, expected, points_m)
+            labels = self._doubt(labels, prediction, points_m)
         return labels
 
     def contradicted(self, labels: Indices, points_m: Array, on_body_m: Array) -> BoolArray:
-        """(M,) markers whose point does not go with the pose that all points together led to: ghosts near a marker.
+        """(M,) markers whose point does not fit the pose corrected by all points: ghosts near a marker.
 
-        A prediction may be a centimetre off because the limb moved otherwise; then all its markers are. What is left
-        after the correction is each marker's own. Where many are far, it is the pose that is wrong, and none is named.
+        The prediction of a whole limb may be a centimetre off; the residual after the correction belongs to each marker
+        alone. Where many residuals are large, the pose is wrong, and no marker is returned.
 
         Args:
             labels: (M,) the point of every marker.
@@ -154,23 +162,23 @@ class RunningLabeller:
             self._offset_m = np.where(seen[:, None], learnt, faded)
         else:
             self._offset_m = faded
-        # What was never seen is more uncertain than what was forgotten, and stays so.
+        # A marker never seen is more uncertain than a forgotten one, and stays so.
         forgetting = np.maximum(variance, self._keep**2 * variance + self._forgetting)
         self._variance = np.where(seen, np.maximum(fixed, 0.3 * variance), forgetting)
 
-    def _doubt(self, labels: Indices, expected: MarkerExpectation, points_m: Array) -> Indices:
-        """The labels, or those without memory where these are much likelier for the second time running."""
+    def _doubt(self, labels: Indices, prediction: MarkerExpectation, points_m: Array) -> Indices:
+        """The labels, or those without memory where these are much likelier for the second time in a row."""
 
         def covariance(chosen: BoolArray) -> Array:
-            return _with_own(expected.spread(chosen), self._forgotten[chosen])
+            return _with_own(prediction.spread(chosen), self._forgotten[chosen])
 
-        other = assign(expected.positions_m, points_m, covariance, self._patient)
+        other = assign(prediction.positions_m, points_m, covariance, self._patient)
         changed = (other != labels) & (other != HIDDEN)
         if not changed.any():
             self._doubted[:] = 0
             return labels
         affected = (other != labels) & (changed | np.isin(labels, other[changed]))
-        offsets = points_m - expected.positions_m[affected][:, None]
+        offsets = points_m - prediction.positions_m[affected][:, None]
         costs = np.minimum(pair_costs(offsets, covariance(affected), self._patient), 0.0)
         gain = _total(costs, labels[affected]) - _total(costs, other[affected])
         if gain < self.settings.doubt_margin:
@@ -194,6 +202,6 @@ def _with_own(spread: Array, variance: Array) -> Array:
 
 
 def _total(costs: Array, labels: Indices) -> float:
-    """What labels (m,) of the rows cost; a hidden marker costs nothing."""
+    """Cost of the labels (m,) of the rows; a hidden marker costs nothing."""
     seen = np.flatnonzero(labels != HIDDEN)
     return float(costs[seen, labels[seen]].sum())

@@ -1,4 +1,4 @@
-"""Where the root of the body may be among unlabelled points: upright by two of its markers, anyhow by three."""
+"""Candidate poses of the root among unlabelled points: upright by two of its markers, in any attitude by three."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Seeds = tuple[Array, Array]
 
 
 def upright(root: Cluster, points_m: Array) -> Seeds:
-    """All turns about the vertical that lay two markers of the root on two points."""
+    """All turns about the vertical that take two markers of the root to two points."""
     apart = points_m[None] - points_m[:, None]
     length = np.linalg.norm(apart, axis=2)
     turns, origins = [np.zeros((0, 3, 3))], [np.zeros((0, 3))]
@@ -43,8 +43,8 @@ def upright(root: Cluster, points_m: Array) -> Seeds:
     return np.concatenate(turns), np.concatenate(origins)
 
 
-def anyhow(root: Cluster, points_m: Array) -> Seeds:
-    """All poses that lay three markers of the root on three points at the same distances."""
+def any_attitude(root: Cluster, points_m: Array) -> Seeds:
+    """All poses that take three markers of the root to three points at the same distances."""
     length = np.linalg.norm(points_m[None] - points_m[:, None], axis=2)
     turns, origins = [np.zeros((0, 3, 3))], [np.zeros((0, 3))]
     for three in _triples(root.local_m):

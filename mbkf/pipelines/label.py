@@ -20,7 +20,7 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.labelling.any_attitude import STAGE, AnyAttitude
 from mbkf.pipelines.labelling.body import LabelBody, label_body
 from mbkf.pipelines.labelling.doubts import Doubts
-from mbkf.pipelines.labelling.redecision import redecided, trajectories
+from mbkf.pipelines.labelling.relabelling import relabel_offline, trajectories
 from mbkf.pipelines.labelling.score import LabelScore
 
 CANDIDATES = 8
@@ -47,7 +47,7 @@ class Labelling:
         starts: Frames at which labels were found without those of the frame before.
         repaired: How many markers had their labels taken back from a wrong point.
         step_seconds: (T,) computing time of each frame's labels, filter not counted; NaN where searched.
-        redecided: How many samples lost or changed their label when the whole capture was known.
+        relabelled: How many samples lost or changed their label when the whole capture was known.
         doubts: What may be wrong with the labels, where nobody had measured the person.
     """
 
@@ -57,7 +57,7 @@ class Labelling:
     starts: tuple[int, ...]
     repaired: int
     step_seconds: Array
-    redecided: int = 0
+    relabelled: int = 0
     doubts: Doubts | None = None
 
     @property
@@ -82,7 +82,7 @@ def summarise(found: Labelling, compared: LabelScore | None = None) -> dict[str,
         "ghosts_dropped": int(found.ghosts.sum()),
         "ghosts_per_frame": [int(n) for n in found.ghosts],
         "swaps_repaired": found.repaired,
-        "samples_redecided": found.redecided,
+        "samples_relabelled": found.relabelled,
         "first_labelled_frame": found.first_labelled_frame,
         "starts": list(found.starts),
         "step_seconds_median": _median(found.step_seconds),
@@ -144,7 +144,7 @@ def label(
         body = label_body(subject.markers, subject, RunningSettings())
         starts = _starts(body, markers, report) if start is None else _started(body, markers, start, report)
         found = _likeliest(body, markers, starts, lambda n, all_: report("Labelling", n, all_))
-        again = redecided(
+        again = relabel_offline(
             body,
             markers,
             found.labelling.label_of_point,
@@ -157,7 +157,7 @@ def label(
             markers=trajectories(markers, labels, body.names),
             label_of_point=labels,
             ghosts=_ghosts(markers.positions_m, labels),
-            redecided=again.changed,
+            relabelled=again.changed,
         )
 
 
@@ -218,8 +218,8 @@ def _starts(
     found = [(t, search.standing(_present(markers, t))) for t in looks]
     good = [(t, one) for t, one in found if one is not None]
     if 2 * len(good) < len(looks):
-        anyhow = AnyAttitude(search, markers.positions_m, markers.rate_hz)
-        good += anyhow.starts(looks, lambda n, all_: report(STAGE, n, all_))
+        any_attitude = AnyAttitude(search, markers.positions_m, markers.rate_hz)
+        good += any_attitude.starts(looks, lambda n, all_: report(STAGE, n, all_))
     if good:
         return sorted(good, key=lambda pair: -pair[1].worth)
     for t in range(0, markers.frames, max(1, round(SCAN_S * markers.rate_hz))):
@@ -227,7 +227,7 @@ def _starts(
         if one is not None:
             return [(t, one)]
     for t in looks:
-        one = search.anyhow(_present(markers, t))
+        one = search.any_attitude(_present(markers, t))
         if one is not None:
             return [(t, one)]
     raise NotObservable(

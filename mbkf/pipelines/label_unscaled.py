@@ -1,6 +1,6 @@
 """Labels and a scaled subject from an unlabelled capture of somebody nobody has measured, in any attitude.
 
-Neither can be had without the other, so both are found by turns: a body of the protocol's own geometry is laid onto
+Neither can be had without the other, so both are found by turns: a body of the protocol's own geometry is matched with
 the capture's tracks, the person is scaled from what that names, and the tracks are named anew by the scaled person.
 Where the protocol lists markers that are not worn, such turns may end with a neighbour's name on a track: scaling puts
 the marker where the track is. So names are then judged by what the person costs that goes with them.
@@ -18,7 +18,7 @@ from mbkf.errors import InvalidInput, NotConverged, NotObservable
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject
 from mbkf.labelling.assignment import HIDDEN, Indices
-from mbkf.labelling.moments import LOOKS, moving
+from mbkf.labelling.keyframes import LOOKS, moving
 from mbkf.labelling.naming import name_tracks, trajectories
 from mbkf.labelling.tracks import Tracks, follow
 from mbkf.model.description import load_body
@@ -26,7 +26,7 @@ from mbkf.model.human import HumanModel
 from mbkf.model.protocol import Protocol, load_protocol
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.label import Labelling, Start, label
-from mbkf.pipelines.labelling.any_attitude import STAGE, laid
+from mbkf.pipelines.labelling.any_attitude import STAGE, name_tracks_of_frame
 from mbkf.pipelines.labelling.doubts import Doubts, doubts
 from mbkf.scaling.fit import scale_subject
 from mbkf.scaling.naming import Naming, NamingProblem
@@ -37,7 +37,7 @@ from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 from mbkf.sensors.posture import PostureSensor
 
 ANCHORS = (0.35, 0.65, 0.05, 0.95)
-"""Where in the capture a body is laid onto the tracks, until two outcomes agree; the likeliest is kept."""
+"""Where in the capture a body is matched with the tracks, until two outcomes agree; the likeliest is kept."""
 
 SIZES = (0.85, 1.0, 1.15)
 """Sizes of the reference body that are tried where no height is given."""
@@ -183,13 +183,13 @@ class _Search:
         return load_body(self._protocol.body).reference_height_m
 
     def _laid(self, frame: int, size: float) -> tuple[Indices, float]:
-        """(count,) marker of every track by a body of one size laid onto them at a frame, and its score."""
+        """(count,) marker of every track by a body of one size matched with them at a frame, and its score."""
         body = load_body(self._protocol.body)
         factors = {name: size for name in body.scale_factors}
         model = HumanModel.scaled(factors, self._mass_kg, body.name)
         local = size * np.array([marker.position_m for marker in self._markers])
         sensor = MarkerSensor(model, [marker.segment for marker in self._markers], local)
-        return laid(sensor, _rough_sd(sensor), self._points_m, self._tracks, frame)
+        return name_tracks_of_frame(sensor, _rough_sd(sensor), self._points_m, self._tracks, frame)
 
     def _scaled(self, owner: Indices) -> _Named | None:
         """Person and labels brought into line, from first labels (count,); None where no person comes of them."""

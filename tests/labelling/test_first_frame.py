@@ -51,7 +51,7 @@ def test_lying_down():
     flat[4] = np.pi / 2
     frame = unlabelled(SENSOR.positions(SENSOR.model.integrate(q, flat)), rng, 2, 2)
     assert SEARCH.standing(frame.points) is None
-    found = SEARCH.anyhow(frame.points)
+    found = SEARCH.any_attitude(frame.points)
     assert found is not None
     assert (found.points == frame.truth).mean() >= 0.95
 

@@ -10,8 +10,8 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.first_frame import FirstFrame, FirstFrameSearch
-from mbkf.labelling.moment_growing import lay
-from mbkf.labelling.moments import moments
+from mbkf.labelling.keyframe_beam_search import search_keyframes
+from mbkf.labelling.keyframes import choose_keyframes
 from mbkf.labelling.skeleton import clusters
 from mbkf.labelling.tracks import Tracks, follow
 from mbkf.sensors.markers import MarkerSensor
@@ -19,14 +19,14 @@ from mbkf.sensors.markers import MarkerSensor
 STAGE = "Searching any attitude"
 """What the search calls itself; it takes seconds."""
 
-MOMENTS = 6
-"""Frames at which a body is laid onto the tracks at once."""
+KEYFRAMES = 6
+"""Keyframes at which a body is matched with the tracks at once."""
 
 ENOUGH = 3
 """So many frames that can be labelled suffice."""
 
 
-def laid(
+def name_tracks_of_frame(
     sensor: MarkerSensor, sd_m: Array, points_m: Array, tracks: Tracks, frame: int
 ) -> tuple[Indices, float]:
     """Marker of every track (count,) that a frame shows, by the body that explains them best, and its score.
@@ -39,8 +39,8 @@ def laid(
         frame: The frame.
     """
     owner = np.full(tracks.count, HIDDEN, dtype=np.intp)
-    seen = moments(points_m, tracks, frame, MOMENTS)
-    bodies = [] if seen is None else lay(clusters(sensor, sd_m), seen, 1)
+    seen = choose_keyframes(points_m, tracks, frame, KEYFRAMES)
+    bodies = [] if seen is None else search_keyframes(clusters(sensor, sd_m), seen, 1)
     if seen is None or not bodies:
         return owner, 0.0
     there = bodies[0].tracks != HIDDEN
@@ -68,7 +68,7 @@ class AnyAttitude:
         points = self._positions_m[frame]
         columns = np.flatnonzero(~np.isnan(points).any(axis=1))
         sensor, sd = self.search.sensor, self.search.sd_m
-        owner, _ = laid(sensor, sd, self._positions_m, self._tracks, frame)
+        owner, _ = name_tracks_of_frame(sensor, sd, self._positions_m, self._tracks, frame)
         own = owner[self._tracks.number[frame, columns]]
         labels = np.full(len(sd), HIDDEN, dtype=np.intp)
         labels[own[own != HIDDEN]] = np.flatnonzero(own != HIDDEN)

@@ -66,8 +66,8 @@ class LabelBody:
 
     def start_pass(self, positions_m: Array, dt_s: float) -> LabellingPass:
         """A pass over points (T, C, 3) with a filter and a labeller of its own."""
-        anyhow = AnyAttitude(self.search, positions_m, 1.0 / dt_s)
-        return LabellingPass(self.follower(dt_s), self.sensor, anyhow, self.labeller(dt_s), positions_m)
+        any_attitude = AnyAttitude(self.search, positions_m, 1.0 / dt_s)
+        return LabellingPass(self.follower(dt_s), self.sensor, any_attitude, self.labeller(dt_s), positions_m)
 
 
 def label_body(markers: Sequence[SubjectMarker], subject: Subject, settings: RunningSettings) -> LabelBody:

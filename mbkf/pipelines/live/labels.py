@@ -165,7 +165,7 @@ class LiveLabels:
             return
         search = self.body.search
         slowly = self._tries % SEARCH_EVERY == SEARCH_EVERY - 1
-        look = search.anyhow if slowly else search.standing
+        look = search.any_attitude if slowly else search.standing
         self._searched, self._tries = number, self._tries + 1
         if self._beside is not None:
             self._search = self._beside.submit(look, points)

@@ -9,7 +9,7 @@ from mbkf.labelling.assignment import HIDDEN
 from mbkf.labelling.running import RunningSettings
 from mbkf.labelling.tracks import follow
 from mbkf.pipelines.label import label
-from mbkf.pipelines.labelling.any_attitude import AnyAttitude, laid
+from mbkf.pipelines.labelling.any_attitude import AnyAttitude, name_tracks_of_frame
 from mbkf.pipelines.labelling.body import label_body
 from tests.labelling.movement import RATE_HZ, movement, shuffled
 from tests.walker import walker
@@ -30,7 +30,7 @@ def prone():
 def test_tracks_are_laid_on(prone):
     _, body, raw, marker = prone
     tracks = follow(raw.markers.positions_m, RATE_HZ)
-    owner, score = laid(body.sensor, body.search.sd_m, raw.markers.positions_m, tracks, 30)
+    owner, score = name_tracks_of_frame(body.sensor, body.search.sd_m, raw.markers.positions_m, tracks, 30)
     named = owner[tracks.number[30]]
     assert score > 0.0
     assert (named == marker[30]).mean() >= 0.9
@@ -40,8 +40,8 @@ def test_tracks_are_laid_on(prone):
 def test_starts_are_labelled_frames(prone):
     _, body, raw, marker = prone
     reported = []
-    anyhow = AnyAttitude(body.search, raw.markers.positions_m, RATE_HZ)
-    found = anyhow.starts([10, 40], lambda n, total: reported.append((n, total)))
+    any_attitude = AnyAttitude(body.search, raw.markers.positions_m, RATE_HZ)
+    found = any_attitude.starts([10, 40], lambda n, total: reported.append((n, total)))
     assert [t for t, _ in found] in ([10, 40], [40, 10])
     for t, first in found:
         assert np.array_equal(np.argsort(marker[t]), first.points)

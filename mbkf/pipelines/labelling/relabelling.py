@@ -1,4 +1,4 @@
-"""Labels re-decided offline: filter and smoother over the labelled capture, then every tracklet judged as a whole."""
+"""Offline relabelling: filter and smoother over the labelled capture, then every tracklet as a whole gets its label."""
 
 from __future__ import annotations
 
@@ -14,7 +14,14 @@ from mbkf.filters.stretches import SmoothingSettings, StretchSmoother
 from mbkf.io.records import MarkerTrajectories
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.neighbours import exchanged, renamed
-from mbkf.labelling.redecision import Course, RedecisionSettings, decided, doubtful, voted, worn
+from mbkf.labelling.offline_relabelling import (
+    RelabellingSettings,
+    SmoothedMarkers,
+    doubtful,
+    majority_labels,
+    relabel,
+    worn,
+)
 from mbkf.labelling.tracklets import Tracklets, linked
 from mbkf.pipelines.labelling.body import LabelBody, corrected_body
 
@@ -23,7 +30,7 @@ ROUNDS = 4
 
 
 @dataclass(frozen=True)
-class Redecided:
+class Relabelled:
     """Labels after a second look.
 
     Attributes:
@@ -35,13 +42,13 @@ class Redecided:
     changed: int
 
 
-def redecided(
+def relabel_offline(
     body: LabelBody,
     points: MarkerTrajectories,
     label_of_point: Indices,
     q: Array,
     progress: Callable[[int, int], None],
-) -> Redecided:
+) -> Relabelled:
     """Looks again at labels that a pass gave, in the light of all frames.
 
     Args:
@@ -51,14 +58,14 @@ def redecided(
         q: (T, nq) poses of the pass, NaN where the body was not followed.
         progress: Called with frames done and frames in all.
     """
-    settings = RedecisionSettings()
+    settings = RelabellingSettings()
     tracklets = linked(points.positions_m)
     looked = 0
 
     def shown(labels: Indices) -> MarkerTrajectories:
         return trajectories(points, labels, body.names)
 
-    def smoothed(labels: Indices) -> tuple[LabelBody, Course] | None:
+    def smoothed(labels: Indices) -> tuple[LabelBody, SmoothedMarkers] | None:
         nonlocal looked
         corrected = corrected_body(body, shown(labels))
         if corrected is None:
@@ -68,7 +75,7 @@ def redecided(
         own = shown(labels).select(corrected.names)
         return corrected, course(corrected, own, lambda done: progress(begin + done, all_))
 
-    label = voted(label_of_point, len(body.markers), tracklets, settings)
+    label = majority_labels(label_of_point, len(body.markers), tracklets, settings)
     name = renamed(body.search, shown(tracklets.points(label)).positions_m, q)
     label = np.where(label == HIDDEN, HIDDEN, name[label])
     label = exchanged(body.search, shown(tracklets.points(label)).positions_m, q, label, tracklets)
@@ -80,7 +87,7 @@ def redecided(
     for _ in range(ROUNDS):
         if found is None:
             break
-        fresh = _decided(points, tracklets, labels, body, *found, settings)
+        fresh = _relabelled(points, tracklets, labels, body, *found, settings)
         settled = bool((fresh == labels).all())
         labels = fresh
         if settled:
@@ -88,7 +95,7 @@ def redecided(
         found = smoothed(labels)
     progress(1, 1)
     had = label_of_point != HIDDEN
-    return Redecided(labels, int((had & (labels != label_of_point)).sum()))
+    return Relabelled(labels, int((had & (labels != label_of_point)).sum()))
 
 
 def trajectories(
@@ -101,13 +108,13 @@ def trajectories(
     return replace(points, names=names, positions_m=positions)
 
 
-def course(body: LabelBody, markers: MarkerTrajectories, progress: Callable[[int], None]) -> Course:
+def course(body: LabelBody, markers: MarkerTrajectories, progress: Callable[[int], None]) -> SmoothedMarkers:
     """Where the smoothed body has its markers in every frame of labelled trajectories."""
     positions, dt = markers.positions_m, 1.0 / markers.rate_hz
     follower, sensor = body.follower(dt), body.sensor
     recording = Recording(positions, np.zeros((len(positions), 0, 6)), dt)
     smoother = StretchSmoother(follower, recording, SmoothingSettings())
-    places = Course(
+    places = SmoothedMarkers(
         np.full(positions.shape, np.nan),
         np.full((*positions.shape, 3), np.nan),
         np.full(positions.shape[:2], np.nan),
@@ -137,8 +144,8 @@ def _sure(
     labels: Indices,
     body: LabelBody,
     corrected: LabelBody,
-    places: Course,
-    settings: RedecisionSettings,
+    places: SmoothedMarkers,
+    settings: RelabellingSettings,
 ) -> tuple[Indices, Indices]:
     """(T, C) labels of markers that were worn, and those of them that are in no doubt.
 
@@ -153,21 +160,21 @@ def _sure(
     return labels, np.where(tracklets.points(astray.astype(np.intp)) == 1, HIDDEN, labels)
 
 
-def _decided(
+def _relabelled(
     points: MarkerTrajectories,
     tracklets: Tracklets,
     labels: Indices,
     body: LabelBody,
     corrected: LabelBody,
-    places: Course,
-    settings: RedecisionSettings,
+    places: SmoothedMarkers,
+    settings: RelabellingSettings,
 ) -> Indices:
     """(T, C) labels as the tracklets' judgement has them."""
     own, place = _numbered(labels, body, corrected)
     shown = trajectories(points, own, corrected.names).positions_m
     there = worn(places, shown, corrected.noise_m, corrected.sensor.segments, settings)
     noise, dt = np.where(there, corrected.noise_m, np.nan), 1.0 / points.rate_hz
-    found = decided(own, points.positions_m, tracklets, places, noise, dt, settings)
+    found = relabel(own, points.positions_m, tracklets, places, noise, dt, settings)
     return tracklets.points(np.where(found == HIDDEN, HIDDEN, place[found]))
 
 

@@ -1,11 +1,11 @@
-"""The parts of the first frame: clusters, roots, placed segments, grown bodies."""
+"""The parts of the first frame: clusters, roots, placed segments, partial and whole bodies."""
 
 import numpy as np
 
 from mbkf.labelling.assignment import HIDDEN
-from mbkf.labelling.growing import GrownBody, grow, regrow
+from mbkf.labelling.beam_search import PartialBody, search_bodies, search_limb
 from mbkf.labelling.placing import likeness, match, nearest_rotations, placings
-from mbkf.labelling.seeds import anyhow, upright
+from mbkf.labelling.seeds import any_attitude, upright
 from mbkf.labelling.skeleton import clusters, limbs
 from tests.labelling.bodies import posture, reference_sensor, unlabelled
 
@@ -39,7 +39,7 @@ def test_limbs_reach_to_the_ends():
 
 def test_seeds_hold_the_true_root():
     frame, rotations, origins = scene()
-    for seeds in (upright(BODY[0], frame.points), anyhow(BODY[0], frame.points)):
+    for seeds in (upright(BODY[0], frame.points), any_attitude(BODY[0], frame.points)):
         turn = np.linalg.norm(seeds[0] - rotations[0], axis=(1, 2))
         away = np.linalg.norm(seeds[1] - origins[0], axis=1)
         assert ((turn < 0.2) & (away < 0.03)).any()
@@ -90,7 +90,7 @@ def test_nearest_rotations_are_rotations():
 
 def test_the_best_grown_body_is_the_true_one():
     frame, _, _ = scene()
-    best, *rest = grow(BODY, frame.points, upright(BODY[0], frame.points), 4)
+    best, *rest = search_bodies(BODY, frame.points, upright(BODY[0], frame.points), 4)
     assert (best.points == frame.truth).mean() >= 0.9
     assert all(one.score <= best.score for one in rest)
     used = best.points[best.points != HIDDEN]
@@ -100,10 +100,10 @@ def test_the_best_grown_body_is_the_true_one():
 def test_a_limb_grows_again_where_it_was():
     frame, rotations, origins = scene()
     limb = next(one for one in limbs(BODY) if BODY[one[0]].segment == "left_shank")
-    whole = GrownBody(rotations, origins, frame.truth, 0.0)
-    again = regrow(BODY, frame.points, whole, limb, 3)
+    whole = PartialBody(rotations, origins, frame.truth, 0.0)
+    again = search_limb(BODY, frame.points, whole, limb, 3)
     assert any(np.array_equal(one.points, frame.truth) for one in again)
 
 
 def test_nothing_grows_from_nothing():
-    assert grow(BODY, np.zeros((0, 3)), upright(BODY[0], np.zeros((0, 3))), 3) == []
+    assert search_bodies(BODY, np.zeros((0, 3)), upright(BODY[0], np.zeros((0, 3))), 3) == []

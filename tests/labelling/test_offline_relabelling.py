@@ -6,10 +6,17 @@ import numpy as np
 import pytest
 
 from mbkf.labelling.assignment import HIDDEN
-from mbkf.labelling.redecision import Course, RedecisionSettings, decided, doubtful, voted, worn
+from mbkf.labelling.offline_relabelling import (
+    RelabellingSettings,
+    SmoothedMarkers,
+    doubtful,
+    majority_labels,
+    relabel,
+    worn,
+)
 from mbkf.labelling.tracklets import linked
 
-SETTINGS = RedecisionSettings()
+SETTINGS = RelabellingSettings()
 RATE_HZ = 100.0
 NOISE_M = np.full(3, 0.005)
 
@@ -24,13 +31,13 @@ def scene():
     turn[:, 0, 0], turn[:, 0, 1], turn[:, 1, 0], turn[:, 1, 1], turn[:, 2, 2] = c, -s, s, c, 1.0
     local = np.array([[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.15]])
     on_body = np.einsum("tij,mj->tmi", turn, local) + np.array([1.0, 0.0, 0.0]) * t[:, None, None]
-    course = Course(on_body, np.repeat(turn[:, None], 3, axis=1), np.full((100, 3), 1e-6))
+    course = SmoothedMarkers(on_body, np.repeat(turn[:, None], 3, axis=1), np.full((100, 3), 1e-6))
     return on_body + rng.normal(0.0, 0.001, on_body.shape), course
 
 
 def labels_of(positions, course, so_far):
     tracklets = linked(positions)
-    label = decided(so_far, positions, tracklets, course, NOISE_M, 1.0 / RATE_HZ, SETTINGS)
+    label = relabel(so_far, positions, tracklets, course, NOISE_M, 1.0 / RATE_HZ, SETTINGS)
     return tracklets.points(label)
 
 
@@ -58,7 +65,7 @@ def test_wrong_names_are_put_right_by_the_place(scene):
 
 def test_frames_without_a_body_say_nothing(scene):
     positions, course = scene
-    lost = Course(course.on_body_m.copy(), course.rotations, course.variance_m2.copy())
+    lost = SmoothedMarkers(course.on_body_m.copy(), course.rotations, course.variance_m2.copy())
     for array in (lost.on_body_m, lost.variance_m2):
         array[:] = np.nan
     nothing = np.full(positions.shape[:2], HIDDEN)
@@ -71,10 +78,10 @@ def test_the_majority_of_frames_names_a_tracklet(scene):
     votes = np.tile([0, 1, 2], (100, 1))
     votes[10:30, 0], votes[10:30, 1] = 1, 0
     votes[5:50, 2] = HIDDEN
-    assert (tracklets.points(voted(votes, 3, tracklets, SETTINGS)) == [0, 1, 2]).all()
+    assert (tracklets.points(majority_labels(votes, 3, tracklets, SETTINGS)) == [0, 1, 2]).all()
     seldom = np.full((100, 3), HIDDEN)
     seldom[:8, 0] = 0
-    assert (voted(seldom, 3, tracklets, SETTINGS) == HIDDEN).all()
+    assert (majority_labels(seldom, 3, tracklets, SETTINGS) == HIDDEN).all()
 
 
 def test_no_label_twice_in_a_frame(scene):
@@ -82,7 +89,7 @@ def test_no_label_twice_in_a_frame(scene):
     tracklets = linked(positions)
     same = np.zeros((100, 3), dtype=int)
     same[40:, 1] = HIDDEN
-    labels = voted(same, 3, tracklets, SETTINGS)
+    labels = majority_labels(same, 3, tracklets, SETTINGS)
     for one, other in pairwise(np.flatnonzero(labels == 0)):
         assert tracklets.spans[one, 1] <= tracklets.spans[other, 0]
     assert (labels == 0).sum() == 1

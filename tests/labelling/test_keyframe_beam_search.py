@@ -1,11 +1,11 @@
-"""A rough body laid onto the tracks of a prone person: every marker on its own track, or on none."""
+"""A rough body matched with the tracks of a prone person: every marker on its own track, or on none."""
 
 import numpy as np
 import pytest
 
 from mbkf.labelling.assignment import HIDDEN
-from mbkf.labelling.moment_growing import lay
-from mbkf.labelling.moments import moments
+from mbkf.labelling.keyframe_beam_search import search_keyframes
+from mbkf.labelling.keyframes import choose_keyframes
 from mbkf.labelling.skeleton import clusters
 from mbkf.labelling.tracks import follow
 from mbkf.model.human import HumanModel
@@ -31,10 +31,10 @@ def test_a_prone_stranger_is_found(seed, size):
     rng = np.random.default_rng(seed)
     positions, marker = shuffled(movement(person(rng, size), rng), rng)
     tracks = follow(positions, RATE_HZ)
-    seen = moments(positions, tracks, 70, 6)
+    seen = choose_keyframes(positions, tracks, 70, 6)
     owner = np.empty(tracks.count, dtype=int)
     owner[tracks.number[70]] = marker[70]
-    best, *others = lay(BODY, seen, 3)
+    best, *others = search_keyframes(BODY, seen, 3)
     there = best.tracks != HIDDEN
     right = owner[seen.tracks[best.tracks[there]]] == np.flatnonzero(there)
     assert right.sum() >= 0.9 * len(there)
@@ -47,6 +47,6 @@ def test_points_that_are_nobody_make_no_body():
     rng = np.random.default_rng(0)
     drift = np.cumsum(rng.normal(0.0, 0.004, (120, 20, 3)), axis=0)
     positions = rng.uniform(-1.0, 1.0, (20, 3)) + drift
-    seen = moments(positions, follow(positions, RATE_HZ), 60, 5)
-    for body in lay(BODY, seen, 3):
+    seen = choose_keyframes(positions, follow(positions, RATE_HZ), 60, 5)
+    for body in search_keyframes(BODY, seen, 3):
         assert (body.tracks != HIDDEN).sum() < 0.4 * len(body.tracks)

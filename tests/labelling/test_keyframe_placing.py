@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from mbkf.labelling.assignment import HIDDEN
-from mbkf.labelling.moment_placing import JOINT_SD_M, MATCH_SD_M, MomentPlacing
-from mbkf.labelling.moments import moments
+from mbkf.labelling.keyframe_placing import JOINT_SD_M, MATCH_SD_M, KeyframePlacing
+from mbkf.labelling.keyframes import choose_keyframes
 from mbkf.labelling.skeleton import clusters
 from mbkf.labelling.tracks import follow
 from tests.labelling.bodies import reference_sensor
@@ -22,14 +22,14 @@ def scene():
     positions = movement(SENSOR, np.random.default_rng(7), frames=FRAMES)
     q = poses(SENSOR.model, np.random.default_rng(7), frames=FRAMES)
     tracks = follow(positions, RATE_HZ)
-    seen = moments(positions, tracks, 50, 4)
+    seen = choose_keyframes(positions, tracks, 50, 4)
     place = np.full(tracks.count, HIDDEN)
     place[seen.tracks] = np.arange(len(seen.tracks))
     joints = [SENSOR.model.joint(cluster.segment).joint_id for cluster in BODY]
     placements = [SENSOR.model.placements(q[t]) for t in seen.frames]
     rotations = np.array([turns[joints] for turns, _ in placements])
     origins = np.array([places[joints] for _, places in placements])
-    return MomentPlacing(seen), place[tracks.number[50]], rotations, origins
+    return KeyframePlacing(seen), place[tracks.number[50]], rotations, origins
 
 
 def number_of(segment):

@@ -1,8 +1,8 @@
-"""Moments of a capture: which tracks move together, which frames differ, what stands still."""
+"""Keyframes of a capture: which tracks move together, which frames differ, what stands still."""
 
 import numpy as np
 
-from mbkf.labelling.moments import TRAVEL_M, moments, moving
+from mbkf.labelling.keyframes import TRAVEL_M, choose_keyframes, moving
 from mbkf.labelling.tracks import follow
 from tests.labelling.bodies import reference_sensor
 from tests.labelling.movement import RATE_HZ, movement
@@ -20,7 +20,7 @@ def scene(seed=1, extra=0):
 
 def test_tracks_of_a_segment_keep_their_distance_and_others_do_not():
     positions, tracks = scene()
-    seen = moments(positions, tracks, 60, 6)
+    seen = choose_keyframes(positions, tracks, 60, 6)
     marker = np.empty(tracks.count, dtype=int)
     marker[tracks.number[60]] = np.arange(positions.shape[1])
     segment = np.array(SENSOR.segments)[marker[seen.tracks]]
@@ -32,7 +32,7 @@ def test_tracks_of_a_segment_keep_their_distance_and_others_do_not():
 
 def test_the_first_moment_is_the_frame_and_none_comes_twice():
     positions, tracks = scene(2)
-    seen = moments(positions, tracks, 30, 5)
+    seen = choose_keyframes(positions, tracks, 30, 5)
     assert seen.frames[0] == 30
     assert len(set(seen.frames.tolist())) == 5
     assert np.allclose(seen.positions_m, tracks.positions(positions, seen.frames)[:, seen.tracks])
@@ -40,7 +40,7 @@ def test_the_first_moment_is_the_frame_and_none_comes_twice():
 
 def test_moments_differ_more_than_frames_at_random():
     positions, tracks = scene(3)
-    seen = moments(positions, tracks, 0, 4)
+    seen = choose_keyframes(positions, tracks, 0, 4)
 
     def least_difference(frames):
         arms = [np.linalg.norm(positions[t][:, None] - positions[t], axis=2) for t in frames]
@@ -53,7 +53,7 @@ def test_moments_differ_more_than_frames_at_random():
 
 def test_what_stands_still_takes_no_part_while_the_body_travels():
     positions, tracks = scene(4, extra=3)
-    seen = moments(positions, tracks, 10, 3)
+    seen = choose_keyframes(positions, tracks, 10, 3)
     assert not set(tracks.number[10, -3:].tolist()) & set(seen.tracks.tolist())
     assert len(seen.tracks) == len(SENSOR.segments)
 
@@ -66,4 +66,4 @@ def test_nothing_is_set_aside_where_nobody_travels():
 
 def test_too_few_tracks_are_no_moments():
     positions = np.random.default_rng(0).normal(size=(1, 2, 3)) * np.ones((20, 1, 1))
-    assert moments(positions, follow(positions, RATE_HZ), 5, 3) is None
+    assert choose_keyframes(positions, follow(positions, RATE_HZ), 5, 3) is None

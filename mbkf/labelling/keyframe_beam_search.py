@@ -1,4 +1,7 @@
-"""A body of roughly known geometry laid onto tracks, from the root outwards, in any attitude and at several moments."""
+"""Beam search of a body of roughly known geometry on tracks, in any attitude and at several keyframes at once.
+
+The search of :mod:`mbkf.labelling.beam_search`, with whole tracks in the place of the points of one frame.
+"""
 
 from __future__ import annotations
 
@@ -10,15 +13,15 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.labelling.assignment import HIDDEN, Indices
-from mbkf.labelling.moment_placing import LENGTH_M, REACH_M, MomentPlacing
-from mbkf.labelling.moments import Moments
+from mbkf.labelling.keyframe_placing import LENGTH_M, REACH_M, KeyframePlacing
+from mbkf.labelling.keyframes import Keyframes
 from mbkf.labelling.skeleton import Cluster
 
 BEAM, LIMBS, BRANCHES = 40, 10, 8
-"""Partial bodies kept after a segment and at the end of a limb, and ways to place a segment that are followed."""
+"""Partial bodies kept after a segment and at the end of a limb; placements of a segment that extend each of them."""
 
 ROOTS = 400
-"""How many roots are grown from."""
+"""How many poses of the root the search begins with."""
 
 TRIPLES = 6
 """How many triples of the root's markers are tried."""
@@ -28,13 +31,13 @@ LEAST_AREA_M2 = 0.0025
 
 
 @dataclass(frozen=True)
-class LaidBody:
-    """A body laid onto tracks so far.
+class KeyframeBody:
+    """A body whose first segments are placed on tracks.
 
     Attributes:
         rotations: (K, S, 3, 3) orientation of the segments, in the order of the clusters; NaN where not placed.
         origins_m: (K, S, 3) their joints.
-        tracks: (M,) place among the moments' tracks of every marker's own, ``HIDDEN`` where none.
+        tracks: (M,) place among the keyframes' tracks of every marker's own, ``HIDDEN`` where none.
         score: Worth of its matches.
     """
 
@@ -44,7 +47,7 @@ class LaidBody:
     score: float
 
 
-def lay(body: tuple[Cluster, ...], seen: Moments, most: int) -> list[LaidBody]:
+def search_keyframes(body: tuple[Cluster, ...], seen: Keyframes, most: int) -> list[KeyframeBody]:
     """The bodies that explain the tracks best, best first, at most ``most`` of them.
 
     Args:
@@ -52,21 +55,21 @@ def lay(body: tuple[Cluster, ...], seen: Moments, most: int) -> list[LaidBody]:
         seen: The tracks.
         most: How many to return.
     """
-    placing = MomentPlacing(seen)
+    placing = KeyframePlacing(seen)
     beam = _roots(body, placing)
     for number in range(1, len(body)):
-        grown = [bigger for one in beam for bigger in _with(one, body, number, placing)]
+        extended = [bigger for one in beam for bigger in _with(one, body, number, placing)]
         ends = all(cluster.parent != number for cluster in body)
-        beam = _best(grown, LIMBS if ends else BEAM)
+        beam = _best(extended, LIMBS if ends else BEAM)
     return beam[:most]
 
 
-def _roots(body: tuple[Cluster, ...], placing: MomentPlacing) -> list[LaidBody]:
+def _roots(body: tuple[Cluster, ...], placing: KeyframePlacing) -> list[KeyframeBody]:
     """Bodies of the root alone: three of its markers on tracks at the same distances, and all others that fit then."""
     root, count = body[0], len(placing.seen.tracks)
     every, nowhere = np.arange(count), np.zeros((len(placing.seen.frames), 3))
     reach = np.full(len(root.markers), REACH_M)
-    found: list[LaidBody] = []
+    found: list[KeyframeBody] = []
     for three in _triples(root.local_m):
         own = root.local_m[list(three)]
         near = [
@@ -90,7 +93,7 @@ def _roots(body: tuple[Cluster, ...], placing: MomentPlacing) -> list[LaidBody]:
             turns = np.full((len(nowhere), len(body), 3, 3), np.nan)
             joints = np.full((len(nowhere), len(body), 3), np.nan)
             turns[:, 0], joints[:, 0] = rotations[n], origins[n]
-            found.append(LaidBody(turns, joints, whole, float(worth[n])))
+            found.append(KeyframeBody(turns, joints, whole, float(worth[n])))
     return _best(found, ROOTS)
 
 
@@ -106,8 +109,8 @@ def _triples(local_m: Array) -> list[tuple[int, int, int]]:
 
 
 def _with(
-    one: LaidBody, body: tuple[Cluster, ...], number: int, placing: MomentPlacing
-) -> Iterable[LaidBody]:
+    one: KeyframeBody, body: tuple[Cluster, ...], number: int, placing: KeyframePlacing
+) -> Iterable[KeyframeBody]:
     cluster = body[number]
     parents = one.rotations[:, cluster.parent]
     origins = one.origins_m[:, cluster.parent] + parents @ cluster.origin_m
@@ -119,9 +122,9 @@ def _with(
         yield replace(one, rotations=rotations, origins_m=joints, tracks=tracks, score=one.score + way.score)
 
 
-def _best(bodies: Iterable[LaidBody], most: int) -> list[LaidBody]:
+def _best(bodies: Iterable[KeyframeBody], most: int) -> list[KeyframeBody]:
     """The best of them, each set of tracks once."""
-    found: dict[bytes, LaidBody] = {}
+    found: dict[bytes, KeyframeBody] = {}
     for one in sorted(bodies, key=lambda body: -body.score):
         found.setdefault(one.tracks.tobytes(), one)
         if len(found) == most:

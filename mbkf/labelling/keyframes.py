@@ -1,7 +1,7 @@
-"""Tracks at a few moments of a capture: what moves together is one segment, in whatever attitude the body is.
+"""Tracks at a few keyframes of a capture: tracks that move together are on one segment, in any attitude of the body.
 
 Two tracks of one segment keep their distance through a whole capture; those of different segments do not, as soon as
-the body moves. That needs no model, so that it helps most where there is no subject yet.
+the body moves. No model of the body is needed, so that this helps most before the subject is scaled.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ LOOKS = 160
 """Frames, spread over the capture, from which distances are learnt."""
 
 SHOWN = 0.8
-"""A moment shows at least so large a share of the tracks that the best frame does."""
+"""A keyframe shows at least so large a share of the tracks that the best frame shows."""
 
 STILL_M, TRAVEL_M = 0.05, 0.50
-"""A track that moves less than the one, while half of all move more than the other, is on nobody's body."""
+"""A track that moves less than the first, while half of all tracks move more than the second, is not on the body."""
 
 MIN_SHOWN = 0.15
-"""A track that fewer of the frames looked at show than this takes no part."""
+"""A track that is seen in a smaller share of the frames looked at takes no part."""
 
 _MIDDLE = (5.0, 95.0)
 
 
 @dataclass(frozen=True)
-class Moments:
-    """N tracks at K moments.
+class Keyframes:
+    """N tracks at K keyframes.
 
     Attributes:
         frames: (K,) the frames; the first is the one that the tracks were taken from.
@@ -49,14 +49,14 @@ class Moments:
     length_m: Array
 
 
-def moments(points_m: Array, tracks: Tracks, frame: int, count: int) -> Moments | None:
-    """The tracks seen in a frame, at moments in which their distances differ most from each other.
+def choose_keyframes(points_m: Array, tracks: Tracks, frame: int, count: int) -> Keyframes | None:
+    """The tracks seen in a frame, at keyframes in which their distances differ most from each other.
 
     Args:
         points_m: (T, C, 3) the capture's points.
         tracks: Their tracks.
         frame: The frame.
-        count: How many moments, at most.
+        count: How many keyframes, at most.
 
     Returns:
         None where the frame shows fewer than three tracks that may be a body's.
@@ -73,7 +73,7 @@ def moments(points_m: Array, tracks: Tracks, frame: int, count: int) -> Moments 
     low, high, middle = _quantiles(distance, (*_MIDDLE, 50.0))
     shown = (~np.isnan(seen[:, :, 0])).sum(axis=1)
     picked = _differing(distance, shown >= SHOWN * shown.max(), int(np.searchsorted(looks, frame)), count)
-    return Moments(looks[picked], chosen, seen[picked], high - low, middle)
+    return Keyframes(looks[picked], chosen, seen[picked], high - low, middle)
 
 
 def moving(positions_m: Array) -> BoolArray:

@@ -1,9 +1,9 @@
-"""Labels re-decided in the light of the whole capture: every tracklet gets one label, or none (SPEC §7).
+"""Offline relabelling, with the whole capture known: every tracklet gets one label, or none.
 
-A filter that labels frame by frame must decide at once. Afterwards the smoothed body says where each marker was in
-every frame, and a tracklet is judged as a whole: a marker keeps its place on the segment to a few millimetres over the
-tracklet, a ghost wanders. With mean offset r̄ from the marker's place, scatter s² about it (three coordinates together)
-and n_e independent looks, the cost of a pair is
+A filter that labels frame by frame must decide at once. Afterwards the smoothed body predicts each marker in every
+frame, and a tracklet is compared with it as a whole: a marker keeps its place on the segment to a few millimetres, a
+ghost drifts. With mean offset r̄ from the marker's place, scatter s² about it (three coordinates together) and n_e
+independent looks, the cost of a pair is
 
     c = |r̄|² / (σ_p² + σ² + p²) + ln det(2π(σ_p² + σ² + p²) I) + 2 ln λ + (n_e − 1)(s² / (σ² + min(p², σ²)) − κ)
 
@@ -28,8 +28,8 @@ from mbkf.labelling.tracklets import Tracklets
 
 
 @dataclass(frozen=True)
-class RedecisionSettings:
-    """What a tracklet must do to carry a marker's name.
+class RelabellingSettings:
+    """Limits within which a tracklet carries a marker's name.
 
     Attributes:
         placement_sd_m: How far the mean of a tracklet may be from its marker's place, σ_p.
@@ -65,8 +65,8 @@ class RedecisionSettings:
 
 
 @dataclass(frozen=True)
-class Course:
-    """Where a body's markers were in every frame of a capture, as a smoother has it; NaN where it was not followed.
+class SmoothedMarkers:
+    """The smoothed body's markers in every frame of a capture; NaN where the body was not tracked.
 
     Attributes:
         on_body_m: (T, M, 3) the markers' places.
@@ -83,8 +83,8 @@ class Course:
         return np.einsum("tmji,tmj->tmi", self.rotations, markers_m - self.on_body_m)
 
 
-def voted(
-    label_of_point: Indices, markers: int, tracklets: Tracklets, settings: RedecisionSettings
+def majority_labels(
+    label_of_point: Indices, markers: int, tracklets: Tracklets, settings: RelabellingSettings
 ) -> Indices:
     """(n,) label of every tracklet by the frames in which its points carried it.
 
@@ -99,14 +99,14 @@ def voted(
     return _without_overlap(np.where(votes >= settings.least_votes * (length + 5.0), votes, 0.0), tracklets)
 
 
-def decided(
+def relabel(
     label_of_point: Indices,
     positions_m: Array,
     tracklets: Tracklets,
-    course: Course,
+    course: SmoothedMarkers,
     noise_m: Array,
     dt_s: float,
-    settings: RedecisionSettings,
+    settings: RelabellingSettings,
 ) -> Indices:
     """(n,) label of every tracklet by the cheapest assignment.
 
@@ -117,7 +117,7 @@ def decided(
         course: The smoothed body's markers.
         noise_m: (M,) marker noise, NaN for markers that are not looked for.
         dt_s: Time between frames.
-        settings: What a marker does and a ghost does not.
+        settings: Limits that tell markers from ghosts.
     """
     cost = _costs(positions_m, tracklets, course, noise_m, dt_s, settings)
     votes = _votes(label_of_point, len(noise_m), tracklets)
@@ -136,14 +136,23 @@ def doubtful(
     label_of_point: Indices,
     positions_m: Array,
     tracklets: Tracklets,
-    course: Course,
+    course: SmoothedMarkers,
     noise_m: Array,
     dt_s: float,
-    settings: RedecisionSettings,
+    settings: RelabellingSettings,
 ) -> BoolArray:
-    """(n,) labelled tracklets that may be ghosts: brief, or far from their marker's place; arguments as in ``decided``.
+    """(n,) labelled tracklets that may be ghosts: brief, or far from their marker's place; limits in ``settings``.
 
     A ghost takes a segment of few markers with it, so that being near is no proof.
+
+    Args:
+        label_of_point: (T, C) labels so far.
+        positions_m: (T, C, 3) points.
+        tracklets: Their links.
+        course: The smoothed body's markers.
+        noise_m: (M,) marker noise, NaN for markers that are not looked for.
+        dt_s: Time between frames.
+        settings: When a tracklet is brief, and when it is far.
     """
     votes = _votes(label_of_point, len(noise_m), tracklets)
     label = np.where(votes.any(axis=1), votes.argmax(axis=1), HIDDEN)
@@ -155,7 +164,7 @@ def doubtful(
             mean = _offsets(positions_m, frames, columns, course)[:, marker].mean(axis=0)
             variance = course.variance_m2[frames, marker].mean()
             placed = settings.placement_sd_m**2 + noise_m[marker] ** 2 + variance
-            # Never where the body was not followed: comparisons with NaN are false.
+            # Never where the body was not tracked: comparisons with NaN are false.
             far[number] |= bool(mean @ mean > settings.doubt * placed)
     return np.asarray(far & (_share_in_doubt(far, label != HIDDEN, tracklets) <= settings.most_doubt))
 
@@ -171,7 +180,11 @@ def _share_in_doubt(far: BoolArray, labelled: BoolArray, tracklets: Tracklets) -
 
 
 def worn(
-    course: Course, markers_m: Array, noise_m: Array, segments: Sequence[str], settings: RedecisionSettings
+    course: SmoothedMarkers,
+    markers_m: Array,
+    noise_m: Array,
+    segments: Sequence[str],
+    settings: RelabellingSettings,
 ) -> BoolArray:
     """(M,) markers that are really there, and not made up of ghosts that passed the place of one that was not worn.
 
@@ -207,7 +220,7 @@ def _votes(label_of_point: Indices, markers: int, tracklets: Tracklets) -> Array
 
 
 def _without_overlap(frames: Array, tracklets: Tracklets) -> Indices:
-    """(n,) labels by the number of frames (n, M) that speak for them, no label twice in a frame."""
+    """(n,) labels by the number of frames (n, M) with each of them, no label twice in a frame."""
     label = np.full(tracklets.count, HIDDEN, dtype=np.intp)
     taken = np.zeros((len(tracklets.number), frames.shape[1]), dtype=bool)
     rows, columns = np.nonzero(frames)
@@ -223,12 +236,12 @@ def _without_overlap(frames: Array, tracklets: Tracklets) -> Indices:
 def _costs(
     positions_m: Array,
     tracklets: Tracklets,
-    course: Course,
+    course: SmoothedMarkers,
     noise_m: Array,
     dt_s: float,
-    settings: RedecisionSettings,
+    settings: RelabellingSettings,
 ) -> Array:
-    """(n, M) costs of the module's equation; infinite beyond the gate and where the body was not followed."""
+    """(n, M) costs of the module's equation; infinite beyond the gate and where the body was not tracked."""
     cost = np.full((tracklets.count, len(noise_m)), np.inf)
     followed = ~np.isnan(course.variance_m2[:, 0])
     for number, (frames, columns) in enumerate(tracklets.pieces):
@@ -252,7 +265,7 @@ def _costs(
     return cost
 
 
-def _offsets(positions_m: Array, frames: Indices, columns: Indices, course: Course) -> Array:
+def _offsets(positions_m: Array, frames: Indices, columns: Indices, course: SmoothedMarkers) -> Array:
     """(k, M, 3) offsets of a tracklet's points from the places of all markers, in their segments' frames."""
     offset = positions_m[frames, columns, None] - course.on_body_m[frames]
     return np.einsum("tmji,tmj->tmi", course.rotations[frames], offset)

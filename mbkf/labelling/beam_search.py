@@ -1,4 +1,8 @@
-"""A body laid onto unlabelled points from the root outwards: a beam of partial bodies, one segment after the other."""
+"""Beam search of a body on unlabelled points: partial bodies, extended by one segment after the other.
+
+The search begins with candidate poses of the root. Every partial body is extended by the likeliest placements of the
+next segment, and the best of the extended bodies (the beam) are kept.
+"""
 
 from __future__ import annotations
 
@@ -14,21 +18,21 @@ from mbkf.labelling.seeds import Seeds
 from mbkf.labelling.skeleton import Cluster
 
 BEAM = 40
-"""How many partial bodies are kept after every segment."""
+"""Beam width: how many partial bodies are kept after every segment."""
 
 LIMBS = 10
 """How many are kept at the end of a limb: what is left open there must not crowd out the choices of the next limb."""
 
 BRANCHES = 8
-"""How many ways to place a segment are followed."""
+"""How many placements of a segment extend each partial body."""
 
 ROOTS = 120
-"""How many roots are grown from."""
+"""How many poses of the root the search begins with."""
 
 
 @dataclass(frozen=True)
-class GrownBody:
-    """A body grown so far.
+class PartialBody:
+    """A body whose first segments are placed.
 
     Attributes:
         rotations: (S, 3, 3) orientation of the segments, in the order of the clusters; NaN where not placed.
@@ -43,7 +47,7 @@ class GrownBody:
     score: float
 
 
-def grow(body: tuple[Cluster, ...], points_m: Array, seeds: Seeds, most: int) -> list[GrownBody]:
+def search_bodies(body: tuple[Cluster, ...], points_m: Array, seeds: Seeds, most: int) -> list[PartialBody]:
     """The best bodies that explain the points, best first, at most ``most`` of them.
 
     Args:
@@ -55,35 +59,35 @@ def grow(body: tuple[Cluster, ...], points_m: Array, seeds: Seeds, most: int) ->
     return _extended(_roots(body, points_m, seeds), body, range(1, len(body)), points_m)[:most]
 
 
-def regrow(
-    body: tuple[Cluster, ...], points_m: Array, grown: GrownBody, limb: Sequence[int], most: int
-) -> list[GrownBody]:
-    """The best bodies with one limb grown anew on the points that the rest of the body leaves.
+def search_limb(
+    body: tuple[Cluster, ...], points_m: Array, whole: PartialBody, limb: Sequence[int], most: int
+) -> list[PartialBody]:
+    """The best bodies with one limb searched again among the points that the rest of the body leaves.
 
     Args:
         body: Its segments, root first.
         points_m: (N, 3) measured points.
-        grown: A whole body.
+        whole: A whole body.
         limb: Numbers of the limb's segments, from the proximal one on.
         most: How many to return.
     """
-    points = grown.points.copy()
+    points = whole.points.copy()
     for number in limb:
         points[body[number].markers] = HIDDEN
-    return _extended([replace(grown, points=points, score=0.0)], body, limb, points_m)[:most]
+    return _extended([replace(whole, points=points, score=0.0)], body, limb, points_m)[:most]
 
 
 def _extended(
-    beam: list[GrownBody], body: tuple[Cluster, ...], numbers: Iterable[int], points_m: Array
-) -> list[GrownBody]:
+    beam: list[PartialBody], body: tuple[Cluster, ...], numbers: Iterable[int], points_m: Array
+) -> list[PartialBody]:
     for number in numbers:
-        grown = [bigger for one in beam for bigger in _with(one, body, number, points_m)]
+        extended = [bigger for one in beam for bigger in _with(one, body, number, points_m)]
         ends = all(cluster.parent != number for cluster in body)
-        beam = _best(grown, LIMBS if ends else BEAM)
+        beam = _best(extended, LIMBS if ends else BEAM)
     return beam
 
 
-def _roots(body: tuple[Cluster, ...], points_m: Array, seeds: Seeds) -> list[GrownBody]:
+def _roots(body: tuple[Cluster, ...], points_m: Array, seeds: Seeds) -> list[PartialBody]:
     """Bodies of the root alone; those whose seed matches most of its markers."""
     root, (rotations, origins) = body[0], seeds
     if not len(rotations):
@@ -92,7 +96,7 @@ def _roots(body: tuple[Cluster, ...], points_m: Array, seeds: Seeds) -> list[Gro
     placed = origins[:, None] + np.einsum("nij,kj->nki", rotations, root.local_m)
     matched, squared = match(placed, points_m)
     worth = worths(root, matched, squared)
-    found: dict[bytes, GrownBody] = {}
+    found: dict[bytes, PartialBody] = {}
     for n in np.argsort(-worth):
         key = matched[n].tobytes()
         if key in found:
@@ -102,7 +106,7 @@ def _roots(body: tuple[Cluster, ...], points_m: Array, seeds: Seeds) -> list[Gro
         points[root.markers] = matched[n]
         turns, joints = np.full((len(body), 3, 3), np.nan), np.full((len(body), 3), np.nan)
         turns[0], joints[0] = rotation, origin
-        found[key] = GrownBody(turns, joints, points, float(worth[n]))
+        found[key] = PartialBody(turns, joints, points, float(worth[n]))
         if len(found) == ROOTS:
             break
     return list(found.values())
@@ -122,7 +126,7 @@ def _settled(
     return turned, found.mean(axis=0) - turned @ own.mean(axis=0)
 
 
-def _with(one: GrownBody, body: tuple[Cluster, ...], number: int, points_m: Array) -> list[GrownBody]:
+def _with(one: PartialBody, body: tuple[Cluster, ...], number: int, points_m: Array) -> list[PartialBody]:
     cluster = body[number]
     parent = one.rotations[cluster.parent]
     origin = one.origins_m[cluster.parent] + parent @ cluster.origin_m
@@ -133,13 +137,13 @@ def _with(one: GrownBody, body: tuple[Cluster, ...], number: int, points_m: Arra
         points[cluster.markers] = way.points
         rotations, origins = one.rotations.copy(), one.origins_m.copy()
         rotations[number], origins[number] = way.rotation, origin
-        bigger.append(GrownBody(rotations, origins, points, one.score + way.score))
+        bigger.append(PartialBody(rotations, origins, points, one.score + way.score))
     return bigger
 
 
-def _best(bodies: Iterable[GrownBody], most: int) -> list[GrownBody]:
+def _best(bodies: Iterable[PartialBody], most: int) -> list[PartialBody]:
     """The best of them, each labelling once."""
-    found: dict[bytes, GrownBody] = {}
+    found: dict[bytes, PartialBody] = {}
     for one in sorted(bodies, key=lambda body: -body.score):
         found.setdefault(one.points.tobytes(), one)
         if len(found) == most:

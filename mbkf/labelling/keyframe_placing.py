@@ -1,8 +1,8 @@
-"""Poses of one segment that lay its marker cluster onto tracks, at several moments at once.
+"""Poses of one segment that match its marker cluster with tracks, at several keyframes at once.
 
-Nobody has measured this body: its markers sit some centimetres from where the protocol has them and its limbs are
-longer or shorter. So a segment's pose comes from its own tracks, its joint pulls it only softly, and what keeps wrong
-tracks out is that they do not move with the segment, or fit at one moment and not at the others.
+This body has not been scaled: its markers sit some centimetres from where the protocol has them and its limbs are
+longer or shorter. A segment's pose therefore comes from its own tracks, with a weak residual of its joint. Wrong
+tracks are kept out because they do not move with the segment, or fit at one keyframe and not at the others.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.labelling.assignment import HIDDEN, Indices
-from mbkf.labelling.moments import Moments
+from mbkf.labelling.keyframes import Keyframes
 from mbkf.labelling.placing import MOST_POSTURE, PLACING_SD_M, likeness, nearest_rotations
 from mbkf.labelling.skeleton import Cluster
 
@@ -34,7 +34,7 @@ SETTLED_SDS = 3.0
 """How many of a marker's standard deviations it may be once it is."""
 
 MATCH_SD_M = 0.02
-"""A marker's spread against which :data:`JOINT_SD_M` weighs the joint's pull."""
+"""A marker's spread against which :data:`JOINT_SD_M` weighs the joint's residual."""
 
 ROUNDS = 3
 """How often pose and tracks are brought into line."""
@@ -45,13 +45,13 @@ _PARENT_PULL = 2e-4
 
 @dataclass(frozen=True)
 class Placed:
-    """A segment at K moments.
+    """A segment at K keyframes.
 
     Attributes:
         rotations: (K, 3, 3) its orientation.
         origins_m: (K, 3) its joint.
         tracks: (k,) place among the N tracks of each of its markers' own, ``HIDDEN`` where none.
-        score: What it is worth: matches less distances, less the joint's gap and turn.
+        score: Log-likelihood ratio of its matches, less the cost of the joint's gap and turn.
     """
 
     rotations: Array
@@ -60,15 +60,15 @@ class Placed:
     score: float
 
 
-class MomentPlacing:
-    """Places segments on the tracks of some moments.
+class KeyframePlacing:
+    """Places segments on the tracks of some keyframes.
 
     Attributes:
         seen: The tracks.
         together: (N, N) whether two may be on one segment.
     """
 
-    def __init__(self, seen: Moments) -> None:
+    def __init__(self, seen: Keyframes) -> None:
         self.seen = seen
         self.together = np.asarray(seen.spread_m <= TOGETHER_M)
         self._weight = (~np.isnan(seen.positions_m[:, :, 0])).astype(float)
@@ -106,10 +106,16 @@ class MomentPlacing:
     def settle(
         self, local_m: Array, tracks: Indices, origins_m: Array, parents: Array | None
     ) -> tuple[Array, Array]:
-        """Poses (n, K, 3, 3), (n, K, 3) of a segment by its tracks (n, k) and, softly, its joint (K, 3).
+        """Poses (n, K, 3, 3), (n, K, 3) of a segment by its tracks and, with a weak weight, by its joint.
 
         Least squares of the markers' distances and the joint's, each by its own spread (Wahba's problem with the joint
-        as a further point). Without ``parents`` the segment is the root and has no joint.
+        as a further point).
+
+        Args:
+            local_m: (k, 3) markers in the segment's frame.
+            tracks: (n, k) track of each marker, ``HIDDEN`` where none, in n alternatives.
+            origins_m: (K, 3) where the chain of segments has the joint.
+            parents: (K, 3, 3) orientation of the segment before; None for the root, which has no joint.
         """
         weight = np.where((tracks != HIDDEN)[:, None], self._weight[:, tracks].transpose(1, 0, 2), 0.0)
         found = self._points[:, tracks].transpose(1, 0, 2, 3)
@@ -158,17 +164,17 @@ class MomentPlacing:
         return found, np.where(good, np.maximum(worth, 0.0), 0.0).sum(axis=1)
 
     def _squared(self, placed_m: Array, free: Indices) -> Array:
-        """(n, k, F) squared distances of markers (n, K, k, 3) from tracks, summed over the moments that show these."""
-        ways, moments, markers, _ = placed_m.shape
+        """(n, k, F) squared distances of markers (n, K, k, 3) from tracks, summed over the keyframes with these."""
+        ways, keyframes, markers, _ = placed_m.shape
         weight, points = self._weight[:, free], self._points[:, free]
-        there = placed_m.transpose(0, 2, 1, 3).reshape(ways * markers, 3 * moments)
-        seen = (weight[:, :, None] * points).transpose(0, 2, 1).reshape(3 * moments, len(free))
-        own = (there**2).reshape(-1, moments, 3).sum(axis=2) @ weight
+        there = placed_m.transpose(0, 2, 1, 3).reshape(ways * markers, 3 * keyframes)
+        seen = (weight[:, :, None] * points).transpose(0, 2, 1).reshape(3 * keyframes, len(free))
+        own = (there**2).reshape(-1, keyframes, 3).sum(axis=2) @ weight
         found = own - 2.0 * there @ seen + (weight * (points**2).sum(axis=2)).sum(axis=0)
         return np.asarray(np.maximum(found, 0.0).reshape(ways, markers, len(free)))
 
     def _first(self, cluster: Cluster, origins_m: Array, free: Indices) -> tuple[Indices, BoolArray]:
-        """Tracks (n, k) of two markers, or of one where the segment has fewer than three, and what may join them."""
+        """Tracks (n, k) of two markers, or of one of a segment with fewer than three, and tracks that may join them."""
         found = np.zeros((0, len(cluster.markers)), dtype=np.intp)
         if not len(cluster.markers) or not len(free):
             return found, np.zeros((0, len(free)), dtype=bool)
@@ -195,7 +201,7 @@ class MomentPlacing:
     def _within_reach(
         self, cluster: Cluster, origins_m: Array, free: Indices
     ) -> tuple[Indices, Indices, Array]:
-        """Markers and tracks that are about as far from the joint as each other at all moments, and by how much not."""
+        """Markers and tracks at about the same distance from the joint at all keyframes, and their differences."""
         weight = self._weight[:, free]
         distance = np.linalg.norm(self._points[:, free] - origins_m[:, None], axis=2)
         radius = np.linalg.norm(cluster.local_m, axis=1)
@@ -207,7 +213,7 @@ class MomentPlacing:
     def _strain(
         self, cluster: Cluster, rotations: Array, origins: Array, origins_m: Array, parents: Array
     ) -> Array:
-        """(n,) what the joint's gap and an unusual turn cost, mean over the moments."""
+        """(n,) what the joint's gap and an unusual turn cost, mean over the keyframes."""
         gap = ((origins - origins_m) ** 2).sum(axis=2) / JOINT_SD_M**2
         cosine = (np.einsum("nkij,kij->nk", rotations, parents) - 1.0) / 2.0
         turn = np.arccos(np.clip(cosine, -1.0, 1.0)) / cluster.posture_sd_rad
