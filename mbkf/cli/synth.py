@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 
 from mbkf.errors import InvalidInput
-
-MOTIONS = ("squat", "walk", "jump")
+from mbkf.synthesis.motions import motion_names, registered_motion
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -41,8 +40,10 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 def add_motion_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that choose the motion, shared with ``mbkf demo``."""
-    parser.add_argument("--motion", choices=MOTIONS, default="squat", help="what the person does (squat)")
-    parser.add_argument("--seconds", metavar="S", type=float, help="duration (squat 5, walk 4, jump 3)")
+    names = motion_names()
+    usual = ", ".join(f"{name} {registered_motion(name).seconds:g}" for name in names)
+    parser.add_argument("--motion", choices=names, default=names[0], help=f"the person's motion ({names[0]})")
+    parser.add_argument("--seconds", metavar="S", type=float, help=f"duration ({usual})")
     parser.add_argument(
         "--seed", metavar="N", type=int, default=0, help="another person, motion and noise (0)"
     )

@@ -183,7 +183,7 @@ class FirstFrameSearch:
         return found
 
     def worth(self, markers_m: Array, q: Array) -> float:
-        """Twice the log-likelihood ratio of markers (M, 3) on a body in the pose q (nq,) and of ghosts, plus the posture's.
+        """Twice the log-likelihood ratio of markers (M, 3) on a body in pose q (nq,) and of ghosts, plus the posture's.
 
         Exchanged markers of a wrist fit as well, but turn the forearm by half a turn: its posture is unlikely.
         """

@@ -78,7 +78,7 @@ def run_demo(
     """Synthetic capture → subject scaled from the standing trial → labels → reconstruction → errors.
 
     Args:
-        motion: "squat", "walk" or "jump".
+        motion: Name of a registered motion, see :mod:`mbkf.synthesis.motions`.
         folder: Where the capture goes, and the result into its subfolder ``result``.
         seconds: Duration; the motion's usual one when None.
         seed: Chooses person, motion and noise.

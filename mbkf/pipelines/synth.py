@@ -11,11 +11,10 @@ from mbkf.io.subject import Subject, write_subject
 from mbkf.io.truth import write_truth
 from mbkf.synthesis.capture import CaptureSettings, SyntheticCapture, synthesise_capture
 from mbkf.synthesis.motion import synthesise_motion
+from mbkf.synthesis.motions import registered_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
 
 FILES = ("trial.c3d", "raw.c3d", "static.c3d", "subject.toml", "truth.h5")
-
-DEFAULT_SECONDS = {"squat": 5.0, "walk": 4.0, "jump": 3.0}
 
 
 def synthesise(
@@ -30,7 +29,7 @@ def synthesise(
     """A random subject performing a motion, and the capture of it.
 
     Args:
-        motion: "squat", "walk" or "jump".
+        motion: Name of a registered motion, see :mod:`mbkf.synthesis.motions`.
         seconds: Duration; the motion's usual one when None.
         seed: Chooses subject, motion and noise.
         rate_hz: Camera rate.
@@ -45,7 +44,7 @@ def synthesise(
     report = progress or (lambda *_: None)
     subject = synthesise_subject(seed)
     report("Moving", 0, 2)
-    duration = DEFAULT_SECONDS.get(motion, 5.0) if seconds is None else seconds
+    duration = registered_motion(motion).seconds if seconds is None else seconds
     true_motion = synthesise_motion(body_of(subject), motion, duration, rate_hz, seed)
     report("Moving", 1, 2)
     capture = synthesise_capture(subject, true_motion, settings, seed)

@@ -14,7 +14,7 @@ from scipy.interpolate import BSpline
 from scipy.linalg import cho_factor, cho_solve, null_space
 
 from mbkf.conventions import GRAVITY_M_S2, Array
-from mbkf.synthesis.jets import Jet
+from mbkf.synthesis.dual_numbers import Dual
 
 DEGREE = 5
 
@@ -37,15 +37,21 @@ class HorizontalPath:
         self.coefficients = np.zeros((self.first[-1], 2))
 
     def rows(self, spell: int, times: Array, order: int) -> Array:
-        """(T, K) rows that give the curve's derivative of an order at times inside a spell."""
+        """(T, K) rows that give a derivative of the curve from its K coefficients.
+
+        Args:
+            spell: Number of the spell on the ground.
+            times: (T,) times inside it, s.
+            order: Order of the derivative, 0 for the curve itself.
+        """
         rows = np.zeros((len(times), self.first[-1]))
         knots, size = self.knots[spell], self.sizes[spell]
         basis = BSpline(knots, np.eye(size), DEGREE)
         rows[:, self.first[spell] : self.first[spell] + size] = basis(times, nu=order)
         return rows
 
-    def __call__(self, times: Array) -> Jet:
-        """The curve as a jet (T, 2)."""
+    def __call__(self, times: Array) -> Dual:
+        """The curve (T, 2) with its derivatives."""
         orders = [np.zeros((len(times), 2)) for _ in range(3)]
         for k, (start, end) in enumerate(self.spells):
             own = self.coefficients[self.first[k] : self.first[k + 1]]
@@ -61,7 +67,7 @@ class HorizontalPath:
                 velocity = spline(end, nu=1)
                 orders[0][flying] = spline(end) + (times[flying] - end)[:, None] * velocity
                 orders[1][flying] = velocity
-        return Jet(*orders)
+        return Dual(*orders)
 
     def _ties(self) -> Array:
         """Linear conditions: no horizontal force in the air, straight uniform motion from spell to spell."""
@@ -76,7 +82,7 @@ class HorizontalPath:
             ]
         return np.vstack(ties) if ties else np.zeros((0, self.first[-1]))
 
-    def solve(self, times: Array, target: Array, height: Jet, turning: Array) -> None:
+    def solve(self, times: Array, target: Array, height: Dual, turning: Array) -> None:
         """Fits the curve to the wanted pressure.
 
         Args:

@@ -1,4 +1,4 @@
-"""What cameras make of true markers: noise, moving skin, occlusions, ghost reflections, lost labels."""
+"""Errors of cameras on true markers: noise, moving skin, occlusions, ghost reflections, lost labels."""
 
 from __future__ import annotations
 
@@ -14,7 +14,13 @@ GHOST_SECONDS = (0.2, 1.0)
 
 
 def true_markers(model: HumanModel, subject: Subject, q: Array) -> Array:
-    """(T, M, 3) positions of the subject's markers at configurations q (T, nq), m."""
+    """(T, M, 3) exact positions of the subject's markers, m.
+
+    Args:
+        model: The subject's scaled body.
+        subject: Markers with their segments and places.
+        q: (T, nq) configurations.
+    """
     joints = np.array([model.joint(marker.segment).joint_id for marker in subject.markers])
     local = np.array([marker.position_m for marker in subject.markers])
     positions = np.empty((len(q), len(joints), 3))
@@ -47,7 +53,14 @@ def skin_artefact(
 
 
 def occlusions(frames: int, markers: int, fraction: float, rng: np.random.Generator) -> np.ndarray:
-    """(T, M) where markers are hidden: streaks of 20 frames until the fraction is reached."""
+    """(T, M) where markers are hidden: streaks of 20 frames until the fraction is reached.
+
+    Args:
+        frames: Number of frames T.
+        markers: Number of markers M.
+        fraction: Part of the samples that is hidden, 0…1.
+        rng: Source of the streaks.
+    """
     hidden = np.zeros((frames, markers), dtype=bool)
     streak = min(OCCLUSION_FRAMES, frames)
     while hidden.sum() < round(fraction * hidden.size):
@@ -57,7 +70,14 @@ def occlusions(frames: int, markers: int, fraction: float, rng: np.random.Genera
 
 
 def ghosts(positions: Array, count: int, rate_hz: float, rng: np.random.Generator) -> Array:
-    """(T, count, 3) reflections that come and go near the body; NaN while absent."""
+    """(T, count, 3) reflections that come and go near the body, m; NaN while absent.
+
+    Args:
+        positions: (T, M, 3) marker positions, m.
+        count: Greatest number of reflections at a time.
+        rate_hz: Frames per second.
+        rng: Source of places and times.
+    """
     frames = len(positions)
     found = np.full((frames, count, 3), np.nan)
     times = np.arange(frames) / rate_hz

@@ -56,7 +56,7 @@ class CaptureSettings:
 
 @dataclass(frozen=True)
 class SyntheticCapture:
-    """What the instruments recorded and what was true.
+    """The records of the instruments, and the truth.
 
     Attributes:
         trial: Labelled capture; its plates hold their readings as stored, offset included.
@@ -75,6 +75,12 @@ def synthesise_capture(
     subject: Subject, motion: TrueMotion, settings: CaptureSettings | None = None, seed: int = 0
 ) -> SyntheticCapture:
     """Records a true motion of a subject with imperfect instruments, differently for every seed.
+
+    Args:
+        subject: The person that moves.
+        motion: The exact motion.
+        settings: Errors of the instruments.
+        seed: Chooses the errors and the static trial.
 
     Raises:
         NotConverged: The subject cannot stand for the static trial.

@@ -86,8 +86,8 @@ def split(wrench: Array, load: Load, height: Array) -> tuple[Array, Array]:
 
     Args:
         wrench: (T, 6) total force N and moment N m about the world origin.
-        load: The intended load; what the motion misses of it shifts both centres of pressure, that of the foot
-            with more load more.
+        load: The intended load; the difference of the motion from it shifts both centres of pressure, that of
+            the foot with more load more.
         height: (T,) height of the centre of mass, m.
 
     Returns:

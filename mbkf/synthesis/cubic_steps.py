@@ -57,7 +57,7 @@ def cubic_steps(case: str = "clean", seed: int = 0, *, delay_s: float = 0.0) -> 
     Args:
         case: One of :data:`CASES`.
         seed: Of the noise.
-        delay_s: The motion starts that much later than the study's, while the samples stay where they are.
+        delay_s: Delay of the motion against the study's; the times of the samples do not change.
 
     Raises:
         UnknownName: There is no such case.

@@ -8,14 +8,14 @@ import numpy as np
 from scipy.interpolate import BPoly, PPoly, make_interp_spline
 
 from mbkf.conventions import Array
-from mbkf.synthesis.jets import Jet
+from mbkf.synthesis.dual_numbers import Dual
 
-Curve = Callable[[Array], Jet]
-"""A quantity of time: (T,) times in s to a jet of shape (T,) or (T, n)."""
+Curve = Callable[[Array], Dual]
+"""A quantity of time: (T,) times in s to a dual number of shape (T,) or (T, n)."""
 
 
 def path(knots: Sequence[tuple], smooth: int = 2) -> Curve:
-    """A curve through knots (time, value[, velocity[, acceleration[, jerk]]]); what is not given is 0.
+    """A curve through knots (time, value[, velocity[, acceleration[, jerk]]]); derivatives not given are 0.
 
     Args:
         knots: In order of time; the curve is constant outside.
@@ -29,10 +29,10 @@ def path(knots: Sequence[tuple], smooth: int = 2) -> Curve:
     ]
     polynomial = PPoly.from_bernstein_basis(BPoly.from_derivatives(times, rows))
 
-    def curve(at: Array) -> Jet:
+    def curve(at: Array) -> Dual:
         inside = np.clip(at, times[0], times[-1])
         moving = ((at >= times[0]) & (at <= times[-1])).reshape(at.shape + (1,) * len(shape))
-        return Jet(
+        return Dual(
             polynomial(inside),
             np.where(moving, polynomial(inside, 1), 0.0),
             np.where(moving, polynomial(inside, 2), 0.0),
@@ -44,24 +44,38 @@ def path(knots: Sequence[tuple], smooth: int = 2) -> Curve:
 def spline(
     times: Sequence[float], values: Sequence[float], start: tuple[float, float], end: tuple[float, float]
 ) -> Curve:
-    """The quintic spline through values at times, with (rate, acceleration) given at both ends."""
+    """The quintic spline through values.
+
+    Args:
+        times: Times of the values, s.
+        values: The values.
+        start: Rate and acceleration at the first time.
+        end: Rate and acceleration at the last time.
+    """
     bends = ([(1, start[0]), (2, start[1])], [(1, end[0]), (2, end[1])])
     polynomial = make_interp_spline(times, values, k=5, bc_type=bends)
 
-    def curve(at: Array) -> Jet:
+    def curve(at: Array) -> Dual:
         inside = np.clip(at, times[0], times[-1])
-        return Jet(polynomial(inside), polynomial(inside, 1), polynomial(inside, 2))
+        return Dual(polynomial(inside), polynomial(inside, 1), polynomial(inside, 2))
 
     return curve
 
 
 def ripple(amplitude: float, frequency_hz: float, phase: float, offset: float = 0.0) -> Curve:
-    """The curve offset + amplitude · sin(2π f t + phase)."""
+    """The curve offset + amplitude · sin(2π f t + phase).
+
+    Args:
+        amplitude: Amplitude, in the unit of the curve.
+        frequency_hz: Frequency f.
+        phase: Phase, rad.
+        offset: Mean of the curve.
+    """
     w = 2 * np.pi * frequency_hz
 
-    def curve(at: Array) -> Jet:
+    def curve(at: Array) -> Dual:
         angle = w * at + phase
-        return Jet(
+        return Dual(
             offset + amplitude * np.sin(angle),
             amplitude * w * np.cos(angle),
             -amplitude * w**2 * np.sin(angle),
@@ -73,7 +87,7 @@ def ripple(amplitude: float, frequency_hz: float, phase: float, offset: float = 
 def added(*curves: Curve) -> Curve:
     """The sum of curves."""
 
-    def curve(at: Array) -> Jet:
+    def curve(at: Array) -> Dual:
         total = curves[0](at)
         for other in curves[1:]:
             total = total + other(at)

@@ -1,4 +1,4 @@
-"""The body in the air: the pelvis turns so that the angular momentum about the centre of mass stays what it is.
+"""The body in the air: the pelvis turns so that the angular momentum about the centre of mass stays constant.
 
 The pelvis's three angles are Chebyshev polynomials between take-off and touch-down, where their values are given. The
 momentum L is linear in their rates; a quasi-Newton iteration on the rates makes it constant at the nodes.
@@ -14,7 +14,7 @@ from numpy.polynomial.chebyshev import chebvander
 
 from mbkf.conventions import Array
 from mbkf.synthesis.curves import Curve, path
-from mbkf.synthesis.jets import Jet
+from mbkf.synthesis.dual_numbers import Dual
 from mbkf.synthesis.plan import Flight
 
 NODES = 150
@@ -52,11 +52,11 @@ class Tumbling:
         before = path([*plan.before[axis][:-1], ends[0]])
         after = path([ends[1], *plan.after[axis][1:]])
 
-        def curve(at: Array) -> Jet:
+        def curve(at: Array) -> Dual:
             rising, landed = before(at), after(at)
             inside = np.clip(at, plan.take_off_s, plan.touch_down_s)
             flying = (turn(inside), rate(inside), acceleration(inside))
-            return Jet(
+            return Dual(
                 *(
                     np.where(at < plan.take_off_s, b, np.where(at > plan.touch_down_s, a, f))
                     for b, f, a in zip(rising.orders, flying, landed.orders, strict=True)
@@ -65,7 +65,7 @@ class Tumbling:
 
         return curve
 
-    def refine(self, momentum: Callable[[tuple[Jet, Jet, Jet]], Array], rounds: int) -> float:
+    def refine(self, momentum: Callable[[tuple[Dual, Dual, Dual]], Array], rounds: int) -> float:
         """Makes the momentum more constant.
 
         Args:
@@ -78,7 +78,7 @@ class Tumbling:
         change = np.inf
         for _ in range(rounds):
             angles = _angles(
-                Jet(t(self.times), t.deriv()(self.times), t.deriv(2)(self.times)) for t in self.turns
+                Dual(t(self.times), t.deriv()(self.times), t.deriv(2)(self.times)) for t in self.turns
             )
             now = momentum(angles)
             if self._response is None:
@@ -112,11 +112,11 @@ class Tumbling:
         return np.array([fit(domain[1]) for fit in fits]) / (domain[1] - domain[0])
 
 
-def _angles(three: Iterable[Jet]) -> tuple[Jet, Jet, Jet]:
+def _angles(three: Iterable[Dual]) -> tuple[Dual, Dual, Dual]:
     x, y, z = three
     return x, y, z
 
 
-def _faster(angles: tuple[Jet, Jet, Jet], axis: int) -> tuple[Jet, Jet, Jet]:
+def _faster(angles: tuple[Dual, Dual, Dual], axis: int) -> tuple[Dual, Dual, Dual]:
     """The same angles, one of them turning 1 rad/s faster."""
-    return _angles(Jet(a.value, a.first + (k == axis), a.second) for k, a in enumerate(angles))
+    return _angles(Dual(a.value, a.first + (k == axis), a.second) for k, a in enumerate(angles))

@@ -7,11 +7,11 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, SIDES, Array
 from mbkf.errors import InvalidInput
 from mbkf.model.human import HumanModel
-from mbkf.synthesis import jets
+from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.contact import Load, LoadPlan, sole_outline
 from mbkf.synthesis.curves import path, ripple
-from mbkf.synthesis.figure import SIDE_NAMES, Figure, FootPose
-from mbkf.synthesis.jets import Jet
+from mbkf.synthesis.dual_numbers import Dual
+from mbkf.synthesis.inverse_kinematics import SIDE_NAMES, FootPose, InverseKinematics
 from mbkf.synthesis.plan import FeetPlan, Flight, MotionPlan, lively, resting
 from mbkf.synthesis.standing import constant, posture
 
@@ -41,11 +41,16 @@ SWING_DEG = {
     "right_forearm": (0.0, -30.0, 12.0),
     "left_forearm": (0.0, -30.0, -12.0),
 }
-"""What the joint angles (x, y, z) gain in the crouch, and when the arms are swung up."""
+"""Change of the joint angles (x, y, z) in the crouch, and with the arms swung up."""
 
 
 def jump_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
     """One jump of about 0.14 m, standing before and after.
+
+    Args:
+        model: The body that jumps.
+        seconds: Duration with the standing, s.
+        rng: Source of the differences between persons.
 
     Raises:
         InvalidInput: The time is too short for a jump.
@@ -138,11 +143,11 @@ def _feet(model: HumanModel, half_width: float, toe_out: float, off: float, down
         ]
     )
     size = float(model.scale.mean())
-    figure = Figure(model)
+    kinematics = InverseKinematics(model)
 
-    def lift(times: Array) -> Jet:
-        part = Jet((times - off) / (down - off), np.full_like(times, 1 / (down - off)), np.zeros_like(times))
-        part = jets.where((part.value > 0) & (part.value < 1), part, constant(times, 0.0))
+    def lift(times: Array) -> Dual:
+        part = Dual((times - off) / (down - off), np.full_like(times, 1 / (down - off)), np.zeros_like(times))
+        part = dual_numbers.where((part.value > 0) & (part.value < 1), part, constant(times, 0.0))
         return _rise(part) * _rise(1.0 - part) * (CLEARANCE_M * size)
 
     def feet(times: Array) -> dict[str, FootPose]:
@@ -150,17 +155,19 @@ def _feet(model: HumanModel, half_width: float, toe_out: float, off: float, down
         angle, up = pitch(times), lift(times)
         for side, sign in zip(SIDES, (-1.0, 1.0), strict=True):
             outline = sole_outline(model, side)
-            toes = figure.offset[f"{SIDE_NAMES[side]}_toes"] * [1.0, 0.0, 1.0]
+            toes = kinematics.offset[f"{SIDE_NAMES[side]}_toes"] * [1.0, 0.0, 1.0]
             yaw = constant(times, sign * toe_out)
-            turned = jets.rotation(1, angle).apply(-toes) + toes
-            ankle = jets.rotation(2, yaw).apply(turned) + np.array([0.0, sign * half_width, -outline.height])
+            turned = dual_numbers.rotation(1, angle).apply(-toes) + toes
+            ankle = dual_numbers.rotation(2, yaw).apply(turned) + np.array(
+                [0.0, sign * half_width, -outline.height]
+            )
             poses[side] = FootPose(ankle + up[:, None] * np.array([0.0, 0.0, 1.0]), yaw, angle, -angle)
         return poses
 
     return feet
 
 
-def _rise(part: Jet) -> Jet:
+def _rise(part: Dual) -> Dual:
     """From 0 with no speed or acceleration towards 1: u³ / (u³ + c³)."""
     cube = part * part * part
     return cube / (cube + STEEPNESS**3)
@@ -171,7 +178,7 @@ def _load(
 ) -> LoadPlan:
     """Pressure under the middle of the feet, moving under the toes while the heels are up."""
     size = float(model.scale.mean())
-    ball = Figure(model).offset["right_toes"][0]
+    ball = InverseKinematics(model).offset["right_toes"][0]
     off, down = flight.take_off_s, flight.touch_down_s
     forward = path(
         [

@@ -7,22 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbkf.conventions import SIDES, Array, read_only
-from mbkf.errors import InvalidInput, NotConverged, UnknownName
+from mbkf.errors import InvalidInput, NotConverged
 from mbkf.model.human import HumanModel
 from mbkf.synthesis.composition import Composition, compose
 from mbkf.synthesis.contact import FRICTION, sole_outline, split
-from mbkf.synthesis.figure import SIDE_NAMES
-from mbkf.synthesis.jump import jump_plan
-from mbkf.synthesis.squat import squat_plan
-from mbkf.synthesis.stand import stand_plan
+from mbkf.synthesis.inverse_kinematics import SIDE_NAMES
+from mbkf.synthesis.motions import registered_motion
 from mbkf.synthesis.strength import overloaded
-from mbkf.synthesis.walk import walk_plan
-
-MOTIONS = ("squat", "walk", "jump")
-"""Names of the motions a person may ask for."""
-
-PLANS = {"jump": jump_plan, "squat": squat_plan, "stand": stand_plan, "walk": walk_plan}
-"""Plan of every motion by name; "stand" is for static captures."""
 
 ATTEMPTS, BENT_RAD = 4, np.deg2rad(1.5)
 """How often a motion that fails is tried again, each time with the knees bent a little more."""
@@ -35,7 +26,7 @@ class TrueMotion:
     """A motion known exactly.
 
     Attributes:
-        name: "squat", "walk" or "jump".
+        name: Name of the registered motion.
         rate_hz: Sample rate.
         times_s: (T,) s.
         q: (T, nq) configuration.
@@ -73,18 +64,24 @@ def synthesise_motion(
 ) -> TrueMotion:
     """Makes a motion of a body, a different one for every seed.
 
+    Args:
+        model: The body that moves.
+        motion: Name of a registered motion, see :mod:`mbkf.synthesis.motions`.
+        seconds: Duration, s.
+        rate_hz: Sample rate of the result.
+        seed: Chooses the motion's details.
+
     Raises:
         UnknownName: There is no such motion.
         InvalidInput: Duration or rate make no sense.
         NotConverged: Balance was not found for this body.
     """
-    if motion not in PLANS:
-        raise UnknownName("motion", motion, PLANS)
+    kind = registered_motion(motion)
     if not MIN_SECONDS <= seconds <= MAX_SECONDS:
         raise InvalidInput(f"a motion lasts {MIN_SECONDS:g} to {MAX_SECONDS:g} s, got {seconds:g} s")
     if not 20.0 <= rate_hz <= 2000.0:
         raise InvalidInput(f"a camera rate lies between 20 and 2000 Hz, got {rate_hz:g} Hz")
-    plan = PLANS[motion](model, float(seconds), np.random.default_rng([seed, sorted(PLANS).index(motion)]))
+    plan = kind.plan(model, float(seconds), np.random.default_rng([seed, kind.stream]))
     every = max(1, int(np.ceil(1000.0 / rate_hz - 1e-9)))
     frames = int(np.floor(seconds * rate_hz + 1e-9)) + 1
     fine = np.arange((frames - 1) * every + 1) / (rate_hz * every)
@@ -137,13 +134,13 @@ def _dynamics(model: HumanModel, composition: Composition, times: Array, every: 
 
 
 def _strain(model: HumanModel, tau: Array) -> str:
-    """Which joint would have to be stronger than people are, "" if none."""
+    """The joint that would have to be stronger than people are, as a sentence, "" if none."""
     joint = overloaded(model, tau)
     return f"{joint} would have to be stronger than people are" if joint else ""
 
 
 def _fault(model: HumanModel, q: Array, fine: Array, wrenches: Array, centres: Array) -> str:
-    """What of the ground's laws is broken, "" if nothing: it pushes only, under the soles only, within friction."""
+    """The broken law of contact as a sentence, "" if none: the ground pushes, under the soles, within friction."""
     for foot, side in enumerate(SIDES):
         name = SIDE_NAMES[side]
         along = np.linalg.norm(fine[:, foot, :2], axis=1)

@@ -1,4 +1,4 @@
-"""Motions of the double pendulum with known truth, and what virtual sensors read of them (thesis 3.3.3, Table 3.1)."""
+"""Motions of the double pendulum with known truth, and virtual sensors on it (thesis section 3.3.3, table 3.1)."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class PendulumMotion:
 
 @dataclass(frozen=True)
 class PendulumNoise:
-    """How the virtual sensors err; each number is a standard deviation per sample.
+    """Errors of the virtual sensors; each number is a standard deviation per sample.
 
     Attributes:
         camera_m: White noise of each marker coordinate.
@@ -61,7 +61,7 @@ class PendulumNoise:
 
 @dataclass(frozen=True)
 class PendulumReadings:
-    """What is read: ``markers_m`` (T, 8) x and y of each marker, ``efforts`` (T, 4); NaN where nothing is."""
+    """Readings: ``markers_m`` (T, 8) x and y of each marker, ``efforts`` (T, 4); NaN where missing."""
 
     markers_m: Array
     efforts: Array
@@ -88,6 +88,12 @@ def pendulum_motion(
 ) -> PendulumMotion:
     """A motion with point 2 at the origin, and its efforts by inverse dynamics.
 
+    Args:
+        name: One of :data:`MOTIONS`.
+        shape: Lengths and masses of the pendulum.
+        seconds: Duration, s.
+        rate_hz: Sample rate.
+
     Raises:
         UnknownName: There is no such motion.
     """
@@ -109,7 +115,14 @@ def pendulum_motion(
 def readings(
     motion: PendulumMotion, noise: PendulumNoise, rng: np.random.Generator, rate_hz: float = RATE_HZ
 ) -> PendulumReadings:
-    """All sensors of a motion, each with its own noise."""
+    """Readings of all sensors of a motion, each with its own noise.
+
+    Args:
+        motion: The exact motion.
+        noise: Standard deviations of the sensors.
+        rng: Source of the noise.
+        rate_hz: Sample rate of the motion.
+    """
     body = DoublePendulum(motion.shape, residual=False)
     points = np.stack([body.on_bars(q, MARKER_SHARES, MARKER_BARS).positions_m for q in motion.q])
     white = noise.camera_m * rng.normal(size=points.shape)

@@ -22,11 +22,16 @@ PLACEMENT_SD_M = {"anatomical": 0.004, "technical": 0.015}
 """How far markers are from where the protocol puts them, per coordinate."""
 
 SESSION_SD_M = 0.0005
-"""The markers stay where they are from trial to trial; what is left is the skin."""
+"""The markers stay in place from trial to trial; only the skin moves."""
 
 
 def synthesise_subject(seed: int = 0, protocol: str = "reference36", body: str = "human18") -> Subject:
     """A person with exactly known factors, mass and marker positions, a different one for every seed.
+
+    Args:
+        seed: Chooses the person.
+        protocol: Name of the marker protocol.
+        body: Name of the body.
 
     Raises:
         UnknownName: The body or the protocol is unknown.

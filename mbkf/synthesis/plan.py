@@ -1,4 +1,4 @@
-"""What a motion asks of the body, before balance: joint angles, feet, height and load over time."""
+"""Plan of a motion before balance: joint angles, feet, height and load over time."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.synthesis.contact import LoadPlan
 from mbkf.synthesis.curves import Curve, added, path, ripple
-from mbkf.synthesis.figure import FootPose
+from mbkf.synthesis.inverse_kinematics import FootPose
 
 FeetPlan = Callable[[Array], dict[str, FootPose]]
 """(T,) times in s to the feet by side."""
@@ -78,7 +78,13 @@ def degrees(*knots: tuple[float, ...]) -> Curve:
 def lively(
     curves: dict[str, tuple[Curve, Curve, Curve]], rng: np.random.Generator, amplitude_deg: float = 1.0
 ) -> dict[str, tuple[Curve, Curve, Curve]]:
-    """Every angle with a slow ripple of about the amplitude on top, so that no joint is ever quite still."""
+    """The angles with a slow ripple added, so that no joint is ever quite still.
+
+    Args:
+        curves: Angles (x, y, z) by joint, rad.
+        rng: Source of amplitudes, frequencies and phases.
+        amplitude_deg: Typical amplitude of the ripple, deg.
+    """
     moving = {}
     for joint in ("pelvis", *JOINTS):
         if joint not in curves:

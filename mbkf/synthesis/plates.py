@@ -1,4 +1,4 @@
-"""Force plates under every placement of a foot, and what they read: noise and offset on top of the truth."""
+"""Force plates under every placement of a foot, and their readings: the truth with noise and offset."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N, centre_of_pressure
 SIZE_M = (0.50, 0.40)
 GAP_M = 0.005
 MOST_PLATES = 40
-"""A C3D file counts analog channels, six a plate, in one byte; who walks on steps on plain floor."""
+"""A C3D file counts analog channels, six a plate, in one byte; further steps fall on plain floor."""
 
 SAME_PLACE_M = 0.25
 """Spells of one foot whose mean pressure lies closer than this share a plate."""
@@ -79,7 +79,7 @@ def readings(
     offset_n: tuple[float, float],
     rng: np.random.Generator,
 ) -> tuple[PlateReadings, ...]:
-    """What the first :data:`MOST_PLATES` plates store, offset included.
+    """Readings that the first :data:`MOST_PLATES` plates store, offset included.
 
     Plates on which someone stands all the time were zeroed before and have no offset.
 

@@ -28,11 +28,17 @@ BOTTOM_DEG = {
     "right_hand": (0.0, 6.0, 0.0),
     "left_hand": (0.0, 6.0, 0.0),
 }
-"""What the angles (x, y, z) gain from standing to the bottom of the squat."""
+"""Change of the joint angles (x, y, z) from standing to the bottom of the squat."""
 
 
 def squat_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
-    """Repeated squats, one about every 2.4 s, to a knee flexion of about 100°."""
+    """Repeated squats, one about every 2.4 s, to a knee flexion of about 100°.
+
+    Args:
+        model: The body that squats.
+        seconds: Duration, s.
+        rng: Source of the differences between persons.
+    """
     depth = _depth(seconds, max(1, round(seconds / PERIOD_S)), rng)
     size = float(model.scale.mean())
     feet = planted(model, rng.uniform(0.12, 0.15), rng.uniform(8, 16), rng)

@@ -14,7 +14,13 @@ DEVIATION_DEG = 2.5
 
 
 def stand_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
-    """Standing with the feet 0.2 m apart and nearly parallel."""
+    """Standing with the feet 0.2 m apart and nearly parallel.
+
+    Args:
+        model: The body that stands.
+        seconds: Duration, s.
+        rng: Source of the differences between persons.
+    """
     size = float(model.scale.mean())
     lean = {
         "right_upper_arm": (-6.0, 0.0, 0.0),

@@ -10,21 +10,28 @@ from mbkf.conventions import SIDES, Array
 from mbkf.model.human import HumanModel
 from mbkf.synthesis.contact import Load, LoadPlan, sole_outline
 from mbkf.synthesis.curves import Curve, added, ripple, scaled
-from mbkf.synthesis.figure import FootPose
-from mbkf.synthesis.jets import Jet
+from mbkf.synthesis.dual_numbers import Dual
+from mbkf.synthesis.inverse_kinematics import FootPose
 from mbkf.synthesis.plan import JOINTS, FeetPlan
 
 Angles = Mapping[str, tuple[float, float, float]]
 """Angles about x, y and z in degrees, by joint."""
 
 
-def constant(times: Array, value: float) -> Jet:
-    """(T,) jet that stays at a value."""
-    return Jet.constant(np.full(len(times), value))
+def constant(times: Array, value: float) -> Dual:
+    """(T,) dual number that stays at a value."""
+    return Dual.constant(np.full(len(times), value))
 
 
 def planted(model: HumanModel, half_width_m: float, toe_out_deg: float, rng: np.random.Generator) -> FeetPlan:
-    """Both feet flat and still, ankles at x = 0 and y = ∓ half the width; the toes lift a little."""
+    """Both feet flat and still, ankles at x = 0 and y = ∓ half the width; the toes lift a little.
+
+    Args:
+        model: The body that stands.
+        half_width_m: Half the distance of the ankles, m.
+        toe_out_deg: Outward turn of each foot, deg.
+        rng: Source of the toes' motion.
+    """
     lifting = {
         side: ripple(
             np.deg2rad(rng.uniform(0.5, 1.5)), rng.uniform(0.3, 0.6), rng.uniform(0, 6.28), np.deg2rad(-2.0)
@@ -37,7 +44,7 @@ def planted(model: HumanModel, half_width_m: float, toe_out_deg: float, rng: np.
         for side, sign in zip(SIDES, (-1.0, 1.0), strict=True):
             at = np.array([0.0, sign * half_width_m, -sole_outline(model, side).height])
             poses[side] = FootPose(
-                Jet.constant(np.tile(at, (len(times), 1))),
+                Dual.constant(np.tile(at, (len(times), 1))),
                 constant(times, sign * np.deg2rad(toe_out_deg)),
                 constant(times, 0.0),
                 lifting[side](times),
@@ -48,7 +55,13 @@ def planted(model: HumanModel, half_width_m: float, toe_out_deg: float, rng: np.
 
 
 def standing_load(feet: FeetPlan, forward_m: float, rng: np.random.Generator) -> LoadPlan:
-    """About half the load on each foot, pressure under the middle of the feet, both swaying a little."""
+    """About half the load on each foot, pressure under the middle of the feet, both swaying a little.
+
+    Args:
+        feet: Poses of the feet.
+        forward_m: Distance of the pressure ahead of the ankles, m.
+        rng: Source of the sway.
+    """
     sway = ripple(
         0.03 * rng.uniform(0.5, 1),
         rng.uniform(0.2, 0.5),
@@ -66,7 +79,13 @@ def standing_load(feet: FeetPlan, forward_m: float, rng: np.random.Generator) ->
 
 
 def pressed(foot: FootPose, forward_m: Array, left_m: Array | float = 0.0) -> Array:
-    """(T, 2) floor point ahead and to the left of the ankle, along the foot's heading."""
+    """(T, 2) point on the floor beside an ankle, along the foot's heading.
+
+    Args:
+        foot: The foot.
+        forward_m: (T,) distance ahead of the ankle, m.
+        left_m: (T,) distance to the left of it, m.
+    """
     c, s = np.cos(foot.yaw.value), np.sin(foot.yaw.value)
     return foot.ankle.value[:, :2] + np.stack(
         [c * forward_m - s * left_m, s * forward_m + c * left_m], axis=-1
@@ -76,7 +95,7 @@ def pressed(foot: FootPose, forward_m: Array, left_m: Array | float = 0.0) -> Ar
 def posture(
     base_deg: Angles, gains: Sequence[tuple[Curve, Angles]], rng: np.random.Generator, spread: float = 0.08
 ) -> dict[str, tuple[Curve, Curve, Curve]]:
-    """Joint angles: a base posture plus curves (0…1) times what each adds, each person a little different.
+    """Joint angles: a base posture plus curves (0…1) times the change of each, each person a little different.
 
     Args:
         base_deg: Angles (x, y, z) in degrees by joint.

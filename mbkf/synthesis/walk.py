@@ -12,11 +12,11 @@ import numpy as np
 
 from mbkf.conventions import SIDES, Array
 from mbkf.model.human import HumanModel
-from mbkf.synthesis import jets
+from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.contact import Load, LoadPlan, sole_outline
 from mbkf.synthesis.curves import Curve, path, ripple, spline
-from mbkf.synthesis.figure import SIDE_NAMES, Figure, FootPose
-from mbkf.synthesis.jets import Jet
+from mbkf.synthesis.dual_numbers import Dual
+from mbkf.synthesis.inverse_kinematics import SIDE_NAMES, FootPose, InverseKinematics
 from mbkf.synthesis.plan import MotionPlan, lively, resting
 from mbkf.synthesis.standing import posture
 
@@ -53,7 +53,13 @@ class Step:
 
 
 def walk_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
-    """Walking along +x at about 1.2 m/s, in the middle of its course at half time."""
+    """Walking along +x at about 1.2 m/s, in the middle of its course at half time.
+
+    Args:
+        model: The body that walks.
+        seconds: Duration of the recorded window, s.
+        rng: Source of the differences between persons.
+    """
     size = float(model.scale.mean())
     stride_s = rng.uniform(1.02, 1.08) * np.sqrt(size)
     length = rng.uniform(0.60, 0.64) * size
@@ -115,7 +121,7 @@ class _Foot:
     def __init__(self, model: HumanModel, side: int, steps: list[Step], stride_s: float) -> None:
         name = SIDE_NAMES[SIDES[side]]
         outline = sole_outline(model, SIDES[side])
-        toes = Figure(model).offset[f"{name}_toes"]
+        toes = InverseKinematics(model).offset[f"{name}_toes"]
         self.steps, self.stride_s, self.size = steps, stride_s, float(model.scale.mean())
         self.heel = np.array([outline.heel_x + 0.015, 0.0, outline.height])
         self.ball = np.array([toes[0], 0.0, toes[2]])
@@ -147,7 +153,9 @@ class _Foot:
                 (stride_s, np.deg2rad(-6.0)),
             ]
         )
-        self.pitch = self._repeated(lambda t: jets.where(t < self.off * stride_s, stance(t), swing(t)))
+        self.pitch = self._repeated(
+            lambda t: dual_numbers.where(t < self.off * stride_s, stance(t), swing(t))
+        )
         self.toes = self._repeated(relaxed)
         self.swings = [self._swing(a, b) for a, b in pairwise(steps)]
 
@@ -160,10 +168,10 @@ class _Foot:
         """Toe-off as part of the stride."""
         return 0.5 + DOUBLE_SUPPORT
 
-    def _about(self, step: Step, pivot: Array, pitch: Jet) -> Jet:
+    def _about(self, step: Step, pivot: Array, pitch: Dual) -> Dual:
         """(T, 3) ankle of a foot that turns about a point of its own that rests on the floor."""
-        turned = jets.rotation(1, pitch).apply(-pivot) + pivot
-        return Jet(*(x @ self.heading.T for x in turned.orders)) + step.ankle_m
+        turned = dual_numbers.rotation(1, pitch).apply(-pivot) + pivot
+        return Dual(*(x @ self.heading.T for x in turned.orders)) + step.ankle_m
 
     def _swing(self, last: Step, following: Step) -> Curve:
         at_off, at_strike = np.array([last.off_s]), np.array([following.strike_s])
@@ -184,21 +192,21 @@ class _Foot:
         ]
         raised = [last.ankle_m[2] + self.size * height for height in SWING_HEIGHT_M]
         upward = spline(times, [a[0][2], *raised, b[0][2]], (a[1][2], a[2][2]), (b[1][2], b[2][2]))
-        return lambda at: jets.stack([planar[0](at), planar[1](at), upward(at)])
+        return lambda at: dual_numbers.stack([planar[0](at), planar[1](at), upward(at)])
 
     def pose(self, times: Array) -> FootPose:
         """The foot at times in s."""
         pitch = self.pitch(times)
-        ankle = Jet.constant(np.zeros((len(times), 3)))
+        ankle = Dual.constant(np.zeros((len(times), 3)))
         for step in self.steps:
             on = (times >= step.strike_s) & (times <= step.off_s)
-            rolled = jets.where(
+            rolled = dual_numbers.where(
                 pitch.value < 0, self._about(step, self.heel, pitch), self._about(step, self.ball, pitch)
             )
-            ankle = jets.where(on, rolled, ankle)
+            ankle = dual_numbers.where(on, rolled, ankle)
         for (a, b), swing in zip(pairwise(self.steps), self.swings, strict=True):
-            ankle = jets.where((times > a.off_s) & (times < b.strike_s), swing(times), ankle)
-        yaw = Jet.constant(np.full(len(times), self.steps[0].yaw))
+            ankle = dual_numbers.where((times > a.off_s) & (times < b.strike_s), swing(times), ankle)
+        yaw = Dual.constant(np.full(len(times), self.steps[0].yaw))
         return FootPose(ankle, yaw, pitch, self.toes(times))
 
 

@@ -3,12 +3,10 @@
 import pytest
 
 from mbkf.cli.main import main
-from mbkf.cli.synth import MOTIONS as OFFERED
 from mbkf.io.c3d import read_c3d
 from mbkf.io.subject import read_subject
 from mbkf.io.truth import read_truth
-from mbkf.pipelines.synth import DEFAULT_SECONDS, FILES
-from mbkf.synthesis.motion import MOTIONS
+from mbkf.pipelines.synth import FILES
 
 
 def test_writes_a_folder(tmp_path, capsys):
@@ -71,7 +69,3 @@ def test_out_that_is_a_file_is_refused(tmp_path, refused):
 )
 def test_nonsense_is_refused(words, tmp_path, refused):
     refused(["synth", *words, "--out", tmp_path / "out"])
-
-
-def test_the_command_offers_what_there_is():
-    assert OFFERED == MOTIONS == tuple(DEFAULT_SECONDS)

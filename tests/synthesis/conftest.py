@@ -3,7 +3,8 @@
 import pytest
 
 from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
-from mbkf.synthesis.motion import MOTIONS, synthesise_motion
+from mbkf.synthesis.motion import synthesise_motion
+from mbkf.synthesis.motions import motion_names
 from mbkf.synthesis.person import body_of, synthesise_subject
 
 SECONDS = {"squat": 3.0, "walk": 2.5, "jump": 2.5}
@@ -21,10 +22,10 @@ def body(person):
 
 @pytest.fixture(scope="session")
 def motions(body):
-    return {name: synthesise_motion(body, name, SECONDS[name], seed=5) for name in MOTIONS}
+    return {name: synthesise_motion(body, name, SECONDS[name], seed=5) for name in motion_names()}
 
 
-@pytest.fixture(scope="session", params=MOTIONS)
+@pytest.fixture(scope="session", params=motion_names())
 def motion(request, motions):
     return motions[request.param]
 

@@ -6,8 +6,8 @@ import pytest
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.synthesis.balance import HorizontalPath
 from mbkf.synthesis.contact import Load, split
+from mbkf.synthesis.dual_numbers import Dual
 from mbkf.synthesis.flight import Tumbling
-from mbkf.synthesis.jets import Jet
 from mbkf.synthesis.plan import Flight
 
 
@@ -24,11 +24,11 @@ def test_pressure_follows_its_target():
     times = np.linspace(0, 3, 301)
     target = np.column_stack([0.05 * np.sin(2 * times), 0.03 * np.cos(times)])
     turning = np.column_stack([np.sin(3 * times), np.cos(2 * times)]) * 0.2
-    height = Jet(0.9 + 0 * times, 0 * times, 0 * times)
+    height = Dual(0.9 + 0 * times, 0 * times, 0 * times)
     path = HorizontalPath([(0.0, 3.0)])
     path.solve(times, target, height, turning)
     plane = path(times)
-    com = Jet(*(np.column_stack([p, h]) for p, h in zip(plane.orders, height.orders, strict=True)))
+    com = Dual(*(np.column_stack([p, h]) for p, h in zip(plane.orders, height.orders, strict=True)))
     assert np.abs(zero_moment_point(com, turning) - target).max() < 1e-4
 
 
@@ -38,7 +38,7 @@ def test_between_spells_the_path_is_straight_and_uniform():
     path.solve(
         times,
         np.zeros((201, 2)) + 0.05 * times[:, None],
-        Jet(0.9 + 0 * times, 0 * times, 0 * times),
+        Dual(0.9 + 0 * times, 0 * times, 0 * times),
         np.zeros((201, 2)),
     )
     for edge in (0.8, 1.1):

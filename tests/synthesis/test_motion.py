@@ -7,7 +7,7 @@ import pytest
 from mbkf.conventions import GRAVITY_M_S2, SIDES
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.synthesis.contact import FRICTION, sole_outline
-from mbkf.synthesis.figure import SIDE_NAMES
+from mbkf.synthesis.inverse_kinematics import SIDE_NAMES
 from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.strength import overloaded
 

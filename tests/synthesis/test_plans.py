@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mbkf.synthesis import jets
+from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.contact import sole_outline
 from mbkf.synthesis.jump import jump_plan
 from mbkf.synthesis.plan import JOINTS, MotionPlan
@@ -21,8 +21,8 @@ def plan(request, body):
 
 
 def sole(body, side, foot, x):
-    """(T, 3) jet of the point of the sole at x, in the foot's frame."""
-    turned = jets.rotation(2, foot.yaw) @ jets.rotation(1, foot.pitch)
+    """(T, 3) dual number of the point of the sole at x, in the foot's frame."""
+    turned = dual_numbers.rotation(2, foot.yaw) @ dual_numbers.rotation(1, foot.pitch)
     return foot.ankle + turned.apply(np.array([x, 0.0, sole_outline(body, side).height]))
 
 

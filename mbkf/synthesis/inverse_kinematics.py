@@ -1,7 +1,7 @@
-"""A moving body built from its centre of mass, its feet and its joint angles: every segment's pose with exact rates.
+"""Inverse kinematics of a moving body from its centre of mass, its feet and its joint angles, with exact rates.
 
-The legs follow from hip and ankle in closed form (two links with a knee). The pelvis stands where the centre of mass
-comes out as asked. Angles: a joint's rotation is Ry(y) Rx(x) Rz(z); the pelvis's is Rz Ry Rx.
+The legs follow from hip and ankle in closed form (two links with a knee), the position of the pelvis from the centre
+of mass by iteration. Angles: a joint's rotation is Ry(y) Rx(x) Rz(z); the pelvis's is Rz Ry Rx.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from scipy.spatial.transform import Rotation
 from mbkf.conventions import SIDES, Array
 from mbkf.errors import InvalidInput
 from mbkf.model.human import HumanModel
-from mbkf.synthesis import jets
-from mbkf.synthesis.jets import Jet
+from mbkf.synthesis import dual_numbers
+from mbkf.synthesis.dual_numbers import Dual
 
 SIDE_NAMES = {"r": "right", "l": "left"}
 
@@ -28,10 +28,10 @@ STRAIGHT_RAD = np.deg2rad(2.5)
 class FootPose:
     """Where a foot is: ``ankle`` (T, 3) m, (T,) ``yaw`` and ``pitch`` (heel up positive) and ``toes`` hinge, rad."""
 
-    ankle: Jet
-    yaw: Jet
-    pitch: Jet
-    toes: Jet
+    ankle: Dual
+    yaw: Dual
+    pitch: Dual
+    toes: Dual
 
 
 @dataclass(frozen=True)
@@ -46,15 +46,15 @@ class Pose:
         reach: (T,) largest ratio of a hip–ankle distance to the length of the leg.
     """
 
-    rotations: dict[str, Jet]
-    origins: dict[str, Jet]
-    angles: dict[str, tuple[Jet, ...]]
+    rotations: dict[str, Dual]
+    origins: dict[str, Dual]
+    angles: dict[str, tuple[Dual, ...]]
     knee: Array
     reach: Array
 
 
-class Figure:
-    """Builds poses of one scaled body.
+class InverseKinematics:
+    """Poses of one scaled body from centre of mass, feet and joint angles.
 
     Attributes:
         model: The body.
@@ -92,10 +92,10 @@ class Figure:
 
     def pose(
         self,
-        com: Jet,
-        angles: Mapping[str, tuple[Jet, ...]],
+        com: Dual,
+        angles: Mapping[str, tuple[Dual, ...]],
         feet: Mapping[str, FootPose],
-        start: Jet | None = None,
+        start: Dual | None = None,
     ) -> Pose:
         """The pose with a given (T, 3) centre of mass, m.
 
@@ -104,16 +104,16 @@ class Figure:
             angles: Joint angles (x, y, z) of pelvis, torso, neck (x, y), head, arms, and the knees' small
                 rotations ``{side}_shank`` (x, z; y is not used), rad.
             feet: The feet by side.
-            start: Pelvis position to start from.
+            start: Pelvis position from which the iteration starts.
         """
         upper = self._upper(angles)
-        rest = sum((self._weighted(name, *upper) for name in upper[0]), start=Jet.constant(np.zeros(3)))
+        rest = sum((self._weighted(name, *upper) for name in upper[0]), start=Dual.constant(np.zeros(3)))
         upper_mass = sum(self.mass[name] for name in upper[0])
         pelvis = com if start is None else start
         for _ in range(60):
             legs = self._legs(pelvis, upper[0]["pelvis"], angles, feet)
             below = sum(
-                (self._weighted(name, *legs[:2]) for name in legs[0]), start=Jet.constant(np.zeros(3))
+                (self._weighted(name, *legs[:2]) for name in legs[0]), start=Dual.constant(np.zeros(3))
             )
             error = com - (rest + below + pelvis * upper_mass) / self.total_mass
             pelvis = pelvis + error * np.array([1.2, 1.2, 1.1])
@@ -125,76 +125,78 @@ class Figure:
         hinged = {"neck": angles["neck"][:2], "right_toes": (feet["r"].toes,), "left_toes": (feet["l"].toes,)}
         return Pose(rotations, origins, hinged, legs[2], legs[3])
 
-    def _weighted(self, name: str, rotations: dict[str, Jet], origins: dict[str, Jet]) -> Jet:
+    def _weighted(self, name: str, rotations: dict[str, Dual], origins: dict[str, Dual]) -> Dual:
         return (origins[name] + rotations[name].apply(self.com[name])) * self.mass[name]
 
-    def _upper(self, angles: Mapping[str, tuple[Jet, ...]]) -> tuple[dict[str, Jet], dict[str, Jet]]:
+    def _upper(self, angles: Mapping[str, tuple[Dual, ...]]) -> tuple[dict[str, Dual], dict[str, Dual]]:
         """World rotations and origins relative to the pelvis's origin, of pelvis, trunk, head and arms."""
-        rotations = {"pelvis": jets.euler(angles["pelvis"], order="zyx")}
-        origins = {"pelvis": Jet.constant(np.zeros_like(angles["pelvis"][0].value)[:, None] + np.zeros(3))}
+        rotations = {"pelvis": dual_numbers.euler(angles["pelvis"], order="zyx")}
+        origins = {"pelvis": Dual.constant(np.zeros_like(angles["pelvis"][0].value)[:, None] + np.zeros(3))}
         for name, parent in self.parent.items():
             if parent == "world" or name.endswith(("thigh", "shank", "foot", "toes")):
                 continue
             if name == "neck":
                 x, y = angles[name][:2]
-                relative = jets.rotation(0, x) @ jets.rotation(1, y)
+                relative = dual_numbers.rotation(0, x) @ dual_numbers.rotation(1, y)
             else:
-                relative = jets.euler(angles[name])
+                relative = dual_numbers.euler(angles[name])
             rotations[name] = rotations[parent] @ relative
             origins[name] = origins[parent] + rotations[parent].apply(self.offset[name])
         return rotations, origins
 
     def _legs(
         self,
-        pelvis: Jet,
-        pelvis_rotation: Jet,
-        angles: Mapping[str, tuple[Jet, ...]],
+        pelvis: Dual,
+        pelvis_rotation: Dual,
+        angles: Mapping[str, tuple[Dual, ...]],
         feet: Mapping[str, FootPose],
-    ) -> tuple[dict[str, Jet], dict[str, Jet], Array, Array]:
-        rotations: dict[str, Jet] = {}
-        origins: dict[str, Jet] = {}
+    ) -> tuple[dict[str, Dual], dict[str, Dual], Array, Array]:
+        rotations: dict[str, Dual] = {}
+        origins: dict[str, Dual] = {}
         knees, reach = [], np.zeros(len(pelvis.value))
         for side in SIDES:
             name, foot = SIDE_NAMES[side], feet[side]
             hip = pelvis + pelvis_rotation.apply(self.offset[f"{name}_thigh"])
             thigh, shank, knee, used = self._leg(name, foot.ankle - hip, angles[f"{name}_shank"], foot.yaw)
-            foot_rotation = jets.rotation(2, foot.yaw) @ jets.rotation(1, foot.pitch)
+            foot_rotation = dual_numbers.rotation(2, foot.yaw) @ dual_numbers.rotation(1, foot.pitch)
             rotations[f"{name}_thigh"], origins[f"{name}_thigh"] = thigh, hip
             rotations[f"{name}_shank"] = shank
             origins[f"{name}_shank"] = hip + thigh.apply(self.offset[f"{name}_shank"])
             rotations[f"{name}_foot"], origins[f"{name}_foot"] = foot_rotation, foot.ankle
-            rotations[f"{name}_toes"] = foot_rotation @ jets.rotation(1, foot.toes)
+            rotations[f"{name}_toes"] = foot_rotation @ dual_numbers.rotation(1, foot.toes)
             origins[f"{name}_toes"] = foot.ankle + foot_rotation.apply(self.offset[f"{name}_toes"])
             knees.append(knee)
             reach = np.maximum(reach, used)
         return rotations, origins, np.stack(knees, axis=-1), reach
 
-    def _leg(self, name: str, span: Jet, knee_xz: tuple[Jet, ...], yaw: Jet) -> tuple[Jet, Jet, Array, Array]:
+    def _leg(
+        self, name: str, span: Dual, knee_xz: tuple[Dual, ...], yaw: Dual
+    ) -> tuple[Dual, Dual, Array, Array]:
         """Thigh and shank rotations that put the ankle at ``span`` from the hip, knee axis across the foot."""
         upper, lower = -self.offset[f"{name}_shank"][2], -self.offset[f"{name}_foot"][2]
-        square = jets.dot(span, span)
-        cosine = (square - upper**2 - lower**2) / (jets.cos(knee_xz[0]) * (2 * upper * lower))
+        square = dual_numbers.dot(span, span)
+        cosine = (square - upper**2 - lower**2) / (dual_numbers.cos(knee_xz[0]) * (2 * upper * lower))
         limit = float(np.cos(STRAIGHT_RAD))
-        cosine = jets.where(
+        cosine = dual_numbers.where(
             (cosine.value < limit) & (cosine.value > -limit),
             cosine,
-            Jet.constant(np.clip(cosine.value, -limit, limit)),
+            Dual.constant(np.clip(cosine.value, -limit, limit)),
         )
-        flexion = jets.arccos(cosine)
-        knee = jets.euler((knee_xz[0], flexion, knee_xz[2]))
+        flexion = dual_numbers.arccos(cosine)
+        knee = dual_numbers.euler((knee_xz[0], flexion, knee_xz[2]))
         local = knee.apply(np.array([0.0, 0.0, -lower])) + np.array([0.0, 0.0, -upper])
-        across = jets.stack([-jets.sin(yaw), jets.cos(yaw), yaw * 0.0])
-        side_axis = Jet.constant(np.zeros_like(span.value) + np.array([0.0, 1.0, 0.0]))
+        across = dual_numbers.stack([-dual_numbers.sin(yaw), dual_numbers.cos(yaw), yaw * 0.0])
+        side_axis = Dual.constant(np.zeros_like(span.value) + np.array([0.0, 1.0, 0.0]))
         thigh = _frame(span, across) @ _frame(local, side_axis).transposed()
         used = np.sqrt(square.value) / (upper + lower)
         return thigh, thigh @ knee, flexion.value, used
 
-    def momentum(self, pose: Pose) -> tuple[Jet, Array, Array]:
+    def momentum(self, pose: Pose) -> tuple[Dual, Array, Array]:
         """Centre of mass (T, 3), angular momentum about it (T, 3) in N m s and its derivative (T, 3) in N m."""
         com = (
             sum(
                 (self._weighted(name, pose.rotations, pose.origins) for name in self.mass),
-                start=Jet.constant(np.zeros(3)),
+                start=Dual.constant(np.zeros(3)),
             )
             / self.total_mass
         )
@@ -203,8 +205,8 @@ class Figure:
             R = pose.rotations[name]
             at = pose.origins[name] + R.apply(self.com[name]) - com
             carried = self.moments[name] @ np.swapaxes(R.value, -1, -2)
-            spin += 2 * jets.axial(R.first @ carried) + mass * np.cross(at.value, at.first)
-            change += 2 * jets.axial(R.second @ carried) + mass * np.cross(at.value, at.second)
+            spin += 2 * dual_numbers.axial(R.first @ carried) + mass * np.cross(at.value, at.first)
+            change += 2 * dual_numbers.axial(R.second @ carried) + mass * np.cross(at.value, at.second)
         return com, spin, change
 
     def coordinates(self, pose: Pose) -> tuple[Array, Array, Array]:
@@ -230,7 +232,7 @@ class Figure:
             else:
                 rotation = pose.rotations[self.parent[name]].transposed() @ rotation
             q[:, first_q : first_q + 4] = _quaternions(rotation.value)
-            v[:, first_v : first_v + 3], a[:, first_v : first_v + 3] = jets.local_rates(rotation)
+            v[:, first_v : first_v + 3], a[:, first_v : first_v + 3] = dual_numbers.local_rates(rotation)
         if not (np.isfinite(q).all() and np.isfinite(a).all()):
             raise InvalidInput("the motion cannot be performed by this body")
         return q, v, a
@@ -240,11 +242,11 @@ def _apply(matrices: Array, vectors: Array) -> Array:
     return (matrices @ vectors[..., None])[..., 0]
 
 
-def _frame(along: Jet, across: Jet) -> Jet:
+def _frame(along: Dual, across: Dual) -> Dual:
     """(T, 3, 3) right-handed frame whose first axis is ``along`` and whose second is nearest to ``across``."""
-    u = jets.unit(along)
-    w = jets.unit(across - u * jets.dot(across, u)[..., None])
-    return jets.stack([u, w, jets.cross(u, w)])
+    u = dual_numbers.unit(along)
+    w = dual_numbers.unit(across - u * dual_numbers.dot(across, u)[..., None])
+    return dual_numbers.stack([u, w, dual_numbers.cross(u, w)])
 
 
 def _quaternions(rotations: Array) -> Array:

@@ -3,28 +3,28 @@
 import numpy as np
 import pytest
 
-from mbkf.synthesis import jets
+from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.curves import added, path, ripple, scaled, spline
-from mbkf.synthesis.jets import Jet
+from mbkf.synthesis.dual_numbers import Dual
 
 TIMES = np.linspace(0.1, 0.9, 9)
 CURVES = {
     "product": lambda t: ripple(1.0, 0.7, 0.3, 2.0)(t) * ripple(0.5, 1.1, 0.1)(t),
     "quotient": lambda t: ripple(1.0, 0.7, 0.3)(t) / ripple(0.5, 1.1, 0.1, 2.0)(t),
-    "root": lambda t: jets.sqrt(ripple(1.0, 0.7, 0.3, 2.0)(t)),
-    "arccos": lambda t: jets.arccos(ripple(0.6, 0.7, 0.3)(t)),
-    "sine": lambda t: jets.sin(ripple(2.0, 0.7, 0.3)(t)),
+    "root": lambda t: dual_numbers.sqrt(ripple(1.0, 0.7, 0.3, 2.0)(t)),
+    "arccos": lambda t: dual_numbers.arccos(ripple(0.6, 0.7, 0.3)(t)),
+    "sine": lambda t: dual_numbers.sin(ripple(2.0, 0.7, 0.3)(t)),
     "path": path([(0.0, 0.0, 1.0, 2.0), (1.0, 3.0)]),
     "spline": spline([0.0, 0.3, 0.7, 1.0], [0.0, 1.0, 0.5, 2.0], (1.0, 0.0), (0.0, 3.0)),
     "sum": added(ripple(1.0, 0.7, 0.3), scaled(2.0, path([(0.0, 0.0), (1.0, 1.0)], smooth=3))),
-    "cross": lambda t: jets.cross(vector(t), vector(t + 0.3)),
-    "unit": lambda t: jets.unit(vector(t)),
-    "rotation": lambda t: jets.euler([ripple(1.0, f, 0.2)(t) for f in (0.3, 0.5, 0.7)]),
+    "cross": lambda t: dual_numbers.cross(vector(t), vector(t + 0.3)),
+    "unit": lambda t: dual_numbers.unit(vector(t)),
+    "rotation": lambda t: dual_numbers.euler([ripple(1.0, f, 0.2)(t) for f in (0.3, 0.5, 0.7)]),
 }
 
 
 def vector(t):
-    return jets.stack([ripple(1.0, f, f, 2.0)(t) for f in (0.3, 0.5, 0.9)])
+    return dual_numbers.stack([ripple(1.0, f, f, 2.0)(t) for f in (0.3, 0.5, 0.9)])
 
 
 @pytest.mark.parametrize("name", CURVES)
@@ -37,13 +37,13 @@ def test_derivatives_agree_with_finite_differences(name):
 
 def test_local_rates_are_those_of_the_rotating_frame():
     angle = ripple(1.0, 0.4, 0.1)(TIMES)
-    rate, change = jets.local_rates(jets.rotation(2, angle))
+    rate, change = dual_numbers.local_rates(dual_numbers.rotation(2, angle))
     assert np.allclose(rate, np.outer(angle.first, [0, 0, 1]))
     assert np.allclose(change, np.outer(angle.second, [0, 0, 1]))
 
 
 def test_arrays_on_either_side_leave_the_arithmetic_to_the_jet():
-    x = Jet(TIMES, np.ones_like(TIMES), np.zeros_like(TIMES))
+    x = Dual(TIMES, np.ones_like(TIMES), np.zeros_like(TIMES))
     assert np.allclose((TIMES * x).first, TIMES)
     assert np.allclose((1.0 - x).first, -1.0)
     assert np.allclose((TIMES + x).value, 2 * TIMES)

@@ -1,17 +1,17 @@
-"""The figure stands where it is told, and its coordinates are the model's own."""
+"""Centre of mass and feet are where they were asked for, and the coordinates are the model's own."""
 
 import numpy as np
 import pinocchio as pin
 import pytest
 
 from mbkf.synthesis.composition import compose
-from mbkf.synthesis.figure import Figure
-from mbkf.synthesis.motion import PLANS
+from mbkf.synthesis.inverse_kinematics import InverseKinematics
+from mbkf.synthesis.stand import stand_plan
 
 
 @pytest.fixture(scope="module")
 def standing(body):
-    plan = PLANS["stand"](body, 1.0, np.random.default_rng(1))
+    plan = stand_plan(body, 1.0, np.random.default_rng(1))
     return plan, compose(body, plan)
 
 
@@ -35,10 +35,10 @@ def test_momentum_is_pinocchios(body, standing):
         pin.computeCentroidalMomentum(body.pin_model, data, *state).angular.copy()
         for state in zip(q, v, strict=True)
     ]
-    com, spin, _ = composition.figure.momentum(pose)
+    com, spin, _ = composition.kinematics.momentum(pose)
     assert np.abs(spin - expected).max() < 1e-10
     assert np.abs(com.value[0] - body.centre_of_mass(q[0])).max() < 1e-10
 
 
 def test_masses_add_up(body):
-    assert Figure(body).total_mass == pytest.approx(body.mass_kg, abs=1e-9)
+    assert InverseKinematics(body).total_mass == pytest.approx(body.mass_kg, abs=1e-9)
