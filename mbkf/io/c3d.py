@@ -12,7 +12,7 @@ from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.axes import WORLD_AXES, check_body_size, length_unit, up_axis
 from mbkf.io.c3d_analog import analog_channels, events, plate_readings, raw_plates
 from mbkf.io.c3d_layout import LAST_FRAME_OF_HEADER, C3dLayout, check_frames, check_layout
-from mbkf.io.c3d_parameters import Parameters
+from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.c3d_plates import RawPlate, plate_axes
 from mbkf.io.c3d_points import read_points
 from mbkf.io.c3d_write import write_c3d
@@ -56,7 +56,7 @@ def read_c3d(
     path = Path(path)
     layout = check_layout(path)
     content = _load(path)
-    parameters = Parameters(content["parameters"])
+    parameters = C3dParameters(content["parameters"])
     _check_complete(path, layout, parameters, content["data"]["points"].shape[2])
     rate_hz = _rate(path, content, parameters)
     start_s = max(layout.first_frame - 1, 0) / rate_hz
@@ -97,7 +97,7 @@ def _load(path: Path) -> Any:
         raise FileFormatError(path, f"cannot be read as C3D ({reason}); export it again") from error
 
 
-def _check_complete(path: Path, layout: C3dLayout, parameters: Parameters, frames_read: int) -> None:
+def _check_complete(path: Path, layout: C3dLayout, parameters: C3dParameters, frames_read: int) -> None:
     """Compare what was read with what header and parameters promise (the header ends at 65535 frames)."""
     promised = layout.frames
     counted = layout.first_frame + layout.frames <= LAST_FRAME_OF_HEADER
@@ -113,7 +113,7 @@ def _check_complete(path: Path, layout: C3dLayout, parameters: Parameters, frame
         )
 
 
-def _rate(path: Path, content: Any, parameters: Parameters) -> float:
+def _rate(path: Path, content: Any, parameters: C3dParameters) -> float:
     rate_hz = parameters.number("POINT", "RATE") or float(content["header"]["points"]["frame_rate"])
     if not (math.isfinite(rate_hz) and rate_hz > 0.0):
         raise FileFormatError(path, f"POINT:RATE is {rate_hz:g}, not a frame rate; export the trial again")
@@ -125,7 +125,7 @@ def single_precision(value: float) -> float:
     return float(str(np.float32(value)))
 
 
-def _length_unit(path: Path, parameters: Parameters, given: str | None, notes: list[str]) -> str:
+def _length_unit(path: Path, parameters: C3dParameters, given: str | None, notes: list[str]) -> str:
     if given is not None:
         return length_unit(given)
     stated = parameters.text("POINT", "UNITS")
@@ -139,7 +139,7 @@ def _length_unit(path: Path, parameters: Parameters, given: str | None, notes: l
         raise FileFormatError(path, reason) from error
 
 
-def _up_axis(parameters: Parameters, plates: list[RawPlate], notes: list[str]) -> str:
+def _up_axis(parameters: C3dParameters, plates: list[RawPlate], notes: list[str]) -> str:
     """The axis that points up, from the plates' surfaces, else from the screen axes, else z."""
     screen = parameters.text("POINT", "Y_SCREEN").lower().removeprefix("+")
     from_plates = {_nearest_axis(-plate_axes(plate.corners)[:, 2]) for plate in plates}
@@ -161,7 +161,7 @@ def _nearest_axis(direction: np.ndarray) -> str:
     return ("-" if direction[axis] < 0.0 else "") + "xyz"[axis]
 
 
-def _mass_kg(parameters: Parameters) -> float | None:
+def _mass_kg(parameters: C3dParameters) -> float | None:
     """Body mass stated in PROCESSING or SUBJECTS, if it is one."""
     for group, name in (("PROCESSING", "BODYMASS"), ("SUBJECTS", "BODYMASS"), ("SUBJECTS", "WEIGHT")):
         mass = parameters.number(group, name)

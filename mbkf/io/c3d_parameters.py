@@ -13,7 +13,7 @@ CONTINUATIONS = 1000
 """More lists than this (LABELS2, LABELS3 …) no file has."""
 
 
-class Parameters:
+class C3dParameters:
     """Read access to the parameters ezc3d returns; names are found in any case, missing ones are empty."""
 
     def __init__(self, groups: Mapping[str, Mapping[str, Any]]) -> None:

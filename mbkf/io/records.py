@@ -134,7 +134,7 @@ class AnalogChannel:
 
 
 @dataclass(frozen=True)
-class Event:
+class CaptureEvent:
     """A labelled instant, e.g. label "Foot Strike", context "Left", at ``time_s``."""
 
     label: str
@@ -164,7 +164,7 @@ class Capture:
     plates: tuple[PlateReadings, ...] = ()
     derived: tuple[DerivedPoint, ...] = ()
     analog: tuple[AnalogChannel, ...] = ()
-    events: tuple[Event, ...] = ()
+    events: tuple[CaptureEvent, ...] = ()
     up_axis: str = "z"
     length_unit: str = "m"
     notes: tuple[str, ...] = ()
