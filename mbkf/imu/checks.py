@@ -1,6 +1,6 @@
 """What is wrong with inertial readings, found before a filter makes it look right: each with its likely fix.
 
-Units are judged by physics: at rest the specific force is 1 g, and what the gyroscope says must turn the direction of
+Units are judged by physics: at rest the specific force is 1 g, and the angular velocity must turn the direction of
 gravity as the accelerometer sees it turn.
 """
 

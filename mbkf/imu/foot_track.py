@@ -1,4 +1,4 @@
-"""The path of a foot from its filter's run, as the filter had it or with what later rests say, and its certainty.
+"""The path of a foot from its filter's run, as filtered or smoothed by later rests, and its certainty.
 
 The smoother gives the estimate of Rauch, Tung and Striebel in the form of Bryson and Frazier, which inverts nothing.
 """

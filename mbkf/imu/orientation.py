@@ -103,7 +103,7 @@ def orientations(
         readings: Sensors; each at a regular rate, NaN where a sample is missing.
         frame: World frame of the result: ENU, NED or NWU.
         settings: How.
-        start: (N, 4) orientation at the first sample in ``frame``; by default what the first readings say.
+        start: (N, 4) orientation at the first sample in ``frame``; by default that of sensors at rest.
         progress: Called as samples are done.
 
     Raises:

@@ -33,7 +33,7 @@ _ROOT = float(np.sqrt(3.0 / 4.0))
 
 @dataclass(frozen=True)
 class StaticGains:
-    """What a still stretch says.
+    """Gains from a sensor at rest.
 
     Attributes:
         beta, zeta: Gains by Madgwick's formulas.
@@ -93,6 +93,11 @@ def still_stretch(one: ImuReadings) -> tuple[int, int]:
 
 def static_gains(one: ImuReadings, first: int, last: int) -> StaticGains:
     """Gains from samples ``first`` to ``last`` of a sensor that lies still (Madgwick 2010, eqs. 50 and 51).
+
+    Args:
+        one: The sensor.
+        first: First sample at rest.
+        last: The sample after the last one at rest.
 
     Raises:
         InvalidInput: The stretch is too short.

@@ -122,7 +122,7 @@ def _with_errors(
     errors: ImuErrors,
     seed: Sequence[int],
 ) -> ImuReadings:
-    """The same seed gives the same constant biases whatever the motion: it is the same sensor."""
+    """Constant biases by the seed alone, for any motion: the same seed is the same sensor."""
     rng, root, shape = np.random.default_rng(seed), np.sqrt(rate), (len(times), 3)
     gyro_bias, force_bias, field_bias = rng.normal(0.0, 1.0, (3, 3))
     walk = np.cumsum(rng.normal(0.0, errors.gyro_drift / root, shape), axis=0)

@@ -68,10 +68,17 @@ def unrest(
 def still_samples(
     specific_force_mps2: Array, angular_velocity_rad_s: Array, rate_hz: float, settings: StillnessSettings
 ) -> BoolArray:
-    """(T,) samples in which the foot stands still; arguments as in :func:`unrest`."""
+    """(T,) samples in which the foot stands still, by :func:`unrest`.
+
+    Args:
+        specific_force_mps2: (T, 3) sensor axes.
+        angular_velocity_rad_s: (T, 3) sensor axes.
+        rate_hz: Sample rate.
+        settings: Threshold, and the shortest gap and rest.
+    """
     still = unrest(specific_force_mps2, angular_velocity_rad_s, rate_hz, settings) < settings.threshold
     gap, rest = (max(1, round(s * rate_hz)) for s in (settings.bridge_s, settings.shortest_s))
-    # What lies beyond the ends counts as it does at the ends.
+    # Beyond the ends the mask keeps its value at the ends.
     margin = gap + rest
     padded = np.pad(still, margin, mode="edge")
     closed = binary_closing(padded, np.ones(gap + 1, dtype=bool))

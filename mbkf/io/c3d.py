@@ -87,7 +87,7 @@ def read_c3d(
 
 
 def _load(path: Path) -> Any:
-    """The file's content as ezc3d gives it; whatever ezc3d throws becomes one kind of error."""
+    """The file's content as ezc3d gives it; every error of ezc3d becomes one kind of error."""
     import ezc3d
 
     try:
@@ -98,7 +98,7 @@ def _load(path: Path) -> Any:
 
 
 def _check_complete(path: Path, layout: C3dLayout, parameters: C3dParameters, frames_read: int) -> None:
-    """Compare what was read with what header and parameters promise (the header ends at 65535 frames)."""
+    """Compare the frames read with those that header and parameters promise (the header ends at 65535 frames)."""
     promised = layout.frames
     counted = layout.first_frame + layout.frames <= LAST_FRAME_OF_HEADER
     actual = parameters.numbers("TRIAL", "ACTUAL_END_FIELD").ravel()

@@ -98,6 +98,11 @@ def check_layout(path: Path) -> C3dLayout:
 def check_frames(path: Path, layout: C3dLayout, frames: int) -> None:
     """Make sure that the file holds the data of so many frames.
 
+    Args:
+        path: The file, for the message.
+        layout: Its header.
+        frames: The number of frames.
+
     Raises:
         FileFormatError: There are no frames, or fewer than promised.
     """

@@ -1,4 +1,4 @@
-"""Parameters of a C3D file, whatever their case, number of continuation lists and odd dimensions."""
+"""Parameters of a C3D file: names in any case, lists with continuations, odd dimensions."""
 
 from __future__ import annotations
 
@@ -35,7 +35,13 @@ class C3dParameters:
             return np.zeros(0)
 
     def number(self, group: str, name: str, default: float = 0.0) -> float:
-        """First number of a parameter."""
+        """First number of a parameter.
+
+        Args:
+            group: Name of the group.
+            name: Name of the parameter.
+            default: The value where the parameter is missing.
+        """
         values = self.numbers(group, name).ravel()
         return float(values[0]) if len(values) else default
 

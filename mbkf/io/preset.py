@@ -24,7 +24,7 @@ _KEYS = ("name", "filter", "version", "note", "tuned_on", "held_out", "values", 
 
 @dataclass(frozen=True)
 class Preset:
-    """Settings of a filter that somebody found.
+    """Tuned settings of a filter.
 
     Attributes:
         name: Its name.

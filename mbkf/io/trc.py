@@ -33,7 +33,7 @@ _COLUMNS_BEFORE_MARKERS = 2
 
 @dataclass(frozen=True)
 class TrcHeader:
-    """What the third line of a TRC file says.
+    """Third line of a TRC file.
 
     Attributes:
         rate_hz: DataRate in Hz.
