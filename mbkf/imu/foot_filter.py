@@ -200,7 +200,7 @@ def follow_foot(
     state, covariance = _start(f[first:stop], w[first:stop], rate_hz, settings)
     noise = _plant_noise(settings, dt)
     insist = round(settings.insist_s * rate_hz)
-    believed = np.zeros(len(still), dtype=bool)
+    accepted = np.zeros(len(still), dtype=bool)
     steps: list[FootStep] = []
     doubted = refused = 0
     Phi = np.eye(SIZE)
@@ -222,9 +222,9 @@ def follow_foot(
                 reading = _rest(state, settings)
                 found = correct(covariance, reading)
                 state, covariance = state.moved(found.step), found.covariance
-        believed[k] = reading is not None
+        accepted[k] = reading is not None
         steps.append(FootStep(state, covariance, Phi, reading))
-    return FootRun(first, tuple(steps), believed, refused)
+    return FootRun(first, tuple(steps), accepted, refused)
 
 
 def _may_rest(state: FootState, covariance: Array, settings: FootFilterSettings) -> bool:

@@ -95,7 +95,7 @@ def _track(run: FootRun, states: Sequence[FootState], curvatures: Sequence[Array
 def _displacement_covariance(steps: Sequence[FootStep], first: Array, last: Array) -> Array:
     """(3, 3) covariance of the way between the first and the last step.
 
-    With what later readings add, L, at either end (zero for the filter): errors e_i and e_j of the filter have
+    With the curvature L of later readings at either end (zero for the filter): errors e_i and e_j of the filter have
     E[e_i e_jᵀ] = P_i Aᵀ, A the product of all (I − K H) Φ between them, and given all readings P_i Aᵀ (I − L_j P_j).
     """
     A = np.eye(SIZE)

@@ -29,8 +29,8 @@ class SmoothedOrientation(NamedTuple):
 def smoothed(start: OrientationState, passages: Iterable[Passage]) -> SmoothedOrientation:
     """Orientations of sensors, corrected by all their samples.
 
-    With C = P Φᵀ P⁻₊₁⁻¹: the correction of a sample is δ = C (d₊₁ + δ₊₁), d₊₁ being what the filter itself corrected in
-    the next one, and its covariance P + C (Pˢ₊₁ − P⁻₊₁) Cᵀ.
+    With C = P Φᵀ P⁻₊₁⁻¹: the correction of a sample is δ = C (d₊₁ + δ₊₁), with the filter's own correction d₊₁ of the
+    next one, and its covariance P + C (Pˢ₊₁ − P⁻₊₁) Cᵀ.
 
     Args:
         start: State at the first sample.

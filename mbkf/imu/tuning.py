@@ -1,7 +1,7 @@
 """Gains of Madgwick's filter: from the noise of a sensor that lies still, or by search against a reference.
 
 Madgwick's β = √(3/4) σ_ω and ζ = √(3/4) σ_ω̇ count the gyroscope's errors at rest only. On moving sensors they are far
-too small, since scale and alignment errors grow with the motion; the search tells how much.
+too small, since scale and alignment errors grow with the motion; the search measures by how much.
 """
 
 from __future__ import annotations

@@ -69,7 +69,7 @@ def virtual_imus(
     rate_hz: float | None = None,
     field_ut: Sequence[float] = FIELD_UT,
 ) -> tuple[ImuReadings, ...]:
-    """What sensors would have read during a motion; ``orientation`` holds the truth, in NWU.
+    """Readings of virtual sensors during a motion; ``orientation`` holds the truth, in NWU.
 
     The world's x axis counts as magnetic north. At another rate than the motion's the error-free readings are joined
     by cubic splines.

@@ -146,13 +146,13 @@ def _up_axis(parameters: C3dParameters, plates: list[RawPlate], notes: list[str]
     if len(from_plates) == 1:
         axis = from_plates.pop()
         if screen in WORLD_AXES and screen != axis:
-            notes.append(f"force plates face {axis}, POINT:Y_SCREEN says {screen}; taken as up: {axis}")
+            notes.append(f"force plates face {axis}, POINT:Y_SCREEN is {screen}; taken as up: {axis}")
         return axis
     if from_plates:
         notes.append(f"force plates face different axes ({', '.join(sorted(from_plates))})")
     if screen in WORLD_AXES:
         return screen
-    notes.append("neither plates nor POINT:Y_SCREEN say which axis points up; taken as z (--up changes it)")
+    notes.append("neither plates nor POINT:Y_SCREEN state which axis points up; taken as z (--up changes it)")
     return "z"
 
 

@@ -29,10 +29,10 @@ def analog_rate_hz(content: Any, parameters: C3dParameters) -> float:
 
 
 def analog_channels(content: Any, parameters: C3dParameters) -> tuple[AnalogChannel, ...]:
-    """Every analog channel, scaled as the file says, in its own unit.
+    """Every analog channel, scaled by the file's parameters, in its own unit.
 
     Args:
-        content: What ezc3d read.
+        content: The file as ezc3d reads it.
         parameters: Its parameters.
 
     Returns:
@@ -61,7 +61,7 @@ def raw_plates(
 
     Args:
         path: The file, for messages.
-        content: What ezc3d read.
+        content: The file as ezc3d reads it.
         parameters: Its parameters.
         unit: The file's length unit.
         notes: Receives which plates are skipped, because no channel belongs to them.
@@ -185,7 +185,7 @@ def events(content: Any, parameters: C3dParameters) -> tuple[CaptureEvent, ...]:
     """Labelled instants, from the group EVENT, or from the header where that group has none.
 
     Args:
-        content: What ezc3d read.
+        content: The file as ezc3d reads it.
         parameters: Its parameters; EVENT:TIMES holds minutes and seconds.
 
     Returns:

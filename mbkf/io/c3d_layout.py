@@ -59,7 +59,7 @@ class C3dLayout:
 
 
 def check_layout(path: Path) -> C3dLayout:
-    """Read a C3D file's header and make sure that the file is as long as it says.
+    """Read a C3D file's header and make sure that the file is as long as it promises.
 
     Args:
         path: The file.

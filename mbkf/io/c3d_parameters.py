@@ -67,7 +67,7 @@ class C3dParameters:
 
         Args:
             name: CORNERS, ORIGIN, CHANNEL or CAL_MATRIX.
-            shape: Shape of one plate's block; −1 stands for what the file has.
+            shape: Shape of one plate's block; −1 stands for the size in the file.
 
         Returns:
             The blocks; a shorter list than plates where the parameter is short.

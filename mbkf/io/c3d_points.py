@@ -25,7 +25,7 @@ def read_points(
     """Markers and derived points of a file.
 
     Args:
-        content: What ezc3d read.
+        content: The file as ezc3d reads it.
         parameters: Its parameters.
         up: Axis of the file that points up.
         unit: Length unit of the file.
@@ -65,7 +65,7 @@ def point_labels(parameters: C3dParameters, count: int, notes: list[str]) -> lis
     Args:
         parameters: The file's parameters; labels continue in POINT:LABELS2, LABELS3 ….
         count: Number of points.
-        notes: Receives what was changed.
+        notes: Receives the changes.
 
     Returns:
         ``count`` labels.

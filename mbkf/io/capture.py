@@ -23,8 +23,8 @@ class CaptureOptions:
     """How a capture, or a file of ground reactions, is read.
 
     Attributes:
-        up: Axis of the file that points up; None for what the file states, or the format's default.
-        unit: Length unit; None for what the file states.
+        up: Axis of the file that points up; None for the one that the file states, or the format's default.
+        unit: Length unit; None for the one that the file states.
         cop_threshold_n: Vertical force in N below which no centre of pressure is given.
         tare: Whether the offset of unloaded plates is removed.
         plates: Whether the file's own force plates are read.

@@ -1,6 +1,6 @@
 """Which points of a C3D file were measured, and which were computed by software and stored beside them.
 
-A file says so for angles, forces, moments, powers and scalars (POINT:ANGLES …, named by POINT:TYPE_GROUPS).
+A file states this for angles, forces, moments, powers and scalars (POINT:ANGLES …, named by POINT:TYPE_GROUPS).
 Joint centres, segment axes and the like carry no sign but their names, so the names of Vicon Plug-in Gait and
 of the Oxford Foot Model are known here. In doubt a point counts as measured.
 """

@@ -62,7 +62,7 @@ class ScalingState:
 
 @dataclass(frozen=True)
 class ScalingPrior:
-    """What is known before the fit.
+    """Prior knowledge of factors and offsets.
 
     Attributes:
         factors: (K,) expected scale factors k₀.
@@ -85,7 +85,7 @@ class ScalingProblem:
         markers: The M protocol markers.
         measured_m: (N, M, 3) measured positions, NaN where missing.
         posture_weight: (N,) weight of each frame's posture prior.
-        prior: What is expected of factors and offsets.
+        prior: Prior of factors and offsets.
         seen: (N, M) whether a marker is there.
     """
 
@@ -185,10 +185,12 @@ class ScalingProblem:
         for t, q in enumerate(state.poses):
             errors, by_pose, by_shared = self._frame(sensor, q, t)
             prior = self.posture.reading(q)
-            pull = prior.jacobian / self.posture.sd[:, None]
+            weighted = prior.jacobian / self.posture.sd[:, None]
             weight = self.posture_weight[t]
-            frames[t] = by_pose.T @ by_pose + weight * (pull.T @ pull) + 1e-9 * np.eye(nv)
-            frame_gradient[t] = by_pose.T @ errors + weight * (pull.T @ (prior.deviation / self.posture.sd))
+            frames[t] = by_pose.T @ by_pose + weight * (weighted.T @ weighted) + 1e-9 * np.eye(nv)
+            frame_gradient[t] = by_pose.T @ errors + weight * (
+                weighted.T @ (prior.deviation / self.posture.sd)
+            )
             border[t] = by_pose.T @ by_shared
             corner += by_shared.T @ by_shared
             corner_gradient += by_shared.T @ errors
