@@ -10,7 +10,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput
@@ -146,6 +145,8 @@ def searched_gains(
     Raises:
         InvalidInput: Nothing to compare with.
     """
+    from scipy.optimize import minimize_scalar
+
     trials: list[tuple[float, float, float]] = []
     errors: dict[tuple[float, float], OrientationError] = {}
     expected = 20 + len(ZETAS)

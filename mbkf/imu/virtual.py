@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
@@ -101,6 +100,8 @@ def virtual_imus(
     if rate_hz is not None and abs(rate_hz / own_rate - 1.0) > 1e-9:
         rate = float(rate_hz)
         times = times_s[0] + np.arange(int(np.floor((times_s[-1] - times_s[0]) * rate + 1e-9)) + 1) / rate
+        from scipy.interpolate import make_interp_spline
+
         readings = make_interp_spline(times_s, readings, k=3, axis=0)(times)
         rotations = _orthonormal(make_interp_spline(times_s, rotations, k=3, axis=0)(times))
     field = np.asarray(field_ut, dtype=float) @ rotations
