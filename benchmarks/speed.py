@@ -25,7 +25,6 @@ from mbkf.pipelines.synth import synthesise
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.sensors.marker_sensor import MarkerSensor
-from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.person import body_of
 
 PRODUCT_SIZE = 168

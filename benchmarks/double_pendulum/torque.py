@@ -11,7 +11,7 @@ import scipy.linalg
 from benchmarks.double_pendulum.trials import Estimate, Trial
 from mbkf.conventions import Array
 from mbkf.errors import UnknownName
-from mbkf.filters.torque.plant import ForcedState, ForcedPrediction, Scheme, TorquePlant, update
+from mbkf.filters.torque.plant import ForcedPrediction, ForcedState, Scheme, TorquePlant, update
 from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
 from mbkf.model.forced_body import ForcedBody, WithIdleStates
 from mbkf.numerics.kalman import Information, information

@@ -31,7 +31,6 @@ from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.marker_sensor import MarkerSensor
-from mbkf.sensors.marker_sensor import MarkerSensor
 
 DT_S, MARKER_SD_M, FRAMES = 0.01, 0.001, 60
 RUNS, SMOOTHED_RUNS = 20, 8

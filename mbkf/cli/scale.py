@@ -16,7 +16,7 @@ examples:
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
-    from mbkf.cli.options import add_axes_options
+    from mbkf.cli.options import CAPTURE_FILES, add_axes_options
 
     parser = subparsers.add_parser(
         "scale",
@@ -25,7 +25,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "trials or both.",
         epilog=_EPILOG,
     )
-    parser.add_argument("static", metavar="STATIC", nargs="?", help="standing trial (.c3d or .trc)")
+    parser.add_argument("static", metavar="STATIC", nargs="?", help=f"standing trial ({CAPTURE_FILES})")
     parser.add_argument(
         "--trial", metavar="TRIAL", action="append", default=[], help="moving trial; may be repeated"
     )

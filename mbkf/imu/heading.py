@@ -50,7 +50,7 @@ def held_headings(
         segments: S names; the first one is the chain's root.
         orientation: (T, S, 4) segment → world, z up.
         dt_s: Time between samples.
-        settings: How.
+        settings: Its weights.
     """
     s = settings or HeadingSettings()
     joints = [(segments.index(a), segments.index(b), sd) for a, b, sd in JOINTS if {a, b} <= set(segments)]

@@ -1,4 +1,4 @@
-"""The subject file: what scaling found and every later step reads (TOML, written by ``mbkf scale``)."""
+"""The subject file: the result of scaling, input of every later step (TOML, written by ``mbkf scale``)."""
 
 from __future__ import annotations
 

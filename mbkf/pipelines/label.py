@@ -20,7 +20,7 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.labelling.any_attitude import STAGE, AnyAttitude
 from mbkf.pipelines.labelling.body import LabelBody, label_body
 from mbkf.pipelines.labelling.doubts import Doubts
-from mbkf.pipelines.labelling.redecision import relabel_offline, trajectories
+from mbkf.pipelines.labelling.relabelling import relabel_offline, trajectories
 from mbkf.pipelines.labelling.score import LabelScore
 
 CANDIDATES = 8

@@ -1,12 +1,12 @@
-"""Local marker correction on the trial itself (thesis 4.1.1): markers sit a little elsewhere in every session.
+"""Local marker correction on the trial itself (thesis section 4.1.1): markers sit a little elsewhere in every session.
 
 Skin shifts between standing with spread arms and walking, markers fall off and are stuck on again. With the scale
 factors fixed, each marker's offset in its segment is found anew over frames of the whole trial, near where the subject
 file has it.
 
-What a trial cannot tell is a rigid displacement of all markers of a segment from another pose of that segment. Left to
-the markers' own freedom it would move joint centres by a centimetre, and torques with them, so on the segments that
-stand between plates and pelvis it is held near the static trial, where bones were marked.
+A trial does not separate a rigid displacement of all markers of a segment from another pose of that segment. Left to
+the offsets of single markers, it would move joint centres by a centimetre, and torques with them. On the segments
+between plates and pelvis it therefore has a prior near the static trial, where bones were marked.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from mbkf.sensors.pose_fit import segment_by_segment
 
 FRAMES = 40
 LOOKS = 10.0
-"""How many independent looks at a marker the frames of one trial are worth (skin moves slowly)."""
+"""Effective number of independent readings of a marker in the frames of one trial (skin moves slowly)."""
 
 POSTURE_LOOKS = 40.0
 """The same for the posture; it keeps a knee from taking the skin's sideways movement for its own."""
@@ -43,7 +43,7 @@ COMMON_SD_M = 0.003
 """Spread of a steady segment's markers in each of the six directions of a rigid displacement."""
 
 STRANGE_M = 0.01
-"""A marker that the trial wants further away than this was put on anew, or swapped, and says nothing of the others."""
+"""A marker further away than this was put on anew, or swapped, and does not count for the common displacement."""
 
 FIXED_FACTOR_SD = 1e-5
 
@@ -122,7 +122,7 @@ def _offset_precision(markers: tuple[ProtocolMarker, ...], subject: Subject, fam
 
 
 def rigid_displacements(points_m: Array) -> Array:
-    """(3 n, k) orthonormal basis of what translations and small rotations do to points (n, 3); k is 6, or 3 or 5."""
+    """(3 n, k) orthonormal basis of rigid displacements (small rotations) of points (n, 3); k is 6, 5 or 3."""
     from_middle = points_m - points_m.mean(axis=0)
     moved = [np.tile(axis, len(points_m)) for axis in np.eye(3)]
     turned = [np.cross(axis, from_middle).ravel() for axis in np.eye(3)]

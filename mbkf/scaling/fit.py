@@ -49,7 +49,7 @@ def scale_subject(
         progress: Called with accepted iterations and the most there can be.
 
     Raises:
-        InvalidInput: Mass or height is not positive, no trial is given, or nobody stands in the static trial.
+        InvalidInput: Mass or height is not positive, no trial is given, or the static trial shows no upright person.
         NotObservable: Too few markers of the protocol.
         NotConverged: The fit is so poor that the markers cannot be this protocol on a person.
     """
@@ -101,7 +101,15 @@ def scaling_problem(
     height_m: float | None,
     settings: ScalingSettings,
 ) -> ScalingProblem:
-    """The problem that chosen frames pose, those of the static trials first."""
+    """The least-squares problem of chosen frames.
+
+    Args:
+        frames: The frames, those of the static trials first.
+        static_trials: Number of static trials.
+        protocol: The marker protocol.
+        height_m: Body height, if known.
+        settings: Weights of the priors.
+    """
     body = load_body(protocol.body)
     counts = np.bincount(frames.trial)
     looks = np.where(
@@ -206,7 +214,7 @@ def _report(
     dropped: BoolArray,
     settings: ScalingSettings,
 ) -> dict[str, Any]:
-    """Plain numbers: fit per marker (mm), factors with standard errors and active bounds, what was left out."""
+    """Plain numbers: fit per marker (mm), factors with standard errors and active bounds, markers left out."""
     state, body = solution.state, problem.body
     errors_mm = 1e3 * np.linalg.norm(problem.errors_m(state), axis=2)
     count = len(body.scale_factors)

@@ -1,4 +1,4 @@
-"""The subject file: what is written is read back exactly, and a bad file says why in one line."""
+"""The subject file: read back exactly as written; a bad file is refused with its reason in one line."""
 
 import tempfile
 from dataclasses import replace

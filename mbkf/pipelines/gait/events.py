@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import find_peaks
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.io.results import Reconstruction
@@ -120,6 +119,8 @@ def events_of_motion(feet: FeetInMotion, foot: int) -> FootEvents:
 
 def _peaks(times_s: Array, signal: Array) -> Array:
     """Times of prominent maxima, refined by a parabola through three frames."""
+    from scipy.signal import find_peaks
+
     known = ~np.isnan(signal)
     if known.sum() < 3:
         return np.empty(0)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
 from mbkf.conventions import GRAVITY_M_S2, SIDES, Array
 from mbkf.io.results import Reconstruction
@@ -130,6 +129,8 @@ def reaction_cells(r: Reconstruction, factor: float, unit: str) -> list[Cell]:
 
 def _facing(r: Reconstruction) -> Array:
     """(T, 3, 3) rows: horizontally forward as the pelvis faces on average over a second or so, left, up."""
+    from scipy.ndimage import gaussian_filter1d
+
     forward = feet_in_motion(r).forward
     known = np.flatnonzero(~np.isnan(forward).any(axis=1))
     frames = np.arange(r.frames)
