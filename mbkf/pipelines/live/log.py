@@ -44,7 +44,7 @@ class LiveStream:
     plates: tuple[PlateReadings, ...]
 
 
-class LiveRows:
+class LogRows:
     """Makes rows of estimates."""
 
     def __init__(self, follower: Follower, markers: int, coordinates: int) -> None:

@@ -19,7 +19,7 @@ PRESSURE_FROM_N = 20.0
 """Vertical force from which a reaction is drawn."""
 
 
-class LiveRows:
+class DisplayRows:
     """Turns frames into rows, one after another.
 
     Attributes:
