@@ -10,7 +10,7 @@ from mbkf.io.atomic import replacing
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.records import Capture
 from mbkf.io.trc import write_trc
-from mbkf.pipelines.label import Labelling, labelled_capture, summarise
+from mbkf.pipelines.label import Labelling, label_summary, labelled_capture
 from mbkf.pipelines.labelling.score import LabelScore
 
 
@@ -29,7 +29,7 @@ def write_labels(
         FileFormatError: The file cannot be written.
     """
     path = Path(path)
-    labelled, summary = labelled_capture(raw, found), summarise(found, compared)
+    labelled, summary = labelled_capture(raw, found), label_summary(found, compared)
     if path.suffix.lower() == ".trc":
         write_trc(labelled.markers, path)
     else:

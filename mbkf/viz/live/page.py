@@ -8,11 +8,12 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.human import HumanModel
+from mbkf.stream.loopback import LOOPBACK
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.viz.live.rows import DisplayRows
 from mbkf.viz.page import page
 from mbkf.viz.scene.description import scene_description
-from mbkf.viz.server import LOOPBACK, PageServer
+from mbkf.viz.server import PageServer
 
 
 class LivePage:
