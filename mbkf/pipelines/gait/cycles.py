@@ -112,7 +112,13 @@ def cycles_of(events: tuple[FootEvents, FootEvents], side: int) -> list[Cycle]:
 
 
 def over_cycle(times_s: Array, values: Array, cycle: Cycle) -> Array:
-    """(101,) a curve (T,) over a cycle; NaN where one of the two frames around a point is."""
+    """(101,) a curve (T,) over a cycle; NaN where one of the two frames around a point is.
+
+    Args:
+        times_s: (T,) times of the frames, s.
+        values: (T,) the curve.
+        cycle: The cycle.
+    """
     at = np.linspace(cycle.start_s, cycle.end_s, POINTS)
     return np.interp(at, times_s, values)
 

@@ -109,7 +109,13 @@ class LogRows:
         return row, spread
 
     def judge(self, row: NDArray, estimate: Estimate | None, spread: Spread | None) -> None:
-        """Adds to a row how well its frame was predicted, and what only the results tell; nobody waits for that."""
+        """Adds how well the frame was predicted, and what only the results need; called after the frame was shown.
+
+        Args:
+            row: (1,) the frame's row.
+            estimate: The filter's estimate, None where the body is not tracked.
+            spread: Standard deviations of the estimate.
+        """
         if estimate is None or spread is None:
             return
         row["nis"], row["readings"] = self._follower.innovation(estimate)

@@ -28,6 +28,13 @@ class DisplayRows:
     """
 
     def __init__(self, model: HumanModel, markers: int, surface_m: float = 0.0) -> None:
+        """Rows of a body.
+
+        Args:
+            model: The scaled body.
+            markers: Number of markers.
+            surface_m: Height of the surface that centres of pressure lie on, m.
+        """
         self.clinical = ClinicalAngles(model)
         self.layout = Layout(len(model.joints), markers, len(self.clinical.names), MOST_UNLABELLED)
         self._model, self._surface_m = model, surface_m
