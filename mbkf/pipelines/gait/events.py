@@ -93,6 +93,11 @@ def events_of_load(times_s: Array, vertical_n: Array, threshold_n: float = LOADE
     """Events of a foot from its vertical force (T,), at the crossings of the threshold between frames.
 
     A contact that begins or ends where the force is NaN, or at the ends of the trial, has no such event.
+
+    Args:
+        times_s: (T,) times of the frames, s.
+        vertical_n: (T,) vertical force on the foot, N; NaN where not known.
+        threshold_n: A foot stands while the force exceeds this, N.
     """
     known = ~np.isnan(vertical_n)
     stands = np.nan_to_num(vertical_n) > threshold_n

@@ -71,7 +71,13 @@ class LabelBody:
 
 
 def label_body(markers: Sequence[SubjectMarker], subject: Subject, settings: RunningSettings) -> LabelBody:
-    """The markers that scaling saw, or all where the subject does not tell."""
+    """The body with the markers that scaling saw, or all where the subject does not list these.
+
+    Args:
+        markers: Markers to look for.
+        subject: The scaled person.
+        settings: Settings of the labeller.
+    """
     seen = subject.report.get("markers")
     worn = tuple(m for m in markers if seen is None or m.name in seen)
     model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)

@@ -19,7 +19,7 @@ PRESSURE_FROM_N = 20.0
 """Vertical force from which a reaction is drawn."""
 
 
-class LiveRows:
+class DisplayRows:
     """Turns frames into rows, one after another.
 
     Attributes:
@@ -28,6 +28,13 @@ class LiveRows:
     """
 
     def __init__(self, model: HumanModel, markers: int, surface_m: float = 0.0) -> None:
+        """Rows of a body.
+
+        Args:
+            model: The scaled body.
+            markers: Number of markers.
+            surface_m: Height of the surface that centres of pressure lie on, m.
+        """
         self.clinical = ClinicalAngles(model)
         self.layout = Layout(len(model.joints), markers, len(self.clinical.names), MOST_UNLABELLED)
         self._model, self._surface_m = model, surface_m

@@ -111,7 +111,13 @@ def torque_cells(r: Reconstruction, joints: Sequence[str]) -> list[list[Cell]]:
 
 
 def reaction_cells(r: Reconstruction, factor: float, unit: str) -> list[Cell]:
-    """Charts of the three components of the reactions: upward, in the direction the person faces, to the left."""
+    """Charts of the three components of the reactions: upward, in the direction the person faces, to the left.
+
+    Args:
+        r: The results.
+        factor: Factor from N to the unit shown.
+        unit: The unit shown.
+    """
     axes = _facing(r)
     force = np.einsum("tij,tfj->tfi", axes, r.foot_wrench[..., :3])
     sd = np.full_like(force, np.nan)
@@ -191,6 +197,11 @@ def cycle_chart(times_s: Array, gait: Gait, cell: Cell) -> str:
     """A cell over 0–100 % of the cycles of each side: every cycle lightly, their mean with its band.
 
     The midline is shown over the cycles of the right foot, or of the left where there are none.
+
+    Args:
+        times_s: (T,) times of the frames, s.
+        gait: The gait cycles of both sides.
+        cell: The curves to draw.
     """
     percent = np.linspace(0.0, 100.0, POINTS)
     thin, bold, marks = [], [], []

@@ -68,6 +68,14 @@ class Layout:
     """
 
     def __init__(self, segments: int, markers: int, coordinates: int, unlabelled: int = 0) -> None:
+        """Parts of a row, one after another.
+
+        Args:
+            segments: Number of segments.
+            markers: Number of markers.
+            coordinates: Number of clinical coordinates.
+            unlabelled: Number of points without names, at most.
+        """
         widths = {
             "status": len(STATUS),
             "segments": 7 * segments,
@@ -94,7 +102,13 @@ class Layout:
         return np.full((frames, self.width), np.nan)
 
     def put(self, rows: Array, part: str, values: Array) -> None:
-        """Writes a part of rows (T, width); ``values`` has T rows of any shape that fills the part."""
+        """Writes one part of rows.
+
+        Args:
+            rows: (T, width) the rows, changed in place.
+            part: Name of the part.
+            values: T values of any shape that fills the part.
+        """
         first, width = self.parts[part]
         rows[:, first : first + width] = values.reshape(len(rows), width)
 
@@ -110,7 +124,13 @@ class Layout:
 
 
 def marker_states(measured_m: Array, hidden: BoolArray, refused: BoolArray) -> Array:
-    """State of markers whose measured positions are (…, M, 3): :data:`SEEN`, :data:`UNSEEN` or :data:`REFUSED`."""
+    """(…, M) state of markers: :data:`SEEN`, :data:`UNSEEN` or :data:`REFUSED`.
+
+    Args:
+        measured_m: (…, M, 3) measured positions, m; NaN where missing.
+        hidden: (…, M) markers withheld from the filter.
+        refused: (…, M) markers rejected by the gate.
+    """
     unseen = np.isnan(measured_m).any(axis=-1) | hidden
     return np.where(unseen, UNSEEN, np.where(refused, REFUSED, SEEN)).astype(float)
 
