@@ -8,10 +8,18 @@ from docutils import nodes
 from latex2mathml.converter import convert
 from sphinx.application import Sphinx
 
+SCRIPT_N = "\N{MATHEMATICAL SCRIPT CAPITAL N}"
+"""The normal distribution's letter; browsers do not take it from MathML's attribute for script."""
+
+
+def mathml(latex: str, display: str) -> str:
+    """An equation in LaTeX as an element of MathML."""
+    return convert(latex.replace(r"\mathcal N", SCRIPT_N), display=display)
+
 
 def inline(writer: Any, node: nodes.math) -> None:
     """An equation within a line."""
-    writer.body.append(convert(node.astext()))
+    writer.body.append(mathml(node.astext(), "inline"))
     raise nodes.SkipNode
 
 
@@ -20,7 +28,7 @@ def block(writer: Any, node: nodes.math_block) -> None:
     label = node.get("number")
     number = f'<span class="eqno">({label})</span>' if label else ""
     anchor = f' id="{node["ids"][0]}"' if node.get("ids") else ""
-    writer.body.append(f'<div class="math"{anchor}>{number}{convert(node.astext(), display="block")}</div>\n')
+    writer.body.append(f'<div class="math"{anchor}>{number}{mathml(node.astext(), "block")}</div>\n')
     raise nodes.SkipNode
 
 

@@ -113,3 +113,7 @@ def test_every_paper_that_the_code_cites_stands_among_the_references():
     }
     assert len(cited) > 5
     assert {key: path for key, path in cited.items() if f"**{key}**" not in text} == {}
+
+
+def test_the_citation_names_this_version():
+    assert f"version: {mbkf.__version__}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
