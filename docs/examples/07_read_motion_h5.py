@@ -7,10 +7,10 @@ from sys import executable
 import h5py
 import numpy as np
 
-mbkf = [executable, "-m", "mbkf"]
-run([*mbkf, "synth", "--motion", "squat", "--seconds", "1", "--out", "lab"], check=True, capture_output=True)
+command = [executable, "-m", "mbkf"]
+run([*command, "synth", "--motion", "squat", "--seconds", "1", "--out", "lab"], check=True, capture_output=True)
 words = ["reconstruct", "lab/trial.c3d", "--subject", "lab/subject.toml", "--out", "result"]
-run([*mbkf, *words], check=True, capture_output=True)
+run([*command, *words], check=True, capture_output=True)
 
 with h5py.File("result/motion.h5") as file:
     print(
