@@ -8,7 +8,11 @@ import h5py
 import numpy as np
 
 command = [executable, "-m", "mbkf"]
-run([*command, "synth", "--motion", "squat", "--seconds", "1", "--out", "lab"], check=True, capture_output=True)
+run(
+    [*command, "synth", "--motion", "squat", "--seconds", "1", "--out", "lab"],
+    check=True,
+    capture_output=True,
+)
 words = ["reconstruct", "lab/trial.c3d", "--subject", "lab/subject.toml", "--out", "result"]
 run([*command, *words], check=True, capture_output=True)
 
