@@ -14,37 +14,54 @@ from mbkf.version import __version__
 
 if TYPE_CHECKING:
     from mbkf.io.capture import read_capture
+    from mbkf.io.imu_files import read_imu
     from mbkf.io.results_folder import read_reconstruction, write_reconstruction
     from mbkf.io.subject import read_subject, write_subject
     from mbkf.model.human import HumanModel
-    from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
+    from mbkf.model.protocol import load_protocol
+    from mbkf.pipelines.imu.orient import orient
+    from mbkf.pipelines.label import label
+    from mbkf.pipelines.reconstruct import Hidden, ReconstructSettings, reconstruct
     from mbkf.pipelines.results.summary import summarise
     from mbkf.pipelines.scale import scale
+    from mbkf.pipelines.synth import synthesise
 
 _HOMES = {
+    "Hidden": "mbkf.pipelines.reconstruct",
     "HumanModel": "mbkf.model.human",
     "ReconstructSettings": "mbkf.pipelines.reconstruct",
+    "label": "mbkf.pipelines.label",
+    "load_protocol": "mbkf.model.protocol",
+    "orient": "mbkf.pipelines.imu.orient",
     "read_capture": "mbkf.io.capture",
+    "read_imu": "mbkf.io.imu_files",
     "read_reconstruction": "mbkf.io.results_folder",
     "read_subject": "mbkf.io.subject",
     "reconstruct": "mbkf.pipelines.reconstruct",
     "scale": "mbkf.pipelines.scale",
     "summarise": "mbkf.pipelines.results.summary",
+    "synthesise": "mbkf.pipelines.synth",
     "write_reconstruction": "mbkf.io.results_folder",
     "write_subject": "mbkf.io.subject",
 }
 
 __all__ = [
+    "Hidden",
     "HumanModel",
     "MbkfError",
     "ReconstructSettings",
     "__version__",
+    "label",
+    "load_protocol",
+    "orient",
     "read_capture",
+    "read_imu",
     "read_reconstruction",
     "read_subject",
     "reconstruct",
     "scale",
     "summarise",
+    "synthesise",
     "write_reconstruction",
     "write_subject",
 ]
