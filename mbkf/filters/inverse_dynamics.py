@@ -32,7 +32,7 @@ class TorqueSolver:
 
     def __init__(self, model: HumanModel) -> None:
         self.model = model
-        self._root = model.joint("pelvis").v
+        self._root = model.root.v
         self._moves = model.supports[[model.joint(segment).joint_id for segment in FEET]].astype(float)
 
     def torques(self, q: Array, v: Array, a: Array, foot_wrench: Array) -> Array:

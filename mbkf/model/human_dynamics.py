@@ -16,7 +16,6 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.errors import UnknownName
 from mbkf.model.forced_body import LinearAcceleration
 from mbkf.model.human import HumanModel
-from mbkf.model.newton_euler import FEET
 
 WRENCH_FRAMES = ("ankle", "foot", "thesis")
 """Where a wrench state lives; the moment is in the foot's axes in each.
@@ -55,7 +54,7 @@ class HumanDynamics:
         model: The body.
         held: (nv,) dofs that do not move.
         kinematic: (nv,) dofs with prescribed acceleration: the toes and the held ones.
-        torque_dofs: The dofs that u's first entries act on: the pelvis's six, then the joints but for the toes.
+        torque_dofs: The dofs that u's first entries act on: the root's six, then the joints but for the toes.
         wrench_frame: Where u's wrenches live, see :data:`WRENCH_FRAMES`.
         force_state: What its first entries are, see :data:`FORCE_STATES`.
         nv, nu: Degrees of freedom, forces (62 for the reference body).
@@ -75,14 +74,14 @@ class HumanDynamics:
         self.model, self.wrench_frame, self.force_state = model, wrench_frame, force_state
         self.nv = model.nv
         toes = np.zeros(model.nv, dtype=bool)
-        for name in FEET:
-            toes[model.joint(name.replace("foot", "toes")).v] = True
+        for name in model.roles.toes:
+            toes[model.joint(name).v] = True
         self.held = np.zeros(model.nv, dtype=bool) if held is None else held
         self.kinematic = toes | self.held
         self.torque_dofs = np.flatnonzero(~toes)
         self.nu = len(self.torque_dofs) + 12
         self._free = np.flatnonzero(~self.kinematic)
-        self._foot_ids = [model.joint(name).joint_id for name in FEET]
+        self._foot_ids = [model.joint(name).joint_id for name in model.roles.feet]
         on_com = 1.0 if wrench_frame == "thesis" else 0.0
         self._points = [on_com * model.pin_model.inertias[k].lever for k in self._foot_ids]
         self._data = model.pin_model.createData()

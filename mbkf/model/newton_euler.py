@@ -1,6 +1,6 @@
-"""Newton–Euler on the whole body: the generalised forces that a motion and two foot wrenches ask for (eq. 3.12).
+"""Newton–Euler on the whole body: the generalised forces that a motion and two foot wrenches ask for.
 
-τ = ID(q, v, a) − Σ J_fᵀ w_f. Its first six rows are the residual at the pelvis, zero for a body that obeys Newton's
+τ = ID(q, v, a) − Σ J_fᵀ w_f. Its first six rows are the residual at the root, zero for a body that obeys Newton's
 law; the others are the joint torques. Wrenches are about the world's origin in world axes, so that a constant one
 does not change with q by itself.
 """
@@ -18,7 +18,7 @@ from mbkf.conventions import Array
 from mbkf.model.human import HumanModel
 
 FEET = ("right_foot", "left_foot")
-"""Segments that take ground reactions, in the order of every paired array."""
+"""Feet of the bodies that come with mbkf; a body's own are ``model.roles.feet``."""
 
 ROOT = 6
 
@@ -78,7 +78,7 @@ class NewtonEuler:
     def __init__(self, model: HumanModel) -> None:
         self.model = model
         self._pin, self._data = model.pin_model, model.pin_model.createData()
-        ids = [model.joint(segment).joint_id for segment in FEET]
+        ids = [model.joint(segment).joint_id for segment in model.roles.feet]
         self._chains = [np.flatnonzero(model.supports[j]) for j in ids]
         self._moves = [model.supports[j].astype(float) for j in ids]
         self._after = [_moved_by(model, chain) for chain in self._chains]

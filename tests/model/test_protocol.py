@@ -5,7 +5,8 @@ import pytest
 
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.capture import read_capture
-from mbkf.model.description import load_body, mirrored
+from mbkf.model.body_file import load_body
+from mbkf.model.description import mirrored
 from mbkf.model.protocol import KINDS, detect_protocol, load_protocol, protocol_names
 
 SHIPPED = (
@@ -76,7 +77,7 @@ def test_these_protocols_are_shipped():
 @pytest.mark.parametrize("name", SHIPPED)
 def test_a_shipped_protocol_is_sound(name):
     protocol = load_protocol(name)
-    segments = {segment.name for segment in load_body(protocol.body).segments}
+    segments = {segment.name for segment in protocol.body.segments}
     labels = [alias for marker in protocol.markers for alias in (marker.name, *marker.aliases)]
     assert protocol.name == name
     assert len(labels) == len(set(labels)), "a name or alias stands twice"
