@@ -19,9 +19,6 @@ from mbkf.filters.singer import DynamicState
 from mbkf.filters.synergy import Synergy, learn
 from mbkf.model.human import HumanModel
 
-LEADING = ("torso", *(f"{side}_{part}" for side in ("right", "left") for part in ("thigh", "shank", "foot")))
-"""Segments whose joints, with the pelvis, lead; the others follow."""
-
 SHOWN_HZ, BLOCK_S = 25.0, 0.5
 """How often frames are noted, and how long a block of them is that is left out at a time."""
 
@@ -44,8 +41,10 @@ class Habit:
         self._model, self._ridge = model, settings.habit_ridge_rad
         joints = [joint for joint in model.joints.values() if joint.kind != "free"]
         dofs = {joint.segment: np.arange(joint.v.start, joint.v.stop) for joint in joints}
-        self._leading = np.concatenate([dofs[segment] for segment in LEADING])
-        self.followers = [own for name, own in dofs.items() if name not in LEADING and not held[own].all()]
+        self._leading = np.concatenate([dofs[segment] for segment in model.roles.leading])
+        self.followers = [
+            own for name, own in dofs.items() if name not in model.roles.leading and not held[own].all()
+        ]
         self._root = next(joint for joint in model.joints.values() if joint.kind == "free")
         self._neutral = model.neutral()
         self._every = max(1, round(1.0 / (SHOWN_HZ * dt_s)))
