@@ -16,7 +16,9 @@ if TYPE_CHECKING:
     from mbkf.io.capture import read_capture
     from mbkf.io.results_folder import read_reconstruction, write_reconstruction
     from mbkf.io.subject import read_subject, write_subject
+    from mbkf.model.body_file import load_body
     from mbkf.model.human import HumanModel
+    from mbkf.model.protocol import load_protocol
     from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
     from mbkf.pipelines.results.summary import summarise
     from mbkf.pipelines.scale import scale
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
 _HOMES = {
     "HumanModel": "mbkf.model.human",
     "ReconstructSettings": "mbkf.pipelines.reconstruct",
+    "load_body": "mbkf.model.body_file",
+    "load_protocol": "mbkf.model.protocol",
     "read_capture": "mbkf.io.capture",
     "read_reconstruction": "mbkf.io.results_folder",
     "read_subject": "mbkf.io.subject",
@@ -39,6 +43,8 @@ __all__ = [
     "MbkfError",
     "ReconstructSettings",
     "__version__",
+    "load_body",
+    "load_protocol",
     "read_capture",
     "read_reconstruction",
     "read_subject",
