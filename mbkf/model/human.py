@@ -8,7 +8,6 @@ Pinocchio: J. Carpentier et al., IEEE/SICE Int. Symp. System Integration 2019, 6
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -18,29 +17,9 @@ from numpy.lib.stride_tricks import as_strided
 from mbkf.conventions import GRAVITY_M_S2, Array, read_only
 from mbkf.errors import InvalidInput, ShapeError, UnknownName
 from mbkf.io.subject import Subject
+from mbkf.model.body import SegmentJoint
 from mbkf.model.body_file import load_body, parse_body
 from mbkf.model.description import JOINT_DOF, BodyDescription, Roles, Segment
-
-
-@dataclass(frozen=True)
-class SegmentJoint:
-    """Where a segment's joint lies in q and v, and its Pinocchio joint.
-
-    Attributes:
-        segment: Segment name.
-        kind: "free", "spherical", "universal" or "hinge".
-        axes: Axes that a universal joint or a hinge turns about, e.g. "y"; "" for the others.
-        joint_id: Pinocchio index of the joint that carries the segment.
-        q: Slice of the configuration.
-        v: Slice of the tangent space.
-    """
-
-    segment: str
-    kind: str
-    axes: str
-    joint_id: int
-    q: slice
-    v: slice
 
 
 class HumanModel:
