@@ -29,8 +29,8 @@ from mbkf.model.description import (
     Segment,
     SegmentShape,
     Sole,
-    mirrored,
 )
+from mbkf.model.sides import mirrored
 
 AXES_BY_JOINT = {"free": "", "spherical": "", "universal": "xy", "hinge": "y"}
 """Axes of each kind of joint where the file gives none."""

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from mbkf.model.description import mirrored
+from mbkf.model.sides import mirrored
 
 
 @dataclass(frozen=True)

@@ -6,13 +6,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from mbkf.conventions import Array
 from mbkf.errors import UnknownName
-
-if TYPE_CHECKING:
-    from mbkf.model.clinical_table import ClinicalJoint
+from mbkf.model.clinical_table import ClinicalJoint
 
 JOINT_DOF = {"free": 6, "spherical": 3, "universal": 2, "hinge": 1}
 """Degrees of freedom of each kind of joint."""
@@ -181,12 +178,3 @@ class BodyDescription:
         if name not in self.landmarks:
             raise UnknownName("landmark", name, self.landmarks)
         return self.landmarks[name]
-
-
-def mirrored(name: str) -> str:
-    """The other side's name of a ``right_``/``left_`` name; midline names stay."""
-    if name.startswith("right_"):
-        return "left_" + name.removeprefix("right_")
-    if name.startswith("left_"):
-        return "right_" + name.removeprefix("left_")
-    return name

@@ -15,7 +15,8 @@ from mbkf.conventions import Array, data_folder, read_only
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.subject import match_names
 from mbkf.model.body_file import load_body
-from mbkf.model.description import BodyDescription, mirrored
+from mbkf.model.description import BodyDescription
+from mbkf.model.sides import mirrored
 
 KINDS = ("anatomical", "technical", "computed")
 """Anatomical: on a landmark, stays near it. Technical: anywhere on the segment, its position comes from the data.

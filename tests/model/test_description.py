@@ -5,7 +5,8 @@ import pytest
 
 from mbkf.errors import UnknownName
 from mbkf.model.body_file import load_body
-from mbkf.model.description import JOINT_DOF, mirrored
+from mbkf.model.description import JOINT_DOF
+from mbkf.model.sides import mirrored
 
 BODY = load_body()
 
@@ -88,15 +89,6 @@ def test_the_sole_spans_the_foot_to_the_tip_of_the_toes():
     assert sole.toe_x_m == pytest.approx(toe_tip[0], abs=0.015)
     assert sole.outer_y_m < 0 < sole.inner_y_m
     assert sole.height_m < foot[2]
-
-
-@pytest.mark.parametrize(
-    ("name", "other"),
-    [("right_foot", "left_foot"), ("left_toes", "right_toes"), ("head", "head"), ("right", "right")],
-)
-def test_mirrored_names(name, other):
-    assert mirrored(name) == other
-    assert mirrored(other) == name
 
 
 def test_unknown_names_are_refused_with_the_nearest():

@@ -6,8 +6,8 @@ import pytest
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.capture import read_capture
 from mbkf.model.body_file import load_body
-from mbkf.model.description import mirrored
 from mbkf.model.protocol import KINDS, detect_protocol, load_protocol, protocol_names
+from mbkf.model.sides import mirrored
 
 SHIPPED = (
     "autolabel62",
