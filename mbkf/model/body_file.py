@@ -232,7 +232,8 @@ def _roles(table: dict[str, Any], segments: tuple[Segment, ...], path: Path) -> 
         raise FileFormatError(
             path, f"roles: toes {list(toes)} must join the feet {list(feet)}, or be left out"
         )
-    legs = [name for foot in feet for name in reversed(_chain(foot, parents)) if name != root]
+    both = [name for foot in feet for name in reversed(_chain(foot, parents)) if name != root]
+    legs = list(dict.fromkeys(both))
     knees = tuple(tuple(pair) for pair in roles.get("knees", ()))
     for pair in knees:
         if len(pair) != 2 or parents[_known(pair[1], segments, f"{where}, knees")] != pair[0]:
@@ -242,7 +243,8 @@ def _roles(table: dict[str, Any], segments: tuple[Segment, ...], path: Path) -> 
         feet=(feet[0], feet[1]),
         toes=toes,
         soles=_soles(table["sole"], feet, toes, segments),
-        leading=several("leading", list(dict.fromkeys(legs))),
+        legs=tuple(legs),
+        leading=several("leading", legs),
         steady=several("steady", [root, *feet, *toes]),
         knees=knees,
     )

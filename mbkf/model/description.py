@@ -92,6 +92,7 @@ class Roles:
         toes: The segments that bend on the feet, in the order of the feet; empty where feet are rigid. Ground reactions
             act on the foot as a whole, so that toes have no torque of their own.
         soles: The soles of the feet, in their order.
+        legs: The segments from the root (without it) to the feet.
         leading: Segments whose joints, with the root, lead those that no marker shows (arms swing with the legs).
         steady: Segments whose markers the skin moves little, from the floor to the root.
         knees: Thigh and shank of each leg: the shank bends one way only.
@@ -101,6 +102,7 @@ class Roles:
     feet: tuple[str, str]
     toes: tuple[str, ...]
     soles: tuple[Sole, Sole]
+    legs: tuple[str, ...]
     leading: tuple[str, ...]
     steady: tuple[str, ...]
     knees: tuple[tuple[str, str], ...]

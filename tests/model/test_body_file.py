@@ -44,8 +44,10 @@ def test_unknown_bodies_are_refused_with_the_nearest(tmp_path):
 def test_roles_have_defaults():
     start, end = TEXT.index("leading = ["), TEXT.index("knees = [")
     roles = parse_body(TEXT[:start] + TEXT[end:], "x").roles
-    assert roles.leading == tuple(
-        f"{side}_{part}" for side in ("right", "left") for part in ("thigh", "shank", "foot")
+    assert (
+        roles.leading
+        == roles.legs
+        == tuple(f"{side}_{part}" for side in ("right", "left") for part in ("thigh", "shank", "foot"))
     )
     assert roles.steady == ("pelvis", "right_foot", "left_foot", "right_toes", "left_toes")
 

@@ -46,13 +46,7 @@ class JointNames:
 
 def joint_names(body: BodyDescription) -> JointNames:
     """The joints of a body, as they are shown together."""
-    parents = {segment.name: segment.parent for segment in body.segments}
-    lower = {"world"}
-    for end in (*body.roles.feet, *body.roles.toes):
-        segment = end
-        while segment not in lower:
-            lower.add(segment)
-            segment = parents[segment]
+    lower = {body.roles.root, *body.roles.legs, *body.roles.toes}
     names = {entry.distal: entry.name.removesuffix("_r").removesuffix("_l") for entry in body.clinical_joints}
     legs = dict.fromkeys(name for segment, name in names.items() if segment in lower)
     upper = dict.fromkeys(name for segment, name in names.items() if segment not in lower)
