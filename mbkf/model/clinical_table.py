@@ -42,6 +42,8 @@ class ClinicalJoint:
         main: Name of the angle that stands for the joint in summaries (flexion).
         angles: Its angles, in that order.
         translations: The root's position along three world axes; empty for other joints.
+        heading_sd_deg: How far the side-to-side axes of its segments differ in heading in ordinary movement; None where
+            they differ at will.
     """
 
     name: str
@@ -51,6 +53,7 @@ class ClinicalJoint:
     main: str
     angles: tuple[Angle, ...]
     translations: tuple[Angle, ...]
+    heading_sd_deg: float | None = None
 
     @property
     def coordinates(self) -> tuple[Angle, ...]:
@@ -86,6 +89,8 @@ def _check(joint: ClinicalJoint) -> None:
         raise ValueError(f"joint {joint.name}: order '{joint.order}' must hold different ones of x, y and z")
     if joint.main not in {angle.name for angle in joint.angles}:
         raise ValueError(f"joint {joint.name}: main angle {joint.main} is not among its angles")
+    if joint.heading_sd_deg is not None and not joint.heading_sd_deg > 0:
+        raise ValueError(f"joint {joint.name}: heading_sd_deg must be positive, not {joint.heading_sd_deg}")
     for angle in joint.coordinates:
         if angle.sign not in (1, -1):
             raise ValueError(f"joint {joint.name}: sign of {angle.name} is 1 or -1, not {angle.sign}")
@@ -100,6 +105,7 @@ def _joint(entry: dict[str, Any]) -> ClinicalJoint:
         main=entry["main"],
         angles=tuple(Angle(**angle) for angle in entry["angle"]),
         translations=tuple(Angle(**angle) for angle in entry.get("translation", ())),
+        heading_sd_deg=entry.get("heading_sd_deg"),
     )
 
 
@@ -124,6 +130,7 @@ def _left(right: ClinicalJoint) -> ClinicalJoint:
         _left_name(right.main),
         angles,
         (),
+        right.heading_sd_deg,
     )
 
 
