@@ -139,4 +139,10 @@ class Body(Protocol):
         """(nv, nv) symmetric mass matrix."""
 
     def inverse_dynamics(self, q: Array, v: Array, a: Array) -> Array:
-        """(nv,) generalised forces M a − Q_g for given motion, without contact."""
+        """(nv,) generalised forces M a − Q_g for given motion, without contact.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            a: (nv,) acceleration.
+        """

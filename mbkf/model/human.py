@@ -41,6 +41,17 @@ class HumanModel:
     """
 
     def __init__(self, description: BodyDescription, scale: Array, mass_kg: float) -> None:
+        """Scales a reference body to one person.
+
+        Args:
+            description: The reference body.
+            scale: (K,) independent scale factors.
+            mass_kg: Body mass.
+
+        Raises:
+            ShapeError: The scale factors are not as many as the body has.
+            InvalidInput: Mass or a factor is not positive.
+        """
         self.description = description
         self.roles: Roles = description.roles
         self.scale = read_only(scale)
@@ -218,7 +229,13 @@ class HumanModel:
         return pin.computeJointJacobians(self.pin_model, self._data, q)
 
     def inverse_dynamics(self, q: Array, v: Array, a: Array) -> Array:
-        """(nv,) generalised forces M a − Q_g without contact, Q_g from gravity and velocities."""
+        """(nv,) generalised forces M a − Q_g without contact, Q_g from gravity and velocities.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            a: (nv,) acceleration.
+        """
         return pin.rnea(self.pin_model, self._data, q, v, a)
 
     def mass_matrix(self, q: Array) -> Array:

@@ -1,7 +1,10 @@
-"""The whole body as a forced one: residual, joint torques and two foot wrenches move it (thesis 3.2, 4.1.4).
+"""The whole body as a forced one: residual, joint torques and two foot wrenches move it.
 
 Dofs that follow a kinematic plant (the toes, and what no marker shows) have a prescribed acceleration of 0, so that
-a toe's mass moves with its foot and its stiff dynamics stay out (thesis 4.1.4).
+a toe's mass moves with its foot and its stiff dynamics stay out.
+
+After M. Pérez Soto, doctoral thesis, Universidade da Coruña, 2022, sections 3.2 and 4.1.4, called "the thesis" here.
+T_e are the forces u, Bᵀ their effect on the degrees of freedom, Q_g gravity and velocity terms.
 """
 
 from __future__ import annotations
@@ -22,7 +25,8 @@ WRENCH_FRAMES = ("ankle", "foot", "thesis")
 
 "ankle": force in world axes on the ankle. A turn of the foot changes nothing, a turn of the leg little.
 "foot": force in the foot's axes on the ankle; a turn of the foot swings the whole load about.
-"thesis": force in world axes on the foot's centre of mass (thesis 4.1.4.1), below the ankle, where it topples the foot.
+"thesis": force in world axes on the foot's centre of mass (section 4.1.4.1), below the ankle, where it topples the
+foot.
 """
 
 
@@ -67,6 +71,17 @@ class HumanDynamics:
         wrench_frame: str = "ankle",
         force_state: str = "inertial",
     ) -> None:
+        """A scaled body with the forces that move it.
+
+        Args:
+            model: The body.
+            held: (nv,) dofs that do not move; none when None.
+            wrench_frame: Where u's wrenches live, one of :data:`WRENCH_FRAMES`.
+            force_state: What u's first entries are, one of :data:`FORCE_STATES`.
+
+        Raises:
+            UnknownName: There is no such wrench frame or force state.
+        """
         if wrench_frame not in WRENCH_FRAMES:
             raise UnknownName("wrench frame", wrench_frame, WRENCH_FRAMES)
         if force_state not in FORCE_STATES:
@@ -122,7 +137,13 @@ class HumanDynamics:
     # Forces.
 
     def acceleration(self, q: Array, v: Array, u: Array) -> Array:
-        """(nv,) M⁻¹ (Q_g + Bᵀ T_e) of the free dofs (eq. 3.38), 0 of the kinematic ones."""
+        """(nv,) M⁻¹ (Q_g + Bᵀ T_e) of the free dofs, 0 of the kinematic ones.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            u: (nu,) forces.
+        """
         dofs = len(self.torque_dofs)
         push = self._selector @ u[:dofs]
         if self._acting:
@@ -131,9 +152,14 @@ class HumanDynamics:
         return self._accelerate(q, push)[0]
 
     def linearise(self, q: Array, v: Array, u: Array) -> LinearAcceleration:
-        """The acceleration with its complete analytic derivatives (eqs. 3.42–3.44).
+        """The acceleration with its complete analytic derivatives.
 
         ∂z̈/∂q = M⁻¹ (∂(Bᵀ T_e + Q_g)/∂q − ∂(M a)/∂q), a held in the last term.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            u: (nu,) forces.
         """
         nv, rows, dofs = self.nv, self._free, len(self.torque_dofs)
         given = self._given(q, v, u[dofs:]) if self._acting else _Given.nothing(nv)
@@ -146,7 +172,7 @@ class HumanDynamics:
         return LinearAcceleration(a, slope[:, :nv], slope[:, nv : 2 * nv], slope[:, 2 * nv :])
 
     def forces(self, q: Array, v: Array, a: Array, foot_wrench: Array) -> Array:
-        """(nu,) forces u that cause a motion under given reactions (eq. 3.12).
+        """(nu,) forces u that cause a motion under given reactions, by inverse dynamics.
 
         Args:
             q: Configuration.
@@ -161,13 +187,26 @@ class HumanDynamics:
         return np.concatenate([u[self.torque_dofs], state])
 
     def generalised(self, q: Array, v: Array, a: Array, u: Array) -> Array:
-        """(nv,) generalised forces M a − Q_g − Jᵀ w of all dofs, kinematic ones too, under u's wrenches."""
+        """(nv,) generalised forces M a − Q_g − Jᵀ w of all dofs, kinematic ones too, under u's wrenches.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            a: (nv,) acceleration.
+            u: (nu,) forces.
+        """
         local = self.local_wrench(q, u[len(self.torque_dofs) :])[0]
         load = self._pull() @ local
         return self.model.inverse_dynamics(q, v, a) - load
 
     def joint_forces(self, q: Array, v: Array, u: Array) -> JointForces:
-        """Residual and joint torques T_d of a state."""
+        """Residual and joint torques T_d of a state.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            u: (nu,) forces.
+        """
         dofs, nv = len(self.torque_dofs), self.nv
         if self._acting:
             none = np.zeros((dofs, nv))

@@ -84,7 +84,14 @@ class NewtonEuler:
         self._after = [_moved_by(model, chain) for chain in self._chains]
 
     def root(self, q: Array, v: Array, a: Array, wrenches: Array) -> RootBalance:
-        """The pelvis's equations for the feet's wrenches (12,)."""
+        """The pelvis's equations for the feet's wrenches (12,).
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            a: (nv,) acceleration.
+            wrenches: (12,) right and left foot's wrenches: force N and moment N m about the world's origin.
+        """
         by_q, by_v, by_a = self._inverse_dynamics(q, v, a)
         data = self._data
         by_wrench = -data.J[:, :ROOT].T
@@ -94,7 +101,14 @@ class NewtonEuler:
         return RootBalance(data.tau[:ROOT] + own, by_q[:ROOT], by_v[:ROOT], by_a[:ROOT], by_wrench)
 
     def torques(self, q: Array, v: Array, a: Array, wrenches: Array) -> JointTorques:
-        """All generalised forces with derivatives, for the feet's wrenches (12,)."""
+        """All generalised forces with derivatives, for the feet's wrenches (12,).
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            a: (nv,) acceleration.
+            wrenches: (12,) right and left foot's wrenches: force N and moment N m about the world's origin.
+        """
         data, nv = self._data, self.model.nv
         by_state = np.empty((nv, 3 * nv + 12))
         found = JointTorques(np.empty(nv), by_state)
@@ -112,7 +126,14 @@ class NewtonEuler:
         return found
 
     def tau(self, q: Array, v: Array, a: Array, wrenches: Array) -> Array:
-        """(nv,) generalised forces alone."""
+        """(nv,) generalised forces alone.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            a: (nv,) acceleration.
+            wrenches: (12,) right and left foot's wrenches: force N and moment N m about the world's origin.
+        """
         tau = pin.rnea(self._pin, self._data, q, v, a)
         J = pin.computeJointJacobians(self._pin, self._data, q)
         for foot, moves in enumerate(self._moves):
