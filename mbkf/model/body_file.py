@@ -11,7 +11,7 @@ pelvis.
 from __future__ import annotations
 
 import tomllib
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -75,6 +75,7 @@ def _shipped(name: str) -> BodyDescription:
     return _parse(path.read_text(encoding="utf-8"), path, "")
 
 
+@lru_cache(maxsize=8)
 def parse_body(text: str, path: str | Path) -> BodyDescription:
     """A reference body from the text of a body file.
 

@@ -61,7 +61,7 @@ def scale(
         protocol = detect_protocol(captures[0].markers.names, body)
     elif isinstance(protocol, str):
         protocol = load_protocol(protocol, body)
-    elif body is not None and protocol.body is not body:
+    elif body is not None and (protocol.body.name, protocol.body.text) != (body.name, body.text):
         raise InvalidInput(
             f"the protocol '{protocol.name}' is placed on the body '{protocol.body.name}', not on '{body.name}'; "
             "read it with load_protocol(name, body)"

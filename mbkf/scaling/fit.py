@@ -100,15 +100,7 @@ def scaling_problem(
     height_m: float | None,
     settings: ScalingSettings,
 ) -> ScalingProblem:
-    """The problem that chosen frames pose, those of the static trials first.
-
-    Args:
-        frames: The chosen frames.
-        static_trials: How many of the trials are standing ones; they come first.
-        protocol: The marker protocol, on its body.
-        height_m: Body height, if known.
-        settings: Weights of the priors.
-    """
+    """The problem that chosen frames pose, those of the static trials first."""
     body = protocol.body
     counts = np.bincount(frames.trial)
     looks = np.where(
