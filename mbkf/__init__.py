@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from mbkf.io.imu_files import read_imu
     from mbkf.io.results_folder import read_reconstruction, write_reconstruction
     from mbkf.io.subject import read_subject, write_subject
+    from mbkf.model.body_file import load_body
     from mbkf.model.human import HumanModel
     from mbkf.model.protocol import load_protocol
     from mbkf.pipelines.imu.orient import orient
@@ -31,6 +32,7 @@ _HOMES = {
     "HumanModel": "mbkf.model.human",
     "ReconstructSettings": "mbkf.pipelines.reconstruct",
     "label": "mbkf.pipelines.label",
+    "load_body": "mbkf.model.body_file",
     "load_protocol": "mbkf.model.protocol",
     "orient": "mbkf.pipelines.imu.orient",
     "read_capture": "mbkf.io.capture",
@@ -52,6 +54,7 @@ __all__ = [
     "ReconstructSettings",
     "__version__",
     "label",
+    "load_body",
     "load_protocol",
     "orient",
     "read_capture",

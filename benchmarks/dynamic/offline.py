@@ -52,7 +52,7 @@ def offline_motion(capture: Capture, subject: Subject, cut_off_hz: float = LOW_P
     """
     with single_threaded():
         markers = subject_markers(capture.markers, subject)
-        model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
+        model = HumanModel.of(subject)
         own = {marker.name: marker for marker in subject.markers}
         followed = [own[name] for name in markers.names]
         sensor = MarkerSensor(

@@ -96,7 +96,7 @@ def rajagopal_walk(context: Context) -> Worn:
     subject = scale(static, mass_kg=source.mass_kg)
     made = reconstruct(capture, subject, settings=ReconstructSettings(smooth=True))
     stood = reconstruct(static, subject, settings=ReconstructSettings(filter="kinematic"))
-    model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
+    model = HumanModel.of(subject)
     known = np.isfinite(made.q).all(axis=1)
     motion = BodyMotion(model, made.times_s[known], made.q[known], made.v[known], made.a[known])
     return worn(

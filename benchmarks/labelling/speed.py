@@ -31,7 +31,7 @@ class TimedWalk:
 
     def __init__(self) -> None:
         person, made = synthesise("walk")
-        model = HumanModel.scaled(person.scale_factors, person.mass_kg, person.body)
+        model = HumanModel.of(person)
         segments, places = [m.segment for m in person.markers], [m.position_m for m in person.markers]
         noise = np.array([m.noise_m for m in person.markers])
         self.sensor = MarkerSensor(model, segments, np.array(places))

@@ -59,9 +59,9 @@ class FeetInMotion:
 
 def feet_in_motion(r: Reconstruction) -> FeetInMotion:
     """Feet and pelvis of a reconstruction."""
-    model = HumanModel.scaled(r.subject.scale_factors, r.subject.mass_kg, r.subject.body)
+    model = HumanModel.of(r.subject)
     q = np.where(r.tracked[:, None], r.q, np.nan)
-    root = model.joint("pelvis").q
+    root = model.root.q
     x, y, z, w = q[:, root.start + 3 : root.start + 7].T
     facing = np.column_stack([1.0 - 2.0 * (y**2 + z**2), 2.0 * (x * y + z * w)])
     forward = facing / np.maximum(np.linalg.norm(facing, axis=1, keepdims=True), 1e-9)

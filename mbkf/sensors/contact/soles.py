@@ -9,7 +9,6 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.human import HumanModel
-from mbkf.model.newton_euler import FEET
 from mbkf.sensors.contact.thresholds import KEEP_M, REACH_M
 from mbkf.sensors.marker_sensor import MarkerSensor
 
@@ -22,7 +21,7 @@ def sole_locals(model: HumanModel) -> tuple[tuple[str, ...], Array]:
     sole = model.description.sole
     middle = 0.5 * (sole.inner_y_m + sole.outer_y_m)
     segments, places = [], []
-    for segment, sign in zip(FEET, (1.0, -1.0), strict=True):
+    for segment, sign in zip(model.roles.feet, (1.0, -1.0), strict=True):
         toes = model.description.segment(segment.replace("foot", "toes"))
         for x in (sole.heel_x_m, toes.origin_m[0], sole.toe_x_m):
             segments.append(segment)

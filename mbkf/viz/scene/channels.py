@@ -6,12 +6,14 @@ A row is one frame: the poses of the segments, the markers, the reactions and ev
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
 from mbkf.conventions import SIDES, Array, BoolArray
+from mbkf.model.clinical_table import ClinicalJoint
 from mbkf.viz.wording import SIDE_NAMES, wordings
 
 SEEN, UNSEEN, REFUSED = 0, 1, 2
@@ -135,20 +137,23 @@ def marker_states(measured_m: Array, hidden: BoolArray, refused: BoolArray) -> A
     return np.where(unseen, UNSEEN, np.where(refused, REFUSED, SEEN)).astype(float)
 
 
-def quantities(layout: Layout, coordinate_names: tuple[str, ...], streamed: bool) -> list[Quantity]:
+def quantities(
+    layout: Layout, coordinate_names: tuple[str, ...], joints: Iterable[ClinicalJoint], streamed: bool
+) -> list[Quantity]:
     """Everything that can be plotted, in the order of the list that people choose from.
 
     Args:
         layout: Of the rows.
         coordinate_names: (A,) clinical coordinates.
+        joints: The body's clinical joints.
         streamed: Whether there are latency, rate and lost frames to show.
     """
-    words = wordings()
+    words = wordings(joints)
     found = []
     for group, part, of_load in (("Angles", "angles", False), ("Torques", "moments", True)):
         for a, name in enumerate(coordinate_names):
             w = words[name]
-            residual = of_load and w.joint == "pelvis"
+            residual = of_load and w.root
             suffix = "" if not of_load else (" residual" if residual else " torque")
             side = f", {SIDE_NAMES[w.side]}" if w.side else ""
             found.append(
