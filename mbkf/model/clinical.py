@@ -185,6 +185,22 @@ class ClinicalAngles:
         conjugate[:, self._root_columns] = world_force @ self._root_axes.T
         return conjugate
 
+    def moments_sd(self, q: Array, tau_sd: Array, angles: Array | None = None) -> Array:
+        """(T, A) standard deviations √Σ B² sd² of the moments, for independent forces.
+
+        One axis of every joint is taken at a time, because no coordinate mixes two joints.
+
+        Args:
+            q: (T, nq) configurations.
+            tau_sd: (T, nv) standard deviations of the generalised forces.
+            angles: (T, A) coordinates, as for :meth:`rate_matrices`.
+        """
+        q, angles = self._with_angles(q, angles)
+        joints = self.model.joints.values()
+        axis = np.concatenate([np.arange(joint.v.stop - joint.v.start) % 3 for joint in joints])
+        by_axis = [self.moments(q, np.where(axis == one, tau_sd, 0.0), angles) for one in range(3)]
+        return np.asarray(np.sqrt(np.square(by_axis).sum(axis=0)))
+
     def _cardan(self, angles: Array) -> Array:
         return self._ball_sign * angles[:, self._ball_column]
 

@@ -128,7 +128,7 @@ class ContactDetector:
         pressed, ends = np.array([x, y, surface]), sole.tolist()
         share = share_along(x, y, ends)
         if share > share_along(ends[1][0], ends[1][1], ends):
-            return Planted(self._model.roles.toes[foot], pressed, flat=True)
+            return Planted((self._model.roles.toes or self._model.roles.feet)[foot], pressed, flat=True)
         return Planted(self._model.roles.feet[foot], pressed, flat=FLAT_FROM < share < FLAT_TO)
 
     def _touching(

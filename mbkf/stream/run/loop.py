@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from mbkf.sensors.block import Frame
 from mbkf.conventions import Array
 from mbkf.pipelines.live.filter import LiveStep
 from mbkf.stream.receiving.alignment import BRIDGED_S, Note, ReadyFrame
@@ -143,7 +144,7 @@ class FilterLoop:
 
     def _feed(self, frame: ReadyFrame, markers_m: Array) -> None:
         self._waiting.append(replace(frame, markers_m=markers_m))
-        self._answer(self._setup.filter.push(frame.number, markers_m, frame.plates))
+        self._answer(self._setup.filter.push(frame.number, Frame(markers_m, frame.plates)))
 
     def _answer(self, steps: list[LiveStep]) -> None:
         """Gives answers to the output, each with its frame."""

@@ -66,9 +66,12 @@ class RunOutput:
             self._statistics.starts += 1
             if self._statistics.starts > 1:
                 self._note("start", "the filter started anew", step.number, 1)
+        if spread is not None:
+            self._rows.spread(row, spread)
         if self._sinks:
             self._show(ready, row, latency, lost)
-        self._rows.complete(row, step.estimate, spread)
+        if step.estimate is not None:
+            self._rows.innovation(row, step.estimate)
         self._put_row(row)
 
     def close(self) -> None:
