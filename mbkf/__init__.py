@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from mbkf.pipelines.synth import synthesise
     from mbkf.pipelines.tracker import Estimate, Tracker, standard_blocks
     from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+    from mbkf.sensors.contact.plates import plate_wrenches
     from mbkf.sensors.layout import ExtraState, Layout
 
 _HOMES = {
@@ -49,6 +50,7 @@ _HOMES = {
     "load_body": "mbkf.model.body_file",
     "load_protocol": "mbkf.model.protocol",
     "orient": "mbkf.pipelines.imu.orient",
+    "plate_wrenches": "mbkf.sensors.contact.plates",
     "read_capture": "mbkf.io.capture",
     "read_imu": "mbkf.io.imu_files",
     "read_reconstruction": "mbkf.io.results_folder",
@@ -82,6 +84,7 @@ __all__ = [
     "load_body",
     "load_protocol",
     "orient",
+    "plate_wrenches",
     "read_capture",
     "read_imu",
     "read_reconstruction",

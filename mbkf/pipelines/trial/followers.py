@@ -54,7 +54,9 @@ class FilterInputs:
 
 def _kinematic(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
     if blocks is not None:
-        raise InvalidInput("blocks of one's own are for the dynamic filter; the kinematic filter reads markers only")
+        raise InvalidInput(
+            "blocks of one's own are for the dynamic filter; the kinematic filter reads markers only"
+        )
     return KinematicTracking(_starter(inputs))
 
 
@@ -75,7 +77,9 @@ def standard(inputs: FilterInputs) -> list[AnyBlock]:
 
 def _torque(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
     if blocks is not None:
-        raise InvalidInput("blocks of one's own are for the dynamic filter; the torque filter is the thesis's")
+        raise InvalidInput(
+            "blocks of one's own are for the dynamic filter; the torque filter is the thesis's"
+        )
     kalman = TorqueFilter(inputs.sensor, inputs.noise_m, inputs.dt_s, inputs.held, inputs.torque)
     feet = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
     return TorqueTracking(kalman, feet, _starter(inputs))

@@ -9,9 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from mbkf.sensors.block import Frame
 from mbkf.conventions import Array
 from mbkf.pipelines.live.filter import LiveStep
+from mbkf.sensors.block import Frame
 from mbkf.stream.receiving.alignment import BRIDGED_S, Note, ReadyFrame
 from mbkf.stream.receiving.reader import SILENT_S
 from mbkf.stream.receiving.receiver import START_SLACK_S, Receiver
