@@ -17,6 +17,7 @@ from mbkf.sensors.block import Frame, OperatingPoint
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.motion import TrueMotion, synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
 from tests.motions import moderate_pose, protocol_sensor

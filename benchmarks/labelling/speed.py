@@ -11,7 +11,7 @@ import numpy as np
 from benchmarks.checks import Check
 from benchmarks.speed import PRODUCT_SIZE
 from mbkf.conventions import Array
-from mbkf.filters.estimate import Estimate, Recording
+from mbkf.filters.estimate import Posterior, Recording
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.kinematic.tracking import KinematicTracking
@@ -31,7 +31,7 @@ class TimedWalk:
 
     def __init__(self) -> None:
         person, made = synthesise("walk")
-        model = HumanModel.scaled(person.scale_factors, person.mass_kg, person.body)
+        model = HumanModel.of(person)
         segments, places = [m.segment for m in person.markers], [m.position_m for m in person.markers]
         noise = np.array([m.noise_m for m in person.markers])
         self.sensor = MarkerSensor(model, segments, np.array(places))
@@ -51,14 +51,20 @@ class TimedWalk:
         extra = shown.mean(axis=0) + rng.uniform(-0.8, 0.8, (POINTS - len(shown), 3))
         return rng.permutation(np.concatenate([shown, extra]))
 
-    def plain(self, before: Estimate, t: int) -> list[float]:
+    def plain(self, before: Posterior, t: int) -> list[float]:
         """Seconds of the filter's step without labels."""
         begin = perf_counter()
         self.follower.step(before, self.recording, t)
         return [perf_counter() - begin]
 
-    def labelled(self, before: Estimate, t: int, points: Array) -> tuple[Estimate, Array]:
-        """The step with labels between prediction and correction, and the seconds of its parts (4,)."""
+    def labelled(self, before: Posterior, t: int, points: Array) -> tuple[Posterior, Array]:
+        """The step with labels between prediction and correction, and the time (4,) of its parts, s.
+
+        Args:
+            before: Estimate of the frame before.
+            t: The frame.
+            points: (N, 3) its points, m.
+        """
         ticks = [perf_counter()]
         prediction = self.follower.predict(before)
         ticks.append(perf_counter())

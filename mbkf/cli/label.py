@@ -29,7 +29,7 @@ By the protocol alone some labels may fit nearly as well by another name: warnin
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
-    from mbkf.cli.options import add_axes_options
+    from mbkf.cli.options import CAPTURE_FILES, add_axes_options
 
     parser = subparsers.add_parser(
         "label",
@@ -37,7 +37,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         description="Name the points of a capture by the subject's marker geometry and a filter's prediction.",
         epilog=_EPILOG,
     )
-    parser.add_argument("raw", metavar="RAW", help="unlabelled capture (.c3d or .trc); its names are ignored")
+    parser.add_argument(
+        "raw", metavar="RAW", help=f"unlabelled capture ({CAPTURE_FILES}); its names are ignored"
+    )
     parser.add_argument("--subject", metavar="SUBJECT.toml", help="written by 'mbkf scale'")
     parser.add_argument(
         "--static", metavar="LABELLED", help="instead of --subject: a labelled standing trial to scale from"
@@ -128,9 +130,11 @@ def _check_person(args: argparse.Namespace) -> None:
 
 def _checked(out: Path, raw: Path) -> Path:
     from mbkf.errors import FileFormatError, InvalidInput
+    from mbkf.io.capture import writable_suffixes
+    from mbkf.io.readers import either
 
-    if out.suffix.lower() not in (".c3d", ".trc"):
-        raise InvalidInput(f"--out {out}: name a .c3d or .trc file")
+    if out.suffix.lower() not in writable_suffixes():
+        raise InvalidInput(f"--out {out}: name a {either(writable_suffixes())} file")
     if out.is_dir():
         raise FileFormatError(out, "is a folder; name a file for --out")
     if out.resolve() == raw.resolve():

@@ -5,6 +5,12 @@ from __future__ import annotations
 import argparse
 import math
 
+from mbkf.io.capture import CAPTURES
+from mbkf.io.readers import either
+
+CAPTURE_FILES = either(CAPTURES.suffixes)
+"""Suffixes of the captures that can be read, as help texts have them."""
+
 
 def add_axes_options(parser: argparse.ArgumentParser) -> None:
     """``--up`` and ``--unit``, for files that do not say, or say it wrongly."""

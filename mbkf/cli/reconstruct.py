@@ -24,7 +24,7 @@ writes summary.json, motion.h5, angles.mot, torques.sto, reactions.mot and marke
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
-    from mbkf.cli.options import add_axes_options
+    from mbkf.cli.options import CAPTURE_FILES, add_axes_options
 
     parser = subparsers.add_parser(
         "reconstruct",
@@ -32,7 +32,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         description="Follow a scaled subject through a trial and solve for joint torques.",
         epilog=_EPILOG,
     )
-    parser.add_argument("trial", metavar="TRIAL", help="capture (.c3d or .trc)")
+    parser.add_argument("trial", metavar="TRIAL", help=f"capture ({CAPTURE_FILES})")
     parser.add_argument("--subject", required=True, metavar="SUBJECT.toml", help="written by 'mbkf scale'")
     parser.add_argument("--forces", metavar="FILE.mot", help="ground reactions; a C3D brings its own plates")
     parser.add_argument(

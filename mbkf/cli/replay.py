@@ -21,7 +21,7 @@ Playing starts when somebody listens, e.g. 'mbkf live --from lsl --subject subje
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
-    from mbkf.cli.options import add_axes_options
+    from mbkf.cli.options import CAPTURE_FILES, add_axes_options
 
     parser = subparsers.add_parser(
         "replay",
@@ -29,7 +29,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         description="Play markers and plates as Lab Streaming Layer or OptiTrack NatNet, in real time.",
         epilog=_EPILOG,
     )
-    parser.add_argument("trial", metavar="TRIAL", help="capture (.c3d or .trc)")
+    parser.add_argument("trial", metavar="TRIAL", help=f"capture ({CAPTURE_FILES})")
     parser.add_argument("--forces", metavar="FILE.mot", help="ground reactions; a C3D brings its own plates")
     parser.add_argument("--to", required=True, choices=("lsl", "natnet"), help="what to play it as")
     parser.add_argument("--speed", type=float, default=1.0, metavar="X", help="times real time (default: 1)")

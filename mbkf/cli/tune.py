@@ -42,7 +42,7 @@ _PARAMETERS = """\
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Adds the command to the command line."""
-    from mbkf.cli.options import add_axes_options
+    from mbkf.cli.options import CAPTURE_FILES, add_axes_options
 
     parser = subparsers.add_parser(
         "tune",
@@ -51,7 +51,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "most probable, and save them as a preset.",
         epilog=_EPILOG + _PARAMETERS,
     )
-    parser.add_argument("trials", metavar="TRIAL", nargs="+", help="captures (.c3d or .trc)")
+    parser.add_argument("trials", metavar="TRIAL", nargs="+", help=f"captures ({CAPTURE_FILES})")
     parser.add_argument("--subject", required=True, metavar="SUBJECT.toml", help="written by 'mbkf scale'")
     parser.add_argument(
         "--forces",
@@ -139,14 +139,15 @@ def positions(trials: Sequence[str], held_out: Sequence[str]) -> tuple[int, ...]
 
 
 def forces_of(trials: Sequence[str], forces: Sequence[str]) -> list[str | None]:
-    """The force file of each trial; a C3D brings its own plates.
+    """The force file of each trial, None for captures that bring their own plates.
 
     Raises:
         InvalidInput: There are not as many files as trials that need one.
     """
     from mbkf.errors import InvalidInput
+    from mbkf.io.capture import CAPTURES
 
-    bare = [i for i, trial in enumerate(trials) if Path(trial).suffix.lower() != ".c3d"]
+    bare = [i for i, trial in enumerate(trials) if not CAPTURES.format_of(Path(trial)).brings_plates]
     if forces and len(forces) != len(bare):
         raise InvalidInput(
             f"--forces: {len(bare)} of the trials are no C3D and {len(forces)} files are given; give one for each, "

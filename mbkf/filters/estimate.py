@@ -10,6 +10,7 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.spread import Spread
+from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.sensors.block import NO_READINGS, Frame
 from mbkf.sensors.marker_prediction import MarkerPrediction
@@ -40,12 +41,25 @@ class Recording:
         own = {name: read[t] for name, read in self.readings.items()} if self.readings else NO_READINGS
         return Frame(self.markers_m[t], self.plates[t], imus, own)
 
+    @classmethod
+    def of(cls, frames: Sequence[Frame], dt_s: float) -> Recording:
+        """Frames (at least one) that follow each other, ``dt_s`` apart."""
+        first = frames[0]
+        imus = None if first.imus is None else np.array([frame.imus for frame in frames])
+        return cls(
+            np.array([frame.markers_m for frame in frames]),
+            np.array([frame.plates for frame in frames]),
+            dt_s,
+            imus,
+            {name: np.array([frame.readings[name] for frame in frames]) for name in first.readings},
+        )
+
     def __len__(self) -> int:
         return len(self.markers_m)
 
 
 @dataclass(frozen=True)
-class Estimate:
+class Posterior:
     """A filter's posterior of one frame.
 
     Attributes:
@@ -90,18 +104,19 @@ class TrackingFilter(Protocol):
     """A filter as trials and streams drive it."""
 
     model: HumanModel
+    clinical: ClinicalAngles
     dt_s: float
     restart_after_s: float
 
-    def start(self, recording: Recording, t: int, guess: Array | None) -> Estimate | None:
+    def start(self, recording: Recording, t: int, guess: Array | None) -> Posterior | None:
         """An estimate at frame t that already knows its velocity from the next frames, or None where nothing fits."""
 
-    def predict(self, before: Estimate) -> Prediction:
+    def predict(self, before: Posterior) -> Prediction:
         """What the frame after an estimate should show: what a labeller needs between prediction and correction."""
 
     def step(
-        self, before: Estimate, recording: Recording, t: int, prediction: Prediction | None = None
-    ) -> Estimate:
+        self, before: Posterior, recording: Recording, t: int, prediction: Prediction | None = None
+    ) -> Posterior:
         """The estimate of frame t from that of the frame before.
 
         Args:
@@ -111,21 +126,21 @@ class TrackingFilter(Protocol):
             prediction: What :meth:`predict` made of ``before``, where it was asked; good for one step.
         """
 
-    def covariance(self, estimate: Estimate) -> Array:
+    def covariance(self, estimate: Posterior) -> Array:
         """(2 nv, 2 nv) covariance of (q, v)."""
 
-    def spread(self, estimate: Estimate) -> Spread:
+    def spread(self, estimate: Posterior) -> Spread:
         """Standard deviations at an estimate."""
 
-    def wrench_sd(self, estimate: Estimate) -> Array:
+    def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) standard deviations of the feet's wrenches, NaN where the filter estimates none."""
 
-    def innovation(self, estimate: Estimate) -> tuple[float, int]:
+    def innovation(self, estimate: Posterior) -> tuple[float, int]:
         """Normalised innovation squared of an estimate's frame and the number of readings in it; NaN at a start."""
 
     def smooth(
-        self, run: Sequence[Estimate], recording: Recording, first: int, wanted: int
-    ) -> list[Estimate]:
+        self, run: Sequence[Posterior], recording: Recording, first: int, wanted: int
+    ) -> list[Posterior]:
         """The first ``wanted`` estimates of a run of consecutive ones, in the light of all of them.
 
         Args:

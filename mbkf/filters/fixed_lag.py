@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from mbkf.filters.estimate import Estimate, Recording, TrackingFilter
+from mbkf.filters.estimate import Posterior, Recording, TrackingFilter
 
 
 @dataclass(frozen=True)
@@ -44,11 +44,11 @@ class FixedLagSmoother:
         self.follower, self.recording = follower, recording
         self._stretch = max(1, round(settings.stretch_s / follower.dt_s))
         self._ahead = max(1, round(settings.ahead_s / follower.dt_s))
-        self._run: list[Estimate] = []
+        self._run: list[Posterior] = []
         self._first = 0
         self._given = 0
 
-    def push(self, t: int, estimate: Estimate) -> list[tuple[int, Estimate]]:
+    def push(self, t: int, estimate: Posterior) -> list[tuple[int, Posterior]]:
         """Frame t's estimate in, smoothed earlier ones out; a restart ends the run before it."""
         done = self.finish() if estimate.started else []
         if not self._run:
@@ -58,14 +58,14 @@ class FixedLagSmoother:
             done += self._smooth(self._stretch)
         return done
 
-    def finish(self) -> list[tuple[int, Estimate]]:
+    def finish(self) -> list[tuple[int, Posterior]]:
         """What is left, when no more frames follow."""
         left = len(self._run) - self._given
         done = self._smooth(left) if left else []
         self._run, self._given = [], 0
         return done
 
-    def _smooth(self, wanted: int) -> list[tuple[int, Estimate]]:
+    def _smooth(self, wanted: int) -> list[tuple[int, Posterior]]:
         until = self._given + wanted
         smoothed = self.follower.smooth(self._run, self.recording, self._first, until)
         done = list(enumerate(smoothed, start=self._first))[self._given :]

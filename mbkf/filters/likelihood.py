@@ -15,7 +15,7 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput
 from mbkf.filters.dynamic.tracking import DynamicTracking
-from mbkf.filters.estimate import Estimate, Recording, TrackingFilter
+from mbkf.filters.estimate import Posterior, Recording, TrackingFilter
 from mbkf.filters.filter import Filter, Step
 from mbkf.filters.kinematic.tracking import KinematicTracking
 from mbkf.filters.tracking_loop import followed
@@ -73,7 +73,7 @@ def trial_likelihood(
     return TrialLikelihood(markers, loads, 3 * seen.sum(axis=1), load_readings, first)
 
 
-def frame_likelihood(follower: TrackingFilter, estimate: Estimate) -> tuple[LogLikelihood, int]:
+def frame_likelihood(follower: TrackingFilter, estimate: Posterior) -> tuple[LogLikelihood, int]:
     """Of one frame's believed markers, and of its loads and how many numbers those are.
 
     Args:

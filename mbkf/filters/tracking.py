@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import NotObservable
-from mbkf.filters.estimate import Estimate, Recording, TrackingFilter
+from mbkf.filters.estimate import Posterior, Recording, TrackingFilter
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
+from mbkf.filters.record import UNASKED, FrameRecorder, blank
 from mbkf.filters.tracking_loop import followed
 
 
 @dataclass(frozen=True)
 class Track:
-    """A followed trial; frames before the first fitted pose are NaN.
+    """A followed trial; read off its records; frames before the first fitted pose are NaN.
 
     Attributes:
         q: (T, nq) configurations.
@@ -62,7 +64,7 @@ class Track:
 
 
 def track(
-    follower: TrackingFilter,
+    filter: TrackingFilter,
     recording: Recording,
     *,
     smoothing: SmoothingSettings | None = None,
@@ -72,7 +74,7 @@ def track(
     """Runs the filter over all frames.
 
     Args:
-        follower: The filter.
+        filter: The filter.
         recording: What the instruments read.
         smoothing: How to smooth; None for the filter alone.
         keep_covariance: Whether to keep the full covariance of (q, v) of every frame.
@@ -81,92 +83,50 @@ def track(
     Raises:
         NotObservable: In no frame do the markers fit the body.
     """
-    record = _Recorder(follower, recording, keep_covariance)
-    frames = len(recording)
-    smoother = None if smoothing is None else FixedLagSmoother(follower, recording, smoothing)
-    for t, fresh, seconds in followed(follower, recording):
-        record.step(t, fresh, seconds)
-        if smoother is None:
-            record.estimate(t, fresh)
-        else:
-            record.estimates(smoother.push(t, fresh))
+    recorder, frames = FrameRecorder(filter, recording.markers_m.shape[1]), len(recording)
+    rows = blank(recorder.dtype, frames)
+    rows["number"] = np.arange(frames)
+    size = 2 * filter.model.nv
+    covariance = np.full((frames, size, size), np.nan) if keep_covariance else None
+
+    def keep(found: Sequence[tuple[int, Posterior]]) -> None:
+        for t, posterior in found:
+            recorder.spread(rows[t : t + 1], recorder.motion(rows[t : t + 1], posterior))
+            if covariance is not None:
+                covariance[t] = filter.covariance(posterior)
+
+    smoother = None if smoothing is None else FixedLagSmoother(filter, recording, smoothing)
+    for t, fresh, seconds in followed(filter, recording):
+        row = rows[t : t + 1]
+        recorder.step(row, fresh, seconds)
+        recorder.innovation(row, fresh)
+        keep([(t, fresh)] if smoother is None else smoother.push(t, fresh))
         if progress is not None and (t % 20 == 0 or t == frames - 1):
             progress(t + 1, frames)
-    if not record.starts:
+    if not rows["started"].any():
         raise NotObservable(
             "in no frame do the markers fit the scaled body; is this the subject's protocol, "
             "and are unit and axes right (--unit, --up)?"
         )
     if smoother is not None:
-        record.estimates(smoother.finish())
-    return record.track(smoothed=smoother is not None)
+        keep(smoother.finish())
+    return track_of(rows, smoothed=smoother is not None, covariance=covariance)
 
 
-class _Recorder:
-    """Fills the arrays of a track, frame by frame."""
+def track_of(rows: NDArray, smoothed: bool = False, covariance: Array | None = None) -> Track:
+    """The trial that records tell of.
 
-    def __init__(self, follower: TrackingFilter, recording: Recording, keep_covariance: bool) -> None:
-        self._follower = follower
-        model, frames = follower.model, len(recording)
-        self.starts: list[int] = []
-        self._arrays: dict[str, np.ndarray] = {
-            name: np.full((frames, *width), np.nan)
-            for name, width in {
-                "q": (model.nq,),
-                "v": (model.nv,),
-                "a": (model.nv,),
-                "wrench": (2, 6),
-                "wrench_sd": (2, 6),
-                "nis": (),
-                "step_seconds": (),
-            }.items()
-        }
-        self._contact: np.ndarray | None = None
-        self._arrays["refused"] = np.zeros((frames, recording.markers_m.shape[1]), dtype=bool)
-        self._arrays["tracked"] = np.zeros(frames, dtype=bool)
-        self._arrays["readings"] = np.zeros(frames, dtype=int)
-        self._frames = frames
-        size = 2 * model.nv
-        self._covariance = np.full((frames, size, size), np.nan) if keep_covariance else None
-
-    def step(self, t: int, estimate: Estimate, seconds: float) -> None:
-        """What the filter did in a frame."""
-        if estimate.started:
-            self.starts.append(t)
-        self._arrays["step_seconds"][t] = seconds
-        self._arrays["refused"][t] = estimate.refused
-        self._arrays["tracked"][t] = estimate.tracked
-        self._arrays["nis"][t], self._arrays["readings"][t] = self._follower.innovation(estimate)
-        if estimate.contact is not None:
-            if self._contact is None:
-                self._contact = np.zeros((self._frames, 2), dtype=int)
-            self._contact[t] = estimate.contact
-
-    def estimates(self, found: list[tuple[int, Estimate]]) -> None:
-        """Estimates of several frames."""
-        for t, estimate in found:
-            self.estimate(t, estimate)
-
-    def estimate(self, t: int, estimate: Estimate) -> None:
-        """The estimate of a frame and its standard deviations."""
-        for name in ("q", "v", "a", "wrench"):
-            self._arrays[name][t] = getattr(estimate, name)
-        self._arrays["wrench_sd"][t] = self._follower.wrench_sd(estimate)
-        spread = self._follower.spread(estimate)
-        for name in ("position", "velocity", "angle", "rate", "torque", "foot_height"):
-            key, value = f"{name}_sd", getattr(spread, name)
-            if key not in self._arrays:
-                self._arrays[key] = np.full((self._frames, *value.shape), np.nan)
-            self._arrays[key][t] = value
-        if self._covariance is not None:
-            self._covariance[t] = self._follower.covariance(estimate)
-
-    def track(self, smoothed: bool) -> Track:
-        """What was recorded."""
-        return Track(
-            **self._arrays,
-            contact=self._contact,
-            starts=tuple(self.starts),
-            smoothed=smoothed,
-            covariance=self._covariance,
-        )
+    Args:
+        rows: (T,) records of its frames (:mod:`mbkf.filters.record`).
+        smoothed: Whether later frames were used.
+        covariance: (T, 2 nv, 2 nv) full covariances, where they were kept.
+    """
+    asked = rows["footing"][:, 0] != UNASKED
+    named = {f.name: rows[f.name] for f in fields(Track) if f.name in (rows.dtype.names or ())}
+    return Track(
+        **{name: np.array(values) for name, values in named.items()},
+        contact=np.where(asked[:, None], rows["footing"], 0) if asked.any() else None,
+        starts=tuple(int(t) for t in np.flatnonzero(rows["started"])),
+        smoothed=smoothed,
+        covariance=covariance,
+    )

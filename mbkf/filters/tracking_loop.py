@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 
-from mbkf.filters.estimate import Estimate, Prediction, Recording, TrackingFilter
+from mbkf.filters.estimate import Posterior, Prediction, Recording, TrackingFilter
 
 
 class TrackingLoop:
@@ -18,7 +18,7 @@ class TrackingLoop:
 
     def __init__(self, filter: TrackingFilter) -> None:
         self.filter = filter
-        self.estimate: Estimate | None = None
+        self.estimate: Posterior | None = None
         self._lost_for = 0
         self._prediction: Prediction | None = None
 
@@ -36,7 +36,7 @@ class TrackingLoop:
             self._prediction = self.filter.predict(self.estimate)
         return self._prediction
 
-    def advance(self, recording: Recording, t: int) -> Estimate | None:
+    def advance(self, recording: Recording, t: int) -> Posterior | None:
         """The estimate of frame t, the one after the latest; None as long as no start has succeeded."""
         before, fresh = self.estimate, None
         prediction, self._prediction = self._prediction, None
@@ -54,7 +54,7 @@ class TrackingLoop:
         self.estimate, self._lost_for, self._prediction = None, 0, None
 
 
-def followed(filter: TrackingFilter, recording: Recording) -> Iterator[tuple[int, Estimate, float]]:
+def followed(filter: TrackingFilter, recording: Recording) -> Iterator[tuple[int, Posterior, float]]:
     """The estimates with their frames and computing times, s; frames before the first start have none."""
     loop = TrackingLoop(filter)
     for t in range(len(recording)):

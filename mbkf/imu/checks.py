@@ -1,6 +1,6 @@
-"""What is wrong with inertial readings, found before a filter makes it look right: each with its likely fix.
+"""Faults of inertial readings, found before a filter hides them: each with its likely fix.
 
-Units are judged by physics: at rest the specific force is 1 g, and what the gyroscope says must turn the direction of
+Units are judged by physics: at rest the specific force is 1 g, and the angular velocity must turn the direction of
 gravity as the accelerometer sees it turn.
 """
 
@@ -50,7 +50,7 @@ class Problem:
     Attributes:
         sensor: Sensor name.
         kind: "gap", "stuck", "unit", "saturated", "rate", "time" or "sign".
-        text: What, where, and what to do, in one line.
+        text: The fault, its place and the remedy, in one line.
         fatal: Whether results would be wrong, not only poorer.
     """
 
@@ -72,7 +72,7 @@ def problems(readings: Sequence[ImuReadings]) -> tuple[Problem, ...]:
 
 
 def refuse_fatal(found: Sequence[Problem]) -> tuple[str, ...]:
-    """The texts of what is not fatal.
+    """The texts of the problems that are not fatal.
 
     Raises:
         InvalidInput: Something is fatal; all such findings in one line.
@@ -117,7 +117,7 @@ def _time_problems(one: ImuReadings) -> list[Problem]:
     usual = 1.0 / float(np.median(steps)) if len(steps) else one.rate_hz
     if abs(usual / one.rate_hz - 1.0) > 0.02:
         text = (
-            f"sensor {one.name}: the times say {usual:.4g} Hz, the stated rate is {one.rate_hz:g} Hz; "
+            f"sensor {one.name}: the times give {usual:.4g} Hz, the stated rate is {one.rate_hz:g} Hz; "
             "correct --rate or the time column's unit"
         )
         found.append(Problem(one.name, "rate", text, True))
@@ -208,9 +208,8 @@ def _force_unit(one: ImuReadings) -> list[Problem]:
 def _turning(one: ImuReadings) -> list[Problem]:
     """Turned into a fixed frame by the gyroscope, the specific force averages to 1 g over some seconds.
 
-    A body part does not accelerate for long, so what remains is gravity, if the gyroscope turned it rightly. Each
-    scale that a wrong unit or sign would leave is tried; the one that explains it best is believed if the stated one is
-    clearly worse.
+    A body part does not accelerate for long, so that gravity remains if the gyroscope is right. Each scale of a wrong
+    unit or sign is tried; the best one is reported if the stated one is clearly worse.
     """
     windows = _windows(one)
     if windows is None:

@@ -43,12 +43,12 @@ class FootFilterSettings:
         angular_noise: Random walk of the orientation, (rad/s)/√Hz.
         gyro_bias_walk: Random walk of the gyroscope's bias, (rad/s)/√s.
         standing_speed_m_s: Standard deviation of a standing foot's velocity, per component and sample.
-        tilt_rad, gyro_bias_rad_s, acceleration_bias_m_s2: What is known at the start, standard deviations.
+        tilt_rad, gyro_bias_rad_s, acceleration_bias_m_s2: Standard deviations at the start.
         rest_for_bias_s: If the capture starts with a rest at least this long, the gyroscope's median in it is its bias.
         rested_gyro_bias_rad_s: Standard deviation of that median.
         gate: Bound on the normalised innovation squared (3 degrees of freedom) of a zero velocity; above it the foot
-            is not believed to stand, since steady motion without rotation looks like rest.
-        insist_s: A rest that goes on for longer is believed whatever the velocity; so is the second of two in a row.
+            does not count as standing, since steady motion without rotation looks like rest.
+        insist_s: A rest that lasts longer is accepted at any estimated velocity; so is the second of two in a row.
         level_m: On level ground, the standard deviation of the height of a resting foot, per sample; None where the
             ground may rise.
     """
@@ -147,7 +147,7 @@ class FootStep:
         state: After the sample's reading.
         P: (15, 15) its covariance.
         Phi: (15, 15) transition from the sample before.
-        reading: What the rest said about (δv, δp), None where the foot did not rest.
+        reading: Information of the rest on (δv, δp), None where the foot did not rest.
     """
 
     state: FootState
@@ -163,7 +163,7 @@ class FootRun:
     Attributes:
         first: Sample at which it starts, the first of the first rest.
         steps: One per sample from there on.
-        still: (T,) samples in which the foot stood, as the filter believes.
+        still: (T,) samples that the filter accepted as rest.
         refused: Samples that looked like rest but contradicted the estimated velocity.
     """
 
@@ -200,7 +200,7 @@ def follow_foot(
     state, covariance = _start(f[first:stop], w[first:stop], rate_hz, settings)
     noise = _plant_noise(settings, dt)
     insist = round(settings.insist_s * rate_hz)
-    believed = np.zeros(len(still), dtype=bool)
+    accepted = np.zeros(len(still), dtype=bool)
     steps: list[FootStep] = []
     doubted = refused = 0
     Phi = np.eye(SIZE)
@@ -213,7 +213,7 @@ def follow_foot(
             if _may_rest(state, covariance, settings):
                 doubted = 0
             elif doubted and not still[k - 1]:
-                doubted = insist + 1  # the rest before spoke against the velocity, too
+                doubted = insist + 1  # the rest before contradicted the velocity, too
             else:
                 doubted += 1
             if 0 < doubted <= insist:
@@ -222,9 +222,9 @@ def follow_foot(
                 reading = _rest(state, settings)
                 found = correct(covariance, reading)
                 state, covariance = state.moved(found.step), found.covariance
-        believed[k] = reading is not None
+        accepted[k] = reading is not None
         steps.append(FootStep(state, covariance, Phi, reading))
-    return FootRun(first, tuple(steps), believed, refused)
+    return FootRun(first, tuple(steps), accepted, refused)
 
 
 def _may_rest(state: FootState, covariance: Array, settings: FootFilterSettings) -> bool:
@@ -234,7 +234,7 @@ def _may_rest(state: FootState, covariance: Array, settings: FootFilterSettings)
 
 
 def _rest(state: FootState, settings: FootFilterSettings) -> Information:
-    """What a rest says: velocity zero, and on level ground height zero."""
+    """Pseudo-reading of a rest: velocity zero, and on level ground height zero."""
     certainty = np.zeros(READ)
     certainty[V] = settings.standing_speed_m_s**-2
     if settings.level_m is not None:

@@ -1,4 +1,4 @@
-"""The path of a foot from its filter's run, as the filter had it or with what later rests say, and its certainty.
+"""The path of a foot from its filter's run, as filtered or smoothed by later rests, and its certainty.
 
 The smoother gives the estimate of Rauch, Tung and Striebel in the form of Bryson and Frazier, which inverts nothing.
 """
@@ -95,7 +95,7 @@ def _track(run: FootRun, states: Sequence[FootState], curvatures: Sequence[Array
 def _displacement_covariance(steps: Sequence[FootStep], first: Array, last: Array) -> Array:
     """(3, 3) covariance of the way between the first and the last step.
 
-    With what later readings add, L, at either end (zero for the filter): errors e_i and e_j of the filter have
+    With the curvature L of later readings at either end (zero for the filter): errors e_i and e_j of the filter have
     E[e_i e_jᵀ] = P_i Aᵀ, A the product of all (I − K H) Φ between them, and given all readings P_i Aᵀ (I − L_j P_j).
     """
     A = np.eye(SIZE)

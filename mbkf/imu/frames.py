@@ -54,7 +54,12 @@ def rotate(q: Array, vectors: Array) -> Array:
 
 
 def change_frame(q: Array, source: str, target: str) -> Array:
-    """(…, 4) the same orientations of a sensor seen in another world frame.
+    """(…, 4) the same orientations of a sensor in another world frame.
+
+    Args:
+        q: (…, 4) orientations sensor → source.
+        source: Name of the world frame they refer to.
+        target: Name of the wanted one.
 
     Raises:
         UnknownName: A frame is none of :data:`FRAMES`.

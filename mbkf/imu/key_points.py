@@ -1,16 +1,17 @@
 """Position from one inertial sensor by stable windows, gravity carried between them, and two integrations.
 
-The stride-length study's algorithm (SPEC §10), after Hemminki, Nurmi and Tarkoma, *Gravity and linear acceleration
-estimation on mobile devices*, MobiQuitous 2014. Readings are cut into windows of 10 samples at 50 Hz, and every window
-becomes one sample: the mean of its readings. Per window
+The algorithm of the stride-length study (docs/references.md, key ``stride``; here: the study), after Hemminki, Nurmi
+and Tarkoma, *Gravity and linear acceleration estimation on mobile devices*, MobiQuitous 2014. Readings are cut into
+windows of 10 samples at 50 Hz, and every window becomes one sample: the mean of its readings. Per window
 
-    S = α_σ σ_a + α_μ Δμ_a + α_ω μ_ω                                                    (the study's eq. 1)
+    S = α_σ σ_a + α_μ Δμ_a + α_ω μ_ω                                                               (stride eq. 1)
 
 with the spread σ_a of the specific force, the change Δμ_a of its mean since the window before, and the mean angular
 velocity μ_ω, each as the length of its three axes. Where S < E_s the foot rests and the window is a key point (the
 study's pseudocode; its prose says the reverse, which fails): gravity is the mean specific force and the velocity zero.
-Between two key points gravity is turned by the gyroscope from either side and blended (eqs. 2–4). The readings are then
-turned level by gravity's direction, gravity is taken off (eq. 5) and the rest is integrated twice (eq. 6).
+Between two key points gravity is turned by the gyroscope from either side and blended (stride eqs. 2–4). The readings
+are then turned level by gravity's direction, gravity is taken off (stride eq. 5) and the rest is integrated twice
+(stride eq. 6).
 """
 
 from __future__ import annotations
@@ -18,7 +19,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput
@@ -38,12 +38,12 @@ class KeyPointSettings:
     Attributes:
         rate_hz: Rate the readings are brought to.
         window: Samples per window.
-        first: Sample at which the first window begins: where the windows fall decides a lot.
+        first: Sample at which the first window begins: the result depends much on where the windows fall.
         weights: α_σ, α_μ, α_ω.
         threshold: E_s.
         low_pass_hz: Corner of the accelerometer's low pass (Butterworth, no delay); None leaves it as it is.
         still_s: The mean angular velocity of the first rest, at most this long, is the gyroscope's bias; 0 leaves it.
-        loss: α of eq. 2, the share of gravity lost per step from a key point; the study sets it by trial.
+        loss: α of stride eq. 2, the share of gravity lost per step from a key point; the study sets it by trial.
         by_sample: Carry gravity and integrate sample by sample between key windows, not window by window (ours).
     """
 
@@ -74,7 +74,7 @@ class KeyPointSettings:
 
 @dataclass(frozen=True)
 class KeyPointPath:
-    """What the algorithm found; K windows, or as many samples as they hold where it goes sample by sample.
+    """Path of the sensor at K windows, or as many samples as they hold where it goes sample by sample.
 
     Attributes:
         time_s: (K,) middle of each window, or the time of each sample.
@@ -145,6 +145,12 @@ def follow_key_points(
 def prepared(f: Array, w: Array, rate_hz: float, settings: KeyPointSettings) -> tuple[Array, Array]:
     """Both readings at the settings' rate, the specific force low-passed.
 
+    Args:
+        f: (T, 3) specific force, m/s².
+        w: (T, 3) angular velocity, rad/s.
+        rate_hz: Their sample rate.
+        settings: Wanted rate and low pass.
+
     Raises:
         InvalidInput: The readings are slower than the low pass needs, or too few for it.
     """
@@ -160,7 +166,13 @@ def prepared(f: Array, w: Array, rate_hz: float, settings: KeyPointSettings) -> 
 
 
 def stability(force_windows: Array, rate_windows: Array, weights: tuple[float, float, float]) -> Array:
-    """(K,) S of windows (K, N, 3) of specific force and angular velocity, eq. 1; small is stable."""
+    """(K,) stability S of windows (stride eq. 1); small is stable.
+
+    Args:
+        force_windows: (K, N, 3) specific force, m/s².
+        rate_windows: (K, N, 3) angular velocity, rad/s.
+        weights: α_σ, α_μ and α_ω.
+    """
     spread = np.linalg.norm(force_windows.std(axis=1), axis=1)
     change = np.linalg.norm(np.diff(force_windows.mean(axis=1), axis=0), axis=1)
     turning = np.linalg.norm(rate_windows.mean(axis=1), axis=1)
@@ -170,7 +182,7 @@ def stability(force_windows: Array, rate_windows: Array, weights: tuple[float, f
 
 
 def blend_weight(x: Array) -> Array:
-    """W of eq. 4, the share of the gravity carried backwards, at x from 0 (key point before) to 1 (after).
+    """Weight W of the gravity carried backwards (stride eq. 4), at x from 0 (key point before) to 1 (after).
 
     2x² in the first half and 1 − 2(1 − x)² in the second: each side weighs most near its own key point.
     """
@@ -178,6 +190,8 @@ def blend_weight(x: Array) -> Array:
 
 
 def _low_passed(x: Array, corner_hz: float, rate_hz: float) -> Array:
+    from scipy.signal import butter, sosfiltfilt
+
     least = 4 * _LOW_PASS_ORDER
     if corner_hz >= 0.5 * rate_hz or len(x) < least:
         raise InvalidInput(
@@ -199,7 +213,7 @@ def _bias(w: Array, key: BoolArray, settings: KeyPointSettings) -> Array:
 
 
 def _between_key_points(gravity: Array, key: BoolArray, angle: Array, loss: float) -> Array:
-    """(K, 3) gravity in the sensor's axes everywhere, from that at key points, eqs. 2–4.
+    """(K, 3) gravity in the sensor's axes everywhere, from that at key points (stride eqs. 2–4).
 
     Args:
         gravity: (K, 3) at key points.
@@ -229,7 +243,7 @@ def _between_key_points(gravity: Array, key: BoolArray, angle: Array, loss: floa
 
 
 def _integrated(acceleration: Array, key: BoolArray, step_s: float) -> tuple[Array, Array]:
-    """Velocity (K, 3), zero at key points, and position (K, 3) by the trapezoidal rule; eq. 6."""
+    """Velocity (K, 3), zero at key points, and position (K, 3) by the trapezoidal rule (stride eq. 6)."""
     velocity = np.zeros_like(acceleration)
     for k in range(1, len(key)):
         if not key[k]:

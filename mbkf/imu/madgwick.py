@@ -1,8 +1,9 @@
 """Madgwick's orientation filter: the gyroscope, corrected by a gradient step towards gravity and magnetic north.
 
-Madgwick, *An efficient orientation filter for inertial and inertial/magnetic sensor arrays*, 2010, and the source's
-eqs. 22–37 with its printed slips put right (SPEC §10). The step is written in components, which may be floats (one
-sensor, live) or arrays over many sensors.
+Madgwick, *An efficient orientation filter for inertial and inertial/magnetic sensor arrays*, 2010. The steps are those
+of De Miguel Pueyo's thesis (docs/references.md, key ``Madgwick``), eqs. 22–37, with two misprints put right: the third
+row of f has a_z, and the last row for the field has 2 b₃ (½ − q₁² − q₂²). They are written in components, which may be
+floats (one sensor, live) or arrays over many sensors.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ class MadgwickSettings:
     """Gains.
 
     Attributes:
-        beta: Speed of the correction, rad/s: how fast gravity and field pull the orientation to themselves.
+        beta: Speed of the correction towards gravity and field, rad/s.
         zeta: Gain of the gyroscope's bias, rad/s²; 0 leaves the bias alone.
     """
 
@@ -45,7 +46,7 @@ class MadgwickSettings:
 
 
 class MadgwickState(NamedTuple):
-    """Orientation sensor → NWU with components (w, x, y, z), as the equations have them, and gyroscope bias, rad/s."""
+    """Orientation sensor → NWU as (w, x, y, z), the order of the equations, and gyroscope bias, rad/s."""
 
     q: Quaternion
     bias: Vector
@@ -85,7 +86,14 @@ class MadgwickFilter:
     def step(
         self, state: MadgwickState, gyro: Array, specific_force: Array, magnetic_field: Array | None = None
     ) -> MadgwickState:
-        """One sample on: angular velocity rad/s, specific force and field in any unit, (…, 3) each, NaN if missing."""
+        """The state one sample later.
+
+        Args:
+            state: Before the sample.
+            gyro: (…, 3) angular velocity, rad/s, NaN if missing.
+            specific_force: (…, 3) any unit, NaN if missing.
+            magnetic_field: (…, 3) any unit, NaN if missing; None for the filter without it.
+        """
         acc, gain = _direction(np.asarray(specific_force))
         mag = None if magnetic_field is None else _direction(np.asarray(magnetic_field))[0]
         beta = self.settings.beta * gain
@@ -113,7 +121,7 @@ class MadgwickFilter:
             gyro: (T, 3) or (T, N, 3) angular velocity, rad/s.
             specific_force: Same shape, any unit.
             magnetic_field: Same shape, any unit, or None.
-            start: State at the first sample; by default what its readings say.
+            start: State at the first sample; by default the one of a sensor at rest with its readings.
         """
         field = None if magnetic_field is None else magnetic_field[0]
         state = self.begin(specific_force[0], field) if start is None else start
@@ -138,20 +146,20 @@ def advance(
     beta: Component,
     zeta: float,
 ) -> MadgwickState:
-    """One step of eqs. 26–37 in components.
+    """One step of the filter in components (Madgwick eqs. 26–37).
 
     Args:
         state: Before.
         gyro: Angular velocity, rad/s.
-        acc: Direction of the specific force, normalised (eq. 22).
-        mag: Direction of the field, normalised (eq. 23); zeros where missing; None for the filter without it.
+        acc: Direction of the specific force, normalised (Madgwick eq. 22).
+        mag: Direction of the field, normalised (Madgwick eq. 23); zeros where missing; None for the filter without it.
         dt_s: Time step.
         beta: Gain; 0 where gravity is missing.
         zeta: Gain of the bias.
     """
     (q0, q1, q2, q3), (bias_x, bias_y, bias_z) = state
     ax, ay, az = acc
-    # f and Jᵀ f for gravity, eqs. 28 and 29 (third row with a_z).
+    # f and Jᵀ f for gravity (Madgwick eqs. 28 and 29, third row with a_z).
     f1 = 2.0 * (q1 * q3 - q0 * q2) - ax
     f2 = 2.0 * (q0 * q1 + q2 * q3) - ay
     f3 = 1.0 - 2.0 * (q1 * q1 + q2 * q2) - az
@@ -166,7 +174,7 @@ def advance(
     s0, s1, s2, s3 = scale * s0, scale * s1, scale * s2, scale * s3
     gx, gy, gz = gyro
     if zeta:
-        # ω_ε = 2 q* ⊗ step; its integral is the bias (Madgwick eqs. 47–49; the source forgets to integrate).
+        # ω_ε = 2 q* ⊗ step; its integral is the bias (Madgwick 2010, eqs. 47–49; Madgwick omits the integral).
         rate = 2.0 * zeta * dt_s * (beta > 0.0)
         bias_x = bias_x + rate * (q0 * s1 - q1 * s0 - q2 * s3 + q3 * s2)
         bias_y = bias_y + rate * (q0 * s2 + q1 * s3 - q2 * s0 - q3 * s1)
@@ -181,7 +189,7 @@ def advance(
 
 
 def _magnetic_step(q: Quaternion, mag: Vector) -> Quaternion:
-    """Jᵀ f of the field's three rows, eqs. 26–29, the last row with 2 b₃ (½ − q₁² − q₂²); 0 for a missing field."""
+    """Jᵀ f of the field's three rows (Madgwick eqs. 26–29, last row put right); 0 for a missing field."""
     q0, q1, q2, q3 = q
     mx, my, mz = mag
     # Columns of the rotation matrix give h = q ⊗ m ⊗ q*.

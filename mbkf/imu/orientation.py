@@ -76,7 +76,7 @@ class OrientSettings:
         method: One of :data:`METHODS`.
         magnetometer: Whether fields are used where there are any.
         madgwick: Gains of Madgwick's filter.
-        ekf: What the Kalman filter believes.
+        ekf: Noise model of the Kalman filter.
     """
 
     method: str = "ekf"
@@ -102,8 +102,8 @@ def orientations(
     Args:
         readings: Sensors; each at a regular rate, NaN where a sample is missing.
         frame: World frame of the result: ENU, NED or NWU.
-        settings: How.
-        start: (N, 4) orientation at the first sample in ``frame``; by default what the first readings say.
+        settings: Method, gains and noise.
+        start: (N, 4) orientation at the first sample in ``frame``; by default that of sensors at rest.
         progress: Called as samples are done.
 
     Raises:
@@ -195,7 +195,7 @@ def _run(
     dt = 1.0 / group[0].rate_hz
     samples, done = len(gyro), 0
 
-    def tell() -> None:
+    def count_one() -> None:
         nonlocal done
         done += 1
         if progress is not None and (done % 1000 == 0 or done == samples - 1):
@@ -204,14 +204,14 @@ def _run(
     if settings.method == "madgwick":
         filter_ = MadgwickFilter(dt, settings.madgwick)
         begins = filter_.begin(first, first_field) if start is None else filter_.begin_at(start)
-        return [(q, bias, None) for q, bias in _run_madgwick(filter_, begins, gyro, force, field, tell)]
+        return [(q, bias, None) for q, bias in _run_madgwick(filter_, begins, gyro, force, field, count_one)]
     kalman = OrientationFilter(dt, settings.ekf)
     begin = kalman.begin(first, first_field, np.array([_resting_rate(one) for one in group]))
     if start is not None:
         P = begin.P.copy()
         P[:, [0, 1, 2], [0, 1, 2]] = GIVEN_SD_RAD**2
         begin = begin._replace(quaternion=start, P=P)
-    passages = _told(kalman.run(gyro, force, field, begin), tell)
+    passages = _counted(kalman.run(gyro, force, field, begin), count_one)
     if settings.method == "smooth":
         course = smoothed(begin, passages)
         q, bias, variance = course.quaternion, course.gyro_bias, course.variance
@@ -230,12 +230,12 @@ def _run_madgwick(
     gyro: Array,
     force: Array,
     field: Array | None,
-    tell: Callable[[], None],
+    count_one: Callable[[], None],
 ) -> list[tuple[Array, Array]]:
     """Quaternions (T, 4) and biases (T, 3) per sensor: few sensors one by one in floats, many side by side."""
     count = gyro.shape[1]
     if count >= _SIDE_BY_SIDE:
-        states = list(_told(filter_.run(gyro, force, field, begin), tell))
+        states = list(_counted(filter_.run(gyro, force, field, begin), count_one))
         w, x, y, z = (np.array([state.q[k] for state in states]) for k in range(4))
         bias = np.array([np.stack(state.bias, axis=-1) for state in states])
         return [(np.stack([x, y, z, w], axis=-1)[:, n], bias[:, n]) for n in range(count)]
@@ -243,13 +243,13 @@ def _run_madgwick(
     for n in range(count):
         mine = filter_.begin_at(begin.quaternion[n])
         run = filter_.run(gyro[:, n], force[:, n], None if field is None else field[:, n], mine)
-        states = list(_told(run, tell) if n == 0 else run)
+        states = list(_counted(run, count_one) if n == 0 else run)
         q = np.array([state.q for state in states])
         found.append((q[:, [1, 2, 3, 0]], np.array([state.bias for state in states])))
     return found
 
 
-def _told(items: Iterable[Item], tell: Callable[[], None]) -> Iterator[Item]:
+def _counted(items: Iterable[Item], count_one: Callable[[], None]) -> Iterator[Item]:
     for item in items:
-        tell()
+        count_one()
         yield item

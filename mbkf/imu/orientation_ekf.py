@@ -1,10 +1,10 @@
 """Error-state Kalman filter of orientation, gyroscope bias and velocity, for many sensors side by side.
 
-What separates gravity from linear acceleration is that a limb stays about where it is: the specific force, turned into
-the world and rid of gravity, is integrated to a velocity, and that velocity is read as zero with the spread that the
-present movement gives it (adaptive to linear acceleration). The field is read as a heading only, so that it cannot
-tilt the estimate, and the less the more its strength and dip differ from what they have been (adaptive to magnetic
-disturbance). Errors are small rotations in the world: R = Exp(δ) R̂.
+Gravity is told from linear acceleration because a limb stays about where it is: the specific force, turned into the
+world and less gravity, is integrated to a velocity, and a pseudo-reading of zero velocity has a spread that follows the
+present movement (adaptive to linear acceleration). The field is read as a heading only, so that it cannot
+tilt the estimate, and with less weight the more its strength and dip differ from their running means (adaptive to
+magnetic disturbance). Errors are small rotations in the world: R = Exp(δ) R̂.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ _NO_READING = 1e9
 
 @dataclass(frozen=True)
 class OrientationSettings:
-    """What the filter believes; one set for every sensor, from data sheets and from how people move.
+    """Noise and disturbances that the filter assumes; one set for every sensor, from data sheets and human movement.
 
     Attributes:
-        gyro_noise: White noise of the gyroscope with what its axes' misalignment adds, rad/s/√Hz.
+        gyro_noise: White noise of the gyroscope, misalignment of its axes included, rad/s/√Hz.
         gyro_scale_noise: Further noise per rad/s of turning (scale error), 1/√Hz.
         bias_walk: Random walk of the gyroscope's bias, rad/s/√s.
         accelerometer_noise: White noise of the accelerometer, m/s²/√Hz.
@@ -108,7 +108,7 @@ class OrientationState(NamedTuple):
 
 
 class Passage(NamedTuple):
-    """What a smoother needs of a step: posterior, its prior covariance, Φ (N, 9, 9) and the correction (N, 9)."""
+    """One step, as a smoother needs it: posterior, prior covariance, Φ (N, 9, 9) and the correction (N, 9)."""
 
     state: OrientationState
     prior: Array
@@ -121,7 +121,7 @@ class OrientationFilter:
 
     Attributes:
         dt_s: Time between samples.
-        settings: What it believes.
+        settings: Its noise model.
     """
 
     def __init__(self, dt_s: float, settings: OrientationSettings | None = None) -> None:
@@ -180,7 +180,14 @@ class OrientationFilter:
         specific_force: Array,
         magnetic_field: Array | None = None,
     ) -> OrientationState:
-        """One sample on: (N, 3) rad/s, m/s² and µT, NaN where missing."""
+        """The state one sample later.
+
+        Args:
+            state: Before the sample.
+            gyro: (N, 3) angular velocity, rad/s, NaN where missing.
+            specific_force: (N, 3) m/s², NaN where missing.
+            magnetic_field: (N, 3) µT, NaN where missing; None without magnetometers.
+        """
         return self.passage(state, gyro, specific_force, magnetic_field).state
 
     def run(
@@ -190,7 +197,14 @@ class OrientationFilter:
         magnetic_field: Array | None = None,
         start: OrientationState | None = None,
     ) -> Iterator[Passage]:
-        """What every sample after the first does to sensors (T, N, 3); see :meth:`step`."""
+        """The steps of all samples after the first.
+
+        Args:
+            gyro: (T, N, 3) angular velocity, rad/s, NaN where missing.
+            specific_force: (T, N, 3) m/s², NaN where missing.
+            magnetic_field: (T, N, 3) µT, NaN where missing; None without magnetometers.
+            start: State at the first sample; by default that of sensors at rest with its readings.
+        """
         field = None if magnetic_field is None else magnetic_field[0]
         state = self.begin(specific_force[0], field) if start is None else start
         for k in range(1, len(gyro)):
@@ -202,7 +216,14 @@ class OrientationFilter:
     def passage(
         self, state: OrientationState, gyro: Array, specific_force: Array, magnetic_field: Array | None
     ) -> Passage:
-        """:meth:`step` with all that a smoother needs."""
+        """One step with all that a smoother needs.
+
+        Args:
+            state: Before the sample.
+            gyro: (N, 3) angular velocity, rad/s, NaN where missing.
+            specific_force: (N, 3) m/s², NaN where missing.
+            magnetic_field: (N, 3) µT, NaN where missing; None without magnetometers.
+        """
         s, dt = self.settings, self.dt_s
         turning = np.all(np.isfinite(gyro), axis=1)
         forced = np.all(np.isfinite(specific_force), axis=1)

@@ -46,7 +46,13 @@ def error_angles(estimate: Array, reference: Array) -> tuple[Array, Array, Array
 
 
 def orientation_error(estimate: Array, reference: Array, judged: BoolArray | None = None) -> OrientationError:
-    """RMS errors over samples where both are known, and ``judged`` (T,) if given."""
+    """RMS errors over the samples where both orientations are known.
+
+    Args:
+        estimate: (T, 4) orientations, NaN where unknown.
+        reference: (T, 4) true ones, NaN where unknown.
+        judged: (T,) samples that count; all where None.
+    """
     there = np.isfinite(estimate).all(axis=1) & np.isfinite(reference).all(axis=1)
     if judged is not None:
         there &= judged

@@ -27,14 +27,14 @@ class SmoothedOrientation(NamedTuple):
 
 
 def smoothed(start: OrientationState, passages: Iterable[Passage]) -> SmoothedOrientation:
-    """The course of sensors corrected by all their samples.
+    """Orientations of sensors, corrected by all their samples.
 
-    With C = P Φᵀ P⁻₊₁⁻¹: the correction of a sample is δ = C (d₊₁ + δ₊₁), d₊₁ being what the filter itself corrected in
-    the next one, and its covariance P + C (Pˢ₊₁ − P⁻₊₁) Cᵀ.
+    With C = P Φᵀ P⁻₊₁⁻¹: the correction of a sample is δ = C (d₊₁ + δ₊₁), with the filter's own correction d₊₁ of the
+    next one, and its covariance P + C (Pˢ₊₁ − P⁻₊₁) Cᵀ.
 
     Args:
         start: State at the first sample.
-        passages: What the filter did from each sample to the next.
+        passages: The filter's steps from each sample to the next.
     """
     states, gains, corrections, priors = [start], [], [], []
     for passage in passages:

@@ -1,4 +1,4 @@
-"""Where people wear eight sensors: pelvis, chest, thighs, shanks and feet (SPEC §10), as typical mounts on a body."""
+"""Where people wear eight sensors: pelvis, chest, thighs, shanks and feet, as typical mounts on a body."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ SHORTEST_M = 0.15
 """Shorter movements (shifts of weight, shuffling on the spot) are no strides."""
 
 _HALF_REST_S = 0.25
-"""Time that a stride takes of the rest at either end where no rest between two strides tells."""
+"""Time that a stride takes of the rest at either end, where there is no rest between two strides."""
 
 
 @dataclass(frozen=True)

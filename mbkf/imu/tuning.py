@@ -1,7 +1,7 @@
 """Gains of Madgwick's filter: from the noise of a sensor that lies still, or by search against a reference.
 
 Madgwick's β = √(3/4) σ_ω and ζ = √(3/4) σ_ω̇ count the gyroscope's errors at rest only. On moving sensors they are far
-too small, since scale and alignment errors grow with the motion; the search tells how much.
+too small, since scale and alignment errors grow with the motion; the search measures by how much.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput
@@ -33,7 +32,7 @@ _ROOT = float(np.sqrt(3.0 / 4.0))
 
 @dataclass(frozen=True)
 class StaticGains:
-    """What a still stretch says.
+    """Gains from a sensor at rest.
 
     Attributes:
         beta, zeta: Gains by Madgwick's formulas.
@@ -94,6 +93,11 @@ def still_stretch(one: ImuReadings) -> tuple[int, int]:
 def static_gains(one: ImuReadings, first: int, last: int) -> StaticGains:
     """Gains from samples ``first`` to ``last`` of a sensor that lies still (Madgwick 2010, eqs. 50 and 51).
 
+    Args:
+        one: The sensor.
+        first: First sample at rest.
+        last: The sample after the last one at rest.
+
     Raises:
         InvalidInput: The stretch is too short.
     """
@@ -141,6 +145,8 @@ def searched_gains(
     Raises:
         InvalidInput: Nothing to compare with.
     """
+    from scipy.optimize import minimize_scalar
+
     trials: list[tuple[float, float, float]] = []
     errors: dict[tuple[float, float], OrientationError] = {}
     expected = 20 + len(ZETAS)

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
@@ -69,7 +68,7 @@ def virtual_imus(
     rate_hz: float | None = None,
     field_ut: Sequence[float] = FIELD_UT,
 ) -> tuple[ImuReadings, ...]:
-    """What sensors would have read during a motion; ``orientation`` holds the truth, in NWU.
+    """Readings of virtual sensors during a motion; ``orientation`` holds the truth, in NWU.
 
     The world's x axis counts as magnetic north. At another rate than the motion's the error-free readings are joined
     by cubic splines.
@@ -101,6 +100,8 @@ def virtual_imus(
     if rate_hz is not None and abs(rate_hz / own_rate - 1.0) > 1e-9:
         rate = float(rate_hz)
         times = times_s[0] + np.arange(int(np.floor((times_s[-1] - times_s[0]) * rate + 1e-9)) + 1) / rate
+        from scipy.interpolate import make_interp_spline
+
         readings = make_interp_spline(times_s, readings, k=3, axis=0)(times)
         rotations = _orthonormal(make_interp_spline(times_s, rotations, k=3, axis=0)(times))
     field = np.asarray(field_ut, dtype=float) @ rotations
@@ -122,7 +123,7 @@ def _with_errors(
     errors: ImuErrors,
     seed: Sequence[int],
 ) -> ImuReadings:
-    """The same seed gives the same constant biases whatever the motion: it is the same sensor."""
+    """Constant biases by the seed alone, for any motion: the same seed is the same sensor."""
     rng, root, shape = np.random.default_rng(seed), np.sqrt(rate), (len(times), 3)
     gyro_bias, force_bias, field_bias = rng.normal(0.0, 1.0, (3, 3))
     walk = np.cumsum(rng.normal(0.0, errors.gyro_drift / root, shape), axis=0)

@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import binary_closing, binary_opening, uniform_filter1d
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.errors import InvalidInput
@@ -17,7 +16,7 @@ from mbkf.errors import InvalidInput
 
 @dataclass(frozen=True)
 class StillnessSettings:
-    """What counts as standing still.
+    """Limits of standing still.
 
     Attributes:
         window_s: Time over which the statistic is averaged.
@@ -55,6 +54,8 @@ def unrest(
         rate_hz: Sample rate.
         settings: σ_f, σ_ω and the window.
     """
+    from scipy.ndimage import uniform_filter1d
+
     size = max(3, round(settings.window_s * rate_hz)) | 1
     mean = uniform_filter1d(specific_force_mps2, size, axis=0, mode="nearest")
     length = np.linalg.norm(mean, axis=1, keepdims=True)
@@ -68,10 +69,19 @@ def unrest(
 def still_samples(
     specific_force_mps2: Array, angular_velocity_rad_s: Array, rate_hz: float, settings: StillnessSettings
 ) -> BoolArray:
-    """(T,) samples in which the foot stands still; arguments as in :func:`unrest`."""
+    """(T,) samples in which the foot stands still, by :func:`unrest`.
+
+    Args:
+        specific_force_mps2: (T, 3) sensor axes.
+        angular_velocity_rad_s: (T, 3) sensor axes.
+        rate_hz: Sample rate.
+        settings: Threshold, and the shortest gap and rest.
+    """
+    from scipy.ndimage import binary_closing, binary_opening
+
     still = unrest(specific_force_mps2, angular_velocity_rad_s, rate_hz, settings) < settings.threshold
     gap, rest = (max(1, round(s * rate_hz)) for s in (settings.bridge_s, settings.shortest_s))
-    # What lies beyond the ends counts as it does at the ends.
+    # Beyond the ends the mask keeps its value at the ends.
     margin = gap + rest
     padded = np.pad(still, margin, mode="edge")
     closed = binary_closing(padded, np.ones(gap + 1, dtype=bool))

@@ -12,7 +12,7 @@ from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.axes import WORLD_AXES, check_body_size, length_unit, up_axis
 from mbkf.io.c3d_analog import analog_channels, events, plate_readings, raw_plates
 from mbkf.io.c3d_layout import LAST_FRAME_OF_HEADER, C3dLayout, check_frames, check_layout
-from mbkf.io.c3d_parameters import Parameters
+from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.c3d_plates import RawPlate, plate_axes
 from mbkf.io.c3d_points import read_points
 from mbkf.io.c3d_write import write_c3d
@@ -56,7 +56,7 @@ def read_c3d(
     path = Path(path)
     layout = check_layout(path)
     content = _load(path)
-    parameters = Parameters(content["parameters"])
+    parameters = C3dParameters(content["parameters"])
     _check_complete(path, layout, parameters, content["data"]["points"].shape[2])
     rate_hz = _rate(path, content, parameters)
     start_s = max(layout.first_frame - 1, 0) / rate_hz
@@ -87,7 +87,7 @@ def read_c3d(
 
 
 def _load(path: Path) -> Any:
-    """The file's content as ezc3d gives it; whatever ezc3d throws becomes one kind of error."""
+    """The file's content as ezc3d gives it; every error of ezc3d becomes one kind of error."""
     import ezc3d
 
     try:
@@ -97,8 +97,8 @@ def _load(path: Path) -> Any:
         raise FileFormatError(path, f"cannot be read as C3D ({reason}); export it again") from error
 
 
-def _check_complete(path: Path, layout: C3dLayout, parameters: Parameters, frames_read: int) -> None:
-    """Compare what was read with what header and parameters promise (the header ends at 65535 frames)."""
+def _check_complete(path: Path, layout: C3dLayout, parameters: C3dParameters, frames_read: int) -> None:
+    """Compare the frames read with those that header and parameters promise (the header ends at 65535 frames)."""
     promised = layout.frames
     counted = layout.first_frame + layout.frames <= LAST_FRAME_OF_HEADER
     actual = parameters.numbers("TRIAL", "ACTUAL_END_FIELD").ravel()
@@ -113,7 +113,7 @@ def _check_complete(path: Path, layout: C3dLayout, parameters: Parameters, frame
         )
 
 
-def _rate(path: Path, content: Any, parameters: Parameters) -> float:
+def _rate(path: Path, content: Any, parameters: C3dParameters) -> float:
     rate_hz = parameters.number("POINT", "RATE") or float(content["header"]["points"]["frame_rate"])
     if not (math.isfinite(rate_hz) and rate_hz > 0.0):
         raise FileFormatError(path, f"POINT:RATE is {rate_hz:g}, not a frame rate; export the trial again")
@@ -125,7 +125,7 @@ def single_precision(value: float) -> float:
     return float(str(np.float32(value)))
 
 
-def _length_unit(path: Path, parameters: Parameters, given: str | None, notes: list[str]) -> str:
+def _length_unit(path: Path, parameters: C3dParameters, given: str | None, notes: list[str]) -> str:
     if given is not None:
         return length_unit(given)
     stated = parameters.text("POINT", "UNITS")
@@ -139,20 +139,20 @@ def _length_unit(path: Path, parameters: Parameters, given: str | None, notes: l
         raise FileFormatError(path, reason) from error
 
 
-def _up_axis(parameters: Parameters, plates: list[RawPlate], notes: list[str]) -> str:
+def _up_axis(parameters: C3dParameters, plates: list[RawPlate], notes: list[str]) -> str:
     """The axis that points up, from the plates' surfaces, else from the screen axes, else z."""
     screen = parameters.text("POINT", "Y_SCREEN").lower().removeprefix("+")
     from_plates = {_nearest_axis(-plate_axes(plate.corners)[:, 2]) for plate in plates}
     if len(from_plates) == 1:
         axis = from_plates.pop()
         if screen in WORLD_AXES and screen != axis:
-            notes.append(f"force plates face {axis}, POINT:Y_SCREEN says {screen}; taken as up: {axis}")
+            notes.append(f"force plates face {axis}, POINT:Y_SCREEN is {screen}; taken as up: {axis}")
         return axis
     if from_plates:
         notes.append(f"force plates face different axes ({', '.join(sorted(from_plates))})")
     if screen in WORLD_AXES:
         return screen
-    notes.append("neither plates nor POINT:Y_SCREEN say which axis points up; taken as z (--up changes it)")
+    notes.append("neither plates nor POINT:Y_SCREEN state which axis points up; taken as z (--up changes it)")
     return "z"
 
 
@@ -161,7 +161,7 @@ def _nearest_axis(direction: np.ndarray) -> str:
     return ("-" if direction[axis] < 0.0 else "") + "xyz"[axis]
 
 
-def _mass_kg(parameters: Parameters) -> float | None:
+def _mass_kg(parameters: C3dParameters) -> float | None:
     """Body mass stated in PROCESSING or SUBJECTS, if it is one."""
     for group, name in (("PROCESSING", "BODYMASS"), ("SUBJECTS", "BODYMASS"), ("SUBJECTS", "WEIGHT")):
         mass = parameters.number(group, name)

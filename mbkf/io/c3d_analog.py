@@ -10,16 +10,16 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
 from mbkf.io.axes import METRES_PER_UNIT, rotation_to_world
-from mbkf.io.c3d_parameters import Parameters
+from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.c3d_plates import RawPlate, check_geometry, wrench_at_surface
-from mbkf.io.records import AnalogChannel, Event, PlateReadings
+from mbkf.io.records import AnalogChannel, CaptureEvent, PlateReadings
 from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare, require_finite
 
 _OFF_PLATE_M = 0.1
 _OFF_PLATE_SHARE = 0.5
 
 
-def analog_rate_hz(content: Any, parameters: Parameters) -> float:
+def analog_rate_hz(content: Any, parameters: C3dParameters) -> float:
     """Sample rate of the analog channels in Hz, from their number per frame."""
     frames = content["data"]["points"].shape[2]
     samples = content["data"]["analogs"].shape[2]
@@ -28,11 +28,11 @@ def analog_rate_hz(content: Any, parameters: Parameters) -> float:
     return float(str(np.float32(rate_hz * per_frame)))
 
 
-def analog_channels(content: Any, parameters: Parameters) -> tuple[AnalogChannel, ...]:
-    """Every analog channel, scaled as the file says, in its own unit.
+def analog_channels(content: Any, parameters: C3dParameters) -> tuple[AnalogChannel, ...]:
+    """Every analog channel, scaled by the file's parameters, in its own unit.
 
     Args:
-        content: What ezc3d read.
+        content: The file as ezc3d reads it.
         parameters: Its parameters.
 
     Returns:
@@ -55,13 +55,13 @@ def analog_channels(content: Any, parameters: Parameters) -> tuple[AnalogChannel
 
 
 def raw_plates(
-    path: Path, content: Any, parameters: Parameters, unit: str, notes: list[str]
+    path: Path, content: Any, parameters: C3dParameters, unit: str, notes: list[str]
 ) -> list[RawPlate]:
     """The force plates a file declares, checked but not yet converted.
 
     Args:
         path: The file, for messages.
-        content: What ezc3d read.
+        content: The file as ezc3d reads it.
         parameters: Its parameters.
         unit: The file's length unit.
         notes: Receives which plates are skipped, because no channel belongs to them.
@@ -181,11 +181,11 @@ def _doubts(name: str, wrench: Array, pressure: Array, corners: Array, threshold
     return doubts
 
 
-def events(content: Any, parameters: Parameters) -> tuple[Event, ...]:
+def events(content: Any, parameters: C3dParameters) -> tuple[CaptureEvent, ...]:
     """Labelled instants, from the group EVENT, or from the header where that group has none.
 
     Args:
-        content: What ezc3d read.
+        content: The file as ezc3d reads it.
         parameters: Its parameters; EVENT:TIMES holds minutes and seconds.
 
     Returns:
@@ -199,11 +199,11 @@ def events(content: Any, parameters: Parameters) -> tuple[Event, ...]:
         for i, time_s in enumerate(np.atleast_1d(seconds)):
             label = labels[i] if i < len(labels) else ""
             context = contexts[i] if i < len(contexts) else ""
-            found.append(Event(label, context, round(float(time_s), 6)))
+            found.append(CaptureEvent(label, context, round(float(time_s), 6)))
     else:
         header = content["header"].get("events", {})
         names, stamps = header.get("events_label", ()), header.get("events_time", ())
         for name, stamp in zip(names, stamps, strict=False):
             if str(name).strip():
-                found.append(Event(str(name).strip(), "", round(float(stamp), 6)))
+                found.append(CaptureEvent(str(name).strip(), "", round(float(stamp), 6)))
     return tuple(sorted(found, key=lambda event: event.time_s))

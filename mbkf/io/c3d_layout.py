@@ -59,7 +59,7 @@ class C3dLayout:
 
 
 def check_layout(path: Path) -> C3dLayout:
-    """Read a C3D file's header and make sure that the file is as long as it says.
+    """Read a C3D file's header and make sure that the file is as long as it promises.
 
     Args:
         path: The file.
@@ -97,6 +97,11 @@ def check_layout(path: Path) -> C3dLayout:
 
 def check_frames(path: Path, layout: C3dLayout, frames: int) -> None:
     """Make sure that the file holds the data of so many frames.
+
+    Args:
+        path: The file, for the message.
+        layout: Its header.
+        frames: The number of frames.
 
     Raises:
         FileFormatError: There are no frames, or fewer than promised.

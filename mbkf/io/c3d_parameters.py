@@ -1,4 +1,4 @@
-"""Parameters of a C3D file, whatever their case, number of continuation lists and odd dimensions."""
+"""Parameters of a C3D file: names in any case, lists with continuations, odd dimensions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ CONTINUATIONS = 1000
 """More lists than this (LABELS2, LABELS3 …) no file has."""
 
 
-class Parameters:
+class C3dParameters:
     """Read access to the parameters ezc3d returns; names are found in any case, missing ones are empty."""
 
     def __init__(self, groups: Mapping[str, Mapping[str, Any]]) -> None:
@@ -35,7 +35,13 @@ class Parameters:
             return np.zeros(0)
 
     def number(self, group: str, name: str, default: float = 0.0) -> float:
-        """First number of a parameter."""
+        """First number of a parameter.
+
+        Args:
+            group: Name of the group.
+            name: Name of the parameter.
+            default: The value where the parameter is missing.
+        """
         values = self.numbers(group, name).ravel()
         return float(values[0]) if len(values) else default
 
@@ -61,7 +67,7 @@ class Parameters:
 
         Args:
             name: CORNERS, ORIGIN, CHANNEL or CAL_MATRIX.
-            shape: Shape of one plate's block; −1 stands for what the file has.
+            shape: Shape of one plate's block; −1 stands for the size in the file.
 
         Returns:
             The blocks; a shorter list than plates where the parameter is short.

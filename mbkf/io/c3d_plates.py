@@ -39,7 +39,7 @@ class RawPlate:
         kind: Type, see the module.
         corners: (3, 4) corners in the file's axes and length unit.
         origin: (3,) ORIGIN in the file's length unit.
-        readings: (S, C) its channels, scaled as ANALOG says.
+        readings: (S, C) its channels, scaled by the parameters of ANALOG.
         units: C units of the channels.
         rate_hz: Their sample rate in Hz.
         calibration: (6, 6) CAL_MATRIX, or None.
@@ -151,7 +151,7 @@ def wrench_at_surface(plate: RawPlate, unit: str) -> Array:
 
 
 def _forces(units: tuple[str, ...]) -> Array:
-    """Newtons per unit of force; units that are none (empty, V) are taken as N, as the format says."""
+    """Newtons per unit of force; units that are none (empty, V) are taken as N, by the format's rule."""
     return np.array([_FORCE_UNITS.get(unit.strip().lower(), 1.0) for unit in units])
 
 

@@ -8,14 +8,14 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.io.axes import finite, positions_to_world
-from mbkf.io.c3d_parameters import Parameters
+from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.derived import UNIT_PARAMETERS, classify, group_kinds
 from mbkf.io.records import DerivedPoint, MarkerTrajectories
 
 
 def read_points(
     content: Any,
-    parameters: Parameters,
+    parameters: C3dParameters,
     up: str,
     unit: str,
     rate_hz: float,
@@ -25,7 +25,7 @@ def read_points(
     """Markers and derived points of a file.
 
     Args:
-        content: What ezc3d read.
+        content: The file as ezc3d reads it.
         parameters: Its parameters.
         up: Axis of the file that points up.
         unit: Length unit of the file.
@@ -56,7 +56,7 @@ def read_points(
     return markers, derived
 
 
-def point_labels(parameters: Parameters, count: int, notes: list[str]) -> list[str]:
+def point_labels(parameters: C3dParameters, count: int, notes: list[str]) -> list[str]:
     """One unique label per point.
 
     Missing labels become ``*i`` (i counted from 0), a subject's name before all labels ("Anna:LASI") is taken
@@ -65,7 +65,7 @@ def point_labels(parameters: Parameters, count: int, notes: list[str]) -> list[s
     Args:
         parameters: The file's parameters; labels continue in POINT:LABELS2, LABELS3 ….
         count: Number of points.
-        notes: Receives what was changed.
+        notes: Receives the changes.
 
     Returns:
         ``count`` labels.
@@ -108,7 +108,7 @@ def _present(content: Any, points: Array) -> BoolArray:
     return present
 
 
-def _listed(parameters: Parameters) -> dict[str, str]:
+def _listed(parameters: C3dParameters) -> dict[str, str]:
     """Label → kind of the points the file itself declares derived."""
     kinds = group_kinds(parameters.group("POINT"))
     return {label: kind for group, kind in kinds.items() for label in parameters.texts("POINT", group)}

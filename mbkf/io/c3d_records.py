@@ -1,8 +1,8 @@
 """Structure of a C3D file's parameter section, walked before a library trusts it.
 
 Each record is: length of the name, group number, name, distance to the next record, then for a parameter its
-type (−1 text, 1 byte, 2 integer, 4 float), its dimensions and its data. A damaged record sends a reader that
-believes it outside the file. Source: The C3D File Format, section on parameters (c3d.org).
+type (−1 text, 1 byte, 2 integer, 4 float), its dimensions and its data. A damaged record sends a reader outside
+the file. Source: The C3D File Format, section on parameters (c3d.org).
 """
 
 from __future__ import annotations

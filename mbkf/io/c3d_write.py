@@ -32,7 +32,7 @@ def write_c3d(capture: Capture, path: str | Path) -> None:
     where they are not; where a recording does not reach, they hold 0. C3D stores 32-bit floats.
 
     Args:
-        capture: What to write; markers may be labelled or unlabelled (``*0`` …).
+        capture: The capture; its markers may be labelled or unlabelled (``*0`` …).
         path: The file, replaced whole or not at all; its suffix is ``.c3d``.
 
     Raises:

@@ -1,19 +1,123 @@
-"""One door to all capture files: chooses the reader by the suffix and joins ground reactions."""
+"""One door to all capture files: chooses the format by the suffix and joins ground reactions.
+
+A reader of one's own joins the built-in ones by a decorator::
+
+    @register_reader(".xyz", title="XYZ text")
+    def read_xyz(path: Path, options: CaptureOptions) -> Capture: ...
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
-from mbkf.io.c3d import read_c3d
-from mbkf.io.forces import read_forces_mot
-from mbkf.io.records import Capture
-from mbkf.io.trc import read_trc
+from mbkf.io.readers import FileFormat, FormatRegistry, either
+from mbkf.io.records import Capture, PlateReadings
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
 
-SUFFIXES = (".c3d", ".trc")
-"""Capture files that can be read."""
+
+@dataclass(frozen=True)
+class CaptureOptions:
+    """How a capture, or a file of ground reactions, is read.
+
+    Attributes:
+        up: Axis of the file that points up; None for the one that the file states, or the format's default.
+        unit: Length unit; None for the one that the file states.
+        cop_threshold_n: Vertical force in N below which no centre of pressure is given.
+        tare: Whether the offset of unloaded plates is removed.
+        plates: Whether the file's own force plates are read.
+    """
+
+    up: str | None = None
+    unit: str | None = None
+    cop_threshold_n: float = DEFAULT_COP_THRESHOLD_N
+    tare: bool = True
+    plates: bool = True
+
+
+Read = Callable[[Path, CaptureOptions], Capture]
+Write = Callable[[Capture, Path], None]
+ReadForces = Callable[[Path, CaptureOptions], tuple[PlateReadings, ...]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CaptureFormat(FileFormat):
+    """A format of captures.
+
+    Attributes:
+        read: Reads a file.
+        write: Writes a capture; None where that is not possible.
+        brings_plates: Whether such a file may hold force plates of its own.
+        forces_share_up: Whether ``up`` is also the axis of a separate file of ground reactions.
+    """
+
+    read: Read
+    write: Write | None = None
+    brings_plates: bool = False
+    forces_share_up: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForceFormat(FileFormat):
+    """A format of ground reactions; ``read`` reads a file."""
+
+    read: ReadForces
+
+
+CAPTURES: FormatRegistry[CaptureFormat] = FormatRegistry("captures")
+FORCES: FormatRegistry[ForceFormat] = FormatRegistry("ground reactions")
+
+
+def register_reader(
+    *suffixes: str,
+    title: str,
+    write: Write | None = None,
+    brings_plates: bool = False,
+    forces_share_up: bool = False,
+) -> Callable[[Read], Read]:
+    """Decorator that registers the reader of a format of captures.
+
+    Args:
+        suffixes: Lower-case endings of its files, each with its dot.
+        title: Name of the format, for people.
+        write: Writes a capture to such a file.
+        brings_plates: Whether such a file may hold force plates of its own.
+        forces_share_up: Whether ``up`` is also the axis of a separate file of ground reactions.
+
+    Raises:
+        InvalidInput: A suffix is not one, or is taken.
+    """
+
+    def register(read: Read) -> Read:
+        CAPTURES.add(
+            CaptureFormat(
+                title=title,
+                suffixes=suffixes,
+                read=read,
+                write=write,
+                brings_plates=brings_plates,
+                forces_share_up=forces_share_up,
+            )
+        )
+        return read
+
+    return register
+
+
+def register_force_reader(*suffixes: str, title: str) -> Callable[[ReadForces], ReadForces]:
+    """Decorator that registers the reader of a format of ground reactions.
+
+    Raises:
+        InvalidInput: A suffix is not one, or is taken.
+    """
+
+    def register(read: ReadForces) -> ReadForces:
+        FORCES.add(ForceFormat(title=title, suffixes=suffixes, read=read))
+        return read
+
+    return register
 
 
 def read_capture(
@@ -28,11 +132,11 @@ def read_capture(
     """Read a capture, and its ground reactions where they stand in a file of their own.
 
     Args:
-        path: C3D or TRC file.
-        forces: MOT file of ground reactions; it then replaces the plates of a C3D file. Its y is up, or
+        path: File of a registered format, by default C3D or TRC.
+        forces: File of ground reactions (MOT or STO); it then replaces the plates of a C3D file. Its y is up, or
             ``up`` where the markers are a TRC file. It keeps its own times.
-        up: Axis of the file that points up; by default what a C3D file says, y for a TRC file.
-        unit: Length unit of the markers; by default what the file says.
+        up: Axis of the file that points up; by default the one that a C3D file states, y for a TRC file.
+        unit: Length unit of the markers; by default the one that the file states.
         cop_threshold_n: Vertical force in N below which no centre of pressure is given.
         tare: Whether the offset an unloaded plate shows is removed.
 
@@ -45,22 +149,14 @@ def read_capture(
         UnknownName: Unknown axis, unit, or naming of force columns.
     """
     path = Path(path)
-    suffix = path.suffix.lower()
-    if suffix not in SUFFIXES:
-        reason = f"'{path.suffix}' files cannot be read as captures; name a {' or '.join(SUFFIXES)} file"
-        raise FileFormatError(path, reason)
-    if suffix == ".trc":
-        capture = read_trc(path, up=up or "y", unit=unit)
-        force_up = up or "y"
-    else:
-        capture = read_c3d(
-            path, up=up, unit=unit, cop_threshold_n=cop_threshold_n, tare=tare, plates=forces is None
-        )
-        force_up = "y"
+    kind = CAPTURES.format_of(path)
+    options = CaptureOptions(up, unit, cop_threshold_n, tare, plates=forces is None)
+    capture = kind.read(path, options)
     if forces is None:
         return capture
-    plates = read_forces_mot(forces, up=force_up, cop_threshold_n=cop_threshold_n, tare=tare)
-    notes = [*capture.notes, f"ground reactions from {Path(forces).name}"]
+    forces = Path(forces)
+    plates = FORCES.format_of(forces).read(forces, replace(options, up=up if kind.forces_share_up else None))
+    notes = [*capture.notes, f"ground reactions from {forces.name}"]
     markers = capture.markers
     end_s = markers.start_time_s + markers.frames / markers.rate_hz
     for plate in plates:
@@ -69,3 +165,68 @@ def read_capture(
         if plate.offset[2]:
             notes.append(f"set '{plate.name}': offset of {plate.offset[2]:+.1f} N vertical force removed")
     return replace(capture, plates=plates, notes=tuple(notes))
+
+
+def write_capture(capture: Capture, path: str | Path) -> None:
+    """Write a capture in the format of the file's suffix.
+
+    Args:
+        capture: The capture.
+        path: The file, replaced whole or not at all.
+
+    Raises:
+        FileFormatError: The suffix is unknown, or the format can only be read.
+        OSError: The file cannot be written.
+    """
+    path = Path(path)
+    kind = CAPTURES.format_of(path)
+    if kind.write is None:
+        raise FileFormatError(path, f"{kind.title} is not written; name a {either(writable_suffixes())} file")
+    kind.write(capture, path)
+
+
+def writable_suffixes() -> tuple[str, ...]:
+    """Suffixes of captures that can be written."""
+    return tuple(suffix for one in CAPTURES if one.write is not None for suffix in one.suffixes)
+
+
+def _write_c3d(capture: Capture, path: Path) -> None:
+    from mbkf.io.c3d_write import write_c3d
+
+    write_c3d(capture, path)
+
+
+@register_reader(".c3d", title="C3D", write=_write_c3d, brings_plates=True)
+def _read_c3d(path: Path, options: CaptureOptions) -> Capture:
+    from mbkf.io.c3d import read_c3d
+
+    return read_c3d(
+        path,
+        up=options.up,
+        unit=options.unit,
+        cop_threshold_n=options.cop_threshold_n,
+        tare=options.tare,
+        plates=options.plates,
+    )
+
+
+def _write_trc(capture: Capture, path: Path) -> None:
+    from mbkf.io.trc import write_trc
+
+    write_trc(capture.markers, path)
+
+
+@register_reader(".trc", title="TRC", write=_write_trc, forces_share_up=True)
+def _read_trc(path: Path, options: CaptureOptions) -> Capture:
+    from mbkf.io.trc import read_trc
+
+    return read_trc(path, up=options.up or "y", unit=options.unit)
+
+
+@register_force_reader(".mot", ".sto", title="OpenSim storage")
+def _read_forces_mot(path: Path, options: CaptureOptions) -> tuple[PlateReadings, ...]:
+    from mbkf.io.forces import read_forces_mot
+
+    return read_forces_mot(
+        path, up=options.up or "y", cop_threshold_n=options.cop_threshold_n, tare=options.tare
+    )

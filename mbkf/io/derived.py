@@ -1,6 +1,6 @@
-"""Which points of a C3D file were measured, and which some software computed and stored beside them.
+"""Which points of a C3D file were measured, and which were computed by software and stored beside them.
 
-A file says so for angles, forces, moments, powers and scalars (POINT:ANGLES …, named by POINT:TYPE_GROUPS).
+A file states this for angles, forces, moments, powers and scalars (POINT:ANGLES …, named by POINT:TYPE_GROUPS).
 Joint centres, segment axes and the like carry no sign but their names, so the names of Vicon Plug-in Gait and
 of the Oxford Foot Model are known here. In doubt a point counts as measured.
 """
@@ -40,7 +40,7 @@ NAMED_KINDS = (
     ("point", re.compile(r"(WholeBody|Body)?Cent(re|er)OfMass(Floor)?")),
     ("point", re.compile(rf"{_SIDE}_?[HKASEW]JC")),
 )
-"""Names of model outputs that no one gives to a marker, whatever else the file holds."""
+"""Names of model outputs, which are not names of markers in any file."""
 
 FOOT_MODEL = re.compile(
     rf"({_SIDE}(FOF[0-3]|HDF[0-3]|HLX[0-3]|TIB[1-3]|HE1|D1M0|D5M0|ANK1|HFplantar|KAX|PROXFF|DISTFF)"

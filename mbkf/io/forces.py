@@ -52,7 +52,7 @@ def read_forces_mot(
         up: Axis of the file that points up; OpenSim has y.
         cop_threshold_n: Vertical force in N below which no centre of pressure is given.
         tare: Whether an offset of the unloaded set is removed, if it is 2 N or more; most exports have none,
-            and what remains of a low-pass filter is not one.
+            and the remainder of a low-pass filter is not one.
 
     Returns:
         One set of readings per plate or foot, in the order of the columns.

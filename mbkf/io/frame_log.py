@@ -1,4 +1,4 @@
-"""A log that grows row by row and stays readable whatever happens: one line of JSON, then rows of fixed size.
+"""A log that grows row by row and stays readable after a crash: one line of JSON, then rows of fixed size.
 
 A row that was written stays, also when the process is killed or the disk is full; a row cut off at the end is ignored.
 """
@@ -30,7 +30,12 @@ class FrameLogWriter:
     """
 
     def __init__(self, path: str | Path, dtype: np.dtype, header: dict[str, Any]) -> None:
-        """Args: file to make, type of a row, and plain data that belongs to all rows.
+        """Creates the file.
+
+        Args:
+            path: The file.
+            dtype: Type of a row.
+            header: Plain data that belongs to all rows.
 
         Raises:
             OSError: The file cannot be written.
@@ -47,7 +52,7 @@ class FrameLogWriter:
         """Writes rows; they are with the operating system when this returns.
 
         Raises:
-            OSError: Not all of them could be written. Those that were stay, and what is left of a cut one is removed.
+            OSError: Not all of them could be written. Those that were stay; a cut one is removed.
         """
         data = np.ascontiguousarray(rows, dtype=self.dtype).tobytes()
         try:

@@ -49,7 +49,7 @@ _KINDS = {"a": "acc", "s": "acc", "g": "gyr", "o": "gyr", "m": "mag", "q": "quat
 
 @dataclass(frozen=True)
 class ImuReadings:
-    """What one inertial sensor recorded, in its own axes.
+    """Readings of one inertial sensor, in its own axes.
 
     Attributes:
         name: Sensor name, e.g. the segment that carries it.
@@ -186,7 +186,12 @@ def on_regular_grid(one: ImuReadings) -> ImuReadings:
 
 
 def unit_name(kind: str, text: str, where: str) -> str:
-    """The unit of :data:`UNITS` that a text means, whatever its spelling.
+    """The unit of :data:`UNITS` that a text means, in any of its spellings.
+
+    Args:
+        kind: Quantity, a key of :data:`UNITS`.
+        text: The unit as written.
+        where: Where it stands, for the message.
 
     Raises:
         UnknownName: There is no such quantity or unit.
@@ -290,7 +295,7 @@ def _time_column(
 
 
 def _factor(path: Path, name: str, kind: str, unit: str | None, given: Mapping[str, str]) -> float:
-    """Factor to SI (µT for fields): what the caller says, else what the name says; seconds for bare times."""
+    """Factor to SI (µT for fields): by the caller's unit, else by the name's; seconds for bare times."""
     if kind == "quat":
         return 1.0
     if kind in given:
@@ -359,7 +364,7 @@ def _sensor(
 
 
 def _note(path: Path) -> str:
-    """What a comment says about the orientations' world."""
+    """World frame of the orientations, as a comment states it."""
     with path.open(encoding="utf-8-sig", errors="replace") as file:
         for line in file:
             if not line.startswith(_COMMENT):

@@ -1,14 +1,68 @@
-"""One door to all files of inertial readings: chooses the reader by what the file is."""
+"""One door to all files of inertial readings: chooses the format by suffix and content.
+
+A reader of one's own joins the built-in ones by a decorator::
+
+    @register_imu_reader(".log", title="My logger")
+    def read_log(path: Path, options: ImuOptions) -> tuple[ImuReadings, ...]: ...
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
 from mbkf.io.imu import ImuReadings, read_imu_csv
-from mbkf.io.imu_mat import read_imu_mat
 from mbkf.io.imu_xsens import is_xsens, read_xsens, read_xsens_folder
+from mbkf.io.readers import FOLDER, FileFormat, FormatRegistry
+
+
+@dataclass(frozen=True)
+class ImuOptions:
+    """How a file of inertial readings is read.
+
+    Attributes:
+        units: Unit by quantity of a table that does not state them, see :func:`mbkf.io.imu.read_imu_csv`.
+        rate_hz: Sample rate of a file that does not state it.
+    """
+
+    units: Mapping[str, str] | None = None
+    rate_hz: float | None = None
+
+
+ReadImu = Callable[[Path, ImuOptions], tuple[ImuReadings, ...]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImuFormat(FileFormat):
+    """A format of inertial readings; ``read`` reads a file."""
+
+    read: ReadImu
+
+
+IMUS: FormatRegistry[ImuFormat] = FormatRegistry("inertial readings")
+
+
+def register_imu_reader(
+    *suffixes: str, title: str, recognises: Callable[[Path], bool] | None = None
+) -> Callable[[ReadImu], ReadImu]:
+    """Decorator that registers the reader of a format of inertial readings.
+
+    Args:
+        suffixes: Lower-case endings of its files, each with its dot, or :data:`mbkf.io.readers.FOLDER`.
+        title: Name of the format, for people.
+        recognises: Whether a file of such a suffix is of this kind; None where the suffix decides.
+
+    Raises:
+        InvalidInput: A suffix is not one, or is taken.
+    """
+
+    def register(read: ReadImu) -> ReadImu:
+        IMUS.add(ImuFormat(title=title, suffixes=suffixes, recognises=recognises, read=read))
+        return read
+
+    return register
 
 
 def read_imu(
@@ -17,7 +71,8 @@ def read_imu(
     """Read the sensors of a file, or of a folder of Xsens text exports.
 
     Args:
-        path: CSV table, Xsens text export, MATLAB file of BROAD or qmt, or a folder of Xsens exports.
+        path: CSV table, Xsens text export, MATLAB file of BROAD or qmt, a folder of Xsens exports, or a file of
+            another registered format.
         units: Units of a table that does not state them, see :func:`mbkf.io.imu.read_imu_csv`.
         rate_hz: Sample rate of a file that does not state it.
 
@@ -27,17 +82,28 @@ def read_imu(
         UnknownName: Unknown unit.
     """
     path = Path(path)
-    if path.is_dir():
-        return read_xsens_folder(path, rate_hz)
-    if not path.is_file():
+    if not path.exists():
         raise FileFormatError(path, "no such file; name a table of inertial readings")
-    suffix = path.suffix.lower()
-    if suffix == ".mat":
-        return read_imu_mat(path)
-    if suffix not in (".csv", ".tsv", ".txt"):
-        raise FileFormatError(
-            path, f"'{suffix}' files hold no inertial readings that mbkf knows; name a .csv, .txt or .mat"
-        )
-    if is_xsens(path):
-        return (read_xsens(path, rate_hz),)
-    return read_imu_csv(path, units=units, rate_hz=rate_hz)
+    return IMUS.format_of(path).read(path, ImuOptions(units, rate_hz))
+
+
+@register_imu_reader(".csv", ".tsv", ".txt", title="table")
+def _read_csv(path: Path, options: ImuOptions) -> tuple[ImuReadings, ...]:
+    return read_imu_csv(path, units=options.units, rate_hz=options.rate_hz)
+
+
+@register_imu_reader(".csv", ".tsv", ".txt", title="Xsens text export", recognises=is_xsens)
+def _read_xsens(path: Path, options: ImuOptions) -> tuple[ImuReadings, ...]:
+    return (read_xsens(path, options.rate_hz),)
+
+
+@register_imu_reader(".mat", title="MATLAB file of BROAD or qmt")
+def _read_mat(path: Path, options: ImuOptions) -> tuple[ImuReadings, ...]:  # noqa: ARG001  (the file states all)
+    from mbkf.io.imu_mat import read_imu_mat
+
+    return read_imu_mat(path)
+
+
+@register_imu_reader(FOLDER, title="folder of Xsens text exports")
+def _read_xsens_folder(path: Path, options: ImuOptions) -> tuple[ImuReadings, ...]:
+    return read_xsens_folder(path, options.rate_hz)

@@ -66,7 +66,7 @@ def write_mounts(mounts: Sequence[ImuMount], path: str | Path) -> None:
 
 
 def read_mounts(path: str | Path) -> tuple[ImuMount, ...]:
-    """Reads what :func:`write_mounts` wrote.
+    """Reads a file of :func:`write_mounts`.
 
     Raises:
         FileFormatError: The file is missing or lacks an entry.

@@ -58,6 +58,15 @@ def write_orientation_csv(
 ) -> None:
     """Writes the course of one sensor: quaternion, unwrapped Euler angles in degrees, bias, standard deviations.
 
+    Args:
+        path: The file.
+        time_s: (T,) sample times, s.
+        quaternion: (T, 4) orientations sensor → world (x, y, z, w).
+        euler_rad: (T, 3) roll, pitch and yaw, unwrapped.
+        gyro_bias_rad_s: (T, 3) bias of the gyroscope.
+        sd_rad: (T, 3) standard deviations about north, west and up; None where unknown.
+        note: First line of the file.
+
     Raises:
         OSError: The file cannot be written.
     """

@@ -24,16 +24,16 @@ _KEYS = ("name", "filter", "version", "note", "tuned_on", "held_out", "values", 
 
 @dataclass(frozen=True)
 class Preset:
-    """Settings of a filter that somebody found.
+    """Tuned settings of a filter.
 
     Attributes:
         name: Its name.
         filter: Which filter they are for.
         values: Settings by name, those that differ from the defaults or were tried.
         version: Of mbkf when they were found.
-        note: What a person should know.
+        note: Remark for the user.
         tuned_on, held_out: Trials they were found on, and judged on.
-        found: What the search found, where that was no better on the held-out trials and ``values`` stayed.
+        found: Result of the search, where it was no better on the held-out trials and ``values`` stayed.
         likelihood: Log-likelihoods per reading by name, in nats.
     """
 

@@ -1,4 +1,4 @@
-"""What a capture holds once read: immutable records in SI units and mbkf's world axes."""
+"""Contents of a capture: immutable records in SI units and mbkf's world axes."""
 
 from __future__ import annotations
 
@@ -134,7 +134,7 @@ class AnalogChannel:
 
 
 @dataclass(frozen=True)
-class Event:
+class CaptureEvent:
     """A labelled instant, e.g. label "Foot Strike", context "Left", at ``time_s``."""
 
     label: str
@@ -155,7 +155,7 @@ class Capture:
         events: Labelled instants in order of time.
         up_axis: Axis of the file that points up ("x", "y", "z", possibly with "-").
         length_unit: Unit of the file's marker coordinates ("mm", "m", "cm").
-        notes: What the reader noticed (empty unit, malformed header, offsets removed …).
+        notes: Remarks of the reader (empty unit, malformed header, offsets removed …).
         subject_mass_kg: Body mass stated in the file, or None.
     """
 
@@ -164,7 +164,7 @@ class Capture:
     plates: tuple[PlateReadings, ...] = ()
     derived: tuple[DerivedPoint, ...] = ()
     analog: tuple[AnalogChannel, ...] = ()
-    events: tuple[Event, ...] = ()
+    events: tuple[CaptureEvent, ...] = ()
     up_axis: str = "z"
     length_unit: str = "m"
     notes: tuple[str, ...] = ()

@@ -32,7 +32,7 @@ DTYPES["footing"] = np.int64
 
 @dataclass(frozen=True, kw_only=True)
 class Reconstruction:
-    """What a filter found in one trial. Arrays are read-only; world axes are x forward, y left, z up.
+    """Result of a filter on one trial. Arrays are read-only; world axes are x forward, y left, z up.
 
     Attributes:
         trial: Name of the trial.
@@ -73,7 +73,7 @@ class Reconstruction:
         nis_readings: (T,) number of scalar readings in it.
         step_seconds: (T,) computing time of a frame.
         warnings: Remarks for the reader.
-        settings: What the run was set to, as plain data.
+        settings: Settings of the run, as plain data.
         plate_change: (T, P, 6) estimated minus measured plate wrench (N, N m), NaN where a plate is not
             compared; None without plates.
         foot_wrench_sd: (T, 2, 6) standard deviations of ``foot_wrench``; None where the filter does not estimate it.

@@ -29,7 +29,7 @@ def write_reconstruction(
     files of an existing folder stay.
 
     Args:
-        reconstruction: What was found.
+        reconstruction: The result.
         summary: Plain data for summary.json (see ``mbkf.pipelines.results.summary``); NaN becomes null.
         folder: Where to write; made where missing.
 

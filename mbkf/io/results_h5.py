@@ -74,7 +74,7 @@ def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
 
 
 def read_h5(path: str | Path) -> Reconstruction:
-    """Reads what :func:`write_h5` wrote.
+    """Reads a file of :func:`write_h5`.
 
     Raises:
         FileFormatError: The file is missing, damaged or something else.
@@ -115,7 +115,7 @@ def _subject(table: dict[str, Any]) -> Subject:
 
 
 def _plain(value: Any) -> Any:
-    """What JSON does not know: numpy's scalars and arrays, paths, records, sets."""
+    """Types that JSON lacks, as plain data: numpy's scalars and arrays, paths, records, sets."""
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
     if dataclasses.is_dataclass(value) and not isinstance(value, type):

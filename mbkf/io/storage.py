@@ -97,7 +97,7 @@ def write_storage(table: Table, path: str | Path) -> None:
     """Write a table as OpenSim reads it.
 
     Args:
-        table: What to write; other entries of its header follow the standard ones.
+        table: The table; other entries of its header follow the standard ones.
         path: The file, replaced whole or not at all.
 
     Raises:

@@ -33,7 +33,7 @@ _COLUMNS_BEFORE_MARKERS = 2
 
 @dataclass(frozen=True)
 class TrcHeader:
-    """What the third line of a TRC file says.
+    """Third line of a TRC file.
 
     Attributes:
         rate_hz: DataRate in Hz.
@@ -58,7 +58,7 @@ def read_trc(path: str | Path, *, up: str = "y", unit: str | None = None) -> Cap
 
     Args:
         path: The file.
-        up: Axis of the file that points up; TRC files do not say, OpenSim has y.
+        up: Axis of the file that points up; TRC files do not state it, OpenSim has y.
         unit: Length unit; by default the one in the header.
 
     Returns:
@@ -153,7 +153,7 @@ def _number(word: str) -> float | None:
 
 
 def _names(line: str) -> tuple[str, ...]:
-    """Marker names: what stands between tabs after Frame# and Time, however many tabs there are."""
+    """Marker names: the cells after Frame# and Time, with any number of tabs between them."""
     cells = line.split("\t") if "\t" in line else line.split()
     return tuple(cell.strip() for cell in cells if cell.strip())[_COLUMNS_BEFORE_MARKERS:]
 
@@ -192,7 +192,7 @@ def _compare_rate(rate_hz: float, times: Array) -> list[str]:
         return ["the Time column does not increase; times follow from the header's rate"]
     from_times = (len(times) - 1) / span
     if abs(from_times - rate_hz) > _RATE_TOLERANCE * rate_hz:
-        return [f"the header says {rate_hz:g} Hz, the Time column {from_times:.6g} Hz; the header is used"]
+        return [f"the header states {rate_hz:g} Hz, the Time column {from_times:.6g} Hz; the header is used"]
     return []
 
 

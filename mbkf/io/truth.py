@@ -27,7 +27,7 @@ UNITS = {
 
 @dataclass(frozen=True)
 class Truth:
-    """What really happened in a synthetic capture.
+    """The exact motion behind a synthetic capture.
 
     Attributes:
         times_s: (T,) times of the camera frames, s.
@@ -90,7 +90,7 @@ def write_truth(truth: Truth, path: str | Path) -> None:
 
 
 def read_truth(path: str | Path) -> Truth:
-    """Reads what :func:`write_truth` wrote.
+    """Reads a file of :func:`write_truth`.
 
     Raises:
         FileFormatError: The file is missing, damaged or something else.

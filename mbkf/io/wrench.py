@@ -1,4 +1,4 @@
-"""What a plate's forces and moments mean: centre of pressure, zero offset, checked records."""
+"""Forces and moments of a plate: centre of pressure, zero offset, checked records."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ DEFAULT_COP_THRESHOLD_N = 20.0
 """Vertical force below which a centre of pressure is mostly noise, in N."""
 
 UNLOADED_RANGE_N = (-200.0, 50.0)
-"""Vertical force a plate without load may show; a plate cannot pull, so much more is believed below zero."""
+"""Vertical force a plate without load may show; a plate cannot pull, so the range is wider below zero."""
 
 _WINDOW_S = 0.03
 _QUIET_SD_N = 2.0
@@ -68,6 +68,13 @@ def centre_of_pressure(
 def require_finite(force_n: Array, moment_nm: Array, rate_hz: float, start_time_s: float, where: str) -> None:
     """Refuse readings that are not numbers.
 
+    Args:
+        force_n: (S, 3) forces.
+        moment_nm: (S, 3) moments.
+        rate_hz: Sample rate.
+        start_time_s: Time of the first sample.
+        where: The file and plate, for the message.
+
     Raises:
         InvalidInput: A force or moment is NaN or infinite; says where first and how many.
     """
@@ -81,13 +88,13 @@ def require_finite(force_n: Array, moment_nm: Array, rate_hz: float, start_time_
 
 
 def find_tare(wrench: Array, rate_hz: float) -> Tare:
-    """Offset of a plate, from the stretches in which nobody stands on it.
+    """Offset of a plate, from the stretches in which it carries no load.
 
     The recording is cut into windows of 30 ms. Those with a vertical force inside ``UNLOADED_RANGE_N`` and a
     small spread are candidates; the mode of their vertical force is the unloaded level, and the offset is the
     median of the candidates near it. A plate that is loaded all the time has no candidates and no offset.
-    Samples in which all six readings are exactly zero were zeroed by software and say nothing about another
-    level, so they only count where they prevail.
+    Samples in which all six readings are exactly zero were zeroed by software and carry no information on
+    another level, so they only count where they prevail.
 
     Args:
         wrench: (S, 6) force in N and moment in N m of the plate on the body, world axes (z up).

@@ -69,7 +69,7 @@ def assign(
             to several markers or far from all.
         settings: Gate, radius, ghosts.
         known: Gives the marker (N,) that each point's own track carried in the frame before, ``HIDDEN`` where none, or
-            None where tracks say nothing; asked only where pairs are in dispute.
+            None where no track is known; called only where pairs are in dispute.
     """
     if not len(points_m) or not len(predicted_m):
         return np.full(len(predicted_m), HIDDEN, dtype=np.intp)

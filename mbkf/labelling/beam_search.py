@@ -21,7 +21,7 @@ BEAM = 40
 """Beam width: how many partial bodies are kept after every segment."""
 
 LIMBS = 10
-"""How many are kept at the end of a limb: what is left open there must not crowd out the choices of the next limb."""
+"""How many are kept at the end of a limb: its alternatives must not crowd out those of the next limb."""
 
 BRANCHES = 8
 """How many placements of a segment extend each partial body."""

@@ -139,7 +139,7 @@ class KeyframePlacing:
         allowed: BoolArray,
         reach_m: Array,
     ) -> tuple[Indices, Array]:
-        """Tracks (n, k) nearest to a cluster's markers in n ways to place it, and what they are worth (n,).
+        """Tracks (n, k) nearest to a cluster's markers in n ways to place it, and their scores (n,).
 
         Args:
             cluster: The segment.
@@ -186,7 +186,7 @@ class KeyframePlacing:
         one, two = one[fits], two[fits]
         between = np.linalg.norm(cluster.local_m[marker[one]] - cluster.local_m[marker[two]], axis=1)
         differ = np.abs(between - self.seen.length_m[track[one], track[two]])
-        # Long distances say more of the orientation, and are matched less often by chance.
+        # Long distances determine the orientation better, and are matched less often by chance.
         pairs = np.argsort(differ - 0.1 * between)[:_PAIRS]
         pairs = pairs[differ[pairs] <= LENGTH_M]
         one, two = one[pairs], two[pairs]
@@ -213,7 +213,7 @@ class KeyframePlacing:
     def _strain(
         self, cluster: Cluster, rotations: Array, origins: Array, origins_m: Array, parents: Array
     ) -> Array:
-        """(n,) what the joint's gap and an unusual turn cost, mean over the keyframes."""
+        """(n,) cost of the joint's gap and of an unusual turn, mean over the keyframes."""
         gap = ((origins - origins_m) ** 2).sum(axis=2) / JOINT_SD_M**2
         cosine = (np.einsum("nkij,kij->nk", rotations, parents) - 1.0) / 2.0
         turn = np.arccos(np.clip(cosine, -1.0, 1.0)) / cluster.posture_sd_rad

@@ -43,7 +43,7 @@ def trajectories(points_m: Array, tracks: Tracks, owner: Indices, markers: int) 
 def name_tracks(
     sensor: MarkerSensor, sd_m: Array, points_m: Array, tracks: Tracks, owner: Indices
 ) -> tuple[Indices, float]:
-    """Marker of every track (count,) by a body whose pose follows from the tracks named before, and what it is worth.
+    """Marker of every track (count,) by a body posed by the tracks named before, and their log-likelihood ratio.
 
     Pairs of track and marker are taken by their likelihood over all frames in which the track is seen, the likeliest
     first; two tracks that are seen at once are not the same marker.

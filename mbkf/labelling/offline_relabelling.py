@@ -44,7 +44,7 @@ class RelabellingSettings:
         kept: How much cheaper the label is that the tracklet carried so far.
         least_votes: Least share of a tracklet's frames that must have carried a label for it to win the vote.
         least_share: A marker labelled in a smaller share of the frames was not worn: a ghost took its place.
-        rare: Likewise one labelled in less than this share of what is typical, if ...
+        rare: Likewise one labelled in less than this share of the typical number of frames, if ...
         wandering: ... its offset scatters by more than this many times its noise.
     """
 

@@ -128,7 +128,7 @@ def _rotations(local_m: Array, arms: Array, parent: Array) -> Array:
     misfit = np.abs(between - apart)
     fits = (marker[one] != marker[two]) & (point[one] != point[two]) & (misfit <= LENGTH_TOLERANCE_M)
     pairs = np.flatnonzero(fits)
-    # Long distances say more of the orientation, and are matched less often by chance.
+    # Long distances determine the orientation better, and are matched less often by chance.
     pairs = pairs[np.argsort(misfit[pairs] - 0.1 * between[pairs])[:_MOST]]
     both = single[one[pairs]] + single[two[pairs]]
     return nearest_rotations(np.concatenate([both, single[:_MOST]]) + _POSTURE_PULL * parent)

@@ -1,8 +1,8 @@
 """Labels from frame to frame, between a filter's prediction and its correction (thesis section 4.1.3).
 
 Besides the filter's prediction the labeller knows three things: how far each marker lay off the body when last seen
-(skin and placement, which outlive a short gap), which label each point's own track carried, and what the labels would
-be without either. The last is computed every few frames: a memory that geometry contradicts twice in a row is wrong,
+(skin and placement, which outlive a short gap), which label each point's own track carried, and the labels without
+either. The last is computed every few frames: a memory that geometry contradicts twice in a row is wrong,
 and markers whose labels were exchanged get them back.
 """
 

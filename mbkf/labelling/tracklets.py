@@ -1,4 +1,4 @@
-"""Points linked over time without names: what is one reflection in successive frames, by place and velocity alone.
+"""Points linked over time without names: the same reflection in successive frames, by place and velocity alone.
 
 The columns of a file are not asked. A link is made where a point lies near to where another, moving on steadily, should
 be, and nothing else comes half as near; where that is in doubt the tracklet ends and a new one begins.
@@ -64,7 +64,7 @@ class Tracklets:
 def linked(positions_m: Array) -> Tracklets:
     """Links the points (T, C, 3), NaN where a column is empty; their columns may be shuffled in every frame.
 
-    Velocities are learnt forwards and, for what had none yet, backwards.
+    Velocities are learnt forwards and, for points without one yet, backwards.
     """
     frames = [_shown(frame) for frame in positions_m]
     ahead = _links(frames)
@@ -91,7 +91,7 @@ def _shown(frame_m: Array) -> tuple[Indices, Array]:
 
 
 def _agreed(one: Indices, other: Indices, before: int, now: int) -> tuple[Indices, Indices]:
-    """Both sets of links (2, k); of the other those whose points the one leaves free."""
+    """The first set of links (2, k), and those of the second set whose points are still free."""
     taken_before, taken_now = np.zeros(before, dtype=bool), np.zeros(now, dtype=bool)
     taken_before[one[0]], taken_now[one[1]] = True, True
     free = ~taken_before[other[0]] & ~taken_now[other[1]]

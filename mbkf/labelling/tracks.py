@@ -58,7 +58,7 @@ class Tracks:
 def continued(before_m: Array, now_m: Array) -> BoolArray:
     """(C,) columns whose point now is the same physical point as in the frame before.
 
-    A column is believed where its point lies nearer to its own place before than to any other point's, and the other
+    A column continues where its point lies nearer to its own place before than to any other point's, and the other
     way round. Points shuffled in every frame fail this, so that nothing need be known of the file.
 
     Args:

@@ -1,6 +1,6 @@
 """From a continuous linear error model ẋ = F x + w̃ to one step: transition Φ and plant-noise covariance (thesis 2.3.1).
 
-F (n, n) is held constant over the step; w̃ is white with spectral density Σ (n, n), which is G Σᴾ Gᵀ of eq. 2.46.
+F (n, n) is held constant over the step; w̃ is white with spectral density Σ (n, n), which is G Σᴾ Gᵀ of thesis eq. 2.46.
 """
 
 from __future__ import annotations
@@ -37,34 +37,45 @@ def symmetric(matrix: Array) -> Array:
 
 
 def first_order(F: Array, dt_s: float) -> Array:
-    """Φ = I + F Δt (eq. 3.51)."""
+    """Φ = I + F Δt (thesis eq. 3.51)."""
     return np.eye(len(F)) + dt_s * F
 
 
 def second_order(F: Array, dt_s: float) -> Array:
-    """Φ = I + F Δt + F² Δt²/2 (eq. 3.52)."""
+    """Φ = I + F Δt + F² Δt²/2 (thesis eq. 3.52)."""
     return first_order(F, dt_s) + 0.5 * dt_s**2 * (F @ F)
 
 
 def exponential(F: Array, dt_s: float) -> Array:
-    """Φ = exp(F Δt) (eq. 2.39), by Padé approximation."""
+    """Φ = exp(F Δt) (thesis eq. 2.39), by Padé approximation."""
     phi: Array = scipy.linalg.expm(dt_s * F)
     return phi
 
 
 def series_covariance(F: Array, density: Array, dt_s: float) -> Array:
-    """Σ Δt + (F Σ + Σ Fᵀ) Δt²/2 + F Σ Fᵀ Δt³/3, what Φ = I + F Δt makes of the noise (eq. 2.45)."""
+    """Q = Σ Δt + (F Σ + Σ Fᵀ) Δt²/2 + F Σ Fᵀ Δt³/3, the plant noise with Φ = I + F Δt (thesis eq. 2.45).
+
+    Args:
+        F: (n, n) error dynamics, 1/s.
+        density: (n, n) spectral density Σ of the noise.
+        dt_s: Time step Δt.
+    """
     carried = F @ density
     noise = density * dt_s + (carried + carried.T) * (dt_s**2 / 2.0) + carried @ F.T * (dt_s**3 / 3.0)
     return symmetric(noise)
 
 
 def van_loan(F: Array, density: Array, dt_s: float) -> Discrete:
-    """Exact Φ = exp(F Δt) and Q = ∫ exp(F s) Σ exp(Fᵀ s) ds, to rounding (eqs. 2.43, 2.44).
+    """Exact Φ = exp(F Δt) and Q = ∫ exp(F s) Σ exp(Fᵀ s) ds, to rounding (thesis eqs. 2.43, 2.44).
 
     Van Loan reads both off exp([[−F, Σ], [0, Fᵀ]] Δt) = [[·, Φ⁻¹ Q], [0, Φᵀ]]. The same numbers come ten times
     cheaper from their Taylor series over h = Δt/2ᵏ on balanced states, Q = Σ hʲ⁺¹/(j+1)! Lʲ(Σ) with
     L(X) = F X + X Fᵀ, then k times two steps at once. Rows of zeros in F, constant states, are left out.
+
+    Args:
+        F: (n, n) error dynamics, 1/s.
+        density: (n, n) spectral density Σ of the noise.
+        dt_s: Time step Δt.
     """
     n = len(F)
     balanced, (scale, _) = scipy.linalg.matrix_balance(F, permute=False, separate=True)
@@ -107,6 +118,13 @@ COVARIANCES = ("series", "van_loan")
 
 def discretise(F: Array, density: Array, dt_s: float, propagation: str, covariance: str) -> Discrete:
     """One step of the error by the named methods.
+
+    Args:
+        F: (n, n) error dynamics, 1/s.
+        density: (n, n) spectral density Σ of the noise.
+        dt_s: Time step Δt.
+        propagation: How Φ follows from F, one of :data:`PROPAGATIONS`.
+        covariance: How Q follows from F and Σ, one of :data:`COVARIANCES`.
 
     Raises:
         UnknownName: There is no such propagation or covariance.

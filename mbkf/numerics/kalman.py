@@ -16,7 +16,7 @@ from mbkf.conventions import Array
 
 @dataclass(frozen=True)
 class Information:
-    """What a set of independent readings says about n state components.
+    """Information of a set of independent readings on n state components.
 
     For innovations y with Jacobian H and noise R: ``matrix`` = HᵀR⁻¹H (n, n), ``vector`` = HᵀR⁻¹y (n,),
     ``innovation`` = yᵀR⁻¹y, ``readings`` = length of y.
@@ -59,7 +59,13 @@ class Correction:
 
 
 def information(innovation: Array, jacobian: Array, sd: Array) -> Information:
-    """Compresses independent readings: y (m,), H (m, n), standard deviations (m,)."""
+    """Compresses independent readings.
+
+    Args:
+        innovation: (m,) innovations y.
+        jacobian: (m, n) Jacobian H of the readings.
+        sd: (m,) standard deviations of their noise.
+    """
     scaled = jacobian / sd[:, None]
     whitened = innovation / sd
     return Information(scaled.T @ scaled, scaled.T @ whitened, float(whitened @ whitened), len(whitened))
@@ -68,7 +74,7 @@ def information(innovation: Array, jacobian: Array, sd: Array) -> Information:
 def correct(covariance: Array, readings: Information) -> Correction:
     """Kalman update of a state whose first n of N components are observed.
 
-    The step is P⁺ Hᵀ R⁻¹ y, with P⁺ by :func:`informed`, here made exactly symmetric whatever rounding did to P.
+    The step is P⁺ Hᵀ R⁻¹ y, with P⁺ by :func:`informed`, here made exactly symmetric.
 
     Args:
         covariance: (N, N) prior covariance P.
@@ -100,7 +106,7 @@ def informed_with_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
     Args:
         covariance: (N, N) prior covariance P.
         matrix: (n, n) information Λ on the first n components.
-        rows: (m, N) whitened Jacobian of the other readings, whatever was read.
+        rows: (m, N) whitened Jacobian of the other readings; their values do not enter.
     """
     try:
         return _informed_with_rows(covariance, matrix, rows)
@@ -114,7 +120,7 @@ def made_positive(covariance: Array) -> Array:
     Components are first brought to a common scale, which a state of metres, radians and newtons does not have.
 
     Raises:
-        numpy.linalg.LinAlgError: It holds numbers that are none.
+        numpy.linalg.LinAlgError: It holds NaN or infinite numbers.
     """
     scale = np.sqrt(np.maximum(np.abs(np.diagonal(covariance)), 1e-300))
     correlation = covariance / scale / scale[:, None]
@@ -143,7 +149,7 @@ def informed_after_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
     Args:
         covariance: (N, N) prior covariance P.
         matrix: (n, n) information Λ on the first n components.
-        rows: (m, N) whitened Jacobian of the other readings, whatever was read.
+        rows: (m, N) whitened Jacobian of the other readings; the values do not enter.
     """
     if len(rows):
         W = blas.dgemm(1.0, covariance, rows.T)
@@ -152,7 +158,7 @@ def informed_after_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
 
 
 def _informed_root(covariance: Array, matrix: Array) -> Array:
-    """(n, n) G C⁻ᵀ with C Cᵀ = S, see :func:`informed`: P times it is the half of what the update takes off."""
+    """(n, n) G C⁻ᵀ with C Cᵀ = S, see :func:`informed`: P times it is the square root of the reduction of P."""
     n = len(matrix)
     root = _square_root(matrix)
     S = blas.dgemm(1.0, root, blas.dgemm(1.0, covariance[:n, :n], root), trans_a=1)
@@ -177,7 +183,7 @@ def _reduced(covariance: Array, half: Array) -> Array:
 def _square_root(matrix: Array) -> Array:
     """(n, n) G with G Gᵀ = matrix, for a symmetric positive semidefinite matrix.
 
-    Where some directions carry no information the Cholesky factor fails: components that nothing informs about are
+    Where some directions carry no information the Cholesky factor fails: components without information are
     then set aside, and if that is not enough the matrix is raised by its rounding.
     """
     # Which of the two triangles is read does not matter, and so no order needs a copy.

@@ -1,4 +1,4 @@
-"""Levenberg–Marquardt for many frames that share parameters (the arrow structure of eq. 4.1).
+"""Levenberg–Marquardt for many frames that share parameters (the arrow structure of thesis eq. 4.1).
 
 The normal equations of N frames with n own unknowns each and s shared ones are an arrow: one n×n block per frame, a
 border to the shared unknowns, one s×s corner. Eliminating the frames leaves a dense s×s system (Schur complement), so

@@ -1,8 +1,8 @@
 """Log-likelihood of a Kalman filter's innovations, from information form.
 
-A frame's innovations y are drawn from N(0, S) with S = H P Hᵀ + R if the filter believes what is so; then
-log p(y) = −½ (yᵀ S⁻¹ y + log det S + m log 2π). Summed over frames it is how probable a filter's settings make a
-trial, and what tuning maximises.
+A frame's innovations y are drawn from N(0, S) with S = H P Hᵀ + R if the filter's model is right; then
+log p(y) = −½ (yᵀ S⁻¹ y + log det S + m log 2π). Summed over frames it is the log-likelihood of
+a filter's settings, which tuning maximises.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ import numpy as np
 from mbkf.conventions import Array
 
 SHRINK = 0.4
-"""What becomes of a step that its coordinate did not use."""
+"""Factor of a step that its coordinate did not use."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def maximise(
 
 
 class _Search:
-    """The function, its box and what may still be spent on it."""
+    """The function, its box and the evaluations left."""
 
     def __init__(self, function: Callable[[Array], float], low: Array, high: Array, calls: int) -> None:
         self._function, self._low, self._high, self._calls = function, low, high, calls

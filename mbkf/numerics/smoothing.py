@@ -12,7 +12,7 @@ from mbkf.conventions import Array
 
 
 class BackwardPass:
-    """Carries what later readings say from frame to frame, towards the beginning.
+    """Carries the information of later readings from frame to frame, towards the beginning.
 
     Attributes:
         gradient: (N,) λ after the frame it now stands at.
@@ -24,7 +24,7 @@ class BackwardPass:
         self.curvature: Array | None = np.zeros((size, size)) if covariances else None
 
     def step(self, P: Array) -> Array:
-        """(N,) what later readings add to a frame's posterior mean, for its posterior covariance P (N, N)."""
+        """(N,) correction of a frame's posterior mean by later readings, for its posterior covariance P (N, N)."""
         return -(P @ self.gradient)
 
     def covariance(self, P: Array) -> Array:

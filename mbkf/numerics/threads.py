@@ -1,4 +1,4 @@
-"""One BLAS thread for small matrices: splitting a 100 × 100 product over cores costs ten times what it saves."""
+"""One BLAS thread for small matrices: splitting a 100 × 100 product over cores costs ten times as much as it saves."""
 
 from __future__ import annotations
 

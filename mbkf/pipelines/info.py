@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import BoolArray
-from mbkf.io.records import Capture, Event, PlateReadings
+from mbkf.io.records import Capture, CaptureEvent, PlateReadings
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ class CaptureSummary:
     plates: tuple[PlateSummary, ...]
     derived: Mapping[str, int]
     channels: tuple[ChannelSummary, ...]
-    events: tuple[Event, ...]
+    events: tuple[CaptureEvent, ...]
     notes: tuple[str, ...]
 
 

@@ -20,7 +20,7 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.labelling.any_attitude import STAGE, AnyAttitude
 from mbkf.pipelines.labelling.body import LabelBody, label_body
 from mbkf.pipelines.labelling.doubts import Doubts
-from mbkf.pipelines.labelling.redecision import relabel_offline, trajectories
+from mbkf.pipelines.labelling.relabelling import relabel_offline, trajectories
 from mbkf.pipelines.labelling.score import LabelScore
 
 CANDIDATES = 8
@@ -73,7 +73,7 @@ class Labelling:
         return int(np.flatnonzero(self.markers.present.any(axis=1))[0])
 
 
-def summarise(found: Labelling, compared: LabelScore | None = None) -> dict[str, Any]:
+def label_summary(found: Labelling, compared: LabelScore | None = None) -> dict[str, Any]:
     """Plain numbers for the summary beside the labelled file; doubts and truth only where there are any."""
     summary: dict[str, Any] = {
         "frames": found.markers.frames,

@@ -1,1 +1,1 @@
-"""Fitting the body to a person: scale factors, marker positions, and their correction on a trial (SPEC §4)."""
+"""Fitting the body to a person: scale factors, marker positions, and their correction on a trial."""

@@ -12,7 +12,6 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput, NotConverged
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
-from mbkf.model.description import load_body
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.levenberg_marquardt import Solution, minimise
 from mbkf.scaling.frames import MIN_MARKERS, ScalingFrames, choose_frames
@@ -49,7 +48,7 @@ def scale_subject(
         progress: Called with accepted iterations and the most there can be.
 
     Raises:
-        InvalidInput: Mass or height is not positive, no trial is given, or nobody stands in the static trial.
+        InvalidInput: Mass or height is not positive, no trial is given, or the static trial shows no upright person.
         NotObservable: Too few markers of the protocol.
         NotConverged: The fit is so poor that the markers cannot be this protocol on a person.
     """
@@ -101,8 +100,16 @@ def scaling_problem(
     height_m: float | None,
     settings: ScalingSettings,
 ) -> ScalingProblem:
-    """The problem that chosen frames pose, those of the static trials first."""
-    body = load_body(protocol.body)
+    """The least-squares problem of chosen frames.
+
+    Args:
+        frames: The frames, those of the static trials first.
+        static_trials: Number of static trials.
+        protocol: The marker protocol.
+        height_m: Body height, if known.
+        settings: Weights of the priors.
+    """
+    body = protocol.body
     counts = np.bincount(frames.trial)
     looks = np.where(
         np.arange(len(counts)) < static_trials,
@@ -191,6 +198,7 @@ def _subject(
         protocol=protocol.name,
         height_m=height_m,
         report=_report(problem, solution, frames, dropped, settings),
+        body_text=body.text,
     )
 
 
@@ -206,7 +214,7 @@ def _report(
     dropped: BoolArray,
     settings: ScalingSettings,
 ) -> dict[str, Any]:
-    """Plain numbers: fit per marker (mm), factors with standard errors and active bounds, what was left out."""
+    """Plain numbers: fit per marker (mm), factors with standard errors and active bounds, markers left out."""
     state, body = solution.state, problem.body
     errors_mm = 1e3 * np.linalg.norm(problem.errors_m(state), axis=2)
     count = len(body.scale_factors)

@@ -40,6 +40,11 @@ class ScalingFrames:
 def choose_frames(trials: Sequence[MarkerTrajectories], protocol: Protocol, per_trial: int) -> ScalingFrames:
     """Evenly spread, well-seen frames of every trial, on the markers of the protocol.
 
+    Args:
+        trials: The trials.
+        protocol: The marker protocol.
+        per_trial: Greatest number of frames of each trial.
+
     Raises:
         NotObservable: No marker of the protocol is there, or no frame shows enough of them.
     """

@@ -1,7 +1,7 @@
-"""Which marker of a protocol each trajectory is, judged by the person that all of them make together.
+"""Which marker of a protocol each trajectory is, by the cost of the person scaled from all of them together.
 
-A person scaled from wrong names takes them for true: each marker's offset absorbs them. What that costs is the cost of
-scaling itself (eq. 4.1), with its spreads counted, so that names can be compared:
+Scaling from wrong names absorbs the error in the offsets of the markers. The cost of this is the cost of scaling itself
+(thesis eq. 4.1), with its spreads counted, so that names can be compared:
 
     E = C(poses, factors, offsets) + Σ 6 ln σ_p − Σ 2 ln P
 
@@ -62,8 +62,8 @@ class NamingProblem:
     """U trajectories, and the M markers that they may be.
 
     Attributes:
-        markers: The protocol's, less those that software computes. All have the same noise: skin moves where it does,
-            by whatever name, and a name must not gain by stating more of it or less.
+        markers: The protocol's, less those that software computes. All have the same noise: the skin moves alike under
+            each name, and a name must not gain by a larger or smaller noise.
         first: (U,) the names to begin with.
         body: The reference body.
     """
@@ -76,7 +76,13 @@ class NamingProblem:
         height_m: float | None = None,
         settings: ScalingSettings | None = None,
     ) -> None:
-        """Args: trajectories under the names to begin with, the protocol, body height if known, weights of priors.
+        """Prepares the frames that names are compared on.
+
+        Args:
+            shown: Trajectories under the names to begin with.
+            protocol: The marker protocol.
+            height_m: Body height, if known.
+            settings: Weights of the priors.
 
         Raises:
             NotObservable: Too few markers of the protocol.
@@ -99,7 +105,13 @@ class NamingProblem:
         self._worn = 6.0 * np.log(self._placement_m) - 2.0 * math.log(STILL_WORN) * rare
 
     def fitted(self, marker: Indices, start: ScalingState | None, steps: int) -> Naming:
-        """The person that names (U,) make, in so many steps from a state nearby, or from none."""
+        """The person scaled from names.
+
+        Args:
+            marker: (U,) marker of every trajectory.
+            start: State nearby to start from; None for first poses of its own.
+            steps: Greatest number of iterations.
+        """
         named = np.full((len(self._shown_m), len(self.markers), 3), np.nan)
         named[:, marker] = self._shown_m
         problem = self._problem.measuring(named)

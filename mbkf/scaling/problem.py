@@ -1,4 +1,4 @@
-"""Scaling as one least-squares problem over many frames (SPEC §4, eq. 4.1): residuals and analytic derivatives.
+"""Scaling as one least-squares problem over many frames (thesis eq. 4.1): residuals and analytic derivatives.
 
 Unknowns: the pose x_t of every frame, the independent scale factors k and an offset δ of every marker from its
 reference place, shared by all frames. Residuals, each divided by its standard deviation:
@@ -6,7 +6,7 @@ reference place, shared by all frames. Residuals, each divided by its standard d
     markers    r_b(x, k) + A_b(x) (D_b(k) m̄ + δ) − measured
     placement  δ − δ₀                (tight for anatomical markers, loose for technical ones)
     factors    k − k₀                (bodies are alike in proportion, less so in size)
-    posture    joint rotations       (what no marker sees stays near standing)
+    posture    joint rotations       (dofs without markers stay near standing)
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class ScalingState:
 
 @dataclass(frozen=True)
 class ScalingPrior:
-    """What is known before the fit.
+    """Prior knowledge of factors and offsets.
 
     Attributes:
         factors: (K,) expected scale factors k₀.
@@ -85,7 +85,7 @@ class ScalingProblem:
         markers: The M protocol markers.
         measured_m: (N, M, 3) measured positions, NaN where missing.
         posture_weight: (N,) weight of each frame's posture prior.
-        prior: What is expected of factors and offsets.
+        prior: Prior of factors and offsets.
         seen: (N, M) whether a marker is there.
     """
 
@@ -106,7 +106,7 @@ class ScalingProblem:
         self.segments = tuple(m.segment for m in markers)
         self.factor_root = np.linalg.cholesky(np.linalg.inv(prior.factor_covariance)).T
         self._segment_scale = np.array([body.segment(name).scale_matrix for name in self.segments])
-        self.posture = PostureSensor(HumanModel.scaled(body=body.name))
+        self.posture = PostureSensor(HumanModel.scaled(body=body))
 
     def start(self, poses: Array) -> ScalingState:
         """State with factors and offsets as expected."""
@@ -160,7 +160,13 @@ class ScalingProblem:
         return float((factors**2).sum() + offsets @ self.prior.offset_precision @ offsets)
 
     def move(self, state: ScalingState, own: Array, shared: Array) -> ScalingState:
-        """The state after a step; factors stay inside their bounds."""
+        """The state after a step; factors stay inside their bounds.
+
+        Args:
+            state: Before the step.
+            own: (N, nv) step of each frame's pose, in the tangent space.
+            shared: (s,) step of factors and offsets.
+        """
         model = self.posture.model
         count = len(self.body.scale_factors)
         poses = np.array([model.integrate(q, dq) for q, dq in zip(state.poses, own, strict=True)])
@@ -179,10 +185,12 @@ class ScalingProblem:
         for t, q in enumerate(state.poses):
             errors, by_pose, by_shared = self._frame(sensor, q, t)
             prior = self.posture.reading(q)
-            pull = prior.jacobian / self.posture.sd[:, None]
+            weighted = prior.jacobian / self.posture.sd[:, None]
             weight = self.posture_weight[t]
-            frames[t] = by_pose.T @ by_pose + weight * (pull.T @ pull) + 1e-9 * np.eye(nv)
-            frame_gradient[t] = by_pose.T @ errors + weight * (pull.T @ (prior.deviation / self.posture.sd))
+            frames[t] = by_pose.T @ by_pose + weight * (weighted.T @ weighted) + 1e-9 * np.eye(nv)
+            frame_gradient[t] = by_pose.T @ errors + weight * (
+                weighted.T @ (prior.deviation / self.posture.sd)
+            )
             border[t] = by_pose.T @ by_shared
             corner += by_shared.T @ by_shared
             corner_gradient += by_shared.T @ errors

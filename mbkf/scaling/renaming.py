@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.model.description import mirrored
+from mbkf.model.sides import mirrored
 from mbkf.scaling.naming import Indices, Naming, NamingProblem
 
 TURNS = 8
@@ -39,7 +39,7 @@ HOPELESS = 60.0
 
 @dataclass(frozen=True)
 class Renamed:
-    """The likeliest names, and those that were tried instead of them with what they cost, the cheapest first."""
+    """The likeliest names, and those that were tried instead of them with their costs, the cheapest first."""
 
     naming: Naming
     rivals: tuple[Naming, ...]
@@ -156,7 +156,7 @@ def _refitted(problem: NamingProblem, naming: Naming, marker: Indices, steps: in
 
 
 def _changes(share: Array, marker: Indices) -> list[Indices]:
-    """Names with one trajectory's changed, the most promising first by what they add to E with the poses fixed.
+    """Names with one trajectory's changed, the most promising first, by the change of E with the poses fixed.
 
     The trajectory whose name it takes gets the best of the names that are free then.
     """

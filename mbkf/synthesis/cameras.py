@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.signal import butter, lfilter
 
 from mbkf.conventions import Array
 from mbkf.io.subject import Subject
@@ -45,6 +44,8 @@ def skin_artefact(
         cutoff_hz: Cut-off frequency.
         rng: Source of the noise.
     """
+    from scipy.signal import butter, lfilter
+
     b, a = butter(2, cutoff_hz, fs=rate_hz)
     settled = int(np.ceil(5.0 / cutoff_hz * rate_hz))
     impulse = lfilter(b, a, np.r_[1.0, np.zeros(2 * settled)])

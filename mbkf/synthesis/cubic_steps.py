@@ -1,4 +1,4 @@
-"""The simulated stride walk of the stride-length study: two cubic steps of 1 m, read at 50 Hz without any rotation.
+"""The simulated walk of the stride-length study (key ``stride``): two cubic steps of 1 m, read at 50 Hz, no rotation.
 
 Along x the sensor stands for 1 s, moves 1 m in 1 s, stands for 1 s, moves 1 m in 1 s and stands; its height goes up by
 1 m with the first step and down again with the second. Readings are the second differences of the sampled position,

@@ -81,7 +81,7 @@ def synthesise_motion(
         raise InvalidInput(f"a motion lasts {MIN_SECONDS:g} to {MAX_SECONDS:g} s, got {seconds:g} s")
     if not 20.0 <= rate_hz <= 2000.0:
         raise InvalidInput(f"a camera rate lies between 20 and 2000 Hz, got {rate_hz:g} Hz")
-    plan = kind.plan(model, float(seconds), np.random.default_rng([seed, kind.stream]))
+    plan = kind.planner(model, float(seconds), np.random.default_rng([seed, kind.stream]))
     every = max(1, int(np.ceil(1000.0 / rate_hz - 1e-9)))
     frames = int(np.floor(seconds * rate_hz + 1e-9)) + 1
     fine = np.arange((frames - 1) * every + 1) / (rate_hz * every)

@@ -6,7 +6,7 @@ messages and in :func:`mbkf.synthesis.motion.synthesise_motion`::
     @register_motion("sway", seconds=5.0)
     def sway_plan(model, seconds, rng): ...
 
-The plans of the built-in motions are imported when they are first asked for, so that this module stays light.
+The built-in motions are imported when one is planned, so that this module stays light.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from __future__ import annotations
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib import import_module
 from typing import TYPE_CHECKING
 
 from mbkf.errors import InvalidInput, UnknownName
@@ -34,34 +33,17 @@ class RegisteredMotion:
 
     Attributes:
         name: Its name on the command line and in files.
-        planner: Makes the plan from a body, a duration in s and a random generator; or where it is, "module:name".
+        planner: Makes the plan from a body, a duration in s and a random generator.
         seconds: Usual duration, s.
         stream: Number that, with the seed, starts the motion's random generator.
         trial: Whether it is offered as a trial; a motion for static captures is not.
     """
 
     name: str
-    planner: Planner | str
+    planner: Planner
     seconds: float
     stream: int
     trial: bool = True
-
-    def plan(self, model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
-        """The plan of a motion of this kind.
-
-        Args:
-            model: The body that moves.
-            seconds: Duration, s.
-            rng: Source of the differences between persons.
-
-        Raises:
-            InvalidInput: The duration does not suit the motion.
-        """
-        planner = self.planner
-        if isinstance(planner, str):
-            module, _, name = planner.partition(":")
-            planner = getattr(import_module(module), name)
-        return planner(model, seconds, rng)
 
 
 _MOTIONS: dict[str, RegisteredMotion] = {}
@@ -84,16 +66,12 @@ def register_motion(
 
     def register(planner: Planner) -> Planner:
         own = zlib.crc32(name.encode()) if stream is None else stream
-        _add(RegisteredMotion(name, planner, seconds, own, trial))
+        if not name or name in _MOTIONS:
+            raise InvalidInput(f"a motion '{name}' cannot be registered: the name is empty or taken")
+        _MOTIONS[name] = RegisteredMotion(name, planner, seconds, own, trial)
         return planner
 
     return register
-
-
-def _add(motion: RegisteredMotion) -> None:
-    if not motion.name or motion.name in _MOTIONS:
-        raise InvalidInput(f"a motion '{motion.name}' cannot be registered: the name is empty or taken")
-    _MOTIONS[motion.name] = motion
 
 
 def registered_motion(name: str) -> RegisteredMotion:
@@ -112,10 +90,29 @@ def motion_names(*, static: bool = False) -> tuple[str, ...]:
     return tuple(name for name, motion in _MOTIONS.items() if motion.trial or static)
 
 
-for _motion in (
-    RegisteredMotion("squat", "mbkf.synthesis.squat:squat_plan", 5.0, stream=1),
-    RegisteredMotion("walk", "mbkf.synthesis.walk:walk_plan", 4.0, stream=3),
-    RegisteredMotion("jump", "mbkf.synthesis.jump:jump_plan", 3.0, stream=0),
-    RegisteredMotion("stand", "mbkf.synthesis.stand:stand_plan", 1.5, stream=2, trial=False),
-):
-    _add(_motion)
+@register_motion("squat", seconds=5.0, stream=1)
+def _squat(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    from mbkf.synthesis.squat import squat_plan
+
+    return squat_plan(model, seconds, rng)
+
+
+@register_motion("walk", seconds=4.0, stream=3)
+def _walk(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    from mbkf.synthesis.walk import walk_plan
+
+    return walk_plan(model, seconds, rng)
+
+
+@register_motion("jump", seconds=3.0, stream=0)
+def _jump(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    from mbkf.synthesis.jump import jump_plan
+
+    return jump_plan(model, seconds, rng)
+
+
+@register_motion("stand", seconds=1.5, stream=2, trial=False)
+def _stand(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    from mbkf.synthesis.stand import stand_plan
+
+    return stand_plan(model, seconds, rng)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import SIDES, Array
-from mbkf.io.records import Event, PlateReadings
+from mbkf.io.records import CaptureEvent, PlateReadings
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N, centre_of_pressure
 
 SIZE_M = (0.50, 0.40)
@@ -118,13 +118,13 @@ def readings(
     return tuple(found)
 
 
-def contact_events(wrench: Array, rate_hz: float) -> tuple[Event, ...]:
+def contact_events(wrench: Array, rate_hz: float) -> tuple[CaptureEvent, ...]:
     """Foot strikes and foot offs inside the recording, in order of time."""
     events = []
     for side, context in enumerate(("Right", "Left")):
         for start, end in spells(wrench[:, side, 2] > 0):
             if start > 0:
-                events.append(Event("Foot Strike", context, start / rate_hz))
+                events.append(CaptureEvent("Foot Strike", context, start / rate_hz))
             if end < len(wrench):
-                events.append(Event("Foot Off", context, end / rate_hz))
+                events.append(CaptureEvent("Foot Off", context, end / rate_hz))
     return tuple(sorted(events, key=lambda event: event.time_s))

@@ -22,7 +22,7 @@ PEAK_NM_PER_KG: dict[str, tuple[tuple[float, float], ...]] = {
 """Peak torque (negative, positive) about x, y, z in N m per kg of body mass.
 
 About y positive is flexion of trunk and neck, extension of the hip, flexion of the knee, plantarflexion of the ankle.
-Legs: what an active person reaches at most, above the isometric averages of D. E. Anderson et al., J. Biomech. 40
+Legs: the greatest torques of an active person, above the isometric averages of D. E. Anderson et al., J. Biomech. 40
 (2007) 3105-3113, which running and jumping exceed. Trunk: about 300 N m of extension. Knee and ankle about x and z
 are carried by ligaments. The rest are safe upper bounds of our own choice.
 """

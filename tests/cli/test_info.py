@@ -10,7 +10,7 @@ from mbkf.cli import info
 from mbkf.errors import FileFormatError
 from mbkf.io.c3d import write_c3d
 from mbkf.io.forces import write_forces_mot
-from mbkf.io.records import Capture, Event, MarkerTrajectories, PlateReadings
+from mbkf.io.records import Capture, CaptureEvent, MarkerTrajectories, PlateReadings
 from mbkf.io.trc import write_trc
 
 
@@ -26,7 +26,7 @@ def folder(tmp_path):
     point = np.where(force[:, 2:] > 0, [0.1, 0.1, 0.0], np.nan)
     plate = PlateReadings("1", 1000.0, 0.0, np.array([0.1, 0.1, 0.0]), force, 0.0 * force, point, 20.0)
     capture = Capture(
-        "", markers, (plate,), events=(Event("Foot Strike", "Left", 0.05),), subject_mass_kg=66.0
+        "", markers, (plate,), events=(CaptureEvent("Foot Strike", "Left", 0.05),), subject_mass_kg=66.0
     )
     write_c3d(capture, tmp_path / "walk.c3d")
     write_trc(markers, tmp_path / "walk.trc")

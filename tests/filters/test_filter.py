@@ -1,7 +1,5 @@
 """The filter of plant and blocks: what a frame's readings are as one whole, and how blocks' statements are summed."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -139,7 +137,7 @@ def test_a_decision_that_the_posterior_refutes_is_replaced_once(value):
     empty = Frame(np.zeros((0, 3)), np.zeros((0, 6)))
     found = kalman.step(line(N), kalman.begin(), empty)
     stands = 0.5 * value < 2.0
-    assert found.decisions.blocks == (stands,) == found.memory.blocks
+    assert list(found.decisions.blocks) == [stands] == list(found.memory.blocks)
     if not stands:
         without = silent.step(line(N), silent.begin(), empty)
         np.testing.assert_array_equal(found.state.q, without.state.q)
@@ -155,4 +153,4 @@ def test_what_a_block_prepared_is_found_by_its_kind():
     np.testing.assert_array_equal(reading.positions_m, kalman.sensor.positions(prior.state.q))
     bare = Filter(kalman.plant, [block_of(kalman, NewtonEulerLaw)[0]])
     with pytest.raises(LookupError, match="PlantedFeet"):
-        bare.prepared_by(PlantedFeet, replace(prior, points=prior.points[1:2]))
+        bare.prepared_by(PlantedFeet, prior._replace(points=prior.points[1:2]))

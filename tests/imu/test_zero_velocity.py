@@ -26,7 +26,7 @@ def test_the_rests_of_a_walk_are_found_at_any_rate(rate_hz):
     assert (found == walk.still).mean() > 0.9
 
 
-def test_rest_is_judged_whatever_the_sensors_direction():
+def test_rest_is_found_in_any_direction_of_the_sensor():
     walk, other = (foot_walk(mounting_rad=turn) for turn in ((0.3, -0.2, 0.1), (2.0, 1.0, -1.5)))
     assert np.allclose(unrest(*readings_of(walk), SETTINGS), unrest(*readings_of(other), SETTINGS))
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from mbkf.io.c3d_parameters import Parameters
+from mbkf.io.c3d_parameters import C3dParameters
 
 
-def parameters(**groups) -> Parameters:
-    return Parameters(
+def parameters(**groups) -> C3dParameters:
+    return C3dParameters(
         {group: {name: {"value": value} for name, value in items.items()} for group, items in groups.items()}
     )
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.io.c3d import read_c3d
-from mbkf.io.c3d_parameters import Parameters
+from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.c3d_points import point_labels
 from tests.io.c3d_builder import build_c3d, standing_points
 
@@ -22,7 +22,7 @@ from tests.io.c3d_builder import build_c3d, standing_points
 )
 def test_labels(stored, expected, remarks):
     notes: list[str] = []
-    assert point_labels(Parameters({"POINT": {"LABELS": {"value": stored}}}), 3, notes) == expected
+    assert point_labels(C3dParameters({"POINT": {"LABELS": {"value": stored}}}), 3, notes) == expected
     assert len(notes) == remarks
 
 

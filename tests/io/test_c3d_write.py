@@ -10,7 +10,14 @@ from hypothesis.extra.numpy import arrays
 
 from mbkf.errors import InvalidInput
 from mbkf.io.c3d import read_c3d, write_c3d
-from mbkf.io.records import AnalogChannel, Capture, DerivedPoint, Event, MarkerTrajectories, PlateReadings
+from mbkf.io.records import (
+    AnalogChannel,
+    Capture,
+    CaptureEvent,
+    DerivedPoint,
+    MarkerTrajectories,
+    PlateReadings,
+)
 from tests.io.c3d_builder import standing_points
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -60,7 +67,7 @@ def test_everything_round_trips(tmp_path, corners):
     emg = np.sin(np.arange(500) / 7.0)
     angle = DerivedPoint("LKneeAngles", "angle", np.arange(150.0).reshape(50, 3), "deg")
     centre = DerivedPoint("LHJC", "point", positions[:, 0] * 1e3, "mm")
-    events = (Event("Foot Strike", "Left", 0.61), Event("Foot Off", "Right", 62.25))
+    events = (CaptureEvent("Foot Strike", "Left", 0.61), CaptureEvent("Foot Off", "Right", 62.25))
     capture = Capture(
         "", markers_of(positions, start_time_s=0.5), (plate,), (angle, centre),
         (AnalogChannel("EMG", emg, "V", 1000.0),), events, subject_mass_kg=71.5,

@@ -1,4 +1,4 @@
-"""Model outputs are told from markers by what the file says and by names nobody gives a marker."""
+"""Model outputs are told from markers by the file's own lists and by names that markers never have."""
 
 import pytest
 

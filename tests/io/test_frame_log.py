@@ -1,4 +1,4 @@
-"""A log keeps every whole row that was written, whatever ended it."""
+"""A log keeps every whole row that was written, after any kind of end."""
 
 import numpy as np
 import pytest

@@ -53,13 +53,13 @@ def test_offset_between_steps_is_found(vertical, noise_n):
     np.testing.assert_allclose(tare.offset, offset, atol=0.02 + 0.3 * noise_n)
 
 
-def test_a_plate_nobody_steps_on_becomes_zero():
+def test_a_plate_without_load_becomes_zero():
     wrench = np.random.default_rng(3).normal([4, 11, -32, 5, 4, -1], 0.4, (3000, 6))
     tared = remove_tare(wrench, find_tare(wrench, RATE_HZ))
     np.testing.assert_allclose(tared.mean(axis=0), 0.0, atol=0.05)
 
 
-def test_a_plate_somebody_stands_on_throughout_keeps_its_load():
+def test_a_plate_with_a_person_on_it_throughout_keeps_its_load():
     wrench = np.random.default_rng(4).normal([1, 2, 592, 3, 4, 0], 0.7, (3000, 6))
     tare = find_tare(wrench, RATE_HZ)
     assert not tare.found

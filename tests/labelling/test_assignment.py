@@ -1,4 +1,4 @@
-"""Assignment of points to predicted markers: cheapest, gated, one label per point, whatever the points' order."""
+"""Assignment of points to predicted markers: cheapest, gated, one label per point, in any order of the points."""
 
 from functools import partial
 from itertools import permutations
@@ -151,7 +151,7 @@ def test_geometry_overrules_a_track():
     assert found.tolist() == [0, 1]
 
 
-def test_in_a_clear_frame_nobody_asks_for_more():
+def test_in_a_clear_frame_no_covariance_is_asked_for():
     """Each marker has one point near and none else about, one is hidden: neither covariances nor tracks are needed."""
     predicted = np.arange(12.0)[:, None] * np.array([0.2, 0.0, 0.0])
     order = np.random.default_rng(0).permutation(11)

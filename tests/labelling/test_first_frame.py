@@ -1,4 +1,4 @@
-"""Labels of a frame nobody knows: any protocol, any direction, missing and extra points."""
+"""Labels of a frame without prediction: any protocol, any direction, missing and extra points."""
 
 import numpy as np
 import pytest

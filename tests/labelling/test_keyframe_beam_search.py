@@ -18,7 +18,7 @@ BODY = clusters(ROUGH, np.full(len(ROUGH.segments), 0.03))
 
 
 def person(rng, size):
-    """Somebody of another size, whose clusters sit elsewhere on the segments than the protocol has them."""
+    """A person of another size, whose clusters sit elsewhere on the segments than the protocol has them."""
     model = HumanModel.scaled({name: size for name in ROUGH.model.description.scale_factors})
     local = size * ROUGH.local_m + rng.normal(0.0, 0.006, ROUGH.local_m.shape)
     for segment in set(ROUGH.segments):
@@ -43,7 +43,7 @@ def test_a_prone_stranger_is_found(seed, size):
     assert len(set(best.tracks[there].tolist())) == there.sum()
 
 
-def test_points_that_are_nobody_make_no_body():
+def test_points_of_no_person_make_no_body():
     rng = np.random.default_rng(0)
     drift = np.cumsum(rng.normal(0.0, 0.004, (120, 20, 3)), axis=0)
     positions = rng.uniform(-1.0, 1.0, (20, 3)) + drift

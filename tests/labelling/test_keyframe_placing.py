@@ -1,4 +1,4 @@
-"""One segment on tracks at several moments: least squares, tracks that move together, strain."""
+"""One segment on tracks at several keyframes: least squares, tracks that move together, strain."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ FRAMES = 100
 
 @pytest.fixture(scope="module")
 def scene():
-    """Placing on a prone body's tracks; the track of every marker, and the segments' true poses at the moments."""
+    """Placing on a prone body's tracks; the track of every marker, and the segments' true poses at the keyframes."""
     positions = movement(SENSOR, np.random.default_rng(7), frames=FRAMES)
     q = poses(SENSOR.model, np.random.default_rng(7), frames=FRAMES)
     tracks = follow(positions, RATE_HZ)

@@ -58,7 +58,7 @@ def test_what_stands_still_takes_no_part_while_the_body_travels():
     assert len(seen.tracks) == len(SENSOR.segments)
 
 
-def test_nothing_is_set_aside_where_nobody_travels():
+def test_nothing_is_set_aside_where_no_person_travels():
     positions = np.zeros((50, 4, 3)) + np.arange(4)[:, None]
     positions[:, 0, 0] += np.linspace(0.0, 0.5 * TRAVEL_M, 50)
     assert moving(positions).all()

@@ -28,7 +28,7 @@ def random_system(seed, size=7, constant=2):
 
 
 def block_exponential(F, density, dt):
-    """Van Loan's formula as printed (eqs. 2.43, 2.44)."""
+    """Van Loan's formula as printed (thesis eqs. 2.43, 2.44)."""
     n = len(F)
     V = np.block([[-F, density], [np.zeros((n, n)), F.T]])
     powers = scipy.linalg.expm(dt * V)
@@ -89,7 +89,7 @@ def test_error_of_a_truncated_transition_falls_with_its_order(propagate, order):
 
 
 def test_error_of_the_series_covariance_is_of_third_order():
-    """Eq. 2.45 takes Φ = I + F t in the integral, which neglects F² Σ t³/6 and its transpose."""
+    """Thesis eq. 2.45 takes Φ = I + F t in the integral, which neglects F² Σ t³/6 and its transpose."""
     F, density = random_system(5)
     found = measured_order(lambda h: worst(series_covariance(F, density, h) - van_loan(F, density, h).noise))
     assert found == pytest.approx(3.0, abs=0.1)

@@ -74,7 +74,7 @@ def rauch_tung_striebel(p):
 
 
 def batch(p):
-    """All frames at once as one least-squares problem in the unit numbers (z, u₁ …), whatever is singular."""
+    """All frames at once as one least-squares problem in the unit numbers (z, u₁ …), singular covariances included."""
     size, starts = p.L.shape
     columns = starts + sum(G.shape[1] for G in p.G)
     mean, by = p.m, np.hstack([p.L, np.zeros((size, columns - starts))])

@@ -3,7 +3,14 @@
 import numpy as np
 import pytest
 
-from mbkf.io.records import AnalogChannel, Capture, DerivedPoint, Event, MarkerTrajectories, PlateReadings
+from mbkf.io.records import (
+    AnalogChannel,
+    Capture,
+    CaptureEvent,
+    DerivedPoint,
+    MarkerTrajectories,
+    PlateReadings,
+)
 from mbkf.pipelines.info import count_pieces, describe
 
 
@@ -27,7 +34,7 @@ def capture() -> Capture:
     return Capture(
         "walk.c3d", MarkerTrajectories(("LASI", "RASI", "*2"), positions, 100.0, 1.0), (plate,),
         (DerivedPoint("A", "angle", nothing, "deg"), DerivedPoint("B", "angle", nothing, "deg")),
-        (AnalogChannel("EMG", np.zeros(100), "V", 1000.0),), (Event("Foot Off", "Left", 1.05),),
+        (AnalogChannel("EMG", np.zeros(100), "V", 1000.0),), (CaptureEvent("Foot Off", "Left", 1.05),),
         notes=("remark",), subject_mass_kg=70.0,
     )  # fmt: skip
 

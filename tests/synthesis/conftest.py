@@ -1,4 +1,4 @@
-"""Motions and a capture that several tests look at; nobody changes them."""
+"""Motions and a capture that several tests share; none of them changes these."""
 
 import pytest
 

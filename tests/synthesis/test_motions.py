@@ -28,7 +28,7 @@ def test_built_in_motions_are_named_and_those_of_static_captures_only_on_request
 @pytest.mark.parametrize("name", motion_names(static=True))
 def test_every_registered_motion_has_its_plan(name, body):
     motion = registered_motion(name)
-    plan = motion.plan(body, motion.seconds, np.random.default_rng(0))
+    plan = motion.planner(body, motion.seconds, np.random.default_rng(0))
     assert plan.end_s - plan.start_s >= motion.seconds
 
 

@@ -1,4 +1,4 @@
-"""The pendulum's motions have the efforts SPEC §8 states, and its sensors the noise they claim."""
+"""The pendulum's motions have the efforts of inverse dynamics, and its sensors the noise they claim."""
 
 import numpy as np
 import pytest

@@ -12,7 +12,7 @@ from mbkf.filters.dynamic.filter import DynamicFilter
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.dynamic.smoother import smooth
 from mbkf.filters.error_covariance import ErrorCovariance
-from mbkf.filters.estimate import Estimate, Prediction, Recording
+from mbkf.filters.estimate import Posterior, Prediction, Recording
 from mbkf.filters.filter import Step
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.tracking import warm_start
@@ -36,10 +36,11 @@ class DynamicTracking:
         self.model, self.dt_s = kalman.model, kalman.dt_s
         self.restart_after_s = starter.settings.restart_after_s
         self._reader = SpreadReader(self.model)
+        self.clinical = self._reader.clinical
         self._unobservable = np.flatnonzero(kalman.unobservable)
         self._anywhere = self.model.posture_sd[self._unobservable] ** 2
 
-    def start(self, recording: Recording, t: int, guess: Array | None) -> Estimate | None:
+    def start(self, recording: Recording, t: int, guess: Array | None) -> Posterior | None:
         """The kinematic filter's warm start, corrected by this frame's plates and Newton's law."""
         found = warm_start(self._starter, recording, t, guess)
         if found is None:
@@ -48,7 +49,7 @@ class DynamicTracking:
         first = self.kalman.first(state.q, state.v, a, state.P, recording.frame(t))
         return replace(self._estimate(first), tracked=True, started=True)
 
-    def predict(self, before: Estimate) -> Prediction:
+    def predict(self, before: Posterior) -> Prediction:
         """By the filter's own plant."""
         was: DynamicStep = before.inner
         prior = self.kalman.predict(was.state, was.memory)
@@ -57,19 +58,19 @@ class DynamicTracking:
         return Prediction(prior.state.q, MarkerPrediction(reading, prior.state.P[:nv, :nv]), prior)
 
     def step(
-        self, before: Estimate, recording: Recording, t: int, prediction: Prediction | None = None
-    ) -> Estimate:
+        self, before: Posterior, recording: Recording, t: int, prediction: Prediction | None = None
+    ) -> Posterior:
         """One frame on."""
         was: DynamicStep = before.inner
         prior = None if prediction is None else prediction.prior
         return self._estimate(self.kalman.step(was.state, was.memory, recording.frame(t), prior))
 
-    def covariance(self, estimate: Estimate) -> Array:
+    def covariance(self, estimate: Posterior) -> Array:
         """(2 nv, 2 nv) of (q, v); dofs that no marker moves with may be anywhere a posture is."""
         nv = self.model.nv
         return self._configuration(self.errors(estimate).covariance()[: 2 * nv, : 2 * nv])
 
-    def spread(self, estimate: Estimate) -> Spread:
+    def spread(self, estimate: Posterior) -> Spread:
         """Standard deviations; torques' from the whole state through Newton–Euler."""
         state: DynamicState = estimate.inner.state
         torque = self.kalman.balance.torques(state.q, state.v, state.a, state.w)
@@ -90,7 +91,7 @@ class DynamicTracking:
         P[self._unobservable, self._unobservable] += self._anywhere
         return P
 
-    def errors(self, estimate: Estimate) -> ErrorCovariance:
+    def errors(self, estimate: Posterior) -> ErrorCovariance:
         """Those of the whole state; what the filter itself states where only white noise is expected."""
         step: DynamicStep = estimate.inner
         s, P, notes = self.kalman.settings, step.state.P, step.decisions.notes
@@ -108,11 +109,11 @@ class DynamicTracking:
             P, step.readings.matrix, seen, skin, s.errors.new_share, s.errors.skin_rate_rad_s
         )
 
-    def wrench_sd(self, estimate: Estimate) -> Array:
+    def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) from the state's covariance."""
         return np.sqrt(np.diag(estimate.inner.state.P)[self.kalman.layout.wrench]).reshape(2, 6)
 
-    def innovation(self, estimate: Estimate) -> tuple[float, int]:
+    def innovation(self, estimate: Posterior) -> tuple[float, int]:
         """Of markers, plates and Newton's law."""
         if estimate.started:
             return np.nan, 0
@@ -120,8 +121,8 @@ class DynamicTracking:
         return step.nis, step.count
 
     def smooth(
-        self, run: Sequence[Estimate], recording: Recording, first: int, wanted: int
-    ) -> list[Estimate]:
+        self, run: Sequence[Posterior], recording: Recording, first: int, wanted: int
+    ) -> list[Posterior]:
         """Iterated smoother; see :mod:`mbkf.filters.dynamic.smoother`."""
         del recording, first
         states = smooth(self.kalman, [estimate.inner for estimate in run], ROUNDS, wanted)
@@ -130,10 +131,10 @@ class DynamicTracking:
             for e, s in zip(run, states, strict=False)
         ]
 
-    def _estimate(self, step: DynamicStep) -> Estimate:
+    def _estimate(self, step: DynamicStep) -> Posterior:
         state, notes = step.state, step.decisions.notes
         contact = None if notes.contact is None else notes.contact.contacts
-        return Estimate(
+        return Posterior(
             state.q,
             state.v,
             state.a,

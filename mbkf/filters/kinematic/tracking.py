@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.estimate import NO_WRENCH, Estimate, Prediction, Recording
+from mbkf.filters.estimate import NO_WRENCH, Posterior, Prediction, Recording
 from mbkf.filters.filter import Memory, Step
 from mbkf.filters.kinematic.filter import KinematicFilter, VelocityStep
 from mbkf.filters.kinematic.plant import KinematicState
@@ -47,7 +47,6 @@ class KinematicRecord:
 
     Attributes:
         state: Its state.
-        memory: For the next step.
         step: The step to it, None at a start.
         before: State of the frame before, None at a start.
         settling: (n, nv) accelerations of the first frames after a start.
@@ -55,7 +54,6 @@ class KinematicRecord:
     """
 
     state: KinematicState
-    memory: Memory
     step: KinematicStep | None
     before: KinematicState | None
     settling: Array
@@ -101,42 +99,46 @@ class KinematicTracking:
         self.dt_s = kalman.plant.dt_s
         self.restart_after_s = kalman.settings.restart_after_s
         self._reader = SpreadReader(self.model)
+        self.clinical = self._reader.clinical
 
-    def start(self, recording: Recording, t: int, guess: Array | None) -> Estimate | None:
+    def start(self, recording: Recording, t: int, guess: Array | None) -> Posterior | None:
         """A warm start."""
         found = warm_start(self.kalman, recording, t, guess)
         if found is None:
             return None
-        inner = KinematicRecord(found.state, self.kalman.begin(), None, None, found.accelerations, 0)
+        inner = KinematicRecord(found.state, None, None, found.accelerations, 0)
         none = np.zeros(recording.markers_m.shape[1], dtype=bool)
         q, v = found.state.q, found.state.v
-        return Estimate(q, v, found.accelerations[0], NO_WRENCH, None, none, True, True, inner)
+        return Posterior(q, v, found.accelerations[0], NO_WRENCH, None, none, True, True, inner)
 
-    def predict(self, before: Estimate) -> Prediction:
+    def predict(self, before: Posterior) -> Prediction:
         """By the filter's own plant."""
         was: KinematicRecord = before.inner
-        prior, nv = self.kalman.predict(was.state, was.memory), self.model.nv
+        prior, nv = self.kalman.predict(was.state, self._memory(was)), self.model.nv
         markers = MarkerPrediction(self.kalman.prepared_by(Markers, prior), prior.state.P[:nv, :nv])
         return Prediction(prior.state.q, markers, prior)
 
     def step(
-        self, before: Estimate, recording: Recording, t: int, prediction: Prediction | None = None
-    ) -> Estimate:
+        self, before: Posterior, recording: Recording, t: int, prediction: Prediction | None = None
+    ) -> Posterior:
         """One frame on."""
         was: KinematicRecord = before.inner
         prior = None if prediction is None else prediction.prior
-        step = self.kalman.step(was.state, was.memory, recording.frame(t), prior)
+        step = self.kalman.step(was.state, self._memory(was), recording.frame(t), prior)
         state, since = step.state, was.since + 1
         settled = since >= len(was.settling)
         a = (state.v - was.state.v) / self.dt_s if settled else was.settling[since]
-        inner = KinematicRecord(state, step.memory, step, was.state, was.settling, since)
-        return Estimate(state.q, state.v, a, NO_WRENCH, None, step.refused, step.tracked, False, inner)
+        inner = KinematicRecord(state, step, was.state, was.settling, since)
+        return Posterior(state.q, state.v, a, NO_WRENCH, None, step.refused, step.tracked, False, inner)
 
-    def covariance(self, estimate: Estimate) -> Array:
+    def _memory(self, was: KinematicRecord) -> Memory:
+        return self.kalman.begin() if was.step is None else was.step.memory
+
+    def covariance(self, estimate: Posterior) -> Array:
         """(2 nv, 2 nv) of (q, v)."""
         return estimate.inner.state.P
 
-    def spread(self, estimate: Estimate) -> Spread:
+    def spread(self, estimate: Posterior) -> Spread:
         """Standard deviations; torques as far as accelerations cause them, NaN at a start."""
         inner: KinematicRecord = estimate.inner
         q, P, nv = inner.state.q, inner.state.P, self.model.nv
@@ -146,19 +148,19 @@ class KinematicTracking:
             torque = self._reader.torque(q, change, self.dt_s)
         return Spread(self._reader, q, np.diagonal(P)[:nv], np.diagonal(P)[nv:], torque, lambda: P[:nv, :nv])
 
-    def wrench_sd(self, estimate: Estimate) -> Array:
+    def wrench_sd(self, estimate: Posterior) -> Array:
         """This filter estimates no wrench."""
         del estimate
         return NO_WRENCH
 
-    def innovation(self, estimate: Estimate) -> tuple[float, int]:
+    def innovation(self, estimate: Posterior) -> tuple[float, int]:
         """Of the markers."""
         step: KinematicStep | None = estimate.inner.step
         return (np.nan, 0) if step is None else (step.nis, step.count)
 
     def smooth(
-        self, run: Sequence[Estimate], recording: Recording, first: int, wanted: int
-    ) -> list[Estimate]:
+        self, run: Sequence[Posterior], recording: Recording, first: int, wanted: int
+    ) -> list[Posterior]:
         """Linear smoother about the filter's own course; accelerations are central differences.
 
         Torques keep the filter's standard deviations, which are larger than the smoothed ones.

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.filters.estimate import Estimate, Prediction, Recording
+from mbkf.filters.estimate import Posterior, Prediction, Recording
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.tracking import warm_start
 from mbkf.filters.spread import Spread, SpreadReader
@@ -39,8 +39,9 @@ class TorqueTracking:
         self.model, self.dt_s = kalman.sensor.model, kalman.plant.dt_s
         self.restart_after_s = starter.settings.restart_after_s
         self._reader = SpreadReader(self.model)
+        self.clinical = self._reader.clinical
 
-    def start(self, recording: Recording, t: int, guess: Array | None) -> Estimate | None:
+    def start(self, recording: Recording, t: int, guess: Array | None) -> Posterior | None:
         """The kinematic filter's warm start; torques by inverse dynamics under this frame's plates."""
         found = warm_start(self._starter, recording, t, guess)
         if found is None:
@@ -51,13 +52,13 @@ class TorqueTracking:
         nobody = np.zeros(recording.markers_m.shape[1], dtype=bool)
         return self._estimate(_Followed(state, None, None, load.memory), load.contacts, nobody, True)
 
-    def predict(self, before: Estimate) -> Prediction:
+    def predict(self, before: Posterior) -> Prediction:
         """By steady motion: the filter's own plant waits for the plates, which say what the torques do."""
         return steady_motion(before, self.covariance(before), self.kalman.sensor, self.dt_s)
 
     def step(
-        self, before: Estimate, recording: Recording, t: int, prediction: Prediction | None = None
-    ) -> Estimate:
+        self, before: Posterior, recording: Recording, t: int, prediction: Prediction | None = None
+    ) -> Posterior:
         """One frame on; the feet's footing is decided where the motion before would carry them."""
         del prediction
         was: _Followed = before.inner
@@ -70,19 +71,19 @@ class TorqueTracking:
 
     def _estimate(
         self, inner: _Followed, footing: tuple[Contact, Contact], refused: BoolArray, tracked: bool
-    ) -> Estimate:
+    ) -> Posterior:
         state = inner.state
         feet = (int(footing[0]), int(footing[1]))
-        return Estimate(
+        return Posterior(
             state.q, state.v, state.a, state.foot_wrench, feet, refused, tracked, inner.step is None, inner
         )
 
-    def covariance(self, estimate: Estimate) -> Array:
+    def covariance(self, estimate: Posterior) -> Array:
         """(2 nv, 2 nv) of (q, v)."""
         nv = self.model.nv
         return estimate.inner.state.filtered.P[: 2 * nv, : 2 * nv]
 
-    def spread(self, estimate: Estimate) -> Spread:
+    def spread(self, estimate: Posterior) -> Spread:
         """Standard deviations; torques are states of this filter."""
         state: TorqueState = estimate.inner.state
         P, nv = self.covariance(estimate), self.model.nv
@@ -90,21 +91,21 @@ class TorqueTracking:
             self._reader, state.q, np.diagonal(P)[:nv], np.diagonal(P)[nv:], state.tau_sd, lambda: P[:nv, :nv]
         )
 
-    def wrench_sd(self, estimate: Estimate) -> Array:
+    def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) of the state's wrenches, carried to the world's origin."""
         return estimate.inner.state.foot_wrench_sd
 
-    def innovation(self, estimate: Estimate) -> tuple[float, int]:
+    def innovation(self, estimate: Posterior) -> tuple[float, int]:
         """Of markers and plates."""
         step: TorqueStep | None = estimate.inner.step
         return (np.nan, 0) if step is None else (step.nis, step.readings)
 
     def smooth(
-        self, run: Sequence[Estimate], recording: Recording, first: int, wanted: int
-    ) -> list[Estimate]:
+        self, run: Sequence[Posterior], recording: Recording, first: int, wanted: int
+    ) -> list[Posterior]:
         """Linear smoother about the filter's own course."""
         del recording, first
-        found: list[Estimate] = []
+        found: list[Posterior] = []
         back = BackwardPass(len(run[0].inner.state.filtered.P))
         for k in range(len(run) - 1, -1, -1):
             inner: _Followed = run[k].inner
@@ -117,7 +118,7 @@ class TorqueTracking:
                 back.through_plant(inner.step.prediction.phi)
         return found[::-1]
 
-    def _smoothed(self, estimate: Estimate, step: Array, P: Array) -> Estimate:
+    def _smoothed(self, estimate: Posterior, step: Array, P: Array) -> Posterior:
         here: ForcedState = estimate.inner.state.filtered
         nv = self.model.nv
         q = self.model.integrate(here.q, step[:nv])
@@ -133,7 +134,7 @@ def _known(footing: tuple[Contact, Contact]) -> tuple[BoolArray, BoolArray]:
     return np.array([foot == Contact.MEASURED for foot in footing]) | airborne, airborne
 
 
-def steady_motion(estimate: Estimate, covariance: Array, sensor: MarkerSensor, dt_s: float) -> Prediction:
+def steady_motion(estimate: Posterior, covariance: Array, sensor: MarkerSensor, dt_s: float) -> Prediction:
     """The frame after an estimate by steady velocity (thesis eqs. 3.1–3.3).
 
     P⁻ = P_qq + Δt (P_qv + P_vq) + Δt² P_vv + Δt⁴/4 σ_a², with the body's own table of accelerations.

@@ -1,4 +1,4 @@
-"""A labelled capture on disk, and beside it what labelling has to say of itself."""
+"""A labelled capture on disk, and beside it the summary of its labelling."""
 
 from __future__ import annotations
 
@@ -7,17 +7,16 @@ from pathlib import Path
 from typing import Any
 
 from mbkf.io.atomic import replacing
-from mbkf.io.c3d_write import write_c3d
+from mbkf.io.capture import write_capture
 from mbkf.io.records import Capture
-from mbkf.io.trc import write_trc
-from mbkf.pipelines.label import Labelling, labelled_capture, summarise
+from mbkf.pipelines.label import Labelling, label_summary, labelled_capture
 from mbkf.pipelines.labelling.score import LabelScore
 
 
 def write_labels(
     raw: Capture, found: Labelling, path: str | Path, compared: LabelScore | None = None
 ) -> dict[str, Any]:
-    """Writes the labelled capture as C3D or, by its ending, TRC, and its summary as FILE.json; returns the summary.
+    """Writes the labelled capture in the format of its suffix, and its summary as FILE.json; returns the summary.
 
     Args:
         raw: The capture as recorded.
@@ -29,11 +28,8 @@ def write_labels(
         FileFormatError: The file cannot be written.
     """
     path = Path(path)
-    labelled, summary = labelled_capture(raw, found), summarise(found, compared)
-    if path.suffix.lower() == ".trc":
-        write_trc(labelled.markers, path)
-    else:
-        write_c3d(labelled, path)
+    labelled, summary = labelled_capture(raw, found), label_summary(found, compared)
+    write_capture(labelled, path)
     with replacing(path.with_suffix(".json")) as partial:
         partial.write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
     return summary

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.estimate import Estimate, Prediction, Recording, TrackingFilter
+from mbkf.filters.estimate import Posterior, Prediction, Recording, TrackingFilter
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.first_frame import FirstFrame, labelled
 from mbkf.labelling.running import RunningLabeller
@@ -114,7 +114,7 @@ class LabellingPass:
         found = self._search.standing(points)
         return self._any_attitude.at(t) if found is None and thorough else found
 
-    def _begin(self, t: int, found: FirstFrame) -> Estimate | None:
+    def _begin(self, t: int, found: FirstFrame) -> Posterior | None:
         """The filter's first estimate: labels are carried through the next frames pose by pose to learn velocities."""
         self._note(t, self._points(t), found.points)
         last, poses = t, [found.q]
@@ -142,7 +142,7 @@ class LabellingPass:
         self._remember(t, self._points(t), found.points, estimate)
         return estimate
 
-    def _follow(self, t: int, estimate: Estimate, progress: Callable[[int], None] | None) -> int:
+    def _follow(self, t: int, estimate: Posterior, progress: Callable[[int], None] | None) -> int:
         """Labels frames from t on until the end or a loss; returns the frame after the last."""
         lost = 0
         while t < len(self._positions_m):
@@ -162,8 +162,8 @@ class LabellingPass:
         return t
 
     def _corrected(
-        self, t: int, points: Points, labels: Indices, before: Estimate, prediction: Prediction
-    ) -> tuple[Estimate, Indices]:
+        self, t: int, points: Points, labels: Indices, before: Posterior, prediction: Prediction
+    ) -> tuple[Posterior, Indices]:
         """The filter's step with these labels, or with those of them that go with where it came to."""
         self._note(t, points, labels)
         estimate = self._filter.step(before, self._recording, t, prediction)
@@ -213,6 +213,6 @@ class LabellingPass:
         self.markers_m[first:end] = np.nan
         self.label_of_point[first:end] = HIDDEN
 
-    def _remember(self, t: int, points: Points, labels: Indices, estimate: Estimate) -> None:
+    def _remember(self, t: int, points: Points, labels: Indices, estimate: Posterior) -> None:
         self.q[t] = estimate.q
         self.labeller.remember(labels, points.positions_m, self._sensor.positions(estimate.q))

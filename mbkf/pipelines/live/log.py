@@ -14,17 +14,12 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
-from mbkf.filters.estimate import Estimate, TrackingFilter
-from mbkf.filters.spread import Spread
-from mbkf.filters.tracking import Track
+from mbkf.filters.record import blank
 from mbkf.io.frame_log import FrameLogWriter, read_frame_log
 from mbkf.io.records import PlateReadings
 
 FRAMES_FILE, PLATES_FILE, SUBJECT_FILE = "frames.log", "plates.log", "subject.toml"
 """Files of the log's folder."""
-
-UNASKED = -9
-"""Contact of the feet as a filter logs it that does not decide it."""
 
 
 @dataclass(frozen=True)
@@ -42,89 +37,6 @@ class LiveStream:
     rate_hz: float
     start_time_s: float
     plates: tuple[PlateReadings, ...]
-
-
-class LiveRows:
-    """Makes rows of estimates."""
-
-    def __init__(self, follower: TrackingFilter, markers: int, coordinates: int) -> None:
-        """Args: the filter, the number of markers and that of clinical coordinates."""
-        self._follower = follower
-        nq, nv = follower.model.nq, follower.model.nv
-        spread = {"position": nv, "velocity": nv, "angle": coordinates, "rate": coordinates, "torque": nv}
-        self.dtype = np.dtype(
-            [
-                ("number", "<i8"),
-                ("known", "?"),
-                ("started", "?"),
-                ("tracked", "?"),
-                ("readings", "<i8"),
-                ("footing", "<i8", (2,)),
-                ("refused", "?", (markers,)),
-                ("measured_m", "<f8", (markers, 3)),
-                ("latency_s", "<f8"),
-                ("step_seconds", "<f8"),
-                ("nis", "<f8"),
-                ("q", "<f8", (nq,)),
-                ("v", "<f8", (nv,)),
-                ("a", "<f8", (nv,)),
-                ("wrench", "<f8", (2, 6)),
-                ("wrench_sd", "<f8", (2, 6)),
-                ("foot_height_sd", "<f8", (2,)),
-                *((f"{name}_sd", "<f8", (size,)) for name, size in spread.items()),
-            ]
-        )
-        self._empty = blank(self.dtype, 1)
-
-    def row(
-        self,
-        number: int,
-        measured_m: Array,
-        estimate: Estimate | None,
-        step_seconds: float,
-    ) -> tuple[NDArray, Spread | None]:
-        """(1,) a row of :attr:`dtype`, and the spread for :meth:`judge`.
-
-        Args:
-            number: The frame.
-            measured_m: (M, 3) its markers.
-            estimate: What the filter made of it.
-            step_seconds: Computing time.
-        """
-        row = self._empty.copy()
-        row["number"], row["measured_m"] = number, measured_m
-        if estimate is None:
-            return row, None
-        row["known"], row["step_seconds"] = True, step_seconds
-        row["started"], row["tracked"] = estimate.started, estimate.tracked
-        row["refused"] = estimate.refused
-        if estimate.contact is not None:
-            row["footing"] = estimate.contact
-        for name in ("q", "v", "a", "wrench"):
-            row[name] = getattr(estimate, name)
-        row["wrench_sd"] = self._follower.wrench_sd(estimate)
-        spread = self._follower.spread(estimate)
-        for name in ("position", "velocity", "torque"):
-            row[f"{name}_sd"] = getattr(spread, name)
-        return row, spread
-
-    def judge(self, row: NDArray, estimate: Estimate | None, spread: Spread | None) -> None:
-        """Adds to a row how well its frame was predicted, and what only the results tell; nobody waits for that."""
-        if estimate is None or spread is None:
-            return
-        row["nis"], row["readings"] = self._follower.innovation(estimate)
-        for name in ("angle", "rate", "foot_height"):
-            row[f"{name}_sd"] = getattr(spread, name)
-
-
-def blank(dtype: np.dtype, rows: int) -> NDArray:
-    """Rows that say nothing: numbers NaN, flags off."""
-    empty = np.zeros(rows, dtype=dtype)
-    for name in dtype.names or ():
-        if empty[name].dtype.kind == "f":
-            empty[name] = np.nan
-    empty["footing"] = UNASKED
-    return empty
 
 
 def plates_dtype(plates: int) -> np.dtype:
@@ -201,20 +113,6 @@ def read_live_log(folder: Path) -> Logged:
     )
     stream = LiveStream(header["trial"], header["rate_hz"], header["start_time_s"], plates)
     return Logged(stream, tuple(header["markers"]), header["settings"], first, whole)
-
-
-def track_of(rows: NDArray) -> Track:
-    """The followed trial that rows tell of."""
-    asked = rows["footing"][:, 0] != UNASKED
-    names = ("q", "v", "a", "wrench", "wrench_sd", "nis", "readings", "step_seconds", "refused", "tracked")
-    spread = ("position", "velocity", "angle", "rate", "torque", "foot_height")
-    return Track(
-        **{name: np.array(rows[name]) for name in (*names, *(f"{name}_sd" for name in spread))},
-        contact=np.where(asked[:, None], rows["footing"], 0) if asked.any() else None,
-        starts=tuple(int(t) for t in np.flatnonzero(rows["started"])),
-        smoothed=False,
-        covariance=None,
-    )
 
 
 def _described(plate: PlateReadings) -> dict[str, Any]:

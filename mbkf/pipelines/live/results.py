@@ -8,12 +8,13 @@ from pathlib import Path
 import numpy as np
 
 from mbkf.errors import NotObservable
+from mbkf.filters.tracking import track_of
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import read_subject
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.live.filter import live_inputs
-from mbkf.pipelines.live.log import SUBJECT_FILE, Logged, read_live_log, track_of
+from mbkf.pipelines.live.log import SUBJECT_FILE, Logged, read_live_log
 from mbkf.pipelines.reconstruct import ReconstructSettings, assemble
 
 

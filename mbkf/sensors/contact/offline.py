@@ -1,22 +1,28 @@
-"""Which foot stands on which plate, and in which frames every contact is measured (SPEC S8, DESIGN §4 fact 6)."""
+"""Ground reactions of a tracked trial assigned to the feet, and the frames in which every contact is measured.
+
+The assignment looks at whole stretches of loading and at the trial's own floor. The limits, and how they differ from
+those of a live filter, are in :mod:`mbkf.sensors.contact.thresholds`.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import binary_dilation, median_filter
-from scipy.signal import savgol_filter
 
-from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
+from mbkf.conventions import Array, BoolArray
 from mbkf.io.records import PlateReadings
 from mbkf.model.human import HumanModel
-from mbkf.sensors.contact.plates import about_world_origin, pressure_on, surface_height
-from mbkf.sensors.contact.soles import distances_to_sole, sole_points
+from mbkf.numerics.windows import dilated, majority, second_derivative
+from mbkf.sensors.contact.plates import centres_of_pressure, free_moment, plate_wrenches, surface_height
+from mbkf.sensors.contact.soles import distances_to_soles, nearer_foot, sole_points
 from mbkf.sensors.contact.thresholds import (
     FALL_EDGE_S,
-    FALL_SHARE,
+    FALL_M_S2,
     FALL_WINDOW_S,
+    FLOOR_PERCENTILE,
+    MAJORITY_S,
+    MIXED_SHARE,
     REACH_M,
     STANDING_SHARE,
     TOUCH_HEIGHT_M,
@@ -26,16 +32,16 @@ from mbkf.sensors.contact.thresholds import (
 
 @dataclass(frozen=True)
 class FootLoads:
-    """Ground reactions sorted by foot.
+    """Ground reactions per foot.
 
     Attributes:
         wrench: (T, 2, 6) force N and moment N m about the world's origin on right and left foot, world axes.
         centre_of_pressure_m: (T, 2, 3) of the stronger plate under each foot; NaN unloaded.
         free_moment_nm: (T, 2) about the vertical through the centre of pressure; NaN unloaded.
         plate_wrench: (T, P, 6) every plate about the world's origin; zero outside its recording.
-        foot_of_plate: (T, P) 0 right, 1 left, -1 nobody.
-        valid: (T,) every loaded foot on a measured plate.
-        warnings: What a person should know.
+        foot_of_plate: (T, P) 0 right, 1 left, -1 none.
+        valid: (T,) every loaded foot stands on a recorded plate.
+        warnings: Remarks for the reader of a report.
     """
 
     wrench: Array
@@ -50,7 +56,7 @@ class FootLoads:
 def assign_feet(
     model: HumanModel, q: Array, times_s: Array, rate_hz: float, plates: tuple[PlateReadings, ...]
 ) -> FootLoads:
-    """Sorts plate readings to feet by the distance of the centre of pressure to each sole.
+    """Assigns plate readings to feet by the distance of the centre of pressure from each sole.
 
     Args:
         model: The body.
@@ -60,14 +66,14 @@ def assign_feet(
         plates: The plates of the trial.
     """
     soles = sole_points(model, q)
-    wrench = np.zeros((len(q), len(plates), 6))
-    recorded = np.zeros((len(q), len(plates)), dtype=bool)
+    wrench = plate_wrenches(plates, times_s, rate_hz)
+    recorded = np.asarray(~np.isnan(wrench).any(axis=2))
+    wrench[~recorded] = 0.0
     pressure = np.full((len(q), len(plates), 3), np.nan)
     foot = np.full((len(q), len(plates)), -1)
     for p, plate in enumerate(plates):
-        wrench[:, p], recorded[:, p] = about_world_origin(plate, times_s, rate_hz)
-        pressure[:, p] = pressure_on(wrench[:, p], surface_height(plate), plate.threshold_n)
-        foot[:, p] = _nearest_foot(pressure[:, p], soles, wrench[:, p, 2], rate_hz)
+        pressure[:, p] = centres_of_pressure(wrench[:, p], surface_height(plate), plate.threshold_n)
+        foot[:, p] = _foot_of_plate(pressure[:, p], soles, wrench[:, p, 2], rate_hz)
     total = np.zeros((len(q), 2, 6))
     for side in range(2):
         total[:, side] = (wrench * (foot == side)[:, :, None]).sum(axis=1)
@@ -78,25 +84,29 @@ def assign_feet(
     return FootLoads(total, at_feet, free, wrench, foot, valid, warnings)
 
 
-def _nearest_foot(pressure: Array, soles: Array, vertical_n: Array, rate_hz: float) -> Array:
-    """(T,) foot on one plate: the nearer sole, decided per stretch of loading."""
+def _foot_of_plate(pressure: Array, soles: Array, vertical_n: Array, rate_hz: float) -> Array:
+    """(T,) foot on one plate: that of the nearer sole, decided once per stretch of loading unless it changes.
+
+    Args:
+        pressure: (T, 3) centre of pressure on the plate, NaN where not loaded.
+        soles: (T, 2, 3, 3) sole points, NaN where untracked.
+        vertical_n: (T,) vertical force, the weight of a frame in its stretch.
+        rate_hz: Frame rate.
+    """
     foot = np.full(len(pressure), -1)
-    distance = np.stack([distances_to_sole(pressure, soles[:, side]) for side in range(2)], axis=1)
+    distance = distances_to_soles(pressure, soles)
     usable = np.asarray(~np.isnan(distance).any(axis=1))
     for stretch in stretches(~np.isnan(pressure[:, 0])):
         frames = stretch[usable[stretch]]
         if len(frames) == 0:
             continue
-        weight = vertical_n[frames]
-        near = (distance[frames] * weight[:, None]).sum(axis=0) / weight.sum()
-        per_frame = median_filter(
-            np.argmin(distance[frames], axis=1), size=2 * int(0.05 * rate_hz) + 1, mode="nearest"
-        )
-        best = int(np.argmin(near))
-        changes = (per_frame != best).mean() > 0.2
-        foot[frames] = np.where(distance[frames].min(axis=1) <= REACH_M, per_frame, -1) if changes else best
-        if not changes and near[best] > REACH_M:
-            foot[frames] = -1
+        away, weight = distance[frames], vertical_n[frames]
+        mean = ((away * weight[:, None]).sum(axis=0) / weight.sum()).tolist()
+        nearer = majority(away[:, 1] < away[:, 0], 2 * int(MAJORITY_S * rate_hz) + 1).astype(int)
+        if (nearer != int(mean[1] < mean[0])).mean() > MIXED_SHARE:
+            foot[frames] = np.where(away.min(axis=1) <= REACH_M, nearer, -1)
+        else:
+            foot[frames] = nearer_foot(mean)
     return foot
 
 
@@ -119,13 +129,18 @@ def _per_foot_pressure(pressure: Array, wrench: Array, foot: Array) -> tuple[Arr
         mine = foot[frames, strongest] == side
         point, load = pressure[frames, strongest], wrench[frames, strongest]
         at_feet[mine, side] = point[mine]
-        moment = load[:, 5] - (point[:, 0] * load[:, 1] - point[:, 1] * load[:, 0])
-        free[mine, side] = moment[mine]
+        free[mine, side] = free_moment(load, point)[mine]
     return at_feet, free
 
 
 def _touching(soles: Array, foot: Array, rate_hz: float) -> BoolArray:
-    """(T, 2) feet that touch the floor: a sole point is low and slow."""
+    """(T, 2) feet that touch the floor: a sole point is low and slow.
+
+    Args:
+        soles: (T, 2, 3, 3) sole points, NaN where untracked.
+        foot: (T, P) foot of each plate.
+        rate_hz: Frame rate.
+    """
     touching = np.zeros((len(soles), 2), dtype=bool)
     known = ~np.isnan(soles[:, 0, 0, 0])
     if not known.any():
@@ -134,7 +149,7 @@ def _touching(soles: Array, foot: Array, rate_hz: float) -> BoolArray:
     loaded = np.stack([(foot == side).any(axis=1) & known for side in range(2)], axis=1)
     stood_on = {side: np.median(lowest[loaded[:, side], side]) for side in range(2) if loaded[:, side].any()}
     for side in range(2):
-        lowest_ever = np.percentile(lowest[known, side], 5)
+        lowest_ever = np.percentile(lowest[known, side], FLOOR_PERCENTILE)
         floor = stood_on.get(side, min([lowest_ever, *stood_on.values()]))
         speed = np.linalg.norm(np.gradient(soles[:, side], axis=0), axis=2) * rate_hz
         low = soles[:, side, :, 2] < floor + TOUCH_HEIGHT_M
@@ -143,14 +158,14 @@ def _touching(soles: Array, foot: Array, rate_hz: float) -> BoolArray:
 
 
 def _falling(height_m: Array, rate_hz: float) -> BoolArray:
-    """(T,) the pelvis accelerates downwards as nobody does whom a floor carries."""
+    """(T,) whether the pelvis (height (T,), NaN where untracked) falls faster than a supported body."""
     falling = np.zeros(len(height_m), dtype=bool)
     window = 2 * round(0.5 * FALL_WINDOW_S * rate_hz) + 1
     for stretch in stretches(~np.isnan(height_m)):
         if len(stretch) > max(window, 5):
-            curve = savgol_filter(height_m[stretch], max(window, 5), 2, deriv=2, delta=1.0 / rate_hz)
-            falling[stretch] = curve < -FALL_SHARE * GRAVITY_M_S2
-    return np.asarray(binary_dilation(falling, iterations=max(1, round(FALL_EDGE_S * rate_hz))))
+            curve = second_derivative(height_m[stretch], max(window, 5), 1.0 / rate_hz)
+            falling[stretch] = curve < FALL_M_S2
+    return dilated(falling, max(1, round(FALL_EDGE_S * rate_hz)))
 
 
 def _validity(
@@ -162,6 +177,17 @@ def _validity(
     pressure: Array,
     recorded: BoolArray,
 ) -> tuple[BoolArray, tuple[str, ...]]:
+    """(T,) frames in which every loaded foot stands on a recorded plate, and remarks for the reader.
+
+    Args:
+        model: The body.
+        touching: (T, 2) feet that touch the floor.
+        flight: (T,) frames in which nothing carries the body.
+        foot: (T, P) foot of each plate.
+        wrench: (T, P, 6) plates about the world's origin.
+        pressure: (T, P, 3) their centres of pressure, NaN where not loaded.
+        recorded: (T, P) where they were recorded.
+    """
     on_plate = np.stack([(foot == side).any(axis=1) for side in range(2)], axis=1)
     measured = (~touching | on_plate).all(axis=1)
     weight = -model.pin_model.gravity.linear[2] * model.mass_kg

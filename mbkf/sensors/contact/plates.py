@@ -1,21 +1,24 @@
-"""Force plates as contact sees them: wrenches about the world's origin, surfaces, centres of pressure, areas."""
+"""Force plates as contact needs them: wrenches about the world's origin, centres of pressure, surfaces and areas.
+
+Everything here takes a wrench as force N and moment N m about the world's origin, and a plate as horizontal.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TypeVar
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.io.records import PlateReadings
 from mbkf.io.resample import average_over_frames
-from mbkf.io.wrench import centre_of_pressure
+
+Number = TypeVar("Number", float, Array)
 
 
 def plate_wrenches(plates: tuple[PlateReadings, ...], times_s: Array, rate_hz: float) -> Array:
-    """(T, P, 6) mean force N and moment N m about the world's origin of every plate over each frame.
-
-    NaN where a plate was not recorded.
+    """(T, P, 6) mean wrench of every plate over each frame, NaN where a plate was not recorded.
 
     Args:
         plates: The plates.
@@ -24,8 +27,11 @@ def plate_wrenches(plates: tuple[PlateReadings, ...], times_s: Array, rate_hz: f
     """
     wrench = np.full((len(times_s), len(plates), 6), np.nan)
     for p, plate in enumerate(plates):
-        found, recorded = about_world_origin(plate, times_s, rate_hz)
-        wrench[recorded, p] = found[recorded]
+        loads = average_over_frames(plate, times_s, rate_hz)
+        recorded = ~np.isnan(loads.force_n).any(axis=1)
+        force = loads.force_n[recorded]
+        moment = np.nan_to_num(loads.moment_nm[recorded]) + np.cross(plate.origin_m, force)
+        wrench[recorded, p] = np.concatenate([force, moment], axis=1)
     return wrench
 
 
@@ -34,34 +40,60 @@ def surface_height(plate: PlateReadings) -> float:
     return float(plate.origin_m[2] if plate.corners_m is None else plate.corners_m[:, 2].mean())
 
 
+def least_load(threshold_n: float) -> float:
+    """Vertical force from which a plate counts as loaded, N: its threshold, and upwards in any case."""
+    return max(threshold_n, float(np.finfo(float).tiny))
+
+
+def pressed_at(wrench: Sequence[Number], surface_m: float) -> tuple[Number, Number]:
+    """World x and y of the centre of pressure: the point of a surface about which the horizontal moment vanishes.
+
+    Args:
+        wrench: Its six components, each a number or an array, with a vertical force other than zero.
+        surface_m: Height of the surface.
+    """
+    fx, fy, fz, mx, my, _ = wrench
+    return (surface_m * fx - my) / fz, (surface_m * fy + mx) / fz
+
+
+def centres_of_pressure(wrench: Array, surface_m: float, threshold_n: float) -> Array:
+    """(..., 3) world points in which a horizontal surface is pressed; NaN where not loaded.
+
+    Args:
+        wrench: (..., 6) wrenches.
+        surface_m: Height of the surface.
+        threshold_n: Vertical force below which it is not given.
+    """
+    point = np.full((*wrench.shape[:-1], 3), np.nan)
+    loaded = wrench[..., 2] >= least_load(threshold_n)
+    point[loaded, 0], point[loaded, 1] = pressed_at(list(wrench[loaded].T), surface_m)
+    point[loaded, 2] = surface_m
+    return point
+
+
+def free_moment(wrench: Array, point_m: Array) -> Array:
+    """(...,) vertical moment N m of wrenches (..., 6) about points (..., 3)."""
+    x, y = point_m[..., 0], point_m[..., 1]
+    return np.asarray(wrench[..., 5] - (x * wrench[..., 1] - y * wrench[..., 0]))
+
+
 def pressure_and_free_moment(wrench: Array, surface_m: float, threshold_n: float) -> tuple[Array, Array]:
-    """(T, 2, 3) centre of pressure at a height and (T, 2) free moment of feet's wrenches (T, 2, 6); NaN unloaded."""
-    pressure = np.stack([pressure_on(wrench[:, foot], surface_m, threshold_n) for foot in range(2)], axis=1)
-    free = wrench[..., 5] - (pressure[..., 0] * wrench[..., 1] - pressure[..., 1] * wrench[..., 0])
-    return pressure, free
+    """Centre of pressure (..., 3) at a height and free moment (...,) about it; NaN where not loaded.
 
-
-def about_world_origin(plate: PlateReadings, times_s: Array, rate_hz: float) -> tuple[Array, BoolArray]:
-    """(T, 6) mean wrench about the world's origin over each frame, zero where not recorded, and where it is (T,)."""
-    loads = average_over_frames(plate, times_s, rate_hz)
-    recorded = np.asarray(~np.isnan(loads.force_n).any(axis=1))
-    force = np.nan_to_num(loads.force_n)
-    moment = np.nan_to_num(loads.moment_nm) + np.cross(plate.origin_m, force)
-    return np.concatenate([force, moment], axis=1), recorded
-
-
-def pressure_on(wrench: Array, surface_m: float, threshold_n: float) -> Array:
-    """(T, 3) centre of pressure on a horizontal surface from wrenches about the world's origin (eq. 4.9)."""
-    below = np.array([0.0, 0.0, surface_m])
-    moment = wrench[:, 3:] - np.cross(below, wrench[:, :3])
-    return centre_of_pressure(wrench[:, :3], moment, below, np.array([0.0, 0.0, 1.0]), threshold_n)
+    Args:
+        wrench: (..., 6) wrenches.
+        surface_m: Height of the surface.
+        threshold_n: Vertical force below which neither is given.
+    """
+    point = centres_of_pressure(wrench, surface_m, threshold_n)
+    return point, free_moment(wrench, point)
 
 
 class PlateAreas:
     """Convex plates seen from above, all at once.
 
     Attributes:
-        known: (K,) plates whose corners are.
+        known: (K,) plates whose corners are known.
     """
 
     def __init__(self, plates: Sequence[PlateReadings]) -> None:
@@ -73,7 +105,7 @@ class PlateAreas:
         self._from, self._along = corners, np.roll(corners, -1, axis=1) - corners
 
     def contain(self, points_m: Array) -> BoolArray:
-        """(n, K) whether points (n, 2) lie over each; never over one that is not known."""
+        """(n, K) whether points (n, 2) lie over each plate; never over one whose corners are not known."""
         away = points_m[:, None, None] - self._from
         left = self._along[:, :, 0] * away[..., 1] - self._along[:, :, 1] * away[..., 0] >= 0.0
         return np.asarray((left.all(axis=-1) | ~left.any(axis=-1)) & self.known)

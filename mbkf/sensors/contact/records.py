@@ -10,7 +10,14 @@ from mbkf.conventions import Array
 
 
 class Contact(IntEnum):
-    """What a foot stands on."""
+    """What a foot stands on.
+
+    Attributes:
+        UNMEASURED: Something that no plate reads; the foot's wrench is unknown, not zero.
+        AIR: Nothing; its wrench is zero.
+        MEASURED: A plate of its own, which reads its wrench.
+        SHARED: One plate together with the other foot; the plate reads the sum of both wrenches.
+    """
 
     UNMEASURED = -1
     AIR = 0
@@ -19,7 +26,7 @@ class Contact(IntEnum):
 
 
 class Pressed(NamedTuple):
-    """A centre of pressure (world x, y in m) and its foot (0 right, 1 left, 2 both, -1 nobody)."""
+    """A centre of pressure (world x, y in m) and the foot it belongs to (0 right, 1 left, 2 both, -1 none)."""
 
     x: float
     y: float
@@ -28,12 +35,12 @@ class Pressed(NamedTuple):
 
 @dataclass(frozen=True)
 class ContactMemory:
-    """What a decision remembers from the frame before.
+    """What a decision needs from the frame before.
 
     Attributes:
-        foot_of_plate: (K,) 0 right, 1 left, 2 both, -1 nobody.
-        pressed: (K,) last centre of pressure on each plate and the foot it belonged to, or None.
-        sole_height_m: Height of a loaded sole point of our body, NaN before one was loaded.
+        foot_of_plate: (K,) 0 right, 1 left, 2 both, -1 none.
+        pressed: (K,) last centre of pressure on each plate and its foot; None before the plate was loaded.
+        sole_height_m: Height at which the body's loaded soles lie, NaN before one was loaded.
         touching_s: For how long right and left foot have touched the floor without a reading.
     """
 
@@ -45,12 +52,13 @@ class ContactMemory:
 
 @dataclass(frozen=True)
 class ContactDecision:
-    """A frame's decision.
+    """The contact decision of one frame.
 
     Attributes:
         contacts: What right and left foot stand on.
-        wrench: (2, 6) measured wrench per foot about the world's origin (of both together where shared).
-        centres_m: (2, 3) middle of right and left sole.
+        wrench: (2, 6) measured force N and moment N m per foot about the world's origin; of both feet together where
+            they share a plate, zero where not measured.
+        centres_m: (2, 3) middle of right and left sole, world.
         stray: Whether a loaded plate belongs to no foot.
         memory: For the next frame.
     """
@@ -63,7 +71,7 @@ class ContactDecision:
 
 
 class Planted(NamedTuple):
-    """What stands still: a foot or its toes, the world point (3,) of it that does not move, and whether it lies flat."""
+    """What stands still: a foot or its toes, its world point (3,) that does not move, and whether it lies flat."""
 
     segment: str
     point_m: Array

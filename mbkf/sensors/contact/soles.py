@@ -2,33 +2,33 @@
 
 from __future__ import annotations
 
-from math import hypot
+from collections.abc import Sequence
+from math import hypot, nan
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.human import HumanModel
-from mbkf.model.newton_euler import FEET
+from mbkf.sensors.contact.thresholds import KEEP_M, REACH_M
 from mbkf.sensors.marker_sensor import MarkerSensor
+
+Sole = Sequence[Sequence[float]]
+"""World positions of heel, ball and toe end of one sole, m."""
 
 
 def sole_locals(model: HumanModel) -> tuple[tuple[str, ...], Array]:
     """Heel, ball and toe end of right and left sole: their segments (6) and places (6, 3) in those, m."""
-    sole = model.description.sole
-    middle = 0.5 * (sole.inner_y_m + sole.outer_y_m)
     segments, places = [], []
-    for segment, sign in zip(FEET, (1.0, -1.0), strict=True):
-        toes = model.description.segment(segment.replace("foot", "toes"))
-        for x in (sole.heel_x_m, toes.origin_m[0], sole.toe_x_m):
-            segments.append(segment)
-            places.append(np.array([x, sign * middle, sole.height_m]))
-        scale = model.axis_scale(model.description.segment(segment))
-        places[-3:] = [place * scale for place in places[-3:]]
+    for sole in model.roles.soles:
+        scale = model.axis_scale(model.description.segment(sole.segment))
+        for x in (sole.heel_x_m, sole.ball_x_m, sole.toe_x_m):
+            segments.append(sole.segment)
+            places.append(np.array([x, 0.5 * (sole.inner_y_m + sole.outer_y_m), sole.height_m]) * scale)
     return tuple(segments), np.array(places)
 
 
 def sole_points(model: HumanModel, q: Array) -> Array:
-    """(T, 2, 3, 3) world positions of heel, ball and toe end of right and left sole; NaN where q is NaN."""
+    """(T, 2, 3, 3) world positions of heel, ball and toe end of right and left sole; NaN where q (T, nq) is NaN."""
     sensor = MarkerSensor(model, *sole_locals(model))
     points = np.full((len(q), 2, 3, 3), np.nan)
     for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
@@ -36,18 +36,52 @@ def sole_points(model: HumanModel, q: Array) -> Array:
     return points
 
 
-def distances_to_sole(point: Array, sole: Array) -> Array:
-    """(T,) horizontal distance from a point (T, 3) to the line from heel to toe end (T, 3, 3)."""
-    heel, toe = sole[:, 0, :2], sole[:, 2, :2]
-    along = toe - heel
-    share = np.clip(((point[:, :2] - heel) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
-    return np.linalg.norm(point[:, :2] - heel - share[:, None] * along, axis=1)
+def share_along(x: float, y: float, sole: Sole) -> float:
+    """Where a point of the floor lies along a sole, seen from above: 0 at the heel, 1 at the toe end.
 
+    NaN for a sole without length, which a body has that is lost so far away that numbers no longer resolve it.
 
-def distance_to_sole(point: tuple[float, float], sole: list) -> float:
-    """Horizontal distance from a point to the line from heel to toe end."""
+    Args:
+        x: World coordinate of the point, m.
+        y: The other one.
+        sole: The sole.
+    """
     (hx, hy, _), (tx, ty, _) = sole[0], sole[2]
     ax, ay = tx - hx, ty - hy
-    along = ((point[0] - hx) * ax + (point[1] - hy) * ay) / (ax * ax + ay * ay)
-    along = min(max(along, 0.0), 1.0)
-    return hypot(point[0] - hx - along * ax, point[1] - hy - along * ay)
+    length = ax * ax + ay * ay
+    return ((x - hx) * ax + (y - hy) * ay) / length if length else nan
+
+
+def distance_to_sole(x: float, y: float, sole: Sole) -> float:
+    """Horizontal distance of a point of the floor from the line between heel and toe end, m; NaN without length.
+
+    Args:
+        x: World coordinate of the point, m.
+        y: The other one.
+        sole: The sole.
+    """
+    along = min(max(share_along(x, y, sole), 0.0), 1.0)
+    (hx, hy, _), (tx, ty, _) = sole[0], sole[2]
+    return hypot(x - hx - along * (tx - hx), y - hy - along * (ty - hy))
+
+
+def distances_to_soles(points_m: Array, soles: Array) -> Array:
+    """(T, 2) :func:`distance_to_sole` of points (T, 3) from soles (T, 2, 3, 3); NaN where not known."""
+    found = np.full((len(points_m), 2), np.nan)
+    for t in np.flatnonzero(~np.isnan(points_m[:, 0]) & ~np.isnan(soles[:, 0, 0, 0])):
+        x, y, _ = points_m[t].tolist()
+        found[t] = [distance_to_sole(x, y, sole) for sole in soles[t].tolist()]
+    return found
+
+
+def nearer_foot(away_m: Sequence[float], before: int = -1) -> int:
+    """The foot that a centre of pressure belongs to: 0 right, 1 left, -1 none.
+
+    Args:
+        away_m: Distance from the right and from the left sole.
+        before: The foot it belonged to, which keeps it unless the other one is clearly nearer; -1 for none.
+    """
+    nearest = 0 if away_m[0] <= away_m[1] else 1
+    if before in (0, 1) and away_m[before] <= away_m[nearest] + KEEP_M:
+        nearest = before
+    return nearest if away_m[nearest] <= REACH_M else -1

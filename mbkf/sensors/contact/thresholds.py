@@ -1,40 +1,71 @@
-"""Limits by which contact of feet with plates and floor is decided."""
+"""Limits by which contact of the feet with plates and floor is decided, causally and offline.
+
+Both uses share the geometry and the limits below unless a sentence tells why they must differ. The causal decision
+(:mod:`mbkf.sensors.contact.causal`) sees predicted motion and no later frame; what it misses or invents disturbs the
+filter at once. The offline assignment (:mod:`mbkf.sensors.contact.offline`) sees the whole tracked trial and only has
+to refuse frames whose reactions are not fully measured.
+"""
+
+from mbkf.conventions import GRAVITY_M_S2
 
 REACH_M = 0.20
-"""A centre of pressure further than this from a sole belongs to no foot."""
+"""A centre of pressure further than this from a sole belongs to no foot. It allows for the width of a foot and
+for soles and plates that disagree by centimetres; a load further away is not that of a foot."""
+
+FALL_M_S2 = -0.4 * GRAVITY_M_S2
+"""Vertical acceleration of the pelvis below which nothing carries the body. The limit lies between full gravity, with
+which a body in flight falls, and what a body does that legs still support. The causal decision takes the predicted
+acceleration, the offline assignment the curvature of the pelvis's height."""
+
+FALL_WINDOW_S = 0.07
+"""Offline: duration over which that curvature is fitted; long enough for the noise of a differentiated height."""
+
+FALL_EDGE_S = 0.02
+"""Offline: flight begins and ends this much earlier and later, as the window blurs its edges."""
 
 TOUCH_HEIGHT_M = 0.025
+"""Soles within this height of each other, or of the floor, are level with it. Offline, a lower sole point touches."""
+
 TOUCH_SPEED_M_S = 0.4
-"""A sole point lower and slower than this touches the floor."""
-
-STANDING_SHARE = 0.05
-"""Share of body weight that the plates must carry when someone stands on the floor."""
-
-FALL_SHARE = 0.4
-FALL_WINDOW_S = 0.07
-FALL_EDGE_S = 0.02
-"""Flight: the pelvis falls with this share of gravity, judged over a short window, give or take an edge."""
-
-KEEP_M = 0.04
-"""A plate stays with its foot until the other one is nearer by this."""
-
-BETWEEN_M = 0.02
-"""A centre of pressure nearer to a sole than this is that foot's, and not between two."""
-
-LEAVE_SLACK = 1.7
-"""A standing foot has left the floor when it is higher or faster than the above times this."""
-
-SOLE_ENDS = 2
-"""Points of a sole that tell its height: heel and ball; its toe end dips below the floor when the toes bend."""
+"""Offline: a sole point that is low and slower than this touches. Strict, and without delay, because a touching foot
+without a plate only invalidates its frame."""
 
 STAND_HEIGHT_M = 0.045
 STAND_SPEED_M_S = 0.8
 STAND_AFTER_S = 0.025
-"""A foot lower and slower than this for that long carries, unless a plate below it says no. Landing heels are pitched,
-so that they touch a little above a flat sole; the delay lets a plate speak first."""
+"""Causal: a foot lower and slower than this for that long carries weight, unless a plate below it reads nothing. The
+limits are wider than offline, since a landing heel is pitched and touches above the level of a flat sole, and since a
+foot held to be in the air would be denied its reaction. The delay gives the foot's plate time to read first."""
 
-FLAT_FROM, FLAT_TO = 0.1, 0.6
-"""A foot whose load lies between these shares of its sole, from heel to toe end, lies flat."""
+LEAVE_SLACK = 1.7
+"""Causal: a standing foot has left the floor when it is higher or faster than the above times this. Hysteresis against
+decisions that alternate between frames."""
+
+SOLE_ENDS = 2
+"""Causal: points of a sole that tell its height, heel and ball. The toe end dips below the floor when the toes bend,
+and the learnt floor would follow; the offline floor is a median over the trial and takes all three."""
 
 FLOOR_SHARE = 0.1
-"""How fast the height of the floor under a loaded foot is learnt, per frame."""
+"""Causal: share by which the floor's height under a loaded foot is corrected per frame."""
+
+FLOOR_PERCENTILE = 5.0
+"""Offline: without a loaded frame, the floor lies at this percentile of the sole's lowest heights."""
+
+KEEP_M = 0.04
+"""Causal: a plate stays with its foot until the other sole is nearer by this. Offline, the whole stretch of loading
+decides instead."""
+
+MAJORITY_S = 0.05
+MIXED_SHARE = 0.2
+"""Offline: where more than this share of a stretch of loading is nearer to the other sole, the plate changes feet
+within the stretch, and each frame follows the majority of the frames up to so much earlier and later."""
+
+BETWEEN_M = 0.02
+"""Causal: a centre of pressure nearer to a sole than this belongs to that foot, and not to two feet on one plate.
+Offline, two feet on one plate are never told apart: one of them remains without a plate."""
+
+STANDING_SHARE = 0.05
+"""Offline: share of body weight that the plates must carry for a frame outside flight to be fully measured."""
+
+FLAT_FROM, FLAT_TO = 0.1, 0.6
+"""Causal: a foot whose load lies between these shares of its sole, from heel to toe end, lies flat."""

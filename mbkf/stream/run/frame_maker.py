@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
-from mbkf.filters.inverse_dynamics import TorqueSolver
+from mbkf.model.newton_euler import NewtonEuler
 from mbkf.pipelines.live.filter import LiveInputs
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.stream.receiving.alignment import ReadyFrame
@@ -25,7 +25,7 @@ class FrameMaker:
         """Args: what the filter was built from, and the stream's rate."""
         inputs = live.inputs
         self._sensor, self._rate_hz = inputs.sensor, rate_hz
-        self._solver = TorqueSolver(inputs.sensor.model)
+        self._balance = NewtonEuler(inputs.sensor.model)
         self._feet = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
         self._memory = self._feet.begin()
         self._arrivals: deque[float] = deque()
@@ -55,7 +55,7 @@ class FrameMaker:
         if found["known"]:
             if np.isnan(wrench).any():
                 wrench = self._measured(q, v, a, ready.plates)
-            torques = self._solver.torques(q, v, a, wrench)
+            torques = self._balance.tau(q, v, a, wrench.ravel())
             predicted = self._sensor.positions(q)
         return LiveFrame(
             number=ready.number - self._first,
@@ -70,7 +70,7 @@ class FrameMaker:
             measured_m=found["measured_m"],
             predicted_m=predicted,
             unlabelled_m=ready.unlabelled_m,
-            angle_sd=found["position_sd"],
+            angle_sd=found["angle_sd"],
             latency_s=latency_s,
             lost=lost,
             rate_hz=self._rate(),

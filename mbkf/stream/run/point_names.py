@@ -7,7 +7,7 @@ from collections import deque
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.estimate import Estimate, Prediction
+from mbkf.filters.estimate import Posterior, Prediction
 from mbkf.io.subject import Subject
 from mbkf.pipelines.live.filter import NUMERICAL
 from mbkf.pipelines.live.labels import LiveLabels, live_body
@@ -47,7 +47,7 @@ class PointNames:
             self._waiting.clear()
             return unnamed
 
-    def learn(self, estimate: Estimate) -> None:
+    def learn(self, estimate: Posterior) -> None:
         """What the filter made of the frame pushed last."""
         self._labels.learn(estimate.q)
 

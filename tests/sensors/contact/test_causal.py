@@ -1,4 +1,4 @@
-"""What the feet stand on, frame by frame, against motions whose loads are known and against made-up situations."""
+"""Causal contact decisions against motions whose loads are known and against single situations."""
 
 from dataclasses import FrozenInstanceError, fields
 
@@ -67,7 +67,7 @@ def test_a_measured_foot_gets_its_own_plate(name):
 
 @each_motion
 @pytest.mark.parametrize("recorded", [False, True], ids=["no plate", "plate not recorded"])
-def test_a_foot_off_the_plates_is_free_while_it_carries(name, recorded):
+def test_a_foot_off_the_plates_is_unmeasured_while_it_carries(name, recorded):
     made = trial(name)
     loads = made.motion.foot_wrench.copy()
     if recorded:
@@ -110,7 +110,7 @@ def test_two_plates_are_not_shared():
     np.testing.assert_array_equal(decided.wrench, half_weight(MODEL, middles))
 
 
-def test_who_stands_on_a_box_is_carried_and_who_falls_off_it_is_not():
+def test_a_body_on_a_box_is_carried_and_one_that_falls_off_it_is_not():
     """The plates read nothing, the feet are half a metre above them and the pelvis does not fall."""
     q = standing(MODEL, 0.5)
     beside = [plate(3.0, 0.0)]
@@ -133,7 +133,7 @@ def test_falling_is_judged_in_the_world_whatever_the_pelvis_points_at():
     assert Contact.UNMEASURED in stand_on(beside, np.zeros(6), q).contacts
 
 
-def test_a_plate_that_reads_nothing_says_the_foot_above_it_carries_nothing():
+def test_a_foot_above_an_unloaded_plate_carries_nothing():
     q = standing(MODEL)
     over = plates_under(MODEL, q)
     half = half_weight(MODEL, sole_points(MODEL, q[None])[0].mean(axis=1))
@@ -143,7 +143,7 @@ def test_a_plate_that_reads_nothing_says_the_foot_above_it_carries_nothing():
     assert decided.contacts == (Contact.MEASURED, Contact.UNMEASURED)
 
 
-def test_a_foot_on_the_floor_is_given_time_for_its_plate_to_speak():
+def test_a_foot_on_the_floor_is_held_back_until_its_plate_could_read():
     q = standing(MODEL)
     half = half_weight(MODEL, sole_points(MODEL, q[None])[0].mean(axis=1))
     one = plates_under(MODEL, q)[:1]
@@ -206,7 +206,7 @@ def test_memory_cannot_be_changed():
 
 
 @pytest.mark.parametrize("name", ["squat", "walk"])
-def test_what_is_said_to_stand_still_does(name):
+def test_a_planted_foot_is_at_rest(name):
     """Over a true motion the point and, where it lies flat, the segment are nearly at rest."""
     made = trial(name)
     feet, m = made.feet(), made.motion
@@ -223,7 +223,7 @@ def test_what_is_said_to_stand_still_does(name):
     assert np.percentile(turns, 90) < 0.1  # toes that are about to leave turn faster
 
 
-def test_who_rises_on_the_toes_stands_on_them():
+def test_a_foot_loaded_before_its_ball_stands_on_the_toes():
     q = standing(MODEL)
     soles = sole_points(MODEL, q[None])[0]
     for share, segment, flat in (

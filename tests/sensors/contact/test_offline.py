@@ -1,4 +1,4 @@
-"""Feet on force plates: centres of pressure from r × F, who stands where, and which frames are fully measured."""
+"""Plates assigned to feet over whole trials, and the frames in which every contact is measured."""
 
 import numpy as np
 import pytest
@@ -9,11 +9,12 @@ from mbkf.io.records import PlateReadings
 from mbkf.sensors.contact.offline import assign_feet, stretches
 from mbkf.sensors.contact.soles import sole_points
 from tests.motions import assert_near, moderate_pose, random_model, reference_model
+from tests.motions import assert_near, reference_model
 
 MODEL = reference_model()
 RATE_HZ, PLATE_RATE_HZ = 100.0, 1000.0
 WEIGHT_N = MODEL.mass_kg * GRAVITY_M_S2
-RIGHT, LEFT, NOBODY = 0, 1, -1
+RIGHT, LEFT, NEITHER = 0, 1, -1
 
 
 def standing(yaw=0.0, lifted=None, z=0.0, at=(0.0, 0.0)):
@@ -53,28 +54,6 @@ def assigned(q, plates):
     return assign_feet(MODEL, q, np.arange(len(q)) / RATE_HZ, RATE_HZ, tuple(plates))
 
 
-def test_soles_lie_under_the_feet_and_mirror():
-    heel, ball_of_foot, toe = sole_points(MODEL, standing()[None])[0].swapaxes(0, 1)
-    assert_near(np.stack([heel, ball_of_foot, toe])[:, :, 2], 0.0, 1e-15)
-    assert (heel[:, 0] < ball_of_foot[:, 0]).all()
-    assert (ball_of_foot[:, 0] < toe[:, 0]).all()
-    for points in (heel, ball_of_foot, toe):
-        assert points[RIGHT, 1] < 0
-        assert_near(points[LEFT], points[RIGHT] * [1, -1, 1], 1e-15)
-
-
-def test_soles_scale_and_move_with_the_foot():
-    rng = np.random.default_rng(1)
-    model = random_model(rng)
-    q = moderate_pose(model, rng)
-    points = sole_points(model, np.stack([q, np.full(model.nq, np.nan)]))
-    assert np.isnan(points[1]).all()
-    sole = model.description.sole
-    for side, foot in enumerate(("right_foot", "left_foot")):
-        along = model.axis_scale(model.description.segment(foot))[0] * (sole.toe_x_m - sole.heel_x_m)
-        assert np.linalg.norm(points[0, side, 2] - points[0, side, 0]) == pytest.approx(along, rel=1e-12)
-
-
 @pytest.mark.parametrize("yaw", [0.0, 1.0, np.pi, -2.0])
 def test_each_foot_has_its_own_plate_whichever_way_it_faces(yaw):
     q = np.repeat(standing(yaw)[None], 20, axis=0)
@@ -111,7 +90,7 @@ def test_two_feet_one_after_the_other_on_one_plate():
     load = np.r_[np.full(35, WEIGHT_N), np.zeros(10), np.full(35, WEIGHT_N)]
     foot = assigned(q, [plate(spot, load, 80)]).foot_of_plate[:, 0]
     assert (foot[:34] == RIGHT).all()
-    assert (foot[36:44] == NOBODY).all()
+    assert (foot[36:44] == NEITHER).all()
     assert (foot[46:] == LEFT).all()
 
 
@@ -140,7 +119,7 @@ def test_a_load_with_no_foot_near_is_stray():
     q = on_the_right_foot(30)
     far = plate([1.5, 0.0], np.r_[np.zeros(20), np.full(10, 300.0)], 30)
     loads = assigned(q, [plate(ball(q[0], RIGHT), WEIGHT_N, 30), far])
-    assert (loads.foot_of_plate == [RIGHT, NOBODY]).all()
+    assert (loads.foot_of_plate == [RIGHT, NEITHER]).all()
     assert loads.valid[7:20].all()
     assert not loads.valid[20:].any()
     assert_near(loads.wrench[:, :, 2].sum(axis=1), WEIGHT_N, 1e-10)
@@ -157,7 +136,7 @@ def test_a_plate_recorded_only_partly_is_valid_only_there():
 
 
 def test_a_raised_plate_has_its_pressure_on_its_own_surface():
-    """r × F plus a free moment about the vertical is the whole moment (eq. 4.9)."""
+    """r × F plus a free moment about the vertical is the whole moment."""
     q = np.repeat(standing(z=0.15)[None], 10, axis=0)
     loads = assigned(
         q, [plate(ball(q[0], side), 0.5 * WEIGHT_N, 10, height_m=0.15) for side in (RIGHT, LEFT)]
@@ -184,7 +163,7 @@ def test_flight_is_fully_measured_and_single_support_too():
 
 
 def test_hanging_without_falling_is_not_flight():
-    """Somebody holds on to a bar: no foot touches, no plate is loaded, and yet something carries the body."""
+    """The person holds on to a bar: no foot touches, no plate is loaded, and yet something carries the body."""
     rise = 0.1 * (1 - np.cos(np.linspace(0, np.pi, 60)))  # at most 2.8 m/s²
     height = np.r_[np.zeros(20), rise, np.full(30, 0.2)]
     q = np.array([standing(z=z) for z in height])
@@ -208,7 +187,7 @@ def test_untracked_frames_assign_no_load():
     at, lost = ball(q[0], RIGHT), np.arange(15, 22)
     q[lost] = np.nan
     loads = assigned(q, [plate(at, WEIGHT_N, 30)])
-    assert (loads.foot_of_plate[lost] == NOBODY).all()
+    assert (loads.foot_of_plate[lost] == NEITHER).all()
     assert (np.delete(loads.foot_of_plate, lost) == RIGHT).all()
     assert not loads.valid[lost].any()
     assert loads.valid[7:14].all()

@@ -6,14 +6,20 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mbkf.sensors.contact.plates import PlateAreas, pressure_and_free_moment, surface_height
+from mbkf.sensors.contact.plates import (
+    PlateAreas,
+    centres_of_pressure,
+    least_load,
+    pressure_and_free_moment,
+    surface_height,
+)
 from tests.dynamics import plate
 
 PLATE = plate(0.0, 0.0)
 
 
 def test_a_surface_lies_where_its_corners_are_and_without_them_at_the_origin():
-    raised = replace(PLATE, corners_m=PLATE.corners_m + [0.0, 0.0, 0.3])
+    raised = replace(PLATE, corners_m=PLATE.corners_m + np.array([0.0, 0.0, 0.3]))
     assert surface_height(raised) == PLATE.corners_m[0, 2] + 0.3
     bare = replace(PLATE, corners_m=None, origin_m=np.array([0.0, 0.0, -0.04]))
     assert surface_height(bare) == -0.04
@@ -34,10 +40,18 @@ def test_an_unloaded_foot_has_neither():
     assert np.isnan(point).all() and np.isnan(free).all()
 
 
+def test_a_plate_is_loaded_from_its_threshold_and_never_without_a_force():
+    wrench = np.array([[0.0, 0.0, fz, 0.0, 0.0, 0.0] for fz in (-30.0, 0.0, 19.9, 20.0)])
+    loaded = ~np.isnan(centres_of_pressure(wrench, 0.0, 20.0)).any(axis=1)
+    assert loaded.tolist() == [False, False, False, True]
+    assert not np.isfinite(centres_of_pressure(wrench[:2], 0.0, 0.0)).any()
+    assert least_load(20.0) == 20.0 and least_load(0.0) > 0.0
+
+
 def test_points_are_over_the_plates_whose_outline_holds_them():
     corners = PLATE.corners_m
     middle = corners[:, :2].mean(axis=0)
-    beside = middle + [np.ptp(corners[:, 0]), 0.0]
+    beside = middle + np.array([np.ptp(corners[:, 0]), 0.0])
     other_way = replace(PLATE, corners_m=corners[::-1])
     areas = PlateAreas([PLATE, other_way, replace(PLATE, corners_m=None)])
     assert areas.known.tolist() == [True, True, False]

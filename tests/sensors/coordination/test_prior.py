@@ -10,7 +10,6 @@ from scipy.spatial.transform import Rotation
 from mbkf.sensors.block import Frame
 from mbkf.sensors.coordination.prior import (
     BLOCK_S,
-    LEADING,
     NOTED_HZ,
     CoordinationMemory,
     CoordinationPrior,
@@ -30,6 +29,7 @@ from tests.dynamics import (
 from tests.motions import reference_model
 
 MODEL = reference_model()
+LEADING = MODEL.roles.leading
 SEEN_S, HIDDEN_S = 2.6, 0.4
 ARMS = ("upper_arm", "forearm", "hand")
 

@@ -9,7 +9,7 @@ from mbkf.labelling.assignment import HIDDEN
 from mbkf.labelling.running import RunningSettings
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.labelling.body import label_body
-from mbkf.pipelines.labelling.redecision import course, relabel_offline, trajectories
+from mbkf.pipelines.labelling.relabelling import course, relabel_offline, trajectories
 from tests.walker import walker
 
 

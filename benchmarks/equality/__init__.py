@@ -1,0 +1,1 @@
+"""Whether two source trees give the same results, capture by capture; see ``benchmarks.equality.__main__``."""

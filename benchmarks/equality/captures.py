@@ -1,0 +1,276 @@
+"""The captures two trees are compared on: how each is prepared, scaled and followed.
+
+A word of a command may hold ``{data}``, the folder of reference captures, and ``{made}``, the folder of
+what the capture's own preparation wrote.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Mode = Literal["plain", "smoothed", "live"]
+
+FILTERS = ("kinematic", "torque", "dynamic")
+MODES: tuple[Mode, ...] = ("plain", "smoothed", "live")
+OFFLINE: tuple[Mode, ...] = ("plain", "smoothed")
+
+SUBJECT = "{made}/subject.toml"
+
+
+@dataclass(frozen=True)
+class Run:
+    """One way to follow a capture."""
+
+    filter: str
+    mode: Mode
+
+    @property
+    def name(self) -> str:
+        """Name of its folder."""
+        return f"{self.filter}-{self.mode}"
+
+
+@dataclass(frozen=True)
+class Captured:
+    """A capture that both trees follow.
+
+    Attributes:
+        name: Its row and its folder.
+        trial: The capture.
+        prepare: Commands that write into ``{made}``, in this order; one of them writes the subject.
+        options: What both ``mbkf reconstruct`` and ``mbkf live`` need to read the trial.
+        extra: What ``mbkf reconstruct`` needs beyond that.
+        filters: The filters it is followed with.
+        modes: Whether causal, smoothed, live.
+    """
+
+    name: str
+    trial: str
+    prepare: tuple[tuple[str, ...], ...]
+    options: tuple[str, ...] = ()
+    extra: tuple[str, ...] = ()
+    filters: tuple[str, ...] = FILTERS
+    modes: tuple[Mode, ...] = MODES
+
+    @property
+    def runs(self) -> tuple[Run, ...]:
+        """All combinations of filter and mode."""
+        return tuple(Run(name, mode) for name in self.filters for mode in self.modes)
+
+    def words(self, run: Run) -> tuple[str, ...]:
+        """What follows ``mbkf`` for a run, without ``--out``."""
+        subject = ("--subject", SUBJECT, "--filter", run.filter)
+        if run.mode == "live":
+            return ("live", "--from", f"file:{self.trial}", "--speed", "0", *subject, *self.options)
+        smooth = ("--smooth",) if run.mode == "smoothed" else ()
+        return ("reconstruct", self.trial, *subject, *smooth, *self.options, *self.extra)
+
+
+def scaled(mass_kg: float, static: str | None = None, trial: str | None = None) -> tuple[str, ...]:
+    """The command that scales a person from a standing trial or, where there is none, from a moving one."""
+    source = () if static is None else (f"{{data}}/{static}",)
+    moving = () if trial is None else ("--trial", f"{{data}}/{trial}")
+    return ("scale", *source, *moving, "--mass", str(mass_kg), "--out", SUBJECT)
+
+
+def with_static(name: str, trial: str, static: str, mass_kg: float, forces: str | None = None) -> Captured:
+    """A capture whose person is scaled from a standing trial.
+
+    Args:
+        name: The capture's row.
+        trial: Its file below the data folder.
+        static: The standing trial, below the data folder.
+        mass_kg: The person's mass.
+        forces: Ground reactions in a file of their own, below the data folder.
+    """
+    options = () if forces is None else ("--forces", f"{{data}}/{forces}")
+    return Captured(name, f"{{data}}/{trial}", (scaled(mass_kg, static),), options)
+
+
+def by_itself(name: str, trial: str, mass_kg: float, forces: str | None = None) -> Captured:
+    """A capture whose person is scaled from the same trial, because no standing trial exists.
+
+    Args:
+        name: The capture's row.
+        trial: Its file below the data folder.
+        mass_kg: The person's mass; where the data do not state it, any plausible one.
+        forces: Ground reactions in a file of their own, below the data folder.
+    """
+    options = () if forces is None else ("--forces", f"{{data}}/{forces}")
+    return Captured(name, f"{{data}}/{trial}", (scaled(mass_kg, trial=trial),), options)
+
+
+def synthetic(motion: str) -> Captured:
+    """A synthetic motion followed on its own body; the body scaled from its standing trial is compared too."""
+    make = ("synth", "--motion", motion, "--out", "{made}")
+    scale = ("scale", "{made}/static.c3d", "--mass", "70", "--out", "{made}/scaled.toml")
+    return Captured(f"synth_{motion}", "{made}/trial.c3d", (make, scale))
+
+
+_RAJAGOPAL, _ZOO, _STOOP, _POSE = (
+    "rajagopal_walk_run",
+    "biomechzoo_walk_turn",
+    "stoop_lift_box",
+    "pose2sim_keypoints_balance",
+)
+_AUTOLABEL, _ENCODINGS = "autolabel_unlabelled_fullbody", "c3d_encodings"
+
+_RAJAGOPAL_WALK = with_static(
+    "rajagopal_walk",
+    f"{_RAJAGOPAL}/motion_capture_walk.trc",
+    f"{_RAJAGOPAL}/static_walk_1.trc",
+    85.07,
+    f"{_RAJAGOPAL}/grf_walk.mot",
+)
+_GAITALYTICS = by_itself("gaitalytics", "gaitalytics_walk/overground_fullbody_4plates.c3d", 63.6)
+
+_REAL = (
+    _RAJAGOPAL_WALK,
+    with_static(
+        "rajagopal_run",
+        f"{_RAJAGOPAL}/motion_capture_run.trc",
+        f"{_RAJAGOPAL}/static_run.trc",
+        72.84,
+        f"{_RAJAGOPAL}/grf_run.mot",
+    ),
+    with_static(
+        "gait2354_walk",
+        "gait2354_walk/subject01_walk1.trc",
+        "gait2354_walk/subject01_static.trc",
+        72.6,
+        "gait2354_walk/subject01_walk1_grf.mot",
+    ),
+    with_static(
+        "biomechzoo_HC032A",
+        f"{_ZOO}/HC032A_Straight_HC032A03.c3d",
+        f"{_ZOO}/HC032A_Static_HC032A01.c3d",
+        60.3,
+    ),
+    with_static(
+        "biomechzoo_HC044A",
+        f"{_ZOO}/HC044A_Straight_HC044A15.c3d",
+        f"{_ZOO}/HC044A_Static_HC044A01.c3d",
+        39.4,
+    ),
+    _GAITALYTICS,
+    by_itself("opensim_walking2", "opensim_gappy_walk/walking2.c3d", 75.0),
+    by_itself(
+        "exact_truth_walk2",
+        "synthetic_exact_truth/subject01_walk2_markers.trc",
+        72.84,
+        "synthetic_exact_truth/subject01_walk2_grf.mot",
+    ),
+    with_static(
+        "bmc_run", "bmc_walk_run/run.trc", "bmc_walk_run/run_static.trc", 70.0, "bmc_walk_run/run_grf.mot"
+    ),
+    by_itself("bmc_lower_walk1", "bmc_walk_run/lower_walk1.trc", 70.0),
+    by_itself("cgm24_walk", "cgm24_lowerlimb_walk/CGM24_Walking01.c3d", 77.6),
+    *(
+        with_static(
+            f"stoop_lift_{number}", f"{_STOOP}/{trial}", f"{_STOOP}/neu_t169_f250f350.c3d", mass_kg=81.7
+        )
+        for number, trial in enumerate(
+            (
+                "stoop1_t169_f620f800.c3d",
+                "stoop2_t169_f1395f1590.c3d",
+                "stoop3_t169_f2101f2300.c3d",
+            ),
+            start=1,
+        )
+    ),
+    *(
+        with_static(
+            f"pose2sim_{kind}", f"{_POSE}/balancing_{kind}.trc", f"{_POSE}/static_{kind}.trc", mass_kg=69.0
+        )
+        for kind in ("raw", "filt", "filt_LSTM")
+    ),
+    by_itself("kneel_to_prone", f"{_AUTOLABEL}/KneeltoProne01_labelled.c3d", 75.0),
+    by_itself("prone_to_run", f"{_AUTOLABEL}/PronetoRun01_labelled.c3d", 75.0),
+    Captured(
+        "kneel_to_run",
+        "{made}/subject.c3d",
+        (
+            (
+                "label",
+                f"{{data}}/{_AUTOLABEL}/S09_KneeltoRun02_UNLABELLED.c3d",
+                *("--protocol", "autolabel62", "--mass", "75", "--out", "{made}/subject.c3d"),
+            ),
+        ),
+    ),
+    by_itself("c3d_Eb015pr", f"{_ENCODINGS}/Eb015pr.c3d", 70.0),
+    *(
+        # The same trial in other encodings: one filter says whether it is read alike.
+        Captured(
+            f"c3d_{name}",
+            f"{{data}}/{_ENCODINGS}/{name}.c3d",
+            (scaled(70.0, trial=f"{_ENCODINGS}/{name}.c3d"),),
+            filters=("kinematic",),
+            modes=("plain",),
+        )
+        for name in ("Eb015pi", "Eb015vr", "Eb015vi", "Eb015sr", "Eb015si")
+    ),
+)
+
+
+def _walk_with_imus(name: str, *extra: str) -> Captured:
+    """The Rajagopal walk with virtual inertial sensors on the motion reconstructed from it."""
+    prepare = (
+        *_RAJAGOPAL_WALK.prepare,
+        (*_RAJAGOPAL_WALK.words(Run("dynamic", "plain")), "--out", "{made}/motion"),
+        ("imu", "synth", "{made}/motion/motion.h5", "--out", "{made}/imus.csv"),
+    )
+    return Captured(
+        name,
+        _RAJAGOPAL_WALK.trial,
+        prepare,
+        _RAJAGOPAL_WALK.options,
+        ("--imu", "{made}/imus.csv", *extra),
+        ("dynamic",),
+        OFFLINE,
+    )
+
+
+_OPTIONS = (
+    _walk_with_imus("rajagopal_walk_imus"),
+    _walk_with_imus("rajagopal_walk_imus_mounts", "--imu-mounts", "{made}/imus.toml"),
+    Captured(
+        "rajagopal_walk_withheld",
+        _RAJAGOPAL_WALK.trial,
+        _RAJAGOPAL_WALK.prepare,
+        _RAJAGOPAL_WALK.options,
+        ("--hide", "R.Knee,R.SH1,R.SH2@0.5:0.8", "--without-plate", "1"),
+        modes=OFFLINE,
+    ),
+    Captured(
+        "gaitalytics_keep_markers",
+        _GAITALYTICS.trial,
+        _GAITALYTICS.prepare,
+        extra=("--keep-markers",),
+        modes=OFFLINE,
+    ),
+    *(
+        Captured(
+            f"rajagopal_walk_{preset}",
+            _RAJAGOPAL_WALK.trial,
+            _RAJAGOPAL_WALK.prepare,
+            (*_RAJAGOPAL_WALK.options, "--preset", preset),
+            filters=("torque",),
+            modes=("plain",),
+        )
+        for preset in ("FD", "FDMC", "FD-literal", "FDMC-literal")
+    ),
+)
+
+CAPTURES: tuple[Captured, ...] = (*_REAL, *(synthetic(m) for m in ("squat", "walk", "jump")), *_OPTIONS)
+
+LEFT_OUT = {
+    "biobuddy_functional": "no marker protocol of the program knows its names",
+    "rehazenter_walk": "no marker protocol of the program knows its names",
+    "csu_2d_id_reference": "a table of six markers in a plane, no capture file",
+    "imu_broad": "one inertial sensor on a board, no markers",
+    "imu_gaitmap_foot": "inertial sensors on the feet; three markers per foot in a table",
+    "imu_opensense_walk": "inertial sensors, no markers",
+    "imu_qmt_fullbody": "inertial sensors, no markers",
+}
+"""Folders of the data whose captures ``mbkf reconstruct`` cannot follow, each with the reason."""

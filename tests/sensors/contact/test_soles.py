@@ -1,0 +1,91 @@
+"""Soles of the body in the world, their distance from points of the floor, and the foot a pressure belongs to."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mbkf.sensors.contact.soles import (
+    distance_to_sole,
+    distances_to_soles,
+    nearer_foot,
+    share_along,
+    sole_points,
+)
+from mbkf.sensors.contact.thresholds import KEEP_M, REACH_M
+from tests.dynamics import standing
+from tests.motions import assert_near, moderate_pose, random_model, reference_model
+
+MODEL = reference_model()
+SOLES = sole_points(MODEL, standing(MODEL)[None])[0]
+RIGHT, LEFT, NEITHER = 0, 1, -1
+metres = st.floats(-1.0, 1.0)
+
+
+def test_soles_lie_under_the_feet_and_mirror():
+    heel, ball_of_foot, toe = sole_points(MODEL, standing(MODEL)[None])[0].swapaxes(0, 1)
+    assert_near(np.stack([heel, ball_of_foot, toe])[:, :, 2], 0.0, 1e-15)
+    assert (heel[:, 0] < ball_of_foot[:, 0]).all()
+    assert (ball_of_foot[:, 0] < toe[:, 0]).all()
+    for points in (heel, ball_of_foot, toe):
+        assert points[0, 1] < 0
+        assert_near(points[1], points[0] * [1, -1, 1], 1e-15)
+
+
+def test_soles_scale_and_move_with_the_foot():
+    rng = np.random.default_rng(1)
+    model = random_model(rng)
+    q = moderate_pose(model, rng)
+    points = sole_points(model, np.stack([q, np.full(model.nq, np.nan)]))
+    assert np.isnan(points[1]).all()
+    sole = model.description.sole
+    for side, foot in enumerate(("right_foot", "left_foot")):
+        along = model.axis_scale(model.description.segment(foot))[0] * (sole.toe_x_m - sole.heel_x_m)
+        assert np.linalg.norm(points[0, side, 2] - points[0, side, 0]) == pytest.approx(along, rel=1e-12)
+
+
+@given(metres, metres, st.sampled_from([RIGHT, LEFT]))
+def test_the_distance_is_that_of_the_nearest_point_between_heel_and_toe_end(x, y, side):
+    heel, _, end = SOLES[side, :, :2]
+    line = heel + np.linspace(0.0, 1.0, 2001)[:, None] * (end - heel)
+    nearest = np.linalg.norm([x, y] - line, axis=1).min()
+    assert distance_to_sole(x, y, SOLES[side].tolist()) == pytest.approx(nearest, abs=1e-6, rel=1e-3)
+
+
+@given(st.floats(-1.0, 2.0), metres)
+def test_the_share_along_a_sole_does_not_depend_on_the_distance_from_it(share, aside):
+    heel, _, end = SOLES[RIGHT, :, :2]
+    x, y = heel + share * (end - heel) + aside * np.array([heel[1] - end[1], end[0] - heel[0]])
+    assert share_along(x, y, SOLES[RIGHT].tolist()) == pytest.approx(share, abs=1e-9)
+
+
+def test_distances_are_known_where_point_and_soles_are():
+    points, soles = np.zeros((3, 3)), np.repeat(SOLES[None], 3, axis=0)
+    points[1], soles[2] = np.nan, np.nan
+    found = distances_to_soles(points, soles)
+    assert np.isnan(found[1:]).all()
+    assert found[0].tolist() == [distance_to_sole(0.0, 0.0, sole) for sole in SOLES.tolist()]
+
+
+def test_no_pressure_belongs_to_soles_so_far_away_that_they_have_no_length():
+    lost = np.full((1, 2, 3, 3), 1e21)
+    away = distances_to_soles(np.zeros((1, 3)), lost)[0]
+    assert np.isnan(away).all()
+    assert nearer_foot(away.tolist(), RIGHT) == NEITHER
+
+
+@pytest.mark.parametrize(
+    ("away", "before", "foot"),
+    [
+        ((0.05, 0.10), NEITHER, RIGHT),
+        ((0.10, 0.05), NEITHER, LEFT),
+        ((0.05, 0.05), NEITHER, RIGHT),
+        ((0.05, 0.05 + 0.9 * KEEP_M), LEFT, LEFT),
+        ((0.05, 0.05 + 1.1 * KEEP_M), LEFT, RIGHT),
+        ((1.1 * REACH_M, 2 * REACH_M), NEITHER, NEITHER),
+        ((0.9 * REACH_M, 1.01 * REACH_M), LEFT, NEITHER),
+        ((0.05, 0.10), 2, RIGHT),
+    ],
+)
+def test_a_pressure_belongs_to_the_nearer_sole_within_reach(away, before, foot):
+    assert nearer_foot(away, before) == foot
