@@ -7,8 +7,6 @@ import pytest
 
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.dynamic.tracking import ROUNDS
-from mbkf.filters.dynamic.tracking import ROUNDS
-from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.sensors.contact.records import Contact
 from tests.dynamics import settings_with
 from tests.followed import FRAMES, SETTLED, WHOLE, estimates, made, made_follower, recording, torques, tracked
