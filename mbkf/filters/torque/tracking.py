@@ -125,7 +125,7 @@ class TorqueTracking:
         moved = ForcedState(q, here.v + step[nv : 2 * nv], here.u + step[2 * nv :], P)
         state = self.kalman.report(moved)
         inner = replace(estimate.inner, state=state)
-        return replace(estimate, q=state.q, v=state.v, a=state.a, wrench=state.foot_wrench, inner=inner)
+        return estimate._replace(q=state.q, v=state.v, a=state.a, wrench=state.foot_wrench, inner=inner)
 
 
 def _known(footing: tuple[Contact, Contact]) -> tuple[BoolArray, BoolArray]:
