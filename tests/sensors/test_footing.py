@@ -14,7 +14,7 @@ from tests.motions import reference_model
 MODEL = reference_model()
 STILL = np.zeros(MODEL.nv)
 RIGHT, LEFT = 0, 1
-each_motion = pytest.mark.parametrize("name", ["squat", "walk", "jump"])
+each_motion = pytest.mark.parametrize("name", ["squat", "walk", pytest.param("jump", marks=pytest.mark.slow)])
 
 
 def decisions(made, loads, plates=None):

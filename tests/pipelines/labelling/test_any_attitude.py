@@ -14,6 +14,8 @@ from mbkf.pipelines.labelling.body import label_body
 from tests.labelling.movement import RATE_HZ, movement, shuffled
 from tests.walker import walker
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def prone():
