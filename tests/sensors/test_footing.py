@@ -41,6 +41,7 @@ def test_loaded_feet_are_measured_and_hanging_ones_in_the_air(name):
     assert (found[load == 0.0] == Footing.AIR).all()
 
 
+@pytest.mark.slow
 def test_all_flight_is_in_the_air():
     made = trial("jump")
     off, on = made.motion.flight_s
