@@ -24,7 +24,7 @@ JOINTS: tuple[tuple[str, str, float], ...] = (
 
 @dataclass(frozen=True)
 class HeadingSettings:
-    """How headings wander and how joints hold them.
+    """How headings drift, and how strongly joints constrain them.
 
     Attributes:
         walk_rad: Random walk of a segment's heading error, rad/√s: gyroscope drift or a disturbed field.
