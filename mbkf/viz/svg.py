@@ -94,12 +94,12 @@ def chart(
 
 
 def ticks(low: float, high: float, wanted: int) -> tuple[list[float], int]:
-    """About ``wanted`` round numbers from low to high, at least one, and the decimals they need.
+    """Round numbers for an axis, and the decimals they need.
 
     Args:
         low: Lower end of the axis.
-        high: Upper end, above ``low``.
-        wanted: Number of ticks to aim at.
+        high: Upper end of the axis.
+        wanted: Approximate number of ticks.
     """
     raw = (high - low) / max(1, wanted)
     power = 10.0 ** math.floor(math.log10(raw))
