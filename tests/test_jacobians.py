@@ -46,6 +46,7 @@ ELSEWHERE = {
     "filters.gate.judged": "filters/test_gate.py",
     "numerics.discretisation.Discrete.phi": "numerics/test_discretisation.py",
     "numerics.kalman.Correction.gain_effect": "numerics/test_kalman.py",
+    "numerics.kalman.information": "numerics/test_kalman.py",
     "numerics.kalman.informed_with_rows": "numerics/test_kalman.py",
     "numerics.levenberg_marquardt.ArrowEquations.corner_gradient": "numerics/test_levenberg_marquardt.py",
     "numerics.levenberg_marquardt.ArrowEquations.frame_gradient": "numerics/test_levenberg_marquardt.py",

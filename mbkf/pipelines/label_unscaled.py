@@ -138,7 +138,7 @@ class _Search:
         found: list[_Named | None] = []
         for done, anchor in enumerate(anchors):
             progress(done, len(anchors))
-            owner, _ = max((self._laid(anchor, size) for size in sizes), key=lambda one: one[1])
+            owner, _ = max((self._searched(anchor, size) for size in sizes), key=lambda one: one[1])
             one = self._scaled(owner)
             agreed = one is not None and any(_agree(one, other) for other in found)
             found.append(one)
@@ -181,7 +181,7 @@ class _Search:
     def _reference_height_m(self) -> float:
         return self._protocol.body.reference_height_m
 
-    def _laid(self, frame: int, size: float) -> tuple[Indices, float]:
+    def _searched(self, frame: int, size: float) -> tuple[Indices, float]:
         """(count,) marker of every track by a body of one size matched with them at a frame, and its score."""
         body = self._protocol.body
         factors = {name: size for name in body.scale_factors}

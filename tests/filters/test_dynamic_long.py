@@ -12,6 +12,8 @@ from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
 from mbkf.numerics.kalman import informed_with_rows
 from tests.dynamics import follow, trial
 
+pytestmark = pytest.mark.slow
+
 STEPS = 100_000
 SIZE = 15
 

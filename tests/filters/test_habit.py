@@ -17,6 +17,8 @@ from mbkf.synthesis.motion import synthesise_motion
 from tests.dynamics import DT, camera_markers, dynamic_filter, random_state, standing, trial
 from tests.motions import reference_model
 
+pytestmark = pytest.mark.slow
+
 MODEL = reference_model()
 LEADING = MODEL.roles.leading
 SEEN_S, HIDDEN_S = 2.6, 0.4

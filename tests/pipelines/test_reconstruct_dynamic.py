@@ -12,6 +12,8 @@ from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
 from tests.dynamics import trial
 from tests.motions import angle_errors
 
+pytestmark = pytest.mark.slow
+
 QUIET = CaptureSettings(markers_sd_m=0.001, skin_sd_m=0.0, occlusion=0.0, offset_n=(0.0, 0.0))
 SHORT = slice(40, 120)
 LATE = slice(15, None)

@@ -16,6 +16,8 @@ from mbkf.pipelines.tune import TuneSettings, tune
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.person import body_of, synthesise_subject
 
+pytestmark = pytest.mark.slow
+
 RATE_HZ, NOISE_M = 100.0, 0.002
 MOTION, STATED = 0.1, 0.5
 """True factor on accelerations; the subject states this share of the true marker noise."""

@@ -14,6 +14,8 @@ from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.pipelines.imu.angles import AnglesSettings, imu_angles
 
+pytestmark = pytest.mark.slow
+
 MODEL = HumanModel.scaled()
 RATE = 50.0
 SAGITTAL = (

@@ -21,6 +21,8 @@ from mbkf.stream.source import PlateSamples
 from tests.captures import MASS_KG, made_capture
 from tests.stream.scripted import SETTINGS, ScriptedSource, assert_same, frames_of, offline
 
+pytestmark = pytest.mark.slow
+
 COMES, STANDS = 40, 130
 """Frames in which somebody comes, and stands; then somebody moves."""
 
