@@ -51,7 +51,7 @@ class Context:
 
     Attributes:
         data: Folder of the public reference captures, or None when there is none.
-        out: Folder for whatever the benchmark wants to keep; exists.
+        out: Folder for the benchmark's files; exists.
         quick: Whether to do a shorter run, for a first look.
     """
 

@@ -5,7 +5,7 @@ for every method alike. FCDI (kinematic filter and inverse dynamics) is run at t
 is best for the motion, found for torques and for velocities separately: it is compared at its own best in each.
 RMS values over joint dofs and tracked frames are pooled over seeds.
 
-What the capture defaults say of their errors is shown without a bound: a squat is planned, no random walk as a plant
+Consistency with the capture defaults is shown without a bound: a squat is planned, no random walk as a plant
 believes, and these settings expect skin. `dynamic_consistency` judges the filter where everything is matched.
 """
 
@@ -102,7 +102,7 @@ class Errors:
 
 @dataclass(frozen=True)
 class Consistency:
-    """What a filter says of its errors against what they are, per dof and over settled frames.
+    """Consistency of a filter's errors with its covariance, per dof and over settled frames.
 
     Attributes:
         nees: Mean of (error / sd)² of positions, velocities and torques.

@@ -113,7 +113,7 @@ def describe(capture: Capture) -> CaptureSummary:
         capture: What a reader returned.
 
     Returns:
-        Counts, shares and ranges, with nothing left to compute for whoever shows them.
+        Counts, shares and ranges, ready to be shown.
     """
     markers = capture.markers
     present = markers.present

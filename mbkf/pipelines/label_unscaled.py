@@ -1,4 +1,4 @@
-"""Labels and a scaled subject from an unlabelled capture of somebody nobody has measured, in any attitude.
+"""Labels and a scaled subject from an unlabelled capture of a person not measured before, in any attitude.
 
 Neither can be had without the other, so both are found by turns: a body of the protocol's own geometry is laid onto
 the capture's tracks, the person is scaled from what that names, and the tracks are named anew by the scaled person.

@@ -53,7 +53,7 @@ class ReconstructSettings:
             dynamic filter, "dynamic" ours.
         smooth: Whether later frames correct earlier ones.
         smoothing: How far they do.
-        kinematic, dynamic, torque: What each filter believes.
+        kinematic, dynamic, torque: Settings of each filter.
         correct_markers: Whether marker positions are corrected on the trial first (thesis 4.1.1).
         hide: Markers to hide.
         without_plates: Names of plates to withhold.
@@ -110,8 +110,8 @@ def reconstruct(
                 raise InvalidInput(
                     f"the {settings.filter} filter reads no inertial sensors; use --filter dynamic"
                 )
-            inputs, recording, told = with_imus(inputs, recording, shown.times_s, imus)
-            capture = replace(capture, notes=(*capture.notes, *told))
+            inputs, recording, remarks = with_imus(inputs, recording, shown.times_s, imus)
+            capture = replace(capture, notes=(*capture.notes, *remarks))
         result = track(
             follower(settings.filter, inputs),
             recording,

@@ -24,7 +24,7 @@ class OrientResult:
 
     Attributes:
         courses: One per sensor.
-        compared: The same by the second filter, empty when none was asked for.
+        compared: The same by the second filter, empty without one.
         errors: Per sensor that brings a reference with a known world, its name and error.
         warnings: What was found wrong, with its likely fix.
     """
@@ -75,7 +75,7 @@ def orient(
         progress: Called as samples are done.
 
     Raises:
-        InvalidInput: The readings cannot be right; says what to do.
+        InvalidInput: The readings are not plausible; the message gives the remedy.
         UnknownName: Unknown sensor, frame or filter.
     """
     chosen = settings or OrientSettings()

@@ -1,4 +1,4 @@
-"""A labelled capture on disk, and beside it what labelling has to say of itself."""
+"""A labelled capture on disk, and beside it the labeller's report."""
 
 from __future__ import annotations
 

@@ -98,7 +98,7 @@ def trajectories(
 
     Args:
         points: The unlabelled points (T, C, 3).
-        label_of_point: (T, C) index of each point's marker, `HIDDEN` for none.
+        label_of_point: (T, C) index of each point's marker, ``HIDDEN`` for none.
         names: (M,) names of the markers.
     """
     positions = np.full((points.frames, len(names), 3), np.nan)

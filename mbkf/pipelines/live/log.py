@@ -1,6 +1,6 @@
-"""What a live run writes while it goes on: a row per answered frame, the plates' samples, and what both belong to.
+"""The log of a live run: a row per answered frame, the plates' samples, and the description of both.
 
-From these three files alone the results are made afterwards, so nothing that was written is lost when a run breaks off.
+The results are made from these three files alone, so nothing that was written is lost when a run breaks off.
 """
 
 from __future__ import annotations
@@ -124,7 +124,7 @@ class LogRows:
 
 
 def blank(dtype: np.dtype, rows: int) -> NDArray:
-    """Rows that say nothing: numbers NaN, flags off."""
+    """Empty rows: numbers NaN, flags off."""
     empty = np.zeros(rows, dtype=dtype)
     for name in dtype.names or ():
         if empty[name].dtype.kind == "f":
@@ -210,7 +210,7 @@ def read_live_log(folder: Path) -> Logged:
 
 
 def track_of(rows: NDArray) -> Track:
-    """The followed trial that rows tell of."""
+    """The track of the trial, from the log's rows."""
     asked = rows["footing"][:, 0] != UNASKED
     names = ("q", "v", "a", "wrench", "wrench_sd", "nis", "readings", "step_seconds", "refused", "tracked")
     spread = ("position", "velocity", "angle", "rate", "torque", "foot_height")

@@ -164,7 +164,7 @@ def _matching_rows(times_s: Array, truth_s: Array, rate_hz: float) -> Array:
 
 
 def _nees_per_dof(r: Reconstruction, error: Array) -> float | None:
-    """Mean of eᵀ P⁻¹ e / n over frames; 1 for a covariance that says the truth."""
+    """Mean of eᵀ P⁻¹ e / n over frames; 1 for a consistent covariance."""
     if r.covariance is None:
         return None
     judged = np.flatnonzero(np.isfinite(error).all(axis=1) & np.isfinite(r.covariance).all(axis=(1, 2)))

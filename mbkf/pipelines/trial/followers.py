@@ -34,7 +34,7 @@ class FilterInputs:
         plates: The plates.
         dt_s: Time between frames.
         held: (nv,) dofs that no marker of the trial moves with.
-        kinematic, dynamic, torque: What each filter believes.
+        kinematic, dynamic, torque: Settings of each filter.
         inertial: Inertial sensors on the body, None where there are none.
     """
 

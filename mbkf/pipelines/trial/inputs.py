@@ -21,7 +21,7 @@ MIN_PRESENT = 0.02
 """A marker seen in a smaller share of the frames than this does not count for what can be observed."""
 
 
-class Beliefs(Protocol):
+class FilterSettings(Protocol):
     """What each filter believes."""
 
     @property
@@ -38,7 +38,7 @@ class Beliefs(Protocol):
 
 
 def trial_inputs(
-    shown: MarkerTrajectories, plates: tuple[PlateReadings, ...], subject: Subject, beliefs: Beliefs
+    shown: MarkerTrajectories, plates: tuple[PlateReadings, ...], subject: Subject, settings: FilterSettings
 ) -> tuple[FilterInputs, Recording]:
     """Body, markers and plates of a trial, and its readings.
 
@@ -46,7 +46,7 @@ def trial_inputs(
         shown: (T, M, 3) m, under the subject's own names; what is hidden is NaN.
         plates: The plates that are read.
         subject: The person, with marker positions as they are to be used.
-        beliefs: Settings of the filters.
+        settings: Settings of the filters.
     """
     model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
     by_name = {marker.name: marker for marker in subject.markers}
@@ -59,9 +59,9 @@ def trial_inputs(
         plates,
         1.0 / shown.rate_hz,
         ~model.supports[sensor.joint_ids[present]].any(axis=0),
-        beliefs.kinematic,
-        beliefs.dynamic,
-        beliefs.torque,
+        settings.kinematic,
+        settings.dynamic,
+        settings.torque,
     )
     wrenches = plate_wrenches(plates, shown.times_s, shown.rate_hz)
     return inputs, Recording(shown.positions_m, wrenches, inputs.dt_s)

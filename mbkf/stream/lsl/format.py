@@ -3,7 +3,7 @@
 A marker stream is of type "MoCap", three channels per marker ("PositionX", … in "meters"), each with a <marker> that
 names it; points without names have none. A plate stream is of type "ForcePlate", six channels per plate ("ForceX" …
 "MomentZ" in "newtons" and "newtonmeters"), force of the plate on the body and moment about the plate's origin. Both may
-end with a channel of type "FrameNumber" that counts frames or samples; without it, time stamps tell.
+end with a channel of type "FrameNumber" that counts frames or samples; without it, numbers follow from time stamps.
 """
 
 from __future__ import annotations
@@ -234,7 +234,7 @@ def _channels(info: Any) -> list[dict[str, str]]:
 
 
 def _groups(channels: list[dict[str, str]], types: tuple[str, ...]) -> list[tuple[list[int], dict[str, str]]]:
-    """Neighbouring channels of these types in this order, and what the first of them says."""
+    """Neighbouring channels of these types in this order, with the description of the first of them."""
     kinds = [channel["type"].lower() for channel in channels]
     size = len(types)
     return [

@@ -35,7 +35,7 @@ MOST_BYTES = 65_000
 
 @dataclass(frozen=True)
 class PlateDescription:
-    """What NatNet tells of a force plate.
+    """Description of a force plate in NatNet.
 
     Attributes:
         number: From 1.

@@ -21,10 +21,10 @@ from mbkf.stream.natnet.player import axes_of, has_area
 from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription, empty_plate
 
 CONNECT_S = 2.0
-"""How long a server that answered may take to say what it streams and to send frames."""
+"""How long a connected server may take to describe its stream and to send frames."""
 
 RATE_FRAMES = 10
-"""The rate is told by the time stamps of so many frames."""
+"""The frame rate is computed from the time stamps of so many frames."""
 
 WHOLE_RATE = 2e-3
 """A rate nearer than this share to a whole number is that number."""
@@ -73,7 +73,7 @@ class NatNetSource:
         self._news: list[tuple[str, str]] = []
 
     def connect(self, timeout_s: float) -> StreamDescription | None:
-        """Asks the server what it streams and waits for its first frames, which tell the rate; none is lost."""
+        """Requests the stream's description and waits for the first frames, which give the rate; none is lost."""
         if self._client is None and not self._open(timeout_s):
             return None
         with self._changed:
@@ -104,8 +104,8 @@ class NatNetSource:
 
     def news(self) -> list[tuple[str, str]]:
         """What happened to the connection."""
-        told, self._news = self._news, []
-        return told
+        news, self._news = self._news, []
+        return news
 
     def close(self) -> None:
         """Ends the connection."""
@@ -151,10 +151,10 @@ class NatNetSource:
             self._heard_s = time.perf_counter()
 
     def _described(self, described: Any, frames: list[tuple[float, Any]]) -> StreamDescription:
-        """What the server streams, its rate told by the first frames.
+        """The stream's description, its rate computed from the first frames.
 
         Raises:
-            InvalidInput: The time stamps tell no rate, or plates send raw voltages.
+            InvalidInput: The time stamps give no rate, or plates send raw voltages.
         """
         self._sets = [s for s in described.marker_sets if s.name.lower() != EVERYTHING]
         names = [name for one in self._sets for name in one.marker_names]
@@ -219,7 +219,7 @@ class NatNetSource:
 
 
 def _make_room(client: Any) -> None:
-    """Gives a connected client's sockets a long queue; the client does not say what it calls them."""
+    """Gives a connected client's sockets a long queue; they are private attributes of the client."""
     for own in vars(client).values():
         if isinstance(own, socket.socket):
             own.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM_BYTES)

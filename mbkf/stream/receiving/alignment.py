@@ -1,4 +1,4 @@
-"""From a source's frames to the filter's: numbered upwards, gaps filled, plates averaged, nonsense removed."""
+"""Frame alignment: frames numbered, gaps filled, plates averaged over each frame, implausible points removed."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ BRIDGED_S = 1.0
 anew."""
 
 ALIGNED_S = 0.25
-"""After a count was set back, plates whose count fits the frames' within this are taken at their word."""
+"""After a source restarted its count, plate samples whose own count fits that of the frames within this keep it."""
 
 Note = Callable[[str, str, int | None, int], None]
-"""Told of what happened: kind, sentence, frame, how often."""
+"""Takes an event: kind, sentence, frame, number of occurrences."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class ReadyFrame:
 
 
 class FrameAlignment:
-    """Makes a stream's frames ready, one by one.
+    """Aligns a stream's frames, one by one.
 
     Attributes:
         frames_in: Frames that arrived.
@@ -53,7 +53,7 @@ class FrameAlignment:
     """
 
     def __init__(self, stream: StreamDescription, columns: Array | None, note: Note) -> None:
-        """Args: the stream, where the subject's markers stand in it (None: unlabelled), and whom to tell."""
+        """Args: the stream, the columns of the subject's markers in it (None: unlabelled), and what takes events."""
         self._stream, self._columns, self._note = stream, columns, note
         self._numbering = Numbering(stream.rate_hz)
         self._plates = PlateBuffer(stream)
@@ -71,7 +71,7 @@ class FrameAlignment:
         if place.number is None:
             self._note("late", "frames arrived late, twice or out of order and were left out", None, 1)
             return [], self._take_plates(frame, place)
-        self._tell(place)
+        self._note_losses(place)
         samples = self._take_plates(frame, place)
         first = place.number - place.lost
         gap = range(first, place.number) if place.lost <= BRIDGED_S * self._stream.rate_hz else range(0)
@@ -87,7 +87,7 @@ class FrameAlignment:
             ReadyFrame(place.number, frame.arrival_s, markers, points, self._plates.mean(place.number)),
         ], samples
 
-    def _tell(self, place: Numbered) -> None:
+    def _note_losses(self, place: Numbered) -> None:
         if place.reset:
             way = "back" if place.backwards else "ahead"
             self._note(

@@ -1,7 +1,7 @@
-"""Frame numbers that never go back: what is lost, late or out of order is told from the source's own count.
+"""Frame numbers that never decrease; lost, late and unordered frames are recognised by the source's own count.
 
-A source that restarts counts from nought again, and a broken clock may jump; then the time that passed here decides
-how many frames went by.
+A source that restarts counts from zero again, and its count may jump; the number of missing frames then follows from
+the time that passed on this computer.
 """
 
 from __future__ import annotations

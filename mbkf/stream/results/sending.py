@@ -1,4 +1,4 @@
-"""A thread between the filter and whoever receives its results: the filter hands over a frame and goes on."""
+"""A sending thread between the filter and a receiver of results, so that a slow receiver never delays the filter."""
 
 from __future__ import annotations
 

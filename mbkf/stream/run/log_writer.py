@@ -54,7 +54,13 @@ class LogWriter:
     def __init__(
         self, log: LiveLog, failed: Callable[[OSError], None], report: Callable[[], None] | None = None
     ) -> None:
-        """Args: the log, whom to tell that writing failed, and what to call every few seconds."""
+        """Starts the thread.
+
+        Args:
+            log: The log.
+            failed: Called with the error where writing failed.
+            report: Called every few seconds.
+        """
         self._log, self._failed, self._report = log, failed, report
         self._logs = (_Log(log.frames), _Log(log.plates))
         self._changed = threading.Condition()
@@ -87,15 +93,15 @@ class LogWriter:
         return frames.dropped + sum(len(rows) for rows in frames.rows)
 
     def _run(self) -> None:
-        pause, told = EVERY_S, 0.0
+        pause, unreported_s = EVERY_S, 0.0
         while True:
             with self._changed:
                 self._changed.wait_for(lambda: self._closing, pause)
                 closing = self._closing
             pause = EVERY_S if all([self._flush(log) for log in self._logs]) else AGAIN_S
-            told += pause
-            if self._report is not None and told >= REPORTED_S:
-                told = 0.0
+            unreported_s += pause
+            if self._report is not None and unreported_s >= REPORTED_S:
+                unreported_s = 0.0
                 self._report()
             if closing:
                 return

@@ -57,7 +57,7 @@ def marker_chart(r: Reconstruction, ghosts: Array | None = None) -> str:
 
     Args:
         r: The reconstruction.
-        ghosts: (T,) points dropped as nobody's in every frame, or None where not known.
+        ghosts: (T,) number of points without a marker dropped in every frame, or None where not known.
     """
     found = states(r)
     rms, largest = marker_errors_mm(r)

@@ -1,7 +1,7 @@
 """The row of numbers a picture is drawn from, alike for the live page and for playback, and what can be plotted.
 
 A row is one frame: the poses of the segments, the markers, the reactions and every curve, one after another as
-32-bit numbers; NaN where something is not known. The page is told once where each part begins.
+32-bit numbers; NaN where something is not known. The page receives the offset of each part once.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from mbkf.conventions import SIDES, Array, BoolArray
 from mbkf.viz.wording import SIDE_NAMES, wordings
 
 SEEN, UNSEEN, REFUSED = 0, 1, 2
-"""What a marker's state says: measured and used, not measured (or hidden), measured but not believed."""
+"""States of a marker: measured and used, not measured (or hidden), measured but rejected by the gate."""
 
 RESOLUTION = {
     "segments": 2e-4, "measured": 2e-4, "predicted": 2e-4, "force": 0.2, "force_sd": 0.2, "pressure": 5e-4,

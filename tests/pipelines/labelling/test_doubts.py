@@ -19,7 +19,7 @@ def test_a_case_names_both_labels_and_the_evidence():
     told = CASE.told()
     assert "RTH2 may be RTH3 (12 and 31 mm" in told
     assert "4.0 times" in told
-    assert CASE.summarised() == {
+    assert CASE.summary() == {
         "labels": ["RTH2"],
         "may_be": ["RTH3"],
         "odds": 4.0,
