@@ -2,8 +2,8 @@
 
 S09_KneeltoRun02 is unlabelled and has no static trial, so its labels are not known. What can be measured: how much is
 named, whether a track keeps its name, whether a body moves along with it, and whether each cluster's markers stand in
-the order that the set's own MarkerSet.xml (OpenSim, generic body) has them. Eight of its columns hold several points one
-after the other: the point leaps over a gap to where another one was lost. A track is a column between such leaps.
+the order that the set's own MarkerSet.xml (OpenSim, generic body) has them. Eight of its columns hold several points
+one after the other: the point leaps over a gap to where another one was lost. A track is a column between such leaps.
 """
 
 from __future__ import annotations

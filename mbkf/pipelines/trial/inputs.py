@@ -1,4 +1,4 @@
-"""What a filter is built from and reads, made of a trial's markers and plates and of its subject."""
+"""A filter's inputs and readings, from a trial's markers and plates and its subject."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ MIN_PRESENT = 0.02
 
 
 class FilterSettings(Protocol):
-    """What each filter believes."""
+    """Settings of every filter."""
 
     @property
     def kinematic(self) -> KinematicSettings:
-        """Of the kinematic filter."""
+        """Settings of the kinematic filter."""
 
     @property
     def dynamic(self) -> DynamicSettings:
-        """Of the dynamic filter."""
+        """Settings of the dynamic filter."""
 
     @property
     def torque(self) -> TorqueSettings:
-        """Of the torque filter."""
+        """Settings of the torque filter."""
 
 
 def trial_inputs(

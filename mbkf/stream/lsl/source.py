@@ -50,7 +50,7 @@ class LslSource:
     patient = False
 
     def __init__(self, name: str | None = None, plates_name: str | None = None) -> None:
-        """Args: names of the marker stream (default: the first) and of the plate stream (default: the one beside it)."""
+        """Args: names of the marker stream (default: the first) and of the plate stream (default: its own)."""
         self._lsl = lsl()
         self._name, self._plates_name = name, plates_name
         self._markers: Any = None
