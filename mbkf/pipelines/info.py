@@ -1,4 +1,4 @@
-"""What does a capture hold? Markers and their gaps, plates and their offsets, channels, events, axes."""
+"""Contents of a capture: markers and their gaps, plates and their offsets, channels, events, axes."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.labelling.any_attitude import STAGE, AnyAttitude
 from mbkf.pipelines.labelling.body import LabelBody, label_body
 from mbkf.pipelines.labelling.doubts import Doubts
-from mbkf.pipelines.labelling.redecision import redecided, trajectories
+from mbkf.pipelines.labelling.relabelling import relabelled, trajectories
 from mbkf.pipelines.labelling.score import LabelScore
 
 CANDIDATES = 8
@@ -47,7 +47,7 @@ class Labelling:
         starts: Frames at which labels were found without those of the frame before.
         repaired: How many markers had their labels taken back from a wrong point.
         step_seconds: (T,) computing time of each frame's labels, filter not counted; NaN where searched.
-        redecided: How many samples lost or changed their label when the whole capture was known.
+        redecided: Number of samples whose label was removed or changed by the offline relabelling.
         doubts: Possible errors in the labels, for a person not measured before.
     """
 
@@ -144,7 +144,7 @@ def label(
         body = label_body(subject.markers, subject, RunningSettings())
         starts = _starts(body, markers, report) if start is None else _started(body, markers, start, report)
         found = _likeliest(body, markers, starts, lambda n, all_: report("Labelling", n, all_))
-        again = redecided(
+        again = relabelled(
             body,
             markers,
             found.labelling.label_of_point,

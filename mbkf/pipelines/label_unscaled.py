@@ -46,7 +46,7 @@ ROUGH_M, ROUGH_RAD = 0.025, 0.15
 """How far a marker of a person not scaled yet is from the protocol's place, and how far a cluster may be tilted."""
 
 ROUNDS = 4
-"""How often person and labels are brought into line at most."""
+"""Most iterations of scaling and labels."""
 
 SCALING_FRAMES = 20
 """Frames that a person is scaled from in each round."""
@@ -61,7 +61,7 @@ SAME_WORTH = 0.99
 """Two outcomes agree where they name alike and the lesser is worth so much of the other."""
 
 NAMES = "Judging names"
-"""What the last part of the search calls itself."""
+"""Name of the last stage in progress reports."""
 
 LEAST_NAMED = 0.6
 """Share of the protocol's markers that must be found."""

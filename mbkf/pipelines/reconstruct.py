@@ -80,12 +80,12 @@ def reconstruct(
     imus: ImuOnBody | None = None,
     progress: StageCallback | None = None,
 ) -> Reconstruction:
-    """Follows the subject through a capture and solves for torques.
+    """Tracks the subject through a capture and solves for torques.
 
     Args:
         capture: Markers and plates.
         subject: The scaled person.
-        settings: How; the defaults are the same for every capture.
+        settings: The filter and its settings; the defaults are the same for every capture.
         imus: Inertial sensors on the body, for the dynamic filter.
         progress: Called with the stage, items done and items in all.
 
@@ -172,11 +172,11 @@ def assemble(
     Args:
         capture: The trial, for its name and notes.
         subject: The person, as followed.
-        settings: How.
+        settings: The filter and its settings.
         measured: (T, M, 3) the subject's markers.
         hidden: (T, M) those taken away on purpose.
         inputs: What the filter was built from, with the plates it read.
-        result: What it found.
+        result: The track.
     """
     sensor, held = inputs.sensor, inputs.held
     model = sensor.model

@@ -67,7 +67,7 @@ def tune(
     Args:
         captures: Trials of one subject.
         subject: The scaled person.
-        settings: How.
+        settings: Filter, parameters and held-out trials.
         progress: Called with the stage, items done and items in all.
 
     Raises:

@@ -78,7 +78,7 @@ def replay(
     Args:
         played: The capture.
         player: Where to.
-        settings: How.
+        settings: Speed, jitter and loss.
         stop: Set to end early.
         progress: Called with frames done and in all.
     """

@@ -105,7 +105,7 @@ class PageServer:
         return True
 
     def wake(self) -> None:
-        """Says that there is a new row: it is made now, and not while the next frame is being answered."""
+        """Announces a new row: it is made now, and not while the next frame is being answered."""
         if self._asleep and self._loop is not None:
             self._asleep = False
             with contextlib.suppress(RuntimeError):  # the server has just ended
@@ -153,7 +153,7 @@ class PageServer:
         return _response(HTTPStatus.NOT_FOUND, b"Nothing is here.\n")
 
     def _allowed(self, request: Request, token: str) -> bool:
-        """Whether the request carries the token and comes from this page rather than from a stranger's."""
+        """Whether the request carries the token and comes from this page rather than from another web page."""
         host, origin = request.headers.get("Host", ""), request.headers.get("Origin")
         named = urlsplit(f"//{host}").hostname or ""
         own_name = not self._local or is_loopback(named)

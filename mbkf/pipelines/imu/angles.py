@@ -33,13 +33,13 @@ STILL_RAD_S, STILL_S = 0.15, 1.0
 
 @dataclass(frozen=True)
 class AnglesSettings:
-    """How angles are found.
+    """Settings of joint angles from inertial sensors.
 
     Attributes:
         orient: Filter of the orientations; sensors lie still while standing, so that their bias is read there.
         from_file: Whether the file's own orientations are used instead (they share one heading).
         hold_headings: Whether joints hold the headings.
-        heading: How.
+        heading: Settings of the headings held by joints.
     """
 
     orient: OrientSettings = field(
@@ -59,8 +59,8 @@ class ImuAngles:
         q: (T, nq) configurations, at the origin, facing x where the person stood; joints without sensors are neutral.
         names: (A,) clinical coordinates that sensors determine.
         angles: (T, A) rad.
-        mounts: How the sensors were found to sit.
-        warnings: What was noticed.
+        mounts: Rotation and place of every sensor on its segment.
+        warnings: Remarks about the readings and the calibration.
     """
 
     time_s: Array
@@ -88,7 +88,7 @@ def imu_angles(
         standing: Times of standing still in the recording, s, or a recording of it with the same magnetometers; by
             default the first second in which no sensor turns.
         posture: (nq,) the posture while standing; the neutral one when None.
-        settings: How.
+        settings: Orientation filter and headings.
         progress: Called as samples are done.
 
     Raises:
@@ -293,7 +293,7 @@ def _configurations(body: HumanModel, segments: Sequence[str], course: Array) ->
 
 
 def _doubts(body: HumanModel, segments: Sequence[str], motion: Array, common: bool) -> list[str]:
-    """What makes the calibration doubtful: headings by custom only, joints that turn further than joints can."""
+    """Reasons to doubt the calibration: headings from the usual mounting only, joints beyond their anatomical range."""
     remarks = []
     if not common:
         remarks.append(

@@ -62,12 +62,25 @@ class LabellingPass:
         self,
         follower: Follower,
         sensor: MarkerSensor,
-        anyhow: AnyAttitude,
+        any_attitude: AnyAttitude,
         labeller: RunningLabeller,
         positions_m: Array,
     ) -> None:
-        """Args: filter, markers on its body, search, labeller, and the capture's points (T, C, 3), NaN where empty."""
-        self._follower, self._sensor, self._search, self._anyhow = follower, sensor, anyhow.search, anyhow
+        """A pass that has labelled no frame yet.
+
+        Args:
+            follower: The filter.
+            sensor: The markers on its body.
+            any_attitude: Finds labels in frames without a prediction.
+            labeller: Assigns points from frame to frame.
+            positions_m: (T, C, 3) points of the capture, NaN where empty.
+        """
+        self._follower, self._sensor, self._search, self._any_attitude = (
+            follower,
+            sensor,
+            any_attitude.search,
+            any_attitude,
+        )
         self.labeller, self._positions_m = labeller, positions_m
         frames, markers = len(positions_m), len(sensor.segments)
         self.markers_m = np.full((frames, markers, 3), np.nan)
@@ -107,7 +120,7 @@ class LabellingPass:
         if len(points) < self._search.least:
             return None
         found = self._search.standing(points)
-        return self._anyhow.at(t) if found is None and thorough else found
+        return self._any_attitude.at(t) if found is None and thorough else found
 
     def _begin(self, t: int, found: FirstFrame) -> Estimate | None:
         """The filter's first estimate: labels are carried through the next frames pose by pose to learn velocities."""

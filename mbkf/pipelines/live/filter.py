@@ -1,4 +1,4 @@
-"""The filter on a live stream: frames in as they come, estimates out, by the very steps a whole trial takes.
+"""The filter on a live stream: frames in as they come, estimates out, with the same steps as on a whole trial.
 
 A start looks a quarter of a second ahead, so the frames it needs are awaited and then caught up with; from then on each
 frame is answered at once. Where no frame was lost the results are those of ``reconstruct`` on the same frames.
@@ -134,10 +134,10 @@ class LiveFilter:
 
 @dataclass(frozen=True)
 class LiveInputs:
-    """What a stream's filter is built from.
+    """Inputs of a stream's filter.
 
     Attributes:
-        names: (M,) the subject's markers that are followed.
+        names: (M,) the subject's markers that are tracked.
         columns: (M,) where they stand among the stream's markers.
         inputs: Body, markers, plates and settings.
     """

@@ -99,7 +99,7 @@ class LiveLabels:
         return self._awaited()
 
     def learn(self, q: Array) -> None:
-        """What the filter made of the frame pushed last: its pose (nq,)."""
+        """Takes the filter's pose (nq,) of the frame pushed last."""
         on_body = self._points_m[:0]
         if self._labeller.learns:
             on_body = self.body.sensor.positions(q)

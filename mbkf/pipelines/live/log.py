@@ -29,7 +29,7 @@ UNASKED = -9
 
 @dataclass(frozen=True)
 class LiveStream:
-    """What a stream's rows belong to.
+    """Description of a logged stream.
 
     Attributes:
         trial: Its name.
@@ -48,7 +48,13 @@ class LogRows:
     """Makes rows of estimates."""
 
     def __init__(self, follower: Follower, markers: int, coordinates: int) -> None:
-        """Args: the filter, the number of markers and that of clinical coordinates."""
+        """Rows of a filter's estimates.
+
+        Args:
+            follower: The filter.
+            markers: Number of markers.
+            coordinates: Number of clinical coordinates.
+        """
         self._follower = follower
         nq, nv = follower.model.nq, follower.model.nv
         spread = {"position": nv, "velocity": nv, "angle": coordinates, "rate": coordinates, "torque": nv}
@@ -88,7 +94,7 @@ class LogRows:
         Args:
             number: The frame.
             measured_m: (M, 3) its markers.
-            estimate: What the filter made of it.
+            estimate: The filter's estimate.
             step_seconds: Computing time.
         """
         row = self._empty.copy()
@@ -144,7 +150,14 @@ class LiveLog:
     def __init__(
         self, folder: Path, stream: LiveStream, frames: np.dtype, settings: dict[str, Any], names: list[str]
     ) -> None:
-        """Args: folder to make, stream, type of a row, and what else the results need.
+        """Makes the log's folder.
+
+        Args:
+            folder: Folder to make.
+            stream: Description of the stream.
+            frames: Type of a row.
+            settings: Settings of the run, as plain data.
+            names: (M,) markers tracked.
 
         Raises:
             OSError: It cannot be written.
@@ -170,11 +183,11 @@ class LiveLog:
 
 @dataclass(frozen=True)
 class Logged:
-    """What a log holds.
+    """Contents of a log.
 
     Attributes:
-        stream: What it belongs to, its plates with their readings.
-        names: (M,) markers followed.
+        stream: Description of the stream, its plates with their readings.
+        names: (M,) markers tracked.
         settings: Of the run.
         first: Number of its first frame.
         rows: (T,) one row per frame from there on; those of lost frames are blank.

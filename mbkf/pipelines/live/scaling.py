@@ -50,7 +50,7 @@ ON_PLATE = (Footing.MEASURED, Footing.SHARED)
 
 @dataclass(frozen=True)
 class Stance:
-    """How still the frames of a stream have been.
+    """State of standing still after a frame.
 
     Attributes:
         frames: For how many frames in a row, the newest one included.
@@ -78,7 +78,13 @@ class StillWatch:
     """
 
     def __init__(self, rate_hz: float, worn: int, named: bool) -> None:
-        """Args: frame rate, how many markers the person wears, and whether rows of a frame are always the same ones."""
+        """A watch that has seen no frame yet.
+
+        Args:
+            rate_hz: Frame rate.
+            worn: Number of markers the person wears.
+            named: Whether the rows of a frame are always the same markers.
+        """
         self.wanted = max(2, round(STILL_S * rate_hz))
         self.least = max(MIN_MARKERS, int(np.ceil(LEAST_SEEN * worn)))
         self._named = named

@@ -14,7 +14,7 @@ from mbkf.model.clinical_table import load_clinical_joints
 from mbkf.model.human import HumanModel
 
 SETTLING_S = 0.5
-"""The filter may settle for this long before its innovations are judged."""
+"""Innovations within this time after the start are left out, while the filter settles."""
 
 ROOT_DOFS = 6
 _MM = 1e3
@@ -28,8 +28,8 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> dic
     did not get to see.
 
     Args:
-        reconstruction: What was found.
-        truth: What the synthetic subject really did; adds the object ``truth``.
+        reconstruction: The results.
+        truth: True motion of the synthetic subject; adds the object ``truth``.
 
     Returns:
         The keys of the command line's contract.
@@ -114,8 +114,8 @@ def compare_with_truth(reconstruction: Reconstruction, truth: Truth) -> dict[str
     velocities and torques are those of the joints, without the root's six dofs.
 
     Args:
-        reconstruction: What was found.
-        truth: What really happened, with at least the reconstruction's frames.
+        reconstruction: The results.
+        truth: True motion, with at least the reconstruction's frames.
 
     Returns:
         ``angle_rms_deg``, ``velocity_rms_rad_s``, ``torque_rms_nm``, ``reaction_rms_n`` (per component of the

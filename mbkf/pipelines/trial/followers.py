@@ -26,7 +26,7 @@ from mbkf.sensors.markers import MarkerSensor
 
 @dataclass(frozen=True)
 class FilterInputs:
-    """What every filter is built from.
+    """Inputs that every filter is built from.
 
     Attributes:
         sensor: The markers on the scaled body.

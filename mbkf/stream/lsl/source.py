@@ -38,10 +38,10 @@ CHUNK = 64
 """Samples of the plates fetched at a time; liblsl is given room for so many, whether they come or not."""
 
 QUIET_S = 0.1
-"""Plates that have said nothing for this long are not waited for any more."""
+"""Plates without samples for this long are not waited for any more."""
 
 KEPT_S = 10
-"""What liblsl keeps for us while we are busy."""
+"""Duration of samples that liblsl buffers."""
 
 
 class LslSource:
@@ -112,7 +112,7 @@ class LslSource:
         return SourceFrame(number, arrival_s, markers, points, self._samples(number, arrival_s))
 
     def news(self) -> list[tuple[str, str]]:
-        """What happened to the connection."""
+        """Events of the connection since the last call."""
         news, self._news = self._news, []
         return news
 

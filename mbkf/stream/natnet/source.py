@@ -33,11 +33,11 @@ RECONNECT_AFTER_S = 2.0
 """After so long without a frame the connection is made anew."""
 
 MOST_HELD = 64
-"""Frames the client may have given us that were not read; the oldest go first."""
+"""Received frames held until they are read; the oldest are dropped first."""
 
 ROOM_BYTES = 4 * 1024 * 1024
-"""The system keeps so much of what came and was not yet read, as far as it allows: with many plates its usual 200 kB
-are a tenth of a second, and what comes after that is lost."""
+"""Size of the socket's receive buffer, as far as the system allows: its usual 200 kB hold a tenth of a second with many
+plates, and packets beyond that are lost."""
 
 EVERYTHING = "all"
 """Motive's set of all markers; it repeats the others."""
@@ -49,7 +49,18 @@ class NatNetSource:
     patient = False
 
     def __init__(self, server: str, local: str, port: int, multicast: str | None, up: str = "y") -> None:
-        """Args: addresses of camera computer and this one, command port, multicast group if any, Motive's up axis."""
+        """A source that is not connected yet.
+
+        Args:
+            server: Address of the camera computer.
+            local: Address of this computer.
+            port: Command port of Motive.
+            multicast: Multicast group; None for unicast.
+            up: Axis that points up in Motive's stream.
+
+        Raises:
+            MissingDependency: The library ``natnet`` is not installed.
+        """
         self._natnet = library("natnet", "OptiTrack NatNet", "natnet")
         read_all_corners(self._natnet)
         self._options: dict[str, Any] = {
@@ -103,7 +114,7 @@ class NatNetSource:
         return SourceFrame(frame.prefix.frame_number, arrived[0], markers, points, self._plates(frame))
 
     def news(self) -> list[tuple[str, str]]:
-        """What happened to the connection."""
+        """Events of the connection since the last call."""
         news, self._news = self._news, []
         return news
 

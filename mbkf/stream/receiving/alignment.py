@@ -28,7 +28,7 @@ class ReadyFrame:
     """A frame for the filter.
 
     Attributes:
-        number: It never goes back.
+        number: Frame number; never decreases.
         arrival_s: When it arrived, or for a lost one the frame after it.
         markers_m: (M, 3) the subject's markers, NaN where missing; None where they have to be labelled.
         unlabelled_m: (N, 3) points without names.
@@ -53,7 +53,13 @@ class FrameAlignment:
     """
 
     def __init__(self, stream: StreamDescription, columns: Array | None, note: Note) -> None:
-        """Args: the stream, the columns of the subject's markers in it (None: unlabelled), and what takes events."""
+        """An alignment that has seen no frame yet.
+
+        Args:
+            stream: The stream's description.
+            columns: (M,) columns of the subject's markers in the stream; None for points without names.
+            note: Called with events.
+        """
         self._stream, self._columns, self._note = stream, columns, note
         self._numbering = Numbering(stream.rate_hz)
         self._plates = PlateBuffer(stream)
@@ -65,7 +71,7 @@ class FrameAlignment:
         self.lost = 0
 
     def accept(self, frame: SourceFrame) -> tuple[list[ReadyFrame], PlateSamples]:
-        """The frames that are ready with a new one, lost ones before it included, and the plates' new samples."""
+        """Takes the next frame; returns aligned frames, lost ones before it included, and the plates' new samples."""
         self.frames_in += 1
         place = self._numbering.place(frame.number, frame.arrival_s)
         if place.number is None:
@@ -128,7 +134,7 @@ class FrameAlignment:
         return taken
 
     def _realign(self, frame: SourceFrame, number: int) -> None:
-        """Plates follow the frames' new count: by their own where it fits, else the latest belongs to this frame."""
+        """Aligns the plates with the frames' new count: by their own count where it fits, else by the latest sample."""
         newest = int(frame.plates.index[-1])
         fitting = round((number - frame.number) * self._ratio)
         wanted = round((number + 0.5) * self._ratio) - newest

@@ -26,7 +26,7 @@ class Numbered:
     Attributes:
         number: Its number here, None for one that comes too late.
         lost: How many frames are missing before it.
-        reset: Whether the source's count jumped, so that time here decided.
+        reset: Whether the source's count jumped, so that the number follows from the time that passed.
         backwards: Whether it jumped back.
     """
 

@@ -15,16 +15,16 @@ from mbkf.pipelines.live.log import LiveLog
 from mbkf.stream.source import PlateSamples
 
 EVERY_S = 0.2
-"""How often what has gathered is written."""
+"""Interval at which new rows are written."""
 
 AGAIN_S = 1.0
-"""How long after a failure writing is tried again."""
+"""Time after a failure until writing is tried again."""
 
 REPORTED_S = 5.0
-"""How often the state of the run is reported meanwhile."""
+"""Interval at which the state of the run is reported."""
 
 MOST_HELD_BYTES = 256 * 1024 * 1024
-"""While nothing can be written, no more than this is held in memory; the oldest rows go first."""
+"""Most memory held while nothing can be written; the oldest rows are dropped first."""
 
 
 @dataclass
@@ -83,7 +83,7 @@ class LogWriter:
             self._logs[1].put(rows)
 
     def close(self) -> int:
-        """Writes what is left, as far as it can be, and returns how many frames are not in the log."""
+        """Writes the remaining rows where possible, and returns the number of frames that are not in the log."""
         with self._changed:
             self._closing = True
             self._changed.notify_all()

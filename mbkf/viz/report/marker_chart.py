@@ -23,7 +23,7 @@ GHOSTS = 34.0
 
 
 def states(r: Reconstruction) -> NDArray[np.int64]:
-    """(T, M) what became of every marker in every frame: an index of :data:`CLASSES`."""
+    """(T, M) state of every marker in every frame: an index of :data:`CLASSES`."""
     found = np.full(r.hidden.shape, SEEN)
     found[r.rejected] = REFUSED
     found[np.isnan(r.measured_m).any(axis=2)] = UNSEEN

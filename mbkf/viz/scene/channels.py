@@ -1,4 +1,4 @@
-"""The row of numbers a picture is drawn from, alike for the live page and for playback, and what can be plotted.
+"""Rows of numbers that pictures are drawn from, on the live page and in playback, and the quantities to plot.
 
 A row is one frame: the poses of the segments, the markers, the reactions and every curve, one after another as
 32-bit numbers; NaN where something is not known. The page receives the offset of each part once.
@@ -21,7 +21,7 @@ RESOLUTION = {
     "segments": 2e-4, "measured": 2e-4, "predicted": 2e-4, "force": 0.2, "force_sd": 0.2, "pressure": 5e-4,
     "angles": 3e-4, "angles_sd": 2e-4, "moments": 0.02, "moments_sd": 0.02,
 }  # fmt: skip
-"""What can be seen of a part's numbers on a screen; finer differences need not travel with a recording."""
+"""Resolution of a part's numbers on a screen; recordings are rounded to it."""
 
 AXES = (("vertical", "Vertical reaction", 2), ("x", "Reaction along x", 0), ("y", "Reaction along y", 1))
 """Components of a reaction: name, title, world axis."""
@@ -32,7 +32,7 @@ STATUS = ("time_s", "number", "latency_ms", "rate_hz", "lost", "tracked")
 
 @dataclass(frozen=True)
 class Quantity:
-    """Something that can be plotted.
+    """A quantity that can be plotted.
 
     Attributes:
         id: Name that stays the same from run to run, e.g. "angle:knee_angle_r".

@@ -1,4 +1,4 @@
-"""Labels re-decided offline: filter and smoother over the labelled capture, then every tracklet judged as a whole."""
+"""Offline relabelling: filter and smoother over the labelled capture, then one decision for every tracklet."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from mbkf.labelling.tracklets import Tracklets, linked
 from mbkf.pipelines.labelling.body import LabelBody, corrected_body
 
 ROUNDS = 4
-"""Labels and smoothed body are brought into line at most so often."""
+"""Most iterations of labels and smoothed body."""
 
 
 @dataclass(frozen=True)
-class Redecided:
-    """Labels after a second look.
+class Relabelled:
+    """Labels after the offline relabelling.
 
     Attributes:
         label_of_point: (T, C) marker of every point, ``HIDDEN`` where none; markers as the body given has them.
@@ -35,14 +35,14 @@ class Redecided:
     changed: int
 
 
-def redecided(
+def relabelled(
     body: LabelBody,
     points: MarkerTrajectories,
     label_of_point: Indices,
     q: Array,
     progress: Callable[[int, int], None],
-) -> Redecided:
-    """Looks again at labels that a pass gave, in the light of all frames.
+) -> Relabelled:
+    """Relabels a capture with the smoothed body, which uses all frames.
 
     Args:
         body: The subject as scaled, on whose markers the labels count.
@@ -88,7 +88,7 @@ def redecided(
         found = smoothed(labels)
     progress(1, 1)
     had = label_of_point != HIDDEN
-    return Redecided(labels, int((had & (labels != label_of_point)).sum()))
+    return Relabelled(labels, int((had & (labels != label_of_point)).sum()))
 
 
 def trajectories(
