@@ -15,9 +15,8 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from benchmarks.checks import Check
+from benchmarks.checks import Check, within
 from benchmarks.dynamic.methods import Mapper
-from benchmarks.dynamic.synthetic import within
 from mbkf.conventions import Array
 from mbkf.filters.dynamic import DynamicFilter
 from mbkf.filters.dynamic_settings import DynamicSettings

@@ -1,4 +1,4 @@
-"""`mbkf live`: follows a stream and shows and writes motion, torques and reactions as they come."""
+"""`mbkf live`: tracks a person through a stream and shows and writes motion, torques and reactions as they come."""
 
 from __future__ import annotations
 
@@ -47,8 +47,8 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
     parser = subparsers.add_parser(
         "live",
-        help="follows a stream of markers and plates",
-        description="Follow a scaled subject through a live stream, frame by frame.",
+        help="tracks a person through a stream of markers and plates",
+        description="Track a scaled subject through a live stream, frame by frame.",
         epilog=_EPILOG,
     )
     parser.add_argument(

@@ -90,7 +90,7 @@ def reconstruct(
         progress: Called with the stage, items done and items in all.
 
     Raises:
-        NotObservable: Too few of the subject's markers to follow any body.
+        NotObservable: Too few of the subject's markers to track the body.
         NotConverged: The markers do not fit the subject's body.
         UnknownName: A hidden marker, a withheld plate or the filter does not exist.
     """
@@ -167,11 +167,11 @@ def assemble(
     inputs: FilterInputs,
     result: Track,
 ) -> Reconstruction:
-    """Reactions, torques and clinical coordinates of a followed trial, put together.
+    """Reactions, torques and clinical coordinates of a tracked trial, put together.
 
     Args:
         capture: The trial, for its name and notes.
-        subject: The person, as followed.
+        subject: The person, as tracked.
         settings: The filter and its settings.
         measured: (T, M, 3) the subject's markers.
         hidden: (T, M) those taken away on purpose.
@@ -261,7 +261,7 @@ def _warnings(result: Track, names: tuple[str, ...], held: BoolArray) -> list[st
     lost = int((~result.tracked).sum())
     if lost:
         warnings.append(
-            f"{lost} of {len(result.tracked)} frames have too few believable markers to follow the body, "
+            f"{lost} of {len(result.tracked)} frames have too few markers within the gate to track the body, "
             "or most of them far from where it was"
         )
     if len(result.starts) > 1:

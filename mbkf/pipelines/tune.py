@@ -73,7 +73,7 @@ def tune(
     Raises:
         UnknownName: The filter or a parameter does not exist.
         InvalidInput: A trial is too short, or none is left to learn from.
-        NotObservable: The markers do not follow the body.
+        NotObservable: The markers do not determine the body.
         NotConverged: The markers do not fit the subject's body.
     """
     settings = settings or TuneSettings()

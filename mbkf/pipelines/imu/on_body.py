@@ -1,4 +1,4 @@
-"""Inertial sensors brought to a followed body: read at its frames, and calibrated on its motion.
+"""Inertial sensors on a tracked body: read at its frames, and calibrated on its motion.
 
 Where a sensor sits and how it is turned follow from a motion that markers have shown: the segment's angular velocity
 gives the rotation (Wahba 1965, by singular values) and the bias, its specific force at any point, which is linear in

@@ -48,7 +48,7 @@ def relabelled(
         body: The subject as scaled, on whose markers the labels count.
         points: The capture.
         label_of_point: (T, C) labels of its points.
-        q: (T, nq) poses of the pass, NaN where the body was not followed.
+        q: (T, nq) poses of the pass, NaN where the body was not tracked.
         progress: Called with frames done and frames in all.
     """
     settings = RedecisionSettings()

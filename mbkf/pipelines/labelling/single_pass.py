@@ -1,4 +1,4 @@
-"""One pass over unlabelled points in one direction of time: search, follow, and search again after a loss."""
+"""One pass over unlabelled points in one direction of time: search, track, and search again after a loss."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class LabellingPass:
     Attributes:
         markers_m: (T, M, 3) labelled so far, NaN elsewhere.
         label_of_point: (T, C) marker of each column, ``HIDDEN`` where none.
-        q: (T, nq) poses of the filter, NaN where it did not follow.
+        q: (T, nq) poses of the filter, NaN where the body is not tracked.
         labeller: Assigns points from frame to frame.
         starts: Frames at which labels were found by search.
         step_seconds: (T,) computing time of the labels alone, NaN where they were searched.

@@ -23,7 +23,7 @@ from mbkf.pipelines.labelling.body import LabelBody, label_body
 from mbkf.pipelines.labelling.single_pass import LOST_S, LOST_SHARE, RETRY_S, SEARCH_EVERY
 
 LEAST_LABELS = 6
-"""With fewer no body is followed."""
+"""With fewer labels no body is tracked."""
 
 LONGEST_WAIT_S = 2.0
 """Frames do not wait longer than this for a search; older ones go on without names."""

@@ -24,8 +24,8 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> dic
     """The contents of summary.json, as plain data; None where a number does not apply.
 
     Marker errors are distances, over samples that were seen and not hidden on purpose, in frames in which the
-    body was followed; samples the innovation gate refused count, too. ``missing_fraction`` is what the filter
-    did not get to see.
+    body was tracked; samples the innovation gate refused count, too. ``missing_fraction`` is what the filter
+    did not receive.
 
     Args:
         reconstruction: The results.

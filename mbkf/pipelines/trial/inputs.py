@@ -50,12 +50,12 @@ def trial_inputs(
     """
     model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
     by_name = {marker.name: marker for marker in subject.markers}
-    followed = [by_name[name] for name in shown.names]
-    sensor = MarkerSensor(model, [m.segment for m in followed], np.array([m.position_m for m in followed]))
+    tracked = [by_name[name] for name in shown.names]
+    sensor = MarkerSensor(model, [m.segment for m in tracked], np.array([m.position_m for m in tracked]))
     present = shown.present.mean(axis=0) >= MIN_PRESENT
     inputs = FilterInputs(
         sensor,
-        np.array([m.noise_m for m in followed]),
+        np.array([m.noise_m for m in tracked]),
         plates,
         1.0 / shown.rate_hz,
         ~model.supports[sensor.joint_ids[present]].any(axis=0),

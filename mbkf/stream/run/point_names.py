@@ -13,7 +13,7 @@ from mbkf.pipelines.live.filter import NUMERICAL
 from mbkf.pipelines.live.labels import LiveLabels, live_body
 from mbkf.stream.receiving.alignment import Note, ReadyFrame
 
-Named = list[tuple[ReadyFrame, Array]]
+NamedFrames = list[tuple[ReadyFrame, Array]]
 """Frames with their markers (M, 3)."""
 
 
@@ -37,7 +37,7 @@ class PointNames:
         self._waiting: deque[ReadyFrame] = deque()
         self._labels = self._fresh()
 
-    def push(self, frame: ReadyFrame, foresight: Foresight | None) -> Named:
+    def push(self, frame: ReadyFrame, foresight: Foresight | None) -> NamedFrames:
         """A new frame; gives back those that are due.
 
         Args:
@@ -59,12 +59,12 @@ class PointNames:
         """Takes the filter's estimate of the frame pushed last."""
         self._labels.learn(estimate.q)
 
-    def finish(self) -> Named:
+    def finish(self) -> NamedFrames:
         """The frames that still wait, when no more follow."""
         return self._due(self._labels.finish())
 
     def _fresh(self) -> LiveLabels:
         return LiveLabels(self._body, self._dt_s, patient=self._patient)
 
-    def _due(self, found: list[Array]) -> Named:
+    def _due(self, found: list[Array]) -> NamedFrames:
         return [(self._waiting.popleft(), markers) for markers in found]
