@@ -20,7 +20,7 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.labelling.any_attitude import STAGE, AnyAttitude
 from mbkf.pipelines.labelling.body import LabelBody, label_body
 from mbkf.pipelines.labelling.doubts import Doubts
-from mbkf.pipelines.labelling.relabelling import relabelled, trajectories
+from mbkf.pipelines.labelling.relabelling import relabel_offline, trajectories
 from mbkf.pipelines.labelling.score import LabelScore
 
 CANDIDATES = 8
@@ -144,7 +144,7 @@ def label(
         body = label_body(subject.markers, subject, RunningSettings())
         starts = _starts(body, markers, report) if start is None else _started(body, markers, start, report)
         found = _likeliest(body, markers, starts, lambda n, all_: report("Labelling", n, all_))
-        again = relabelled(
+        again = relabel_offline(
             body,
             markers,
             found.labelling.label_of_point,

@@ -24,7 +24,7 @@ def scale(
     settings: ScalingSettings | None = None,
     progress: StageCallback | None = None,
 ) -> Subject:
-    """Fits the body to a person: scale factors, marker positions and poses by least squares over all frames.
+    """Fits the body to a person.
 
     Args:
         static: A standing trial, if there is one.

@@ -1,4 +1,4 @@
-"""A labelled capture on disk, and beside it the labeller's report."""
+"""A labelled capture on disk, and beside it the summary of its labelling."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Offline relabelling: filter and smoother over the labelled capture, then one decision for every tracklet."""
+"""Offline relabelling: filter and smoother over the labelled capture, then every tracklet as a whole gets its label."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Relabelled:
     changed: int
 
 
-def relabelled(
+def relabel_offline(
     body: LabelBody,
     points: MarkerTrajectories,
     label_of_point: Indices,

@@ -9,7 +9,7 @@ from mbkf.labelling.assignment import HIDDEN
 from mbkf.labelling.running import RunningSettings
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.labelling.body import label_body
-from mbkf.pipelines.labelling.relabelling import course, relabelled, trajectories
+from mbkf.pipelines.labelling.relabelling import course, relabel_offline, trajectories
 from tests.walker import walker
 
 
@@ -26,7 +26,7 @@ def walk():
 
 def again(body, points, labels, q):
     with single_threaded():
-        return relabelled(body, points, labels, q, lambda *_: None)
+        return relabel_offline(body, points, labels, q, lambda *_: None)
 
 
 def test_right_labels_stay(walk):
