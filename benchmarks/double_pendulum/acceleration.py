@@ -1,4 +1,4 @@
-"""The acceleration-coordinate filter (DESIGN §4, fact 5) on the double pendulum: state z, ż, z̈ and the plate's wrench.
+"""The acceleration-coordinate filter on the double pendulum: state z, ż, z̈ and the plate's wrench.
 
 The human's Singer plant predicts; markers, plate and Newton–Euler correct. The three equations of motion that τ_1 does
 not enter are readings of zero; the fourth gives τ_1. The state is the human's own: of its two feet the pendulum stands

@@ -1,4 +1,4 @@
-"""FCDI on the double pendulum: the human's white-acceleration plant and update, then inverse dynamics (SPEC §5)."""
+"""FCDI on the double pendulum: the human's white-acceleration plant and update, then inverse dynamics."""
 
 from __future__ import annotations
 
