@@ -62,9 +62,10 @@ def _dynamic(inputs: FilterInputs) -> TrackingFilter:
 
 
 def _torque(inputs: FilterInputs) -> TrackingFilter:
-    kalman = TorqueFilter(inputs.sensor, inputs.noise_m, inputs.dt_s, inputs.held, inputs.torque)
-    feet = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
-    return TorqueTracking(kalman, feet, _starter(inputs))
+    known = inputs.sensor, inputs.noise_m
+    detector = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
+    kalman = TorqueFilter.standard(*known, detector, inputs.dt_s, inputs.held, inputs.torque)
+    return TorqueTracking(kalman, _starter(inputs))
 
 
 def _starter(inputs: FilterInputs) -> KinematicFilter:
