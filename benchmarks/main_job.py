@@ -102,7 +102,15 @@ def gait2354_walk(data: Path, out: Path) -> list[Check]:
 
 
 def biomechzoo(data: Path, out: Path, person: str, number: str, mass_kg: float) -> list[Check]:
-    """Straight walk of a child; angles against Plug-in Gait's in the same file."""
+    """Straight walk of a child; angles against Plug-in Gait's in the same file.
+
+    Args:
+        data: Folder of the reference captures.
+        out: Folder for files.
+        person: Name of the person in the data set.
+        number: Number of the trial.
+        mass_kg: Body mass.
+    """
     folder = data / "biomechzoo_walk_turn"
     trial = folder / f"{person}_Straight_{person}{number}.c3d"
     static = folder / f"{person}_Static_{person}01.c3d"
@@ -178,7 +186,13 @@ def exact_truth(data: Path, out: Path) -> list[Check]:
 
 
 def synthetic(_data: Path, out: Path, motion: str) -> list[Check]:
-    """A synthetic capture with camera noise only, on the known body and on the one scaled from its static."""
+    """A synthetic capture with camera noise only, on the known body and on the one scaled from its static.
+
+    Args:
+        _data: Not used.
+        out: Folder for files.
+        motion: Name of the synthetic motion.
+    """
     mbkf("synth", "--motion", motion, "--markers-mm", "0.5", "--skin-mm", "0", "--out", out)
     trial = out / "trial.c3d"
     mbkf("reconstruct", trial, "--subject", out / "subject.toml", *FILTER, "--out", out / "known_body")
@@ -198,7 +212,14 @@ def marker_check(found: Written, bound_mm: float) -> Check:
 
 
 def angle_checks(ours: Table, theirs: Table, signs: dict[str, float], r: float) -> list[Check]:
-    """Correlation and RMS after removing the mean difference (zero is defined differently), at most 5°."""
+    """Correlation and RMS after removing the mean difference (zero is defined differently), at most 5°.
+
+    Args:
+        ours: Angles found.
+        theirs: Reference angles.
+        signs: Sign of each angle relative to the reference, by name.
+        r: Least correlation.
+    """
     checks: Sequence[Check] = ()
     for coordinate, sign in signs.items():
         agree = worst_side(ours, theirs, coordinate, sign=sign)
@@ -207,7 +228,16 @@ def angle_checks(ours: Table, theirs: Table, signs: dict[str, float], r: float) 
 
 
 def pair(name: str, r: float, least_r: float, rms: float, most_rms: float, unit: str) -> list[Check]:
-    """The two checks of a curve."""
+    """The two checks of a curve.
+
+    Args:
+        name: Name of the curve.
+        r: Correlation.
+        least_r: Its bound.
+        rms: RMS difference.
+        most_rms: Its bound.
+        unit: Unit of the difference.
+    """
     label = name.replace("_flexion", "").replace("_angle", "")
     return [
         Check(f"{label}, r", r, least_r, ">="),

@@ -49,7 +49,7 @@ def draw(folder: Path, target: Path) -> None:
     figure = plt.figure(figsize=(11, 6.2), dpi=130)
     grid = figure.add_gridspec(2, 3, height_ratios=(1.45, 1.0), hspace=0.18, wspace=0.28)
     _walker(figure.add_subplot(grid[0, :]), result)
-    model = HumanModel.scaled(result.subject.scale_factors, result.subject.mass_kg)
+    model = HumanModel.of(result.subject)
     clinical = ClinicalAngles(model)
     angles = clinical.angles(truth.q)
     moments = clinical.moments(truth.q, truth.tau, angles)
@@ -78,7 +78,7 @@ def draw(folder: Path, target: Path) -> None:
 
 def _walker(axes: Any, result: Reconstruction) -> None:
     """Stick figures from the side with measured markers and reaction arrows."""
-    model = HumanModel.scaled(result.subject.scale_factors, result.subject.mass_kg)
+    model = HumanModel.of(result.subject)
     frames = np.linspace(0.06, 0.94, POSES) * (result.frames - 1)
     for frame in frames.astype(int):
         _, origins = model.placements(result.q[frame])

@@ -43,7 +43,7 @@ def take(folder: Path, target: Path) -> None:
 
 
 def _live(browser: Any, r: Reconstruction, target: Path) -> None:
-    model = HumanModel.scaled(r.subject.scale_factors, r.subject.mass_kg, r.subject.body)
+    model = HumanModel.of(r.subject)
     live = LivePage(model, r.marker_names, r.plate_corners_m, title="walk, live")
     done = threading.Event()
 

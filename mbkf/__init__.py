@@ -14,37 +14,86 @@ from mbkf.version import __version__
 
 if TYPE_CHECKING:
     from mbkf.io.capture import read_capture
+    from mbkf.io.imu_files import read_imu
     from mbkf.io.results_folder import read_reconstruction, write_reconstruction
     from mbkf.io.subject import read_subject, write_subject
+    from mbkf.model.body_file import load_body
     from mbkf.model.human import HumanModel
-    from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
+    from mbkf.model.protocol import load_protocol
+    from mbkf.numerics.kalman import Information
+    from mbkf.pipelines.imu.orient import orient
+    from mbkf.pipelines.label import label
+    from mbkf.pipelines.reconstruct import Hidden, ReconstructSettings, reconstruct
     from mbkf.pipelines.results.summary import summarise
     from mbkf.pipelines.scale import scale
+    from mbkf.pipelines.synth import synthesise
+    from mbkf.pipelines.tracker import Estimate, Tracker, standard_blocks
+    from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+    from mbkf.sensors.contact.plates import plate_wrenches
+    from mbkf.sensors.layout import ExtraState, Layout
 
 _HOMES = {
+    "Block": "mbkf.sensors.block",
+    "Estimate": "mbkf.pipelines.tracker",
+    "ExtraState": "mbkf.sensors.layout",
+    "Frame": "mbkf.sensors.block",
+    "Hidden": "mbkf.pipelines.reconstruct",
     "HumanModel": "mbkf.model.human",
+    "Information": "mbkf.numerics.kalman",
+    "Layout": "mbkf.sensors.layout",
+    "Notes": "mbkf.sensors.block",
+    "OperatingPoint": "mbkf.sensors.block",
     "ReconstructSettings": "mbkf.pipelines.reconstruct",
+    "Rows": "mbkf.sensors.block",
+    "Tracker": "mbkf.pipelines.tracker",
+    "label": "mbkf.pipelines.label",
+    "load_body": "mbkf.model.body_file",
+    "load_protocol": "mbkf.model.protocol",
+    "orient": "mbkf.pipelines.imu.orient",
+    "plate_wrenches": "mbkf.sensors.contact.plates",
     "read_capture": "mbkf.io.capture",
+    "read_imu": "mbkf.io.imu_files",
     "read_reconstruction": "mbkf.io.results_folder",
     "read_subject": "mbkf.io.subject",
     "reconstruct": "mbkf.pipelines.reconstruct",
     "scale": "mbkf.pipelines.scale",
+    "standard_blocks": "mbkf.pipelines.tracker",
     "summarise": "mbkf.pipelines.results.summary",
+    "synthesise": "mbkf.pipelines.synth",
     "write_reconstruction": "mbkf.io.results_folder",
     "write_subject": "mbkf.io.subject",
 }
 
 __all__ = [
+    "Block",
+    "Estimate",
+    "ExtraState",
+    "Frame",
+    "Hidden",
     "HumanModel",
+    "Information",
+    "Layout",
     "MbkfError",
+    "Notes",
+    "OperatingPoint",
     "ReconstructSettings",
+    "Rows",
+    "Tracker",
     "__version__",
+    "label",
+    "load_body",
+    "load_protocol",
+    "orient",
+    "plate_wrenches",
     "read_capture",
+    "read_imu",
     "read_reconstruction",
     "read_subject",
     "reconstruct",
     "scale",
+    "standard_blocks",
     "summarise",
+    "synthesise",
     "write_reconstruction",
     "write_subject",
 ]

@@ -73,6 +73,13 @@ class PendulumAccelerationFilter:
     """
 
     def __init__(self, shape: PendulumShape, dt_s: float, belief: AccelerationBelief) -> None:
+        """A filter of one pendulum.
+
+        Args:
+            shape: Lengths, masses and inertias.
+            dt_s: Time step, s.
+            belief: Noise settings.
+        """
         self.body, self.belief = DoublePendulum(shape, residual=False), belief
         spread = np.full(4, belief.acceleration)
         self.plant = SingerPlant(PlainManifold.as_model(), dt_s, spread, belief.decay_s)
@@ -81,14 +88,27 @@ class PendulumAccelerationFilter:
         self._sd = np.array([belief.marker_m] * 8 + plate + [belief.residual] * 3)
 
     def start(self, q: Array, v: Array, a: Array, plate: Array) -> DynamicState:
-        """At a known z, ż, z̈ (4,) and wrench F_x, F_y, T_2 (3,)."""
+        """The initial state, at known coordinates.
+
+        Args:
+            q: (4,) coordinates z.
+            v: (4,) velocities ż.
+            a: (4,) accelerations z̈.
+            plate: (3,) wrench of the plate F_x, F_y, T_2.
+        """
         variance, w = np.zeros(_SIZE), np.zeros(12)
         variance[:12] = np.repeat([*START_VARIANCE[:2], START_ACCELERATION_SD**2], 4)
         variance[_ON_PLATE], w[PLATE] = START_VARIANCE[2], plate
         return DynamicState(q, v, a, w, np.diag(variance))
 
     def step(self, state: DynamicState, markers_m: Array, plate: Array) -> _Frame:
-        """Prediction and correction by markers (8,), NaN where missing, and the plate's wrench (3,)."""
+        """Prediction and correction by one frame.
+
+        Args:
+            state: State of the frame before.
+            markers_m: (8,) markers, NaN where missing.
+            plate: (3,) wrench of the plate F_x, F_y, T_2.
+        """
         prior = self.plant.predict(state)
         P = prior.P.copy()
         P[_ON_PLATE, _ON_PLATE] += self._walk

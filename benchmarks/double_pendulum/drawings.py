@@ -60,7 +60,13 @@ def drawings(sweeps: Sweeps, consistency: dict[str, list[Consistency]]) -> Itera
 
 
 def axes(rows: int = 1, columns: int = 1, height: float = 2.6) -> tuple[Figure, list[Axes]]:
-    """An empty figure in the house style."""
+    """An empty figure in the style of all figures here.
+
+    Args:
+        rows: Rows of axes.
+        columns: Columns of axes.
+        height: Height of a row, inches.
+    """
     figure = Figure(figsize=(7.2, height * rows), layout="constrained")
     made = [figure.add_subplot(rows, columns, k + 1) for k in range(rows * columns)]
     for one in made:

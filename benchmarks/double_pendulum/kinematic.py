@@ -41,7 +41,15 @@ class PlainManifold:
 
 
 def joint_torque(body: DoublePendulum, q: Array, v: Array, a: Array, plate: Array) -> float:
-    """τ_1 by inverse dynamics (eq. 3.12) under measured F_x, F_y, T_2 (3,)."""
+    """τ_1 by inverse dynamics (thesis eq. 3.12), N m.
+
+    Args:
+        body: The pendulum.
+        q: (4,) coordinates z.
+        v: (4,) velocities ż.
+        a: (4,) accelerations z̈.
+        plate: (3,) measured wrench of the plate F_x, F_y, T_2.
+    """
     row = TORQUE_ROW
     wanted: float = body.inertial(q, v, a).force[row] - body.effort_matrix(q)[row, 1:4] @ plate
     return float(wanted)

@@ -55,13 +55,27 @@ class Laboratory:
     """
 
     def __init__(self, mapper: Mapper, seeds: int, quick: bool, report: StageCallback) -> None:
+        """A laboratory without measurements yet.
+
+        Args:
+            mapper: Runs a function on many items, in turn or on several processes.
+            seeds: Number of random seeds.
+            quick: Whether fewer seeds are used.
+            report: Called with the stage, items done and items in all.
+        """
         self.seeds, self.quick = seeds, quick
         self._mapper, self._report = mapper, report
         self._known: dict[tuple[Pair, int], Scores] = {}
         self._at_once = min(SEEDS_AT_ONCE, -(-seeds // WORKERS))
 
     def measure(self, stage: str, pairs: Sequence[Pair], seeds: int | None = None) -> list[Scores]:
-        """Scores of each pair, one entry per seed; ``seeds`` where fewer than all are enough."""
+        """Scores of each pair, one entry per seed.
+
+        Args:
+            stage: Name shown while it runs.
+            pairs: Recipes of trials, each with a method.
+            seeds: Number of seeds; None for all.
+        """
         count = min(seeds or self.seeds, self.seeds)
         new = [pair for pair in dict.fromkeys(pairs) if (pair, count) not in self._known]
         for done, pair in enumerate(new):
@@ -74,12 +88,24 @@ class Laboratory:
     def measure_groups(
         self, stage: str, groups: Sequence[Sequence[Pair]], seeds: int | None = None
     ) -> list[list[Scores]]:
-        """The same of many groups of pairs, as one stage."""
+        """Scores of many groups of pairs, measured as one stage.
+
+        Args:
+            stage: Name shown while it runs.
+            groups: Groups of pairs.
+            seeds: Number of seeds; None for all.
+        """
         found = iter(self.measure(stage, [pair for group in groups for pair in group], seeds))
         return [[next(found) for _ in group] for group in groups]
 
     def spread(self, stage: str, function: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
-        """Anything else that takes a while, shared among the workers."""
+        """Results of a function on many items, shared among the workers.
+
+        Args:
+            stage: Name shown while it runs.
+            function: The function; has to be importable by a worker.
+            items: Its arguments.
+        """
         self._report(stage, 0, 1)
         found = self._mapper(function, items)
         self._report(stage, 1, 1)

@@ -33,7 +33,13 @@ NO_ARTEFACT = PendulumNoise(artefact_m=0.0)
 
 
 def believing(method: TorqueMethod, shape: PendulumShape, residual: float) -> TorqueMethod:
-    """The same filter of another pendulum and residual."""
+    """The same filter with another pendulum model and residual noise.
+
+    Args:
+        method: The filter.
+        shape: Lengths, masses and inertias it assumes.
+        residual: Standard deviation of the residual efforts.
+    """
     return replace(method, shape=shape, belief=replace(method.belief, residual_noise=residual))
 
 

@@ -87,7 +87,13 @@ TABLE_A3 = {
 
 
 def annex_method(name: str, complete: bool = True, effort_noise: float = EFFORT_NOISE) -> TorqueMethod:
-    """The dynamic filter of a row of Table A.2, such as "FE PE CT"."""
+    """The dynamic filter of a row of Table A.2, such as "FE PE CT".
+
+    Args:
+        name: Name of the row.
+        complete: Whether the complete transition matrix F is used instead of the simplified one.
+        effort_noise: Process noise σ_P of the efforts.
+    """
     integrator, propagation, covariance = name.split()
     scheme = Scheme(integrator, PROPAGATIONS[propagation], COVARIANCES[covariance], complete)
     return TorqueMethod(ANNEX, Belief(scheme, effort_noise, force_n=0.05, moment_nm=0.05))

@@ -106,6 +106,13 @@ class PendulumFilter:
     """
 
     def __init__(self, shape: PendulumShape, dt_s: float, belief: Belief) -> None:
+        """A filter of one pendulum.
+
+        Args:
+            shape: Lengths, masses and inertias.
+            dt_s: Time step, s.
+            belief: Discretisation, sensors and noise settings.
+        """
         for name in belief.sensors:
             if name not in SENSORS:
                 raise UnknownName("pendulum sensor", name, SENSORS)
@@ -134,7 +141,13 @@ class PendulumFilter:
             self._H[np.arange(8), 8 + forces + artefact.order * np.arange(8)] = 1.0
 
     def start(self, q: Array, v: Array, efforts: Array) -> ForcedState:
-        """At a known z (4,), ż (4,) and T_e (4,), with the covariance of :data:`START_VARIANCE`."""
+        """The initial state at known coordinates, with the covariance of :data:`START_VARIANCE`.
+
+        Args:
+            q: (4,) coordinates z.
+            v: (4,) velocities ż.
+            efforts: (4,) efforts T_e.
+        """
         u = np.zeros(self.body.nu)
         u[:4] = efforts
         counts = (4, 4, 4, self.pendulum.nu - 4)
@@ -144,7 +157,13 @@ class PendulumFilter:
         return ForcedState(q, v, u, np.diag(variance))
 
     def step(self, state: ForcedState, markers_m: Array, efforts: Array) -> Step:
-        """ForcedPrediction and correction by one frame; markers (8,) and efforts (4,) that are NaN say nothing."""
+        """Prediction and correction by one frame.
+
+        Args:
+            state: State of the frame before.
+            markers_m: (8,) markers, NaN where missing.
+            efforts: (4,) measured efforts, NaN where not measured.
+        """
         prediction = self.plant.predict(state)
         prior = prediction.state
         seen = self.pendulum.on_bars(prior.q, MARKER_SHARES, MARKER_BARS)

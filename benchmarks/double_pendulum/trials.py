@@ -141,7 +141,13 @@ class Scores:
 
 
 def score(trial: Trial, found: Estimate, lost_bar: int = 0) -> Scores:
-    """How far an estimate is from the truth; a filter that has broken down scores infinity."""
+    """Errors of an estimate against the truth; infinite for a filter that diverged.
+
+    Args:
+        trial: The trial with its truth.
+        found: The estimate.
+        lost_bar: Bar whose markers are lost, 0 for none.
+    """
     truth, bar = trial.motion, 1 + max(lost_bar, 1)
     angle = found.q[:, bar] - truth.q[:, bar]
     torque = found.efforts[:, 0] - truth.efforts[:, 0]
@@ -170,7 +176,13 @@ def rms(error: Array) -> Array:
 
 
 def delay(times_s: Array, truth: Array, found: Array) -> float:
-    """Time by which ``found`` (T, k) lags behind ``truth``: the shift that leaves the least squared difference, s."""
+    """Time by which ``found`` (T, k) lags behind ``truth``: the shift that leaves the least squared difference, s.
+
+    Args:
+        times_s: (T,) times of the frames, s.
+        truth: (T, k) true curves.
+        found: (T, k) estimated curves.
+    """
     if not np.isfinite(found).all():
         return np.inf
     curve = CubicSpline(times_s, truth)

@@ -43,7 +43,14 @@ def run(context: Context) -> list[Check]:
 
 
 def run_with(data: Path, methods: Sequence[Method], mapper: Mapper, *, quick: bool) -> list[Check]:
-    """The rows of any methods; one that does not run fails its own rows only."""
+    """The rows of any methods; one that does not run fails its own rows only.
+
+    Args:
+        data: Folder of the reference captures.
+        methods: Filters with their settings.
+        mapper: Runs a function on many items, in turn or on several processes.
+        quick: Whether to do a shorter run.
+    """
     checks: list[Check] = []
     for name, rows in parts(data, methods, mapper, quick=quick):
         try:
@@ -56,7 +63,14 @@ def run_with(data: Path, methods: Sequence[Method], mapper: Mapper, *, quick: bo
 def parts(
     data: Path, methods: Sequence[Method], mapper: Mapper, *, quick: bool
 ) -> Iterator[tuple[str, Rows]]:
-    """The parts of the table by name, each made when it is called."""
+    """The parts of the table by name, each computed when it is called.
+
+    Args:
+        data: Folder of the reference captures.
+        methods: Filters with their settings.
+        mapper: Runs a function on many items, in turn or on several processes.
+        quick: Whether to do a shorter run.
+    """
     names = ("rajagopal walk",) if quick else tuple(SOURCES)
     yield "real captures", partial(all_capture_rows, names, data, methods, mapper)
     for name in names if quick else CAPTURES:
@@ -75,11 +89,24 @@ def parts(
 
 
 def synthetic_rows(motion: str, methods: Sequence[Method], mapper: Mapper, quick: bool) -> list[Check]:
-    """Accuracy on one motion's trials."""
+    """Accuracy on one motion's trials.
+
+    Args:
+        motion: Name of a synthetic motion.
+        methods: Filters with their settings.
+        mapper: Runs a function on many items, in turn or on several processes.
+        quick: Whether to do a shorter run.
+    """
     trials = cases([motion], range(QUICK_SEEDS if quick else SEEDS), mapper)
     return accuracy_rows(trials, methods, mapper, scales=QUICK_SCALES if quick else SCALES)
 
 
 def leg_rows(motion: str, methods: Sequence[Method], mapper: Mapper) -> list[Check]:
-    """A leg's markers lost in one motion's trials."""
+    """A leg's markers lost in one motion's trials.
+
+    Args:
+        motion: Name of a synthetic motion.
+        methods: Filters with their settings.
+        mapper: Runs a function on many items, in turn or on several processes.
+    """
     return loss_rows(cases([motion], range(LOSS_SEEDS), mapper, LOSS_NOISE), methods, mapper)

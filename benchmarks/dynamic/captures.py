@@ -100,7 +100,13 @@ class Person:
 
 
 def load(name: str, data: Path, *, correct: bool = True) -> Person:
-    """Reads a capture and scales its person with the default settings of `mbkf scale`."""
+    """Reads a capture and scales its person with the default settings of `mbkf scale`.
+
+    Args:
+        name: Name in :data:`SOURCES`.
+        data: Folder of the reference captures.
+        correct: Whether marker positions are corrected on the trial.
+    """
     source = SOURCES[name]
     folder = data / source.folder
     forces = None if source.forces is None else folder / source.forces
@@ -111,7 +117,13 @@ def load(name: str, data: Path, *, correct: bool = True) -> Person:
 
 
 def capture_rows(name: str, data: Path, methods: Sequence[Method]) -> list[Check]:
-    """Residual, markers and what else the table asks of a capture; a method that does not run fails its row."""
+    """Residual, marker errors and the other rows of a capture; a method that does not run fails its rows.
+
+    Args:
+        name: Name in :data:`SOURCES`.
+        data: Folder of the reference captures.
+        methods: Filters with their settings.
+    """
     person = load(name, data)
     kinematic = summarise(KINEMATIC.run(person.capture, person.subject))
     rows = [
@@ -141,7 +153,14 @@ def _method_rows(
 def summary_rows(
     label: str, summary: Mapping[str, Any], kinematic: Mapping[str, Any], bounds: Bounds
 ) -> list[Check]:
-    """The rows of one method's summary.json beside the kinematic filter's."""
+    """The rows of one method's summary.json beside the kinematic filter's.
+
+    Args:
+        label: Beginning of the rows' names.
+        summary: The method's summary.json.
+        kinematic: The kinematic filter's summary.json.
+        bounds: Bounds of the capture.
+    """
     marker = bounds.marker_mm
     if marker is None:
         marker = MARKER_FACTOR * kinematic["marker_rms_mm"]
@@ -173,6 +192,12 @@ def flexion_rows(label: str, found: Reconstruction, data: Path, smooth: bool) ->
 
     The reference was made from motion and plates low-passed at 6 Hz, so it lacks what lies above. The bound is on the
     low-passed curves, like against like, as `main_job` compares them; the difference as it is stands beside it.
+
+    Args:
+        label: Beginning of the rows' names.
+        found: The method's results.
+        data: Folder of the reference captures.
+        smooth: Whether the results are smoothed.
     """
     theirs = read_storage(data / "rajagopal_walk_run" / "reference_walk" / "id_walk.sto")
     ours = moment_table(found)
@@ -229,7 +254,14 @@ def withheld_left(person: Person, method: Method) -> Withheld:
 def compare_withheld(
     estimated_n: Array, measured_n: Array, judged: BoolArray, still_valid: BoolArray
 ) -> Withheld:
-    """Compares two vertical forces (T,); a force that is not estimated counts as 0 N."""
+    """Compares two vertical forces; a force that is not estimated counts as 0 N.
+
+    Args:
+        estimated_n: (T,) estimated force, N.
+        measured_n: (T,) measured force, N.
+        judged: (T,) frames that are compared.
+        still_valid: (T,) frames whose estimate is stated to be valid.
+    """
     estimate = np.nan_to_num(estimated_n)
     error = estimate - measured_n
     known = judged & np.isfinite(measured_n)
@@ -260,7 +292,13 @@ def plate_under(person: Person, side: int) -> str:
 
 
 def withheld_rows(label: str, person: Person, method: Method) -> list[Check]:
-    """The rows of the withheld left plate."""
+    """The rows of the withheld left plate.
+
+    Args:
+        label: Beginning of the rows' names.
+        person: The capture and its scaled person.
+        method: The filter with its settings.
+    """
     found = withheld_left(person, method)
     least, most = (0.98, 45.0) if method.smooth else (0.9, 130.0)
     name = f"{label}, without the left plate: its vertical force"
@@ -275,6 +313,13 @@ def withheld_rows(label: str, person: Person, method: Method) -> list[Check]:
 def all_capture_rows(
     names: Sequence[str], data: Path, methods: Sequence[Method], mapper: Mapper
 ) -> list[Check]:
-    """The rows of several captures."""
+    """The rows of several captures.
+
+    Args:
+        names: Names in :data:`SOURCES`.
+        data: Folder of the reference captures.
+        methods: Filters with their settings.
+        mapper: Runs a function on many items, in turn or on several processes.
+    """
     found = mapper(partial(capture_rows, data=data, methods=tuple(methods)), names)
     return [row for rows in found for row in rows]

@@ -98,7 +98,15 @@ class AlwaysMeasured(ContactDetector):
         a: Array,  # noqa: ARG002
         plate_wrench: Array,
     ) -> ContactDecision:
-        """Each foot on its own plate."""
+        """Each foot on its own plate.
+
+        Args:
+            memory: Returned as it is.
+            q: Not used.
+            v: Not used.
+            a: Not used.
+            plate_wrench: (2, 6) wrenches of the two plates.
+        """
         return ContactDecision((Contact.MEASURED,) * 2, plate_wrench, self.centres_m, False, memory)
 
 
@@ -139,7 +147,13 @@ class OwnPlant:
         )
 
     def moved(self, state: DynamicState, share: float, rng: np.random.Generator) -> DynamicState:
-        """The plant's next true state with its noise, the right foot taking a share of the load."""
+        """The plant's next true state with its noise.
+
+        Args:
+            state: The true state.
+            share: Share of the load on the right foot, 0 to 1.
+            rng: Source of the noise.
+        """
         plant = self.kalman.plant
         drawn = np.linalg.cholesky(plant.noise) @ rng.normal(size=(3, self.model.nv))
         noise = drawn * plant.acceleration_sd

@@ -93,7 +93,13 @@ def occlude(key: tuple[str, float, int], data: Path) -> Occluded:
 
 
 def streaks(present: BoolArray, fraction: float, seed: int) -> BoolArray:
-    """(T, M) samples to hide: streaks of 20 frames over a fraction of all marker-frames, where there is one."""
+    """(T, M) samples to hide: streaks of 20 frames over a fraction of all marker-frames, where there is one.
+
+    Args:
+        present: (T, M) samples that are measured.
+        fraction: Fraction of the marker-frames to hide.
+        seed: Random seed.
+    """
     frames, markers = present.shape
     rng = np.random.default_rng([seed, round(1000 * fraction)])
     return np.asarray(occlusions(frames, markers, fraction, rng) & present)
@@ -119,7 +125,17 @@ def occlusion_rows(
     seeds: Sequence[int],
     scales: Sequence[float] = OCCLUSION_SCALES,
 ) -> list[Check]:
-    """The rows of one capture and fraction: every method against its bounds and FCDI at its best."""
+    """The rows of one capture and fraction: every method against its bounds and FCDI at its best.
+
+    Args:
+        name: Name of the capture.
+        fraction: Fraction of the marker-frames that is hidden.
+        data: Folder of the reference captures.
+        methods: Filters with their settings.
+        mapper: Runs a function on many items, in turn or on several processes.
+        seeds: Random seeds of the streaks.
+        scales: Factors on the table of typical accelerations, among which FCDI's best is searched.
+    """
     hidden = mapper(partial(occlude, data=data), [(name, fraction, seed) for seed in seeds])
     scale, kinematic = best_occlusion(hidden, mapper, scales)
     label = f"{name}, {100 * fraction:.0f} % hidden, {len(seeds)} seeds"
@@ -149,7 +165,13 @@ def _hidden_rows(
 def best_occlusion(
     hidden: Sequence[Occluded], mapper: Mapper, scales: Sequence[float] = OCCLUSION_SCALES
 ) -> tuple[float, float]:
-    """FCDI's best scale and its pooled hidden-marker RMS in mm, found roughly on some seeds, finally on all."""
+    """FCDI's best scale and its pooled hidden-marker RMS in mm, searched on some seeds and measured on all.
+
+    Args:
+        hidden: Captures with hidden markers.
+        mapper: Runs a function on many items, in turn or on several processes.
+        scales: Factors on the table of typical accelerations, among which FCDI's best is searched.
+    """
 
     def score(some: Sequence[Occluded], scale: float) -> float:
         errors = mapper(partial(occlusion_errors, method=replace(FCDI, scale=scale)), some)
@@ -258,7 +280,14 @@ def back_after(error_deg: Array, usual_deg: Array, rate_hz: float) -> float:
 def loss_rows(
     trials: Sequence[Case], methods: Sequence[Method], mapper: Mapper, *, scales: Sequence[float] = SCALES
 ) -> list[Check]:
-    """The rows of one motion: every method's error in the gap against FCDI at its best."""
+    """The rows of one motion: every method's error in the gap against FCDI at its best.
+
+    Args:
+        trials: The trials, with their truth.
+        methods: Filters with their settings.
+        mapper: Runs a function on many items, in turn or on several processes.
+        scales: Factors on the table of typical accelerations, among which FCDI's best is searched.
+    """
     lost = losses(trials, mapper)
 
     def score(some: Sequence[Loss], scale: float) -> float:

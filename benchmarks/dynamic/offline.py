@@ -52,7 +52,7 @@ def offline_motion(capture: Capture, subject: Subject, cut_off_hz: float = LOW_P
     """
     with single_threaded():
         markers = subject_markers(capture.markers, subject)
-        model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
+        model = HumanModel.of(subject)
         own = {marker.name: marker for marker in subject.markers}
         followed = [own[name] for name in markers.names]
         sensor = MarkerSensor(
@@ -84,6 +84,11 @@ def filled(positions_m: Array) -> Array:
 def fitted_poses(sensor: MarkerSensor, noise_m: Array, positions_m: Array) -> Array:
     """(T, nq) the likeliest pose of each frame, searched from the pose before.
 
+    Args:
+        sensor: The markers on the body.
+        noise_m: (M,) marker noise, m.
+        positions_m: (T, M, 3) measured positions, m.
+
     Raises:
         NotObservable: A frame shows no marker.
     """
@@ -99,7 +104,14 @@ def fitted_poses(sensor: MarkerSensor, noise_m: Array, positions_m: Array) -> Ar
 
 
 def smoothed_poses(model: HumanModel, q: Array, rate_hz: float, cut_off_hz: float) -> Array:
-    """(T, nq) poses with every coordinate low-passed; rotations as rotation vectors about their mean."""
+    """(T, nq) poses with every coordinate low-passed; rotations as rotation vectors about their mean.
+
+    Args:
+        model: The body.
+        q: (T, nq) poses.
+        rate_hz: Frame rate.
+        cut_off_hz: Cut-off of the low pass.
+    """
     result = q.copy()
     for joint in model.joints.values():
         plain, turning = _parts(joint.kind, joint.q)
@@ -122,7 +134,13 @@ def _parts(kind: str, q: slice) -> tuple[slice, slice | None]:
 
 
 def rates(model: HumanModel, q: Array, rate_hz: float) -> tuple[Array, Array]:
-    """Central differences (T, nv) of first and second order on the manifold; one-sided at the ends."""
+    """Central differences (T, nv) of first and second order on the manifold; one-sided at the ends.
+
+    Args:
+        model: The body.
+        q: (T, nq) poses.
+        rate_hz: Frame rate.
+    """
     steps = np.array([model.difference(a, b) for a, b in pairwise(q)]) * rate_hz
     padded = np.vstack([steps[:1], steps, steps[-1:]])
     a = np.diff(padded, axis=0) * rate_hz
@@ -131,7 +149,15 @@ def rates(model: HumanModel, q: Array, rate_hz: float) -> tuple[Array, Array]:
 
 
 def generalised_forces(model: HumanModel, q: Array, v: Array, a: Array, foot_wrench: Array) -> Array:
-    """(T, nv) M a − Q_g − B_pᵀ p (eq. 3.12) with wrenches (T, 2, 6) about the world's origin on the feet."""
+    """(T, nv) generalised forces M a − Q_g − B_pᵀ p (thesis eq. 3.12).
+
+    Args:
+        model: The body.
+        q: (T, nq) poses.
+        v: (T, nv) velocities.
+        a: (T, nv) accelerations.
+        foot_wrench: (T, 2, 6) wrenches on the feet about the world's origin, N and N m.
+    """
     tau = np.empty_like(v)
     supports = [model.supports[model.joint(segment).joint_id] for segment in FEET]
     for t in range(len(q)):

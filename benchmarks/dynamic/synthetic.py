@@ -214,13 +214,26 @@ def _inside(error: Array, rate_hz: float) -> Array:
 def cases(
     motions: Sequence[str], seeds: Sequence[int], mapper: Mapper, settings: CaptureSettings = NOISE
 ) -> list[Case]:
-    """All trials of some motions and seeds, corrected."""
+    """All trials of some motions and seeds, corrected.
+
+    Args:
+        motions: Names of synthetic motions.
+        seeds: Random seeds.
+        mapper: Runs a function on many items, in turn or on several processes.
+        settings: Noise of the captures.
+    """
     keys = [(motion, seed) for motion in motions for seed in seeds]
     return mapper(partial(make_case, settings=settings), keys)
 
 
 def errors(trials: Sequence[Case], method: Method, mapper: Mapper) -> list[Errors]:
-    """The errors of one method on every trial."""
+    """The errors of one method on every trial.
+
+    Args:
+        trials: The trials, with their truth.
+        method: The filter with its settings.
+        mapper: Runs a function on many items, in turn or on several processes.
+    """
     return mapper(partial(errors_of, method=method), trials)
 
 
@@ -244,7 +257,13 @@ class Baseline:
 
 
 def baseline(trials: Sequence[Case], mapper: Mapper, scales: Sequence[float] = SCALES) -> Baseline:
-    """FCDI at its best, found roughly on the first trials and finally on all, and the offline practice."""
+    """FCDI at its best, searched on the first trials and measured on all, and the offline practice.
+
+    Args:
+        trials: The trials, with their truth.
+        mapper: Runs a function on many items, in turn or on several processes.
+        scales: Factors on the table of typical accelerations, among which FCDI's best is searched.
+    """
     first = swept(trials[:SWEEP_SEEDS], scales, mapper)
     near = {s for key in ("torque_nm", "velocity_rad_s") for s in best_two(first[key])}
     final = swept(trials, sorted(near), mapper)
@@ -261,7 +280,13 @@ def baseline(trials: Sequence[Case], mapper: Mapper, scales: Sequence[float] = S
 def swept(
     trials: Sequence[Case], scales: Sequence[float], mapper: Mapper
 ) -> Mapping[str, Mapping[float, float]]:
-    """Pooled FCDI errors by scale: ``torque_nm`` and ``velocity_rad_s``."""
+    """Pooled FCDI errors by scale: ``torque_nm`` and ``velocity_rad_s``.
+
+    Args:
+        trials: The trials, with their truth.
+        scales: Factors on the table of typical accelerations, among which FCDI's best is searched.
+        mapper: Runs a function on many items, in turn or on several processes.
+    """
     found = {scale: errors(trials, replace(FCDI, scale=scale), mapper) for scale in scales}
     return {
         key: {scale: pooled(getattr(one, key) for one in list_) for scale, list_ in found.items()}
@@ -272,7 +297,14 @@ def swept(
 def accuracy_rows(
     trials: Sequence[Case], methods: Sequence[Method], mapper: Mapper, *, scales: Sequence[float] = SCALES
 ) -> list[Check]:
-    """The rows of one motion's trials: every method against FCDI at its best and the offline practice."""
+    """The rows of one motion's trials: every method against FCDI at its best and the offline practice.
+
+    Args:
+        trials: The trials, with their truth.
+        methods: Filters with their settings.
+        mapper: Runs a function on many items, in turn or on several processes.
+        scales: Factors on the table of typical accelerations, among which FCDI's best is searched.
+    """
     motion, base = trials[0].motion, baseline(trials, mapper, scales)
     name = f"synthetic {motion}, {len(trials)} seeds"
     rows = [
@@ -299,7 +331,14 @@ def _judged(
 
 
 def method_rows(name: str, found: Sequence[Errors], base: Baseline, smooth: bool) -> list[Check]:
-    """The bounds of one method on one motion."""
+    """The bounds of one method on one motion.
+
+    Args:
+        name: Beginning of the rows' names.
+        found: The method's errors, per trial.
+        base: Errors of FCDI and of the offline practice.
+        smooth: Whether the method is a smoother.
+    """
     torque = pooled(one.torque_nm for one in found)
     inside = pooled(one.torque_inside_nm for one in found)
     velocity = pooled(one.velocity_rad_s for one in found)
@@ -324,7 +363,13 @@ def method_rows(name: str, found: Sequence[Errors], base: Baseline, smooth: bool
 def consistency_rows(
     keys: Sequence[tuple[str, int]], methods: Sequence[Method], mapper: Mapper
 ) -> list[Check]:
-    """Camera noise, no artefact, known marker positions, default settings: NEES, NIS and coverage, no bounds."""
+    """Camera noise, no artefact, known marker positions, default settings: NEES, NIS and coverage, no bounds.
+
+    Args:
+        keys: Motion and seed of each trial.
+        methods: Filters with their settings.
+        mapper: Runs a function on many items, in turn or on several processes.
+    """
     trials = mapper(partial(make_case, settings=MATCHED, correct=False), keys)
     rows: list[Check] = []
     for method in methods:
@@ -348,7 +393,15 @@ def _consistent(label: str, trials: Sequence[Case], method: Method, mapper: Mapp
 
 
 def within(name: str, value: float, least: float, most: float, unit: str = "") -> list[Check]:
-    """The two checks of a number that has to lie in a band."""
+    """The two checks of a number that has to lie in a band.
+
+    Args:
+        name: Name of the checks.
+        value: The number.
+        least: Lower end of the band.
+        most: Upper end of the band.
+        unit: Unit of the number.
+    """
     return [
         Check(f"{name}, at least", value, least, ">=", unit),
         Check(f"{name}, at most", value, most, "<=", unit),
@@ -356,5 +409,11 @@ def within(name: str, value: float, least: float, most: float, unit: str = "") -
 
 
 def information(name: str, value: float, unit: str = "") -> Check:
-    """A number shown without a bound."""
+    """A number shown without a bound.
+
+    Args:
+        name: Name of the row.
+        value: The number.
+        unit: Its unit.
+    """
     return Check(name, value, float("inf"), "<=", unit)

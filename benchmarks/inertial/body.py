@@ -54,7 +54,14 @@ class Worn:
 
 
 def worn(name: str, motion: BodyMotion, posture: Array, seed: int = 0) -> Worn:
-    """Sensors, put on carelessly, on a motion and on standing still in a posture (nq,)."""
+    """Sensors with random misalignment on a moving body, and on the body standing still.
+
+    Args:
+        name: Name of the trial.
+        motion: The body's motion.
+        posture: (nq,) posture in which it stands.
+        seed: Random seed of misalignments and noise.
+    """
     model, still = motion.model, np.zeros((round(STANDING_S * RATE_HZ), motion.model.nv))
     mounts = typical_mounts(model, seed=seed)
     times = np.arange(len(still)) / RATE_HZ
@@ -89,7 +96,7 @@ def rajagopal_walk(context: Context) -> Worn:
     subject = scale(static, mass_kg=source.mass_kg)
     made = reconstruct(capture, subject, settings=ReconstructSettings(smooth=True))
     stood = reconstruct(static, subject, settings=ReconstructSettings(filter="kinematic"))
-    model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
+    model = HumanModel.of(subject)
     known = np.isfinite(made.q).all(axis=1)
     motion = BodyMotion(model, made.times_s[known], made.q[known], made.v[known], made.a[known])
     return worn(

@@ -100,7 +100,14 @@ def compare_one(
     readings: Sequence[ImuReadings],
     reference: Sequence[ReferenceStride],
 ) -> Compared:
-    """One variant. The reference's events only say which rests are meant; lengths are between our own rests."""
+    """One variant. The reference's events only select rests; lengths are those between the rests found.
+
+    Args:
+        name: Name of the variant.
+        settings: Its settings.
+        readings: Readings of both feet's sensors.
+        reference: Strides measured by cameras.
+    """
     feet = {foot.name: foot for foot in measure_strides(readings, settings).feet}
     found = np.array([matched(feet[one.sensor], one) for one in reference])
     rests = [

@@ -52,12 +52,24 @@ class Study:
         return tuple(CASES)
 
     def largest(self, method: str, case: str, phase: int) -> tuple[float, float]:
-        """Largest final and largest mean error over the seeds."""
+        """Largest final and largest mean error over the seeds.
+
+        Args:
+            method: Name of the method.
+            case: Name of the simulated case.
+            phase: First sample of the windows.
+        """
         final, mean = self.errors[method, case][phase].max(axis=0)
         return float(final), float(mean)
 
     def typical(self, method: str, case: str, phase: int) -> tuple[float, float]:
-        """Median final and median mean error over the seeds."""
+        """Median final and median mean error over the seeds.
+
+        Args:
+            method: Name of the method.
+            case: Name of the simulated case.
+            phase: First sample of the windows.
+        """
         final, mean = np.median(self.errors[method, case][phase], axis=0)
         return float(final), float(mean)
 
@@ -84,7 +96,13 @@ def measure_study(seeds: Sequence[int]) -> Study:
 
 
 def settings_of(method: str, case: str, first: int) -> KeyPointSettings:
-    """The study's weights for a case, with windows from a sample on."""
+    """The study's weights for a case.
+
+    Args:
+        method: Name of the method.
+        case: Name of the simulated case.
+        first: First sample of the windows.
+    """
     weights = NOISY_WEIGHTS if case == "noise and drift" else USUAL_WEIGHTS
     settings = KeyPointSettings(first=first, weights=weights)
     return replace(settings, still_s=0.0) if method == KEY_POINTS_WITH_BIAS else settings

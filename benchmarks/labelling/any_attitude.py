@@ -89,7 +89,13 @@ def prone_trial(folder: Path) -> Trial:
 
 
 def stranger_rows(trial: Trial, least: float, most: float = math.inf) -> list[Check]:
-    """A trial's shuffled points, labelled by the protocol's name; wrong labels that nobody is told of."""
+    """A trial's shuffled points, labelled by the protocol's name; wrong labels without a warning are counted.
+
+    Args:
+        trial: The trial with its true labels.
+        least: Least share of right labels, %.
+        most: Largest share of wrong labels, %.
+    """
     points = shuffled(trial.capture.markers.positions_m, 0)
     names = tuple(f"*{k}" for k in range(points.shape[1]))
     raw = replace(trial.capture, markers=replace(trial.capture.markers, names=names, positions_m=points))
@@ -150,6 +156,11 @@ def kept_shares(markers: MarkerTrajectories, labels: Indices, leap_m: float) -> 
     """For every track the share in % of its frames that have its commonest label; none counts as a label.
 
     A column is cut into tracks at gaps over which its point moves further than ``leap_m``.
+
+    Args:
+        markers: The points as stored, one column per track.
+        labels: (T, C) label of each point.
+        leap_m: Largest movement over a gap within a track, m.
     """
     shares = []
     for column in range(labels.shape[1]):

@@ -20,7 +20,13 @@ _PERCENT = 100.0
 
 
 def streamed(points_m: Array, truth: MarkerTrajectories, subject: Subject) -> LabelScore:
-    """Points (T, C, 3) named one frame after the other, with a kinematic filter, against the truth."""
+    """Score of points named one frame after the other, with a kinematic filter.
+
+    Args:
+        points_m: (T, C, 3) points, m.
+        truth: The true labels.
+        subject: The scaled person.
+    """
     body = live_body(subject)
     follower = live_body(subject).follower(1.0 / truth.rate_hz)
     labels, live = LiveLabels(body, follower.dt_s, patient=True), LiveFilter(follower)
@@ -38,7 +44,14 @@ def streamed(points_m: Array, truth: MarkerTrajectories, subject: Subject) -> La
 
 
 def live_rows(name: str, found: LabelScore, after: slice = slice(None), *, bounded: bool) -> list[Check]:
-    """Right and wrong samples from a frame on; bounded as the offline labels are, or for information."""
+    """Right and wrong samples of the live labeller.
+
+    Args:
+        name: Beginning of the rows' names.
+        found: The labeller's score.
+        after: Frames that count.
+        bounded: Whether the bounds of the offline labels apply.
+    """
     present = max(1, int((found.right | found.missed)[after].sum()))
     right = _PERCENT * float(found.right[after].sum()) / present
     wrong = _PERCENT * float(found.wrong[after].sum()) / present

@@ -147,7 +147,14 @@ def loss_rows(trial: Trial) -> list[Check]:
 
 
 def share_rows(name: str, found: list[LabelScore], least: float, most: float) -> list[Check]:
-    """Right and wrong samples of several runs, in % of those present."""
+    """Right and wrong samples of several runs, in % of those present.
+
+    Args:
+        name: Beginning of the rows' names.
+        found: Scores of the runs.
+        least: Least share of right samples, %.
+        most: Largest share of wrong samples, %.
+    """
     present = sum(one.present for one in found)
     right = _PERCENT * sum(int(one.right.sum()) for one in found) / present
     wrong = _PERCENT * sum(int(one.wrong.sum()) for one in found) / present

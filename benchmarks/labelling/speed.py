@@ -31,7 +31,7 @@ class TimedWalk:
 
     def __init__(self) -> None:
         person, made = synthesise("walk")
-        model = HumanModel.scaled(person.scale_factors, person.mass_kg, person.body)
+        model = HumanModel.of(person)
         segments, places = [m.segment for m in person.markers], [m.position_m for m in person.markers]
         noise = np.array([m.noise_m for m in person.markers])
         self.sensor = MarkerSensor(model, segments, np.array(places))
@@ -58,7 +58,13 @@ class TimedWalk:
         return [perf_counter() - begin]
 
     def labelled(self, before: Posterior, t: int, points: Array) -> tuple[Posterior, Array]:
-        """The step with labels between prediction and correction, and the seconds of its parts (4,)."""
+        """The step with labels between prediction and correction, and the time (4,) of its parts, s.
+
+        Args:
+            before: Estimate of the frame before.
+            t: The frame.
+            points: (N, 3) its points, m.
+        """
         ticks = [perf_counter()]
         prediction = self.follower.expect(before)
         ticks.append(perf_counter())

@@ -72,7 +72,13 @@ def real(context: Context) -> Trial:
 
 
 def synthetic(out: Path, seconds: float, rate_hz: float) -> Trial:
-    """A synthetic walk, written once."""
+    """A synthetic walk, written once.
+
+    Args:
+        out: Folder to write.
+        seconds: Duration, s.
+        rate_hz: Frame rate.
+    """
     folder = out / f"walk-{seconds:g}s-{rate_hz:g}Hz"
     if not (folder / "truth.h5").is_file():
         subject, made = synthesise("walk", seconds=seconds, rate_hz=rate_hz)
@@ -83,7 +89,14 @@ def synthetic(out: Path, seconds: float, rate_hz: float) -> Trial:
 
 
 def rows(trial: Trial, protocol: str, out: Path, view: bool) -> Iterator[Check]:
-    """What is bounded of one run: lost frames, latency through LSL, equality with `reconstruct`."""
+    """The bounded quantities of one run: lost frames, latency, equality with `reconstruct`.
+
+    Args:
+        trial: The capture and its subject.
+        protocol: "lsl" or "natnet".
+        out: Folder for files.
+        view: Whether a live page is open, too.
+    """
     found = play(trial, protocol, out / "run", view=view)
     name = f"{trial.name}, {protocol}{', page open' if view else ''}"
     yield lost(name, found)
@@ -100,7 +113,13 @@ def lost(name: str, found: Run) -> Check:
 
 
 def latency(name: str, found: Run, bound: float) -> list[Check]:
-    """Median and 99th percentile, and what of it is the machine's own."""
+    """Median and 99th percentile of the latency, and the machine's own pauses.
+
+    Args:
+        name: Beginning of the rows' names.
+        found: The run.
+        bound: Bound of the 99th percentile, ms.
+    """
     report, late = found.report, float(np.percentile(found.pauses_ms, 99.0))
     return [
         Check(f"{name}: latency, median", _known(report["latency_ms_median"]), math.inf, "<=", "ms"),

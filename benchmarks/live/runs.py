@@ -99,7 +99,14 @@ class Pauses:
 
 
 def play(trial: Trial, protocol: str, folder: Path, *, view: bool = False, speed: float = 1.0) -> Run:
-    """Plays the trial into a live run with the dynamic filter; with ``view`` a page follows it, too.
+    """Plays a trial into a live run with the dynamic filter.
+
+    Args:
+        trial: The capture and its subject.
+        protocol: "lsl" or "natnet".
+        folder: Folder for the results.
+        view: Whether a live page is open, too.
+        speed: Times real time.
 
     Raises:
         InvalidInput: One of the commands failed.

@@ -84,7 +84,7 @@ def run(args: argparse.Namespace) -> int:
     model = HumanModel.scaled()
     if args.subject is not None:
         person = read_subject(args.subject)
-        model = HumanModel.scaled(person.scale_factors, person.mass_kg, person.body)
+        model = HumanModel.of(person)
     sensors = read(args.files, args)
     for name in args.sensor:
         if name not in [one.name for one in sensors]:

@@ -74,7 +74,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.imu.orientation_ekf import OrientationSettings
     from mbkf.io.atomic import check_folder, replacing
     from mbkf.io.imu_write import write_orientation_csv
-    from mbkf.pipelines.imu.orient import orient, summarise
+    from mbkf.pipelines.imu.orient import orient, orientation_summary
 
     settings = OrientSettings(
         args.filter,
@@ -93,7 +93,7 @@ def run(args: argparse.Namespace) -> int:
             only=args.sensor,
             progress=report,
         )
-    summary = summarise(result, settings)
+    summary = orientation_summary(result, settings)
     for k, course in enumerate(result.courses):
         stem = course.name.replace("/", "_")
         note = f"orientation: sensor -> {course.frame} by {course.method}"

@@ -144,9 +144,9 @@ def _print(measured: StrideMeasurement, out: str) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from mbkf.pipelines.imu.stride import STRAIGHT_DEG, summarise
+    from mbkf.pipelines.imu.stride import STRAIGHT_DEG, stride_summary
 
-    summary = summarise(measured)
+    summary = stride_summary(measured)
     table = Table(title=f"{out}: {summary['method_meaning']}", title_justify="left")
     headings: Sequence[str] = ("foot", "strides", "length m", "duration s", "speed m/s", "walked m")
     for heading in headings:

@@ -155,9 +155,8 @@ def run(args: argparse.Namespace) -> int:
         except BaseException:
             source.close()
             raise
-        _say(
-            f"following {session.stream.trial}: {len(session.names)} markers at {session.stream.rate_hz:g} Hz"
-        )
+        stream, markers = session.setup.stream, len(session.setup.names)
+        _say(f"following {stream.trial}: {markers} markers at {stream.rate_hz:g} Hz")
         outcome = session.run(stop, sinks, args.seconds, keep_log=args.keep_log)
     return _told(outcome, folder)
 
@@ -224,7 +223,7 @@ def _standing(
     """Somebody who stood still and was scaled.
 
     Raises:
-        InvalidInput: There is no stream, nobody was scaled, or the page cannot be served.
+        InvalidInput: There is no stream, no person was scaled, or the page cannot be served.
     """
     from mbkf.errors import InvalidInput
 
@@ -234,7 +233,7 @@ def _standing(
         _say(f"page: {waiting.open(start.stream.trial)}")
     found = start.find(stop, patience_s)
     if found is None:
-        raise InvalidInput("stopped before anybody was scaled; live.json tells what was seen")
+        raise InvalidInput("stopped before a person was scaled; live.json tells what was seen")
     return found
 
 
@@ -268,12 +267,12 @@ def _sinks(args: argparse.Namespace, session: LiveSession, waiting: StandingPage
     if args.publish is not None:
         from mbkf.stream.lsl.results import LslResults
 
-        sinks.append(LslResults(session.model, args.publish, session.stream.rate_hz))
+        sinks.append(LslResults(session.setup.model, args.publish, session.setup.stream.rate_hz))
     if args.websocket is not None:
         from mbkf.stream.results.websocket import WebSocketResults, parse_address
 
         address, port = parse_address(args.websocket)
-        served = WebSocketResults(session.model, address, port, args.token)
+        served = WebSocketResults(session.setup.model, address, port, args.token)
         _say(f"results: {served.url}")
         sinks.append(served)
     if args.view:
@@ -287,10 +286,10 @@ def _live_page(args: argparse.Namespace, session: LiveSession, waiting: Standing
 
     port, token = (args.view_port, args.token) if waiting is None else waiting.hand_over()
     page = LivePage(
-        session.model,
-        session.names,
-        session.plate_corners_m,
-        title=session.stream.trial,
+        session.setup.model,
+        session.setup.names,
+        session.setup.plate_corners_m,
+        title=session.setup.stream.trial,
         address=args.view_address,
         port=port,
         token=token,

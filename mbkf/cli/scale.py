@@ -11,6 +11,7 @@ examples:
   mbkf scale static.trc --mass 85.07 --out subject.toml
   mbkf scale static.c3d --trial walk.c3d --mass 60 --height 1.72 --out subject.toml
   mbkf scale --trial walk.c3d --mass 63.6 --out subject.toml       (no static trial)
+  mbkf scale static.c3d --body legs.toml --mass 60 --out subject.toml  (a body of your own)
 """
 
 
@@ -31,6 +32,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument(
         "--protocol", metavar="NAME|FILE", help="marker protocol; by default found from the names"
+    )
+    parser.add_argument(
+        "--body", metavar="NAME|FILE", help="reference body; by default the one the protocol was written for"
     )
     parser.add_argument(
         "--mass", metavar="KG", type=float, help="body mass; by default what the capture states"
@@ -64,7 +68,13 @@ def run(args: argparse.Namespace) -> int:
     trials = [read_capture(path, up=args.up, unit=args.unit) for path in args.trial]
     with stages() as report:
         subject = scale(
-            static, trials, mass_kg=args.mass, height_m=args.height, protocol=args.protocol, progress=report
+            static,
+            trials,
+            mass_kg=args.mass,
+            height_m=args.height,
+            protocol=args.protocol,
+            body=args.body,
+            progress=report,
         )
     write_subject(subject, out)
     _print(subject.report, subject.protocol, str(out))

@@ -41,6 +41,19 @@ class Recording:
         own = {name: read[t] for name, read in self.readings.items()} if self.readings else NO_READINGS
         return Frame(self.markers_m[t], self.plates[t], imus, own)
 
+    @classmethod
+    def of(cls, frames: Sequence[Frame], dt_s: float) -> Recording:
+        """Frames (at least one) that follow each other, ``dt_s`` apart."""
+        first = frames[0]
+        imus = None if first.imus is None else np.array([frame.imus for frame in frames])
+        return cls(
+            np.array([frame.markers_m for frame in frames]),
+            np.array([frame.plates for frame in frames]),
+            dt_s,
+            imus,
+            {name: np.array([frame.readings[name] for frame in frames]) for name in first.readings},
+        )
+
     def __len__(self) -> int:
         return len(self.markers_m)
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.numerics.kalman import Information, correct, informed_with_rows
-from mbkf.sensors.block import AnyBlock, Frame, Notes, OperatingPoint, Rows, State, Statement
+from mbkf.sensors.block import AnyBlock, Block, Frame, Notes, OperatingPoint, Rows, State, Statement
 from mbkf.sensors.layout import Layout
 
 Update = Callable[[Array, Array, Array], Array]
@@ -64,11 +64,10 @@ class Memory(NamedTuple):
     """What a frame leaves for the next besides its estimate: the plant's memory and each block's."""
 
     plant: Any
-    blocks: tuple[Any, ...]
+    blocks: Sequence[Any]
 
 
-@dataclass(frozen=True, slots=True)
-class Prior(Generic[StateT]):
+class Prior(NamedTuple, Generic[StateT]):
     """A predicted state with what blocks worked out at it, before the frame is there.
 
     Attributes:
@@ -79,11 +78,10 @@ class Prior(Generic[StateT]):
 
     state: StateT
     noise: Any
-    points: tuple[OperatingPoint[StateT, Any], ...]
+    points: Sequence[OperatingPoint[StateT, Any]]
 
 
-@dataclass(frozen=True, slots=True)
-class Decisions:
+class Decisions(NamedTuple):
     """What a frame's readings were taken to be; with it a smoother linearises the same readings elsewhere.
 
     Attributes:
@@ -93,7 +91,7 @@ class Decisions:
     """
 
     noise: Any
-    blocks: tuple[Any, ...]
+    blocks: Sequence[Any]
     notes: Notes
 
 
@@ -115,7 +113,7 @@ class Readings:
     vector: Array
     rows: Array
     values: Array
-    parts: tuple[tuple[Rows, ...], ...]
+    parts: Sequence[Sequence[Rows]]
 
     @property
     def whole_matrix(self) -> Array:
@@ -135,7 +133,7 @@ class Readings:
     @property
     def whole_vector(self) -> Array:
         """(N,) Hᵀ R⁻¹ y of all readings."""
-        total = self.values @ self.rows
+        total = self.values @ self.rows if len(self.values) else np.zeros(self.rows.shape[1])
         total[: len(self.vector)] += self.vector
         return total
 
@@ -223,10 +221,21 @@ class Filter(Generic[StateT]):
         self.plant, self.blocks, self.layout, self.update = plant, tuple(blocks), plant.layout, update
         for block in self.blocks:
             block.bind(self.layout)
+        # Blocks that have something of their own to do; at these sizes empty calls count.
+        self._inflating = self._with_own("inflate")
+        self._reviewing = self._with_own("review")
+        self._remembering = self._with_own("remember")
+        self._preparing = self._with_own("prepare")
+        self._no_rows = np.zeros((0, self.layout.size)), np.zeros(0)
+
+    def _with_own(self, method: str) -> list[tuple[int, AnyBlock]]:
+        """Numbers and blocks that override a method of :class:`mbkf.sensors.block.Block`."""
+        own = getattr(Block, method)
+        return [(k, one) for k, one in enumerate(self.blocks) if getattr(type(one), method) is not own]
 
     def begin(self) -> Memory:
         """Memory before the first frame."""
-        return Memory(self.plant.begin(), tuple(block.begin() for block in self.blocks))
+        return Memory(self.plant.begin(), [block.begin() for block in self.blocks])
 
     def predict(self, state: StateT, memory: Memory) -> Prior[StateT]:
         """All that can be worked out before the frame is there."""
@@ -241,11 +250,14 @@ class Filter(Generic[StateT]):
             noise: Process noise it was predicted with.
             memory: Of the frame before.
         """
-        points = tuple(
-            OperatingPoint(state, block.prepare(state, kept))
-            for block, kept in zip(self.blocks, memory.blocks, strict=True)
-        )
-        return Prior(state, noise, points)
+        return Prior(state, noise, self._points(state, memory.blocks))
+
+    def _points(self, state: StateT, memory: Sequence[Any] | None) -> list[OperatingPoint[StateT, Any]]:
+        """The state as each block sees it; ``memory`` is None for a smoother."""
+        points = [OperatingPoint(state, None)] * len(self.blocks)
+        for k, block in self._preparing:
+            points[k] = OperatingPoint(state, block.prepare(state, None if memory is None else memory[k]))
+        return points
 
     def prepared_by(self, kind: type[AnyBlock], prior: Prior[StateT]) -> Any:
         """What the first block of a kind has worked out at a prior.
@@ -280,46 +292,50 @@ class Filter(Generic[StateT]):
             frame: The readings.
         """
         state, points, notes = prior.state, prior.points, Notes()
-        blocks = self.blocks
-        chosen = [
-            block.decide(at, frame, kept, notes)
-            for block, at, kept in zip(blocks, points, memory.blocks, strict=True)
-        ]
+        chosen, said = [], []
+        for block, at, kept in zip(self.blocks, points, memory.blocks, strict=True):
+            chosen.append(block.decide(at, frame, kept, notes))
         self.inflate(state.P, chosen)
-        said = [block.linearise(at, one) for block, at, one in zip(blocks, points, chosen, strict=True)]
+        for block, at, one in zip(self.blocks, points, chosen, strict=True):
+            said.append(block.linearise(at, one))
         readings = self._summed(said)
         posterior = self._updated(state, readings)
-        again = [block.review(posterior, one) for block, one in zip(blocks, chosen, strict=True)]
-        if any(one is not None for one in again):
-            for k, one in enumerate(again):
-                if one is not None:
-                    chosen[k] = one
-                    said[k] = blocks[k].linearise(points[k], one)
+        if self._reviewed(posterior, chosen, said, points):
             readings = self._summed(said)
             posterior = self._updated(state, readings)
 
         def recall() -> Memory:
-            kept = zip(blocks, points, chosen, memory.blocks, strict=True)
-            return Memory(
-                self.plant.remember(posterior, notes, memory.plant),
-                tuple(block.remember(posterior, at, one, before) for block, at, one, before in kept),
-            )
+            kept = list(memory.blocks)
+            for k, block in self._remembering:
+                kept[k] = block.remember(posterior, points[k], chosen[k], kept[k])
+            return Memory(self.plant.remember(posterior, notes, memory.plant), kept)
 
-        return Step(posterior, prior, Decisions(prior.noise, tuple(chosen), notes), readings, recall)
+        return Step(posterior, prior, Decisions(prior.noise, chosen, notes), readings, recall)
+
+    def _reviewed(
+        self,
+        posterior: StateT,
+        chosen: list[Any],
+        said: list[Statement],
+        points: Sequence[OperatingPoint[StateT, Any]],
+    ) -> bool:
+        """Whether a block took another decision in view of the posterior; it then stands in ``chosen``, ``said``."""
+        again = False
+        for k, block in self._reviewing:
+            one = block.review(posterior, chosen[k])
+            if one is not None:
+                chosen[k], said[k], again = one, block.linearise(points[k], one), True
+        return again
 
     def inflate(self, P: Array, chosen: Sequence[Any]) -> None:
         """Adds to a predicted covariance, in place, the process noise that depends on the blocks' decisions."""
-        for block, one in zip(self.blocks, chosen, strict=True):
-            block.inflate(P, one)
+        for k, block in self._inflating:
+            block.inflate(P, chosen[k])
 
     def linearise(self, state: StateT, decisions: Decisions) -> Readings:
         """A frame's readings, decided before, linearised at another state (for smoothing)."""
-        return self._summed(
-            [
-                block.linearise(OperatingPoint(state, block.prepare(state, None)), one)
-                for block, one in zip(self.blocks, decisions.blocks, strict=True)
-            ]
-        )
+        asked = zip(self.blocks, self._points(state, None), decisions.blocks, strict=True)
+        return self._summed([block.linearise(at, one) for block, at, one in asked])
 
     def _updated(self, prior: StateT, readings: Readings) -> StateT:
         P = self.update(prior.P, readings.matrix, readings.rows)
@@ -329,35 +345,35 @@ class Filter(Generic[StateT]):
         """All statements together: information of instruments first, then of priors, then rows in order."""
         known: list[Information] = []
         believed: list[Information] = []
-        parts: list[tuple[Rows, ...]] = []
+        parts: list[Sequence[Rows]] = []
         for block, one in zip(self.blocks, said, strict=True):
-            if isinstance(one, Information):
-                (believed if block.prior else known).append(one)
+            kind = type(one)
+            if kind is Information:
+                (believed if block.prior else known).append(one)  # type: ignore[arg-type]
                 parts.append(())
-            elif isinstance(one, Rows):
-                parts.append((one,))
+            elif one is None:
+                parts.append(())
             else:
-                parts.append(tuple(one) if one else ())
+                parts.append((one,) if kind is Rows else one)  # type: ignore[arg-type]
         instruments = _sum(known, self.layout.nv)
         matrix, vector = instruments.matrix, instruments.vector
         if believed:
             prior = _sum(believed, self.layout.nv)
-            size, n = max(len(vector), len(prior.vector)), len(prior.vector)
-            matrix, vector = _padded(matrix, vector, size)
-            matrix[:n, :n] += prior.matrix
-            vector[:n] += prior.vector
-        return Readings(instruments, matrix, vector, *self._stacked(parts), tuple(parts))
+            matrix, vector = _added(matrix, vector, prior)
+        return Readings(instruments, matrix, vector, *self._stacked(parts), parts)
 
     def _stacked(self, parts: Sequence[Sequence[Rows]]) -> tuple[Array, Array]:
         """(k, N) rows on the whole state and (k,) innovations."""
         flat = [one for part in parts for one in part]
+        if not flat:
+            return self._no_rows
         total = sum(len(one.innovation) for one in flat)
         rows, values, at = np.zeros((total, self.layout.size)), np.empty(total), 0
         for one in flat:
-            here = slice(at, at + len(one.innovation))
-            rows[here, one.first : one.first + one.jacobian.shape[1]] = one.jacobian
-            values[here] = one.innovation
-            at = here.stop
+            end = at + len(one.innovation)
+            rows[at:end, one.first : one.first + one.jacobian.shape[1]] = one.jacobian
+            values[at:end] = one.innovation
+            at = end
         return rows, values
 
 
@@ -367,18 +383,18 @@ def _sum(parts: Sequence[Information], nv: int) -> Information:
         return Information(np.zeros((nv, nv)), np.zeros(nv), 0.0, 0)
     total = parts[0]
     for one in parts[1:]:
-        size = max(len(total.vector), len(one.vector))
-        grown = Information(*_padded(total.matrix, total.vector, size), total.innovation, total.readings)
-        added = Information(*_padded(one.matrix, one.vector, size), one.innovation, one.readings)
-        total = grown + added
+        matrix, vector = _added(total.matrix, total.vector, one)
+        total = Information(matrix, vector, total.innovation + one.innovation, total.readings + one.readings)
     return total
 
 
-def _padded(matrix: Array, vector: Array, size: int) -> tuple[Array, Array]:
-    """New arrays (size, size) and (size,) that begin with these and end in zeros."""
-    n = len(vector)
-    if n == size:
-        return matrix.copy(), vector.copy()
-    larger, longer = np.zeros((size, size)), np.zeros(size)
+def _added(matrix: Array, vector: Array, other: Information) -> tuple[Array, Array]:
+    """New arrays: a matrix (n, n) and vector (n,) with another information, on as many components as the longer."""
+    n, m = len(vector), len(other.vector)
+    if n == m:
+        return matrix + other.matrix, vector + other.vector
+    larger, longer = np.zeros((max(n, m), max(n, m))), np.zeros(max(n, m))
     larger[:n, :n], longer[:n] = matrix, vector
+    larger[:m, :m] += other.matrix
+    longer[:m] += other.vector
     return larger, longer

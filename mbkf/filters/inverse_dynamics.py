@@ -35,7 +35,7 @@ def residual_in_world(model: HumanModel, q: Array, tau: Array) -> tuple[Array, A
         q: (nq,) configuration.
         tau: (nv,) generalised forces; the first six are the residual in pelvis axes.
     """
-    root = next(joint for joint in model.joints.values() if joint.kind == "free").v
+    root = model.root.v
     R = model.spatial_jacobian(q)[:3, root][:, :3]
     return R @ tau[root][:3], R @ tau[root][3:]
 

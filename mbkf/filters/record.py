@@ -1,7 +1,7 @@
 """The record of a frame: one declaration from which a trial's arrays, the live log's rows and live frames follow.
 
-A record is a row of a structured array. What listeners wait for is filled by :meth:`FrameRecorder.row`; what only
-reports need, and costs as much again, by :meth:`FrameRecorder.complete`.
+A record is a row of a structured array. The answer to a frame is filled by :meth:`FrameRecorder.row`; what costs as
+much again and is not waited for, by :meth:`FrameRecorder.spread` and :meth:`FrameRecorder.innovation`.
 """
 
 from __future__ import annotations
@@ -105,7 +105,7 @@ class FrameRecorder:
     def row(
         self, number: int, measured_m: Array, posterior: Posterior | None, step_seconds: float
     ) -> tuple[NDArray, Spread | None]:
-        """(1,) a record with what listeners wait for, and the spread for :meth:`complete`.
+        """(1,) a record with the answer to a frame, and the spread for :meth:`spread`.
 
         Args:
             number: The frame.
@@ -135,7 +135,7 @@ class FrameRecorder:
             row["footing"] = posterior.contact
 
     def motion(self, row: NDArray, posterior: Posterior) -> Spread:
-        """The estimate and the standard deviations that listeners are shown; it may be a smoothed one."""
+        """The estimate and its standard deviations; it may be a smoothed one."""
         for name in MOTION:
             row[name] = getattr(posterior, name)
         row["wrench_sd"] = self.filter.wrench_sd(posterior)
@@ -149,19 +149,6 @@ class FrameRecorder:
         row["nis"], row["readings"] = self.filter.innovation(posterior)
 
     def spread(self, row: NDArray, spread: Spread) -> None:
-        """Standard deviations that only reports need."""
+        """Standard deviations of clinical coordinates, their rates and the height of the feet."""
         for name in SPREAD_LATER:
             row[f"{name}_sd"] = getattr(spread, name)
-
-    def complete(self, row: NDArray, posterior: Posterior | None, spread: Spread | None) -> None:
-        """The rest of the record, after the answer.
-
-        Args:
-            row: The record that :meth:`row` began.
-            posterior: What the filter made of the frame.
-            spread: What :meth:`row` returned with it.
-        """
-        if posterior is None or spread is None:
-            return
-        self.innovation(row, posterior)
-        self.spread(row, spread)

@@ -14,7 +14,6 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
-from mbkf.model.newton_euler import FEET
 
 
 class SpreadReader:
@@ -27,7 +26,7 @@ class SpreadReader:
 
     def __init__(self, model: HumanModel) -> None:
         self.model, self.clinical = model, ClinicalAngles(model)
-        self._feet = [model.joint(segment).joint_id for segment in FEET]
+        self._feet = [model.joint(segment).joint_id for segment in model.roles.feet]
 
     def torque(self, q: Array, step_covariance: Array, dt_s: float) -> Array:
         """(nv,) of the generalised forces that eq. 3.7's accelerations cause, M (v_k − v_{k−1}) / Δt.

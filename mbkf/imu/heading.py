@@ -6,20 +6,14 @@ within some degrees of each other. Each joint is read so, with its own spread; h
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.imu.frames import multiply, rotate
-
-JOINTS: tuple[tuple[str, str, float], ...] = (
-    ("pelvis", "torso", 8.0), ("pelvis", "right_thigh", 8.0), ("pelvis", "left_thigh", 8.0),
-    ("right_thigh", "right_shank", 6.0), ("left_thigh", "left_shank", 6.0),
-    ("right_shank", "right_foot", 8.0), ("left_shank", "left_foot", 8.0),
-)  # fmt: skip
-"""Proximal and distal segment, and how far their side-to-side axes differ in heading in ordinary movement, degrees."""
+from mbkf.model.clinical_table import ClinicalJoint
 
 
 @dataclass(frozen=True)
@@ -40,7 +34,11 @@ class HeadingSettings:
 
 
 def held_headings(
-    segments: Sequence[str], orientation: Array, dt_s: float, settings: HeadingSettings | None = None
+    segments: Sequence[str],
+    orientation: Array,
+    dt_s: float,
+    joints: Iterable[ClinicalJoint],
+    settings: HeadingSettings | None = None,
 ) -> Array:
     """Corrections (T, S) of headings, rad, to be added to those of segments; the first segment's is 0.
 
@@ -50,25 +48,30 @@ def held_headings(
         segments: S names; the first one is the chain's root.
         orientation: (T, S, 4) segment → world, z up.
         dt_s: Time between samples.
+        joints: The body's joints; those with a heading_sd_deg between two of the segments hold their headings.
         settings: Its weights.
     """
     s = settings or HeadingSettings()
-    joints = [(segments.index(a), segments.index(b), sd) for a, b, sd in JOINTS if {a, b} <= set(segments)]
+    holding = [
+        (segments.index(joint.proximal), segments.index(joint.distal), joint.heading_sd_deg)
+        for joint in joints
+        if joint.heading_sd_deg is not None and {joint.proximal, joint.distal} <= set(segments)
+    ]
     count, n = len(orientation), len(segments)
     side = rotate(orientation, np.array([0.0, 1.0, 0.0]))
     level = np.hypot(side[..., 0], side[..., 1])
     heading = np.unwrap(np.arctan2(side[..., 1], side[..., 0]), axis=0)
-    H = np.zeros((len(joints), n))
-    for row, (a, b, _) in enumerate(joints):
+    H = np.zeros((len(holding), n))
+    for row, (a, b, _) in enumerate(holding):
         H[row, a], H[row, b] = -1.0, 1.0
-    sd = np.radians([spread for _, _, spread in joints]) * s.spread_scale
+    sd = np.radians([spread for _, _, spread in holding]) * s.spread_scale
     apart = heading @ H.T
     apart -= 2.0 * np.pi * np.round(np.median(apart, axis=0) / (2.0 * np.pi))
     P = s.start_sd_rad**2 * np.eye(n)
     P[0, 0] = 1e-12
     Q = s.walk_rad**2 * dt_s * np.eye(n)
     Q[0, 0] = 0.0
-    above, below = [joint[0] for joint in joints], [joint[1] for joint in joints]
+    above, below = [one[0] for one in holding], [one[1] for one in holding]
     x, means, covariances = np.zeros(n), np.empty((count, n)), np.empty((count, n, n))
     for t in range(count):
         P = P + Q

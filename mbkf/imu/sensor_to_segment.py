@@ -13,10 +13,14 @@ from mbkf.imu.frames import conjugate, multiply, rotate
 LEAST_SWING_RAD_S = 0.5
 """Legs that turn less than this (root mean square) do not show where forward is."""
 
-_LEGS = ("thigh", "shank")
 
-
-def facing(segments: Sequence[str], orientation: Array, gyro: Array, standing: Array) -> float | None:
+def facing(
+    segments: Sequence[str],
+    orientation: Array,
+    gyro: Array,
+    standing: Array,
+    knees: Sequence[tuple[str, str]],
+) -> float | None:
     """Heading of forward while standing, rad about the vertical from the world's x axis; None where legs hardly swing.
 
     Thighs and shanks swing about the side-to-side axis, the first principal axis of their angular velocities
@@ -29,8 +33,10 @@ def facing(segments: Sequence[str], orientation: Array, gyro: Array, standing: A
         orientation: (T, S, 4) sensor → one world, z up, with one common heading.
         gyro: (T, S, 3) rad/s in sensor axes.
         standing: (S, 4) sensor → world while standing.
+        knees: Thigh and shank of each leg (:class:`~mbkf.model.description.Roles`).
     """
-    legs = [k for k, name in enumerate(segments) if name.endswith(_LEGS)]
+    swinging = {name for pair in knees for name in pair}
+    legs = [k for k, name in enumerate(segments) if name in swinging]
     if not legs:
         return None
     since = multiply(orientation[:, 0], conjugate(standing[0]))
@@ -43,9 +49,9 @@ def facing(segments: Sequence[str], orientation: Array, gyro: Array, standing: A
         return None
     left = vectors[:, 1]
     bend = 0.0
-    for side in ("right", "left"):
-        if {f"{side}_thigh", f"{side}_shank"} <= set(segments):
-            thigh, shank = (segments.index(f"{side}_{part}") for part in ("thigh", "shank"))
+    for pair in knees:
+        if set(pair) <= set(segments):
+            thigh, shank = (segments.index(name) for name in pair)
             bend += _turn_about(orientation[:, shank], standing[shank], left)
             bend -= _turn_about(orientation[:, thigh], standing[thigh], left)
     if bend < 0.0:

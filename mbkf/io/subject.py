@@ -43,8 +43,9 @@ class Subject:
 
     Attributes:
         body: Name of the reference body, e.g. ``"human18"``.
+        body_text: The body file of a user's own reference body, word for word; "" for the bodies that come with mbkf.
         mass_kg: Body mass.
-        scale_factors: Independent scale factor by name (Table 4.1).
+        scale_factors: Independent scale factor by name.
         markers: The markers that follow this subject, with corrected positions.
         protocol: Name of the marker protocol.
         height_m: Body height where it was given.
@@ -58,6 +59,7 @@ class Subject:
     protocol: str
     height_m: float | None = None
     report: dict[str, Any] = field(default_factory=dict)
+    body_text: str = ""
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.mass_kg) and self.mass_kg > 0):
@@ -131,6 +133,9 @@ def write_subject(subject: Subject, path: str | Path) -> None:
         lines += ["", "# How it was found: one JSON object.", f"report = {_text(json.dumps(subject.report))}"]
         lines.insert(1, lines.pop())
         lines.insert(1, lines.pop())
+    if subject.body_text:
+        lines.insert(1, f"body_text = {_long_text(subject.body_text)}")
+        lines.insert(1, "# The reference body, word for word.")
     with replacing(path) as partial:
         partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
@@ -153,6 +158,7 @@ def read_subject(path: str | Path) -> Subject:
             protocol=table["protocol"],
             height_m=table.get("height_m"),
             report=json.loads(table.get("report", "{}")),
+            body_text=str(table.get("body_text", "")),
         )
     except FileNotFoundError as error:
         raise FileFormatError(source, "no such file; make it with 'mbkf scale'") from error
@@ -179,6 +185,12 @@ def _marker(entry: dict[str, Any]) -> SubjectMarker:
         float(entry["session_sd_m"]),
         tuple(entry.get("aliases", ())),
     )
+
+
+def _long_text(value: str) -> str:
+    """A text of several lines, as it stands where TOML can hold that."""
+    plain = "'''" not in value and value.replace("\n", "").replace("\t", "").isprintable()
+    return f"'''\n{value}'''" if plain and not value.endswith("'") else _text(value)
 
 
 def _text(value: str) -> str:

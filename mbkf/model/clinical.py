@@ -1,6 +1,6 @@
 """Clinical joint angles of a posture, their rates and the joint moments conjugate to them.
 
-Inside mbkf a joint is a rotation; people read angles. The table ``models/clinical_angles.toml`` says which.
+Inside mbkf a joint is a rotation; people read angles. The body file says which.
 θ̇ = E v with the tangent velocity v, v = B θ̇, and m = Bᵀ τ, so that Σ m θ̇ = τᵀ v joint by joint.
 """
 
@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray, read_only
-from mbkf.errors import InvalidInput, ShapeError
-from mbkf.model.clinical_table import Angle, ClinicalJoint, load_clinical_joints
+from mbkf.errors import ShapeError
+from mbkf.model.clinical_table import Angle, ClinicalJoint
 from mbkf.model.human import HumanModel
 from mbkf.numerics.cardan import (
     cardan_angles,
@@ -27,15 +27,14 @@ AXES = {"x": 0, "y": 1, "z": 2}
 def dof_names(model: HumanModel) -> tuple[str, ...]:
     """Names of the nv tangent dofs: ``<segment>_<axis>`` turns about it, ``pelvis_t<axis>`` moves along it.
 
-    Free and spherical joints: axes of the segment's own frame. Universal joint: x, then y.
+    Free and spherical joints: axes of the segment's own frame. Others: the axes they turn about, in turn.
     """
-    axes = {
-        "free": ("tx", "ty", "tz", "x", "y", "z"),
-        "spherical": ("x", "y", "z"),
-        "universal": ("x", "y"),
-        "hinge": ("y",),
-    }
-    return tuple(f"{joint.segment}_{axis}" for joint in model.joints.values() for axis in axes[joint.kind])
+    axes = {"free": ("tx", "ty", "tz", "x", "y", "z"), "spherical": ("x", "y", "z")}
+    return tuple(
+        f"{joint.segment}_{axis}"
+        for joint in model.joints.values()
+        for axis in axes.get(joint.kind, tuple(joint.axes))
+    )
 
 
 class ClinicalAngles:
@@ -45,19 +44,15 @@ class ClinicalAngles:
 
     Attributes:
         model: The body.
-        joints: The joints' entries of the table, in the model's order.
+        joints: The joints' entries of the body file, in the model's order.
         names: (A,) coordinate names, OpenSim's where it has them.
         units: (A,) "rad" or "m".
         rotational: (A,) True for angles, False for the pelvis's translations.
     """
 
     def __init__(self, model: HumanModel) -> None:
-        entries = {entry.distal: entry for entry in load_clinical_joints()}
-        missing = [name for name in model.joints if name not in entries]
-        if missing:
-            raise InvalidInput(f"clinical_angles.toml has no joint for the segments {', '.join(missing)}")
         self.model = model
-        self.joints: tuple[ClinicalJoint, ...] = tuple(entries[name] for name in model.joints)
+        self.joints: tuple[ClinicalJoint, ...] = model.description.clinical_joints
         self.names: tuple[str, ...] = tuple(c.name for joint in self.joints for c in joint.coordinates)
         column = {name: i for i, name in enumerate(self.names)}
         translations = [c.name for joint in self.joints for c in joint.translations]
@@ -189,6 +184,22 @@ class ClinicalAngles:
         world_force = np.einsum("tij,tj->ti", self._root_rotation(q), tau[:, self._root_v])
         conjugate[:, self._root_columns] = world_force @ self._root_axes.T
         return conjugate
+
+    def moments_sd(self, q: Array, tau_sd: Array, angles: Array | None = None) -> Array:
+        """(T, A) standard deviations √Σ B² sd² of the moments, for independent forces.
+
+        One axis of every joint is taken at a time, because no coordinate mixes two joints.
+
+        Args:
+            q: (T, nq) configurations.
+            tau_sd: (T, nv) standard deviations of the generalised forces.
+            angles: (T, A) coordinates, as for :meth:`rate_matrices`.
+        """
+        q, angles = self._with_angles(q, angles)
+        joints = self.model.joints.values()
+        axis = np.concatenate([np.arange(joint.v.stop - joint.v.start) % 3 for joint in joints])
+        by_axis = [self.moments(q, np.where(axis == one, tau_sd, 0.0), angles) for one in range(3)]
+        return np.asarray(np.sqrt(np.square(by_axis).sum(axis=0)))
 
     def _cardan(self, angles: Array) -> Array:
         return self._ball_sign * angles[:, self._ball_column]

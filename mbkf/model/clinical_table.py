@@ -1,16 +1,12 @@
-"""The table of clinical angles (``models/clinical_angles.toml``) as records, both sides written out."""
+"""Clinical coordinates of joints as records, read from a body file's ``[[clinical_joint]]`` tables."""
 
 from __future__ import annotations
 
-import tomllib
+from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cache
-from pathlib import Path
 from typing import Any
 
-from mbkf.conventions import data_folder
-from mbkf.errors import FileFormatError
-from mbkf.model.description import mirrored
+from mbkf.model.sides import mirrored
 
 
 @dataclass(frozen=True)
@@ -19,17 +15,19 @@ class Angle:
 
     Attributes:
         name: Coordinate name, e.g. ``"hip_flexion_r"``.
+        title: The same for people, without the side; "" where the name reads well by itself.
         axis: "x", "y" or "z".
         sign: +1 or −1.
         positive: What a positive value means, in words.
-        opensim: Coordinate of the Rajagopal model it compares with, "" where there is none.
+        opensim: Coordinate of the full-body model of Rajagopal et al. (2016) it compares with, "" where there is none.
     """
 
     name: str
     axis: str
     sign: int
-    positive: str
-    opensim: str
+    positive: str = ""
+    opensim: str = ""
+    title: str = ""
 
 
 @dataclass(frozen=True)
@@ -44,6 +42,8 @@ class ClinicalJoint:
         main: Name of the angle that stands for the joint in summaries (flexion).
         angles: Its angles, in that order.
         translations: The root's position along three world axes; empty for other joints.
+        heading_sd_deg: How far the side-to-side axes of its segments differ in heading in ordinary movement; None where
+            they differ at will.
     """
 
     name: str
@@ -53,6 +53,7 @@ class ClinicalJoint:
     main: str
     angles: tuple[Angle, ...]
     translations: tuple[Angle, ...]
+    heading_sd_deg: float | None = None
 
     @property
     def coordinates(self) -> tuple[Angle, ...]:
@@ -60,37 +61,39 @@ class ClinicalJoint:
         return self.angles + self.translations
 
 
-@cache
-def load_clinical_joints() -> tuple[ClinicalJoint, ...]:
-    """Every joint of the table, paired ones on both sides.
+def clinical_joints(entries: Iterable[dict[str, Any]]) -> tuple[ClinicalJoint, ...]:
+    """Every joint of a body file's tables, those with ``mirror = true`` on both sides.
 
     Raises:
-        FileFormatError: The table is damaged.
+        KeyError: An entry lacks a value.
+        TypeError: An angle has a value it should not have.
+        ValueError: Axes, signs and names of a joint contradict each other.
     """
-    return _parse(data_folder("models") / "clinical_angles.toml")
-
-
-def _parse(path: Path) -> tuple[ClinicalJoint, ...]:
-    try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-        joints: list[ClinicalJoint] = []
-        for entry in table["joint"]:
-            joint = _joint(entry)
-            joints += [joint, _left(joint)] if entry.get("mirror") else [joint]
-    except OSError as error:
-        raise FileFormatError(path, f"cannot be read ({error.strerror})") from error
-    except (tomllib.TOMLDecodeError, KeyError, TypeError, ValueError) as error:
-        raise FileFormatError(path, f"not a table of clinical angles ({error})") from error
+    joints: list[ClinicalJoint] = []
+    for entry in entries:
+        joint = _joint(entry)
+        joints += [joint, _left(joint)] if entry.get("mirror") else [joint]
     for joint in joints:
-        if "".join(angle.axis for angle in joint.angles) != joint.order:
-            raise FileFormatError(
-                path, f"joint {joint.name}: the angles' axes must follow its order {joint.order}"
-            )
-        if joint.main not in {angle.name for angle in joint.angles}:
-            raise FileFormatError(
-                path, f"joint {joint.name}: main angle {joint.main} is not among its angles"
-            )
+        _check(joint)
+    names = [angle.name for joint in joints for angle in joint.coordinates]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise ValueError(f"the coordinate {twice[0]} stands twice; give every angle a name of its own")
     return tuple(joints)
+
+
+def _check(joint: ClinicalJoint) -> None:
+    if "".join(angle.axis for angle in joint.angles) != joint.order:
+        raise ValueError(f"joint {joint.name}: the angles' axes must follow its order {joint.order}")
+    if len(joint.order) > 3 or len(set(joint.order)) != len(joint.order) or set(joint.order) - set("xyz"):
+        raise ValueError(f"joint {joint.name}: order '{joint.order}' must hold different ones of x, y and z")
+    if joint.main not in {angle.name for angle in joint.angles}:
+        raise ValueError(f"joint {joint.name}: main angle {joint.main} is not among its angles")
+    if joint.heading_sd_deg is not None and not joint.heading_sd_deg > 0:
+        raise ValueError(f"joint {joint.name}: heading_sd_deg must be positive, not {joint.heading_sd_deg}")
+    for angle in joint.coordinates:
+        if angle.sign not in (1, -1):
+            raise ValueError(f"joint {joint.name}: sign of {angle.name} is 1 or -1, not {angle.sign}")
 
 
 def _joint(entry: dict[str, Any]) -> ClinicalJoint:
@@ -102,6 +105,7 @@ def _joint(entry: dict[str, Any]) -> ClinicalJoint:
         main=entry["main"],
         angles=tuple(Angle(**angle) for angle in entry["angle"]),
         translations=tuple(Angle(**angle) for angle in entry.get("translation", ())),
+        heading_sd_deg=entry.get("heading_sd_deg"),
     )
 
 
@@ -114,6 +118,7 @@ def _left(right: ClinicalJoint) -> ClinicalJoint:
             angle.sign if angle.axis == "y" else -angle.sign,
             angle.positive,
             _left_name(angle.opensim),
+            angle.title,
         )
         for angle in right.angles
     )
@@ -125,6 +130,7 @@ def _left(right: ClinicalJoint) -> ClinicalJoint:
         _left_name(right.main),
         angles,
         (),
+        right.heading_sd_deg,
     )
 
 

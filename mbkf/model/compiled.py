@@ -19,6 +19,13 @@ class Compiled:
     """
 
     def __init__(self, name: str, inputs: Sequence[ca.SX], outputs: Sequence[ca.SX]) -> None:
+        """Compiles it.
+
+        Args:
+            name: Name of the function.
+            inputs: Symbols of its inputs.
+            outputs: Expressions of its outputs.
+        """
         self.function = ca.Function(name, list(inputs), [ca.densify(output) for output in outputs])
         # CasADi's own annotations of these two know neither memory views nor that sizes follow from them.
         buffer: Any

@@ -1,20 +1,18 @@
-"""The reference body as data: segments, joints, inertias, landmarks, read from a file in ``models/``."""
+"""A reference body as records: segments, joints, inertias, landmarks, roles, clinical angles and shapes.
+
+:mod:`mbkf.model.body_file` reads them from a file.
+"""
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
-from functools import cache
-from pathlib import Path
-from typing import Any
 
-import numpy as np
-
-from mbkf.conventions import Array, data_folder, read_only
-from mbkf.errors import FileFormatError, UnknownName
+from mbkf.conventions import Array
+from mbkf.errors import UnknownName
+from mbkf.model.clinical_table import ClinicalJoint
 
 JOINT_DOF = {"free": 6, "spherical": 3, "universal": 2, "hinge": 1}
-"""Degrees of freedom of each kind of joint. Universal: about x, then y. Hinge: about y."""
+"""Degrees of freedom of each kind of joint."""
 
 
 @dataclass(frozen=True)
@@ -25,12 +23,14 @@ class Segment:
         name: Segment name, e.g. ``"right_thigh"``.
         parent: Proximal segment, ``"world"`` for the root.
         joint: Kind of its proximal joint, a key of :data:`JOINT_DOF`.
+        axes: Axes that a hinge ("y") or a universal joint ("xy", in this order) turns about; "" for the others.
         origin_m: (3,) its proximal joint in the parent's frame, m.
         mass_kg: Reference mass.
         com_m: (3,) reference centre of mass, m.
         inertia_kg_m2: (3,) reference principal moments about the centre of mass, kg m².
-        scale_matrix: (3, K) rows that turn the K independent factors into the x, y, z factors (Table 4.1).
-        length_index: Which independent factor is the length factor k of eqs. 4.3 and 4.4.
+        scale_matrix: (3, K) rows that turn the K independent factors into the x, y, z factors.
+        length_index: Which independent factor is the length factor k: moments of inertia grow as k_m k² with the mass
+            factor k_m.
         posture_sd_rad: (dof,) spread of the joint about the neutral standing posture, rad (0: no prior).
         acceleration_sd: (dof,) typical acceleration of each dof, m/s² or rad/s².
         movement_sd: (dof,) standard deviation of the acceleration of each dof over a movement, m/s² or rad/s².
@@ -40,6 +40,7 @@ class Segment:
     name: str
     parent: str
     joint: str
+    axes: str
     origin_m: Array
     mass_kg: float
     com_m: Array
@@ -63,18 +64,85 @@ class Landmark:
 
 @dataclass(frozen=True)
 class Sole:
-    """Rectangle under the right foot in its frame, m; the left one mirrors it in y."""
+    """Rectangle under a foot, in the foot's frame, m.
 
+    Attributes:
+        segment: The foot.
+        height_m: Its z.
+        heel_x_m, ball_x_m, toe_x_m: Its rear end, the line where the toes bend, its front end.
+        inner_y_m, outer_y_m: Its edges towards the midline and away from it.
+    """
+
+    segment: str
     height_m: float
     heel_x_m: float
+    ball_x_m: float
     toe_x_m: float
     inner_y_m: float
     outer_y_m: float
 
 
 @dataclass(frozen=True)
+class Roles:
+    """What segments are to the algorithms; paired ones right side first.
+
+    Attributes:
+        root: The segment whose joint is free: it carries the residual force and moment.
+        feet: The two segments that take ground reactions.
+        toes: The segments that bend on the feet, in the order of the feet; empty where feet are rigid. Ground reactions
+            act on the foot as a whole, so that toes have no torque of their own.
+        soles: The soles of the feet, in their order.
+        legs: The segments from the root (without it) to the feet.
+        leading: Segments whose joints, with the root, lead those that no marker shows (arms swing with the legs).
+        steady: Segments whose markers the skin moves little, from the floor to the root.
+        knees: Thigh and shank of each leg: the shank bends one way only.
+    """
+
+    root: str
+    feet: tuple[str, str]
+    toes: tuple[str, ...]
+    soles: tuple[Sole, Sole]
+    legs: tuple[str, ...]
+    leading: tuple[str, ...]
+    steady: tuple[str, ...]
+    knees: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
+class SegmentShape:
+    """A simple shape of a segment of the reference body, for drawing only, in the segment's frame.
+
+    Attributes:
+        segment: The segment.
+        kind: "limb" (tapered, from the segment's origin to the joint of ``to``), "ellipsoid", "tube" (elliptic
+            sections), "foot" or "toes" (drawn from the sole).
+        numbers: limb: its radii at both ends, m; ellipsoid: centre and semi-axes, m; tube: x, z of the centre, half
+            depth and half breadth of each section, m; otherwise empty.
+        to: The segment at whose joint a limb ends, "" for other shapes.
+    """
+
+    segment: str
+    kind: str
+    numbers: Array
+    to: str = ""
+
+
+@dataclass(frozen=True)
 class BodyDescription:
-    """The reference body: segments in depth-first order, scale factors, landmarks."""
+    """A reference body.
+
+    Attributes:
+        name: Its name.
+        reference_mass_kg: Mass of the reference person; the segments' masses sum to it.
+        reference_height_m: Height of the reference person.
+        scale_factors: Names of the independent scale factors.
+        segments: The segments, depth-first.
+        landmarks: Landmarks by name.
+        roles: What segments are to the algorithms.
+        clinical_joints: The clinical coordinates of every segment's joint, in the order of the segments.
+        shapes: Shapes for drawing, by segment; segments without one are drawn as plain limbs.
+        text: The file it was read from, word for word; "" for the bodies that come with mbkf.
+    """
 
     name: str
     reference_mass_kg: float
@@ -82,7 +150,15 @@ class BodyDescription:
     scale_factors: tuple[str, ...]
     segments: tuple[Segment, ...]
     landmarks: dict[str, Landmark]
-    sole: Sole
+    roles: Roles
+    clinical_joints: tuple[ClinicalJoint, ...]
+    shapes: dict[str, SegmentShape]
+    text: str = ""
+
+    @property
+    def sole(self) -> Sole:
+        """The right foot's sole; the left one mirrors it in y."""
+        return self.roles.soles[0]
 
     def segment(self, name: str) -> Segment:
         """The segment of that name.
@@ -104,98 +180,3 @@ class BodyDescription:
         if name not in self.landmarks:
             raise UnknownName("landmark", name, self.landmarks)
         return self.landmarks[name]
-
-
-def mirrored(name: str) -> str:
-    """The other side's name of a ``right_``/``left_`` name; midline names stay."""
-    if name.startswith("right_"):
-        return "left_" + name.removeprefix("right_")
-    if name.startswith("left_"):
-        return "right_" + name.removeprefix("left_")
-    return name
-
-
-@cache
-def load_body(name: str = "human18") -> BodyDescription:
-    """Reads a reference body from ``models/``.
-
-    Raises:
-        UnknownName: There is no such body.
-        FileFormatError: The file is not a valid body description.
-    """
-    path = data_folder("models") / f"{name}.toml"
-    if not path.is_file():
-        raise UnknownName("body", name, [p.stem for p in data_folder("models").glob("*.toml")])
-    return _parse(path)
-
-
-def _parse(path: Path) -> BodyDescription:
-    try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-        factors = tuple(table["scale_factors"])
-        segments = tuple(_segment(entry, factors) for entry in table["segment"])
-        names = {segment.name for segment in segments}
-        return BodyDescription(
-            name=table["name"],
-            reference_mass_kg=float(table["reference_mass_kg"]),
-            reference_height_m=float(table["reference_height_m"]),
-            scale_factors=factors,
-            segments=segments,
-            landmarks=_landmarks(table["landmark"], names),
-            sole=Sole(**table["sole"]),
-        )
-    except (tomllib.TOMLDecodeError, KeyError, TypeError, ValueError) as error:
-        raise FileFormatError(path, f"not a valid body description ({error})") from error
-
-
-def _segment(entry: dict[str, Any], factors: tuple[str, ...]) -> Segment:
-    return Segment(
-        name=entry["name"],
-        parent=entry["parent"],
-        joint=entry["joint"],
-        origin_m=read_only(entry["origin_m"]),
-        mass_kg=float(entry["mass_kg"]),
-        com_m=read_only(entry["com_m"]),
-        inertia_kg_m2=read_only(entry["inertia_kg_m2"]),
-        scale_matrix=read_only(_scale_matrix(entry["scale"], factors)),
-        length_index=factors.index(entry["length_factor"]),
-        posture_sd_rad=read_only(np.deg2rad(entry["posture_sd_deg"])),
-        acceleration_sd=read_only(entry["acceleration_sd"]),
-        movement_sd=read_only(entry["movement_sd"]),
-        limits_rad=_limits(entry),
-    )
-
-
-def _limits(entry: dict[str, Any]) -> Array:
-    if "limits_deg" in entry:
-        return read_only(np.deg2rad(entry["limits_deg"]))
-    return read_only(np.tile([-np.inf, np.inf], (JOINT_DOF[entry["joint"]], 1)))
-
-
-def _scale_matrix(names: list[str], factors: tuple[str, ...]) -> Array:
-    rows = np.zeros((3, len(factors)))
-    for axis, name in enumerate(names):
-        if name != "mean":
-            rows[axis, factors.index(name)] = 1.0
-    for axis, name in enumerate(names):
-        if name == "mean":
-            others = [other for other in range(3) if other != axis]
-            rows[axis] = rows[others].mean(axis=0)
-    return rows
-
-
-def _landmarks(entries: list[dict[str, Any]], segments: set[str]) -> dict[str, Landmark]:
-    """Landmarks by full name: a paired segment's or an off-midline one exists on both sides."""
-    found = {}
-    for entry in entries:
-        name, segment = entry["name"], entry["segment"]
-        position = np.array(entry["position_m"], dtype=float)
-        paired_segment = segment not in segments
-        if not paired_segment and position[1] == 0.0:
-            found[name] = Landmark(name, segment, read_only(position))
-            continue
-        for side, sign in (("right", 1.0), ("left", -1.0)):
-            full = f"{side}_{name}"
-            host = f"{side}_{segment}" if paired_segment else segment
-            found[full] = Landmark(full, host, read_only(position * [1.0, sign, 1.0]))
-    return found

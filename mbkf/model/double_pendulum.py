@@ -1,4 +1,7 @@
-"""The thesis's double pendulum in natural coordinates (thesis 3.3.1), a forced body as the whole human model is.
+"""A double pendulum in natural coordinates, a forced body as the whole human model is.
+
+The example of M. Pérez Soto, doctoral thesis, Universidade da Coruña, 2022, section 3.3.1; equation numbers are that
+thesis's.
 
 Two bars hinged together at point 1; point 0 is the free end of bar 1, point 2 that of bar 2, which the ground holds
 with F_x, F_y and T_2 (the "plate"). τ_1 is the torque of the joint. Independent coordinates z = [x_0, y_0, θ_1, θ_2]
@@ -100,19 +103,43 @@ class DoublePendulum(PlainCoordinates):
     # Dynamics.
 
     def acceleration(self, q: Array, v: Array, u: Array) -> Array:
-        """(4,) z̈ = M⁻¹ (Q_g + Bᵀ T_e) (eq. 3.38), M = Rᵀ M̄ R and Q_g = Rᵀ (Q̄ − M̄ Ṙ ż) (eqs. 2.16, 2.17)."""
+        """(4,) z̈ = M⁻¹ (Q_g + Bᵀ T_e) (eq. 3.38), M = Rᵀ M̄ R and Q_g = Rᵀ (Q̄ − M̄ Ṙ ż) (eqs. 2.16, 2.17).
+
+        Args:
+            q: (4,) coordinates.
+            v: (4,) velocity.
+            u: (nu,) forces.
+        """
         return self._accelerate(q, v, u)[0]
 
     def linearise(self, q: Array, v: Array, u: Array) -> LinearAcceleration:
-        """The acceleration with its complete derivatives (eqs. 3.42–3.50)."""
+        """The acceleration with its complete derivatives (eqs. 3.42–3.50).
+
+        Args:
+            q: (4,) coordinates.
+            v: (4,) velocity.
+            u: (nu,) forces.
+        """
         return LinearAcceleration(*self._linearise(q, v, u))
 
     def inertial(self, q: Array, v: Array, a: Array) -> Inertial:
-        """M z̈ − Q_g of a motion with its derivatives; without residual, Bᵀ T_e equals it."""
+        """M z̈ − Q_g of a motion with its derivatives; without residual, Bᵀ T_e equals it.
+
+        Args:
+            q: (4,) coordinates.
+            v: (4,) velocity.
+            a: (4,) acceleration.
+        """
         return Inertial(*self._given(q, v, a))
 
     def efforts(self, q: Array, v: Array, a: Array) -> Array:
-        """(nu,) T_e that cause a motion without residual, by inverse dynamics (eq. 3.12)."""
+        """(nu,) T_e that cause a motion without residual, by inverse dynamics (eq. 3.12).
+
+        Args:
+            q: (4,) coordinates.
+            v: (4,) velocity.
+            a: (4,) acceleration.
+        """
         found = np.zeros(self.nu)
         found[:4] = np.linalg.solve(self.effort_matrix(q)[:, :4], self.inertial(q, v, a).force)
         return found

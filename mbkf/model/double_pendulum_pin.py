@@ -35,14 +35,26 @@ class PinocchioPendulum(PlainCoordinates):
             self._loads.append(pin.Force.Zero())
 
     def acceleration(self, q: Array, v: Array, u: Array) -> Array:
-        """(4,) z̈ by the articulated-body algorithm."""
+        """(4,) z̈ by the articulated-body algorithm.
+
+        Args:
+            q: (4,) coordinates.
+            v: (4,) velocity.
+            u: (nu,) forces.
+        """
         tau, _ = self._loaded(q, u)
         p, rate = FROM_ABSOLUTE @ q, FROM_ABSOLUTE @ v
         found: Array = self._back @ pin.aba(self.pin_model, self._data, p, rate, tau, self._loads)
         return found
 
     def linearise(self, q: Array, v: Array, u: Array) -> LinearAcceleration:
-        """The acceleration with its derivatives, M⁻¹ times those of what drives it."""
+        """The acceleration with its derivatives, M⁻¹ times those of what drives it.
+
+        Args:
+            q: (4,) coordinates.
+            v: (4,) velocity.
+            u: (nu,) forces.
+        """
         tau, turned = self._loaded(q, u)
         p, rate = FROM_ABSOLUTE @ q, FROM_ABSOLUTE @ v
         pin.computeABADerivatives(self.pin_model, self._data, p, rate, tau, self._loads)
@@ -58,7 +70,13 @@ class PinocchioPendulum(PlainCoordinates):
         )
 
     def efforts(self, q: Array, v: Array, a: Array) -> Array:
-        """(nu,) T_e that cause a motion without residual, by recursive Newton–Euler."""
+        """(nu,) T_e that cause a motion without residual, by recursive Newton–Euler.
+
+        Args:
+            q: (4,) coordinates.
+            v: (4,) velocity.
+            a: (4,) acceleration.
+        """
         rate, accelerated = FROM_ABSOLUTE @ v, FROM_ABSOLUTE @ a
         tau = pin.rnea(self.pin_model, self._data, FROM_ABSOLUTE @ q, rate, accelerated)
         found = np.zeros(self.nu)

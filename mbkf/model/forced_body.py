@@ -15,7 +15,7 @@ from mbkf.conventions import Array
 
 @dataclass(frozen=True)
 class LinearAcceleration:
-    """An acceleration a (nv,) and its derivatives by q (nv, nv), v (nv, nv) and forces u (nv, nu), eqs. 3.42–3.44.
+    """An acceleration a (nv,) and its derivatives by q (nv, nv), v (nv, nv) and forces u (nv, nu).
 
     The derivative by q is along the tangent vector δ of q ⊕ δ.
     """
@@ -50,10 +50,22 @@ class ForcedBody(Protocol):
         """(nv, nv) rate at which an error in q turns as the body moves with v; 0 for plain coordinates."""
 
     def acceleration(self, q: Array, v: Array, u: Array) -> Array:
-        """(nv,) M⁻¹ (Q_g + Bᵀ T_e) (eq. 3.38)."""
+        """(nv,) M⁻¹ (Q_g + Bᵀ T_e), with gravity and velocity terms Q_g and forces T_e = u.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            u: (nu,) forces.
+        """
 
     def linearise(self, q: Array, v: Array, u: Array) -> LinearAcceleration:
-        """The acceleration with its derivatives."""
+        """The acceleration with its derivatives.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            u: (nu,) forces.
+        """
 
 
 class PlainCoordinates:
@@ -114,11 +126,23 @@ class WithIdleStates:
         return self.body.transport(v)
 
     def acceleration(self, q: Array, v: Array, u: Array) -> Array:
-        """(nv,) under the forces alone."""
+        """(nv,) under the forces alone.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            u: (nu,) forces.
+        """
         return self.body.acceleration(q, v, u[: self.body.nu])
 
     def linearise(self, q: Array, v: Array, u: Array) -> LinearAcceleration:
-        """The acceleration with its derivatives, which are 0 by idle states."""
+        """The acceleration with its derivatives, which are 0 by idle states.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            u: (nu,) forces.
+        """
         own = self.body.linearise(q, v, u[: self.body.nu])
         by_u = np.hstack([own.by_u, np.zeros((self.nv, self.idle))])
         return LinearAcceleration(own.a, own.by_q, own.by_v, by_u)

@@ -1,13 +1,14 @@
 """A scaled body in Pinocchio: kinematics, dynamics and their derivatives in the tangent space.
 
 The only door to Pinocchio's joints: free-flyer root, spherical joints as unit quaternions, universal joints as two
-hinges (x, then y), hinges about y. Joints are added depth-first, which Pinocchio's algorithms rely on.
+hinges one after the other, hinges. Joints are added depth-first, which Pinocchio's algorithms rely on.
+Pinocchio: J. Carpentier et al., IEEE/SICE Int. Symp. System Integration 2019, 614-619.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
@@ -15,26 +16,10 @@ from numpy.lib.stride_tricks import as_strided
 
 from mbkf.conventions import GRAVITY_M_S2, Array, read_only
 from mbkf.errors import InvalidInput, ShapeError, UnknownName
-from mbkf.model.description import JOINT_DOF, BodyDescription, Segment, load_body
-
-
-@dataclass(frozen=True)
-class SegmentJoint:
-    """Where a segment's joint lies in q and v, and its Pinocchio joint.
-
-    Attributes:
-        segment: Segment name.
-        kind: "free", "spherical", "universal" or "hinge".
-        joint_id: Pinocchio index of the joint that carries the segment.
-        q: Slice of the configuration.
-        v: Slice of the tangent space.
-    """
-
-    segment: str
-    kind: str
-    joint_id: int
-    q: slice
-    v: slice
+from mbkf.io.subject import Subject
+from mbkf.model.body import SegmentJoint
+from mbkf.model.body_file import load_body, parse_body
+from mbkf.model.description import JOINT_DOF, BodyDescription, Roles, Segment
 
 
 class HumanModel:
@@ -42,6 +27,7 @@ class HumanModel:
 
     Attributes:
         description: The reference body it was built from.
+        roles: What its segments are to the algorithms (root, feet, toes, ...).
         scale: (K,) independent scale factors.
         mass_kg: Body mass.
         pin_model: The Pinocchio model (gravity along −z).
@@ -55,7 +41,19 @@ class HumanModel:
     """
 
     def __init__(self, description: BodyDescription, scale: Array, mass_kg: float) -> None:
+        """Scales a reference body to one person.
+
+        Args:
+            description: The reference body.
+            scale: (K,) independent scale factors.
+            mass_kg: Body mass.
+
+        Raises:
+            ShapeError: The scale factors are not as many as the body has.
+            InvalidInput: Mass or a factor is not positive.
+        """
         self.description = description
+        self.roles: Roles = description.roles
         self.scale = read_only(scale)
         if self.scale.shape != (len(description.scale_factors),):
             raise ShapeError("scale", f"({len(description.scale_factors)},)", self.scale.shape)
@@ -84,20 +82,43 @@ class HumanModel:
 
     @classmethod
     def scaled(
-        cls, factors: Mapping[str, float] | None = None, mass_kg: float | None = None, body: str = "human18"
+        cls,
+        factors: Mapping[str, float] | None = None,
+        mass_kg: float | None = None,
+        body: str | Path | BodyDescription = "human18",
     ) -> HumanModel:
-        """A body from named scale factors (all 1 when None) and mass (the reference mass when None).
+        """A body from named scale factors and mass.
+
+        Args:
+            factors: Scale factor by name; 1 where there is none.
+            mass_kg: Body mass; that of the reference body when None.
+            body: The reference body: its name, its file, or what :func:`~mbkf.model.body_file.load_body` read.
 
         Raises:
             UnknownName: The body or a factor is unknown.
         """
-        description = load_body(body)
+        description = body if isinstance(body, BodyDescription) else load_body(body)
         scale = np.ones(len(description.scale_factors))
         for name, value in (factors or {}).items():
             if name not in description.scale_factors:
                 raise UnknownName("scale factor", name, description.scale_factors)
             scale[description.scale_factors.index(name)] = value
         return cls(description, scale, description.reference_mass_kg if mass_kg is None else mass_kg)
+
+    @classmethod
+    def of(cls, subject: Subject) -> HumanModel:
+        """The scaled body of a subject.
+
+        Raises:
+            UnknownName: The subject's reference body or a scale factor is unknown.
+            FileFormatError: The body file that the subject carries is damaged.
+        """
+        return cls.scaled(subject.scale_factors, subject.mass_kg, reference_body(subject))
+
+    @property
+    def root(self) -> SegmentJoint:
+        """The free joint of the root segment."""
+        return self.joints[self.roles.root]
 
     def _add(self, segment: Segment) -> SegmentJoint:
         model = self.pin_model
@@ -108,19 +129,23 @@ class HumanModel:
             origin = self.axis_scale(self.description.segment(segment.parent)) * segment.origin_m
         placement = pin.SE3(np.eye(3), origin)
         first_q, first_v = model.nq, model.nv
-        if segment.joint == "universal":
-            parent_id = model.addJoint(parent_id, pin.JointModelRX(), placement, f"{segment.name}_x")
+        turning = {"x": pin.JointModelRX, "y": pin.JointModelRY, "z": pin.JointModelRZ}
+        for axis in segment.axes[:-1]:
+            parent_id = model.addJoint(parent_id, turning[axis](), placement, f"{segment.name}_{axis}")
             placement = pin.SE3.Identity()
-        kinds = {
-            "free": pin.JointModelFreeFlyer,
-            "spherical": pin.JointModelSpherical,
-            "universal": pin.JointModelRY,
-            "hinge": pin.JointModelRY,
-        }
-        joint_id = model.addJoint(parent_id, kinds[segment.joint](), placement, segment.name)
+        if segment.axes:
+            kind = turning[segment.axes[-1]]
+        else:
+            kind = pin.JointModelFreeFlyer if segment.joint == "free" else pin.JointModelSpherical
+        joint_id = model.addJoint(parent_id, kind(), placement, segment.name)
         model.appendBodyToJoint(joint_id, self._inertia(segment), pin.SE3.Identity())
         return SegmentJoint(
-            segment.name, segment.joint, joint_id, slice(first_q, model.nq), slice(first_v, model.nv)
+            segment.name,
+            segment.joint,
+            segment.axes,
+            joint_id,
+            slice(first_q, model.nq),
+            slice(first_v, model.nv),
         )
 
     def axis_scale(self, segment: Segment) -> Array:
@@ -128,7 +153,7 @@ class HumanModel:
         return segment.scale_matrix @ self.scale
 
     def _inertia(self, segment: Segment) -> pin.Inertia:
-        """Mass by k_m, centre of mass by the axes' factors, moments by k_m k² (eqs. 4.2–4.4)."""
+        """Mass by the mass factor k_m, centre of mass by the axes' factors, moments by k_m k², k the length factor."""
         k_m = self.mass_kg / self.description.reference_mass_kg
         k = self.scale[segment.length_index]
         com = self.axis_scale(segment) * segment.com_m
@@ -204,7 +229,13 @@ class HumanModel:
         return pin.computeJointJacobians(self.pin_model, self._data, q)
 
     def inverse_dynamics(self, q: Array, v: Array, a: Array) -> Array:
-        """(nv,) generalised forces M a − Q_g for given motion, without contact (eq. 3.12)."""
+        """(nv,) generalised forces M a − Q_g without contact, Q_g from gravity and velocities.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            a: (nv,) acceleration.
+        """
         return pin.rnea(self.pin_model, self._data, q, v, a)
 
     def mass_matrix(self, q: Array) -> Array:
@@ -220,11 +251,35 @@ class HumanModel:
         return pin.centerOfMass(self.pin_model, self._data, q).copy()
 
     def segment_jacobian(self, q: Array, segment: str, point_m: Array) -> Array:
-        """(6, nv) world Jacobian (linear, angular) of a point fixed to a segment, given in world coordinates."""
+        """World Jacobian of a point fixed to a segment.
+
+        Args:
+            q: (nq,) configuration.
+            segment: Name of the segment.
+            point_m: (3,) the point in the world, m.
+
+        Returns:
+            (6, nv) rows linear, then angular, in world axes.
+
+        Raises:
+            UnknownName: There is no such segment.
+        """
         jacobian = pin.computeJointJacobians(self.pin_model, self._data, q)
         jacobian = np.where(self.supports[self.joint(segment).joint_id], jacobian, 0.0)
         jacobian[:3] += np.cross(jacobian[3:].T, point_m).T
         return jacobian
+
+
+def reference_body(subject: Subject) -> BodyDescription:
+    """The unscaled body a subject was scaled from: the one its file carries, else the one of that name.
+
+    Raises:
+        UnknownName: mbkf has no body of that name.
+        FileFormatError: The body file that the subject carries is damaged.
+    """
+    if subject.body_text:
+        return parse_body(subject.body_text, f"body '{subject.body}' in the subject")
+    return load_body(subject.body)
 
 
 def _frames_in(data: pin.Data) -> Array:

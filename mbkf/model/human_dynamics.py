@@ -1,7 +1,10 @@
-"""The whole body as a forced one: residual, joint torques and two foot wrenches move it (thesis 3.2, 4.1.4).
+"""The whole body as a forced one: residual, joint torques and two foot wrenches move it.
 
 Dofs that follow a kinematic plant (the toes, and what no marker shows) have a prescribed acceleration of 0, so that
-a toe's mass moves with its foot and its stiff dynamics stay out (thesis 4.1.4).
+a toe's mass moves with its foot and its stiff dynamics stay out.
+
+After M. Pérez Soto, doctoral thesis, Universidade da Coruña, 2022, sections 3.2 and 4.1.4, called "the thesis" here.
+T_e are the forces u, Bᵀ their effect on the degrees of freedom, Q_g gravity and velocity terms.
 """
 
 from __future__ import annotations
@@ -16,14 +19,14 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.errors import UnknownName
 from mbkf.model.forced_body import LinearAcceleration
 from mbkf.model.human import HumanModel
-from mbkf.model.newton_euler import FEET
 
 WRENCH_FRAMES = ("ankle", "foot", "thesis")
 """Where a wrench state lives; the moment is in the foot's axes in each.
 
 "ankle": force in world axes on the ankle. A turn of the foot changes nothing, a turn of the leg little.
 "foot": force in the foot's axes on the ankle; a turn of the foot swings the whole load about.
-"thesis": force in world axes on the foot's centre of mass (thesis 4.1.4.1), below the ankle, where it topples the foot.
+"thesis": force in world axes on the foot's centre of mass (section 4.1.4.1), below the ankle, where it topples the
+foot.
 """
 
 
@@ -55,7 +58,7 @@ class HumanDynamics:
         model: The body.
         held: (nv,) dofs that do not move.
         kinematic: (nv,) dofs with prescribed acceleration: the toes and the held ones.
-        torque_dofs: The dofs that u's first entries act on: the pelvis's six, then the joints but for the toes.
+        torque_dofs: The dofs that u's first entries act on: the root's six, then the joints but for the toes.
         wrench_frame: Where u's wrenches live, see :data:`WRENCH_FRAMES`.
         force_state: What its first entries are, see :data:`FORCE_STATES`.
         nv, nu: Degrees of freedom, forces (62 for the reference body).
@@ -68,6 +71,17 @@ class HumanDynamics:
         wrench_frame: str = "ankle",
         force_state: str = "inertial",
     ) -> None:
+        """A scaled body with the forces that move it.
+
+        Args:
+            model: The body.
+            held: (nv,) dofs that do not move; none when None.
+            wrench_frame: Where u's wrenches live, one of :data:`WRENCH_FRAMES`.
+            force_state: What u's first entries are, one of :data:`FORCE_STATES`.
+
+        Raises:
+            UnknownName: There is no such wrench frame or force state.
+        """
         if wrench_frame not in WRENCH_FRAMES:
             raise UnknownName("wrench frame", wrench_frame, WRENCH_FRAMES)
         if force_state not in FORCE_STATES:
@@ -75,14 +89,14 @@ class HumanDynamics:
         self.model, self.wrench_frame, self.force_state = model, wrench_frame, force_state
         self.nv = model.nv
         toes = np.zeros(model.nv, dtype=bool)
-        for name in FEET:
-            toes[model.joint(name.replace("foot", "toes")).v] = True
+        for name in model.roles.toes:
+            toes[model.joint(name).v] = True
         self.held = np.zeros(model.nv, dtype=bool) if held is None else held
         self.kinematic = toes | self.held
         self.torque_dofs = np.flatnonzero(~toes)
         self.nu = len(self.torque_dofs) + 12
         self._free = np.flatnonzero(~self.kinematic)
-        self._foot_ids = [model.joint(name).joint_id for name in FEET]
+        self._foot_ids = [model.joint(name).joint_id for name in model.roles.feet]
         on_com = 1.0 if wrench_frame == "thesis" else 0.0
         self._points = [on_com * model.pin_model.inertias[k].lever for k in self._foot_ids]
         self._data = model.pin_model.createData()
@@ -123,7 +137,13 @@ class HumanDynamics:
     # Forces.
 
     def acceleration(self, q: Array, v: Array, u: Array) -> Array:
-        """(nv,) M⁻¹ (Q_g + Bᵀ T_e) of the free dofs (eq. 3.38), 0 of the kinematic ones."""
+        """(nv,) M⁻¹ (Q_g + Bᵀ T_e) of the free dofs, 0 of the kinematic ones.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            u: (nu,) forces.
+        """
         dofs = len(self.torque_dofs)
         push = self._selector @ u[:dofs]
         if self._acting:
@@ -132,9 +152,14 @@ class HumanDynamics:
         return self._accelerate(q, push)[0]
 
     def linearise(self, q: Array, v: Array, u: Array) -> LinearAcceleration:
-        """The acceleration with its complete analytic derivatives (eqs. 3.42–3.44).
+        """The acceleration with its complete analytic derivatives.
 
         ∂z̈/∂q = M⁻¹ (∂(Bᵀ T_e + Q_g)/∂q − ∂(M a)/∂q), a held in the last term.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            u: (nu,) forces.
         """
         nv, rows, dofs = self.nv, self._free, len(self.torque_dofs)
         given = self._given(q, v, u[dofs:]) if self._acting else _Given.nothing(nv)
@@ -147,7 +172,7 @@ class HumanDynamics:
         return LinearAcceleration(a, slope[:, :nv], slope[:, nv : 2 * nv], slope[:, 2 * nv :])
 
     def forces(self, q: Array, v: Array, a: Array, foot_wrench: Array) -> Array:
-        """(nu,) forces u that cause a motion under given reactions (eq. 3.12).
+        """(nu,) forces u that cause a motion under given reactions, by inverse dynamics.
 
         Args:
             q: Configuration.
@@ -162,13 +187,26 @@ class HumanDynamics:
         return np.concatenate([u[self.torque_dofs], state])
 
     def generalised(self, q: Array, v: Array, a: Array, u: Array) -> Array:
-        """(nv,) generalised forces M a − Q_g − Jᵀ w of all dofs, kinematic ones too, under u's wrenches."""
+        """(nv,) generalised forces M a − Q_g − Jᵀ w of all dofs, kinematic ones too, under u's wrenches.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            a: (nv,) acceleration.
+            u: (nu,) forces.
+        """
         local = self.local_wrench(q, u[len(self.torque_dofs) :])[0]
         load = self._pull() @ local
         return self.model.inverse_dynamics(q, v, a) - load
 
     def joint_forces(self, q: Array, v: Array, u: Array) -> JointForces:
-        """Residual and joint torques T_d of a state."""
+        """Residual and joint torques T_d of a state.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            u: (nu,) forces.
+        """
         dofs, nv = len(self.torque_dofs), self.nv
         if self._acting:
             none = np.zeros((dofs, nv))

@@ -1,7 +1,7 @@
 """The body as MJCF, for MuJoCo: the native joints themselves.
 
-A free joint carries the pelvis; spherical joints are balls, hinges are hinges, the universal joint of the
-neck is two hinges (x, then y). Ball and free joints are named after their segments, hinges after their dof.
+A free joint carries the pelvis; spherical joints are balls, hinges are hinges, a universal joint (the neck)
+is two hinges. Ball and free joints are named after their segments, hinges after their dof.
 MuJoCo writes quaternions (w, x, y, z) and gives the free joint's linear velocity in world axes, mbkf in the
 pelvis's; everything else of q and v is the same, in the same order. Markers are sites. Bodies carry explicit
 inertias; the capsules are only for the eye: no mass, no contact, no limits, so that the body floats freely in
@@ -17,6 +17,7 @@ import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.io.subject import SubjectMarker
+from mbkf.model.description import Segment
 from mbkf.model.human import HumanModel
 from mbkf.model.skeleton import joint_origin
 
@@ -49,7 +50,7 @@ def to_mjcf(model: HumanModel, markers: Sequence[SubjectMarker] = ()) -> str:
             bodies[segment.parent], "body", name=segment.name, pos=_numbers(joint_origin(model, segment.name))
         )
         bodies[segment.name] = body
-        _add_joints(body, segment.name, segment.joint)
+        _add_joints(body, segment)
         inertia = model.pin_model.inertias[model.joint(segment.name).joint_id]
         ET.SubElement(
             body,
@@ -72,15 +73,14 @@ def to_mjcf(model: HumanModel, markers: Sequence[SubjectMarker] = ()) -> str:
     return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
 
 
-def _add_joints(body: ET.Element, segment: str, kind: str) -> None:
-    if kind == "free":
-        ET.SubElement(body, "freejoint", name=segment)
-    elif kind == "spherical":
-        ET.SubElement(body, "joint", name=segment, type="ball")
-    else:
-        axes = {"universal": (("x", "1 0 0"), ("y", "0 1 0")), "hinge": (("y", "0 1 0"),)}
-        for axis, direction in axes[kind]:
-            ET.SubElement(body, "joint", name=f"{segment}_{axis}", type="hinge", axis=direction)
+def _add_joints(body: ET.Element, segment: Segment) -> None:
+    if segment.joint == "free":
+        ET.SubElement(body, "freejoint", name=segment.name)
+    elif segment.joint == "spherical":
+        ET.SubElement(body, "joint", name=segment.name, type="ball")
+    directions = {"x": "1 0 0", "y": "0 1 0", "z": "0 0 1"}
+    for axis in segment.axes:
+        ET.SubElement(body, "joint", name=f"{segment.name}_{axis}", type="hinge", axis=directions[axis])
 
 
 def _add_capsules(body: ET.Element, model: HumanModel, segment: str) -> None:

@@ -1,6 +1,6 @@
-"""Newton–Euler on the whole body: the generalised forces that a motion and two foot wrenches ask for (eq. 3.12).
+"""Newton–Euler on the whole body: the generalised forces that a motion and two foot wrenches ask for.
 
-τ = ID(q, v, a) − Σ J_fᵀ w_f. Its first six rows are the residual at the pelvis, zero for a body that obeys Newton's
+τ = ID(q, v, a) − Σ J_fᵀ w_f. Its first six rows are the residual at the root, zero for a body that obeys Newton's
 law; the others are the joint torques. Wrenches are about the world's origin in world axes, so that a constant one
 does not change with q by itself.
 """
@@ -18,7 +18,7 @@ from mbkf.conventions import Array
 from mbkf.model.human import HumanModel
 
 FEET = ("right_foot", "left_foot")
-"""Segments that take ground reactions, in the order of every paired array."""
+"""Feet of the bodies that come with mbkf; a body's own are ``model.roles.feet``."""
 
 ROOT = 6
 
@@ -78,13 +78,20 @@ class NewtonEuler:
     def __init__(self, model: HumanModel) -> None:
         self.model = model
         self._pin, self._data = model.pin_model, model.pin_model.createData()
-        ids = [model.joint(segment).joint_id for segment in FEET]
+        ids = [model.joint(segment).joint_id for segment in model.roles.feet]
         self._chains = [np.flatnonzero(model.supports[j]) for j in ids]
         self._moves = [model.supports[j].astype(float) for j in ids]
         self._after = [_moved_by(model, chain) for chain in self._chains]
 
     def root(self, q: Array, v: Array, a: Array, wrenches: Array) -> RootBalance:
-        """The pelvis's equations for the feet's wrenches (12,)."""
+        """The pelvis's equations for the feet's wrenches (12,).
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            a: (nv,) acceleration.
+            wrenches: (12,) right and left foot's wrenches: force N and moment N m about the world's origin.
+        """
         by_q, by_v, by_a = self._inverse_dynamics(q, v, a)
         data = self._data
         by_wrench = -data.J[:, :ROOT].T
@@ -94,7 +101,14 @@ class NewtonEuler:
         return RootBalance(data.tau[:ROOT] + own, by_q[:ROOT], by_v[:ROOT], by_a[:ROOT], by_wrench)
 
     def torques(self, q: Array, v: Array, a: Array, wrenches: Array) -> JointTorques:
-        """All generalised forces with derivatives, for the feet's wrenches (12,)."""
+        """All generalised forces with derivatives, for the feet's wrenches (12,).
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            a: (nv,) acceleration.
+            wrenches: (12,) right and left foot's wrenches: force N and moment N m about the world's origin.
+        """
         data, nv = self._data, self.model.nv
         by_state = np.empty((nv, 3 * nv + 12))
         found = JointTorques(np.empty(nv), by_state)
@@ -112,7 +126,14 @@ class NewtonEuler:
         return found
 
     def tau(self, q: Array, v: Array, a: Array, wrenches: Array) -> Array:
-        """(nv,) generalised forces alone."""
+        """(nv,) generalised forces alone.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            a: (nv,) acceleration.
+            wrenches: (12,) right and left foot's wrenches: force N and moment N m about the world's origin.
+        """
         tau = pin.rnea(self._pin, self._data, q, v, a)
         J = pin.computeJointJacobians(self._pin, self._data, q)
         for foot, moves in enumerate(self._moves):

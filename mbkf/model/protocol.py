@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,9 @@ import numpy as np
 from mbkf.conventions import Array, data_folder, read_only
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.subject import match_names
-from mbkf.model.description import BodyDescription, load_body, mirrored
+from mbkf.model.body_file import load_body
+from mbkf.model.description import BodyDescription
+from mbkf.model.sides import mirrored
 
 KINDS = ("anatomical", "technical", "computed")
 """Anatomical: on a landmark, stays near it. Technical: anywhere on the segment, its position comes from the data.
@@ -51,11 +53,18 @@ class ProtocolMarker:
 
 @dataclass(frozen=True)
 class Protocol:
-    """A named set of markers on a body; ``markers`` in file order."""
+    """A named set of markers on a body.
+
+    Attributes:
+        name: Its name.
+        title: The same for people.
+        body: The reference body that the markers are placed on.
+        markers: The markers in file order.
+    """
 
     name: str
     title: str
-    body: str
+    body: BodyDescription
     markers: tuple[ProtocolMarker, ...]
 
     def match(self, names: Iterable[str]) -> dict[str, ProtocolMarker]:
@@ -68,30 +77,43 @@ def protocol_names() -> tuple[str, ...]:
     return tuple(sorted(path.stem for path in data_folder("markers").glob("*.toml")))
 
 
-def load_protocol(name: str) -> Protocol:
+def load_protocol(name: str | Path, body: BodyDescription | None = None) -> Protocol:
     """Reads a protocol by its name, or from a TOML file of the same form.
 
+    Args:
+        name: The protocol's name, or its file.
+        body: The body to place the markers on; by default the one the file names. Markers of segments and landmarks
+            that this body does not have are left out: a full-body protocol serves a body of the legs.
+
     Raises:
-        UnknownName: No such protocol, or it names an unknown segment or landmark.
+        UnknownName: No such protocol, or it names a segment or landmark that its own body does not have.
         FileFormatError: The file is not a valid protocol.
     """
     path = Path(name)
     if path.suffix == ".toml":
-        return _parse(path)
-    return _shipped(name)
+        return _parse(path, body)
+    return _shipped(str(name)) if body is None else _parse(_shipped_file(str(name)), body)
 
 
 @cache
 def _shipped(name: str) -> Protocol:
+    return _parse(_shipped_file(name))
+
+
+def _shipped_file(name: str) -> Path:
     if name not in protocol_names():
         raise UnknownName("protocol", name, protocol_names())
-    return _parse(data_folder("markers") / f"{name}.toml")
+    return data_folder("markers") / f"{name}.toml"
 
 
-def detect_protocol(names: Iterable[str]) -> Protocol:
+def detect_protocol(names: Iterable[str], body: BodyDescription | None = None) -> Protocol:
     """The shipped protocol that explains most of the capture's marker names.
 
     Ties go to the protocol with fewer markers that the capture lacks.
+
+    Args:
+        names: Names of the capture's markers.
+        body: The body to place the markers on, as for :func:`load_protocol`.
 
     Raises:
         UnknownName: No protocol knows even six of the names.
@@ -99,7 +121,7 @@ def detect_protocol(names: Iterable[str]) -> Protocol:
     present = tuple(names)
     best, best_score = None, (0, 0)
     for candidate in protocol_names():
-        protocol = load_protocol(candidate)
+        protocol = load_protocol(candidate, body)
         known = len(protocol.match(present))
         tracked = sum(marker.kind != "computed" for marker in protocol.markers)
         if (known, -tracked) > best_score:
@@ -114,13 +136,14 @@ def detect_protocol(names: Iterable[str]) -> Protocol:
     return best
 
 
-def _parse(path: Path) -> Protocol:
+def _parse(path: Path, body: BodyDescription | None = None) -> Protocol:
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
-        body = load_body(table.get("body", "human18"))
+        own = _own_body(table, path)
+        body = body or own
         markers: list[ProtocolMarker] = []
         for entry in table["marker"]:
-            markers += _markers(entry, body, path)
+            markers += _markers(entry, body, own, path)
         name = table["name"]
     except OSError as error:
         raise FileFormatError(path, f"cannot be read ({error.strerror})") from error
@@ -130,29 +153,44 @@ def _parse(path: Path) -> Protocol:
     for marker in names:
         if names.count(marker) > 1:
             raise FileFormatError(path, f"marker '{marker}' stands twice")
-    return Protocol(name, table.get("title", name), body.name, tuple(markers))
+    return Protocol(name, table.get("title", name), body, tuple(markers))
 
 
-def _markers(entry: dict[str, Any], body: BodyDescription, path: Path) -> list[ProtocolMarker]:
-    """The marker of an entry, and its mirror image where the entry names one."""
-    own = _marker(entry, body, path)
+def _own_body(table: dict[str, Any], path: Path) -> BodyDescription:
+    """The body a protocol was written for; a file is looked for beside the protocol's."""
+    name = str(table.get("body", "human18"))
+    return load_body(path.parent / name if name.endswith(".toml") else name)
+
+
+def _markers(
+    entry: dict[str, Any], body: BodyDescription, own: BodyDescription, path: Path
+) -> list[ProtocolMarker]:
+    """The marker of an entry on a body, and its mirror image where the entry names one.
+
+    None where only the protocol's own body has the place.
+    """
+    segments = {segment.name for segment in body.segments}
+    key, known, lacking = (
+        ("landmark", own.landmarks, entry.get("landmark") not in body.landmarks)
+        if "landmark" in entry
+        else ("segment", {s.name for s in own.segments}, entry["segment"] not in segments)
+    )
+    if lacking and body is not own and entry[key] in known:
+        return []
+    one = _marker(entry, body, path)
     if "mirror" not in entry:
-        return [own]
-    other = mirrored(own.segment)
-    position = own.position_m * [1.0, -1.0, 1.0]
-    return [
-        own,
-        ProtocolMarker(
-            entry["mirror"],
-            other,
-            read_only(position),
-            own.kind,
-            own.placement_sd_m,
-            own.noise_m,
-            tuple(entry.get("mirror_aliases", ())),
-            own.static_only,
-        ),
-    ]
+        return [one]
+    other = mirrored(one.segment)
+    if other not in segments:
+        raise UnknownName("segment", other, segments, f"{path}, marker {entry['name']}, its mirror")
+    mirror = replace(
+        one,
+        name=entry["mirror"],
+        segment=other,
+        position_m=read_only(one.position_m * [1.0, -1.0, 1.0]),
+        aliases=tuple(entry.get("mirror_aliases", ())),
+    )
+    return [one, mirror]
 
 
 def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> ProtocolMarker:

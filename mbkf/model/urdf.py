@@ -1,7 +1,7 @@
 """The body as URDF, for robotics tools: three hinges in place of every spherical joint.
 
 The root link (the pelvis) floats: URDF has no free joint, so the reader adds one. A spherical joint becomes
-three revolute joints in the order of ``models/clinical_angles.toml``, named after the clinical coordinates
+three revolute joints in the order of the body file, named after the clinical coordinates
 (hip_flexion_r, hip_adduction_r, hip_rotation_r …) and turning in their positive sense: the joint positions of
 a posture are :meth:`mbkf.model.clinical.ClinicalAngles.angles`. The links between the hinges have no mass.
 URDF holds no gravity, and demands limits; the ones written do not bind (±2π). Markers are massless links,

@@ -102,7 +102,7 @@ def run_demo(
     result = reconstruct(read_capture(folder / LABELLED), subject, settings=settings, progress=progress)
     summary = summarise(result, capture.truth)
     write_reconstruction(result, summary, folder / "result")
-    body = HumanModel.scaled(person.scale_factors, person.mass_kg, person.body)
+    body = HumanModel.of(person)
     return Demo(folder, labels, result, summary, coordinate_errors(result, capture.truth, body))
 
 

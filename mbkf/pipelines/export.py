@@ -32,7 +32,7 @@ def export_subject(subject: Subject, kind: str, path: str | Path) -> None:
         raise UnknownName("format", kind, FORMATS)
     if Path(path).is_dir():
         raise FileFormatError(path, "is a folder; name a file")
-    model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
+    model = HumanModel.of(subject)
     text = FORMATS[kind](model, subject.markers)
     with replacing(path) as partial:
         partial.write_text(text, encoding="utf-8")

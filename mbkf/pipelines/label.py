@@ -73,7 +73,7 @@ class Labelling:
         return int(np.flatnonzero(self.markers.present.any(axis=1))[0])
 
 
-def summarise(found: Labelling, compared: LabelScore | None = None) -> dict[str, Any]:
+def label_summary(found: Labelling, compared: LabelScore | None = None) -> dict[str, Any]:
     """Plain numbers for the summary beside the labelled file; doubts and truth only where there are any."""
     summary: dict[str, Any] = {
         "frames": found.markers.frames,

@@ -21,7 +21,6 @@ from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.keyframes import LOOKS, moving
 from mbkf.labelling.naming import name_tracks, trajectories
 from mbkf.labelling.tracks import Tracks, follow
-from mbkf.model.description import load_body
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import Protocol, load_protocol
 from mbkf.numerics.threads import single_threaded
@@ -180,13 +179,13 @@ class _Search:
 
     @property
     def _reference_height_m(self) -> float:
-        return load_body(self._protocol.body).reference_height_m
+        return self._protocol.body.reference_height_m
 
     def _laid(self, frame: int, size: float) -> tuple[Indices, float]:
         """(count,) marker of every track by a body of one size matched with them at a frame, and its score."""
-        body = load_body(self._protocol.body)
+        body = self._protocol.body
         factors = {name: size for name in body.scale_factors}
-        model = HumanModel.scaled(factors, self._mass_kg, body.name)
+        model = HumanModel.scaled(factors, self._mass_kg, body)
         local = size * np.array([marker.position_m for marker in self._markers])
         sensor = MarkerSensor(model, [marker.segment for marker in self._markers], local)
         return name_tracks_of_frame(sensor, _rough_sd(sensor), self._points_m, self._tracks, frame)
@@ -245,7 +244,7 @@ class _Search:
         return replace(self._capture.markers, names=names, positions_m=shown)
 
     def _sensor(self, subject: Subject) -> MarkerSensor:
-        model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
+        model = HumanModel.of(subject)
         return MarkerSensor(
             model,
             [marker.segment for marker in subject.markers],

@@ -52,6 +52,11 @@ def with_preset(
 def with_values(settings: Any, found: Preset, where: str) -> Any:
     """A filter's settings with the preset's values.
 
+    Args:
+        settings: Settings of a filter.
+        found: The preset.
+        where: Name of the preset, for error messages.
+
     Raises:
         UnknownName: There is no such setting, or it is no number.
         InvalidInput: A value is not positive.

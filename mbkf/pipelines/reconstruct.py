@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
@@ -24,10 +24,11 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.imu.on_body import ImuOnBody, with_imus
 from mbkf.pipelines.results.clinical import clinical_motion
 from mbkf.pipelines.results.reactions import reactions
-from mbkf.pipelines.trial.followers import FILTERS, FilterInputs, follower
+from mbkf.pipelines.trial.followers import FILTERS, FilterInputs, follower, standard
 from mbkf.pipelines.trial.inputs import trial_inputs
 from mbkf.scaling.correction import correct_markers
 from mbkf.scaling.frames import MIN_MARKERS
+from mbkf.sensors.block import AnyBlock
 from mbkf.sensors.gap_filling import filled
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.version import __version__
@@ -84,6 +85,8 @@ def reconstruct(
     *,
     settings: ReconstructSettings | None = None,
     imus: ImuOnBody | None = None,
+    blocks: Sequence[AnyBlock] = (),
+    readings: Mapping[str, Array] | None = None,
     progress: StageCallback | None = None,
 ) -> Reconstruction:
     """Follows the subject through a capture and solves for torques.
@@ -93,6 +96,8 @@ def reconstruct(
         subject: The scaled person.
         settings: How; the defaults are the same for every capture.
         imus: Inertial sensors on the body, for the dynamic filter.
+        blocks: Blocks of one's own, for the dynamic filter, besides the standard ones.
+        readings: (T, …) readings of instruments of one's own, by the name that their block knows.
         progress: Called with the stage, items done and items in all.
 
     Raises:
@@ -118,8 +123,10 @@ def reconstruct(
                 )
             inputs, recording, told = with_imus(inputs, recording, shown.times_s, imus)
             capture = replace(capture, notes=(*capture.notes, *told))
+        if readings:
+            recording = replace(recording, readings=readings)
         result = track(
-            follower(settings.filter, inputs),
+            follower(settings.filter, inputs, [*standard(inputs), *blocks] if blocks else None),
             recording,
             smoothing=settings.smoothing if settings.smooth else None,
             keep_covariance=settings.keep_covariance,

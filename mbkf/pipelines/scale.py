@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 from mbkf.conventions import StageCallback
 from mbkf.errors import InvalidInput
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
+from mbkf.model.body_file import load_body
+from mbkf.model.description import BodyDescription
 from mbkf.model.protocol import Protocol, detect_protocol, load_protocol
 from mbkf.numerics.threads import single_threaded
 from mbkf.scaling.fit import scale_subject
@@ -21,10 +24,11 @@ def scale(
     mass_kg: float | None = None,
     height_m: float | None = None,
     protocol: str | Protocol | None = None,
+    body: str | Path | BodyDescription | None = None,
     settings: ScalingSettings | None = None,
     progress: StageCallback | None = None,
 ) -> Subject:
-    """Fits the body to a person (SPEC §4, eq. 4.1).
+    """Fits the body to a person.
 
     Args:
         static: A standing trial, if there is one.
@@ -32,12 +36,15 @@ def scale(
         mass_kg: Body mass; by default what the captures state.
         height_m: Body height, if known.
         protocol: Protocol, its name or its file; by default the one the marker names belong to.
+        body: The reference body: its name, a file of your own, or what :func:`mbkf.load_body` read; by default the one
+            the protocol was written for. Markers of segments it does not have are left out.
         settings: Weights of the priors.
         progress: Called with the stage, items done and items in all.
 
     Raises:
-        InvalidInput: No trial, no mass, or a mass or height that cannot be.
-        UnknownName: No protocol knows the markers, or it names unknown segments.
+        InvalidInput: No trial, no mass, a mass or height that cannot be, or a protocol placed on another body.
+        UnknownName: No protocol knows the markers, it names unknown segments, or there is no such body.
+        FileFormatError: The body's or the protocol's file is missing or damaged.
         NotObservable: Too few markers of the protocol.
         NotConverged: The markers do not fit a person.
     """
@@ -48,10 +55,17 @@ def scale(
         mass_kg = next((c.subject_mass_kg for c in captures if c.subject_mass_kg is not None), None)
     if mass_kg is None:
         raise InvalidInput("the captures do not state the body mass; give --mass KG")
+    if isinstance(body, str | Path):
+        body = load_body(body)
     if protocol is None:
-        protocol = detect_protocol(captures[0].markers.names)
+        protocol = detect_protocol(captures[0].markers.names, body)
     elif isinstance(protocol, str):
-        protocol = load_protocol(protocol)
+        protocol = load_protocol(protocol, body)
+    elif body is not None and (protocol.body.name, protocol.body.text) != (body.name, body.text):
+        raise InvalidInput(
+            f"the protocol '{protocol.name}' is placed on the body '{protocol.body.name}', not on '{body.name}'; "
+            "read it with load_protocol(name, body)"
+        )
     report = None if progress is None else lambda done, total: progress("Scaling", done, total)
     with single_threaded():
         return scale_subject(

@@ -55,6 +55,11 @@ def synthesise(
 def write_folder(subject: Subject, capture: SyntheticCapture, folder: str | Path) -> tuple[Path, ...]:
     """Writes trial.c3d, raw.c3d, static.c3d, subject.toml and truth.h5, each whole or not at all.
 
+    Args:
+        subject: The person.
+        capture: The synthetic capture and its truth.
+        folder: Folder to write; made where it does not exist.
+
     Raises:
         FileFormatError: The folder is a file.
         OSError: The folder cannot be written.

@@ -19,7 +19,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.errors import NotConverged
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
-from mbkf.model.description import load_body
+from mbkf.model.human import reference_body
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.levenberg_marquardt import minimise
 from mbkf.scaling.frames import choose_frames
@@ -35,9 +35,6 @@ POSTURE_LOOKS = 40.0
 
 OUTLIER_M = 0.06
 """A sample further than this from the fitted body is a wrong point and left out."""
-
-STEADY = ("pelvis", *(f"{side}_{part}" for side in ("right", "left") for part in ("shank", "foot", "toes")))
-"""Segments whose markers the skin moves little; a thigh's it moves by centimetres between standing and walking."""
 
 COMMON_SD_M = 0.003
 """Spread of a steady segment's markers in each of the six directions of a rigid displacement."""
@@ -71,7 +68,7 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
         )
     strange = np.linalg.norm(state.offsets_m, axis=1) > STRANGE_M
     if outliers.any() or strange.any():
-        precision = _offset_precision(problem.markers, subject, ~strange)
+        precision = _offset_precision(problem.markers, subject, problem.body.roles.steady, ~strange)
         problem = problem.without(outliers).expecting(precision)
         state = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3).state
     local = problem.local_m(state.factors, state.offsets_m)
@@ -84,10 +81,10 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
 
 def _problem(subject: Subject, trial: MarkerTrajectories) -> ScalingProblem:
     """Scaling with fixed factors: poses and offsets only, each marker near its place in the subject file."""
-    body = load_body(subject.body)
+    body = reference_body(subject)
     factors = np.array([subject.scale_factors.get(name, 1.0) for name in body.scale_factors])
     own = tuple(_as_protocol_marker(marker) for marker in subject.markers)
-    frames = choose_frames([trial], Protocol(subject.protocol, subject.protocol, body.name, own), FRAMES)
+    frames = choose_frames([trial], Protocol(subject.protocol, subject.protocol, body, own), FRAMES)
     count = len(frames.measured_m)
     blur = np.sqrt(max(1.0, count / LOOKS))
     markers = tuple(
@@ -102,17 +99,21 @@ def _problem(subject: Subject, trial: MarkerTrajectories) -> ScalingProblem:
         factors=factors,
         factor_covariance=FIXED_FACTOR_SD**2 * np.eye(len(factors)),
         offsets_m=np.zeros((len(markers), 3)),
-        offset_precision=_offset_precision(markers, subject, np.ones(len(markers), dtype=bool)),
+        offset_precision=_offset_precision(
+            markers, subject, body.roles.steady, np.ones(len(markers), dtype=bool)
+        ),
     )
     weight = np.full(count, min(1.0, POSTURE_LOOKS / count))
     return ScalingProblem(body, markers, frames.measured_m, weight, prior)
 
 
-def _offset_precision(markers: tuple[ProtocolMarker, ...], subject: Subject, familiar: BoolArray) -> Array:
+def _offset_precision(
+    markers: tuple[ProtocolMarker, ...], subject: Subject, steady: tuple[str, ...], familiar: BoolArray
+) -> Array:
     """(3 M, 3 M): each marker has its own freedom, familiar ones of a steady segment hardly any in common."""
     own_sd = {marker.name: marker.session_sd_m for marker in subject.markers}
     precision = np.diag(np.repeat([own_sd[marker.name] ** -2 for marker in markers], 3))
-    for segment in STEADY:
+    for segment in steady:
         here = np.array([marker.segment == segment for marker in markers]) & familiar
         if here.any():
             rigid = rigid_displacements(np.array([m.position_m for m in markers])[here])

@@ -12,7 +12,6 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput, NotConverged
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
-from mbkf.model.description import load_body
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.levenberg_marquardt import Solution, minimise
 from mbkf.scaling.frames import MIN_MARKERS, ScalingFrames, choose_frames
@@ -110,7 +109,7 @@ def scaling_problem(
         height_m: Body height, if known.
         settings: Weights of the priors.
     """
-    body = load_body(protocol.body)
+    body = protocol.body
     counts = np.bincount(frames.trial)
     looks = np.where(
         np.arange(len(counts)) < static_trials,
@@ -199,6 +198,7 @@ def _subject(
         protocol=protocol.name,
         height_m=height_m,
         report=_report(problem, solution, frames, dropped, settings),
+        body_text=body.text,
     )
 
 

@@ -106,7 +106,7 @@ class ScalingProblem:
         self.segments = tuple(m.segment for m in markers)
         self.factor_root = np.linalg.cholesky(np.linalg.inv(prior.factor_covariance)).T
         self._segment_scale = np.array([body.segment(name).scale_matrix for name in self.segments])
-        self.posture = PostureSensor(HumanModel.scaled(body=body.name))
+        self.posture = PostureSensor(HumanModel.scaled(body=body))
 
     def start(self, poses: Array) -> ScalingState:
         """State with factors and offsets as expected."""

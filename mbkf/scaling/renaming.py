@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.model.description import mirrored
+from mbkf.model.sides import mirrored
 from mbkf.scaling.naming import Indices, Naming, NamingProblem
 
 TURNS = 8

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
@@ -64,7 +63,10 @@ class Frame(NamedTuple):
     readings: Mapping[str, Array] = NO_READINGS
 
 
-@dataclass
+NO_MARKERS = np.zeros(0, dtype=bool)
+"""Flags of no markers."""
+
+
 class Notes:
     """What blocks tell each other about a frame; complete when all of them have decided.
 
@@ -80,15 +82,16 @@ class Notes:
         coordinated: Dofs that the coordination prior predicts.
     """
 
-    seen: BoolArray = field(default_factory=lambda: np.zeros(0, dtype=bool))
-    trusted: BoolArray = field(default_factory=lambda: np.zeros(0, dtype=bool))
-    unmarked: NDArray[np.intp] = field(default_factory=lambda: NO_DOFS)
-    unobserved: NDArray[np.intp] = field(default_factory=lambda: NO_DOFS)
+    # Arrays here are replaced, never written into, so that the defaults can be shared.
+    seen: BoolArray = NO_MARKERS
+    trusted: BoolArray = NO_MARKERS
+    unmarked: NDArray[np.intp] = NO_DOFS
+    unobserved: NDArray[np.intp] = NO_DOFS
     observed: bool = False
     lost: bool = False
     imus: Array | None = None
     contact: ContactDecision | None = None
-    coordinated: NDArray[np.intp] = field(default_factory=lambda: NO_DOFS)
+    coordinated: NDArray[np.intp] = NO_DOFS
 
 
 class Rows(NamedTuple):
@@ -117,8 +120,7 @@ DecisionT = TypeVar("DecisionT")
 MemoryT = TypeVar("MemoryT")
 
 
-@dataclass(frozen=True, slots=True)
-class OperatingPoint(Generic[StateT, PreparedT]):
+class OperatingPoint(NamedTuple, Generic[StateT, PreparedT]):
     """A state at which a block is linearised, with what the block worked out there without the frame."""
 
     state: StateT

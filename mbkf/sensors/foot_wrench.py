@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.model.human_dynamics import FEET, HumanDynamics, cross_matrix
+from mbkf.model.human_dynamics import HumanDynamics, cross_matrix
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class FootWrenchSensor:
 
     def __init__(self, dynamics: HumanDynamics) -> None:
         self.dynamics = dynamics
-        self.ids = [dynamics.model.joint(name).joint_id for name in FEET]
+        self.ids = [dynamics.model.joint(name).joint_id for name in dynamics.model.roles.feet]
 
     def reading(self, q: Array, state: Array, points_m: Array) -> WrenchReading:
         """Readings of wrench states (12,) at q about the points (2, 3) in the world."""

@@ -191,6 +191,8 @@ class Markers(Block[Any, MarkerReading, MarkerDecision, MarkerMemory]):
         memory: MarkerMemory,
     ) -> MarkerMemory:
         """How large the innovations were."""
+        if self._skin is None and self.settings.innovation_share <= 0.0:
+            return memory
         before = None
         if self._skin is not None:
             before = np.where(decision.trusted[:, None], decision.measured_m, np.nan)

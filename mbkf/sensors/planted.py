@@ -47,7 +47,6 @@ class PlantedFeet(Block[Any, None, tuple[Planted, ...], None]):
         self,
         model: HumanModel,
         detector: ContactDetector,
-        feet: tuple[str, ...],
         settings: PlantedSettings = PlantedSettings(),
     ) -> None:
         """Makes the block.
@@ -55,11 +54,10 @@ class PlantedFeet(Block[Any, None, tuple[Planted, ...], None]):
         Args:
             model: The body.
             detector: Finds what the feet stand on; a block before this one asks it in every frame.
-            feet: Segments of right and left foot.
             settings: How still they stand.
         """
         self._model, self.detector, self.settings = model, detector, settings
-        self._dof = [model.joint(segment).v.start for segment in feet]
+        self._dof = [model.joint(segment).v.start for segment in model.roles.feet]
         self._v = 0
 
     def bind(self, layout: Layout) -> None:

@@ -53,7 +53,7 @@ def segment_by_segment(sensor: MarkerSensor, measured_m: Array) -> Array:
     q = model.neutral()
     placed = sensor.positions(q)
     names = np.array(sensor.segments)
-    weight = np.where(names == "pelvis", 1.0, _TRUNK_WEIGHT) * seen
+    weight = np.where(names == model.roles.root, 1.0, _TRUNK_WEIGHT) * seen
     if weight.sum() == 0.0:
         return q
     target = np.where(seen[:, None], measured_m, 0.0)
@@ -61,7 +61,7 @@ def segment_by_segment(sensor: MarkerSensor, measured_m: Array) -> Array:
     centre_to = (weight[:, None] * target).sum(axis=0) / weight.sum()
     attitude = (weight[:, None] * (target - centre_to)).T @ (placed - centre_from)
     rotation = _nearest_rotation(attitude + 1e-9 * np.eye(3))
-    root = model.joint("pelvis")
+    root = model.root
     q[root.q][:3] = centre_to - rotation @ centre_from
     q[root.q][3:] = _quaternion(rotation)
     for joint in model.joints.values():

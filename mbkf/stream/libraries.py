@@ -20,6 +20,11 @@ _configured = False
 def library(name: str, needed_for: str, extra: str) -> ModuleType:
     """A module that an extra of mbkf brings.
 
+    Args:
+        name: Name of the module.
+        needed_for: What it is needed for, for the error message.
+        extra: The extra of mbkf that installs it.
+
     Raises:
         MissingDependency: It is not installed, or cannot be loaded here.
     """

@@ -126,7 +126,16 @@ def empty_plate(
     threshold_n: float,
     corners_m: Array | None,
 ) -> PlateReadings:
-    """A plate that has not read anything yet."""
+    """A plate without readings.
+
+    Args:
+        name: Its name.
+        rate_hz: Rate of its samples.
+        start_time_s: Time of sample 0.
+        origin_m: (3,) its origin in the world.
+        threshold_n: Vertical force from which on a centre of pressure is computed, N.
+        corners_m: (4, 3) its corners in the world, None where not known.
+    """
     nothing = np.zeros((0, 3))
     return PlateReadings(
         name, rate_hz, start_time_s, origin_m, nothing, nothing, nothing, threshold_n, corners_m

@@ -6,7 +6,7 @@ import numpy as np
 
 from mbkf.conventions import read_only
 from mbkf.io.subject import Subject, SubjectMarker
-from mbkf.model.description import load_body
+from mbkf.model.body_file import load_body
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
 
@@ -72,4 +72,4 @@ def synthesise_subject(seed: int = 0, protocol: str = "reference36", body: str =
 
 def body_of(subject: Subject) -> HumanModel:
     """The subject's scaled body."""
-    return HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
+    return HumanModel.of(subject)

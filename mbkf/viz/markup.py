@@ -7,7 +7,13 @@ from html import escape
 
 
 def section(name: str, title: str, *body: str) -> str:
-    """A section with its heading; ``name`` is what the navigation leads to."""
+    """A section with its heading.
+
+    Args:
+        name: Identifier that the navigation links to.
+        title: The heading, plain text.
+        body: Pieces of HTML.
+    """
     return f'<section id="{name}"><h2>{escape(title)}</h2>{"".join(body)}</section>'
 
 
@@ -23,7 +29,13 @@ def grid(charts: Iterable[str], columns: int = 3) -> str:
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[str]], kind: str = "") -> str:
-    """A table of texts; the first column is left-aligned, the others are numbers."""
+    """A table of texts; the first column is left-aligned, the others are numbers.
+
+    Args:
+        headings: Column headings.
+        rows: Cells of each row, HTML.
+        kind: CSS class of the table.
+    """
     head = "".join(f"<th>{escape(text)}</th>" for text in headings)
     body = "".join(
         "<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in rows if row

@@ -9,7 +9,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import hmac
-import ipaddress
 import logging
 import secrets
 import socket
@@ -25,8 +24,8 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 from mbkf.errors import InvalidInput
+from mbkf.stream.loopback import LOOPBACK, is_loopback
 
-LOOPBACK = "127.0.0.1"
 SEND_PERIOD_S = 1.0 / 30.0
 LONGEST_SLEEP_S = 0.2
 STOP_S = 3.0
@@ -66,7 +65,7 @@ class PageServer:
         token: str | None = None,
     ) -> None:
         self._text, self._greeting, self._newest = text.encode("utf-8"), greeting, newest
-        self._local = _is_loopback(address)
+        self._local = is_loopback(address)
         self.token = token or ("" if self._local else secrets.token_urlsafe(16))
         self._loop: asyncio.AbstractEventLoop | None = None
         self._stop: asyncio.Event | None = None
@@ -157,7 +156,7 @@ class PageServer:
         """Whether the request carries the token and comes from this page rather than from a stranger's."""
         host, origin = request.headers.get("Host", ""), request.headers.get("Origin")
         named = urlsplit(f"//{host}").hostname or ""
-        own_name = not self._local or named == "localhost" or _is_loopback(named)
+        own_name = not self._local or is_loopback(named)
         own_page = origin is None or urlsplit(origin).netloc == host
         return own_name and own_page and hmac.compare_digest(token.encode(), self.token.encode())
 
@@ -198,15 +197,6 @@ def checked_port(port: int) -> int:
     if not 0 <= port <= 65535:
         raise InvalidInput(f"port {port}: choose one from 0 (any that is free) to 65535")
     return port
-
-
-def _is_loopback(address: str) -> bool:
-    if address == "localhost":
-        return True
-    try:
-        return ipaddress.ip_address(address).is_loopback
-    except ValueError:
-        return False
 
 
 def _response(status: HTTPStatus, body: bytes, kind: str = "text/plain; charset=utf-8") -> Response:

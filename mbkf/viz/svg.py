@@ -94,7 +94,13 @@ def chart(
 
 
 def ticks(low: float, high: float, wanted: int) -> tuple[list[float], int]:
-    """About ``wanted`` round numbers from low to high, and the decimals they need."""
+    """Round numbers for an axis, and the decimals they need.
+
+    Args:
+        low: Lower end of the axis.
+        high: Upper end of the axis.
+        wanted: Approximate number of ticks.
+    """
     raw = (high - low) / max(1, wanted)
     power = 10.0 ** math.floor(math.log10(raw))
     step = next(s * power for s in (1.0, 2.0, 5.0, 10.0) if s * power >= 0.999 * raw)

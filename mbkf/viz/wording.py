@@ -2,24 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
-from mbkf.model.clinical_table import load_clinical_joints
+from mbkf.model.clinical_table import ClinicalJoint
 
 SIDE_NAMES = {"r": "right", "l": "left"}
-
-_TITLES = {
-    "pelvis_tilt": "Pelvic tilt", "pelvis_list": "Pelvic obliquity", "pelvis_rotation": "Pelvic rotation",
-    "pelvis_tx": "Pelvis forward", "pelvis_ty": "Pelvis height", "pelvis_tz": "Pelvis sideways",
-    "lumbar_extension": "Trunk extension", "lumbar_bending": "Trunk bending",
-    "lumbar_rotation": "Trunk rotation", "arm_flex": "Shoulder flexion", "arm_add": "Shoulder adduction",
-    "arm_rot": "Shoulder rotation", "elbow_flex": "Elbow flexion", "pro_sup": "Forearm pronation",
-    "wrist_flex": "Wrist flexion", "wrist_dev": "Wrist deviation", "knee_angle": "Knee flexion",
-    "ankle_angle": "Ankle dorsiflexion", "subtalar_angle": "Ankle inversion", "mtp_angle": "Toe extension",
-}  # fmt: skip
-"""Titles of coordinates whose names do not read well by themselves, without their side."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +21,8 @@ class Wording:
         side: "r", "l", or "" on the midline.
         joint: Name of its joint without the side, e.g. "knee".
         positive: What a positive value means.
-        turns: True for angles, False for the pelvis's translations.
+        turns: True for angles, False for the root's translations.
+        root: Whether it belongs to the root: what drives it is a residual, no torque.
     """
 
     title: str
@@ -39,6 +30,7 @@ class Wording:
     joint: str
     positive: str
     turns: bool
+    root: bool
 
     @property
     def full_title(self) -> str:
@@ -61,17 +53,17 @@ class Wording:
         return "N m" if self.turns else "N"
 
 
-def wordings() -> dict[str, Wording]:
-    """The wording of every clinical coordinate, by its name."""
+def wordings(joints: Iterable[ClinicalJoint]) -> dict[str, Wording]:
+    """The wording of every clinical coordinate of a body's joints, by its name."""
     found = {}
-    for joint in load_clinical_joints():
+    for joint in joints:
         translations = {angle.name for angle in joint.translations}
         base, side = _sided(joint.name)
         for angle in joint.coordinates:
             plain = angle.name.removesuffix(f"_{side}") if side else angle.name
-            title = _TITLES.get(plain, plain.replace("_", " ").capitalize())
+            title = angle.title or plain.replace("_", " ").capitalize()
             turns = angle.name not in translations
-            found[angle.name] = Wording(title, side, base, angle.positive, turns)
+            found[angle.name] = Wording(title, side, base, angle.positive, turns, joint.proximal == "world")
     return found
 
 

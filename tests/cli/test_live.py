@@ -262,7 +262,7 @@ def test_nobody_who_stands_still_ends_in_one_line(person, tmp_path, capsys):
     out = tmp_path / "out"
     assert run(["live", "--from", f"file:{person.trial}", "--speed", 0, "--out", out]) == 2
     last = capsys.readouterr().err.splitlines()[-1]
-    assert last.startswith("mbkf: error: the source ended before anybody was scaled: marker")
+    assert last.startswith("mbkf: error: the source ended before a person was scaled: marker")
     assert json.loads((out / "live.json").read_text())["state"] == "nobody scaled"
 
 
@@ -279,7 +279,7 @@ def test_what_the_stream_does_not_tell_is_asked_for(person, tmp_path, capsys, fi
     assert not (tmp_path / "out").exists()
 
 
-def test_ctrl_c_before_anybody_stood_still_leaves_a_report(visit, tmp_path):
+def test_ctrl_c_before_a_person_stood_still_leaves_a_report(visit, tmp_path):
     out = tmp_path / "out"
     words = ["live", "--from", f"file:{visit}", "--speed", "0.2", "--out", out]
     process = begun(words)
@@ -289,7 +289,7 @@ def test_ctrl_c_before_anybody_stood_still_leaves_a_report(visit, tmp_path):
     process.send_signal(signal.SIGINT)
     _, errors = process.communicate(timeout=20.0)
     assert process.returncode == 2
-    assert errors.splitlines()[-1].startswith("mbkf: error: stopped before anybody was scaled")
+    assert errors.splitlines()[-1].startswith("mbkf: error: stopped before a person was scaled")
     assert json.loads((out / "live.json").read_text())["ended_by"] == "it was stopped"
 
 

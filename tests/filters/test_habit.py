@@ -10,11 +10,15 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.sensors.coordination.prior import BLOCK_S, LEADING, SHOWN_HZ, Habit
+from mbkf.filters.dynamic_records import Shown, ShownFrame
+from mbkf.filters.dynamic.settings import DynamicSettings
+from mbkf.sensors.coordination.prior import BLOCK_S, SHOWN_HZ, Habit
 from mbkf.synthesis.motion import synthesise_motion
 from tests.dynamics import DT, camera_markers, dynamic_filter, random_state, standing, trial
 from tests.motions import reference_model
 
 MODEL = reference_model()
+LEADING = MODEL.roles.leading
 SEEN_S, HIDDEN_S = 2.6, 0.4
 ARMS = ("upper_arm", "forearm", "hand")
 

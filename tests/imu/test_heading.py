@@ -4,9 +4,11 @@ import numpy as np
 
 from mbkf.imu.frames import exponential, multiply
 from mbkf.imu.heading import HeadingSettings, held_headings, turned
+from mbkf.model.body_file import load_body
 
 SEGMENTS = ("pelvis", "right_thigh", "right_shank", "right_foot")
 DT = 0.05
+JOINTS = load_body().clinical_joints
 
 
 def walking(count=1200):
@@ -24,7 +26,7 @@ def test_a_drifting_shank_is_brought_back():
     true = walking()
     drift = np.zeros((len(true), 4))
     drift[:, 2] = 0.002 * np.arange(len(true)) * DT + 0.1
-    found = held_headings(SEGMENTS, turned(true, drift), DT)
+    found = held_headings(SEGMENTS, turned(true, drift), DT, JOINTS)
     np.testing.assert_allclose(found[100:, 2], -drift[100:, 2], atol=0.04)
     np.testing.assert_allclose(found[:, [1, 3]], 0.0, atol=0.06)
     np.testing.assert_array_equal(found[:, 0], 0.0)
@@ -32,17 +34,17 @@ def test_a_drifting_shank_is_brought_back():
 
 def test_sound_headings_and_turning_round_are_left_alone():
     true = walking()
-    np.testing.assert_allclose(held_headings(SEGMENTS, true, DT), 0.0, atol=1e-3)
+    np.testing.assert_allclose(held_headings(SEGMENTS, true, DT, JOINTS), 0.0, atol=1e-3)
     whole = turned(true, np.full((len(true), 4), 2.0))
-    np.testing.assert_allclose(held_headings(SEGMENTS, whole, DT), 0.0, atol=1e-3)
+    np.testing.assert_allclose(held_headings(SEGMENTS, whole, DT, JOINTS), 0.0, atol=1e-3)
 
 
 def test_a_toe_out_that_lasts_is_not_wholly_taken_away_when_joints_are_loose():
     true = walking()
     out = np.zeros((len(true), 4))
     out[:, 3] = 0.1
-    tight = held_headings(SEGMENTS, turned(true, out), DT)
-    loose = held_headings(SEGMENTS, turned(true, out), DT, HeadingSettings(spread_scale=30.0))
+    tight = held_headings(SEGMENTS, turned(true, out), DT, JOINTS)
+    loose = held_headings(SEGMENTS, turned(true, out), DT, JOINTS, HeadingSettings(spread_scale=30.0))
     assert abs(loose[600, 3]) < 0.5 * abs(tight[600, 3])
 
 

@@ -10,6 +10,7 @@ from mbkf.imu.heading import turned
 from mbkf.imu.sensor_to_segment import alignments, facing, mean_orientation
 
 LEG = ("pelvis", "right_thigh", "right_shank", "right_foot")
+KNEES = (("right_thigh", "right_shank"),)
 DT = 0.01
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -38,15 +39,15 @@ def test_swinging_legs_show_where_forward_is(heading):
     mounts = Rotation.random(4, rng=np.random.default_rng(0)).as_quat()
     sensors, gyro, _ = steps(heading, mounts)
     standing = multiply(turned(np.tile([0.0, 0, 0, 1], (1, 4, 1)), np.full((1, 4), heading))[0], mounts)
-    found = facing(LEG, sensors, gyro, standing)
+    found = facing(LEG, sensors, gyro, standing, KNEES)
     assert np.cos(found - heading) > np.cos(0.03)
 
 
 def test_still_legs_do_not():
     mounts = Rotation.random(4, rng=np.random.default_rng(0)).as_quat()
     sensors, gyro, _ = steps(0.0, mounts)
-    assert facing(LEG, sensors, 0.05 * gyro, sensors[0]) is None
-    assert facing(("pelvis",), sensors[:, :1], gyro[:, :1], sensors[0, :1]) is None
+    assert facing(LEG, sensors, 0.05 * gyro, sensors[0], KNEES) is None
+    assert facing(("pelvis",), sensors[:, :1], gyro[:, :1], sensors[0, :1], KNEES) is None
 
 
 def test_alignment_takes_sensors_to_segments():

@@ -44,6 +44,7 @@ SUBJECTS = st.builds(
     protocol=TEXT,
     height_m=st.none() | st.floats(0.5, 2.6),
     report=st.dictionaries(TEXT, PLAIN, max_size=3),
+    body_text=st.just("") | TEXT | st.lists(TEXT, min_size=2).map("\n".join),
 )
 
 
@@ -77,6 +78,17 @@ def test_odd_names_survive(subject, tmp_path, name):
     )
     write_subject(odd, tmp_path / "s.toml")
     assert plain(read_subject(tmp_path / "s.toml")) == plain(odd)
+
+
+@pytest.mark.parametrize("text", ['name = "legs"\n[roles]\n', "a = '''b'''\n", "ends with '", "a\r\nb\tc\n"])
+def test_a_body_of_ones_own_is_carried_word_for_word(subject, tmp_path, text):
+    write_subject(replace(subject, body_text=text), tmp_path / "s.toml")
+    assert read_subject(tmp_path / "s.toml").body_text == text
+
+
+def test_a_shipped_body_leaves_no_text(subject, tmp_path):
+    write_subject(subject, tmp_path / "s.toml")
+    assert "body_text" not in (tmp_path / "s.toml").read_text(encoding="utf-8")
 
 
 def test_positions_cannot_be_written_to(subject, tmp_path):

@@ -1,24 +1,32 @@
 """The table of clinical angles: complete, mirrored, and strict about damage."""
 
+import copy
+
 import pytest
 
-from mbkf.errors import FileFormatError
-from mbkf.model import clinical_table
-from mbkf.model.clinical_table import load_clinical_joints
-from mbkf.model.description import load_body
+from mbkf.model.body_file import load_body
+from mbkf.model.clinical_table import clinical_joints
+
+KNEE = {
+    "name": "knee_r",
+    "mirror": True,
+    "proximal": "right_thigh",
+    "distal": "right_shank",
+    "order": "yx",
+    "main": "flexion_r",
+    "angle": [{"name": "flexion_r", "axis": "y", "sign": 1}, {"name": "varus_r", "axis": "x", "sign": 1}],
+}
 
 
 def test_every_joint_of_the_body_stands_in_the_table_with_its_parent():
     body = load_body()
-    joints = {joint.distal: joint for joint in load_clinical_joints()}
-    assert set(joints) == {segment.name for segment in body.segments}
-    for segment in body.segments:
-        assert joints[segment.name].proximal == segment.parent
-        assert len(joints[segment.name].order) == {"hinge": 1, "universal": 2}.get(segment.joint, 3)
+    for segment, joint in zip(body.segments, body.clinical_joints, strict=True):
+        assert (joint.proximal, joint.distal) == (segment.parent, segment.name)
+        assert len(joint.order) == {"hinge": 1, "universal": 2}.get(segment.joint, 3)
 
 
 def test_left_signs_mirror_the_right_ones():
-    joints = {joint.name: joint for joint in load_clinical_joints()}
+    joints = {joint.name: joint for joint in load_body().clinical_joints}
     for name, right in joints.items():
         if name.endswith("_r"):
             left = joints[name.removesuffix("_r") + "_l"]
@@ -26,25 +34,38 @@ def test_left_signs_mirror_the_right_ones():
             for one, other in zip(right.angles, left.angles, strict=True):
                 assert other.sign == (one.sign if one.axis == "y" else -one.sign)
                 assert bool(one.opensim) == bool(other.opensim)
+                assert one.title == other.title
+
+
+def test_titles_and_opensim_names_may_be_left_out():
+    right, left = clinical_joints([KNEE])
+    assert (left.name, left.proximal, left.distal, left.main) == (
+        "knee_l",
+        "left_thigh",
+        "left_shank",
+        "flexion_l",
+    )
+    assert [(a.opensim, a.title) for a in right.angles + left.angles] == [("", "")] * 4
 
 
 @pytest.mark.parametrize(
-    ("change", "message"),
+    ("key", "value", "message"),
     [
-        (('order = "yxz"', 'order = "xyz"'), "follow its order"),
-        (('main = "lumbar_extension"', 'main = "lumbar"'), "main angle lumbar"),
-        (("[[joint]]", "[[joint"), "not a table"),
-        (("distal =", "distant ="), "not a table"),
+        ("order", "xy", "follow its order"),
+        ("main", "bend", "main angle bend"),
+        ("angle", [{"name": "flexion_r", "axis": "y", "sign": 2}], "order|sign"),
+        ("mirror", False, None),
     ],
 )
-def test_a_damaged_table_is_refused(tmp_path, change, message):
-    text = (clinical_table.data_folder("models") / "clinical_angles.toml").read_text(encoding="utf-8")
-    path = tmp_path / "table.toml"
-    path.write_text(text.replace(*change), encoding="utf-8")
-    with pytest.raises(FileFormatError, match=message):
-        clinical_table._parse(path)
+def test_a_damaged_table_is_refused(key, value, message):
+    entry = copy.deepcopy(KNEE) | {key: value}
+    if message is None:
+        assert len(clinical_joints([entry])) == 1
+        return
+    with pytest.raises(ValueError, match=message):
+        clinical_joints([entry])
 
 
-def test_a_missing_table_is_refused(tmp_path):
-    with pytest.raises(FileFormatError, match="cannot be read"):
-        clinical_table._parse(tmp_path / "none.toml")
+def test_two_coordinates_of_one_name_are_refused():
+    with pytest.raises(ValueError, match="flexion_r stands twice"):
+        clinical_joints([KNEE | {"mirror": False}, KNEE | {"mirror": False, "name": "other"}])

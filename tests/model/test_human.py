@@ -10,8 +10,8 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import GRAVITY_M_S2, data_folder
 from mbkf.errors import InvalidInput, ShapeError, UnknownName
-from mbkf.model.description import mirrored
 from mbkf.model.human import HumanModel
+from mbkf.model.sides import mirrored
 from tests.motions import (
     assert_near,
     central_difference,

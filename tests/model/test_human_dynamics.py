@@ -7,7 +7,7 @@ import pinocchio as pin
 import pytest
 
 from mbkf.errors import UnknownName
-from mbkf.model.human_dynamics import FEET, FORCE_STATES, WRENCH_FRAMES, HumanDynamics, cross_matrix
+from mbkf.model.human_dynamics import FORCE_STATES, WRENCH_FRAMES, HumanDynamics, cross_matrix
 from tests.motions import assert_near, central_difference, moderate_pose, random_model, worst
 
 each_state = pytest.mark.parametrize(("force_state", "frame"), list(product(FORCE_STATES, WRENCH_FRAMES)))
@@ -53,7 +53,7 @@ def test_generalised_forces_drive_pinocchios_forward_dynamics(force_state, frame
     m = Moment(force_state, frame)
     tau = m.body.generalised(m.q, m.v, m.a, m.u)
     _, _, jacobian = m.model.placements_and_jacobian(m.q)
-    for name, wrench in zip(FEET, m.wrench, strict=True):
+    for name, wrench in zip(m.model.roles.feet, m.wrench, strict=True):
         tau = tau + np.where(m.model.supports[m.model.joint(name).joint_id], wrench @ jacobian, 0.0)
     data = m.model.pin_model.createData()
     assert_near(pin.aba(m.model.pin_model, data, m.q, m.v, tau), m.a, 1e-7)
@@ -104,7 +104,7 @@ def test_local_wrench_has_the_same_power_on_the_foot(frame):
     """Work on any motion of the foot is the same from the world's wrench and from the local one."""
     m = Moment(frame=frame)
     local, by_state, by_q = m.body.local_wrench(m.q, m.u[-12:])
-    for side, name in enumerate(FEET):
+    for side, name in enumerate(m.model.roles.feet):
         joint = m.model.joint(name).joint_id
         world = m.model.placements_and_jacobian(m.q)[2]
         moves = np.where(m.model.supports[joint], world, 0.0) @ m.v

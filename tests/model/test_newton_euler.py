@@ -4,7 +4,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from mbkf.model.newton_euler import FEET, NewtonEuler
+from mbkf.model.newton_euler import NewtonEuler
 from tests.dynamics import random_state
 from tests.motions import assert_near, random_model, worst
 
@@ -19,7 +19,7 @@ def made(seed):
 
 def pushed(model, q, wrenches):
     """(nv,) generalised forces of wrenches about the world's origin on right and left foot."""
-    jacobians = [model.segment_jacobian(q, foot, np.zeros(3)) for foot in FEET]
+    jacobians = [model.segment_jacobian(q, foot, np.zeros(3)) for foot in model.roles.feet]
     return sum(J.T @ w for J, w in zip(jacobians, wrenches.reshape(2, 6), strict=True))
 
 

@@ -1,13 +1,17 @@
 """Every shipped protocol, the detection of a capture's protocol, and what is refused."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.capture import read_capture
-from mbkf.model.description import load_body, mirrored
+from mbkf.model.body_file import load_body, parse_body
 from mbkf.model.protocol import KINDS, detect_protocol, load_protocol, protocol_names
+from mbkf.model.sides import mirrored
 
+LEGS = Path(__file__).resolve().parents[2] / "docs/examples/bodies/legs.toml"
 SHIPPED = (
     "autolabel62",
     "gait2354",
@@ -76,7 +80,7 @@ def test_these_protocols_are_shipped():
 @pytest.mark.parametrize("name", SHIPPED)
 def test_a_shipped_protocol_is_sound(name):
     protocol = load_protocol(name)
-    segments = {segment.name for segment in load_body(protocol.body).segments}
+    segments = {segment.name for segment in protocol.body.segments}
     labels = [alias for marker in protocol.markers for alias in (marker.name, *marker.aliases)]
     assert protocol.name == name
     assert len(labels) == len(set(labels)), "a name or alias stands twice"
@@ -192,3 +196,31 @@ def test_markers_for_the_static_trial_only_say_so_on_both_sides():
     off = {name for name, marker in markers.items() if marker.static_only}
     assert off == {f"{side}{part}" for side in "RL" for part in ("MMA", "PCA", "D1M", "TPF")}
     assert not any(marker.static_only for marker in load_protocol("plug_in_gait").markers)
+
+
+def test_a_protocol_is_placed_on_another_body():
+    """Markers whose place the body lacks are left out, the others sit on its own landmarks."""
+    legs = load_body(LEGS)
+    whole, placed = load_protocol("reference36"), load_protocol("reference36", legs)
+    segments = {segment.name for segment in legs.segments}
+    assert placed.body is legs
+    assert [m.name for m in placed.markers] == [m.name for m in whole.markers if m.segment in segments]
+    broad = parse_body(legs.text.replace("[0.07, -0.119, -0.205]", "[0.07, -0.129, -0.205]"), "broad")
+    markers = {m.name: m for m in load_protocol("reference36", broad).markers}
+    np.testing.assert_array_equal(markers["LASI"].position_m, [0.07, 0.129, -0.205])
+    assert detect_protocol([m.name for m in placed.markers], legs).name == "reference36"
+
+
+def test_typing_errors_are_told_on_another_body_too(write):
+    with pytest.raises(UnknownName, match="did you mean right_knee_lateral"):
+        load_protocol(write('name = "X"\nlandmark = "right_knee_laterl"'), load_body(LEGS))
+    assert load_protocol(write('name = "X"\nlandmark = "c7"'), load_body(LEGS)).markers == ()
+
+
+def test_a_protocol_names_its_body_by_a_file_beside_it(tmp_path):
+    (tmp_path / "legs.toml").write_text(LEGS.read_text(encoding="utf-8"), encoding="utf-8")
+    path = tmp_path / "mine.toml"
+    path.write_text(
+        'name = "mine"\nbody = "legs.toml"\n[[marker]]\nname = "X"\nlandmark = "right_asis"\n', "utf-8"
+    )
+    assert load_protocol(path).body.name == "legs"

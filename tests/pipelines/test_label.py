@@ -5,7 +5,7 @@ import pytest
 
 from mbkf.errors import NotObservable
 from mbkf.labelling.assignment import HIDDEN
-from mbkf.pipelines.label import label, labelled_capture, summarise
+from mbkf.pipelines.label import label, label_summary, labelled_capture
 from mbkf.pipelines.labelling.score import score
 from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
 from tests.walker import unlabelled, walker
@@ -29,7 +29,7 @@ def test_shuffled_points_with_ghosts(walk):
         assert len(used) == len(set(used.tolist()))
     points = (~np.isnan(raw.markers.positions_m).any(axis=2)).sum(axis=1)
     assert np.array_equal(found.ghosts + found.markers.present.sum(axis=1), points)
-    numbers = summarise(found, result)
+    numbers = label_summary(found, result)
     assert numbers["correct_fraction"] == result.correct_fraction
     assert numbers["ghosts_dropped"] == found.ghosts.sum() > 0
     assert numbers["first_labelled_frame"] == 0

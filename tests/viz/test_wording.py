@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from mbkf.model.clinical_table import load_clinical_joints
+from mbkf.model.body_file import load_body
 from mbkf.viz.wording import wordings
 
 
 def test_every_coordinate_has_its_own_title():
-    names = [c.name for joint in load_clinical_joints() for c in joint.coordinates]
-    found = wordings()
+    names = [c.name for joint in load_body().clinical_joints for c in joint.coordinates]
+    found = wordings(load_body().clinical_joints)
     assert sorted(found) == sorted(names)
     titles = [w.full_title for w in found.values()]
     assert len(set(titles)) == len(titles)
@@ -16,7 +16,7 @@ def test_every_coordinate_has_its_own_title():
 
 
 def test_sides_units_and_joints():
-    w = wordings()
+    w = wordings(load_body().clinical_joints)
     knee = w["knee_angle_l"]
     assert (knee.full_title, knee.joint, knee.side) == ("Knee flexion, left", "knee", "l")
     assert (knee.unit, knee.load_unit) == ("°", "N m")

@@ -14,7 +14,7 @@ from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.filter import Filter, Step
-from mbkf.model.newton_euler import FEET, NewtonEuler
+from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.block import AnyBlock, Frame
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.coordination.prior import CoordinationPrior
@@ -61,7 +61,7 @@ def dynamic_blocks(
         NewtonEulerLaw(NewtonEuler(model), s.law),
         FootContact(detector, GRAVITY_M_S2 * model.mass_kg, dt_s, s.contact),
         UnobservedJoints.of(movement, s.unobserved),
-        PlantedFeet(model, detector, FEET, s.planted),
+        PlantedFeet(model, detector, s.planted),
     ]
     if inertial is not None:
         blocks += [InertialSensors(inertial, s.inertial), MeanPosture(model, dt_s, s.mean_posture)]

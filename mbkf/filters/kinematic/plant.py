@@ -102,7 +102,7 @@ class WhiteAccelerationPlant:
         P[nv:, :nv] = carried[:, nv:].T
         half = blas.dgemm(0.5, rows, carried.T)
         np.add(half, half.T, out=P[:nv, :nv])
-        P[nv:, nv:] = state.P[nv:, nv:]
+        P[nv:, nv:] = state.P.T[nv:, nv:]  # symmetric, and so copied row by row
         self._add_noise(P)
         return KinematicState(self.model.integrate(state.q, step), state.v, P.T)
 

@@ -47,7 +47,6 @@ class KinematicRecord:
 
     Attributes:
         state: Its state.
-        memory: For the next step.
         step: The step to it, None at a start.
         before: State of the frame before, None at a start.
         settling: (n, nv) accelerations of the first frames after a start.
@@ -55,7 +54,6 @@ class KinematicRecord:
     """
 
     state: KinematicState
-    memory: Memory
     step: KinematicStep | None
     before: KinematicState | None
     settling: Array
@@ -108,7 +106,7 @@ class KinematicTracking:
         found = warm_start(self.kalman, recording, t, guess)
         if found is None:
             return None
-        inner = KinematicRecord(found.state, self.kalman.begin(), None, None, found.accelerations, 0)
+        inner = KinematicRecord(found.state, None, None, found.accelerations, 0)
         none = np.zeros(recording.markers_m.shape[1], dtype=bool)
         q, v = found.state.q, found.state.v
         return Posterior(q, v, found.accelerations[0], NO_WRENCH, None, none, True, True, inner)
@@ -116,7 +114,7 @@ class KinematicTracking:
     def predict(self, before: Posterior) -> Prediction:
         """By the filter's own plant."""
         was: KinematicRecord = before.inner
-        prior, nv = self.kalman.predict(was.state, was.memory), self.model.nv
+        prior, nv = self.kalman.predict(was.state, self._memory(was)), self.model.nv
         markers = MarkerPrediction(self.kalman.prepared_by(Markers, prior), prior.state.P[:nv, :nv])
         return Prediction(prior.state.q, markers, prior)
 
@@ -126,12 +124,15 @@ class KinematicTracking:
         """One frame on."""
         was: KinematicRecord = before.inner
         prior = None if prediction is None else prediction.prior
-        step = self.kalman.step(was.state, was.memory, recording.frame(t), prior)
+        step = self.kalman.step(was.state, self._memory(was), recording.frame(t), prior)
         state, since = step.state, was.since + 1
         settled = since >= len(was.settling)
         a = (state.v - was.state.v) / self.dt_s if settled else was.settling[since]
-        inner = KinematicRecord(state, step.memory, step, was.state, was.settling, since)
+        inner = KinematicRecord(state, step, was.state, was.settling, since)
         return Posterior(state.q, state.v, a, NO_WRENCH, None, step.refused, step.tracked, False, inner)
+
+    def _memory(self, was: KinematicRecord) -> Memory:
+        return self.kalman.begin() if was.step is None else was.step.memory
 
     def covariance(self, estimate: Posterior) -> Array:
         """(2 nv, 2 nv) of (q, v)."""

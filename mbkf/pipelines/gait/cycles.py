@@ -53,7 +53,7 @@ class Cycle:
 
 
 @dataclass(frozen=True)
-class Parameter:
+class GaitParameter:
     """A spatiotemporal parameter: values of the cycles of right and left foot, in ``unit``."""
 
     name: str
@@ -74,7 +74,7 @@ class Gait:
 
     events: tuple[FootEvents, FootEvents]
     cycles: tuple[Cycle, ...]
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[GaitParameter, ...]
     belt_m_s: float
 
     def of(self, side: int) -> tuple[Cycle, ...]:
@@ -112,7 +112,13 @@ def cycles_of(events: tuple[FootEvents, FootEvents], side: int) -> list[Cycle]:
 
 
 def over_cycle(times_s: Array, values: Array, cycle: Cycle) -> Array:
-    """(101,) a curve (T,) over a cycle; NaN where one of the two frames around a point is."""
+    """(101,) a curve (T,) over a cycle; NaN where one of the two frames around a point is.
+
+    Args:
+        times_s: (T,) times of the frames, s.
+        values: (T,) the curve.
+        cycle: The cycle.
+    """
     at = np.linspace(cycle.start_s, cycle.end_s, POINTS)
     return np.interp(at, times_s, values)
 
@@ -131,7 +137,7 @@ def _belt_velocity(feet: FeetInMotion, cycles: tuple[Cycle, ...]) -> Array:
     return belt if np.linalg.norm(belt) > BELT_FROM_M_S else np.zeros(2)
 
 
-def _parameters(feet: FeetInMotion, cycles: tuple[Cycle, ...], belt: Array) -> tuple[Parameter, ...]:
+def _parameters(feet: FeetInMotion, cycles: tuple[Cycle, ...], belt: Array) -> tuple[GaitParameter, ...]:
     """A step ends with the strike of its side; it is measured from the other foot's strike, on what moves along."""
     table: dict[str, tuple[list[float], list[float]]] = {name: ([], []) for name, _ in _PARAMETERS}
     for cycle in cycles:
@@ -149,10 +155,10 @@ def _parameters(feet: FeetInMotion, cycles: tuple[Cycle, ...], belt: Array) -> t
         )  # fmt: skip
         for (name, _), value in zip(_PARAMETERS, values, strict=True):
             table[name][side].append(value)
-    found = [Parameter(n, u, (np.array(table[n][0]), np.array(table[n][1]))) for n, u in _PARAMETERS]
+    found = [GaitParameter(n, u, (np.array(table[n][0]), np.array(table[n][1]))) for n, u in _PARAMETERS]
     if np.nanmean(np.concatenate(found[-1].values)) < 0:
         right, left = found[-1].values
-        found[-1] = Parameter("Flight", "%", (-right, -left))
+        found[-1] = GaitParameter("Flight", "%", (-right, -left))
     return tuple(found)
 
 

@@ -59,9 +59,9 @@ class FeetInMotion:
 
 def feet_in_motion(r: Reconstruction) -> FeetInMotion:
     """Feet and pelvis of a reconstruction."""
-    model = HumanModel.scaled(r.subject.scale_factors, r.subject.mass_kg, r.subject.body)
+    model = HumanModel.of(r.subject)
     q = np.where(r.tracked[:, None], r.q, np.nan)
-    root = model.joint("pelvis").q
+    root = model.root.q
     x, y, z, w = q[:, root.start + 3 : root.start + 7].T
     facing = np.column_stack([1.0 - 2.0 * (y**2 + z**2), 2.0 * (x * y + z * w)])
     forward = facing / np.maximum(np.linalg.norm(facing, axis=1, keepdims=True), 1e-9)
@@ -93,6 +93,11 @@ def events_of_load(times_s: Array, vertical_n: Array, threshold_n: float = LOADE
     """Events of a foot from its vertical force (T,), at the crossings of the threshold between frames.
 
     A contact that begins or ends where the force is NaN, or at the ends of the trial, has no such event.
+
+    Args:
+        times_s: (T,) times of the frames, s.
+        vertical_n: (T,) vertical force on the foot, N; NaN where not known.
+        threshold_n: A foot stands while the force exceeds this, N.
     """
     known = ~np.isnan(vertical_n)
     stands = np.nan_to_num(vertical_n) > threshold_n

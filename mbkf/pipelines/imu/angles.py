@@ -25,7 +25,6 @@ from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.imu.orient import prepared
 
-ROOT = "pelvis"
 _DOUBT_RAD, _DOUBT_SHARE, _DOUBT_EVERY = np.radians(15.0), 0.02, 5
 STILL_RAD_S, STILL_S = 0.15, 1.0
 """Standing: no sensor turns faster (root mean square) for so long."""
@@ -100,8 +99,9 @@ def imu_angles(
     if not chosen.from_file:
         sensors, warnings = prepared(readings)
     names = [segment_of(one.name, body.joints) for one in sensors]
-    order = _order(names)
+    order = _order(names, body.roles.root)
     sensors, segments = tuple(sensors[k] for k in order), [names[k] for k in order]
+    clinical = ClinicalAngles(body)
     with single_threaded():
         still = None
         if isinstance(standing, Sequence) and standing and isinstance(standing[0], ImuReadings):
@@ -118,9 +118,8 @@ def imu_angles(
         course = multiply(q, conjugate(aligned))
         if chosen.hold_headings and len(segments) > 1:
             dt = 1.0 / sensors[0].rate_hz
-            course = turned(course, held_headings(segments, course, dt, chosen.heading))
+            course = turned(course, held_headings(segments, course, dt, clinical.joints, chosen.heading))
         motion = _configurations(body, segments, course)
-    clinical = ClinicalAngles(body)
     values = clinical.angles(motion)
     wanted = [k for k, name in enumerate(clinical.names) if _determined(clinical, name, segments)]
     mounts = tuple(
@@ -132,18 +131,18 @@ def imu_angles(
     return ImuAngles(time_s, motion, found, values[:, wanted], mounts, told)
 
 
-def _order(names: Sequence[str]) -> list[int]:
-    """The pelvis first.
+def _order(names: Sequence[str], root: str) -> list[int]:
+    """The root segment, usually the pelvis, first.
 
     Raises:
         InvalidInput: There is none, or a segment has two sensors.
     """
-    if ROOT not in names:
-        raise InvalidInput(f"joint angles need a sensor on the pelvis; there are {', '.join(names)}")
+    if root not in names:
+        raise InvalidInput(f"joint angles need a sensor on the {root}; there are {', '.join(names)}")
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise InvalidInput(f"two sensors sit on {twice[0]}; keep one of them with --sensor")
-    return sorted(range(len(names)), key=lambda k: names[k] != ROOT)
+    return sorted(range(len(names)), key=lambda k: names[k] != root)
 
 
 def _standing_sensors(standing: Sequence[object], names: Sequence[str]) -> list[ImuReadings]:
@@ -227,7 +226,7 @@ def _posture(body: HumanModel, posture: Array | None, segments: Sequence[str]) -
     q = body.neutral() if posture is None else posture
     rotations, _ = body.placements(q)
     turns = matrix_quaternion(np.array([rotations[body.joint(name).joint_id] for name in segments]))
-    forward = rotations[body.joint(ROOT).joint_id][:, 0]
+    forward = rotations[body.root.joint_id][:, 0]
     heading = float(np.arctan2(forward[1], forward[0]))
     return turned(turns[None], np.full((1, len(segments)), -heading))[0]
 
@@ -245,7 +244,7 @@ def _headings(
     usual = _by_custom(body, segments, upright, rest)
     if not common:
         return usual
-    seen = facing(segments, q, _turning(q, time_s), upright)
+    seen = facing(segments, q, _turning(q, time_s), upright, body.roles.knees)
     if seen is None:
         seen = float(np.arctan2(np.sin(usual).mean(), np.cos(usual).mean()))
     return np.full(len(segments), seen)

@@ -56,6 +56,12 @@ def with_imus(
     The trial is first followed by markers alone, to calibrate the sensors on its motion: mounts that are given keep
     their place, only their gyroscopes' biases are found.
 
+    Args:
+        inputs: The trial's inputs without sensors.
+        recording: Its markers and plates.
+        times_s: (T,) times of its frames, s.
+        imus: The sensors' readings, and their mounts where known.
+
     Raises:
         InvalidInput: Readings cannot be right, do not overlap with the trial, or are too still to be calibrated.
         UnknownName: A sensor's segment is not known.
@@ -101,6 +107,12 @@ def calibrated(
     model: HumanModel, motion: Track, measured: Array, imus: ImuOnBody
 ) -> tuple[tuple[ImuMount, ...], Array]:
     """Mounts, and biases of the gyroscopes (S, 3), of sensors on a body whose motion is known.
+
+    Args:
+        model: The scaled body.
+        motion: Its motion, tracked by markers.
+        measured: (T, S, 6) readings at the motion's frames: angular rate rad/s, specific force m/s².
+        imus: The sensors, with their mounts where known.
 
     Raises:
         InvalidInput: A sensor without a mount hardly turned.

@@ -93,7 +93,7 @@ def orient(
     return OrientResult(courses, compared, tuple(errors), warnings)
 
 
-def summarise(result: OrientResult, settings: OrientSettings) -> dict[str, Any]:
+def orientation_summary(result: OrientResult, settings: OrientSettings) -> dict[str, Any]:
     """Plain data for ``orientation.json``; angles in degrees."""
     errors = dict(result.errors)
     sensors = []

@@ -202,7 +202,7 @@ def _together(feet: Sequence[FootResult]) -> tuple[FootResult, ...]:
     )
 
 
-def summarise(measured: StrideMeasurement) -> dict[str, Any]:
+def stride_summary(measured: StrideMeasurement) -> dict[str, Any]:
     """Plain data for summary.json; None where something is unknown."""
     feet, settings = measured.feet, measured.settings
     summary: dict[str, Any] = {

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from mbkf.io.atomic import check_folder, replacing
-from mbkf.pipelines.imu.stride import StrideMeasurement, summarise
+from mbkf.pipelines.imu.stride import StrideMeasurement, stride_summary
 
 STRIDES_FILE, TRAJECTORY_FILE, SUMMARY_FILE = "strides.csv", "trajectory.csv", "summary.json"
 
@@ -39,7 +39,7 @@ def write_strides(measured: StrideMeasurement, folder: str | Path) -> Path:
     _write(target / STRIDES_FILE, STRIDE_COLUMNS, _stride_rows(measured))
     _write(target / TRAJECTORY_FILE, TRAJECTORY_COLUMNS, _trajectory_rows(measured))
     with replacing(target / SUMMARY_FILE) as partial:
-        text = json.dumps(summarise(measured), indent=2, allow_nan=False, ensure_ascii=False)
+        text = json.dumps(stride_summary(measured), indent=2, allow_nan=False, ensure_ascii=False)
         partial.write_text(text + "\n", encoding="utf-8")
     return target
 

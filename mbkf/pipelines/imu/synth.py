@@ -59,7 +59,7 @@ def read_motion(path: str | Path, subject: str | Path | None = None) -> BodyMoti
 
 
 def _body(person: Subject) -> HumanModel:
-    return HumanModel.scaled(person.scale_factors, person.mass_kg, person.body)
+    return HumanModel.of(person)
 
 
 def synthesise_imus(

@@ -71,10 +71,16 @@ class LabelBody:
 
 
 def label_body(markers: Sequence[SubjectMarker], subject: Subject, settings: RunningSettings) -> LabelBody:
-    """The markers that scaling saw, or all where the subject does not tell."""
+    """The body with the markers that scaling saw, or all where the subject does not list these.
+
+    Args:
+        markers: Markers to look for.
+        subject: The scaled person.
+        settings: Settings of the labeller.
+    """
     seen = subject.report.get("markers")
     worn = tuple(m for m in markers if seen is None or m.name in seen)
-    model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
+    model = HumanModel.of(subject)
     sensor = MarkerSensor(model, [m.segment for m in worn], np.array([m.position_m for m in worn]))
     sd = np.array([np.hypot(m.noise_m, m.session_sd_m) for m in worn])
     return LabelBody(subject, worn, sensor, FirstFrameSearch(sensor, sd), settings)

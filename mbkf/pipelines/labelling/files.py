@@ -9,7 +9,7 @@ from typing import Any
 from mbkf.io.atomic import replacing
 from mbkf.io.capture import write_capture
 from mbkf.io.records import Capture
-from mbkf.pipelines.label import Labelling, labelled_capture, summarise
+from mbkf.pipelines.label import Labelling, label_summary, labelled_capture
 from mbkf.pipelines.labelling.score import LabelScore
 
 
@@ -28,7 +28,7 @@ def write_labels(
         FileFormatError: The file cannot be written.
     """
     path = Path(path)
-    labelled, summary = labelled_capture(raw, found), summarise(found, compared)
+    labelled, summary = labelled_capture(raw, found), label_summary(found, compared)
     write_capture(labelled, path)
     with replacing(path.with_suffix(".json")) as partial:
         partial.write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")

@@ -101,7 +101,13 @@ def relabel_offline(
 def trajectories(
     points: MarkerTrajectories, label_of_point: Indices, names: tuple[str, ...]
 ) -> MarkerTrajectories:
-    """The capture's points (T, C) under their markers' names."""
+    """The capture's points as trajectories of named markers.
+
+    Args:
+        points: The unlabelled points (T, C, 3).
+        label_of_point: (T, C) index of each point's marker, `HIDDEN` for none.
+        names: (M,) names of the markers.
+    """
     positions = np.full((points.frames, len(names), 3), np.nan)
     frames, columns = np.nonzero(label_of_point != HIDDEN)
     positions[frames, label_of_point[frames, columns]] = points.positions_m[frames, columns]
@@ -109,7 +115,13 @@ def trajectories(
 
 
 def course(body: LabelBody, markers: MarkerTrajectories, progress: Callable[[int], None]) -> SmoothedMarkers:
-    """Where the smoothed body has its markers in every frame of labelled trajectories."""
+    """Positions of the smoothed body's markers in every frame of labelled trajectories.
+
+    Args:
+        body: The body and its markers.
+        markers: Labelled trajectories.
+        progress: Called with the number of frames done.
+    """
     positions, dt = markers.positions_m, 1.0 / markers.rate_hz
     follower, sensor = body.follower(dt), body.sensor
     recording = Recording(positions, np.zeros((len(positions), 0, 6)), dt)

@@ -22,6 +22,7 @@ from mbkf.io.subject import Subject, match_names
 from mbkf.pipelines.reconstruct import subject_markers
 from mbkf.pipelines.trial.followers import FilterInputs
 from mbkf.pipelines.trial.inputs import Beliefs, trial_inputs
+from mbkf.sensors.block import Frame
 
 NUMERICAL = (np.linalg.LinAlgError, ArithmeticError, ValueError, MbkfError)
 """What arithmetic raises on readings it cannot digest; the filter then starts anew."""
@@ -53,7 +54,7 @@ class LiveFilter:
         self.loop = TrackingLoop(follower)
         self._follower = follower
         self._ahead = warm_up_frames(follower.dt_s)
-        self._waiting: deque[tuple[int, Array, Array]] = deque()
+        self._waiting: deque[tuple[int, Frame]] = deque()
         self._expecting_s = 0.0
 
     @property
@@ -79,18 +80,17 @@ class LiveFilter:
         self._expecting_s += time.perf_counter() - begin
         return found
 
-    def push(self, number: int, markers_m: Array, plates: Array) -> list[LiveStep]:
+    def push(self, number: int, frame: Frame) -> list[LiveStep]:
         """The next frame.
 
         Args:
             number: Its number.
-            markers_m: (M, 3) positions, NaN where missing.
-            plates: (K, 6) wrenches about the world's origin, NaN where not recorded.
+            frame: Its readings.
 
         Returns:
             Answers to this frame and to those that waited for it.
         """
-        self._waiting.append((number, markers_m, plates))
+        self._waiting.append((number, frame))
         return self._due(self._ahead)
 
     def finish(self) -> list[LiveStep]:
@@ -114,12 +114,8 @@ class LiveFilter:
     def _step(self, awaited: bool) -> LiveStep:
         begin, self._expecting_s = time.perf_counter() - self._expecting_s, 0.0
         number = self._waiting[0][0]
-        seen = list(self._waiting) if self.loop.must_start else [self._waiting[0]]
-        recording = Recording(
-            np.array([markers for _, markers, _ in seen]),
-            np.array([plates for _, _, plates in seen]),
-            self._follower.dt_s,
-        )
+        waiting = list(self._waiting) if self.loop.must_start else [self._waiting[0]]
+        recording = Recording.of([frame for _, frame in waiting], self._follower.dt_s)
         self._waiting.popleft()
         try:
             with np.errstate(all="ignore"):  # what comes of it is looked at

@@ -186,7 +186,7 @@ def _posture(capture: Capture, subject: Subject) -> tuple[HumanModel, Array]:
     """The person's body, and its pose (nq,) in the frame that shows most markers."""
     shown = subject_markers(capture.markers, subject)
     own = [marker for name in shown.names for marker in subject.markers if marker.name == name]
-    model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
+    model = HumanModel.of(subject)
     sensor = MarkerSensor(model, [m.segment for m in own], np.array([m.position_m for m in own]))
     best = shown.positions_m[shown.present.sum(axis=1).argmax()]
     noise_m = np.array([marker.noise_m for marker in own])

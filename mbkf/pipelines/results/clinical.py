@@ -42,15 +42,15 @@ def clinical_motion(model: HumanModel, track: Track, tau: Array, tau_sd: Array) 
     angles = clinical.angles(track.q)
     known = ~np.isnan(track.q).any(axis=1)
     shape = angles.shape
-    rates, moments, variance = (np.full(shape, np.nan) for _ in range(3))
+    rates, moments, moments_sd = (np.full(shape, np.nan) for _ in range(3))
     q, theta = track.q[known], angles[known]
     rates[known] = _rates(clinical, q, theta, track.v[known])
     moments[known] = clinical.moments(q, tau[known], theta)
-    variance[known] = _moment_variance(clinical, q, tau_sd[known], theta)
+    moments_sd[known] = clinical.moments_sd(q, tau_sd[known], theta)
     singular = np.zeros(shape, dtype=bool)
     singular[known] = clinical.singular(theta)
     return ClinicalMotion(
-        clinical.names, angles, rates, moments, track.angle_sd, track.rate_sd, np.sqrt(variance), singular
+        clinical.names, angles, rates, moments, track.angle_sd, track.rate_sd, moments_sd, singular
     )
 
 
@@ -60,12 +60,3 @@ def _rates(clinical: ClinicalAngles, q: Array, angles: Array, v: Array) -> Array
     return np.concatenate(
         [np.einsum("tai,ti->ta", clinical.rate_matrices(q[b], angles[b]), v[b]) for b in blocks]
     )
-
-
-def _moment_variance(clinical: ClinicalAngles, q: Array, tau_sd: Array, angles: Array) -> Array:
-    """Σ B² sd² per joint, one axis of every joint at a time (no coordinate mixes two joints)."""
-    axis = np.concatenate(
-        [np.arange(joint.v.stop - joint.v.start) % 3 for joint in clinical.model.joints.values()]
-    )
-    by_axis = [clinical.moments(q, np.where(axis == one, tau_sd, 0.0), angles) for one in range(3)]
-    return np.square(by_axis).sum(axis=0)

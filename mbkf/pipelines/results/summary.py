@@ -10,8 +10,7 @@ from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.results import Reconstruction
 from mbkf.io.truth import Truth
-from mbkf.model.clinical_table import load_clinical_joints
-from mbkf.model.human import HumanModel
+from mbkf.model.human import HumanModel, reference_body
 
 SETTLING_S = 0.5
 """The filter may settle for this long before its innovations are judged."""
@@ -91,7 +90,7 @@ def _torques(r: Reconstruction) -> dict[str, Any]:
     """Flexion torque of every joint but the root, by the joint's name."""
     main = {
         j.name: j.main
-        for j in load_clinical_joints()
+        for j in reference_body(r.subject).clinical_joints
         if j.proximal != "world" and j.main in r.coordinate_names
     }
     peaks = {joint: _largest(np.abs(r.moment(name)[r.tracked])) for joint, name in main.items()}
@@ -125,7 +124,7 @@ def compare_with_truth(reconstruction: Reconstruction, truth: Truth) -> dict[str
         InvalidInput: The truth does not cover the reconstruction's times, or belongs to another body.
     """
     r = reconstruction
-    model = HumanModel.scaled(r.subject.scale_factors, r.subject.mass_kg, r.subject.body)
+    model = HumanModel.of(r.subject)
     if truth.q.shape[1] != model.nq or truth.v.shape[1] != model.nv:
         raise InvalidInput(f"the truth has {truth.v.shape[1]} dofs, the subject's body {model.nv}")
     rows = _matching_rows(r.times_s, truth.times_s, r.rate_hz)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.errors import UnknownName
+from mbkf.errors import InvalidInput, UnknownName
 from mbkf.filters.dynamic.filter import DynamicFilter, dynamic_blocks
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.dynamic.tracking import DynamicTracking
@@ -18,9 +18,13 @@ from mbkf.filters.torque.filter import TorqueFilter
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.filters.torque.tracking import TorqueTracking
 from mbkf.io.records import PlateReadings
+from mbkf.sensors.block import AnyBlock
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.marker_sensor import MarkerSensor
+
+Blocks = Sequence[AnyBlock] | None
+"""Blocks of the dynamic filter; None for the standard ones."""
 
 
 @dataclass(frozen=True)
@@ -48,22 +52,36 @@ class FilterInputs:
     inertial: InertialSensor | None = None
 
 
-def _kinematic(inputs: FilterInputs) -> TrackingFilter:
+def _kinematic(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
+    if blocks is not None:
+        raise InvalidInput(
+            "blocks of one's own are for the dynamic filter; the kinematic filter reads markers only"
+        )
     return KinematicTracking(_starter(inputs))
 
 
-def _dynamic(inputs: FilterInputs) -> TrackingFilter:
-    model, settings = inputs.sensor.model, inputs.dynamic
+def _dynamic(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
     known = inputs.sensor, inputs.noise_m
-    detector = ContactDetector(model, inputs.plates, inputs.dt_s)
-    blocks = dynamic_blocks(*known, detector, inputs.dt_s, inputs.held, settings, inputs.inertial)
-    kalman = DynamicFilter(*known, inputs.dt_s, inputs.held, settings, blocks)
+    if blocks is None:
+        blocks = standard(inputs)
+    kalman = DynamicFilter(*known, inputs.dt_s, inputs.held, inputs.dynamic, blocks)
     return DynamicTracking(kalman, _starter(inputs))
 
 
-def _torque(inputs: FilterInputs) -> TrackingFilter:
-    known = inputs.sensor, inputs.noise_m
+def standard(inputs: FilterInputs) -> list[AnyBlock]:
+    """The dynamic filter's standard blocks."""
     detector = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
+    known = inputs.sensor, inputs.noise_m
+    return dynamic_blocks(*known, detector, inputs.dt_s, inputs.held, inputs.dynamic, inputs.inertial)
+
+
+def _torque(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
+    if blocks is not None:
+        raise InvalidInput(
+            "blocks of one's own are for the dynamic filter; the torque filter is the thesis's"
+        )
+    detector = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
+    known = inputs.sensor, inputs.noise_m
     kalman = TorqueFilter.standard(*known, detector, inputs.dt_s, inputs.held, inputs.torque)
     return TorqueTracking(kalman, _starter(inputs))
 
@@ -72,7 +90,7 @@ def _starter(inputs: FilterInputs) -> KinematicFilter:
     return KinematicFilter(inputs.sensor, inputs.noise_m, inputs.dt_s, inputs.held, inputs.kinematic)
 
 
-_MAKERS: dict[str, Callable[[FilterInputs], TrackingFilter]] = {
+_MAKERS: dict[str, Callable[[FilterInputs, Blocks], TrackingFilter]] = {
     "kinematic": _kinematic,
     "torque": _torque,
     "dynamic": _dynamic,
@@ -82,12 +100,18 @@ FILTERS = tuple(_MAKERS)
 """Names of the filters."""
 
 
-def follower(name: str, inputs: FilterInputs) -> TrackingFilter:
+def follower(name: str, inputs: FilterInputs, blocks: Blocks = None) -> TrackingFilter:
     """The filter of that name.
+
+    Args:
+        name: One of :data:`FILTERS`.
+        inputs: What it is built from.
+        blocks: Blocks of the dynamic filter; None for the standard ones.
 
     Raises:
         UnknownName: There is none.
+        InvalidInput: Blocks are given for another filter.
     """
     if name not in _MAKERS:
         raise UnknownName("filter", name, FILTERS)
-    return _MAKERS[name](inputs)
+    return _MAKERS[name](inputs, blocks)

@@ -48,7 +48,7 @@ def trial_inputs(
         subject: The person, with marker positions as they are to be used.
         beliefs: Settings of the filters.
     """
-    model = HumanModel.scaled(subject.scale_factors, subject.mass_kg, subject.body)
+    model = HumanModel.of(subject)
     by_name = {marker.name: marker for marker in subject.markers}
     followed = [by_name[name] for name in shown.names]
     sensor = MarkerSensor(model, [m.segment for m in followed], np.array([m.position_m for m in followed]))

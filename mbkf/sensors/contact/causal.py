@@ -16,7 +16,6 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.io.records import PlateReadings
 from mbkf.model.human import HumanModel
-from mbkf.model.newton_euler import FEET
 from mbkf.sensors.contact.plates import PlateAreas, least_load, pressed_at, surface_height
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, Planted, Pressed
 from mbkf.sensors.contact.soles import Sole, distance_to_sole, nearer_foot, share_along, sole_locals
@@ -36,8 +35,6 @@ from mbkf.sensors.contact.thresholds import (
 )
 from mbkf.sensors.marker_sensor import MarkerSensor
 
-TOES = ("right_toes", "left_toes")
-
 
 class ContactDetector:
     """Assigns plates to feet and finds feet that carry weight elsewhere.
@@ -53,7 +50,9 @@ class ContactDetector:
         self.surfaces_m = [surface_height(plate) for plate in plates]
         self._areas = PlateAreas(plates)
         self._model, self._soles = model, MarkerSensor(model, *sole_locals(model))
-        self._moves = [model.supports[model.joint(segment).joint_id].astype(float) for segment in FEET]
+        self._moves = [
+            model.supports[model.joint(segment).joint_id].astype(float) for segment in model.roles.feet
+        ]
         self._floor = min(self.surfaces_m, default=np.nan)
 
     def begin(self) -> ContactMemory:
@@ -123,14 +122,14 @@ class ContactDetector:
         sole = self._soles.positions(q).reshape(2, 3, 3)[foot]
         if decision.contacts[foot] != Contact.MEASURED:
             lowest = sole[:SOLE_ENDS][np.argmin(sole[:SOLE_ENDS, 2])]
-            return Planted(FEET[foot], lowest, flat=False)
+            return Planted(self._model.roles.feet[foot], lowest, flat=False)
         surface = self.surfaces_m[decision.memory.foot_of_plate.index(foot)]
         x, y = pressed_at(decision.wrench[foot].tolist(), surface)
         pressed, ends = np.array([x, y, surface]), sole.tolist()
         share = share_along(x, y, ends)
         if share > share_along(ends[1][0], ends[1][1], ends):
-            return Planted(TOES[foot], pressed, flat=True)
-        return Planted(FEET[foot], pressed, flat=FLAT_FROM < share < FLAT_TO)
+            return Planted((self._model.roles.toes or self._model.roles.feet)[foot], pressed, flat=True)
+        return Planted(self._model.roles.feet[foot], pressed, flat=FLAT_FROM < share < FLAT_TO)
 
     def _touching(
         self,

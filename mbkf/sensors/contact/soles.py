@@ -9,7 +9,6 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.human import HumanModel
-from mbkf.model.newton_euler import FEET
 from mbkf.sensors.contact.thresholds import KEEP_M, REACH_M
 from mbkf.sensors.marker_sensor import MarkerSensor
 
@@ -19,16 +18,12 @@ Sole = Sequence[Sequence[float]]
 
 def sole_locals(model: HumanModel) -> tuple[tuple[str, ...], Array]:
     """Heel, ball and toe end of right and left sole: their segments (6) and places (6, 3) in those, m."""
-    sole = model.description.sole
-    middle = 0.5 * (sole.inner_y_m + sole.outer_y_m)
     segments, places = [], []
-    for segment, sign in zip(FEET, (1.0, -1.0), strict=True):
-        toes = model.description.segment(segment.replace("foot", "toes"))
-        for x in (sole.heel_x_m, toes.origin_m[0], sole.toe_x_m):
-            segments.append(segment)
-            places.append(np.array([x, sign * middle, sole.height_m]))
-        scale = model.axis_scale(model.description.segment(segment))
-        places[-3:] = [place * scale for place in places[-3:]]
+    for sole in model.roles.soles:
+        scale = model.axis_scale(model.description.segment(sole.segment))
+        for x in (sole.heel_x_m, sole.ball_x_m, sole.toe_x_m):
+            segments.append(sole.segment)
+            places.append(np.array([x, 0.5 * (sole.inner_y_m + sole.outer_y_m), sole.height_m]) * scale)
     return tuple(segments), np.array(places)
 
 

@@ -21,9 +21,6 @@ from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.coordination.regression import Coordination, learn
 from mbkf.sensors.layout import Layout
 
-LEADING = ("torso", *(f"{side}_{part}" for side in ("right", "left") for part in ("thigh", "shank", "foot")))
-"""Segments whose joints, with the pelvis, lead; the others follow."""
-
 NOTED_HZ, BLOCK_S = 25.0, 0.5
 """How often frames are noted, and how long a block of them is that is left out at a time."""
 
@@ -128,9 +125,11 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
         self._model, self._ridge = model, settings.coordination_ridge_rad
         joints = [joint for joint in model.joints.values() if joint.kind != "free"]
         dofs = {joint.segment: np.arange(joint.v.start, joint.v.stop) for joint in joints}
-        self._leading = np.concatenate([dofs[segment] for segment in LEADING])
+        self._leading = np.concatenate([dofs[segment] for segment in model.roles.leading])
         self.followers = [
-            own for name, own in dofs.items() if name not in LEADING and not unobservable[own].all()
+            own
+            for name, own in dofs.items()
+            if name not in model.roles.leading and not unobservable[own].all()
         ]
         self._root = next(joint for joint in model.joints.values() if joint.kind == "free")
         self._neutral = model.neutral()

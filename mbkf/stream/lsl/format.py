@@ -71,7 +71,14 @@ class PlateLayout:
 
 
 def marker_info(lsl: Any, stream: StreamDescription, name: str, points: int) -> Any:
-    """The stream information of markers, or of so many points without names where the stream has none."""
+    """The stream information of markers, or of points without names where the stream has no marker names.
+
+    Args:
+        lsl: The module pylsl.
+        stream: Markers and frame rate.
+        name: Name of the LSL stream.
+        points: Number of points in a frame without names.
+    """
     labels = stream.marker_names or tuple(f"point{k + 1}" for k in range(points))
     count = 3 * len(labels) + 1
     info = lsl.StreamInfo(
@@ -90,7 +97,13 @@ def marker_info(lsl: Any, stream: StreamDescription, name: str, points: int) -> 
 
 
 def plates_info(lsl: Any, stream: StreamDescription, name: str) -> Any:
-    """The stream information of the plates that belong to a marker stream of that name."""
+    """The stream information of the force plates that belong to a marker stream.
+
+    Args:
+        lsl: The module pylsl.
+        stream: The plates and their rate.
+        name: Name of the LSL stream of the markers.
+    """
     count = 6 * len(stream.plates) + 1
     own = plates_name(name)
     info = lsl.StreamInfo(

@@ -69,7 +69,13 @@ def server_info(application: str, port: int) -> bytes:
 
 
 def descriptions(set_name: str, markers: Sequence[str], plates: Sequence[PlateDescription]) -> bytes:
-    """What is streamed: one set of named markers, if there are any, and the plates."""
+    """The message that describes the stream: one set of named markers, if there are any, and the plates.
+
+    Args:
+        set_name: Name of the marker set.
+        markers: Names of its markers; none where points have no names.
+        plates: The force plates.
+    """
     parts = []
     if markers:
         named = _text(set_name) + struct.pack("<I", len(markers)) + b"".join(map(_text, markers))

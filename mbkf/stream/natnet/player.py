@@ -32,6 +32,11 @@ class NatNetPlayer:
     def __init__(self, played: Played, address: str, port: int) -> None:
         """Listens for clients.
 
+        Args:
+            played: The capture.
+            address: Address of this computer to listen on.
+            port: Command port; data are sent from the one after it.
+
         Raises:
             InvalidInput: The address cannot be listened on, or a frame does not fit into a packet.
         """

@@ -29,7 +29,7 @@ RATE_FRAMES = 10
 WHOLE_RATE = 2e-3
 """A rate nearer than this share to a whole number is that number."""
 
-SILENT_S = 2.0
+RECONNECT_AFTER_S = 2.0
 """After so long without a frame the connection is made anew."""
 
 MOST_HELD = 64
@@ -95,7 +95,7 @@ class NatNetSource:
             self._changed.wait_for(lambda: self._frames, timeout_s)
             arrived = self._frames.popleft() if self._frames else None
         if arrived is None:
-            if time.perf_counter() - self._heard_s > SILENT_S:
+            if time.perf_counter() - self._heard_s > RECONNECT_AFTER_S:
                 self._again(timeout_s)
             return None
         self._heard_s, frame = arrived

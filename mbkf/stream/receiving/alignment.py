@@ -44,7 +44,7 @@ class ReadyFrame:
     lost: bool = False
 
 
-class Intake:
+class FrameAlignment:
     """Makes a stream's frames ready, one by one.
 
     Attributes:

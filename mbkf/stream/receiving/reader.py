@@ -5,12 +5,15 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
-from mbkf.stream.receiving.alignment import Intake, ReadyFrame
-from mbkf.stream.receiving.ring_buffer import Slot
+from mbkf.stream.receiving.alignment import FrameAlignment, ReadyFrame
+from mbkf.stream.receiving.ring_buffer import RingBuffer
 from mbkf.stream.source import FrameSource, PlateSamples
 
 READ_S = 0.1
 """How long a read may take, so that the thread notices when it is to stop."""
+
+SILENT_S = 1.0
+"""A source without frames for this long counts as silent, which is an event of the run."""
 
 PAUSE_S = 0.5
 """After a source that failed in an unforeseen way, this long until it is asked again."""
@@ -26,13 +29,13 @@ class Reader:
     def __init__(
         self,
         source: FrameSource,
-        intake: Intake,
-        slot: Slot[ReadyFrame],
+        alignment: FrameAlignment,
+        buffer: RingBuffer[ReadyFrame],
         samples: Callable[[PlateSamples], None],
         note: Callable[[str, str], None],
     ) -> None:
         """Args: source, what makes its frames ready, where they go, where plate samples go, and whom to tell."""
-        self._source, self._intake, self._slot = source, intake, slot
+        self._source, self._alignment, self._buffer = source, alignment, buffer
         self._samples, self._note = samples, note
         self.overwritten = 0
         self._stopping = threading.Event()
@@ -45,7 +48,7 @@ class Reader:
     def stop(self) -> None:
         """Ends the thread; frames that were read can still be taken."""
         self._stopping.set()
-        self._slot.close()
+        self._buffer.close()
         self._thread.join(timeout=5.0)
 
     def _run(self) -> None:
@@ -62,11 +65,11 @@ class Reader:
                 self._note(kind, what)
             if frame is None:
                 continue
-            ready, samples = self._intake.accept(frame)
+            ready, samples = self._alignment.accept(frame)
             for one in ready:
-                gone = [old for old in self._slot.put(one) if not old.lost]
+                gone = [old for old in self._buffer.put(one) if not old.lost]
                 if gone:
                     self.overwritten += len(gone)
                     self._note("overwritten", "the filter could not keep up; only the latest frame was kept")
             self._samples(samples)
-        self._slot.close()
+        self._buffer.close()

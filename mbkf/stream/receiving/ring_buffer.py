@@ -1,4 +1,4 @@
-"""Between the thread that reads a stream and the filter: a slot that overwrites, never a queue that grows.
+"""Between the thread that reads a stream and the filter: a buffer that overwrites, never a queue that grows.
 
 It holds the frames of a short while, so that a hiccup of the machine loses none; a longer while when the filter starts,
 and nothing is shown that could grow old. When the filter falls behind by more, only the latest frame is kept.
@@ -13,11 +13,11 @@ from typing import Generic, TypeVar
 T = TypeVar("T")
 
 
-class Slot(Generic[T]):
+class RingBuffer(Generic[T]):
     """Holds a few items; the latest win."""
 
     def __init__(self, size: int, patient: bool = False) -> None:
-        """Args: items held at most, and whether a full slot makes the giver wait instead of dropping items."""
+        """Args: items held at most, and whether a full buffer makes the giver wait instead of dropping items."""
         self._size, self._patient = max(1, size), patient
         self._items: deque[T] = deque()
         self._changed = threading.Condition()
@@ -30,7 +30,7 @@ class Slot(Generic[T]):
             self._changed.notify_all()
 
     def put(self, item: T) -> list[T]:
-        """A new item; what a closed slot is given is dropped. Returns the items it overwrote."""
+        """A new item; what a closed buffer is given is dropped. Returns the items it overwrote."""
         with self._changed:
             while self._patient and len(self._items) >= self._size and not self._closed:
                 self._changed.wait()

@@ -25,7 +25,7 @@ class LiveFrame:
         measured_m: (M, 3) labelled markers, NaN where hidden.
         predicted_m: (M, 3) the same markers on the body.
         unlabelled_m: (N, 3) points without a name.
-        angle_sd: (nv,) standard deviations of the configuration in its tangent space, rad; the pelvis's first three m.
+        angle_sd: (A,) standard deviations of the clinical coordinates, rad; of the pelvis's translations m.
         latency_s: Time from the frame's arrival to this result.
         lost: Frames lost so far.
         rate_hz: Rate of the frames of the last second.

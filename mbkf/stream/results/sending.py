@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
-from mbkf.stream.receiving.ring_buffer import Slot
+from mbkf.stream.receiving.ring_buffer import RingBuffer
 from mbkf.stream.results.frame import LiveFrame
 
 HELD = 256
@@ -18,21 +18,21 @@ class SendingThread:
     def __init__(self, send: Callable[[LiveFrame], None], name: str, held: int = HELD) -> None:
         """Args: the function, the thread's name, and how many frames may wait."""
         self._send = send
-        self._slot: Slot[LiveFrame] = Slot(held)
+        self._buffer: RingBuffer[LiveFrame] = RingBuffer(held)
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
         self._thread.start()
 
     def take(self, frame: LiveFrame) -> None:
         """A new frame."""
-        self._slot.put(frame)
+        self._buffer.put(frame)
 
     def close(self) -> None:
         """Sends what waits, and ends."""
-        self._slot.close()
+        self._buffer.close()
         self._thread.join(timeout=5.0)
 
     def _run(self) -> None:
-        while not self._slot.ended:
-            frame = self._slot.take(0.5)
+        while not self._buffer.ended:
+            frame = self._buffer.take(0.5)
             if frame is not None:
                 self._send(frame)

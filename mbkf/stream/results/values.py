@@ -26,7 +26,6 @@ class ResultValues:
     def __init__(self, model: HumanModel) -> None:
         self._clinical = ClinicalAngles(model)
         self._before: Array | None = None
-        self._axis = np.concatenate([np.arange(j.v.stop - j.v.start) % 3 for j in model.joints.values()])
         angles = self._clinical.names
         rad = ["rad" if turns else "m" for turns in self._clinical.rotational]
         nm = ["N m" if turns else "N" for turns in self._clinical.rotational]
@@ -46,8 +45,7 @@ class ResultValues:
     def row(self, frame: LiveFrame) -> Array:
         """(len(names),) the numbers of a frame, NaN where the body is not followed.
 
-        Angles stay continuous with the row before. Standard deviations are those of independent tangent dofs, since a
-        frame carries no covariance.
+        Angles stay continuous with the row before.
         """
         count = len(self._clinical.names)
         values = np.full(len(self.names), np.nan)
@@ -55,16 +53,9 @@ class ResultValues:
             q = frame.q[None]
             angles = self._clinical.angles(q, self._before)
             self._before = angles[0]
-            E = self._clinical.rate_matrices(q, angles)[0]
             values[:count] = angles[0]
-            values[count : 2 * count] = np.sqrt(E**2 @ frame.angle_sd**2)
+            values[count : 2 * count] = frame.angle_sd
             values[2 * count : 3 * count] = self._clinical.moments(q, frame.torques[None], angles)[0]
-            values[3 * count : 4 * count] = self._moments_sd(frame, angles)
+            values[3 * count : 4 * count] = self._clinical.moments_sd(q, frame.torques_sd[None], angles)[0]
         values[4 * count :] = np.concatenate([frame.wrench.ravel(), frame.wrench_sd.ravel()])
         return values
-
-    def _moments_sd(self, frame: LiveFrame, angles: Array) -> Array:
-        """(A,) √Σ B² sd² per joint, one axis of every joint at a time (no coordinate mixes two joints)."""
-        by_axis = np.where(self._axis == np.arange(3)[:, None], frame.torques_sd, 0.0)
-        shares = self._clinical.moments(np.tile(frame.q, (3, 1)), by_axis, np.tile(angles, (3, 1)))
-        return np.asarray(np.sqrt(np.square(shares).sum(axis=0)))

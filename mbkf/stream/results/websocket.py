@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hmac
-import ipaddress
 import json
 import math
 import re
@@ -20,14 +19,13 @@ from websockets.sync.server import ServerConnection, serve
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.model.human import HumanModel
+from mbkf.stream.loopback import LOOPBACK, is_loopback
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.stream.results.sending import SendingThread
 from mbkf.stream.results.values import ResultValues
 
-LOOPBACK = "127.0.0.1"
-
 ORIGINS = (None, re.compile(r"https?://(localhost|127\.0\.0\.1)(:\d+)?"))
-"""Who may listen: programs, and pages that came from this computer; not any page a browser has open."""
+"""Origins of clients that may connect: programs, and pages served by this computer; no other page of a browser."""
 
 WAIT_S = 0.5
 SENT_FRAMES = 8
@@ -47,19 +45,26 @@ def parse_address(text: str) -> tuple[str, int]:
 
 
 class WebSocketResults:
-    """A :class:`mbkf.stream.results.frame.FrameSink`. A listener that is slow gets the newest frame and misses others.
+    """A :class:`mbkf.stream.results.frame.FrameSink`. A slow client gets the newest frame and misses others.
 
     Attributes:
         url: Where to listen, with the token where one is needed.
     """
 
     def __init__(self, model: HumanModel, address: str, port: int, token: str | None = None) -> None:
-        """Listens for clients; another address than this computer's own needs a token, made up where none is given.
+        """Listens for clients.
+
+        Args:
+            model: The scaled body.
+            address: Address to listen on.
+            port: Port to listen on; 0 for any that is free.
+            token: Secret that clients have to send. Addresses other than this computer's own always need one; it is
+                made up where none is given.
 
         Raises:
             InvalidInput: The address or port cannot be listened on.
         """
-        own = _is_loopback(address)
+        own = is_loopback(address)
         self._token = token if own else token or secrets.token_urlsafe(16)
         self._values = ResultValues(model)
         self._changed = threading.Condition()
@@ -96,7 +101,7 @@ class WebSocketResults:
         self._thread.join(timeout=5.0)
 
     def _check(self, _connection: ServerConnection, request: Request) -> Response | None:
-        """Refuses who does not know the token."""
+        """Refuses clients without the token."""
         if self._token is None:
             return None
         given = parse_qs(urlparse(request.path).query).get("token", [""])[0]
@@ -141,10 +146,3 @@ class WebSocketResults:
 def _numbers(values: Array) -> list[float | None]:
     """Plain numbers, None for what is not known."""
     return [value if math.isfinite(value) else None for value in values.tolist()]
-
-
-def _is_loopback(address: str) -> bool:
-    try:
-        return ipaddress.ip_address(address).is_loopback
-    except ValueError:
-        return address == "localhost"

@@ -1,29 +1,31 @@
-"""What happened during a live run, for people: each thing once, with when, how long and how often."""
+"""The events of a live run (frames lost, plates silent, filter restarted …): each once, with times and count."""
 
 from __future__ import annotations
 
 import threading
+import time
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
 MERGED_S = 2.0
-"""The same thing again within this time is one event that goes on."""
+"""An event of the same kind within this time prolongs the one before."""
 
 MOST = 500
-"""No more events than this are told one by one."""
+"""No more events than this are listed one by one."""
 
 
 @dataclass
-class Event:
-    """Something that happened.
+class RunEvent:
+    """An event of a live run, or several of one kind in quick succession.
 
     Attributes:
-        kind: A word for it.
-        what: A sentence.
-        first_s: When it began, from the start of the run.
-        last_s: When it happened last.
-        frame: Frame at which it began.
-        count: How often.
+        kind: One word, e.g. "lost".
+        what: One sentence.
+        first_s: Time of the first occurrence, s from the start of the run.
+        last_s: Time of the last occurrence, s.
+        frame: Frame of the first occurrence, None for events without a frame.
+        count: Number of occurrences.
     """
 
     kind: str
@@ -34,31 +36,37 @@ class Event:
     count: int
 
 
-class Events:
-    """Collects events from several threads."""
+class EventLog:
+    """Collects events from several threads.
 
-    def __init__(self) -> None:
+    Attributes:
+        begin_s: Start of the run on the log's clock, s.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
+        """Args: the clock, in s, that event times are read from."""
+        self._clock, self.begin_s = clock, clock()
         self._lock = threading.Lock()
-        self._events: list[Event] = []
-        self._latest: dict[str, Event] = {}
+        self._events: list[RunEvent] = []
+        self._latest: dict[str, RunEvent] = {}
         self._unlisted = 0
 
-    def note(self, kind: str, what: str, at_s: float, frame: int | None = None, count: int = 1) -> None:
-        """Something happened.
+    def note(self, kind: str, what: str, frame: int | None = None, count: int = 1) -> None:
+        """Records an event that happens now.
 
         Args:
-            kind: A word; the same one again soon is the same event.
-            what: A sentence.
-            at_s: When, from the start of the run.
-            frame: At which frame.
-            count: How often at once.
+            kind: One word; an event of the same kind within :data:`MERGED_S` is prolonged instead.
+            what: One sentence.
+            frame: Frame it happened at, None where it belongs to none.
+            count: Number of occurrences at once.
         """
+        at_s = self._clock() - self.begin_s
         with self._lock:
             known = self._latest.get(kind)
             if known is not None and at_s - known.last_s <= MERGED_S:
                 known.last_s, known.count = at_s, known.count + count
                 return
-            event = Event(kind, what, at_s, at_s, frame, count)
+            event = RunEvent(kind, what, at_s, at_s, frame, count)
             self._latest[kind] = event
             if len(self._events) < MOST:
                 self._events.append(event)
@@ -66,17 +74,9 @@ class Events:
                 self._unlisted += 1
 
     def plain(self) -> list[dict[str, Any]]:
-        """All of them, as plain data."""
+        """All events as plain data, for JSON."""
         with self._lock:
             listed = [asdict(event) for event in self._events]
             if self._unlisted:
                 listed.append({"kind": "unlisted", "what": "further events", "count": self._unlisted})
             return listed
-
-    def counts(self) -> dict[str, int]:
-        """How often each kind happened, among those listed."""
-        with self._lock:
-            total: dict[str, int] = {}
-            for event in self._events:
-                total[event.kind] = total.get(event.kind, 0) + event.count
-            return total

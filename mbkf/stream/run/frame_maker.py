@@ -70,7 +70,7 @@ class FrameMaker:
             measured_m=found["measured_m"],
             predicted_m=predicted,
             unlabelled_m=ready.unlabelled_m,
-            angle_sd=found["position_sd"],
+            angle_sd=found["angle_sd"],
             latency_s=latency_s,
             lost=lost,
             rate_hz=self._rate(),

@@ -12,7 +12,7 @@ SWITCH_S = 0.0005
 
 
 @contextmanager
-def prompt() -> Iterator[None]:
+def low_latency() -> Iterator[None]:
     """Inside, threads take turns quickly and the collector leaves alone what was there before."""
     usual = sys.getswitchinterval()
     sys.setswitchinterval(SWITCH_S)

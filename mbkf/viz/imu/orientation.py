@@ -19,10 +19,15 @@ _ANGLES = ("roll", "pitch", "yaw")
 
 
 def write_comparison(first: Orientation, second: Orientation, path: str | Path) -> None:
-    """Draws both courses and their difference into a PNG or SVG file.
+    """Draws two orientation estimates over time, and their difference, into a PNG or SVG file.
 
     Left the quaternion's components, right the unwrapped Euler angles; the upper rows hold both filters, the lowest
     row second minus first.
+
+    Args:
+        first: Orientations of one filter.
+        second: Orientations of another filter at the same times.
+        path: The file; its suffix chooses the format.
 
     Raises:
         OSError: The file cannot be written.

@@ -8,11 +8,12 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.human import HumanModel
+from mbkf.stream.loopback import LOOPBACK
 from mbkf.stream.results.frame import LiveFrame
-from mbkf.viz.live.rows import LiveRows
+from mbkf.viz.live.rows import DisplayRows
 from mbkf.viz.page import page
 from mbkf.viz.scene.description import scene_description
-from mbkf.viz.server import LOOPBACK, PageServer
+from mbkf.viz.server import PageServer
 
 
 class LivePage:
@@ -52,7 +53,7 @@ class LivePage:
     ) -> None:
         corners = np.empty((0, 4, 3)) if plate_corners_m is None else np.asarray(plate_corners_m)
         heights = corners[..., 2][np.isfinite(corners[..., 2])]
-        self._rows = LiveRows(model, len(marker_names), float(heights.mean()) if heights.size else 0.0)
+        self._rows = DisplayRows(model, len(marker_names), float(heights.mean()) if heights.size else 0.0)
         self._newest: LiveFrame | None = None
         self._sent: tuple[LiveFrame, int, bytes] | None = None
         greeting = scene_description(

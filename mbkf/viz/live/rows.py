@@ -19,7 +19,7 @@ PRESSURE_FROM_N = 20.0
 """Vertical force from which a reaction is drawn."""
 
 
-class LiveRows:
+class DisplayRows:
     """Turns frames into rows, one after another.
 
     Attributes:
@@ -28,6 +28,13 @@ class LiveRows:
     """
 
     def __init__(self, model: HumanModel, markers: int, surface_m: float = 0.0) -> None:
+        """Rows of a body.
+
+        Args:
+            model: The scaled body.
+            markers: Number of markers.
+            surface_m: Height of the surface that centres of pressure lie on, m.
+        """
         self.clinical = ClinicalAngles(model)
         self.layout = Layout(len(model.joints), markers, len(self.clinical.names), MOST_UNLABELLED)
         self._model, self._surface_m = model, surface_m
@@ -36,8 +43,7 @@ class LiveRows:
     def row(self, frame: LiveFrame) -> Array:
         """(width,) the row of a frame.
 
-        Angles stay continuous with the row before. Standard deviations of angles are those of independent tangent
-        dofs, since a frame carries no covariance.
+        Angles stay continuous with the row before.
         """
         put, rows = self.layout.put, self.layout.blank(1)
         status = (
@@ -64,26 +70,9 @@ class LiveRows:
         angles = self.clinical.angles(q, self._before)
         self._before = angles[0]
         self.layout.put(rows, "angles", angles)
-        self.layout.put(rows, "angles_sd", self._angles_sd(frame, angles)[None])
-        moments, moments_sd = self._moments(frame, angles)
-        self.layout.put(rows, "moments", moments[None])
-        self.layout.put(rows, "moments_sd", moments_sd[None])
-
-    def _angles_sd(self, frame: LiveFrame, angles: Array) -> Array:
-        """(A,) √Σ E² sd²; NaN where a dof with unknown spread takes part."""
-        weights = self.clinical.rate_matrices(frame.q[None], angles)[0] ** 2
-        known = np.isfinite(frame.angle_sd)
-        variance = weights[:, known] @ frame.angle_sd[known] ** 2
-        variance[(weights[:, ~known] > 0).any(axis=1)] = np.nan
-        return np.asarray(np.sqrt(variance))
-
-    def _moments(self, frame: LiveFrame, angles: Array) -> tuple[Array, Array]:
-        """(A,) moments, and √Σ B² sd² by one axis of every joint at a time (no coordinate mixes two joints)."""
-        axis = np.concatenate([np.arange(j.v.stop - j.v.start) % 3 for j in self._model.joints.values()])
-        by_axis = np.where(axis == np.arange(3)[:, None], frame.torques_sd, 0.0)
-        loads = np.concatenate([frame.torques[None], by_axis])
-        found = self.clinical.moments(np.tile(frame.q, (4, 1)), loads, np.tile(angles, (4, 1)))
-        return found[0], np.asarray(np.sqrt(np.square(found[1:]).sum(axis=0)))
+        self.layout.put(rows, "angles_sd", frame.angle_sd[None])
+        self.layout.put(rows, "moments", self.clinical.moments(q, frame.torques[None], angles))
+        self.layout.put(rows, "moments_sd", self.clinical.moments_sd(q, frame.torques_sd[None], angles))
 
     def _put_reactions(self, rows: Array, frame: LiveFrame) -> None:
         pressure, _ = pressure_and_free_moment(frame.wrench[None], self._surface_m, PRESSURE_FROM_N)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 
+from mbkf.stream.loopback import LOOPBACK
 from mbkf.viz.page import asset
-from mbkf.viz.server import LOOPBACK, PageServer
+from mbkf.viz.server import PageServer
 
 
 class StandingPage:

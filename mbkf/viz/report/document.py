@@ -60,6 +60,12 @@ def write_report(
 ) -> None:
     """Writes :func:`report_page`, whole or not at all.
 
+    Args:
+        reconstruction: The results.
+        summary: The contents of summary.json.
+        path: The file to write.
+        labels: The labeller's report, if the trial was labelled by mbkf.
+
     Raises:
         OSError: The file cannot be written.
     """

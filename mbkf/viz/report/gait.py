@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import SIDES, Array
-from mbkf.pipelines.gait.cycles import Gait, Parameter
+from mbkf.pipelines.gait.cycles import Gait, GaitParameter
 from mbkf.pipelines.gait.events import FootEvents
 from mbkf.viz.markup import paragraph, section, table
 from mbkf.viz.svg import number, ticks
@@ -74,7 +74,7 @@ def _stances(events: FootEvents, first: float, last: float) -> list[tuple[float,
     return found
 
 
-def _row(parameter: Parameter) -> tuple[str, str, str, str]:
+def _row(parameter: GaitParameter) -> tuple[str, str, str, str]:
     digits = DIGITS[parameter.unit]
     right, left = parameter.values
     return (

@@ -10,20 +10,13 @@ import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, SIDES, Array
 from mbkf.io.results import Reconstruction
-from mbkf.model.clinical_table import load_clinical_joints
+from mbkf.model.description import BodyDescription
+from mbkf.model.human import reference_body
 from mbkf.pipelines.gait.cycles import POINTS, Gait, over_cycle
 from mbkf.pipelines.gait.events import feet_in_motion
 from mbkf.viz.markup import folded, grid, key, paragraph, section, table
 from mbkf.viz.svg import WIDTH, Line, Mark, chart, number
 from mbkf.viz.wording import SIDE_NAMES, wordings
-
-LEGS = ("pelvis", "hip", "knee", "ankle", "mtp")
-LOADED = (
-    "hip",
-    "knee",
-    "ankle",
-)  # the reaction acts on the foot as a whole, so toes have no torque of their own
-UPPER = ("lumbar", "neck", "head", "shoulder", "elbow", "wrist")
 
 MOST_SINGLE = 8
 """Of more cycles than this, so many are drawn one by one, evenly chosen; the mean is that of all."""
@@ -33,6 +26,32 @@ LONG_S, BROAD = 15.0, 1110.0
 
 FACING_S = 0.5
 """Standard deviation of the window over which the direction a person faces is averaged."""
+
+
+@dataclass(frozen=True)
+class JointNames:
+    """Joints of a body that are shown together, without their sides.
+
+    Attributes:
+        legs: The root and the joints from it to the feet and toes.
+        loaded: Those that carry: the reaction acts on the foot as a whole, so toes have no torque of their own.
+        upper: All others.
+    """
+
+    legs: tuple[str, ...]
+    loaded: tuple[str, ...]
+    upper: tuple[str, ...]
+
+
+def joint_names(body: BodyDescription) -> JointNames:
+    """The joints of a body, as they are shown together."""
+    lower = {body.roles.root, *body.roles.legs, *body.roles.toes}
+    names = {entry.distal: entry.name.removesuffix("_r").removesuffix("_l") for entry in body.clinical_joints}
+    legs = dict.fromkeys(name for segment, name in names.items() if segment in lower)
+    upper = dict.fromkeys(name for segment, name in names.items() if segment not in lower)
+    unloaded = {names[segment] for segment in (body.roles.root, *body.roles.toes)}
+    return JointNames(tuple(legs), tuple(name for name in legs if name not in unloaded), tuple(upper))
+
 
 Curve = tuple[Array, Array | None]
 """(T,) values and (T,) standard deviations, or None."""
@@ -66,16 +85,18 @@ def motion_section(r: Reconstruction, gait: Gait | None) -> str:
 def _curves(
     r: Reconstruction, how: str, draw: Callable[[Cell], str], gait: Gait | None, broad: bool
 ) -> list[str]:
-    return [
+    names = joint_names(reference_body(r.subject))
+    parts = [
         f"<h3>Joint angles {how}</h3>",
         _key(gait),
-        _charts(angle_cells(r, LEGS), draw, broad),
-        folded("Trunk, head and arms: angles", _charts(angle_cells(r, UPPER), draw, broad)),
+        _charts(angle_cells(r, names.legs), draw, broad),
+        folded("Trunk, head and arms: angles", _charts(angle_cells(r, names.upper), draw, broad)),
         f"<h3>Joint torques {how}</h3>",
         paragraph(_TORQUE_NOTE),
-        _charts(torque_cells(r, LOADED), draw, broad),
-        folded("Trunk, head and arms: torques", _charts(torque_cells(r, UPPER), draw, broad)),
+        _charts(torque_cells(r, names.loaded), draw, broad),
+        folded("Trunk, head and arms: torques", _charts(torque_cells(r, names.upper), draw, broad)),
     ]
+    return parts if names.upper else [part for k, part in enumerate(parts) if k not in (3, 7)]
 
 
 _TORQUE_NOTE = (
@@ -111,7 +132,13 @@ def torque_cells(r: Reconstruction, joints: Sequence[str]) -> list[list[Cell]]:
 
 
 def reaction_cells(r: Reconstruction, factor: float, unit: str) -> list[Cell]:
-    """Charts of the three components of the reactions: upward, in the direction the person faces, to the left."""
+    """Charts of the three components of the reactions: upward, in the direction the person faces, to the left.
+
+    Args:
+        r: The results.
+        factor: Factor from N to the unit shown.
+        unit: The unit shown.
+    """
     axes = _facing(r)
     force = np.einsum("tij,tfj->tfi", axes, r.foot_wrench[..., :3])
     sd = np.full_like(force, np.nan)
@@ -147,10 +174,11 @@ def _facing(r: Reconstruction) -> Array:
 def _cells(
     r: Reconstruction, joints: Sequence[str], unit: str, curve: Callable[..., Curve]
 ) -> list[list[Cell]]:
-    words, rows = wordings(), []
-    segments = {entry.main: entry.distal for entry in load_clinical_joints()}
+    known_joints = reference_body(r.subject).clinical_joints
+    words, rows = wordings(known_joints), []
+    segments = {entry.main: entry.distal for entry in known_joints}
     for joint in joints:
-        entries = [e for e in load_clinical_joints() if e.name in (joint, f"{joint}_r")]
+        entries = [e for e in known_joints if e.name in (joint, f"{joint}_r")]
         if not entries or _held(r, segments[entries[0].main]):
             continue
         row = []
@@ -191,6 +219,11 @@ def cycle_chart(times_s: Array, gait: Gait, cell: Cell) -> str:
     """A cell over 0–100 % of the cycles of each side: every cycle lightly, their mean with its band.
 
     The midline is shown over the cycles of the right foot, or of the left where there are none.
+
+    Args:
+        times_s: (T,) times of the frames, s.
+        gait: The gait cycles of both sides.
+        cell: The curves to draw.
     """
     percent = np.linspace(0.0, 100.0, POINTS)
     thin, bold, marks = [], [], []
@@ -241,8 +274,9 @@ def _unobserved(r: Reconstruction) -> str:
 def _ranges(r: Reconstruction) -> str:
     """Least and greatest angle and torque of the main angle of each joint of the legs."""
     rows = []
-    loads = {torque.title: torque.curves for torque, *_ in torque_cells(r, LOADED)}
-    for angle, *_ in angle_cells(r, LOADED):
+    loaded = joint_names(reference_body(r.subject)).loaded
+    loads = {torque.title: torque.curves for torque, *_ in torque_cells(r, loaded)}
+    for angle, *_ in angle_cells(r, loaded):
         for side, name in SIDE_NAMES.items():
             load = _extremes(loads.get(angle.title, {}).get(side), 2)
             rows.append((f"{angle.title}, {name}", *_extremes(angle.curves.get(side), 1), *load))

@@ -1,4 +1,4 @@
-"""Simple shapes of the 18 segments, scaled to a person, for drawing only.
+"""Simple shapes of a body's segments, scaled to a person, for drawing only.
 
 Each shape stands in its segment's frame (origin at the proximal joint, x forward, y left, z up). Lengths come from
 the person's joints; breadths grow as √(k_m / k) with mass factor k_m and length factor k, so that volume goes with
@@ -13,42 +13,10 @@ from typing import Any
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.model.description import mirrored
 from mbkf.model.human import HumanModel
 
-LIMB_RADII_M = {
-    "right_thigh": (0.078, 0.052),
-    "right_shank": (0.052, 0.034),
-    "right_upper_arm": (0.046, 0.036),
-    "right_forearm": (0.038, 0.025),
-    "neck": (0.056, 0.050),
-}
-"""Radii of a limb of the reference body at its proximal and distal end, judged by eye."""
-
-_DISTAL = {"right_thigh": "right_shank", "right_shank": "right_foot", "right_upper_arm": "right_forearm",
-             "right_forearm": "right_hand", "neck": "head"}  # fmt: skip
-"""The segment whose joint is a limb's distal end."""
-
-_ELLIPSOIDS = {
-    "head": ((0.018, 0.0, 0.075), (0.100, 0.078, 0.120)),
-    "right_hand": ((0.005, 0.0, -0.085), (0.036, 0.019, 0.090)),
-}
-"""Centre and semi-axes of ellipsoids of the reference body, m."""
-
-_TUBES = {
-    "pelvis": (
-        (0.010, -0.345, 0.010, 0.012), (0.008, -0.335, 0.055, 0.075), (0.000, -0.300, 0.098, 0.138),
-        (-0.008, -0.255, 0.116, 0.160), (-0.012, -0.210, 0.116, 0.164), (-0.010, -0.150, 0.106, 0.150),
-        (-0.003, -0.090, 0.097, 0.135), (0.000, -0.030, 0.093, 0.129), (0.000, 0.020, 0.085, 0.120),
-    ),
-    "torso": (
-        (0.000, -0.050, 0.088, 0.124), (0.000, 0.000, 0.094, 0.130), (0.000, 0.060, 0.104, 0.139),
-        (0.002, 0.120, 0.116, 0.151), (0.000, 0.175, 0.120, 0.162), (-0.006, 0.220, 0.110, 0.166),
-        (-0.012, 0.255, 0.090, 0.148), (-0.012, 0.282, 0.066, 0.096), (-0.006, 0.302, 0.050, 0.058),
-        (0.000, 0.315, 0.010, 0.012),
-    ),
-}  # fmt: skip
-"""Sections of the trunk from below: x, z of the centre, half depth, half breadth; m on the reference body."""
+PLAIN_RADII_M = (0.045, 0.035)
+"""Radii of a limb of the reference body whose shape the body file does not give."""
 
 
 @dataclass(frozen=True)
@@ -83,18 +51,27 @@ def as_plain(shapes: dict[str, tuple[Shape, ...]]) -> list[dict[str, Any]]:
 
 
 def _shapes(model: HumanModel, name: str) -> tuple[Shape, ...]:
-    right = mirrored(name) if name.startswith("left_") else name
     side = -1.0 if name.startswith("left_") else 1.0
-    if right in LIMB_RADII_M:
-        end = _DISTAL[right]
-        return (_limb(model, name, end if right == name else mirrored(end), LIMB_RADII_M[right]),)
-    if right in _ELLIPSOIDS:
-        centre, radii = np.array(_ELLIPSOIDS[right])
-        return (_ellipsoid(model, name, centre, radii, side),)
-    if right in _TUBES:
+    shape = model.description.shapes.get(name)
+    if shape is None:
+        return _plain_limbs(model, name)
+    if shape.kind == "limb":
+        to = model.description.segment(shape.to).origin_m
+        return (_limb(model, name, to, (shape.numbers[0], shape.numbers[1])),)
+    if shape.kind == "ellipsoid":
+        return (_ellipsoid(model, name, shape.numbers[:3], shape.numbers[3:], side),)
+    if shape.kind == "tube":
         k = _scale(model, name)
-        return (Shape("tube", (np.array(_TUBES[right]) * k[[0, 2, 0, 1]]).ravel()),)
-    return (_sole(model, name, side),)
+        return (Shape("tube", (shape.numbers.reshape(-1, 4) * k[[0, 2, 0, 1]]).ravel()),)
+    return (_sole(model, name, shape.kind == "toes"),)
+
+
+def _plain_limbs(model: HumanModel, name: str) -> tuple[Shape, ...]:
+    """A limb to every joint the segment carries, or to twice its centre of mass."""
+    segments = model.description.segments
+    ends = [segment.origin_m for segment in segments if segment.parent == name]
+    ends = [end for end in ends if np.linalg.norm(end) > 0.0] or [2.0 * model.description.segment(name).com_m]
+    return tuple(_limb(model, name, end, PLAIN_RADII_M) for end in ends)
 
 
 def _breadth(model: HumanModel, name: str) -> float:
@@ -107,8 +84,8 @@ def _scale(model: HumanModel, name: str) -> Array:
     return model.axis_scale(model.description.segment(name))
 
 
-def _limb(model: HumanModel, name: str, end: str, radii: tuple[float, float]) -> Shape:
-    to = _scale(model, name) * model.description.segment(end).origin_m
+def _limb(model: HumanModel, name: str, end_m: Array, radii: tuple[float, float]) -> Shape:
+    to = _scale(model, name) * end_m
     return Shape("limb", np.concatenate([np.zeros(3), to, _breadth(model, name) * np.array(radii)]))
 
 
@@ -117,19 +94,25 @@ def _ellipsoid(model: HumanModel, name: str, centre: Array, radii: Array, side: 
     return Shape("ellipsoid", np.concatenate([k * centre * [1.0, side, 1.0], k * radii]))
 
 
-def _sole(model: HumanModel, name: str, side: float) -> Shape:
+def _sole(model: HumanModel, name: str, toes: bool) -> Shape:
     """Foot or toes: the sole's outline from heel to ball or from ball to tip, and the instep above it."""
-    description = model.description
-    sole = description.sole
-    ball = description.segment("right_toes").origin_m
-    if name.endswith("toes"):
+    roles = model.roles
+    foot = (roles.toes if toes else roles.feet).index(name)
+    sole = roles.soles[foot]
+    ball = (
+        model.description.segment(roles.toes[foot]).origin_m
+        if roles.toes
+        else np.array([sole.ball_x_m, 0, -0.044])
+    )
+    if toes:
         x = np.array([0.0, sole.toe_x_m - ball[0], sole.toe_x_m - ball[0] - 0.012, 0.0])
         z = np.array([sole.height_m - ball[2], sole.height_m - ball[2], -0.008, 0.012])
         breadth = 0.95
     else:
-        x = np.array([sole.heel_x_m, ball[0], ball[0], 0.035, -0.035, sole.heel_x_m - 0.004])
+        front = ball[0] if roles.toes else sole.toe_x_m
+        x = np.array([sole.heel_x_m, front, ball[0], 0.035, -0.035, sole.heel_x_m - 0.004])
         z = np.array([sole.height_m, sole.height_m, ball[2] + 0.012, 0.012, 0.018, -0.03])
         breadth = 0.85
     k = _scale(model, name)
-    y = np.sort(side * breadth * np.array([sole.inner_y_m, sole.outer_y_m])) * k[1]
+    y = np.sort(breadth * np.array([sole.inner_y_m, sole.outer_y_m])) * k[1]
     return Shape("outline", np.concatenate([y, np.column_stack([k[0] * x, k[2] * z]).ravel()]))

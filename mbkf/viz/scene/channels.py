@@ -6,12 +6,14 @@ A row is one frame: the poses of the segments, the markers, the reactions and ev
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
 from mbkf.conventions import SIDES, Array, BoolArray
+from mbkf.model.clinical_table import ClinicalJoint
 from mbkf.viz.wording import SIDE_NAMES, wordings
 
 SEEN, UNSEEN, REFUSED = 0, 1, 2
@@ -68,6 +70,14 @@ class Layout:
     """
 
     def __init__(self, segments: int, markers: int, coordinates: int, unlabelled: int = 0) -> None:
+        """Parts of a row, one after another.
+
+        Args:
+            segments: Number of segments.
+            markers: Number of markers.
+            coordinates: Number of clinical coordinates.
+            unlabelled: Number of points without names, at most.
+        """
         widths = {
             "status": len(STATUS),
             "segments": 7 * segments,
@@ -94,7 +104,13 @@ class Layout:
         return np.full((frames, self.width), np.nan)
 
     def put(self, rows: Array, part: str, values: Array) -> None:
-        """Writes a part of rows (T, width); ``values`` has T rows of any shape that fills the part."""
+        """Writes one part of rows.
+
+        Args:
+            rows: (T, width) the rows, changed in place.
+            part: Name of the part.
+            values: T values of any shape that fills the part.
+        """
         first, width = self.parts[part]
         rows[:, first : first + width] = values.reshape(len(rows), width)
 
@@ -110,25 +126,34 @@ class Layout:
 
 
 def marker_states(measured_m: Array, hidden: BoolArray, refused: BoolArray) -> Array:
-    """State of markers whose measured positions are (…, M, 3): :data:`SEEN`, :data:`UNSEEN` or :data:`REFUSED`."""
+    """(…, M) state of markers: :data:`SEEN`, :data:`UNSEEN` or :data:`REFUSED`.
+
+    Args:
+        measured_m: (…, M, 3) measured positions, m; NaN where missing.
+        hidden: (…, M) markers withheld from the filter.
+        refused: (…, M) markers rejected by the gate.
+    """
     unseen = np.isnan(measured_m).any(axis=-1) | hidden
     return np.where(unseen, UNSEEN, np.where(refused, REFUSED, SEEN)).astype(float)
 
 
-def quantities(layout: Layout, coordinate_names: tuple[str, ...], streamed: bool) -> list[Quantity]:
+def quantities(
+    layout: Layout, coordinate_names: tuple[str, ...], joints: Iterable[ClinicalJoint], streamed: bool
+) -> list[Quantity]:
     """Everything that can be plotted, in the order of the list that people choose from.
 
     Args:
         layout: Of the rows.
         coordinate_names: (A,) clinical coordinates.
+        joints: The body's clinical joints.
         streamed: Whether there are latency, rate and lost frames to show.
     """
-    words = wordings()
+    words = wordings(joints)
     found = []
     for group, part, of_load in (("Angles", "angles", False), ("Torques", "moments", True)):
         for a, name in enumerate(coordinate_names):
             w = words[name]
-            residual = of_load and w.joint == "pelvis"
+            residual = of_load and w.root
             suffix = "" if not of_load else (" residual" if residual else " torque")
             side = f", {SIDE_NAMES[w.side]}" if w.side else ""
             found.append(

@@ -45,7 +45,9 @@ def scene_description(
         "status": list(STATUS),
         "parts": {name: list(place) for name, place in layout.parts.items()},
         "width": layout.width,
-        "quantities": plain_quantities(quantities(layout, coordinate_names, streamed)),
+        "quantities": plain_quantities(
+            quantities(layout, coordinate_names, model.description.clinical_joints, streamed)
+        ),
     }
 
 

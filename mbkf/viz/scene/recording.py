@@ -44,7 +44,7 @@ def recorded_scene(r: Reconstruction) -> tuple[dict[str, Any], Array, Array]:
     """
     if not r.frames:
         raise InvalidInput(f"the result of '{r.trial}' holds no frames, so there is nothing to play")
-    model = HumanModel.scaled(r.subject.scale_factors, r.subject.mass_kg, r.subject.body)
+    model = HumanModel.of(r.subject)
     layout = Layout(len(model.joints), len(r.marker_names), len(r.coordinate_names))
     stride = max(1, int(np.ceil(r.rate_hz / MOST_HZ - 1e-9)))
     shown = slice(None, None, stride)

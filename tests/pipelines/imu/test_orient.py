@@ -8,7 +8,7 @@ import pytest
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.imu.frames import change_frame
 from mbkf.imu.orientation import OrientSettings
-from mbkf.pipelines.imu.orient import orient, prepared, summarise
+from mbkf.pipelines.imu.orient import orient, orientation_summary, prepared
 from tests.imu.turning import turning
 
 MADE = turning(5.0, rate_rad_s=2.0)
@@ -27,7 +27,7 @@ def test_errors_are_those_against_the_reference_whatever_the_frame():
 def test_two_filters_are_compared():
     settings = OrientSettings("ekf")
     result = orient([ONE], frame="NWU", settings=settings, compare="madgwick")
-    summary = summarise(result, settings)
+    summary = orientation_summary(result, settings)
     assert (summary["method"], summary["compared_with"]) == ("ekf", "madgwick")
     row = summary["sensors"][0]
     assert 0.0 < row["difference_rms_deg"]["total"] < 10.0

@@ -12,7 +12,7 @@ from mbkf.errors import InvalidInput, UnknownName
 from mbkf.imu.foot_filter import FootFilterSettings
 from mbkf.imu.key_points import KeyPointSettings
 from mbkf.io.imu import read_imu_csv
-from mbkf.pipelines.imu.stride import METHODS, StrideSettings, measure_strides, summarise
+from mbkf.pipelines.imu.stride import METHODS, StrideSettings, measure_strides, stride_summary
 from tests.foot_walks import foot_walk
 
 STEP_S = 0.55
@@ -61,7 +61,7 @@ def test_rests_and_velocity_go_together(both):
 
 
 def test_what_both_feet_show_together(both):
-    summary = summarise(both[2])["both_feet"]
+    summary = stride_summary(both[2])["both_feet"]
     assert summary["step_time_s_median"] == pytest.approx(STEP_S, abs=0.05)
     assert summary["cadence_steps_per_min"] == pytest.approx(60.0 / STEP_S, rel=0.1)
     assert summary["steps"] == 5
@@ -75,7 +75,7 @@ def test_every_method_measures_a_foot(method):
     measured = measure_strides([walk.readings], settings)
     (foot,) = measured.feet
     assert sum(s.length_m for s in foot.strides) == pytest.approx(1.2, abs=0.3)
-    summary = summarise(measured)
+    summary = stride_summary(measured)
     assert summary["method"] == method
     assert "both_feet" not in summary
     json.dumps(summary, allow_nan=False)
@@ -83,7 +83,7 @@ def test_every_method_measures_a_foot(method):
 
 def test_the_summary_tells_of_a_capture_without_strides():
     measured = measure_strides([foot_walk((), rate_noise_rad_s=0.01, force_noise_m_s2=0.05).readings])
-    summary = summarise(measured)
+    summary = stride_summary(measured)
     assert summary["feet"]["left_foot"]["strides"] == 0
     assert summary["feet"]["left_foot"]["length_m_mean"] is None
     assert any("no stride" in text for text in summary["warnings"])
@@ -95,7 +95,7 @@ def test_the_summary_tells_of_a_missed_rest():
     shaken = one.angular_velocity_rad_s.copy()
     shaken[middle - 22 : middle + 22] += np.random.default_rng(2).normal(size=(44, 3))
     measured = measure_strides([replace(one, angular_velocity_rad_s=shaken)])
-    assert any("a rest may have been missed" in text for text in summarise(measured)["warnings"])
+    assert any("a rest may have been missed" in text for text in stride_summary(measured)["warnings"])
 
 
 def test_unusable_readings_are_refused_with_the_likely_fix():

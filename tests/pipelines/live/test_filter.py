@@ -15,8 +15,8 @@ from mbkf.pipelines.live.log import (
     FRAMES_FILE,
     SUBJECT_FILE,
     LiveLog,
-    LiveRows,
     LiveStream,
+    LogRows,
     blank,
     read_live_log,
     track_of,
@@ -140,7 +140,7 @@ def log(tmp_path):
     """A log of frames 3 to 60, two of them missing, and what made its rows."""
     live = live_inputs(CAPTURE.markers.names, 100.0, CAPTURE.plates, SUBJECT, SETTINGS)
     chosen = follower("dynamic", live.inputs)
-    rows = LiveRows(chosen, len(live.names), len(ClinicalAngles(chosen.model).names))
+    rows = LogRows(chosen, len(live.names), len(ClinicalAngles(chosen.model).names))
     plates = tuple(
         replace(p, force_n=p.force_n[:0], moment_nm=p.moment_nm[:0], centre_of_pressure_m=p.force_n[:0])
         for p in CAPTURE.plates

@@ -201,7 +201,7 @@ def room_of(one):
 
 
 def test_a_server_that_dies_and_returns_is_taken_up_again(served, monkeypatch):
-    monkeypatch.setattr("mbkf.stream.natnet.source.SILENT_S", 0.2)
+    monkeypatch.setattr("mbkf.stream.natnet.source.RECONNECT_AFTER_S", 0.2)
     player = served()
     source = NatNetSource("127.0.0.1", "127.0.0.1", player.port, None)
     connected(source)

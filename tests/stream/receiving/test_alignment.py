@@ -1,4 +1,4 @@
-"""Frames come out of the intake in order, filled, cleaned, and with their plates."""
+"""Frames come out of the alignment in order, filled, cleaned, and with their plates."""
 
 from dataclasses import replace
 
@@ -7,8 +7,9 @@ import pytest
 
 from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.stream.receiving.alignment import BRIDGED_S, Intake
+from mbkf.stream.receiving.alignment import BRIDGED_S, FrameAlignment
 from mbkf.stream.receiving.reader import Reader
-from mbkf.stream.receiving.ring_buffer import Slot
+from mbkf.stream.receiving.ring_buffer import RingBuffer
 from mbkf.stream.source import PlateSamples
 from tests.stream.scripted import ScriptedSource, frames_of
 
@@ -17,55 +18,57 @@ def intake_of(capture, unlabelled=False):
     stream, frames = frames_of(capture, unlabelled)
     notes = []
     columns = None if unlabelled else np.arange(3, 20)[::-1]
-    intake = Intake(stream, columns, lambda kind, what, frame, count: notes.append((kind, frame, count)))
-    return intake, frames, notes
+    alignment = FrameAlignment(
+        stream, columns, lambda kind, what, frame, count: notes.append((kind, frame, count))
+    )
+    return alignment, frames, notes
 
 
 def test_markers_are_the_wanted_ones_and_plates_the_frames_means(capture):
-    intake, frames, notes = intake_of(capture)
-    ready = [one for frame in frames for one in intake.accept(frame)[0]]
+    alignment, frames, notes = intake_of(capture)
+    ready = [one for frame in frames for one in alignment.accept(frame)[0]]
     expected = plate_wrenches(capture.plates, capture.markers.times_s, 100.0)
     np.testing.assert_array_equal([one.plates for one in ready], expected)
     wanted = capture.markers.positions_m[:, np.arange(3, 20)[::-1]]
     np.testing.assert_array_equal([one.markers_m for one in ready], wanted)
-    assert (intake.frames_in, intake.lost, notes) == (80, 0, [])
+    assert (alignment.frames_in, alignment.lost, notes) == (80, 0, [])
 
 
 def test_points_without_names_are_handed_on_without_holes(capture):
-    intake, frames, _ = intake_of(capture, unlabelled=True)
+    alignment, frames, _ = intake_of(capture, unlabelled=True)
     points = np.array(frames[0].unlabelled_m)
     points[4] = np.nan
-    ((ready,), _) = intake.accept(replace(frames[0], unlabelled_m=points))
+    ((ready,), _) = alignment.accept(replace(frames[0], unlabelled_m=points))
     assert ready.markers_m is None
     np.testing.assert_array_equal(ready.unlabelled_m, np.delete(points, 4, axis=0))
 
 
 def test_short_gaps_are_filled_and_long_ones_are_not(capture):
-    intake, frames, notes = intake_of(capture)
-    intake.accept(frames[0])
-    ready, _ = intake.accept(frames[5])
+    alignment, frames, notes = intake_of(capture)
+    alignment.accept(frames[0])
+    ready, _ = alignment.accept(frames[5])
     assert [one.number for one in ready] == [1, 2, 3, 4, 5]
     assert [one.lost for one in ready] == [True] * 4 + [False]
     assert all(np.isnan(one.markers_m).all() for one in ready[:4])
     far = int(BRIDGED_S * 100.0) + 10
     jumped = replace(frames[6], number=far, arrival_s=frames[0].arrival_s + far / 100.0)
-    ready, _ = intake.accept(jumped)
+    ready, _ = alignment.accept(jumped)
     assert [one.number for one in ready] == [far]
-    assert intake.lost == 4 + far - 6
+    assert alignment.lost == 4 + far - 6
     assert [kind for kind, _, _ in notes].count("lost") == 2
 
 
 @pytest.mark.parametrize("restarted", [True, False])
 def test_plates_follow_a_count_that_was_set_back(capture, restarted):
     """Whether their own count was set back with the frames' or not."""
-    intake, frames, notes = intake_of(capture)
+    alignment, frames, notes = intake_of(capture)
     expected = plate_wrenches(capture.plates, capture.markers.times_s, 100.0)
     shift = 700 if restarted else 0
     again = [
         replace(f, number=f.number - 70, plates=PlateSamples(f.plates.index - shift, f.plates.wrench))
         for f in frames[60:]
     ]
-    ready = [one for frame in frames[:60] + again for one in intake.accept(frame)[0]]
+    ready = [one for frame in frames[:60] + again for one in alignment.accept(frame)[0]]
     assert [one.number for one in ready] == list(range(80))
     found = np.array([one.plates for one in ready])
     np.testing.assert_array_equal(np.isnan(found).any(axis=(1, 2))[61:], False)
@@ -78,18 +81,18 @@ def test_the_reader_goes_on_after_a_failure_and_ends_with_the_source(capture, mo
     stream, frames = frames_of(capture)
     script = [*frames[:10], RuntimeError("what now"), None, *frames[10:]]
     notes, samples = [], []
-    slot = Slot(200)
+    buffer = RingBuffer(200)
     reader = Reader(
         ScriptedSource(stream, script),
-        Intake(stream, np.arange(36), lambda *_: None),
-        slot,
+        FrameAlignment(stream, np.arange(36), lambda *_: None),
+        buffer,
         samples.append,
         lambda kind, what: notes.append((kind, what)),
     )
     reader.start()
     numbers = []
-    while not slot.ended:
-        frame = slot.take(1.0)
+    while not buffer.ended:
+        frame = buffer.take(1.0)
         if frame is not None:
             numbers.append(frame.number)
     reader.stop()
@@ -102,16 +105,16 @@ def test_the_reader_goes_on_after_a_failure_and_ends_with_the_source(capture, mo
 def test_a_reader_whose_frames_nobody_takes_keeps_the_latest(capture):
     stream, frames = frames_of(capture)
     notes = []
-    slot = Slot(5)
+    buffer = RingBuffer(5)
     reader = Reader(
         ScriptedSource(stream, frames),
-        Intake(stream, np.arange(36), lambda *_: None),
-        slot,
+        FrameAlignment(stream, np.arange(36), lambda *_: None),
+        buffer,
         lambda _: None,
         lambda kind, what: notes.append(kind),
     )
     reader.start()
     reader._thread.join(5.0)
-    assert slot.left()[-1].number == 79
-    assert reader.overwritten == 80 - len(slot.left())
+    assert buffer.left()[-1].number == 79
+    assert reader.overwritten == 80 - len(buffer.left())
     assert set(notes) == {"overwritten"}

@@ -5,12 +5,12 @@ import sys
 
 import pytest
 
-from mbkf.stream.run.low_latency import SWITCH_S, prompt
+from mbkf.stream.run.low_latency import SWITCH_S, low_latency
 
 
 def test_the_interpreter_is_as_it_was_afterwards():
     before = sys.getswitchinterval()
-    with pytest.raises(KeyError), prompt():
+    with pytest.raises(KeyError), low_latency():
         assert sys.getswitchinterval() == pytest.approx(SWITCH_S)
         assert gc.get_freeze_count() > 0
         raise KeyError

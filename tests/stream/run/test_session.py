@@ -9,13 +9,13 @@ import pytest
 from mbkf.errors import InvalidInput, NotObservable
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.pipelines.live.filter import live_inputs
-from mbkf.pipelines.live.log import LiveRows
+from mbkf.pipelines.live.log import LogRows
 from mbkf.pipelines.live.results import live_results
 from mbkf.pipelines.reconstruct import ReconstructSettings
 from mbkf.pipelines.trial.followers import follower
 from mbkf.stream.receiving.alignment import ReadyFrame
 from mbkf.stream.results.frame import LiveFrame
-from mbkf.stream.run.events import MOST, Events
+from mbkf.stream.run.events import MOST, EventLog
 from mbkf.stream.run.folder import LOG_FOLDER
 from mbkf.stream.run.frame_maker import FrameMaker
 from mbkf.stream.run.report import ROOM_BYTES, ReportFile, latency_summary
@@ -112,7 +112,7 @@ def test_the_rate_is_that_of_the_last_second(capture, subject):
     maker = FrameMaker(live, stream.rate_hz)
     for arrival_s in (0.0, 5.0, 5.5, 6.0):
         maker.arrived(arrival_s)
-    rows = LiveRows(follower("dynamic", live.inputs), len(live.names), live.inputs.sensor.model.nv)
+    rows = LogRows(follower("dynamic", live.inputs), len(live.names), live.inputs.sensor.model.nv)
     unseen = np.full((len(live.names), 3), np.nan)
     ready = ReadyFrame(7, 6.0, unseen, np.zeros((0, 3)), np.zeros((2, 6)))
     shown = maker.frame(ready, rows.row(7, unseen, None, 0.0), 0.001, 3)
@@ -220,12 +220,13 @@ def test_the_report_has_its_room_from_the_start(tmp_path):
 
 
 def test_the_same_thing_again_is_one_event():
-    events = Events()
-    for at_s in (0.0, 1.0, 2.5, 10.0):
-        events.note("lost", "frames were lost", at_s, 7, count=2)
+    times_s = iter([5.0, 5.0, 6.0, 7.5, 15.0])
+    events = EventLog(lambda: next(times_s, 15.0))
+    for _ in range(4):
+        events.note("lost", "frames were lost", 7, count=2)
     first, second = events.plain()
     assert (first["count"], first["first_s"], first["last_s"]) == (6, 0.0, 2.5)
     assert second["count"] == 2
     for k in range(MOST):
-        events.note(f"kind {k}", "x", 0.0)
+        events.note(f"kind {k}", "x")
     assert events.plain()[-1]["kind"] == "unlisted"

@@ -13,7 +13,7 @@ from mbkf.io.records import Capture
 from mbkf.io.subject import read_subject
 from mbkf.model.protocol import load_protocol
 from mbkf.pipelines.scale import scale
-from mbkf.stream.run import standing
+from mbkf.stream.run import prompting, standing
 from mbkf.stream.run.report import LIVE_FILE
 from mbkf.stream.run.session import LiveSession
 from mbkf.stream.run.standing import MOST_KEPT, SUBJECT_FILE, KnownPerson, StandingStart
@@ -138,7 +138,7 @@ def test_who_never_stands_still_is_told_what_moved(tmp_path, visit):
     moving = cut(visit, COMES + STANDS)
     positions = moving.markers.positions_m + 0.02 * np.arange(80)[:, None, None]
     moving = replace(moving, markers=replace(moving.markers, positions_m=positions))
-    with pytest.raises(InvalidInput, match=r"before anybody was scaled: marker \w+ moved \d+ mm"):
+    with pytest.raises(InvalidInput, match=r"before a person was scaled: marker \w+ moved \d+ mm"):
         begin(tmp_path, ScriptedSource(*frames_of(moving)))
     report = report_of(tmp_path)
     assert report["state"] == "nobody scaled"
@@ -241,15 +241,15 @@ def test_patience_ends(tmp_path, visit):
             return None
 
     stream, _ = frames_of(visit)
-    with pytest.raises(InvalidInput, match="nobody was scaled within 0 s: nobody is seen yet"):
+    with pytest.raises(InvalidInput, match="no person was scaled within 0 s: no person is seen yet"):
         begin(tmp_path, Silent(stream, []), patience_s=0.0)
 
 
 def test_what_is_waited_for_is_told_now_and_then(tmp_path, visit, monkeypatch):
-    monkeypatch.setattr(standing, "TELL_S", 0.0)
+    monkeypatch.setattr(prompting, "TELL_S", 0.0)
     stream, frames = frames_of(replace(visit, plates=()))
     found, said = begin(tmp_path, ScriptedSource(stream, frames))
-    assert any("waiting for somebody to stand still" in line and "moved" in line for line in said)
+    assert any("waiting for a person to stand still" in line and "moved" in line for line in said)
     assert "waiting" in {event["kind"] for event in found.told["events"]}
 
 
@@ -285,7 +285,7 @@ def test_there_is_no_share_of_standing_while_too_few_markers_are_seen_or_no_fram
             time.sleep(0.01)
             return None
 
-    with pytest.raises(InvalidInput, match="nobody was scaled"):
+    with pytest.raises(InvalidInput, match="no person was scaled"):
         begin(tmp_path, FallingSilent(stream, few), progress=shares.append, patience_s=0.5)
     assert set(shares) == {0.0, None}
     assert shares[-1] is None

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.stream.results.frame import LiveFrame
-from mbkf.viz.live.rows import MOST_UNLABELLED, LiveRows
+from mbkf.viz.live.rows import MOST_UNLABELLED, DisplayRows
 from tests.motions import assert_near
 from tests.recordings import walk, walker
 
@@ -24,7 +24,7 @@ def frame(k, **changes):
 
 @pytest.fixture
 def rows():
-    return LiveRows(walker()[1], len(walk().marker_names))
+    return DisplayRows(walker()[1], len(walk().marker_names))
 
 
 def part(rows, row, name):

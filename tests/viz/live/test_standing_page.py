@@ -21,7 +21,7 @@ from tests.viz.streams import feeding
 
 SENTENCES = (
     "stand still for 1 s, upright and in sight of the cameras",
-    "waiting for somebody to stand still: marker RWRA moved 38 mm",
+    "waiting for a person to stand still: marker RWRA moved 38 mm",
     "standing still; scaling from 100 frames …",
     "scaled in 1.2 s: protocol reference36, 70.0 kg, markers fit to 2.1 mm RMS; result/subject.toml",
     "one <b>clause</b>",

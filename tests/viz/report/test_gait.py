@@ -6,7 +6,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
-from mbkf.pipelines.gait.cycles import Parameter, find_gait
+from mbkf.pipelines.gait.cycles import GaitParameter, find_gait
 from mbkf.viz.report.gait import gait_section, stance_chart
 from tests.recordings import walk
 
@@ -17,8 +17,8 @@ def gait():
 
 
 def test_the_table_tells_mean_spread_and_difference(gait):
-    made = Parameter("Step length", "m", (np.array([0.7, 0.8]), np.array([0.6])))
-    none = Parameter("Step time", "s", (np.array([]), np.array([0.5, np.nan])))
+    made = GaitParameter("Step length", "m", (np.array([0.7, 0.8]), np.array([0.6])))
+    none = GaitParameter("Step time", "s", (np.array([]), np.array([0.5, np.nan])))
     text = gait_section(replace(gait, parameters=(made, none)), walk().times_s)
     assert "0.750 ± 0.071" in text and "<td>0.600</td>" in text and "22.2 %" in text
     assert "<td>–</td><td>0.500</td><td>–</td>" in text

@@ -1,13 +1,18 @@
 """Shapes: one set for every segment, joined at the joints, mirrored, and scaled to the person."""
 
 import json
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from mbkf.model.body_file import parse_body
 from mbkf.model.human import HumanModel
 from mbkf.viz.scene.body_shapes import as_plain, segment_shapes
 from tests.motions import assert_near
+
+LEGS = Path(__file__).resolve().parents[3] / "docs/examples/bodies/legs.toml"
 
 
 @pytest.fixture(scope="module")
@@ -62,3 +67,39 @@ def test_plain_shapes_are_json(reference):
     assert json.loads(json.dumps(plain)) == plain
     assert [entry["name"] for entry in plain] == list(reference.joints)
     assert np.isfinite([n for entry in plain for s in entry["shapes"] for n in s["numbers"]]).all()
+
+
+def test_segments_without_a_shape_are_drawn_as_plain_limbs(reference):
+    bare = HumanModel.scaled(body=replace(reference.description, shapes={}))
+    shapes = segment_shapes(bare)
+    assert {shape.kind for group in shapes.values() for shape in group} == {"limb"}
+    thigh, torso = shapes["right_thigh"], shapes["torso"]
+    assert_near(thigh[0].numbers[3:6], reference.description.segment("right_shank").origin_m, 1e-12)
+    assert len(torso) == 3, "to the neck and both arms"
+    assert_near(shapes["head"][0].numbers[3:6], 2.0 * reference.description.segment("head").com_m, 1e-12)
+
+
+def test_a_foot_without_toes_reaches_to_the_tip_of_its_sole():
+    text = LEGS.read_text(encoding="utf-8")
+    for start in (
+        '[[segment]]\nname = "right_toes"',
+        '[[segment]]\nname = "left_toes"',
+        '[[clinical_joint]]\nname = "mtp_r"',
+        '[[shape]]\nsegment = "right_toes"',
+        '[[landmark]]\nname = "hallux"',
+        '[[landmark]]\nname = "toe_tip"',
+    ):
+        first = text.index(start)
+        end = text.find("\n\n", first)
+        text = text[:first] + (text[end:] if end > 0 else "")
+    text = (
+        text.replace('toes = ["right_toes", "left_toes"]\n', "")
+        .replace('"right_toes", ', "")
+        .replace(', "left_toes"', "")
+    )
+    text = text.replace("mass_kg = 1.093", "mass_kg = 1.182")
+    model = HumanModel.scaled(body=parse_body(text, "no toes"))
+    assert model.roles.toes == () and model.nv == 24
+    (foot,) = segment_shapes(model)["left_foot"]
+    assert foot.kind == "outline"
+    assert foot.numbers[2::2].max() == pytest.approx(model.roles.soles[1].toe_x_m)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from mbkf.model.body_file import load_body
 from mbkf.viz.scene.channels import (
     GROUPS,
     REFUSED,
@@ -39,7 +40,7 @@ def test_what_is_put_in_a_part_is_found_there():
 
 def test_quantities_point_at_their_numbers():
     layout = Layout(18, 36, len(NAMES))
-    found = {q.id: q for q in quantities(layout, NAMES, streamed=False)}
+    found = {q.id: q for q in quantities(layout, NAMES, load_body().clinical_joints, streamed=False)}
     rows = layout.blank(1)
     layout.put(rows, "angles", np.deg2rad([[1.0, 0.0, 20.0, 30.0]]))
     layout.put(rows, "moments_sd", np.array([[1.0, 2.0, 3.0, 4.0]]))
@@ -57,7 +58,9 @@ def test_quantities_point_at_their_numbers():
 
 def test_every_quantity_is_listed_once_under_a_known_heading():
     layout = Layout(18, 36, len(NAMES))
-    recorded, live = (quantities(layout, NAMES, streamed) for streamed in (False, True))
+    recorded, live = (
+        quantities(layout, NAMES, load_body().clinical_joints, streamed) for streamed in (False, True)
+    )
     assert len({q.id for q in live}) == len(live) == len(recorded) + 3
     groups = [GROUPS.index(q.group) for q in live]
     assert groups == sorted(groups)

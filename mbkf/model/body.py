@@ -1,0 +1,148 @@
+"""What filters and sensors ask of a body: its manifold, its joints' places, its masses, its priors and its roles.
+
+:class:`~mbkf.model.human.HumanModel` is the one mbkf makes from a body file. Anything else that has these
+members can be followed by the kinematic filter as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+from mbkf.conventions import Array
+from mbkf.model.description import BodyDescription, Roles, Segment
+
+
+@dataclass(frozen=True)
+class SegmentJoint:
+    """Where a segment's joint lies in q and v, and its place among the joints.
+
+    Attributes:
+        segment: Segment name.
+        kind: "free", "spherical", "universal" or "hinge".
+        axes: Axes that a universal joint or a hinge turns about, e.g. "y"; "" for the others.
+        joint_id: Index of the joint that carries the segment, in :meth:`Body.placements` and ``supports``.
+        q: Slice of the configuration.
+        v: Slice of the tangent space.
+    """
+
+    segment: str
+    kind: str
+    axes: str
+    joint_id: int
+    q: slice
+    v: slice
+
+
+@runtime_checkable
+class Body(Protocol):
+    """A scaled body. Configurations q (nq,) lie on a manifold whose tangent vectors v have nv components.
+
+    Attributes of every body:
+
+    * ``description``, ``roles``: the reference body and what its segments are to the algorithms;
+    * ``mass_kg``, ``nq``, ``nv``;
+    * ``joints``: one :class:`SegmentJoint` per segment, by name, depth-first; ``root``: the free one;
+    * ``posture_sd`` (nv,): spread of each dof about the neutral posture, rad; 0 where there is no prior;
+    * ``acceleration_sd``, ``movement_sd`` (nv,): typical acceleration of each dof, and its standard deviation over a
+      movement, m/s² or rad/s²;
+    * ``limits`` (nv, 2): least and greatest rotation from neutral, rad; ±inf where there is no limit;
+    * ``supports`` (joints, nv): True where a dof moves a joint's segment.
+    """
+
+    @property
+    def description(self) -> BodyDescription:
+        """The reference body."""
+
+    @property
+    def roles(self) -> Roles:
+        """What its segments are to the algorithms."""
+
+    @property
+    def mass_kg(self) -> float:
+        """Mass of the whole body."""
+
+    @property
+    def nq(self) -> int:
+        """Numbers of a configuration."""
+
+    @property
+    def nv(self) -> int:
+        """Degrees of freedom."""
+
+    @property
+    def joints(self) -> Mapping[str, SegmentJoint]:
+        """The joint of every segment, depth-first."""
+
+    @property
+    def root(self) -> SegmentJoint:
+        """The free joint."""
+
+    @property
+    def posture_sd(self) -> Array:
+        """(nv,) spread about the neutral posture, rad."""
+
+    @property
+    def acceleration_sd(self) -> Array:
+        """(nv,) typical acceleration, m/s² or rad/s²."""
+
+    @property
+    def movement_sd(self) -> Array:
+        """(nv,) standard deviation of the acceleration over a movement, m/s² or rad/s²."""
+
+    @property
+    def limits(self) -> Array:
+        """(nv, 2) least and greatest rotation from neutral, rad."""
+
+    @property
+    def supports(self) -> Array:
+        """(joints, nv) whether a dof moves a joint's segment."""
+
+    def joint(self, segment: str) -> SegmentJoint:
+        """The joint that carries a segment."""
+
+    def axis_scale(self, segment: Segment) -> Array:
+        """(3,) scale factors of a segment's x, y, z axes."""
+
+    def neutral(self) -> Array:
+        """(nq,) standing posture at the world's origin, facing +x."""
+
+    def integrate(self, q: Array, dv: Array) -> Array:
+        """(nq,) configuration reached from q by the tangent vector dv (nv,)."""
+
+    def difference(self, q0: Array, q1: Array) -> Array:
+        """(nv,) tangent vector that takes q0 to q1."""
+
+    def integration_derivatives(self, q: Array, dv: Array) -> tuple[Array, Array]:
+        """(nv, nv) derivatives of :meth:`integrate` by q and by dv."""
+
+    def difference_derivative(self, q0: Array, q1: Array) -> Array:
+        """(nv, nv) derivative of :meth:`difference` by q1."""
+
+    def placements(self, q: Array) -> tuple[Array, Array]:
+        """World rotations (J, 3, 3) and origins (J, 3) of all joints (index 0 is the world)."""
+
+    def placements_and_jacobian(self, q: Array) -> tuple[Array, Array, Array]:
+        """Placements, and J (6, nv): each dof's spatial velocity at the world's origin, (linear, angular)."""
+
+    def frames(self, q: Array) -> Array:
+        """(4 J, 3): of every joint its world x, y, z axes and its origin, one below the other."""
+
+    def frames_and_jacobian(self, q: Array) -> tuple[Array, Array]:
+        """:meth:`frames` and :meth:`spatial_jacobian` in one pass."""
+
+    def spatial_jacobian(self, q: Array) -> Array:
+        """J (6, nv) of :meth:`placements_and_jacobian` alone."""
+
+    def mass_matrix(self, q: Array) -> Array:
+        """(nv, nv) symmetric mass matrix."""
+
+    def inverse_dynamics(self, q: Array, v: Array, a: Array) -> Array:
+        """(nv,) generalised forces M a − Q_g for given motion, without contact.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            a: (nv,) acceleration.
+        """

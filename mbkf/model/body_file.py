@@ -1,0 +1,307 @@
+"""Reference bodies from files: those that come with mbkf, and a user's own from anywhere.
+
+A body file is TOML; ``models/human18.toml`` shows every entry. Everything the algorithms need to know of a body stands
+in it: segments and joints, inertias, scale factors, landmarks, the sole, roles, clinical coordinates, shapes.
+
+The masses of the segments sum to the reference person's: Newton's law for the whole body relates the ground reactions
+to the movement of all of its mass. A body of the legs alone therefore carries head, arms and trunk as part of its
+pelvis.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from functools import cache, lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mbkf.conventions import Array, data_folder, read_only
+from mbkf.errors import FileFormatError, MbkfError, UnknownName
+from mbkf.model.body_checks import check_body
+from mbkf.model.clinical_table import ClinicalJoint, clinical_joints
+from mbkf.model.description import (
+    JOINT_DOF,
+    BodyDescription,
+    Landmark,
+    Roles,
+    Segment,
+    SegmentShape,
+    Sole,
+)
+from mbkf.model.sides import mirrored
+
+AXES_BY_JOINT = {"free": "", "spherical": "", "universal": "xy", "hinge": "y"}
+"""Axes of each kind of joint where the file gives none."""
+
+_NOTES = ("_source", "_printed_m", "_printed_kg_m2", "_correction")
+"""Endings of keys of a segment that only tell people where its numbers come from."""
+
+_SEGMENT_KEYS = {
+    "name", "parent", "joint", "axes", "origin_m", "mass_kg", "com_m", "inertia_kg_m2", "scale", "length_factor",
+    "posture_sd_deg", "acceleration_sd", "movement_sd", "limits_deg",
+}  # fmt: skip
+_ROLE_KEYS = {"root", "feet", "toes", "leading", "steady", "knees"}
+
+
+def load_body(body: str | Path = "human18") -> BodyDescription:
+    """Reads a reference body by its name, or a user's own from a TOML file.
+
+    Args:
+        body: Name of a body that comes with mbkf, or path of a file (ending in ``.toml``).
+
+    Raises:
+        UnknownName: There is no such body, or the file names a segment, a landmark, a scale factor or a kind of joint
+            that does not exist.
+        FileFormatError: The file is missing or not a valid body description.
+    """
+    path = Path(body)
+    if path.suffix == ".toml":
+        try:
+            text = path.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise FileFormatError(path, f"cannot be read ({error}); name a body file or a body") from error
+        return parse_body(text, path)
+    return _shipped(str(body))
+
+
+@cache
+def _shipped(name: str) -> BodyDescription:
+    path = data_folder("models") / f"{name}.toml"
+    if not path.is_file():
+        names = [p.stem for p in data_folder("models").glob("*.toml")]
+        raise UnknownName("body", name, names, "a body of your own is named by its file, ending in .toml")
+    return _parse(path.read_text(encoding="utf-8"), path, "")
+
+
+@lru_cache(maxsize=8)
+def parse_body(text: str, path: str | Path) -> BodyDescription:
+    """A reference body from the text of a body file.
+
+    Args:
+        text: The file's contents.
+        path: Where they come from, for error messages.
+
+    Raises:
+        UnknownName: As for :func:`load_body`.
+        FileFormatError: The text is not a valid body description.
+    """
+    return _parse(text, Path(path), text)
+
+
+def _parse(text: str, path: Path, kept: str) -> BodyDescription:
+    try:
+        body = _body(tomllib.loads(text), path, kept)
+        check_body(body)
+    except MbkfError:
+        raise
+    except KeyError as error:
+        raise FileFormatError(path, f"not a valid body description (it lacks {error})") from error
+    except (tomllib.TOMLDecodeError, AttributeError, TypeError, ValueError) as error:
+        raise FileFormatError(path, f"not a valid body description ({error})") from error
+    return body
+
+
+def _body(table: dict[str, Any], path: Path, kept: str) -> BodyDescription:
+    factors = tuple(table["scale_factors"])
+    segments = tuple(_segment(entry, factors, path) for entry in table["segment"])
+    names = [segment.name for segment in segments]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise FileFormatError(
+            path, f"the segment {twice[0]} stands twice; give every segment a name of its own"
+        )
+    return BodyDescription(
+        name=table["name"],
+        reference_mass_kg=float(table["reference_mass_kg"]),
+        reference_height_m=float(table["reference_height_m"]),
+        scale_factors=factors,
+        segments=segments,
+        landmarks=_landmarks(table.get("landmark", []), segments, path),
+        roles=_roles(table, segments, path),
+        clinical_joints=_clinical(table["clinical_joint"], segments, path),
+        shapes=_shapes(table.get("shape", []), segments, path),
+        text=kept,
+    )
+
+
+def _segment(entry: dict[str, Any], factors: tuple[str, ...], path: Path) -> Segment:
+    where = f"{path}, segment {entry.get('name', '?')}"
+    for key in entry:
+        if key not in _SEGMENT_KEYS and not key.endswith(_NOTES):
+            raise UnknownName("key", key, sorted(_SEGMENT_KEYS), where)
+    missing = [key for key in sorted(_SEGMENT_KEYS - {"axes", "limits_deg"}) if key not in entry]
+    if missing:
+        raise FileFormatError(path, f"segment {entry.get('name', '?')}: lacks {', '.join(missing)}")
+    if entry["joint"] not in JOINT_DOF:
+        raise UnknownName("joint", entry["joint"], JOINT_DOF, where)
+    for name in (entry["length_factor"], *(name for name in entry["scale"] if name != "mean")):
+        if name not in factors:
+            raise UnknownName("scale factor", name, factors, where)
+    try:
+        return Segment(
+            name=entry["name"],
+            parent=entry["parent"],
+            joint=entry["joint"],
+            axes=entry.get("axes", AXES_BY_JOINT[entry["joint"]]),
+            origin_m=read_only(entry["origin_m"]),
+            mass_kg=float(entry["mass_kg"]),
+            com_m=read_only(entry["com_m"]),
+            inertia_kg_m2=read_only(entry["inertia_kg_m2"]),
+            scale_matrix=read_only(_scale_matrix(entry["scale"], factors)),
+            length_index=factors.index(entry["length_factor"]),
+            posture_sd_rad=read_only(np.deg2rad(entry["posture_sd_deg"])),
+            acceleration_sd=read_only(entry["acceleration_sd"]),
+            movement_sd=read_only(entry["movement_sd"]),
+            limits_rad=_limits(entry),
+        )
+    except (TypeError, ValueError) as error:
+        raise FileFormatError(path, f"segment {entry['name']}: {error}") from error
+
+
+def _limits(entry: dict[str, Any]) -> Array:
+    if "limits_deg" in entry:
+        return read_only(np.deg2rad(entry["limits_deg"]))
+    return read_only(np.tile([-np.inf, np.inf], (JOINT_DOF[entry["joint"]], 1)))
+
+
+def _scale_matrix(names: list[str], factors: tuple[str, ...]) -> Array:
+    if len(names) != 3 or set(names) == {"mean"}:
+        raise ValueError(
+            "scale names the factors of the x, y and z axes; 'mean' stands for that of the others"
+        )
+    rows = np.zeros((3, len(factors)))
+    for axis, name in enumerate(names):
+        if name != "mean":
+            rows[axis, factors.index(name)] = 1.0
+    for axis, name in enumerate(names):
+        if name == "mean":
+            others = [other for other in range(3) if other != axis]
+            rows[axis] = rows[others].mean(axis=0)
+    return rows
+
+
+def _known(name: str, segments: tuple[Segment, ...], where: str) -> str:
+    names = [segment.name for segment in segments]
+    if name not in names:
+        raise UnknownName("segment", name, names, where)
+    return name
+
+
+def _landmarks(
+    entries: list[dict[str, Any]], segments: tuple[Segment, ...], path: Path
+) -> dict[str, Landmark]:
+    """Landmarks by full name: a paired segment's or an off-midline one exists on both sides."""
+    names = {segment.name for segment in segments}
+    found = {}
+    for entry in entries:
+        name, segment = entry["name"], entry["segment"]
+        position = np.array(entry["position_m"], dtype=float)
+        if position.shape != (3,) or not np.isfinite(position).all():
+            raise FileFormatError(path, f"landmark {name}: position_m needs three finite numbers")
+        if segment in names and position[1] == 0.0:
+            found[name] = Landmark(name, segment, read_only(position))
+            continue
+        for side, sign in (("right", 1.0), ("left", -1.0)):
+            full = f"{side}_{name}"
+            host = segment if segment in names else f"{side}_{segment}"
+            _known(host, segments, f"{path}, landmark {name}")
+            found[full] = Landmark(full, host, read_only(position * [1.0, sign, 1.0]))
+    return found
+
+
+def _roles(table: dict[str, Any], segments: tuple[Segment, ...], path: Path) -> Roles:
+    roles, where = table["roles"], f"{path}, roles"
+    for key in roles:
+        if key not in _ROLE_KEYS:
+            raise UnknownName("role", key, sorted(_ROLE_KEYS), where)
+
+    def several(key: str, otherwise: list[str]) -> tuple[str, ...]:
+        return tuple(_known(name, segments, f"{where}, {key}") for name in roles.get(key, otherwise))
+
+    feet = several("feet", [])
+    if len(set(feet)) != 2:
+        raise FileFormatError(
+            path, f"roles: feet names two segments, the right one first, not {list(feet)}; "
+            "ground reactions act on them"
+        )  # fmt: skip
+    toes = several("toes", [])
+    root = _known(roles["root"], segments, f"{where}, root")
+    parents = {segment.name: segment.parent for segment in segments}
+    if [parents[name] for name in toes] not in ([], list(feet)):
+        raise FileFormatError(
+            path, f"roles: toes {list(toes)} must join the feet {list(feet)}, or be left out"
+        )
+    both = [name for foot in feet for name in reversed(_chain(foot, parents)) if name != root]
+    legs = list(dict.fromkeys(both))
+    knees = tuple(tuple(pair) for pair in roles.get("knees", ()))
+    for pair in knees:
+        if len(pair) != 2 or parents[_known(pair[1], segments, f"{where}, knees")] != pair[0]:
+            raise FileFormatError(path, f"roles: knees holds pairs of thigh and shank, not {list(pair)}")
+    return Roles(
+        root=root,
+        feet=(feet[0], feet[1]),
+        toes=toes,
+        soles=_soles(table["sole"], feet, toes, segments),
+        legs=tuple(legs),
+        leading=several("leading", legs),
+        steady=several("steady", [root, *feet, *toes]),
+        knees=knees,
+    )
+
+
+def _chain(segment: str, parents: dict[str, str]) -> list[str]:
+    """A segment and those before it, up to the root."""
+    chain = []
+    while segment in parents and segment not in chain:
+        chain.append(segment)
+        segment = parents[segment]
+    return chain
+
+
+def _soles(
+    entry: dict[str, Any], feet: tuple[str, ...], toes: tuple[str, ...], segments: tuple[Segment, ...]
+) -> tuple[Sole, Sole]:
+    right = dict(entry)
+    if toes:
+        bend = next(segment for segment in segments if segment.name == toes[0])
+        right.setdefault("ball_x_m", bend.origin_m[0])
+    right = {key: float(value) for key, value in right.items()}
+    left = {**right, "inner_y_m": -right["inner_y_m"], "outer_y_m": -right["outer_y_m"]}
+    return Sole(feet[0], **right), Sole(feet[1], **left)
+
+
+def _clinical(
+    entries: list[dict[str, Any]], segments: tuple[Segment, ...], path: Path
+) -> tuple[ClinicalJoint, ...]:
+    """The clinical joints in the order of the segments."""
+    try:
+        found = {joint.distal: joint for joint in clinical_joints(entries)}
+    except KeyError as error:
+        raise FileFormatError(path, f"a clinical joint lacks {error}") from error
+    except (TypeError, ValueError) as error:
+        raise FileFormatError(path, f"clinical joints: {error}") from error
+    for joint in found.values():
+        _known(joint.distal, segments, f"{path}, clinical joint {joint.name}")
+    missing = [segment.name for segment in segments if segment.name not in found]
+    if missing:
+        raise FileFormatError(path, f"no clinical joint has the distal segment {', '.join(missing)}")
+    return tuple(found[segment.name] for segment in segments)
+
+
+def _shapes(
+    entries: list[dict[str, Any]], segments: tuple[Segment, ...], path: Path
+) -> dict[str, SegmentShape]:
+    """Shapes by segment; one written for a right segment is the left one's, too, where that exists."""
+    names = {segment.name for segment in segments}
+    found: dict[str, SegmentShape] = {}
+    for entry in entries:
+        segment = _known(entry["segment"], segments, f"{path}, shape")
+        numbers = read_only(np.ravel(entry.get("numbers", [])))
+        to = entry.get("to", "")
+        found[segment] = SegmentShape(segment, entry["kind"], numbers, to)
+        other = mirrored(segment)
+        if other in names:
+            found.setdefault(other, SegmentShape(other, entry["kind"], numbers, mirrored(to)))
+    return found

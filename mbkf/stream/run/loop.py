@@ -1,0 +1,153 @@
+"""The filter's loop of a live run: takes frames from the ring buffer, bridges gaps, and answers each frame."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from dataclasses import replace
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.pipelines.live.filter import LiveStep
+from mbkf.sensors.block import Frame
+from mbkf.stream.receiving.alignment import BRIDGED_S, Note, ReadyFrame
+from mbkf.stream.receiving.reader import SILENT_S
+from mbkf.stream.receiving.receiver import START_SLACK_S, Receiver
+from mbkf.stream.run.output import RunOutput
+from mbkf.stream.run.setup import LiveSetup
+from mbkf.stream.run.statistics import RunStatistics
+
+TAKE_S = 0.1
+"""How long a frame is waited for before the loop checks whether it is to end."""
+
+
+class FilterLoop:
+    """Gives frames to the filter and its answers to the output."""
+
+    def __init__(
+        self,
+        setup: LiveSetup,
+        receiver: Receiver,
+        output: RunOutput,
+        statistics: RunStatistics,
+        note: Note,
+    ) -> None:
+        """Connects the parts of a run.
+
+        Args:
+            setup: The prepared filter, and the labeller if points have no names.
+            receiver: Where frames come from.
+            output: Where answers go.
+            statistics: Counts frames.
+            note: Called with events.
+        """
+        self._setup, self._receiver, self._output = setup, receiver, output
+        self._statistics, self._note = statistics, note
+        self._waiting: deque[ReadyFrame] = deque()
+        self._starting_until_s = 0.0
+        self._silent = False
+
+    def run(self, stop: threading.Event, seconds: float | None) -> str:
+        """Answers frames until the run ends; an unforeseen error ends it, too, and keeps what was found until then.
+
+        Args:
+            stop: Set when the run is to end.
+            seconds: How long to track, from the first frame; None for as long as frames come.
+
+        Returns:
+            What ended the run, in words.
+        """
+        try:
+            ended_by = self._track(stop, seconds)
+            labels = self._setup.labels
+            for frame, markers in [] if labels is None else labels.finish():
+                self._feed(frame, markers)
+            self._answer(self._setup.filter.finish())
+        except Exception as error:
+            latest = self._statistics.latest
+            ended_by = f"an unforeseen {type(error).__name__}: {error}"
+            self._note("failed", ended_by, None if latest is None else latest.number, 1)
+        return ended_by
+
+    def _track(self, stop: threading.Event, seconds: float | None) -> str:
+        """Answers frames until something ends the run; returns what did."""
+        statistics = self._statistics
+        while not stop.is_set():
+            frame = self._receiver.take(TAKE_S)
+            now = time.perf_counter()
+            first, latest = statistics.first, statistics.latest
+            if frame is not None:
+                self._take(frame)
+                self._allow_for_start()
+                self._setup.filter.expect()
+                first, latest = statistics.first, statistics.latest
+            elif self._receiver.ended:
+                return "the source ended"
+            elif latest is not None and now - latest.arrival_s > SILENT_S and not self._silent:
+                self._silent = True
+                self._note("silent", "the source fell silent and is waited for", latest.number, 1)
+            if seconds is not None and first is not None and latest is not None:
+                tracked = (latest.number - first.number + 1) / self._setup.stream.rate_hz
+                over = frame is None and now - first.arrival_s >= seconds
+                if over or tracked >= seconds:
+                    return "the time was over"
+        return "it was stopped"
+
+    def _take(self, frame: ReadyFrame) -> None:
+        """One frame from the ring buffer; overwritten ones before it are bridged, or the filter starts anew."""
+        if self._silent:
+            self._silent = False
+            self._note("back", "the source is back", frame.number, 1)
+        before = self._statistics.taken(frame)
+        if before is not None and frame.number > before.number + 1:
+            if frame.number - before.number <= BRIDGED_S * self._setup.stream.rate_hz:
+                for number in range(before.number + 1, frame.number):
+                    self._push(self._empty_frame(number, frame.arrival_s))
+            else:
+                self._note("cut", "a gap was too long to bridge: the filter starts anew", frame.number, 1)
+                self._answer(self._setup.filter.cut())
+        if not frame.lost:
+            self._statistics.processed += 1
+            self._output.arrived(frame.arrival_s)
+        self._push(frame)
+
+    def _allow_for_start(self) -> None:
+        """While the filter starts, and until it has caught up with what came meanwhile, more frames may wait."""
+        now = time.perf_counter()
+        if self._setup.filter.latest is None:
+            self._starting_until_s = now + START_SLACK_S
+            self._receiver.allow_start()
+        elif self._starting_until_s and (self._receiver.empty or now > self._starting_until_s):
+            self._starting_until_s = 0.0
+            self._receiver.allow_pause()
+
+    def _empty_frame(self, number: int, arrival_s: float) -> ReadyFrame:
+        plates = np.full((len(self._setup.stream.plates), 6), np.nan)
+        unseen = np.full((len(self._setup.names), 3), np.nan)
+        return ReadyFrame(number, arrival_s, unseen, np.zeros((0, 3)), plates, lost=True)
+
+    def _push(self, frame: ReadyFrame) -> None:
+        """Gives the filter a frame, or those whose points have been named by now."""
+        labels = self._setup.labels
+        if labels is None:
+            assert frame.markers_m is not None
+            self._feed(frame, frame.markers_m)
+            return
+        due = labels.push(frame, self._setup.filter.expect())
+        for one, markers in due:
+            self._feed(one, markers)
+        latest = self._setup.filter.latest
+        if due and latest is not None:
+            labels.learn(latest)
+
+    def _feed(self, frame: ReadyFrame, markers_m: Array) -> None:
+        self._waiting.append(replace(frame, markers_m=markers_m))
+        self._answer(self._setup.filter.push(frame.number, Frame(markers_m, frame.plates)))
+
+    def _answer(self, steps: list[LiveStep]) -> None:
+        """Gives answers to the output, each with its frame."""
+        for step in steps:
+            at_start = step.awaited or self._starting_until_s > 0.0
+            self._output.put(self._waiting.popleft(), step, at_start, self._receiver.lost)

@@ -1,0 +1,89 @@
+"""Where the answers of a live run go: a row of the log, and a frame to every listener."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+
+from numpy.typing import NDArray
+
+from mbkf.filters.record import FrameRecorder
+from mbkf.pipelines.live.filter import LiveStep
+from mbkf.stream.receiving.alignment import Note, ReadyFrame
+from mbkf.stream.results.frame import FrameSink
+from mbkf.stream.run.frame_maker import FrameMaker
+from mbkf.stream.run.setup import LiveSetup
+from mbkf.stream.run.statistics import RunStatistics
+
+
+class RunOutput:
+    """Logs and shows answered frames."""
+
+    def __init__(
+        self,
+        setup: LiveSetup,
+        sinks: Sequence[FrameSink],
+        put_row: Callable[[NDArray], None],
+        statistics: RunStatistics,
+        note: Note,
+    ) -> None:
+        """Holds the listeners; one that raises an error is dropped.
+
+        Args:
+            setup: Makes log rows and listeners' frames.
+            sinks: The listeners.
+            put_row: Takes a row for the log.
+            statistics: Counts latencies and starts.
+            note: Called with events.
+        """
+        self._rows: FrameRecorder = setup.rows
+        self._maker: FrameMaker = setup.maker
+        self._sinks = list(sinks)
+        self._put_row, self._statistics, self._note = put_row, statistics, note
+
+    def arrived(self, arrival_s: float) -> None:
+        """Counts a frame that arrived, for the rate shown."""
+        self._maker.arrived(arrival_s)
+
+    def put(self, ready: ReadyFrame, step: LiveStep, at_start: bool, lost: int) -> None:
+        """Logs and shows an answered frame.
+
+        Args:
+            ready: The frame, with its markers.
+            step: The filter's answer.
+            at_start: Whether the frame waited for a start of the filter, or until it had caught up.
+            lost: Frames lost so far.
+        """
+        assert ready.markers_m is not None
+        if step.trouble is not None:
+            self._note("numbers", f"the filter starts anew ({step.trouble})", step.number, 1)
+        row, spread = self._rows.row(step.number, ready.markers_m, step.estimate, step.seconds)
+        latency = time.perf_counter() - ready.arrival_s
+        if not ready.lost:
+            row["latency_s"] = latency
+            self._statistics.answered(latency, at_start)
+        if step.estimate is not None and step.estimate.started:
+            self._statistics.starts += 1
+            if self._statistics.starts > 1:
+                self._note("start", "the filter started anew", step.number, 1)
+        if spread is not None:
+            self._rows.spread(row, spread)
+        if self._sinks:
+            self._show(ready, row, latency, lost)
+        if step.estimate is not None:
+            self._rows.innovation(row, step.estimate)
+        self._put_row(row)
+
+    def close(self) -> None:
+        """Tells the listeners that no more frames follow."""
+        for sink in self._sinks:
+            sink.close()
+
+    def _show(self, ready: ReadyFrame, row: NDArray, latency_s: float, lost: int) -> None:
+        shown = self._maker.frame(ready, row, latency_s, lost)
+        for sink in list(self._sinks):
+            try:
+                sink.take(shown)
+            except Exception as error:  # a listener's error must not end a recording
+                self._sinks.remove(sink)
+                self._note("viewer", f"a listener failed and was dropped ({error})", ready.number, 1)

@@ -1,0 +1,119 @@
+"""The documentation builds without a warning, its code works, and it names everything a user can set or read."""
+
+import dataclasses
+import re
+import shlex
+import subprocess
+import sys
+import typing
+from pathlib import Path
+
+import pytest
+
+import mbkf
+from mbkf.cli.main import build_parser
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCS = ROOT / "docs"
+PAGES = sorted(DOCS.rglob("*.md"))
+
+
+def relative(path: Path) -> str:
+    return path.relative_to(DOCS).as_posix()
+
+
+def blocks(page: Path, *kinds: str) -> list[str]:
+    found = re.findall(r"^```(\w+)\n(.*?)^```", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    return [text for kind, text in found if kind in kinds]
+
+
+SHELL_LINES = [
+    pytest.param(line.split("  #")[0], id=f"{relative(page)}: {line}")
+    for page in PAGES
+    for text in blocks(page, "sh")
+    for line in text.splitlines()
+    if line.startswith("mbkf ")
+]
+PYTHON_BLOCKS = [
+    pytest.param(text, id=f"{relative(page)}-{k}")
+    for page in PAGES
+    for k, text in enumerate(blocks(page, "python"))
+]
+
+
+@pytest.mark.slow
+def test_pages_build_without_a_warning_and_load_nothing(tmp_path):
+    words = ["-m", "sphinx", "-W", "--keep-going", "-q", "-b", "html", "-d", tmp_path / "trees"]
+    done = subprocess.run(
+        [sys.executable, *words, DOCS, tmp_path / "html"], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    for page in (tmp_path / "html").rglob("*.html"):
+        text = page.read_text(encoding="utf-8")
+        assert not re.findall(r'<(?:script|img|link)[^>]+(?:src|href)="(?:https?:)?//[^"]+"', text), page
+
+
+@pytest.mark.parametrize("line", SHELL_LINES)
+def test_commands_are_understood(line):
+    build_parser().parse_args(shlex.split(line)[1:])
+
+
+@pytest.mark.parametrize("source", PYTHON_BLOCKS)
+def test_python_runs(source, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    exec(compile(source, "docs", "exec"), {"__name__": "__main__"})
+
+
+@pytest.mark.parametrize("page", PAGES, ids=relative)
+def test_no_page_is_empty_and_every_example_that_it_shows_exists(page):
+    text = page.read_text(encoding="utf-8")
+    assert text.startswith("# ")
+    for target in re.findall(r"\{literalinclude\} (\S+)", text):
+        assert (page.parent / target).is_file(), target
+
+
+def settings(value: object) -> dict[str, object]:
+    """Every setting of a record and of the records in it, with its default."""
+    found: dict[str, object] = {}
+    for one in dataclasses.fields(value):  # type: ignore[arg-type]
+        default = getattr(value, one.name)
+        found |= settings(default) if dataclasses.is_dataclass(default) else {one.name: default}
+    return found
+
+
+@pytest.mark.parametrize("name", sorted(settings(mbkf.ReconstructSettings())))
+def test_every_setting_stands_in_the_page_on_tuning(name):
+    assert f"`{name}`" in (DOCS / "tuning.md").read_text(encoding="utf-8")
+
+
+def test_every_dataset_of_a_result_stands_in_the_page_on_files():
+    text = (DOCS / "files.md").read_text(encoding="utf-8")
+    result = typing.get_type_hints(mbkf.read_reconstruction)["return"]
+    missing = {one.name for one in dataclasses.fields(result)} - set(re.findall(r"`(\w+)`", text))
+    assert missing <= {"subject", "covariance"}  # an attribute, and what is never written
+
+
+@pytest.mark.slow
+def test_every_key_of_the_summary_stands_in_the_page_on_files():
+    text = (DOCS / "files.md").read_text(encoding="utf-8")
+    subject, recorded = mbkf.synthesise("squat", seconds=1.0)
+    summary = mbkf.summarise(mbkf.reconstruct(recorded.trial, subject), recorded.truth)
+    assert {*summary, *summary["truth"]} - set(re.findall(r"`(\w+)`", text)) == set()
+
+
+CITED = re.compile(r"\(((?:[A-Z][\w-]+ )?[A-Z][\w-]+)(?: (?:&|and) [A-Z][\w-]+| et al\.)? ((?:19|20)\d\d)\b")
+
+
+def test_every_paper_that_the_code_cites_stands_among_the_references():
+    text = (DOCS / "references.md").read_text(encoding="utf-8")
+    cited = {
+        f"{name} {year}": path.relative_to(ROOT)
+        for path in (ROOT / "mbkf").rglob("*.py")
+        for name, year in CITED.findall(path.read_text(encoding="utf-8"))
+    }
+    assert len(cited) > 5
+    assert {key: path for key, path in cited.items() if f"**{key}**" not in text} == {}
+
+
+def test_the_citation_names_this_version():
+    assert f"version: {mbkf.__version__}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")

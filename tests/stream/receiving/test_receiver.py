@@ -1,0 +1,65 @@
+"""The receiving side of a run: frames come out in order, and every lost one is counted by its cause."""
+
+import threading
+
+import numpy as np
+
+from mbkf.stream.receiving.receiver import Receiver
+from tests.captures import made_capture
+from tests.stream.scripted import ScriptedSource, frames_of
+
+
+def received(script, stream):
+    notes, samples = [], []
+    source = ScriptedSource(stream, script)
+    receiver = Receiver(source, stream, np.arange(5), samples.append, lambda *note: notes.append(note))
+    receiver.start()
+    numbers = []
+    while not receiver.ended:
+        frame = receiver.take(1.0)
+        if frame is not None:
+            numbers.append(frame.number)
+    receiver.stop()
+    return receiver, numbers, notes, samples
+
+
+def test_all_frames_come_in_order():
+    stream, frames = frames_of(made_capture(30))
+    receiver, numbers, notes, samples = received(frames, stream)
+    assert numbers == list(range(30))
+    assert receiver.counts() == {
+        "frames_in": 30,
+        "frames_lost": 0,
+        "frames_lost_on_the_way": 0,
+        "frames_overwritten": 0,
+    }
+    assert (notes, receiver.empty, len(samples)) == ([], True, 30)
+
+
+def test_frames_lost_on_the_way_are_counted_and_bridged():
+    stream, frames = frames_of(made_capture(30))
+    receiver, numbers, notes, _ = received(frames[:10] + frames[13:], stream)
+    assert numbers == list(range(30))
+    assert receiver.lost == receiver.counts()["frames_lost_on_the_way"] == 3
+    assert [kind for kind, *_ in notes] == ["lost", "plates lost"]
+
+
+def test_frames_that_are_not_taken_in_time_are_overwritten():
+    class Impatient(ScriptedSource):
+        patient = False
+
+    stream, frames = frames_of(made_capture(30))
+    receiver = Receiver(Impatient(stream, frames), stream, np.arange(5), lambda _: None, lambda *_: None)
+    receiver.allow_pause()
+    receiver.start()
+    for thread in threading.enumerate():
+        if thread.name == "mbkf-reader":
+            thread.join(5.0)
+    counts = receiver.counts()
+    assert counts["frames_overwritten"] > 0
+    left = 0
+    while receiver.take(0.0) is not None:
+        left += 1
+    assert counts["frames_in"] == 30 - left
+    assert counts["frames_overwritten"] + left == 30
+    receiver.stop()

@@ -1,0 +1,41 @@
+"""The parts of a run put together by hand: every frame is answered once, logged and shown, in order."""
+
+import threading
+
+from mbkf.stream.receiving.receiver import Receiver
+from mbkf.stream.run.events import EventLog
+from mbkf.stream.run.loop import FilterLoop
+from mbkf.stream.run.output import RunOutput
+from mbkf.stream.run.setup import prepare
+from mbkf.stream.run.statistics import RunStatistics
+from tests.captures import made_capture
+from tests.stream.scripted import SETTINGS, Collected, ScriptedSource, frames_of
+
+
+class Failing(Collected):
+    def take(self, frame):
+        super().take(frame)
+        raise RuntimeError("out of paper")
+
+
+def test_every_frame_is_answered_once(subject):
+    stream, frames = frames_of(made_capture(40))
+    events, statistics, rows = EventLog(), RunStatistics(), []
+    setup = prepare(stream, subject, SETTINGS, patient=True, note=events.note)
+    assert setup.labels is None
+    assert setup.plate_corners_m.shape == (len(stream.plates), 4, 3)
+    assert len(setup.columns) == len(setup.names)
+    source = ScriptedSource(stream, frames[:20] + frames[22:])
+    receiver = Receiver(source, stream, setup.columns, lambda _: None, events.note)
+    kept, failing = Collected([]), Failing([])
+    output = RunOutput(setup, [kept, failing], rows.append, statistics, events.note)
+    loop = FilterLoop(setup, receiver, output, statistics, events.note)
+    receiver.start()
+    assert loop.run(threading.Event(), None) == "the source ended"
+    receiver.stop()
+    output.close()
+    assert [int(row["number"][0]) for row in rows] == list(range(40))
+    assert [frame.number for frame in kept.frames] == list(range(40))
+    assert (len(failing.frames), kept.closed, failing.closed) == (1, True, False)
+    assert (statistics.processed, statistics.starts) == (38, 1)
+    assert {event["kind"] for event in events.plain()} == {"lost", "plates lost", "viewer"}
