@@ -81,8 +81,7 @@ def correct(covariance: Array, readings: Information) -> Correction:
         readings: Information on the first n components.
     """
     n = len(readings.vector)
-    posterior = informed(covariance, readings.matrix)
-    posterior = 0.5 * (posterior + posterior.T)
+    posterior = informed_whole(covariance, readings.matrix, np.zeros((0, 0)))
     step = posterior[:, :n] @ readings.vector
     nis = readings.innovation - float(readings.vector @ step[:n])
     return Correction(step, posterior, nis, readings)
@@ -153,6 +152,22 @@ def informed_after_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
         W = blas.dgemm(1.0, covariance, rows.T)
         covariance = _reduced(covariance, _half(W, blas.dgemm(1.0, rows.T, W, trans_a=1)))
     return informed(covariance, matrix)
+
+
+def informed_whole(covariance: Array, matrix: Array, rows: Array) -> Array:
+    """The same from all readings as one information matrix, made exactly symmetric: slower, for any prior covariance.
+
+    Args:
+        covariance: (N, N) prior covariance P, symmetric up to rounding.
+        matrix: (n, n) information Λ on the first n components.
+        rows: (m, N) whitened Jacobian of the other readings, whatever was read.
+    """
+    if len(rows):
+        total = rows.T @ rows
+        total[: len(matrix), : len(matrix)] += matrix
+        matrix = total
+    posterior = informed(covariance, matrix)
+    return 0.5 * (posterior + posterior.T)
 
 
 def _informed_root(covariance: Array, matrix: Array) -> Array:
