@@ -24,6 +24,7 @@ class PlainManifold:
     """What the kinematic plants ask of a body, for plain coordinates: a stand-in for the human's manifold."""
 
     nv: ClassVar[int] = 4
+    movement_sd: ClassVar[Array] = np.ones(4)
 
     def integrate(self, q: Array, dv: Array) -> Array:
         """(4,) q + dv."""

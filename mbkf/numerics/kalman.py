@@ -130,6 +130,8 @@ def made_positive(covariance: Array) -> Array:
 
 def _informed_with_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
     N, n, m = len(covariance), len(matrix), len(rows)
+    if not m:
+        return informed(covariance, matrix)
     halves = np.empty((N, n + m), order="F")
     # Columns of an array in Fortran order, so that BLAS writes into them.
     first, W = halves[:, :n], halves[:, n:]

@@ -254,7 +254,7 @@ def test_a_short_loss_is_bridged_with_growing_spreads(name):
 def test_a_step_with_what_was_expected_is_the_same_step(name):
     follower, found = estimates(name)
     for t in (5, 30):
-        prediction = follower.expect(found[t])
+        prediction = follower.predict(found[t])
         np.testing.assert_array_equal(
             follower.step(found[t], recording(), t + 1, prediction).q, found[t + 1].q
         )
@@ -267,7 +267,7 @@ def test_what_is_expected_is_as_far_off_as_stated(name):
     everyone = np.ones(len(recording().markers_m[0]), dtype=bool)
     squared = []
     for t in range(20, LAST):
-        markers = follower.expect(found[t]).markers
+        markers = follower.predict(found[t]).markers
         S = markers.spread(everyone)
         S[:, np.arange(3), np.arange(3)] += MARKER_SD_M**2
         y = recording().markers_m[t + 1] - markers.positions_m

@@ -85,7 +85,7 @@ def test_the_smoother_uses_them_too():
 
 
 def test_unseen_arms_are_not_thrown_about():
-    """Held near their usual posture, while a filter without sensors lets them go where Newton's law needs them."""
+    """Held near their mean posture, while a filter without sensors lets them go where Newton's law needs them."""
     found = followed(imus=True)
     clear = made().model
     arms = np.concatenate([np.arange(*clear.joint(f"{side}_{part}").v.indices(clear.nv))

@@ -5,16 +5,27 @@ from functools import cache
 
 import numpy as np
 import pytest
-from mbkf.filters.dynamic_records import Shown, ShownFrame
 from scipy.spatial.transform import Rotation
 
-from mbkf.filters.dynamic.settings import DynamicSettings
-from mbkf.sensors.coordination.prior import BLOCK_S, LEADING, SHOWN_HZ, Habit
-from mbkf.filters.dynamic_records import Shown, ShownFrame
-from mbkf.filters.dynamic.settings import DynamicSettings
-from mbkf.sensors.coordination.prior import BLOCK_S, SHOWN_HZ, Habit
+from mbkf.sensors.block import Frame
+from mbkf.sensors.coordination.prior import (
+    BLOCK_S,
+    NOTED_HZ,
+    CoordinationMemory,
+    CoordinationPrior,
+    NotedFrame,
+)
 from mbkf.synthesis.motion import synthesise_motion
-from tests.dynamics import DT, camera_markers, dynamic_filter, random_state, standing, trial
+from tests.dynamics import (
+    DT,
+    block_of,
+    camera_markers,
+    dynamic_filter,
+    memory_of,
+    random_state,
+    standing,
+    trial,
+)
 from tests.motions import reference_model
 
 pytestmark = pytest.mark.slow
@@ -43,9 +54,28 @@ def followed(hide=True, **settings):
         markers[round(SEEN_S / DT) :, arms] = np.nan
     state, memory, steps = made.state(0, rng), kalman.begin(), []
     for seen, load in zip(markers[1:], made.motion.foot_wrench[1:], strict=True):
-        steps.append(kalman.step(state, memory, seen, load))
+        steps.append(kalman.step(state, memory, Frame(seen, load)))
         state, memory = steps[-1].state, steps[-1].memory
     return steps
+
+
+def decided(step):
+    """Dofs that a step's prior predicts."""
+    return step.decisions.notes.coordinated
+
+
+def kept(step):
+    """What the prior keeps after a step of the walk's filter."""
+    return memory_of(walk().kalman(), CoordinationPrior, step.memory)
+
+
+def prior_of(kalman):
+    return block_of(kalman, CoordinationPrior)[0]
+
+
+def learned(block, memory):
+    """What a block has learned before the next frame comes."""
+    return block.prepare(None, memory)
 
 
 def arm_dofs(model):
@@ -67,7 +97,7 @@ def size(errors):
 
 def test_hidden_arms_swing_on():
     error = size(arm_errors(followed()))
-    assert error < 0.5 * size(arm_errors(followed(habit_memory_s=0.0)))
+    assert error < 0.5 * size(arm_errors(followed(coordination_memory_s=0.0)))
     assert error < np.deg2rad(6.0)
 
 
@@ -79,99 +109,99 @@ def test_their_stated_spread_is_like_their_error():
 
 
 def test_nothing_changes_while_all_is_seen():
-    for with_habit, without in zip(
-        followed(hide=False), followed(hide=False, habit_memory_s=0.0), strict=True
+    for coordinated, without in zip(
+        followed(hide=False), followed(hide=False, coordination_memory_s=0.0), strict=True
     ):
-        np.testing.assert_array_equal(with_habit.state.q, without.state.q)
-        assert with_habit.decision.expected is None
+        np.testing.assert_array_equal(coordinated.state.q, without.state.q)
+        assert not len(decided(coordinated))
 
 
 def test_what_goes_out_of_sight_is_learned_once_from_what_was_seen():
     made, first = walk(), round(SEEN_S / DT)
-    before, steps = followed()[first - 2].memory.shown, followed()[first:]
-    assert not before.synergies
+    before, steps = kept(followed()[first - 2]), followed()[first:]
+    assert not before.learned
     arms = set(arm_dofs(made.model))
     for step in steps:
-        assert set(step.decision.expected.dofs) <= arms & set(step.decision.unseen)
-    followers = made.kalman().habit.followers
-    learned = steps[-1].memory.shown.synergies
-    assert {j for j, own in enumerate(followers) if arms & set(own)} == set(learned)
-    assert all(learned[j] is steps[0].memory.shown.synergies[j] for j in learned)
-    noted = steps[-1].memory.shown.noted[-round(HIDDEN_S * SHOWN_HZ) :]
-    assert not any(one.seen[list(arms)].any() for one in noted)
-    assert all(one.seen[list(arms)].all() for one in before.noted)
+        assert set(decided(step)) <= arms & set(step.decisions.notes.unobserved)
+    followers = prior_of(made.kalman()).followers
+    found = kept(steps[-1]).learned
+    assert {j for j, own in enumerate(followers) if arms & set(own)} == set(found)
+    assert all(found[j] is kept(steps[0]).learned[j] for j in found)
+    noted = kept(steps[-1]).noted[-round(HIDDEN_S * NOTED_HZ) :]
+    assert not any(one.observed[list(arms)].any() for one in noted)
+    assert all(one.observed[list(arms)].all() for one in before.noted)
 
 
-def test_a_habit_begins_a_frame_after_what_it_is_of_has_gone():
-    """In that frame nobody has had time to learn; what comes back takes its habit with it at once."""
+def test_a_prediction_begins_a_frame_after_its_joint_has_gone():
+    """In that frame there was no time to learn; what comes back is no longer predicted at once."""
     last = round(SEEN_S / DT) - 1
     gone, after = followed()[last : last + 2]
-    assert len(gone.decision.unseen) and gone.decision.expected is None
-    assert gone.memory.shown.gone and not gone.memory.shown.synergies
-    assert after.decision.expected is not None
+    assert len(gone.decisions.notes.unobserved) and not len(decided(gone))
+    assert kept(gone).gone and not kept(gone).learned
+    assert len(decided(after))
 
 
 def test_what_comes_back_is_forgotten_and_what_was_seen_elsewhere_is_learned_by_itself():
     """The second joint was out of sight in the first half of the notes."""
-    kalman, rng = dynamic_filter(MODEL), np.random.default_rng(0)
-    habit, memory = kalman.habit, kalman.begin()
-    first, second = habit.followers[:2]
+    block, rng = prior_of(dynamic_filter(MODEL)), np.random.default_rng(0)
+    first, second = block.followers[:2]
     noted = []
-    for block in range(10):
+    for time in range(10):
         seen = np.ones(MODEL.nv, dtype=bool)
-        seen[second] = block >= 5
-        features = rng.normal(size=len(habit.features(standing(MODEL), np.zeros(MODEL.nv))))
+        seen[second] = time >= 5
+        features = rng.normal(size=len(block.features(standing(MODEL), np.zeros(MODEL.nv))))
         movement = rng.normal(size=2 * MODEL.nv)
-        noted += [ShownFrame(block, features, movement, seen)] * 3
-    shown = Shown(30, tuple(noted), (0, 1), {})
-    both = habit.learned(memory._replace(shown=shown))
+        noted += [NotedFrame(time, features, movement, seen)] * 3
+    memory = CoordinationMemory(30, tuple(noted), (0, 1), {})
+    both = learned(block, memory)
     assert (both[0].blocks, both[1].blocks) == (10, 5)
     assert len(both[0].targets) == 2 * len(first) and len(both[1].targets) == 2 * len(second)
-    kept = habit.learned(memory._replace(shown=shown._replace(gone=(1,), synergies={1: both[1]})))
-    assert kept.keys() == {1} and kept[1] is both[1]
-    assert not habit.learned(memory._replace(shown=shown._replace(gone=())))
-    assert not habit.learned(memory)
+    left = learned(block, memory._replace(gone=(1,), learned={1: both[1]}))
+    assert left.keys() == {1} and left[1] is both[1]
+    assert not learned(block, memory._replace(gone=()))
+    assert not learned(block, block.begin())
+    assert not learned(block, None)
 
 
 def test_memory_ends():
-    noted = followed(habit_memory_s=1.0)[-1].memory.shown.noted
-    assert len(noted) == round(SHOWN_HZ)
+    noted = kept(followed(coordination_memory_s=1.0)[-1]).noted
+    assert len(noted) == round(NOTED_HZ)
     assert len({one.block for one in noted}) <= 1.0 / BLOCK_S + 1
 
 
 def test_features_know_neither_place_nor_heading():
-    kalman, rng = dynamic_filter(MODEL), np.random.default_rng(0)
+    block, rng = prior_of(dynamic_filter(MODEL)), np.random.default_rng(0)
     state = random_state(MODEL, rng, standing(MODEL))
     moved = state.q.copy()
     moved[:3] += rng.normal(size=3)
     moved[3:7] = (Rotation.from_euler("z", 2.0) * Rotation.from_quat(moved[3:7])).as_quat()
-    found = kalman.habit.features(moved, state.v)
-    np.testing.assert_allclose(found, kalman.habit.features(state.q, state.v), atol=1e-9)
+    found = block.features(moved, state.v)
+    np.testing.assert_allclose(found, block.features(state.q, state.v), atol=1e-9)
 
 
 def test_features_know_how_the_pelvis_leans():
-    kalman, q = dynamic_filter(MODEL), standing(MODEL)
+    block, q = prior_of(dynamic_filter(MODEL)), standing(MODEL)
     leaning = MODEL.integrate(q, np.r_[np.zeros(3), 0.0, 0.2, 0.0, np.zeros(MODEL.nv - 6)])
     still = np.zeros(MODEL.nv)
-    change = kalman.habit.features(leaning, still) - kalman.habit.features(q, still)
+    change = block.features(leaning, still) - block.features(q, still)
     assert np.abs(change[:2]).max() == pytest.approx(np.sin(0.2))
     assert np.abs(change[2:]).max() == 0.0
 
 
 def test_trunk_and_legs_lead_and_what_no_marker_moves_does_not_follow():
-    held = np.zeros(MODEL.nv, dtype=bool)
-    held[MODEL.joint("head").v] = True
-    followers = np.concatenate(Habit(MODEL, DT, held, DynamicSettings()).followers)
+    unobservable = np.zeros(MODEL.nv, dtype=bool)
+    unobservable[MODEL.joint("head").v] = True
+    followers = np.concatenate(CoordinationPrior(MODEL, DT, unobservable).followers)
     leading = np.concatenate([np.arange(MODEL.joint(s).v.start, MODEL.joint(s).v.stop) for s in LEADING])
     assert not set(followers) & set(leading)
-    assert set(range(6, MODEL.nv)) - set(leading) - set(followers) == set(np.flatnonzero(held))
+    assert set(range(6, MODEL.nv)) - set(leading) - set(followers) == set(np.flatnonzero(unobservable))
 
 
-def test_it_learns_without_the_follower_that_is_never_there():
-    """A body whose arms, head and toes carry no marker has nobody to follow."""
-    held = np.ones(MODEL.nv, dtype=bool)
+def test_a_body_without_joints_that_follow_is_served():
+    """Arms, head and toes carry no marker."""
+    unobservable = np.ones(MODEL.nv, dtype=bool)
     for segment in ("pelvis", *LEADING):
-        held[MODEL.joint(segment).v] = False
-    habit = Habit(MODEL, DT, held, DynamicSettings())
-    assert habit.followers == []
-    assert not habit.learned(dynamic_filter(MODEL).begin()._replace(shown=Shown(0, (), (), {})))
+        unobservable[MODEL.joint(segment).v] = False
+    block = CoordinationPrior(MODEL, DT, unobservable)
+    assert block.followers == []
+    assert not learned(block, block.begin())
