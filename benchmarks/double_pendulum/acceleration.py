@@ -16,7 +16,7 @@ from benchmarks.double_pendulum.kinematic import PlainManifold, joint_torque
 from benchmarks.double_pendulum.torque import START_VARIANCE
 from benchmarks.double_pendulum.trials import Estimate, Trial
 from mbkf.conventions import Array
-from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
+from mbkf.filters.dynamic.plant import DynamicState, SingerPlant, SingerSettings
 from mbkf.model.double_pendulum import ROOT, DoublePendulum, PendulumShape
 from mbkf.numerics.kalman import Information, correct, information
 from mbkf.numerics.smoothing import BackwardPass
@@ -82,7 +82,8 @@ class PendulumAccelerationFilter:
         """
         self.body, self.belief = DoublePendulum(shape, residual=False), belief
         spread = np.full(4, belief.acceleration)
-        self.plant = SingerPlant(PlainManifold.as_model(), dt_s, spread, belief.decay_s)
+        motion = SingerSettings(activity_gain=0.0, decay_s=belief.decay_s)
+        self.plant = SingerPlant(PlainManifold.as_model(spread), dt_s, np.zeros(4, dtype=bool), motion)
         self._walk = belief.load_noise**2 * dt_s
         plate = [belief.force_n, belief.force_n, belief.moment_nm]
         self._sd = np.array([belief.marker_m] * 8 + plate + [belief.residual] * 3)
