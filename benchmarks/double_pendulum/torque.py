@@ -11,10 +11,10 @@ import scipy.linalg
 from benchmarks.double_pendulum.trials import Estimate, Trial
 from mbkf.conventions import Array
 from mbkf.errors import UnknownName
-from mbkf.filters.torque.plant import ForcedPrediction, ForcedState, Scheme, TorquePlant, update
+from mbkf.filters.torque.plant import ForcedPrediction, ForcedState, Scheme, TorquePlant
 from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
 from mbkf.model.forced_body import ForcedBody, WithIdleStates
-from mbkf.numerics.kalman import Information, information
+from mbkf.numerics.kalman import Information, correct, information
 from mbkf.numerics.smoothing import BackwardPass
 from mbkf.synthesis.pendulum import MARKER_BARS, MARKER_SHARES
 
@@ -164,8 +164,7 @@ class PendulumFilter:
             markers_m: (8,) markers, NaN where missing.
             efforts: (4,) measured efforts, NaN where not measured.
         """
-        prediction = self.plant.predict(state)
-        prior = prediction.state
+        prior = self.plant.predict(state)
         seen = self.pendulum.on_bars(prior.q, MARKER_SHARES, MARKER_BARS)
         H = self._H.copy()
         H[:8, :4] = seen.jacobian
@@ -174,8 +173,9 @@ class PendulumFilter:
         innovation = np.concatenate([markers_m, efforts]) - expected
         rows = self._used & ~np.isnan(innovation)
         evidence = information(innovation[rows], H[rows], self._sd[rows])
-        updated = update(self.body, prior, evidence)
-        return Step(updated.state, prediction, evidence, updated.nis)
+        found = correct(prior.P, evidence)
+        after = self.plant.retract(prior, found.step, found.covariance)
+        return Step(after, prior, evidence, found.nis)
 
 
 @dataclass(frozen=True)
