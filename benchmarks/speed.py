@@ -40,7 +40,7 @@ INFORMATION = math.inf
 
 @dataclass(frozen=True)
 class Walk:
-    """A walk to follow: filters, Newton–Euler equations, markers (T, M, 3) and feet's wrenches (12,) for inverse dynamics.
+    """A walk to follow: filters, Newton–Euler equations, markers (T, M, 3), wrenches (2, 6) in the place of plates.
 
     ``plates`` (T, K, 6) are what the dynamic filter reads.
     """
@@ -107,7 +107,7 @@ def make_walk(seconds: float) -> Walk:
     loads = plate_wrenches(plates, measured.times_s, measured.rate_hz)
     feet = ContactDetector(model, plates, kalman.plant.dt_s)
     dynamic = DynamicFilter.standard(sensor, noise, feet, kalman.plant.dt_s, held, DynamicSettings())
-    return Walk(kalman, dynamic, loads, NewtonEuler(model), measured.positions_m, wrench.ravel())
+    return Walk(kalman, dynamic, loads, NewtonEuler(model), measured.positions_m, wrench)
 
 
 def time_kinematic(walk: Walk) -> Times:
@@ -127,7 +127,7 @@ def time_kinematic(walk: Walk) -> Times:
             done = kalman.step(state, memory, Frame(markers, no_plates))
             result, memory = done.state, done.memory
             ticks.append(perf_counter())
-            walk.balance.tau(result.q, result.v, (result.v - state.v) / dt, walk.foot_wrench)
+            walk.balance.tau(result.q, result.v, (result.v - state.v) / dt, walk.foot_wrench.ravel())
             ticks.append(perf_counter())
             state = result
             rows.append(np.diff(ticks))

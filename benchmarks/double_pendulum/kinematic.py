@@ -1,4 +1,4 @@
-"""FCDI on the double pendulum: the human's white-acceleration plant and update, then inverse dynamics (SPEC §5)."""
+"""FCDI on the double pendulum: the human's white-acceleration plant and update, then inverse dynamics."""
 
 from __future__ import annotations
 
@@ -20,9 +20,15 @@ TORQUE_ROW = 3
 """τ_1 is what the equation of θ_2 asks for; residual efforts take what is left of the other three (eq. 3.12)."""
 
 
+@dataclass(frozen=True)
 class PlainManifold:
-    """What the kinematic plants ask of a body, for plain coordinates: a stand-in for the human's manifold."""
+    """What the kinematic plants ask of a body, for plain coordinates: a stand-in for the human's manifold.
 
+    Attributes:
+        movement_sd: (4,) typical accelerations of the coordinates z.
+    """
+
+    movement_sd: Array
     nv: ClassVar[int] = 4
     movement_sd: ClassVar[Array] = np.ones(4)
 
@@ -36,9 +42,9 @@ class PlainManifold:
         return np.eye(4), np.eye(4)
 
     @classmethod
-    def as_model(cls) -> HumanModel:
+    def as_model(cls, movement_sd: Array) -> HumanModel:
         """Itself, under the type that the plants are annotated with; they use no more than this of it."""
-        return cast(HumanModel, cls())
+        return cast(HumanModel, cls(movement_sd))
 
 
 def joint_torque(body: DoublePendulum, q: Array, v: Array, a: Array, plate: Array) -> float:
@@ -73,7 +79,8 @@ class KinematicMethod:
     def run(self, trial: Trial) -> Estimate:
         """Follows a trial; accelerations are differences of filtered velocities (eq. 3.7)."""
         body, dt, truth = DoublePendulum(self.shape, residual=False), trial.dt_s, trial.motion
-        plant = WhiteAccelerationPlant(PlainManifold.as_model(), dt, np.full(4, self.acceleration))
+        spread = np.full(4, self.acceleration)
+        plant = WhiteAccelerationPlant(PlainManifold.as_model(spread), dt, spread)
         state = KinematicState(truth.q[0], truth.v[0], np.diag(np.repeat(START_VARIANCE[:2], 4)))
         frames = len(truth.times_s)
         q, v, nis = np.empty((frames, 4)), np.empty((frames, 4)), np.full(frames, np.nan)

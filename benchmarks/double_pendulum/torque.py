@@ -11,10 +11,10 @@ import scipy.linalg
 from benchmarks.double_pendulum.trials import Estimate, Trial
 from mbkf.conventions import Array
 from mbkf.errors import UnknownName
-from mbkf.filters.torque.plant import ForcedPrediction, ForcedState, Scheme, TorquePlant, update
+from mbkf.filters.torque.plant import ForcedPrediction, ForcedState, Scheme, TorquePlant
 from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
 from mbkf.model.forced_body import ForcedBody, WithIdleStates
-from mbkf.numerics.kalman import Information, information
+from mbkf.numerics.kalman import Information, correct, information
 from mbkf.numerics.smoothing import BackwardPass
 from mbkf.synthesis.pendulum import MARKER_BARS, MARKER_SHARES
 
@@ -22,10 +22,10 @@ SENSORS = ("m1", "m2", "m3", "m4", "tau_1", "F_x", "F_y", "T_2")
 """Markers from top to bottom, then efforts (eq. 3.61)."""
 
 STANDARD_SENSORS = tuple(name for name in SENSORS if name != "tau_1")
-"""All but the torque sensor at the joint, which nobody has."""
+"""All but the torque sensor at the joint, which no laboratory has."""
 
 START_VARIANCE = (1e-4, 1e-2, 10.0, 1e-6)
-"""Of z, ż, T_e and residual efforts at the start, each component (SPEC §8)."""
+"""Variances of z, ż, T_e and residual efforts at the start, each component; the thesis does not state them."""
 
 
 @dataclass(frozen=True)
@@ -164,8 +164,7 @@ class PendulumFilter:
             markers_m: (8,) markers, NaN where missing.
             efforts: (4,) measured efforts, NaN where not measured.
         """
-        prediction = self.plant.predict(state)
-        prior = prediction.state
+        prior = self.plant.predict(state)
         seen = self.pendulum.on_bars(prior.q, MARKER_SHARES, MARKER_BARS)
         H = self._H.copy()
         H[:8, :4] = seen.jacobian
@@ -174,8 +173,9 @@ class PendulumFilter:
         innovation = np.concatenate([markers_m, efforts]) - expected
         rows = self._used & ~np.isnan(innovation)
         evidence = information(innovation[rows], H[rows], self._sd[rows])
-        updated = update(self.body, prior, evidence)
-        return Step(updated.state, prediction, evidence, updated.nis)
+        found = correct(prior.P, evidence)
+        after = self.plant.retract(prior, found.step, found.covariance)
+        return Step(after, prior, evidence, found.nis)
 
 
 @dataclass(frozen=True)
@@ -217,7 +217,7 @@ class TorqueMethod:
 
 
 def smoothed(states: Sequence[ForcedState], steps: Sequence[Step]) -> list[ForcedState]:
-    """Every frame with what all later ones say of it, linearly about the filter's own course."""
+    """Every frame corrected by all later ones (smoother), linearised about the filter's own estimates."""
     back = BackwardPass(len(states[0].P), covariances=False)
     found = []
     for t in range(len(states) - 1, -1, -1):

@@ -1,4 +1,4 @@
-"""Does the dynamic filter err as much as it says? On motions made by its own plant, filter and smoother.
+"""Consistency of the dynamic filter and smoother on motions made by the filter's own plant.
 
 Matched exactly: start, Singer accelerations, white markers, plates and residual, all with the noise the filter
 believes. Truth obeys Newton's law: the residual is drawn, and the two wrenches follow from the motion, shared
@@ -15,9 +15,8 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from benchmarks.checks import Check
+from benchmarks.checks import Check, within
 from benchmarks.dynamic.methods import Mapper
-from benchmarks.dynamic.synthetic import within
 from mbkf.conventions import Array
 from mbkf.filters.dynamic.filter import DynamicFilter
 from mbkf.filters.dynamic.plant import DynamicState
@@ -56,7 +55,7 @@ SETTINGS = changed(
 
 @dataclass(frozen=True)
 class Judged:
-    """What one frame's estimate says of its errors.
+    """Errors of one frame's estimate relative to its covariance.
 
     Attributes:
         ratios: Per quantity of QUANTITIES its errors over their standard deviations (n,).
@@ -114,7 +113,7 @@ class AlwaysMeasured(ContactDetector):
 
 
 class OwnPlant:
-    """A person in the reference posture who moves as the filter's plant says."""
+    """A person in the reference posture who moves as the filter's plant does."""
 
     def __init__(self) -> None:
         self.model = HumanModel.scaled()
@@ -143,7 +142,7 @@ class OwnPlant:
         return DynamicState(self.q, still, still, np.zeros(12), np.diag(sd**2))
 
     def drawn(self, start: DynamicState, rng: np.random.Generator) -> DynamicState:
-        """A true state before the first frame, as far from the start as that says."""
+        """A true state before the first frame, drawn from the start's covariance."""
         sd = np.sqrt(np.diag(start.P))[: 3 * self.model.nv]
         return self.kalman.plant.retract(
             start, np.concatenate([sd * rng.normal(size=len(sd)), np.zeros(12)]), start.P
@@ -176,7 +175,7 @@ class OwnPlant:
         return Frame(markers, true.w.reshape(2, 6) + noise)
 
     def judged(self, true: DynamicState, found: DynamicState) -> Judged:
-        """Errors against what the estimate says of them."""
+        """Errors relative to the estimate's covariance."""
         nv = self.model.nv
         e, P = self.kalman.plant.difference(found, true), found.P
         joint = self.balance.torques(found.q, found.v, found.a, found.w)

@@ -7,6 +7,7 @@ order, which those take without a copy. All results are new arrays.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import blas, lapack
@@ -14,8 +15,7 @@ from scipy.linalg import blas, lapack
 from mbkf.conventions import Array
 
 
-@dataclass(frozen=True)
-class Information:
+class Information(NamedTuple):
     """Information of a set of independent readings on n state components.
 
     For innovations y with Jacobian H and noise R: ``matrix`` = HᵀR⁻¹H (n, n), ``vector`` = HᵀR⁻¹y (n,),
@@ -27,7 +27,7 @@ class Information:
     innovation: float
     readings: int
 
-    def __add__(self, other: Information) -> Information:
+    def __add__(self, other: Information) -> Information:  # type: ignore[override]
         """Both sets of readings together."""
         return Information(
             self.matrix + other.matrix,
@@ -81,8 +81,7 @@ def correct(covariance: Array, readings: Information) -> Correction:
         readings: Information on the first n components.
     """
     n = len(readings.vector)
-    posterior = informed(covariance, readings.matrix)
-    posterior = 0.5 * (posterior + posterior.T)
+    posterior = informed_whole(covariance, readings.matrix, np.zeros((0, 0)))
     step = posterior[:, :n] @ readings.vector
     nis = readings.innovation - float(readings.vector @ step[:n])
     return Correction(step, posterior, nis, readings)
@@ -155,6 +154,22 @@ def informed_after_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
         W = blas.dgemm(1.0, covariance, rows.T)
         covariance = _reduced(covariance, _half(W, blas.dgemm(1.0, rows.T, W, trans_a=1)))
     return informed(covariance, matrix)
+
+
+def informed_whole(covariance: Array, matrix: Array, rows: Array) -> Array:
+    """The same from all readings as one information matrix, made exactly symmetric: slower, for any prior covariance.
+
+    Args:
+        covariance: (N, N) prior covariance P, symmetric up to rounding.
+        matrix: (n, n) information Λ on the first n components.
+        rows: (m, N) whitened Jacobian of the other readings, whatever was read.
+    """
+    if len(rows):
+        total = rows.T @ rows
+        total[: len(matrix), : len(matrix)] += matrix
+        matrix = total
+    posterior = informed(covariance, matrix)
+    return 0.5 * (posterior + posterior.T)
 
 
 def _informed_root(covariance: Array, matrix: Array) -> Array:

@@ -35,6 +35,8 @@ class ExtraState(NamedTuple):
 class Layout:
     """Named slices of a tangent state of ``size`` components, in order and without gaps.
 
+    A slice may also name the end of another (:meth:`with_last`).
+
     Attributes:
         nv: Dofs of the body.
         slices: Slice of each part by its name.
@@ -69,6 +71,12 @@ class Layout:
             slices[extra.name] = slice(first, first + len(extra.start))
             first += len(extra.start)
         return Layout(self.nv, slices, first, (*self.extras, *extras))
+
+    def with_last(self, name: str, size: int) -> Layout:
+        """The layout with a name of their own for its last ``size`` components."""
+        return Layout(
+            self.nv, {**self.slices, name: slice(self.size - size, self.size)}, self.size, self.extras
+        )
 
     def __getitem__(self, name: str) -> slice:
         """The slice of a part.

@@ -22,7 +22,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.numerics.kalman import Information
 from mbkf.sensors.block import NO_DOFS, Block, Frame, Notes, OperatingPoint
 from mbkf.sensors.gating import ObservedDofs, gated
-from mbkf.sensors.marker_sensor import MarkerInformation, MarkerReading, MarkerSensor
+from mbkf.sensors.marker_sensor import JacobianInformation, MarkerInformation, MarkerReading, MarkerSensor
 from mbkf.sensors.skin import SkinMarkers
 
 DISPLACED_SD_RAD = 0.5
@@ -110,6 +110,7 @@ class Markers(Block[Any, MarkerReading, MarkerDecision, MarkerMemory]):
         *,
         inflate: bool = True,
         track_loss: bool = True,
+        compress: type[MarkerInformation] | type[JacobianInformation] = MarkerInformation,
     ) -> None:
         """Makes the block.
 
@@ -121,12 +122,13 @@ class Markers(Block[Any, MarkerReading, MarkerDecision, MarkerMemory]):
             settings: Noise and gate.
             inflate: Whether a displaced limb's predicted covariance is inflated.
             track_loss: Whether a frame in which most markers lie far off ends the track.
+            compress: Arithmetic of the information; both give the same up to rounding.
         """
         s = settings
         self.sensor, self.settings, self.noise_m = sensor, s, noise_m * s.marker_noise_scale
         self._inflate, self._track_loss = inflate, track_loss
         self._certainty = 1.0 / self.noise_m[:, None]
-        self._information = MarkerInformation(sensor, self.noise_m)
+        self._information = compress(sensor, self.noise_m)
         self._skin: SkinMarkers | None = None
         if s.skin_memory_s > 0.0:
             self._skin = SkinMarkers(sensor, self.noise_m, s.camera_noise_m, s.skin_memory_s, dt_s)

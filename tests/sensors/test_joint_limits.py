@@ -37,7 +37,7 @@ def test_every_joint_is_limited_on_both_sides_of_standing_and_the_pelvis_is_not(
     assert (LIMITS.lower[6:] < 0).all() and (LIMITS.upper[6:] > 0).all()
 
 
-@pytest.mark.parametrize("name", ["squat", "walk", "jump"])
+@pytest.mark.parametrize("name", ["squat", "walk", pytest.param("jump", marks=pytest.mark.slow)])
 def test_people_who_move_pass_no_limit(name):
     made = trial(name)
     posture = PostureSensor(made.model)

@@ -1,4 +1,4 @@
-"""The thesis's dynamic filter: markers and plates through forward dynamics, one pure step per frame (SPEC §6).
+"""The thesis's dynamic filter: markers and plates through forward dynamics, with torques and wrenches as states.
 
 State: positions, velocities, pelvis residual, joint torques and foot wrenches, 166 for the reference body; in which
 coordinates of the forces, :data:`mbkf.model.human_dynamics.FORCE_STATES` says.
@@ -6,288 +6,219 @@ coordinates of the forces, :data:`mbkf.model.human_dynamics.FORCE_STATES` says.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
-import scipy.linalg
-from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
+from mbkf.errors import InvalidInput
+from mbkf.filters.filter import Filter, Memory, Step
 from mbkf.filters.kinematic.plant import KinematicState
-from mbkf.filters.torque.noise import ForceNoise, condition, load_variance, residual_variance
-from mbkf.filters.torque.plant import ForcedPrediction, ForcedState, TorquePlant, on_state, update
+from mbkf.filters.torque.noise import ForceNoise
+from mbkf.filters.torque.plant import ForcedState, TorquePlant
+from mbkf.filters.torque.report import TorqueState, reported
 from mbkf.filters.torque.settings import MASS_OF_TABLE_KG, TorqueSettings
+from mbkf.filters.torque.start import TorqueStart
 from mbkf.model.human_dynamics import HumanDynamics
-from mbkf.numerics.kalman import Information, correct, information
-from mbkf.sensors.foot_wrench import FootWrenchSensor
-from mbkf.sensors.gating import gated
-from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.numerics.kalman import correct, informed_whole
+from mbkf.sensors.block import AnyBlock, Frame, Notes, OperatingPoint
+from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.sensors.contact.records import ContactDecision
+from mbkf.sensors.foot_plates import Ahead, FootPlates, FootPlateSettings, PlateMemory
+from mbkf.sensors.marker_sensor import JacobianInformation, MarkerSensor
+from mbkf.sensors.markers import Markers, MarkerSettings
+from mbkf.sensors.pelvis_residual import PelvisResidual
 from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.rest import PostureAndRest
+
+TorqueStep = Step[ForcedState]
+"""A step of the torque-state filter."""
 
 
-@dataclass(frozen=True)
-class TorqueState:
-    """One instant of the filtered motion.
+def torque_blocks(
+    sensor: MarkerSensor,
+    noise_m: Array,
+    body: HumanDynamics,
+    detector: ContactDetector,
+    dt_s: float,
+    settings: TorqueSettings,
+) -> list[AnyBlock]:
+    """The standard blocks: markers, plates, posture and rest, pelvis residual.
 
-    Attributes:
-        q: (nq,) configuration.
-        v: (nv,) velocity.
-        a: (nv,) acceleration by Newton's law.
-        tau: (nv,) generalised forces; the first six are the pelvis residual in pelvis axes.
-        foot_wrench: (2, 6) force N and moment N m about the world's origin, world axes, on right and left foot.
-        tau_sd: (nv,) standard deviations of ``tau``; NaN for dofs whose torque is no state.
-        foot_wrench_sd: (2, 6) standard deviations of ``foot_wrench``.
-        filtered: The filter's own mean and covariance (n, n).
+    Args:
+        sensor: The markers on the body.
+        noise_m: (M,) their noise, m.
+        body: The forced body.
+        detector: Finds what the feet stand on.
+        dt_s: Time between frames.
+        settings: Settings of every block.
     """
-
-    q: Array
-    v: Array
-    a: Array
-    tau: Array
-    foot_wrench: Array
-    tau_sd: Array
-    foot_wrench_sd: Array
-    filtered: ForcedState
-
-
-@dataclass(frozen=True)
-class TorqueStep:
-    """One step of the filter.
-
-    Attributes:
-        state: Posterior.
-        prediction: Prior and transition, for a backward smoother.
-        refused: (M,) markers seen but not believed.
-        nis: Normalised innovation squared of believed markers and plates.
-        readings: How many numbers those are.
-        tracked: Whether enough markers were believed.
-        evidence: All information that corrected the prior, for a backward smoother; None where nothing did.
-    """
-
-    state: TorqueState
-    prediction: ForcedPrediction
-    refused: BoolArray
-    nis: float
-    readings: int
-    tracked: bool
-    evidence: Information | None
+    s, weak, scale = settings, settings.tracking, _scale(body)
+    markers = MarkerSettings(
+        marker_noise_scale=weak.marker_noise_scale,
+        innovation_share=0.0,
+        gate=weak.gate,
+        gate_radius_m=weak.gate_radius_m,
+        min_markers=weak.min_markers,
+    )
+    plates = FootPlateSettings(
+        s.plate_force_n * scale,
+        s.plate_moment_nm * scale,
+        s.unloaded_force_n * scale,
+        s.unloaded_moment_nm * scale,
+    )
+    return [
+        # The literal presets amplify roundings: the Jacobian's own keep the figures that were measured with them.
+        Markers(
+            sensor,
+            noise_m,
+            dt_s,
+            body.held,
+            markers,
+            inflate=False,
+            track_loss=False,
+            compress=JacobianInformation,
+        ),
+        FootPlates(body, detector, dt_s, plates),
+        PostureAndRest(PostureSensor(body.model), body.held, weak.posture_scale, weak.velocity_sd),
+        PelvisResidual(body, residual_sd(body, settings)),
+    ]
 
 
-@dataclass(frozen=True)
-class FootReading:
-    """What is known of the ground's reactions in a frame.
-
-    Attributes:
-        wrench: (2, 6) force N and moment N m about the world's origin, world axes, on right and left foot.
-        measured: (2,) feet whose wrench a plate measures.
-        airborne: (2,) feet that touch nothing: their wrench is 0.
-    """
-
-    wrench: Array
-    measured: BoolArray
-    airborne: BoolArray
-
-    @classmethod
-    def of(cls, wrench: Array, measured: BoolArray, airborne: BoolArray | None = None) -> FootReading:
-        """By default a foot whose measured wrench is exactly zero is taken to be in the air."""
-        if airborne is None:
-            airborne = measured & (wrench == 0.0).all(axis=1)
-        return cls(np.where(airborne[:, None], 0.0, wrench), measured | airborne, airborne)
+def residual_sd(body: HumanDynamics, settings: TorqueSettings) -> Array:
+    """(6,) spread of the pelvis residual about 0, N and N m."""
+    spread = [settings.residual_spread_force_n, settings.residual_spread_moment_nm]
+    return np.repeat(spread, 3) * _scale(body)
 
 
-class TorqueFilter:
-    """Extended Kalman filter with forward dynamics as its plant.
+def _scale(body: HumanDynamics) -> float:
+    return body.model.mass_kg / MASS_OF_TABLE_KG
+
+
+class FirstState(NamedTuple):
+    """A first state, the memory for the step after it, and what the feet were found to stand on."""
+
+    state: ForcedState
+    memory: Memory
+    contact: ContactDecision
+
+
+class TorqueFilter(Filter[ForcedState]):
+    """A :class:`mbkf.filters.filter.Filter` with forward dynamics as its plant.
 
     Attributes:
         sensor: The markers on the body.
-        noise_m: (M,) marker noise.
-        held: (nv,) dofs that no marker of the capture moves with.
-        settings: What it believes.
+        noise_m: (M,) their noise, m.
+        unobservable: (nv,) dofs that no marker of the capture moves with.
+        settings: Settings of plant and blocks.
         body: The forced body.
-        plant: Its discretised dynamics.
+        plates: The block of the force plates.
     """
 
+    plant: TorquePlant
+
     def __init__(
-        self, sensor: MarkerSensor, noise_m: Array, dt_s: float, held: BoolArray, settings: TorqueSettings
+        self,
+        sensor: MarkerSensor,
+        noise_m: Array,
+        dt_s: float,
+        body: HumanDynamics,
+        settings: TorqueSettings,
+        blocks: Sequence[AnyBlock],
     ) -> None:
-        self.sensor, self.held, self.settings = sensor, held, settings
-        self.noise_m = noise_m * settings.tracking.marker_noise_scale
-        self.body = HumanDynamics(sensor.model, held, settings.wrench_frame, settings.force_state)
-        self.plant = TorquePlant(self.body, dt_s, ForceNoise(self.body, dt_s, settings), settings.scheme)
-        self.plates = FootWrenchSensor(self.body)
-        self.posture = PostureSensor(sensor.model)
-        spread = [settings.residual_spread_force_n, settings.residual_spread_moment_nm]
-        self._scale = sensor.model.mass_kg / MASS_OF_TABLE_KG
-        self._residual_sd = np.repeat(spread, 3) * self._scale
-        self._rest = np.flatnonzero(~held)
-        self._free = np.flatnonzero(~held[self.posture.dofs])
+        """Makes the filter.
 
-    # Start.
+        Args:
+            sensor: The markers on the body.
+            noise_m: (M,) their noise, m.
+            dt_s: Time between frames.
+            body: The forced body.
+            settings: Settings of plant and start.
+            blocks: Instruments, laws and priors, force plates among them; :func:`torque_blocks` for the standard ones.
 
-    def start(
-        self,
-        motion: KinematicState,
-        acceleration: Array,
-        foot_wrench: Array,
-        measured: BoolArray,
-        airborne: BoolArray | None = None,
-    ) -> TorqueState:
-        """A state from the kinematic filter's, its acceleration estimate (nv,) and the reactions in the frame.
-
-        Torques follow by inverse dynamics under the reactions (eq. 3.12), and so does their covariance. With
-        consistent noise, motion and reactions are first made to agree on a small residual.
+        Raises:
+            InvalidInput: There is no block of force plates, or one adds states of its own.
         """
-        feet = FootReading.of(foot_wrench, measured, airborne)
-        a = np.where(self.body.kinematic, 0.0, acceleration)
-        q, v = motion.q, motion.v
-        u = self.body.forces(q, v, a, feet.wrench)
-        if self.settings.noise == "independent":
-            return self.report(ForcedState(q, v, u, self._plain_covariance(motion.P)))
-        nv, torque = self.body.nv, self.body.joint_forces(q, v, u)
-        linear = self.body.linearise(q, v, u)
-        mass = self.body.model.mass_matrix(q)[self.body.torque_dofs]
-        rows = np.zeros((self.body.nu, 3 * nv + 12))
-        rows[: len(mass), : 2 * nv] = -mass @ np.hstack([linear.by_q, linear.by_v])
-        rows[:, 2 * nv :] = self.body.force_rows(q)
-        residual = torque.by_u[:6] @ rows
-        residual[:, : 2 * nv] += np.hstack([torque.by_q, torque.by_v])[:6]
-        spread = np.where(self.body.kinematic, 0.0, self.sensor.model.acceleration_sd)
-        free = scipy.linalg.block_diag(motion.P, np.diag(spread**2), np.diag(self._plate_sd(feet) ** 2))
-        walk = residual_variance(self.settings, self.body.model.mass_kg)
-        allowed = np.where(np.isfinite(self._residual_sd), self._residual_sd**2, walk)
-        bound = condition(free, residual, allowed, -torque.torque[:6])
-        whole = np.vstack([np.eye(2 * nv, 3 * nv + 12), rows])
-        shift = whole @ bound.shift
-        prior = ForcedState(
-            self.body.integrate(q, shift[:nv]),
-            v + shift[nv : 2 * nv],
-            u + shift[2 * nv :],
-            whole @ bound.covariance @ whole.T,
-        )
-        return self.report(prior)
+        plates = [block for block in blocks if isinstance(block, FootPlates)]
+        if len(plates) != 1 or any(block.states() for block in blocks):
+            raise InvalidInput(
+                "a torque-state filter needs one block FootPlates and takes no block that adds states of its own; "
+                "the dynamic filter does"
+            )
+        plant = TorquePlant(body, dt_s, ForceNoise(body, dt_s, settings), settings.scheme, wrenches=12)
+        super().__init__(plant, blocks, informed_whole)
+        self.sensor, self.settings, self.body, self.plates = sensor, settings, body, plates[0]
+        self.noise_m = noise_m * settings.tracking.marker_noise_scale
+        self.unobservable = body.held
+        self._start = TorqueStart(body, plant, settings, residual_sd(body, settings))
 
-    def _plain_covariance(self, P: Array) -> Array:
-        """Forces known as well as a second of their own noise leaves them."""
-        own = np.diag(self.plant.density(ForcedState(np.zeros(0), np.zeros(0), np.zeros(0), P)))
-        return scipy.linalg.block_diag(P, np.diag(own[2 * self.body.nv :]))
+    @classmethod
+    def standard(
+        cls,
+        sensor: MarkerSensor,
+        noise_m: Array,
+        detector: ContactDetector,
+        dt_s: float,
+        unobservable: BoolArray,
+        settings: TorqueSettings,
+    ) -> TorqueFilter:
+        """The filter with :func:`torque_blocks`.
 
-    # Step.
+        Args:
+            sensor: The markers on the body.
+            noise_m: (M,) their noise, m.
+            detector: Finds what the feet stand on.
+            dt_s: Time between frames.
+            unobservable: (nv,) dofs that no marker of the capture moves with.
+            settings: Settings of plant and blocks.
+        """
+        body = HumanDynamics(sensor.model, unobservable, settings.wrench_frame, settings.force_state)
+        blocks = torque_blocks(sensor, noise_m, body, detector, dt_s, settings)
+        return cls(sensor, noise_m, dt_s, body, settings, blocks)
 
-    def step(
-        self,
-        state: TorqueState,
-        measured_m: Array,
-        foot_wrench: Array,
-        measured: BoolArray,
-        airborne: BoolArray | None = None,
-    ) -> TorqueStep:
-        """ForcedPrediction and correction by one frame.
+    def first(self, motion: KinematicState, acceleration: Array, frame: Frame) -> FirstState:
+        """A first state from a motion, and the plates of its frame.
 
-        A filter that has diverged until nothing can be computed keeps its state and is untracked.
+        Args:
+            motion: Positions and velocities, as the kinematic filter estimates them.
+            acceleration: (nv,) estimate.
+            frame: Readings of the frame; the plates' are used.
+        """
+        begun = PlateMemory(self.plates.detector.begin(), Ahead(motion.q, motion.v, acceleration))
+        decision = self.plates.decide(OperatingPoint(motion, None), frame, begun, Notes())
+        feet = decision.reading
+        state = self._start.state(motion, acceleration, feet, self.plates.sd(feet))
+        memory = self._with_plates(self.begin(), self.plates.next_memory(state, decision))
+        return FirstState(state, memory, decision.contact)
+
+    def stayed(self, state: ForcedState, memory: Memory, frame: Frame) -> FirstState:
+        """The same state after a frame in which nothing could be computed but contact.
 
         Args:
             state: Posterior of the frame before.
-            measured_m: (M, 3) markers, NaN where missing.
-            foot_wrench: (2, 6) about the world's origin, world axes, on right and left foot.
-            measured: (2,) feet whose wrench is known; the others' stays free.
-            airborne: (2,) feet that touch nothing; see :meth:`FootReading.of`.
+            memory: Of the frame before.
+            frame: The readings.
         """
-        feet = FootReading.of(foot_wrench, measured, airborne)
-        try:
-            found = self._step(state.filtered, measured_m, feet)
-        except (np.linalg.LinAlgError, ValueError):
-            found = None
-        if found is not None and np.isfinite(found.state.q).all() and np.isfinite(found.state.tau).all():
-            return found
-        nothing = np.zeros(len(measured_m), dtype=bool)
-        stay = ForcedPrediction(state.filtered, np.eye(len(state.filtered.P)))
-        return TorqueStep(state, stay, nothing, np.nan, 0, tracked=False, evidence=None)
+        kept = memory.blocks[self.blocks.index(self.plates)]
+        decision = self.plates.decide(OperatingPoint(state, None), frame, kept, Notes())
+        remembered = self._with_plates(memory, self.plates.next_memory(state, decision))
+        return FirstState(state, remembered, decision.contact)
 
-    def _step(self, state: ForcedState, measured_m: Array, feet: FootReading) -> TorqueStep:
-        prediction = self.plant.predict(state)
-        prior, nv = prediction.state, self.body.nv
-        reading = self.sensor.reading(prior.q)
-        innovation = measured_m - reading.positions_m
-        P, settings = prior.P[:nv, :nv], self.settings.tracking
-        seen, trusted, *_ = gated(innovation, reading, P, self.noise_m, settings.gate, settings.gate_radius_m)
-        sd = np.repeat(self.noise_m[trusted], 3)
-        markers = information(innovation[trusted].ravel(), reading.jacobian[trusted].reshape(-1, nv), sd)
-        columns, sensed = self._sensed(prior, markers, feet)
-        total = on_state(len(prior.P), columns, sensed) + self._pulls(prior)
-        updated = update(self.body, prior, total)
-        nis = correct(prior.P[np.ix_(columns, columns)], sensed).nis
-        tracked = bool(trusted.sum() >= self.settings.tracking.min_markers)
-        return TorqueStep(
-            self.report(updated.state), prediction, seen & ~trusted, nis, sensed.readings, tracked, total
-        )
+    def _with_plates(self, memory: Memory, plates: PlateMemory) -> Memory:
+        blocks = zip(self.blocks, memory.blocks, strict=True)
+        return Memory(memory.plant, tuple(plates if one is self.plates else kept for one, kept in blocks))
 
-    def _sensed(
-        self, prior: ForcedState, markers: Information, feet: FootReading
-    ) -> tuple[NDArray[np.int64], Information]:
-        """Markers and plates as information on positions and foot wrenches, and those columns of the state."""
-        nv, n = self.body.nv, len(prior.P)
-        columns = np.concatenate([np.arange(nv), np.arange(n - 12, n)])
-        _, ankles = self.sensor.model.placements(prior.q)
-        points = ankles[self.plates.ids]
-        plates = self.plates.reading(prior.q, prior.u[-12:], points)
-        target = feet.wrench.copy()
-        target[:, 3:] -= np.cross(points, feet.wrench[:, :3])
-        read = np.repeat(feet.measured, 6)
-        H = np.hstack([plates.by_q, plates.by_state])[read]
-        loads = information((target.ravel() - plates.wrench)[read], H, self._plate_sd(feet)[read])
-        return columns, on_state(nv + 12, np.arange(nv), markers) + loads
+    def nis(self, step: TorqueStep) -> float:
+        """Normalised innovation squared of markers and plates, from the components that they read.
 
-    def _plate_sd(self, feet: FootReading) -> Array:
-        """(12,) of the reactions' readings; of a foot that nothing measures, what it may carry."""
-        settings, scale = self.settings, self._scale
-        read = np.repeat([settings.plate_force_n, settings.plate_moment_nm], 3) * scale
-        none = np.repeat([settings.unloaded_force_n, settings.unloaded_moment_nm], 3) * scale
-        unknown = np.sqrt(load_variance(settings, self.body.model.mass_kg)[:6])
-        sds = [
-            none if airborne else read if measured else unknown
-            for airborne, measured in zip(feet.airborne, feet.measured, strict=True)
-        ]
-        return np.concatenate(sds)
-
-    def _pulls(self, prior: ForcedState) -> Information:
-        """Weak pulls towards neutral posture and rest, and the residual towards zero."""
-        nv, n, settings = self.body.nv, len(prior.P), self.settings
-        lean = self.posture.reading(prior.q)
-        sd = settings.tracking.posture_scale * self.posture.sd[self._free]
-        pull = information(-lean.deviation[self._free], lean.jacobian[self._free], sd)
-        matrix, vector = np.zeros((n, n)), np.zeros(n)
-        matrix[:nv, :nv], vector[:nv] = pull.matrix, pull.vector
-        rest = nv + self._rest
-        matrix[rest, rest] = settings.tracking.velocity_sd**-2
-        vector[rest] = -prior.v[self._rest] * settings.tracking.velocity_sd**-2
-        torque = self.body.joint_forces(prior.q, prior.v, prior.u)
-        H = np.hstack([torque.by_q, torque.by_v, torque.by_u])[:6]
-        zero = information(-torque.torque[:6], H, self._residual_sd)
-        return Information(matrix + zero.matrix, vector + zero.vector, 0.0, 0)
-
-    # Report.
+        Equal to the step's own up to rounding, which the many silent components of the whole state make larger.
+        """
+        columns, known = self.plates.columns, step.readings.instruments
+        whole = np.ix_(columns, columns)
+        read = known._replace(matrix=known.matrix[whole], vector=known.vector[columns])
+        return correct(step.prior.state.P[whole], read).nis
 
     def report(self, state: ForcedState) -> TorqueState:
         """What a mean and covariance of (q, v, u) say of motion and forces."""
-        body, nv = self.body, self.body.nv
-        a = body.acceleration(state.q, state.v, state.u)
-        tau = body.generalised(state.q, state.v, a, state.u)
-        at_origin = self.plates.reading(state.q, state.u[-12:], np.zeros((2, 3)))
-        columns = np.concatenate([np.arange(nv), np.arange(len(state.P) - 12, len(state.P))])
-        H = np.hstack([at_origin.by_q, at_origin.by_state])
-        spread = ((H @ state.P[np.ix_(columns, columns)]) * H).sum(axis=1)
-        tau_sd = np.full(nv, np.nan)
-        torque = body.joint_forces(state.q, state.v, state.u)
-        T = np.hstack([torque.by_q, torque.by_v, torque.by_u])
-        tau_sd[body.torque_dofs] = np.sqrt(np.maximum(((T @ state.P) * T).sum(axis=1), 0.0))
-        tau_sd[self.held] = np.nan
-        return TorqueState(
-            state.q,
-            state.v,
-            a,
-            tau,
-            at_origin.wrench.reshape(2, 6),
-            tau_sd,
-            np.sqrt(np.maximum(spread, 0.0)).reshape(2, 6),
-            state,
-        )
+        return reported(self.body, self.plates.sensor, state)

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
-from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.filters.torque.integrators import Motion, integrator
 from mbkf.model.forced_body import ForcedBody, LinearAcceleration
 from mbkf.numerics.discretisation import Discrete, discretise, symmetric
-from mbkf.numerics.kalman import Information, correct
+from mbkf.sensors.block import Notes
+from mbkf.sensors.layout import WRENCH, Layout
 
 
 @dataclass(frozen=True)
@@ -32,10 +32,9 @@ class ForcedState:
 
 
 @dataclass(frozen=True)
-class ForcedPrediction:
-    """A predicted ``state`` and the transition ``phi`` (n, n) from the state before, as a smoother needs them."""
+class ForcedPrediction(ForcedState):
+    """A predicted state with the transition ``phi`` (n, n) from the state before, which a smoother needs."""
 
-    state: ForcedState
     phi: Array
 
 
@@ -69,6 +68,7 @@ class TorquePlant:
 
     Attributes:
         body: The body.
+        layout: Slices of the tangent state: q, v and u; the feet's wrenches, where u ends in them, by a name of theirs.
         dt_s: Time between frames.
         density: Noise density, taken at the beginning of a frame.
         scheme: How it is discretised.
@@ -83,7 +83,21 @@ class TorquePlant:
         density: NoiseDensity,
         scheme: Scheme,
         drift: Array | None = None,
+        *,
+        wrenches: int = 0,
     ) -> None:
+        """Makes the plant.
+
+        Args:
+            body: The body.
+            dt_s: Time between frames.
+            density: Noise density at a state.
+            scheme: How the plant is discretised.
+            drift: (nu, nu) A of u̇ = A u + w̃; None for 0.
+            wrenches: How many of the last forces are the feet's wrenches.
+        """
+        layout = Layout.of(body.nv, q=body.nv, v=body.nv, u=body.nu)
+        self.layout = layout.with_last(WRENCH, wrenches) if wrenches else layout
         self.body, self.dt_s, self.density, self.scheme = body, dt_s, density, scheme
         self.drift = drift
         self._advance = integrator(scheme.integrator)
@@ -107,8 +121,40 @@ class TorquePlant:
             F[2 * nv :, 2 * nv :] = self.drift
         return F
 
-    def predict(self, state: ForcedState) -> ForcedPrediction:
+    def begin(self) -> None:
+        """The noise depends on the state alone."""
+
+    def noise(self, memory: None) -> None:
+        """The noise depends on the state alone."""
+
+    def remember(self, posterior: ForcedState, notes: Notes, memory: None) -> None:
+        """The noise depends on the state alone."""
+
+    def difference(self, origin: ForcedState, state: ForcedState) -> Array:
+        """(n,) tangent vector from one state's mean to another's."""
+        return np.concatenate(
+            [self.body.difference(origin.q, state.q), state.v - origin.v, state.u - origin.u]
+        )
+
+    def retract(self, state: ForcedState, step: Array, P: Array) -> ForcedState:
+        """The state moved by a tangent vector (n,), with another covariance."""
+        nv = self.body.nv
+        q = self.body.integrate(state.q, step[:nv])
+        return ForcedState(q, state.v + step[nv : 2 * nv], state.u + step[2 * nv :], P)
+
+    def transition(self, state: ForcedState) -> Array:
+        """(n, n) Φ at a state; a :class:`ForcedPrediction` holds that of its own step."""
+        return self._advanced(state)[2].phi
+
+    def predict(self, state: ForcedState, noise: None = None) -> ForcedPrediction:
         """The state one frame later (eqs. 2.48, 2.49)."""
+        del noise
+        now, u, whole = self._advanced(state)
+        P = symmetric(whole.phi @ state.P @ whole.phi.T + whole.noise)
+        return ForcedPrediction(now.q, now.v, u, P, whole.phi)
+
+    def _advanced(self, state: ForcedState) -> tuple[Motion, Array, Discrete]:
+        """Motion and forces one frame later, and the step of their error."""
         parts = max(1, self.scheme.substeps)
         h, density = self.dt_s / parts, self.density(state)
         now, u = Motion(state.q, state.v), state.u
@@ -122,36 +168,10 @@ class TorquePlant:
             if self._fade is not None:
                 u = self._fade @ u
         assert whole is not None
-        P = symmetric(whole.phi @ state.P @ whole.phi.T + whole.noise)
-        return ForcedPrediction(ForcedState(now.q, now.v, u, P), whole.phi)
+        return now, u, whole
 
     def _slope(self, now: Motion, later: Motion, u: Array) -> Array:
         F = self.sensitivity(now.v, self.body.linearise(now.q, now.v, u))
         if not self.scheme.mean_slope:
             return F
         return 0.5 * (F + self.sensitivity(later.v, self.body.linearise(later.q, later.v, u)))
-
-
-@dataclass(frozen=True)
-class Updated:
-    """A corrected ``state`` and the normalised innovation squared ``nis`` of what corrected it."""
-
-    state: ForcedState
-    nis: float
-
-
-def update(body: ForcedBody, prior: ForcedState, readings: Information) -> Updated:
-    """Kalman correction by information on (δq, δv, δu) (n), the same for every body and every sensor."""
-    nv = body.nv
-    correction = correct(prior.P, readings)
-    step = correction.step
-    q = body.integrate(prior.q, step[:nv])
-    state = ForcedState(q, prior.v + step[nv : 2 * nv], prior.u + step[2 * nv :], correction.covariance)
-    return Updated(state, correction.nis)
-
-
-def on_state(size: int, columns: NDArray[np.int64], part: Information) -> Information:
-    """Information on the state's ``columns`` as information on all ``size`` components."""
-    matrix, vector = np.zeros((size, size)), np.zeros(size)
-    matrix[np.ix_(columns, columns)], vector[columns] = part.matrix, part.vector
-    return Information(matrix, vector, part.innovation, part.readings)

@@ -4,38 +4,48 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 
-from mbkf.conventions import Array, BoolArray
+from mbkf.conventions import Array
 from mbkf.filters.estimate import Posterior, Prediction, Recording
+from mbkf.filters.filter import Memory
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.tracking import warm_start
 from mbkf.filters.spread import Spread, SpreadReader
-from mbkf.filters.torque.filter import TorqueFilter, TorqueState, TorqueStep
-from mbkf.filters.torque.plant import ForcedState
+from mbkf.filters.torque.filter import TorqueFilter, TorqueStep
+from mbkf.filters.torque.plant import ForcedPrediction
+from mbkf.filters.torque.report import TorqueState
 from mbkf.numerics.smoothing import BackwardPass
-from mbkf.sensors.contact.causal import ContactDetector
-from mbkf.sensors.contact.records import Contact, ContactMemory
+from mbkf.sensors.block import Frame
+from mbkf.sensors.contact.records import ContactDecision
 from mbkf.sensors.marker_prediction import MarkerPrediction
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 
 @dataclass(frozen=True)
-class _Followed:
-    """Inner record: state, its step (None at a start) and what the contact decision remembers."""
+class TorqueRecord:
+    """The filter's own record of a frame.
+
+    Attributes:
+        state: Its state, with what follows from it.
+        memory: For the next step.
+        step: The step to it; None at a start, and where nothing could be computed.
+        nis: Normalised innovation squared of markers and plates in the step.
+    """
 
     state: TorqueState
+    memory: Memory
     step: TorqueStep | None
-    before: ForcedState | None
-    memory: ContactMemory
+    nis: float = np.nan
 
 
 class TorqueTracking:
     """Drives a :class:`TorqueFilter`; see :class:`mbkf.filters.estimate.TrackingFilter`."""
 
-    def __init__(self, kalman: TorqueFilter, feet: ContactDetector, starter: KinematicFilter) -> None:
-        self.kalman, self.feet, self._starter = kalman, feet, starter
+    def __init__(self, kalman: TorqueFilter, starter: KinematicFilter) -> None:
+        self.kalman, self._starter = kalman, starter
         self.model, self.dt_s = kalman.sensor.model, kalman.plant.dt_s
         self.restart_after_s = starter.settings.restart_after_s
         self._reader = SpreadReader(self.model)
@@ -46,11 +56,9 @@ class TorqueTracking:
         found = warm_start(self._starter, recording, t, guess)
         if found is None:
             return None
-        motion, a = found.state, found.accelerations.mean(axis=0)
-        load = self.feet.decide(self.feet.begin(), motion.q, motion.v, a, recording.plates[t])
-        state = self.kalman.start(motion, a, load.wrench, *_known(load.contacts))
-        nobody = np.zeros(recording.markers_m.shape[1], dtype=bool)
-        return self._estimate(_Followed(state, None, None, load.memory), load.contacts, nobody, True)
+        first = self.kalman.first(found.state, found.accelerations.mean(axis=0), recording.frame(t))
+        record = TorqueRecord(self.kalman.report(first.state), first.memory, None)
+        return self._untouched(record, first.contact, recording)._replace(tracked=True, started=True)
 
     def predict(self, before: Posterior) -> Prediction:
         """By steady motion: the filter's own plant waits for the plates, which say what the torques do."""
@@ -59,24 +67,29 @@ class TorqueTracking:
     def step(
         self, before: Posterior, recording: Recording, t: int, prediction: Prediction | None = None
     ) -> Posterior:
-        """One frame on; the feet's footing is decided where the motion before would carry them."""
+        """One frame on. A filter that has diverged until nothing can be computed keeps its state and is untracked."""
         del prediction
-        was: _Followed = before.inner
-        state = was.state
-        q = self.model.integrate(state.q, self.dt_s * state.v)
-        load = self.feet.decide(was.memory, q, state.v + self.dt_s * state.a, state.a, recording.plates[t])
-        step = self.kalman.step(state, recording.markers_m[t], load.wrench, *_known(load.contacts))
-        inner = _Followed(step.state, step, state.filtered, load.memory)
-        return self._estimate(inner, load.contacts, step.refused, step.tracked)
+        was: TorqueRecord = before.inner
+        frame = recording.frame(t)
+        try:
+            record = self._advanced(was, frame)
+        except (np.linalg.LinAlgError, ValueError):
+            record = None
+        if record is not None and record.step is not None and record.state.finite:
+            return _posterior(record, record.step)
+        stayed = self.kalman.stayed(was.state.filtered, was.memory, frame)
+        return self._untouched(TorqueRecord(was.state, stayed.memory, None), stayed.contact, recording)
 
-    def _estimate(
-        self, inner: _Followed, footing: tuple[Contact, Contact], refused: BoolArray, tracked: bool
-    ) -> Posterior:
-        state = inner.state
-        feet = (int(footing[0]), int(footing[1]))
-        return Posterior(
-            state.q, state.v, state.a, state.foot_wrench, feet, refused, tracked, inner.step is None, inner
-        )
+    def _advanced(self, was: TorqueRecord, frame: Frame) -> TorqueRecord:
+        step = self.kalman.step(was.state.filtered, was.memory, frame)
+        state = self.kalman.report(step.state)
+        return TorqueRecord(state, step.memory, step, self.kalman.nis(step))
+
+    def _untouched(self, record: TorqueRecord, contact: ContactDecision, recording: Recording) -> Posterior:
+        """A posterior that no step led to."""
+        state, refused = record.state, np.zeros(recording.markers_m.shape[1], dtype=bool)
+        feet = _numbers(contact)
+        return Posterior(state.q, state.v, state.a, state.foot_wrench, feet, refused, False, False, record)
 
     def covariance(self, estimate: Posterior) -> Array:
         """(2 nv, 2 nv) of (q, v)."""
@@ -97,8 +110,8 @@ class TorqueTracking:
 
     def innovation(self, estimate: Posterior) -> tuple[float, int]:
         """Of markers and plates."""
-        step: TorqueStep | None = estimate.inner.step
-        return (np.nan, 0) if step is None else (step.nis, step.readings)
+        record: TorqueRecord = estimate.inner
+        return record.nis, 0 if record.step is None else record.step.read
 
     def smooth(
         self, run: Sequence[Posterior], recording: Recording, first: int, wanted: int
@@ -108,30 +121,33 @@ class TorqueTracking:
         found: list[Posterior] = []
         back = BackwardPass(len(run[0].inner.state.filtered.P))
         for k in range(len(run) - 1, -1, -1):
-            inner: _Followed = run[k].inner
+            inner: TorqueRecord = run[k].inner
             here = inner.state.filtered
             if k < wanted:
                 found.append(self._smoothed(run[k], back.step(here.P), back.covariance(here.P)))
-            if k and inner.step is not None and inner.step.evidence is not None:
-                known = inner.step.evidence
-                back.through_readings(here.P, known.matrix, known.vector)
-                back.through_plant(inner.step.prediction.phi)
+            if k and inner.step is not None:
+                known, predicted = inner.step.readings, inner.step.prior.state
+                back.through_readings(here.P, known.whole_matrix, known.whole_vector)
+                back.through_plant(cast(ForcedPrediction, predicted).phi)
         return found[::-1]
 
     def _smoothed(self, estimate: Posterior, step: Array, P: Array) -> Posterior:
-        here: ForcedState = estimate.inner.state.filtered
-        nv = self.model.nv
-        q = self.model.integrate(here.q, step[:nv])
-        moved = ForcedState(q, here.v + step[nv : 2 * nv], here.u + step[2 * nv :], P)
-        state = self.kalman.report(moved)
+        state = self.kalman.report(self.kalman.plant.retract(estimate.inner.state.filtered, step, P))
         inner = replace(estimate.inner, state=state)
-        return replace(estimate, q=state.q, v=state.v, a=state.a, wrench=state.foot_wrench, inner=inner)
+        return estimate._replace(q=state.q, v=state.v, a=state.a, wrench=state.foot_wrench, inner=inner)
 
 
-def _known(footing: tuple[Contact, Contact]) -> tuple[BoolArray, BoolArray]:
-    """Feet (2,) whose wrench is known, and those in the air. A shared plate is no reading of either foot."""
-    airborne = np.array([foot == Contact.AIR for foot in footing])
-    return np.array([foot == Contact.MEASURED for foot in footing]) | airborne, airborne
+def _posterior(record: TorqueRecord, step: TorqueStep) -> Posterior:
+    """The posterior that a step led to."""
+    state, contact = record.state, step.decisions.notes.contact
+    feet = None if contact is None else _numbers(contact)
+    wrench = state.foot_wrench
+    return Posterior(state.q, state.v, state.a, wrench, feet, step.refused, step.tracked, False, record)
+
+
+def _numbers(contact: ContactDecision) -> tuple[int, int]:
+    right, left = contact.contacts
+    return int(right), int(left)
 
 
 def steady_motion(estimate: Posterior, covariance: Array, sensor: MarkerSensor, dt_s: float) -> Prediction:

@@ -29,7 +29,7 @@ Blocks = Sequence[AnyBlock] | None
 
 @dataclass(frozen=True)
 class FilterInputs:
-    """What every filter is built from.
+    """Inputs that every filter is built from.
 
     Attributes:
         sensor: The markers on the scaled body.
@@ -37,7 +37,7 @@ class FilterInputs:
         plates: The plates.
         dt_s: Time between frames.
         held: (nv,) dofs that no marker of the trial moves with.
-        kinematic, dynamic, torque: What each filter believes.
+        kinematic, dynamic, torque: Settings of each filter.
         inertial: Inertial sensors on the body, None where there are none.
     """
 
@@ -80,9 +80,10 @@ def _torque(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
         raise InvalidInput(
             "blocks of one's own are for the dynamic filter; the torque filter is the thesis's"
         )
-    kalman = TorqueFilter(inputs.sensor, inputs.noise_m, inputs.dt_s, inputs.held, inputs.torque)
-    feet = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
-    return TorqueTracking(kalman, feet, _starter(inputs))
+    detector = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
+    known = inputs.sensor, inputs.noise_m
+    kalman = TorqueFilter.standard(*known, detector, inputs.dt_s, inputs.held, inputs.torque)
+    return TorqueTracking(kalman, _starter(inputs))
 
 
 def _starter(inputs: FilterInputs) -> KinematicFilter:

@@ -22,6 +22,8 @@ from tests.dynamics import (
 )
 from tests.motions import assert_near, reference_model, worst
 
+pytestmark = pytest.mark.slow
+
 MODEL = reference_model()
 NV = MODEL.nv
 STANDING = standing(MODEL)

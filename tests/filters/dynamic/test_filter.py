@@ -311,6 +311,7 @@ def test_the_first_estimate_takes_up_the_frame():
     assert worst(root.residual) < 5.0
 
 
+@pytest.mark.slow
 def test_covariances_are_symmetric_and_positive():
     made = trial("walk")
     for plates in (1, 2):

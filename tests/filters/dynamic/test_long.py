@@ -13,6 +13,8 @@ from mbkf.numerics.kalman import informed_with_rows
 from mbkf.sensors.block import Frame
 from tests.dynamics import follow, trial
 
+pytestmark = pytest.mark.slow
+
 STEPS = 100_000
 SIZE = 15
 

@@ -10,6 +10,8 @@ from mbkf.filters.dynamic.smoother import smooth
 from tests.dynamics import follow, trial
 from tests.motions import angle_errors, assert_near, worst
 
+pytestmark = pytest.mark.slow
+
 ROUNDS = 4
 MOTIONS = {"squat": range(40, 100), "walk": range(60, 120)}
 each_motion = pytest.mark.parametrize("name", MOTIONS)

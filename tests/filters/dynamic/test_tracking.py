@@ -24,6 +24,7 @@ def residuals_n(found):
     return np.linalg.norm(torques(found)[:, :3], axis=1)
 
 
+@pytest.mark.slow
 def test_a_start_agrees_with_the_plates():
     follower, found = estimates("dynamic")
     first = found[0]

@@ -168,6 +168,7 @@ def test_errors_and_innovations_are_as_large_as_the_filter_says():
     assert chi2.ppf(0.001, readings) < sum(nis) < chi2.ppf(0.999, readings)
 
 
+@pytest.mark.slow
 def test_covariance_stays_symmetric_and_positive_over_2000_steps():
     """The whole body, every marker lost for half of the time and at times all of them for 0.15 s."""
     rng, sensor = np.random.default_rng(2), protocol_sensor(MODEL)[0]

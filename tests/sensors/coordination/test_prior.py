@@ -28,6 +28,8 @@ from tests.dynamics import (
 )
 from tests.motions import reference_model
 
+pytestmark = pytest.mark.slow
+
 MODEL = reference_model()
 LEADING = MODEL.roles.leading
 SEEN_S, HIDDEN_S = 2.6, 0.4

@@ -1,0 +1,184 @@
+"""Force plates under the feet of a forced body, as a block: z = p(q, w) + r for each foot whose wrench is known.
+
+w are the wrench states of right and left foot at the end of u (:mod:`mbkf.model.human_dynamics`), and p carries them to
+the ankles, force N and moment N m in world axes (:mod:`mbkf.sensors.foot_wrench`, thesis eqs. 4.10–4.13):
+
+    measured              z = the plate's wrench,  r ~ N(0, diag(σ_F², σ_M²)) of the plate
+    air                   z = 0,                   r ~ N(0, diag(σ_F², σ_M²)) of a foot that carries nothing
+    unmeasured, shared    no reading; the wrench follows from Newton's law and the other foot
+
+Which foot stands on what is decided where the posterior of the frame before leads at its own acceleration,
+q ⊕ v Δt and v + a Δt, and not at the prediction, whose forces may be wrong at a heel strike.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.model.human_dynamics import HumanDynamics
+from mbkf.numerics.kalman import Information, information
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
+from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
+from mbkf.sensors.foot_wrench import FootWrenchSensor
+from mbkf.sensors.layout import Layout
+
+
+@dataclass(frozen=True)
+class FootPlateSettings:
+    """Noise of the readings; moments about the ankle.
+
+    Attributes:
+        plate_force_n, plate_moment_nm: Of a plate's reading.
+        air_force_n, air_moment_nm: How exactly a foot in the air carries nothing.
+    """
+
+    plate_force_n: float = 5.0
+    plate_moment_nm: float = 2.0
+    air_force_n: float = 0.1
+    air_moment_nm: float = 0.02
+
+
+class FootReading(NamedTuple):
+    """What is known of the ground's reactions in a frame.
+
+    Attributes:
+        wrench: (2, 6) force N and moment N m about the world's origin, world axes, on right and left foot.
+        known: (2,) feet whose wrench is read: from a plate, or 0 in the air.
+        airborne: (2,) feet that touch nothing.
+    """
+
+    wrench: Array
+    known: BoolArray
+    airborne: BoolArray
+
+    @classmethod
+    def of(cls, decision: ContactDecision) -> FootReading:
+        """Of a decision on contact. A shared plate is a reading of neither foot."""
+        airborne = np.array([foot == Contact.AIR for foot in decision.contacts])
+        known = np.array([foot == Contact.MEASURED for foot in decision.contacts]) | airborne
+        return cls(np.where(airborne[:, None], 0.0, decision.wrench), known, airborne)
+
+
+class Ahead(NamedTuple):
+    """Where contact is decided: configuration q (nq,), velocity v and acceleration a (nv,)."""
+
+    q: Array
+    v: Array
+    a: Array
+
+
+class PlateMemory(NamedTuple):
+    """What the detector keeps, and where the next frame's contact is decided; None for at the prediction."""
+
+    contact: ContactMemory
+    ahead: Ahead | None
+
+
+class PlateDecision(NamedTuple):
+    """What the feet stand on, and what is known of their wrenches."""
+
+    contact: ContactDecision
+    reading: FootReading
+
+
+class FootPlates(Block[Any, None, PlateDecision, PlateMemory]):
+    """Force plates that read wrench states.
+
+    Attributes:
+        body: The forced body.
+        detector: Finds what the feet stand on.
+        sensor: Wrench states carried to points on the plates.
+        settings: Noise.
+        columns: Components of the state that are read: positions and wrenches.
+    """
+
+    columns: NDArray[np.intp]
+
+    def __init__(
+        self,
+        body: HumanDynamics,
+        detector: ContactDetector,
+        dt_s: float,
+        settings: FootPlateSettings = FootPlateSettings(),
+    ) -> None:
+        """Makes the block.
+
+        Args:
+            body: The forced body.
+            detector: Finds what the feet stand on.
+            dt_s: Time between frames.
+            settings: Noise.
+        """
+        self.body, self.detector, self.settings = body, detector, settings
+        self.sensor = FootWrenchSensor(body)
+        self._dt_s = dt_s
+        self._plate = np.repeat([settings.plate_force_n, settings.plate_moment_nm], 3)
+        self._air = np.repeat([settings.air_force_n, settings.air_moment_nm], 3)
+
+    def bind(self, layout: Layout) -> None:
+        """Where positions and wrenches stand in the state."""
+        self._size = layout.size
+        every = np.arange(layout.size)
+        self.columns = np.concatenate([every[layout.q], every[layout.wrench]])
+
+    def begin(self) -> PlateMemory:
+        """No plate was loaded yet."""
+        return PlateMemory(self.detector.begin(), None)
+
+    def decide(
+        self, at: OperatingPoint[Any, None], frame: Frame, memory: PlateMemory, notes: Notes
+    ) -> PlateDecision:
+        """Plates to feet, and feet that stand elsewhere."""
+        state = at.state
+        where = memory.ahead
+        if where is None:
+            where = Ahead(state.q, state.v, self.body.acceleration(state.q, state.v, state.u))
+        notes.contact = self.detector.decide(memory.contact, *where, frame.plates)
+        return PlateDecision(notes.contact, FootReading.of(notes.contact))
+
+    def linearise(self, at: OperatingPoint[Any, None], decision: PlateDecision) -> Information:
+        """Information on the whole state, of which positions and wrenches are read."""
+        state, feet = at.state, decision.reading
+        _, ankles = self.body.model.placements(state.q)
+        points = ankles[self.sensor.ids]
+        predicted = self.sensor.reading(state.q, state.u[-12:], points)
+        target = feet.wrench.copy()
+        target[:, 3:] -= np.cross(points, feet.wrench[:, :3])
+        read = np.repeat(feet.known, 6)
+        H = np.hstack([predicted.by_q, predicted.by_state])[read]
+        own = information((target.ravel() - predicted.wrench)[read], H, self.sd(feet)[read])
+        matrix, vector = np.zeros((self._size, self._size)), np.zeros(self._size)
+        matrix[np.ix_(self.columns, self.columns)], vector[self.columns] = own.matrix, own.vector
+        return Information(matrix, vector, own.innovation, own.readings)
+
+    def remember(
+        self, posterior: Any, at: OperatingPoint[Any, None], decision: PlateDecision, memory: PlateMemory
+    ) -> PlateMemory:
+        """What the detector keeps, and where the posterior leads."""
+        del at, memory
+        return self.next_memory(posterior, decision)
+
+    def next_memory(self, posterior: Any, decision: PlateDecision) -> PlateMemory:
+        """Memory after a frame with this posterior."""
+        q, v, dt = posterior.q, posterior.v, self._dt_s
+        a = self.body.acceleration(q, v, posterior.u)
+        return PlateMemory(decision.contact.memory, Ahead(self.body.integrate(q, dt * v), v + dt * a, a))
+
+    def sd(self, feet: FootReading) -> Array:
+        """(12,) standard deviations of a frame's readings, infinite for a foot whose wrench is not known."""
+        none = np.full(6, np.inf)
+        sds = [
+            self._air if airborne else self._plate if known else none
+            for airborne, known in zip(feet.airborne, feet.known, strict=True)
+        ]
+        return np.concatenate(sds)
+
+    def log_noise(self, decision: PlateDecision) -> float:
+        """Log det R of the readings."""
+        return 2.0 * float(np.log(self.sd(decision.reading)[np.repeat(decision.reading.known, 6)]).sum())

@@ -1,0 +1,43 @@
+"""Pelvis residual of a forced body, as a block: 0 = τ_p(q, v, u) + r, r ~ N(0, diag(σ_F² I₃, σ_M² I₃)).
+
+τ_p are the six generalised forces at the pelvis that neither gravity nor the ground exerts, force N and moment N m in
+pelvis axes (thesis 3.2.3). In truth there are none: what is left of them is the error of body, markers and plates. With
+inertial force states (:data:`mbkf.model.human_dynamics.FORCE_STATES`) this reading is what ties plates to motion. An
+infinite σ leaves the residual a random walk, as in the thesis.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.model.human_dynamics import HumanDynamics
+from mbkf.numerics.kalman import Information, information
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
+
+
+class PelvisResidual(Block[Any, None, None, None]):
+    """The pelvis residual near zero.
+
+    Attributes:
+        body: The forced body.
+        sd: (6,) standard deviations of force, N, and moment, N m.
+    """
+
+    prior = True
+
+    def __init__(self, body: HumanDynamics, sd: Array) -> None:
+        self.body, self.sd = body, sd
+
+    def decide(self, at: OperatingPoint[Any, None], frame: Frame, memory: None, notes: Notes) -> None:
+        """The same in every frame."""
+
+    def linearise(self, at: OperatingPoint[Any, None], decision: None) -> Information:
+        """Information on the whole state."""
+        state = at.state
+        torque = self.body.joint_forces(state.q, state.v, state.u)
+        H = np.hstack([torque.by_q, torque.by_v, torque.by_u])[:6]
+        found = information(-torque.torque[:6], H, self.sd)
+        return Information(found.matrix, found.vector, 0.0, 0)

@@ -1,0 +1,64 @@
+"""Posture and rest, as a block: 0 = θ_j(q) + r, r ~ N(0, (k σ_j)²) and 0 = v_j + r, r ~ N(0, σ_v²) for every dof j.
+
+θ is each joint's rotation vector from the neutral posture, σ_j its spread among people, k a factor
+(:mod:`mbkf.sensors.posture`). Both readings are weak and repeated in every frame; dofs that no marker of the capture
+moves with have neither. The torque-state filter needs them for every dof, because its velocities are known through
+forces alone where markers are out of sight; the other filters hold back unobserved joints only
+(:mod:`mbkf.sensors.unobserved`).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from mbkf.conventions import BoolArray
+from mbkf.numerics.kalman import Information, information
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
+from mbkf.sensors.layout import Layout
+from mbkf.sensors.posture import PostureSensor
+
+
+class PostureAndRest(Block[Any, None, None, None]):
+    """Weak priors on posture and velocity.
+
+    Attributes:
+        sensor: Deviation of every joint from neutral.
+    """
+
+    prior = True
+
+    def __init__(
+        self, sensor: PostureSensor, unobservable: BoolArray, posture_scale: float, velocity_sd: float
+    ) -> None:
+        """Makes the block.
+
+        Args:
+            sensor: Deviation of every joint from neutral.
+            unobservable: (nv,) dofs that no marker of the capture moves with.
+            posture_scale: Factor k on the body's table of spreads, per reading.
+            velocity_sd: σ_v, rad/s or m/s, per reading.
+        """
+        self.sensor = sensor
+        self._free = np.flatnonzero(~unobservable[sensor.dofs])
+        self._posture_sd = posture_scale * sensor.sd[self._free]
+        self._moving, self._certainty = np.flatnonzero(~unobservable), velocity_sd**-2
+
+    def bind(self, layout: Layout) -> None:
+        """Where velocities stand in the state."""
+        self._nv, self._v, self._stop = layout.nv, layout.v.start + self._moving, layout.v.stop
+
+    def decide(self, at: OperatingPoint[Any, None], frame: Frame, memory: None, notes: Notes) -> None:
+        """The same in every frame."""
+
+    def linearise(self, at: OperatingPoint[Any, None], decision: None) -> Information:
+        """Information on positions and velocities."""
+        state, nv, rest = at.state, self._nv, self._v
+        away = self.sensor.reading(state.q)
+        posture = information(-away.deviation[self._free], away.jacobian[self._free], self._posture_sd)
+        matrix, vector = np.zeros((self._stop, self._stop)), np.zeros(self._stop)
+        matrix[:nv, :nv], vector[:nv] = posture.matrix, posture.vector
+        matrix[rest, rest] = self._certainty
+        vector[rest] = -state.v[self._moving] * self._certainty
+        return Information(matrix, vector, 0.0, 0)
