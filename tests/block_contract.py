@@ -12,8 +12,8 @@ import pkgutil
 from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass, fields, is_dataclass, replace
-from functools import cache, cached_property
-from typing import get_type_hints
+from functools import cached_property, lru_cache
+from typing import NamedTuple, get_type_hints
 
 import numpy as np
 
@@ -21,7 +21,9 @@ import mbkf
 import tests.blocks
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
+from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant
 from mbkf.imu.placement import typical_mounts
+from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.numerics.kalman import Information
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
@@ -32,7 +34,7 @@ from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers
 from mbkf.sensors.posture import PostureSensor
-from tests.dynamics import DT, LOAD, MARKER_SD_M, SPREAD, random_covariance, trial
+from tests.dynamics import DT, LOAD, MARKER_SD_M, SPREAD, trial
 
 HOMES = ("mbkf.", "tests.blocks.")
 LAST, LIVED = 130, 115
@@ -47,7 +49,7 @@ LITTLE, MOST_STEPS = 2e-4, 20
 NO_IMUS, NO_NAMES = None, {}
 
 
-@cache
+@lru_cache(None)
 def block_classes():
     """Every block by its name; abstract ones, which no filter holds, are left out."""
     for package in (mbkf, tests.blocks):
@@ -86,11 +88,20 @@ class AnyReading(Mapping):
         return 0
 
 
+class Motion(NamedTuple):
+    """True motion of a frame: q (nq,), v and a (nv,), wrenches of the feet (2, 6)."""
+
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    wrench: np.ndarray
+
+
 @dataclass(frozen=True)
 class Situation:
-    """Frames with true states and what the standard instruments note of each; the last is the one that is read."""
+    """Frames with true motion and what the standard instruments note of each; the last is the one that is read."""
 
-    states: list
+    motion: list
     frames: list
     notes: list
 
@@ -115,6 +126,8 @@ class Scene:
         self.detector = ContactDetector(self.model, [walk.plates[k] for k in self.order[1]], DT)
         self.noise_m = np.linspace(0.5, 1.5, counts[0])[self.order[0]] * MARKER_SD_M
         self.everywhere = np.zeros(self.model.nv, dtype=bool)
+        self.body = HumanDynamics(self.model, self.everywhere)
+        self._situations = {}
 
     @cached_property
     def by_type(self):
@@ -126,6 +139,7 @@ class Scene:
             PostureSensor: PostureSensor(self.model),
             ContactDetector: self.detector,
             NewtonEuler: NewtonEuler(self.model),
+            HumanDynamics: self.body,
         }
 
     @cached_property
@@ -140,6 +154,7 @@ class Scene:
             "movement_sd": movement,
             "velocity_sd": 0.1 * movement,
             "acceleration_sd": 10.0 * movement,
+            "sd": np.repeat([5.0, 2.0], 3),
         }
 
     def arguments(self, kind):
@@ -149,7 +164,7 @@ class Scene:
             hint = hints.get(name)
             if hint in self.by_type:
                 found[name] = self.by_type[hint]
-            elif name in self.by_name:
+            elif name in self.by_name and isinstance(self.by_name[name], float) == (hint is float):
                 found[name] = self.by_name[name]
             elif name == "model":
                 found[name] = self.model
@@ -169,10 +184,18 @@ class Scene:
         block.bind(self.plant(block).layout)
         return block
 
-    def plant(self, *blocks):
-        """The dynamic filter's plant with what blocks add to the state."""
-        extras = [extra for block in blocks for extra in block.states()]
-        return SingerPlant(self.model, DT, self.everywhere, extras=extras)
+    def plant(self, block):
+        """A plant whose states the block speaks of: accelerations, or forces where it asks for a forced body."""
+        if HumanDynamics in get_type_hints(type(block).__init__).values():
+            return TorquePlant(self.body, DT, lambda _: np.zeros(()), Scheme(), wrenches=12)
+        return SingerPlant(self.model, DT, self.everywhere, extras=block.states())
+
+    def state(self, true, plant, P):
+        """A true motion as the plant's state, with a covariance, and what blocks add at its start."""
+        q, v, a, wrench = true
+        if isinstance(plant, TorquePlant):
+            return ForcedState(q, v, self.body.forces(q, v, a, wrench), P)
+        return DynamicState(q, v, a, wrench.ravel(), P, plant.layout.start()[0])
 
     def frame(self, t, hidden=False, worn=False):
         """Exact readings of a frame; the hidden segments out of sight, and inertial sensors worn, if so asked."""
@@ -183,19 +206,23 @@ class Scene:
         imus = self.inertial.values(m.q[t], m.v[t], m.a[t]) if worn else NO_IMUS
         return Frame(markers, m.foot_wrench[t][self.order[1]], imus, AnyReading())
 
-    @cache
     def situation(self, name):
         """Everything seen; limbs hidden; hidden, with inertial sensors; joints bent too far; nothing read at last."""
+        if name not in self._situations:
+            self._situations[name] = self._made_situation(name)
+        return self._situations[name]
+
+    def _made_situation(self, name):
         hides, worn = name in ("hidden", "worn"), name == "worn"
         times = range(LAST - LIVED, LAST + 1)
         frames = [self.frame(t, hides and t > LAST - 3, worn) for t in times]
         m = self.walk.motion
-        states = [self.state(m.q[t], m.v[t], m.a[t], m.foot_wrench[t]) for t in times]
+        motion = [Motion(m.q[t], m.v[t], m.a[t], m.foot_wrench[t]) for t in times]
         if name == "bent":
-            states[-1] = replace(states[-1], q=bent(self.model))
+            motion[-1] = motion[-1]._replace(q=bent(self.model))
         if name.startswith("nothing"):
             frames[-1] = self.nothing(absent=name == "nothing there")
-        return Situation(states, frames, self._noted(states, frames))
+        return Situation(motion, frames, self._noted(motion, frames))
 
     def nothing(self, absent):
         """A frame in which no instrument reads; absent ones are not even named."""
@@ -203,28 +230,25 @@ class Scene:
         imus = None if absent else np.full((len(self.order[2]), 6), np.nan)
         return Frame(markers, plates, imus, NO_NAMES if absent else AnyReading(missing=True))
 
-    def state(self, q, v, a, wrench):
-        """A true state, to which :meth:`near` gives errors, a covariance and what blocks add."""
-        return DynamicState(q, v, a, wrench.ravel(), np.zeros((0, 0)))
-
-    def near(self, state, plant, seed=3):
-        """A state a little off, with a full covariance and the states that blocks add."""
+    def near(self, true, plant, seed):
+        """A state a little off the true motion, with a full covariance; what blocks add is as they start."""
         rng, nv = np.random.default_rng(seed), self.model.nv
-        extra, extra_sd = plant.layout.start()
-        size = 3 * nv + 12
-        P = np.zeros((plant.layout.size,) * 2)
-        P[:size, :size] = 0.01 * random_covariance(self.model, rng)
-        P[range(size, len(P)), range(size, len(P))] = extra_sd**2
-        sd = np.concatenate([np.repeat(SPREAD, nv), np.tile(LOAD, 2), extra_sd])
-        whole = replace(state, P=np.asfortranarray(P), extra=extra)
-        return plant.retract(whole, 0.05 * sd * rng.normal(size=len(sd)), whole.P)
+        if isinstance(plant, TorquePlant):
+            sd = np.concatenate([np.repeat(SPREAD[:2], nv), np.full(self.body.nu, 5.0)])
+        else:
+            sd = np.concatenate([np.repeat(SPREAD, nv), 0.1 * np.tile(LOAD, 2), plant.layout.start()[1]])
+        A = rng.normal(size=(len(sd), len(sd)))
+        P = 0.01 * sd[:, None] * (A @ A.T / len(sd) + 0.1 * np.eye(len(sd))) * sd
+        state = self.state(true, plant, np.asfortranarray(0.5 * (P + P.T)))
+        return plant.retract(state, 0.05 * sd * rng.normal(size=len(sd)), state.P)
 
-    def _noted(self, states, frames):
+    def _noted(self, motion, frames):
         """What markers, plates and inertial sensors note, frame by frame."""
         standard = [self.made(kind) for kind in (Markers, FootContact, InertialSensors)]
         kept, found = [block.begin() for block in standard], []
-        for state, frame in zip(states, frames, strict=True):
-            notes, here = Notes(), replace(state, P=np.eye(3 * self.model.nv + 12) * 1e-4)
+        plant = self.plant(standard[0])
+        for true, frame in zip(motion, frames, strict=True):
+            notes, here = Notes(), self.state(true, plant, 1e-4 * np.eye(plant.layout.size))
             for k, block in enumerate(standard):
                 at = OperatingPoint(here, block.prepare(here, kept[k]))
                 kept[k] = block.remember(here, at, block.decide(at, frame, kept[k], notes), kept[k])
@@ -246,7 +270,7 @@ def bent(model):
 
 SITUATIONS = ("seen", "hidden", "worn", "bent")
 SILENT = ("nothing read", "nothing there")
-scene = cache(Scene)
+scene = lru_cache(None)(Scene)
 
 
 @dataclass(frozen=True)
@@ -262,8 +286,8 @@ class Shown:
     """
 
     block: Block
-    plant: SingerPlant
-    state: DynamicState
+    plant: object
+    state: object
     frame: Frame
     memory: object
     decision: object
@@ -291,13 +315,12 @@ def shown(kind, name, seed=None, off=3):
     here = scene(seed)
     happened, block = here.situation(name), here.made(kind)
     plant, memory = here.plant(block), block.begin()
-    extra = plant.layout.start()[0]
     P = 1e-4 * np.eye(plant.layout.size)
-    for t, (true, frame) in enumerate(zip(happened.states[:-1], happened.frames[:-1], strict=True)):
-        state = replace(true, extra=extra, P=P)
+    for t, (true, frame) in enumerate(zip(happened.motion[:-1], happened.frames[:-1], strict=True)):
+        state = here.state(true, plant, P)
         at = OperatingPoint(state, block.prepare(state, memory))
         memory = block.remember(state, at, block.decide(at, frame, memory, happened.noted(t)), memory)
-    state, frame = here.near(happened.states[-1], plant, off), happened.frames[-1]
+    state, frame = here.near(happened.motion[-1], plant, off), happened.frames[-1]
     at = OperatingPoint(state, block.prepare(state, memory))
     decision = block.decide(at, frame, memory, happened.noted())
     return Shown(block, plant, state, frame, memory, decision, happened)
@@ -358,29 +381,30 @@ def derivative(found):
         def value(x):
             return found.says(found.moved(x, state)).vector
 
-        # Information needs no larger step: it holds on configurations and their rates.
-        steps = np.full(size, h)
     else:
         stated = stacked(said, size)[0]
-        steps = np.where(np.arange(size) < 2 * found.plant.model.nv, h, 1e3 * h)
 
         def value(x):
             return stacked(found.says(found.moved(x, state)), size)[1]
 
+    steps = np.where(np.arange(size) < found.plant.layout.v.stop, h, 1e3 * h)
     columns = [(value(e) - value(-e)) / (2.0 * step) for e, step in zip(np.diag(steps), steps, strict=True)]
     return stated, -np.stack(columns, axis=-1)
 
 
 def noises(kind, here):
-    """Changes that double a noise of a block: an argument of its constructor, or a number among its settings."""
+    """Changes that double a number of a block's constructor or settings, one at a time and all of them."""
+    everything = {}
     for name, value in here.arguments(kind).items():
         if is_dataclass(value) and name.endswith("settings"):
             numbers = {one.name: getattr(value, one.name) for one in fields(value)}
-            for leaf, number in numbers.items():
-                if isinstance(number, float):
-                    yield {name: replace(value, **{leaf: 2.0 * number})}
+            doubled = {leaf: 2.0 * number for leaf, number in numbers.items() if isinstance(number, float)}
+            yield from ({name: replace(value, **{leaf: number})} for leaf, number in doubled.items())
+            everything[name] = replace(value, **doubled)
         elif isinstance(value, float) or (isinstance(value, np.ndarray) and value.dtype.kind == "f"):
             yield {name: 2.0 * value}
+            everything[name] = 2.0 * value
+    yield everything
 
 
 def noisier(decision):

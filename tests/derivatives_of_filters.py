@@ -207,13 +207,17 @@ def torque_sensitivity(rng):
     return named("filters.torque.plant.TorquePlant", ("sensitivity", stated, numeric))
 
 
-@checks("filters.torque.plant.ForcedPrediction.phi", tolerance=1e-4)
+@checks(
+    "filters.torque.plant.ForcedPrediction.phi", "filters.torque.plant.TorquePlant.transition", tolerance=1e-4
+)
 def torque_transition(rng):
     """With F averaged over a short step, exp(F Δt) is Φ to second order."""
     body, q, v, _, u = forced_body(rng)
     n, dt = 2 * body.nv + body.nu, 1e-3
     plant = TorquePlant(body, dt, lambda _: np.zeros((n, n)), Scheme("RK4", mean_slope=True))
-    stated = plant.predict(ForcedState(q, v, u, np.zeros((n, n)))).phi[: 2 * body.nv]
+    state, numeric = ForcedState(q, v, u, np.zeros((n, n))), flow_derivative(body, Motion(q, v), u, dt)
     return named(
-        "filters.torque.plant.ForcedPrediction", ("phi", stated, flow_derivative(body, Motion(q, v), u, dt))
+        "filters.torque.plant",
+        ("ForcedPrediction.phi", plant.predict(state).phi[: 2 * body.nv], numeric),
+        ("TorquePlant.transition", plant.transition(state)[: 2 * body.nv], numeric),
     )
