@@ -22,7 +22,7 @@ TORQUE_ROW = 3
 
 
 class PlainManifold:
-    """The body interface of the kinematic plants for plain coordinates, in place of the human's manifold."""
+    """What the kinematic plants ask of a body, for plain coordinates: a stand-in for the human's manifold."""
 
     nv: ClassVar[int] = 4
 
@@ -61,7 +61,7 @@ class KinematicMethod:
     """FCDI as a method.
 
     Attributes:
-        shape: The pendulum model.
+        shape: The pendulum it believes in.
         acceleration: σ_a of every component of z, rad/s² and m/s².
         marker_m: Standard deviation of a marker coordinate.
     """
@@ -71,7 +71,7 @@ class KinematicMethod:
     marker_m: float = 1e-3
 
     def run(self, trial: Trial) -> Estimate:
-        """Tracks a trial; accelerations are differences of filtered velocities (eq. 3.7)."""
+        """Follows a trial; accelerations are differences of filtered velocities (eq. 3.7)."""
         body, dt, truth = DoublePendulum(self.shape, residual=False), trial.dt_s, trial.motion
         plant = WhiteAccelerationPlant(PlainManifold.as_model(), dt, np.full(4, self.acceleration))
         state = FilterState(truth.q[0], truth.v[0], np.diag(np.repeat(START_VARIANCE[:2], 4)))
