@@ -1,4 +1,4 @@
-"""What a benchmark is given and what it gives back."""
+"""A benchmark's input (the context) and its output (checks of numbers against bounds)."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Context:
 
     Attributes:
         data: Folder of the public reference captures, or None when there is none.
-        out: Folder for whatever the benchmark wants to keep; exists.
+        out: Folder for the benchmark's files; exists.
         quick: Whether to do a shorter run, for a first look.
     """
 
@@ -68,3 +68,35 @@ class Context:
         if self.data is None:
             raise InvalidInput("the reference captures are needed; give --data DIR or set MBKF_DATA")
         return self.data
+
+
+def within(name: str, value: float, least: float, most: float, unit: str = "") -> list[Check]:
+    """The two checks of a number that has to lie in a band.
+
+    Args:
+        name: Name of the checks.
+        value: The number.
+        least: Lower end of the band.
+        most: Upper end of the band.
+        unit: Unit of the number.
+    """
+    return [
+        Check(f"{name}, at least", value, least, ">=", unit),
+        Check(f"{name}, at most", value, most, "<=", unit),
+    ]
+
+
+def information(name: str, value: float, unit: str = "") -> Check:
+    """A number shown without a bound.
+
+    Args:
+        name: Name of the row.
+        value: The number.
+        unit: Its unit.
+    """
+    return Check(name, value, math.inf, "<=", unit)
+
+
+def number(value: float | None) -> float:
+    """A number of a summary; NaN, which passes no bound, where it is missing."""
+    return math.nan if value is None else float(value)

@@ -70,7 +70,7 @@ def scale_and_reconstruct(
     """The main job with default settings: scale, then reconstruct.
 
     Args:
-        trial: The capture to follow.
+        trial: The capture to track.
         scaling: Words for ``mbkf scale`` but ``--out``.
         folder: Where everything goes.
         forces: Ground reactions that are no part of the trial.

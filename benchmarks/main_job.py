@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.checks import Check, Context
+from benchmarks.checks import Check, Context, number
 from benchmarks.commands import FILTER, Written, mbkf, read_folder, scale_and_reconstruct
 from benchmarks.references import (
     PLUG_IN_GAIT,
@@ -243,8 +243,3 @@ def pair(name: str, r: float, least_r: float, rms: float, most_rms: float, unit:
         Check(f"{label}, r", r, least_r, ">="),
         Check(f"{label}, RMS difference", rms, most_rms, "<=", unit),
     ]
-
-
-def number(value: float | None) -> float:
-    """NaN, which passes no bound, where nothing is known."""
-    return math.nan if value is None else float(value)

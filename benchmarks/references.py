@@ -129,7 +129,7 @@ def worst_side(
 
 
 def in_degrees(table: Table) -> Table:
-    """A table of coordinates in degrees, whatever the file says or forgets to say."""
+    """A table of coordinates in degrees, also where the file's header states no unit or a wrong one."""
     if table.in_degrees:
         return table
     return Table(table.names, table.times_s, np.rad2deg(table.columns), True, table.title)

@@ -22,6 +22,7 @@ from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.reconstruct import subject_markers
 from mbkf.pipelines.synth import synthesise
+from mbkf.sensors.block import Frame
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.sensors.marker_sensor import MarkerSensor
@@ -105,7 +106,7 @@ def make_walk(seconds: float) -> Walk:
     plates = capture.trial.plates
     loads = plate_wrenches(plates, measured.times_s, measured.rate_hz)
     feet = ContactDetector(model, plates, kalman.plant.dt_s)
-    dynamic = DynamicFilter(sensor, noise, feet, kalman.plant.dt_s, held, DynamicSettings())
+    dynamic = DynamicFilter.standard(sensor, noise, feet, kalman.plant.dt_s, held, DynamicSettings())
     return Walk(kalman, dynamic, loads, TorqueSolver(model), measured.positions_m, wrench)
 
 
@@ -118,11 +119,13 @@ def time_kinematic(walk: Walk) -> Times:
         state = kalman.start(walk.measured_m[0])
         if state is None:
             raise InvalidInput("the synthetic walk does not start")
+        memory, no_plates = kalman.begin(), np.zeros((0, 6))
         for markers in walk.measured_m[1:]:
             ticks = [perf_counter()]
             np.matmul(factor, factor)
             ticks.append(perf_counter())
-            result = kalman.step(state, markers).state
+            done = kalman.step(state, memory, Frame(markers, no_plates))
+            result, memory = done.state, done.memory
             ticks.append(perf_counter())
             walk.solver.torques(result.q, result.v, (result.v - state.v) / dt, walk.foot_wrench)
             ticks.append(perf_counter())
@@ -143,12 +146,12 @@ def time_dynamic(walk: Walk, rounds: int) -> Times:
             raise InvalidInput("the synthetic walk does not start")
         still = np.zeros(kalman.model.nv)
         for _ in range(rounds):
-            done = kalman.first(start.q, start.v, still, start.P, walk.measured_m[0], walk.plates[0])
+            done = kalman.first(start.q, start.v, still, start.P, Frame(walk.measured_m[0], walk.plates[0]))
             for markers, plates in zip(walk.measured_m[1:], walk.plates[1:], strict=True):
                 ticks = [perf_counter()]
                 np.matmul(factor, factor)
                 ticks.append(perf_counter())
-                done = kalman.step(done.state, done.memory, markers, plates)
+                done = kalman.step(done.state, done.memory, Frame(markers, plates))
                 ticks.append(perf_counter())
                 rows.append(np.diff(ticks))
     product, filtering = np.array(rows)[WARM_UP_FRAMES:].T

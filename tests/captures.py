@@ -17,7 +17,6 @@ from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.marker_sensor import MarkerSensor
-from mbkf.sensors.marker_sensor import MarkerSensor
 
 RATE_HZ = 100.0
 MASS_KG = 75.0

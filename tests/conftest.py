@@ -7,6 +7,15 @@ import pytest
 
 from mbkf.numerics.threads import single_threaded
 
+STUDIES = Path(__file__).parent / "benchmarks"
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Tests of benchmarks repeat parts of studies, and so are slow."""
+    for item in items:
+        if item.path.is_relative_to(STUDIES):
+            item.add_marker(pytest.mark.slow)
+
 
 @pytest.fixture(scope="session")
 def real_data() -> Path:

@@ -10,29 +10,29 @@ from tests.motions import central_difference
 
 @dataclass(frozen=True)
 class Case:
-    """Blocks that one comparison checks: a random generator in, per block the stated and the numeric derivative out."""
+    """Derivatives that one comparison checks: a random generator in, per name the stated and the numeric one out."""
 
     name: str
-    blocks: tuple[str, ...]
+    names: tuple[str, ...]
     tolerance: float
     compare: Callable
 
 
 CASES: list[Case] = []
-"""Filled by the modules derivatives_of_bodies and derivatives_of_filters."""
+"""Filled by the modules derivatives_of_*."""
 
 
-def checks(*blocks, tolerance=1e-7):
+def checks(*names, tolerance=1e-7):
     def register(compare):
-        CASES.append(Case(compare.__name__, blocks, tolerance, compare))
+        CASES.append(Case(compare.__name__, names, tolerance, compare))
         return compare
 
     return register
 
 
 def named(room, *pairs):
-    """{room.block: (stated, numeric)}."""
-    return {f"{room}.{block}": (stated, numeric) for block, stated, numeric in pairs}
+    """{room.name: (stated, numeric)}."""
+    return {f"{room}.{name}": (stated, numeric) for name, stated, numeric in pairs}
 
 
 def slope(function, x, step=1e-6):

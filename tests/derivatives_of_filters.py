@@ -3,18 +3,19 @@
 from dataclasses import replace
 
 import numpy as np
-from mbkf.filters.dynamic_records import Decision, Expected
 
-from mbkf.filters.dynamic.plant import SingerPlant
+from mbkf.filters.dynamic.plant import SingerPlant, SingerSettings
 from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
 from mbkf.filters.torque.integrators import Motion, runge_kutta
 from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant
+from mbkf.sensors.block import Frame
 from mbkf.sensors.foot_wrench import FootWrenchSensor
-from mbkf.sensors.joint_limits import JointLimits
-from mbkf.sensors.posture import PostureSensor, pull
+from mbkf.sensors.joint_limits import JointLimits, JointLimitSettings
+from mbkf.sensors.markers import Markers
+from mbkf.sensors.posture import PostureSensor, posture_information
 from tests.derivatives import checks, named, slope
 from tests.derivatives_of_bodies import forced_body
-from tests.dynamics import dynamic_filter, markers_of, random_state, standing
+from tests.dynamics import block_of, dynamic_filter, markers_of, random_state, standing
 from tests.motions import central_difference, moderate_pose, protocol_sensor, random_model
 
 DT = 0.01
@@ -24,9 +25,9 @@ DT = 0.01
 
 
 @checks(
-    "sensors.markers.MarkerReading.jacobian",
-    "sensors.markers.MarkerReading.pull",
-    "sensors.markers.MarkerSensor.reading",
+    "sensors.marker_sensor.MarkerReading.jacobian",
+    "sensors.marker_sensor.MarkerReading.pull",
+    "sensors.marker_sensor.MarkerSensor.reading",
 )
 def markers(rng):
     model = random_model(rng)
@@ -35,7 +36,7 @@ def markers(rng):
     by_q = central_difference(model, sensor.positions, q)
     work = central_difference(model, lambda at: np.vdot(forces, sensor.positions(at)), q)
     return named(
-        "sensors.markers",
+        "sensors.marker_sensor",
         ("MarkerReading.jacobian", reading.jacobian, by_q),
         ("MarkerReading.pull", reading.pull(forces), work),
         ("MarkerSensor.reading", reading.jacobian, by_q),
@@ -46,7 +47,7 @@ def markers(rng):
     "sensors.posture.PostureReading.jacobian",
     "sensors.posture.PostureSensor.reading",
     "sensors.posture.PostureSensor.deviation",
-    "sensors.posture.pull",
+    "sensors.posture.posture_information",
 )
 def posture(rng):
     model = random_model(rng)
@@ -64,7 +65,11 @@ def posture(rng):
         ("PostureSensor.reading", sensor.reading(q).jacobian, numeric[sensor.dofs]),
         ("PostureSensor.deviation", sensor.deviation(q)[1], numeric),
         # Half the square of the weighed deviations falls along the vector.
-        ("pull", pull(*sensor.deviation(q), weights).vector, -central_difference(model, squared, q)),
+        (
+            "posture_information",
+            posture_information(*sensor.deviation(q), weights).vector,
+            -central_difference(model, squared, q),
+        ),
     )
 
 
@@ -73,7 +78,7 @@ def joint_limits(rng):
     """Passed limits pull down the slope of ½ Σ (beyond / sd)²."""
     model = random_model(rng)
     sensor = PostureSensor(model)
-    limits = JointLimits(model, np.zeros(model.nv, dtype=bool), 0.5)
+    limits = JointLimits(sensor, np.zeros(model.nv, dtype=bool), JointLimitSettings(0.5))
     step = np.minimum(2.37 * model.posture_sd, 1.13) * rng.choice([-1.0, 1.0], model.nv)
     q = model.integrate(model.neutral(), step)
 
@@ -107,7 +112,7 @@ def plates(rng):
 # Plants and filters.
 
 
-@checks("filters.dwna.WhiteAccelerationPlant.transition")
+@checks("filters.kinematic.plant.WhiteAccelerationPlant.transition")
 def kinematic_plant(rng):
     model = random_model(rng)
     plant, s = WhiteAccelerationPlant(model, 0.1, model.acceleration_sd), random_state(model, rng)
@@ -120,81 +125,49 @@ def kinematic_plant(rng):
 
     stated = plant.transition(KinematicState(s.q, s.v, P))
     return named(
-        "filters.dwna.WhiteAccelerationPlant", ("transition", stated, slope(tangent, np.zeros(2 * nv)))
+        "filters.kinematic.plant.WhiteAccelerationPlant",
+        ("transition", stated, slope(tangent, np.zeros(2 * nv))),
     )
 
 
-@checks("filters.singer.SingerPlant.transition")
+@checks("filters.dynamic.plant.SingerPlant.transition")
 def singer_plant(rng):
     model = random_model(rng)
-    kalman, s = dynamic_filter(model, dt_s=0.1), random_state(model, rng)
-    plant = SingerPlant(model, 0.1, model.movement_sd, decay_s=float(rng.uniform(0.02, 1.0)))
+    s = random_state(model, rng)
+    motion = SingerSettings(decay_s=float(rng.uniform(0.02, 1.0)))
+    plant = SingerPlant(model, 0.1, np.zeros(model.nv, dtype=bool), motion)
     end, N = plant.predict(s), len(s.P)
-    numeric = slope(lambda x: kalman.difference(end, plant.predict(kalman.retract(s, x, s.P))), np.zeros(N))
-    return named("filters.singer.SingerPlant", ("transition", plant.transition(s), numeric))
+    numeric = slope(lambda x: plant.difference(end, plant.predict(plant.retract(s, x, s.P))), np.zeros(N))
+    return named("filters.dynamic.plant.SingerPlant", ("transition", plant.transition(s), numeric))
 
 
-@checks(
-    "filters.dynamic.DynamicFilter.linearise", "filters.dynamic_records.FrameReadings.rows", tolerance=1e-6
-)
+@checks("filters.filter.Filter.linearise", "filters.filter.Readings.rows", tolerance=1e-6)
 def dynamic_readings(rng):
-    """Whitened innovations fall by the rows; without pulls, what markers say falls by their information."""
+    """Whitened innovations fall by the rows; without priors, what markers say falls by their information."""
     model = random_model(rng)
     kalman = dynamic_filter(model, plates=2, posture_scale=1e6, limit_sd_rad=1e6)
     s = random_state(model, rng, standing(model), spread=0.05)
-    measured = markers_of(kalman, s.q)
-    hidden = measured.copy()
+    hidden = markers_of(kalman, s.q)
     hidden[np.isin(kalman.sensor.segments, ["right_hand"])] = np.nan
-    decision = kalman.step(s, kalman.begin(), hidden, np.zeros((2, 6))).decision
-    assert len(decision.unseen)
+    done = kalman.step(s, kalman.begin(), Frame(hidden, np.zeros((2, 6))))
+    assert len(done.decisions.notes.unobserved)
+    k = block_of(kalman, Markers)[1]
+    # The same decision, of markers that lie where the state has them.
+    decided = list(done.decisions.blocks)
+    decided[k] = decided[k]._replace(measured_m=markers_of(kalman, s.q))
+    decisions = replace(done.decisions, blocks=tuple(decided))
 
     def read(x):
-        return kalman.linearise(kalman.retract(s, x, s.P), decision, measured)
+        return kalman.linearise(kalman.plant.retract(s, x, s.P), decisions)
 
     zero = np.zeros(len(s.P))
     found = read(zero)
     falls = -slope(lambda x: read(x).values, zero, 1e-5)
     informs = -slope(lambda x: read(np.r_[x, zero[model.nv :]]).vector, zero[: model.nv])
     return {
-        "filters.dynamic_records.FrameReadings.rows": (found.rows, falls),
-        "filters.dynamic.DynamicFilter.linearise": (found.matrix / 1e6, informs / 1e6),
+        "filters.filter.Readings.rows": (found.rows, falls),
+        "filters.filter.Filter.linearise": (found.matrix / 1e6, informs / 1e6),
     }
-
-
-@checks("filters.outlook.Outlook.by_q", "filters.outlook.Outlook.law", tolerance=1e-6)
-def outlook(rng):
-    """Newton's law is read as zero, so its rows are what its innovations lose."""
-    model = random_model(rng)
-    kalman = dynamic_filter(model)
-    s = random_state(model, rng, standing(model), spread=0.05)
-    looked = kalman.outlooks.at(s)
-
-    def law(x):
-        return kalman.outlooks.at(kalman.retract(s, x, s.P)).law_values
-
-    by_q = central_difference(model, lambda q: kalman.outlooks.at(replace(s, q=q)).deviation, s.q)
-    falls = -slope(law, np.zeros(len(s.P)), 1e-5)
-    return named("filters.outlook.Outlook", ("by_q", looked.by_q, by_q), ("law", looked.law, falls))
-
-
-@checks("filters.habit.Habit.rows")
-def habit_rows(rng):
-    """Whitened: a row falls by what its innovation gains."""
-    model = random_model(rng)
-    kalman, s = dynamic_filter(model), random_state(model, rng)
-    dofs = np.concatenate(kalman.habit.followers)
-    q = model.integrate(s.q, 0.3 * rng.normal(size=model.nv))
-    v_sd, q_sd = 0.1 + rng.random((2, len(dofs)))
-    expected = Expected(dofs, q, s.v[dofs] + 1.0, q_sd, v_sd)
-    decision = Decision(*[None] * len(Decision._fields))._replace(expected=expected)
-    found = [rows for _, rows, _ in kalman.habit.rows(s, decision)]
-
-    def short(state):
-        return [values for _, _, values in kalman.habit.rows(state, decision)]
-
-    by_q = central_difference(model, lambda at: short(replace(s, q=at))[0], s.q)
-    by_v = slope(lambda v: short(replace(s, v=v))[1], s.v)
-    return named("filters.habit.Habit", ("rows", found[0], -by_q), ("rows", found[1], -by_v))
 
 
 def flow(body, now, u, h, x):
@@ -216,7 +189,7 @@ def flow_derivative(body, now, u, h):
     return slope(tangent, np.zeros(n)) / size
 
 
-@checks("filters.torque_plant.TorquePlant.sensitivity", tolerance=1e-5)
+@checks("filters.torque.plant.TorquePlant.sensitivity", tolerance=1e-5)
 def torque_sensitivity(rng):
     """F is the rate at which errors change along the manifold."""
     body, q, v, _, u = forced_body(rng)
@@ -228,10 +201,10 @@ def torque_sensitivity(rng):
 
     stated = plant.sensitivity(v, body.linearise(q, v, u))[: 2 * body.nv]
     numeric = (4.0 * rate(1e-4) - rate(2e-4)) / 3.0
-    return named("filters.torque_plant.TorquePlant", ("sensitivity", stated, numeric))
+    return named("filters.torque.plant.TorquePlant", ("sensitivity", stated, numeric))
 
 
-@checks("filters.torque_plant.Prediction.phi", tolerance=1e-4)
+@checks("filters.torque.plant.ForcedPrediction.phi", tolerance=1e-4)
 def torque_transition(rng):
     """With F averaged over a short step, exp(F Δt) is Φ to second order."""
     body, q, v, _, u = forced_body(rng)
@@ -239,5 +212,5 @@ def torque_transition(rng):
     plant = TorquePlant(body, dt, lambda _: np.zeros((n, n)), Scheme("RK4", mean_slope=True))
     stated = plant.predict(ForcedState(q, v, u, np.zeros((n, n)))).phi[: 2 * body.nv]
     return named(
-        "filters.torque_plant.Prediction", ("phi", stated, flow_derivative(body, Motion(q, v), u, dt))
+        "filters.torque.plant.ForcedPrediction", ("phi", stated, flow_derivative(body, Motion(q, v), u, dt))
     )

@@ -1,9 +1,9 @@
 """Cases of tests/test_jacobians.py: inertial sensors on the body, and what they add to the dynamic filter."""
 
 import numpy as np
-from mbkf.sensors.inertial_rows import InertialRows
 
 from mbkf.io.imu_mount import ImuMount
+from mbkf.sensors.inertial import InertialSensors, InertialSettings
 from mbkf.sensors.inertial_sensor import InertialSensor
 from tests.derivatives import checks, named, slope
 from tests.motions import central_difference, moderate_pose, random_model
@@ -23,10 +23,10 @@ def worn(rng):
 
 
 @checks(
-    "sensors.inertial.InertialReading.by_q",
-    "sensors.inertial.InertialReading.by_v",
-    "sensors.inertial.InertialReading.by_a",
-    "sensors.inertial.InertialSensor.reading",
+    "sensors.inertial_sensor.InertialReading.by_q",
+    "sensors.inertial_sensor.InertialReading.by_v",
+    "sensors.inertial_sensor.InertialReading.by_a",
+    "sensors.inertial_sensor.InertialSensor.reading",
     tolerance=1e-6,
 )
 def inertial_readings(rng):
@@ -39,18 +39,18 @@ def inertial_readings(rng):
         np.concatenate(three, axis=2)
         for three in ((stated.by_q, stated.by_v, stated.by_a), (by_q, by_v, by_a))
     ]
-    return named("sensors.inertial", ("InertialSensor.reading", *whole)) | named(
-        "sensors.inertial.InertialReading",
+    return named("sensors.inertial_sensor", ("InertialSensor.reading", *whole)) | named(
+        "sensors.inertial_sensor.InertialReading",
         ("by_q", stated.by_q, by_q),
         ("by_v", stated.by_v, by_v),
         ("by_a", stated.by_a, by_a),
     )
 
 
-@checks("sensors.inertial_rows.InertialRows.rows", tolerance=1e-6)
+@checks("sensors.inertial.InertialSensors.rows", tolerance=1e-6)
 def inertial_rows(rng):
     model, sensor, q, v, a = worn(rng)
-    block = InertialRows(sensor, 0.1, 0.7)
+    block = InertialSensors(sensor, InertialSettings(0.1, 0.7))
     measured = rng.normal(size=(2, 6))
     rows, _ = block.rows(q, v, a, measured)
     numeric = np.hstack(
@@ -60,4 +60,4 @@ def inertial_rows(rng):
             slope(lambda at: -block.rows(q, v, at, measured)[1], a),
         ]
     )
-    return named("sensors.inertial_rows", ("InertialRows.rows", rows, numeric))
+    return named("sensors.inertial", ("InertialSensors.rows", rows, numeric))

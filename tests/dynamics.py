@@ -9,12 +9,13 @@ from mbkf.conventions import GRAVITY_M_S2
 from mbkf.filters.dynamic.filter import DynamicFilter
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.dynamic.settings import DynamicSettings
+from mbkf.filters.settings import changed
 from mbkf.io.records import PlateReadings
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
+from mbkf.sensors.block import Frame, OperatingPoint
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.soles import sole_points
-from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.motion import TrueMotion, synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
@@ -72,17 +73,54 @@ def plates_under(model, q):
 
 
 def dynamic_filter(
-    model, plates=(), dt_s=DT, noise_m=MARKER_SD_M, held=None, protocol="reference36", keep=None, **settings
+    model,
+    plates=(),
+    dt_s=DT,
+    noise_m=MARKER_SD_M,
+    unobservable=None,
+    protocol="reference36",
+    keep=None,
+    **settings,
 ):
     """A filter with a protocol's markers; ``plates`` are readings, or 2 for one under each foot of a standing body."""
     if plates == 2:
         plates = plates_under(model, standing(model))
     sensor = protocol_sensor(model, protocol, keep)[0]
     noise = np.full(len(sensor.segments), noise_m)
-    held = np.zeros(model.nv, dtype=bool) if held is None else held
-    return DynamicFilter(
-        sensor, noise, ContactDetector(model, plates, dt_s), dt_s, held, DynamicSettings(**settings)
-    )
+    unobservable = np.zeros(model.nv, dtype=bool) if unobservable is None else unobservable
+    detector = ContactDetector(model, plates, dt_s)
+    return DynamicFilter.standard(sensor, noise, detector, dt_s, unobservable, settings_with(**settings))
+
+
+def settings_with(**values):
+    """The dynamic filter's default settings but for these, by their own names."""
+    return changed(DynamicSettings(), **values)
+
+
+def prepared_at(block, state, memory=None):
+    """A state as a block sees it."""
+    return OperatingPoint(state, block.prepare(state, memory))
+
+
+def block_of(kalman, kind):
+    """A filter's block of a kind, and its place among the blocks."""
+    return next((block, k) for k, block in enumerate(kalman.blocks) if isinstance(block, kind))
+
+
+def memory_of(kalman, kind, memory):
+    """What a filter's block of a kind keeps."""
+    return memory.blocks[block_of(kalman, kind)[1]]
+
+
+def with_memory(kalman, kind, memory, own):
+    """The filter's memory with that of a block of a kind replaced."""
+    k = block_of(kalman, kind)[1]
+    return memory._replace(blocks=(*memory.blocks[:k], own, *memory.blocks[k + 1 :]))
+
+
+def decision_of(kalman, kind, step):
+    """What a filter's block of a kind decided in a step."""
+    return step.decisions.blocks[block_of(kalman, kind)[1]]
 
 
 def markers_of(kalman, q):
@@ -123,7 +161,7 @@ class Trial:
     motion: TrueMotion
     plates: tuple[PlateReadings, ...]
 
-    def feet(self, plates=None):
+    def detector(self, plates=None):
         """The contact detector over these plates, or over others."""
         return ContactDetector(
             self.model, self.plates if plates is None else plates, 1.0 / self.motion.rate_hz
@@ -133,10 +171,9 @@ class Trial:
         """A filter that knows body, markers and plates exactly."""
         local = np.array([marker.position_m for marker in self.subject.markers])
         sensor = MarkerSensor(self.model, [marker.segment for marker in self.subject.markers], local)
-        held = np.zeros(self.model.nv, dtype=bool)
-        noise = np.full(len(local), noise_m)
-        chosen = DynamicSettings(**settings)
-        return DynamicFilter(sensor, noise, self.feet(plates), 1.0 / self.motion.rate_hz, held, chosen)
+        everywhere, noise = np.zeros(self.model.nv, dtype=bool), np.full(len(local), noise_m)
+        detector, dt_s = self.detector(plates), 1.0 / self.motion.rate_hz
+        return DynamicFilter.standard(sensor, noise, detector, dt_s, everywhere, settings_with(**settings))
 
     def state(self, t, rng=None):
         """The state at a frame and a covariance; with a generator, wrong by as much as that says."""
@@ -199,6 +236,6 @@ def follow(made, frames, plates=None, seed=0, **settings):
     loads = loads + (np.abs(loads).sum(axis=2, keepdims=True) > 0) * rng.normal(size=loads.shape)
     state, memory, steps = begin, kalman.begin(), []
     for seen, load in zip(markers, loads, strict=True):
-        steps.append(kalman.step(state, memory, seen, load))
+        steps.append(kalman.step(state, memory, Frame(seen, load)))
         state, memory = steps[-1].state, steps[-1].memory
     return Run(made, kalman, frames, begin, markers, steps)

@@ -12,6 +12,7 @@ from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
+from mbkf.sensors.block import Frame
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 
@@ -136,6 +137,11 @@ def capture_of(names, positions_m, rate_hz=100.0, plates=(), mass_kg=None):
 def angle_errors(model, found, true):
     """(T, nv) tangent differences between two motions."""
     return np.array([model.difference(a, b) for a, b in zip(true, found, strict=True)])
+
+
+def markers_only(markers_m):
+    """A frame in which only cameras read."""
+    return Frame(markers_m, np.zeros((0, 6)))
 
 
 def worst(values):

@@ -9,7 +9,6 @@ from mbkf.io.results import Reconstruction
 from mbkf.model.clinical import ClinicalAngles, dof_names
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.marker_sensor import MarkerSensor
-from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
 from tests.motions import marker_positions

@@ -1,7 +1,8 @@
 """Every derivative the package states is the numeric one along the manifold, and none escapes: they are found here.
 
-A block is a public field, method or function of the rooms below whose name or docstring speaks of a derivative. Each
-needs a case, which compares it with finite differences, or a line in :data:`ELSEWHERE`.
+Looked for are public fields, methods and functions of the rooms below whose name or docstring speaks of a derivative.
+Each needs a case, which compares it with finite differences, or a line in :data:`ELSEWHERE`. Filters' blocks, those of
+tests/blocks among them, have their cases by themselves (:mod:`tests.derivatives_of_blocks`).
 """
 
 import dataclasses
@@ -17,6 +18,7 @@ import numpy as np
 import pytest
 
 from tests import (
+    derivatives_of_blocks,
     derivatives_of_bodies,
     derivatives_of_filters,
     derivatives_of_inertial,
@@ -42,10 +44,12 @@ ELSEWHERE = {
     "model.forced_body.ForcedBody.linearise": "model/test_forced_body.py",
     "model.forced_body.ForcedBody.retraction": "model/test_human_dynamics.py",
     "model.forced_body.ForcedBody.transport": "model/test_human_dynamics.py",
-    "filters.integrators.trapezoidal_newton": "filters/test_integrators.py TN",
-    "filters.gate.judged": "filters/test_gate.py",
+    "filters.torque.integrators.trapezoidal_newton": "filters/test_integrators.py TN",
+    "sensors.gating.gated": "sensors/test_gating.py",
     "numerics.discretisation.Discrete.phi": "numerics/test_discretisation.py",
     "numerics.kalman.Correction.gain_effect": "numerics/test_kalman.py",
+    "numerics.kalman.information": "numerics/test_kalman.py",
+    "numerics.kalman.informed_after_rows": "numerics/test_kalman.py",
     "numerics.kalman.informed_with_rows": "numerics/test_kalman.py",
     "numerics.levenberg_marquardt.ArrowEquations.corner_gradient": "numerics/test_levenberg_marquardt.py",
     "numerics.levenberg_marquardt.ArrowEquations.frame_gradient": "numerics/test_levenberg_marquardt.py",
@@ -53,18 +57,18 @@ ELSEWHERE = {
     "scaling.problem.ScalingProblem.linearise": "scaling/test_problem.py",
     "sensors.pose_fit.segment_by_segment": "sensors/test_pose_fit.py",
 }
-"""Blocks that hold no derivative of their own or that are algebra: the test file that checks each, and the name it has
+"""What holds no derivative of its own or is algebra: the test file that checks each, and the name it has
 there where that is another."""
 
 
 def modules():
     for room in ROOMS:
         package = importlib.import_module(f"mbkf.{room}")
-        for found in pkgutil.iter_modules(package.__path__):
-            yield importlib.import_module(f"mbkf.{room}.{found.name}")
+        for found in pkgutil.walk_packages(package.__path__, f"mbkf.{room}."):
+            yield importlib.import_module(found.name)
 
 
-def blocks_in(module):
+def derivatives_in(module):
     """Dotted names, below ``mbkf``, of everything in a module that speaks of a derivative."""
     home = module.__name__.removeprefix("mbkf.")
     for name, thing in vars(module).items():
@@ -106,11 +110,11 @@ def speaks(name, function):
     return NAMED.search(name) or SAID.search(function.__doc__ or "")
 
 
-FOUND = {block for module in modules() for block in blocks_in(module)}
-CHECKED = {block for case in CASES for block in case.blocks}
+FOUND = {name for module in modules() for name in derivatives_in(module)}
+CHECKED = {name for case in CASES for name in case.names}
 
 
-def test_every_block_has_its_case():
+def test_every_derivative_has_its_case():
     missing = sorted(FOUND - CHECKED - set(ELSEWHERE))
     assert missing == [], (
         f"add a case for each to {derivatives_of_bodies.__name__}, {derivatives_of_filters.__name__}, "
@@ -118,21 +122,44 @@ def test_every_block_has_its_case():
     )
 
 
-def test_no_case_outlives_its_block():
-    """What a case checks exists; it may check more than the search finds."""
-    for block in CHECKED | set(ELSEWHERE):
-        room, module, *path = block.split(".")
-        thing = importlib.import_module(f"mbkf.{room}.{module}")
-        for name in path:
+def thing_called(address):
+    """What a dotted name stands for: the longest part of it that is a module, and the names within."""
+    parts = address.split(".")
+    root = address if parts[0] == "tests" else f"mbkf.{address}"
+    for cut in range(len(parts) + 1, 1, -1):
+        name = ".".join(root.split(".")[:cut])
+        try:
+            thing = importlib.import_module(name)
+        except ModuleNotFoundError:
+            continue
+        for one in root.split(".")[cut:]:
             known = getattr(thing, "__dataclass_fields__", {})
-            thing = known[name] if name in known else getattr(thing, name)
+            thing = known[one] if one in known else getattr(thing, one)
+        return thing
+    raise LookupError(address)
+
+
+def test_no_case_outlives_what_it_checks():
+    """What a case checks exists; it may check more than the search finds."""
+    for address in CHECKED | set(ELSEWHERE):
+        thing_called(address)
     assert not CHECKED & set(ELSEWHERE)
 
 
-@pytest.mark.parametrize("block", ELSEWHERE)
-def test_what_is_checked_elsewhere_is_named_there(block):
-    file, _, name = ELSEWHERE[block].partition(" ")
-    name = name or block.split(".")[-1]
+def test_blocks_have_their_cases_by_themselves():
+    """Those of the package as well as those that tests bring."""
+    own = {case.names[0] for case in CASES if case.compare.__module__ == derivatives_of_blocks.__name__}
+    assert {
+        "sensors.markers.Markers.linearise",
+        "sensors.coordination.prior.CoordinationPrior.linearise",
+    } <= own
+    assert "tests.blocks.drifting_tracker.DriftingTracker.linearise" in own
+
+
+@pytest.mark.parametrize("address", ELSEWHERE)
+def test_what_is_checked_elsewhere_is_named_there(address):
+    file, _, name = ELSEWHERE[address].partition(" ")
+    name = name or address.split(".")[-1]
     assert re.search(rf"\b{name}\b", (TESTS / file).read_text(encoding="utf-8"))
 
 
@@ -168,7 +195,7 @@ def rowing(x): "."
         "jacobian_of",
         "rises",
     )
-    assert set(blocks_in(made)) == {f"made.up.{name}" for name in names}
+    assert set(derivatives_in(made)) == {f"made.up.{name}" for name in names}
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -176,9 +203,9 @@ def rowing(x): "."
 def test_stated_derivatives_are_the_numeric_ones(case, seed):
     """Tolerances are shares of the largest entry, or absolute where that is below 1."""
     checked = case.compare(np.random.default_rng(seed))
-    assert {*checked} == {*case.blocks}
-    for block, (stated, numeric) in checked.items():
-        assert np.shape(stated) == np.shape(numeric), block
+    assert {*checked} == {*case.names}
+    for address, (stated, numeric) in checked.items():
+        assert np.shape(stated) == np.shape(numeric), address
         error = np.abs(np.asarray(stated) - numeric).max() / max(1.0, np.abs(numeric).max())
-        assert error < case.tolerance, f"{block} differs by {error:.1e}"
-        assert np.abs(numeric).max() > 1e-3, f"{block} is all zero here, which proves nothing"
+        assert error < case.tolerance, f"{address} differs by {error:.1e}"
+        assert np.abs(numeric).max() > 1e-3, f"{address} is all zero here, which proves nothing"

@@ -11,6 +11,8 @@ import pytest
 from mbkf.conventions import data_folder
 from mbkf.version import __version__
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parents[1]
 KINDS = ("models", "markers")
 

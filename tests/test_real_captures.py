@@ -21,6 +21,8 @@ from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
 from mbkf.pipelines.results.summary import summarise
 from mbkf.pipelines.scale import scale
 
+pytestmark = pytest.mark.slow
+
 
 def followed(
     trial: Path,

@@ -1,4 +1,4 @@
-"""The thesis's double pendulum: every discretisation, study and band of SPEC §8, on the human's own filter code.
+"""The thesis's double pendulum: every discretisation and study, with bounds, on the human's own filter code.
 
 Writes tables (CSV), the thesis's figures redrawn, and one page that sets thesis and measurement side by side.
 """

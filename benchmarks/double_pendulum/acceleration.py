@@ -1,4 +1,4 @@
-"""The acceleration-coordinate filter (DESIGN §4, fact 5) on the double pendulum: state z, ż, z̈ and the plate's wrench.
+"""The acceleration-coordinate filter on the double pendulum: state z, ż, z̈ and the plate's wrench.
 
 The human's Singer plant predicts; markers, plate and Newton–Euler correct. The three equations of motion that τ_1 does
 not enter are readings of zero; the fourth gives τ_1. The state is the human's own: of its two feet the pendulum stands
@@ -81,9 +81,8 @@ class PendulumAccelerationFilter:
             belief: Noise settings.
         """
         self.body, self.belief = DoublePendulum(shape, residual=False), belief
-        spread = np.full(4, belief.acceleration)
-        motion = SingerSettings(activity_gain=0.0, decay_s=belief.decay_s)
-        self.plant = SingerPlant(PlainManifold.as_model(spread), dt_s, np.zeros(4, dtype=bool), motion)
+        motion = SingerSettings(acceleration_scale=belief.acceleration, decay_s=belief.decay_s)
+        self.plant = SingerPlant(PlainManifold.as_model(), dt_s, np.zeros(4, dtype=bool), motion)
         self._walk = belief.load_noise**2 * dt_s
         plate = [belief.force_n, belief.force_n, belief.moment_nm]
         self._sd = np.array([belief.marker_m] * 8 + plate + [belief.residual] * 3)

@@ -1,4 +1,4 @@
-"""Rows of SPEC §8's last table, and tables that are written as CSV and shown on the page."""
+"""Bounded numbers (bands), statements of the thesis (claims), and tables written as CSV and shown on the page."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Band:
     """A measured number and the interval that a correct implementation keeps it in.
 
     Attributes:
-        row: The row of the table in SPEC §8.
+        row: Group of the number on the page.
         name: What is measured.
         value: The number.
         low, high: The interval, infinite where it is open.
@@ -100,7 +100,7 @@ class Claim:
 
     Attributes:
         source: Where it stands.
-        statement: What it says.
+        statement: The statement in words.
         measured: The numbers found here.
         verdict: "holds", "partly" or "does not hold".
     """

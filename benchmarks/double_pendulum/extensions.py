@@ -125,7 +125,7 @@ def _own_sheet(rows: Sequence[Row]) -> Sheet:
         "better than FD in",
         "worse in",
     )
-    title = "The filter in acceleration coordinates (DESIGN fact 5), same trials and noise"
+    title = "The filter in acceleration coordinates, same trials and noise"
     note = f"Mean ratios of RMS errors, paired by seed; within {100 * ALIKE:.0f} % counts as alike."
     return Sheet("own_filter", title, columns, tuple(rows), note)
 

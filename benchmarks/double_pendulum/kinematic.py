@@ -1,4 +1,4 @@
-"""FCDI on the double pendulum: the human's white-acceleration plant and update, then inverse dynamics (SPEC §5)."""
+"""FCDI on the double pendulum: the human's white-acceleration plant and update, then inverse dynamics."""
 
 from __future__ import annotations
 
@@ -30,6 +30,7 @@ class PlainManifold:
 
     movement_sd: Array
     nv: ClassVar[int] = 4
+    movement_sd: ClassVar[Array] = np.ones(4)
 
     def integrate(self, q: Array, dv: Array) -> Array:
         """(4,) q + dv."""

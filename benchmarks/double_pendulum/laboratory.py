@@ -119,7 +119,7 @@ def _in_batches(seeds: Iterable[int], size: int) -> list[tuple[int, ...]]:
 
 @contextmanager
 def laboratory(seeds: int, quick: bool) -> Iterator[Laboratory]:
-    """One with a worker per core, which says on stderr how far it is."""
+    """A laboratory with a worker per core, which shows its progress on stderr."""
     with in_parallel() as mapper, _told() as report:
         yield Laboratory(mapper, seeds, quick, report)
 

@@ -73,9 +73,10 @@ class Report:
             "<title>Double pendulum: thesis and measurement</title>",
             f"<style>{_STYLE}</style></head><body>",
             self._head(),
-            "<h2 id='bands'>Bands</h2><p class='soft'>What a correct implementation shows (SPEC §8).</p>",
+            "<h2 id='bands'>Bands</h2><p class='soft'>Intervals that a correct implementation keeps, from the thesis's "
+            "tables and from theory.</p>",
             _band_table(self.bands, self.quick),
-            "<h2 id='claims'>What the thesis says, and what the seeds say</h2>",
+            "<h2 id='claims'>The thesis's statements, and the measurements over the seeds</h2>",
             _claim_table(self.claims),
             "<h2 id='tables'>Tables</h2>",
             *(_sheet(sheet) for sheet in self.sheets),

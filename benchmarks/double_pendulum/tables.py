@@ -26,7 +26,7 @@ from mbkf.synthesis.pendulum import PendulumNoise
 ROUNDS = 3
 SIMPLIFIED = "FE SE CT, simplified F"
 PRINTED_NOISE = Belief(Scheme(), 0.4, force_n=0.05, moment_nm=0.05)
-"""What Table A.1 says the filter believed."""
+"""Noise settings of the filter in Table A.1."""
 
 
 def table_findings(lab: Laboratory) -> Findings:

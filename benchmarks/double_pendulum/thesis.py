@@ -21,16 +21,16 @@ ANNEX = PendulumShape(mass_1_kg=50.0, mass_2_kg=35.0)
 
 STUDY_RECIPE = Recipe(shape=STUDY)
 ANNEX_RECIPE = Recipe(shape=ANNEX, noise=PendulumNoise(force_n=0.05, moment_nm=0.005))
-"""Table A.1 with the marker noise of Table 3.1, without which the printed errors cannot come about (SPEC §8)."""
+"""Table A.1 with the marker noise of Table 3.1, without which the printed errors cannot be reproduced."""
 
 EFFORT_NOISE = 1000.0
-"""σ_P of the dynamic filter wherever nothing else is said (SPEC §8)."""
+"""σ_P of the dynamic filter unless a study sweeps it; the thesis leaves it open."""
 
 KINEMATIC_ACCELERATION = 10.0
 """σ_a of FCDI likewise: near the least error of τ_1."""
 
 SLUGGISH_ACCELERATION = 3.0
-"""σ_a of FCDI where its delay is measured (SPEC §8)."""
+"""σ_a of FCDI where its delay is measured; the thesis leaves it open."""
 
 FD = TorqueMethod(STUDY, Belief(SCHEMES["FD"], EFFORT_NOISE))
 FDMC = TorqueMethod(STUDY, Belief(SCHEMES["FDMC"], EFFORT_NOISE))
@@ -100,7 +100,7 @@ def annex_method(name: str, complete: bool = True, effort_noise: float = EFFORT_
 
 
 def settings_sheet() -> Sheet:
-    """What was used where; the thesis leaves much of it open, SPEC §8 fixes it."""
+    """The settings of all studies as a table, those the thesis leaves open included."""
     studies, annex = STUDY_RECIPE.noise, ANNEX_RECIPE.noise
     believed, printed = FD.belief, annex_method("TN EX VL").belief
     rows: tuple[Row, ...] = (

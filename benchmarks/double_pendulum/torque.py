@@ -22,10 +22,10 @@ SENSORS = ("m1", "m2", "m3", "m4", "tau_1", "F_x", "F_y", "T_2")
 """Markers from top to bottom, then efforts (eq. 3.61)."""
 
 STANDARD_SENSORS = tuple(name for name in SENSORS if name != "tau_1")
-"""All but the torque sensor at the joint, which nobody has."""
+"""All but the torque sensor at the joint, which no laboratory has."""
 
 START_VARIANCE = (1e-4, 1e-2, 10.0, 1e-6)
-"""Of z, ż, T_e and residual efforts at the start, each component (SPEC §8)."""
+"""Variances of z, ż, T_e and residual efforts at the start, each component; the thesis does not state them."""
 
 
 @dataclass(frozen=True)
@@ -217,7 +217,7 @@ class TorqueMethod:
 
 
 def smoothed(states: Sequence[ForcedState], steps: Sequence[Step]) -> list[ForcedState]:
-    """Every frame with what all later ones say of it, linearly about the filter's own course."""
+    """Every frame corrected by all later ones (smoother), linearised about the filter's own estimates."""
     back = BackwardPass(len(states[0].P), covariances=False)
     found = []
     for t in range(len(states) - 1, -1, -1):

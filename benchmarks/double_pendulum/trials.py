@@ -66,7 +66,7 @@ class Recipe:
     lost_s: tuple[tuple[float, float], ...] = ((0.85, 1.15),)
 
     def trial(self, seed: int) -> Trial:
-        """The trial of a seed; who asks again gets the same one."""
+        """The trial of a seed, always the same one."""
         return _made(self, seed)
 
 

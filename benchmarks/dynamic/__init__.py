@@ -23,7 +23,8 @@ from benchmarks.dynamic.losses import (
     occlusion_rows,
 )
 from benchmarks.dynamic.methods import SCALES, Mapper, Method, dynamic_pair, in_parallel
-from benchmarks.dynamic.synthetic import MOTIONS, accuracy_rows, cases, consistency_rows
+from benchmarks.dynamic.synthetic import MOTIONS, accuracy_rows, cases
+from benchmarks.dynamic.synthetic_consistency import consistency_rows
 from mbkf.errors import MbkfError
 
 SEEDS, QUICK_SEEDS = 20, 2

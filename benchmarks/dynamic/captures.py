@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.checks import Check
+from benchmarks.checks import Check, number
 from benchmarks.dynamic.methods import Mapper, Method, corrected, rows_or_failure
 from benchmarks.references import PLUG_IN_GAIT, correlation, low_passed, rms, worst_side
 from mbkf.conventions import Array, BoolArray
@@ -180,11 +180,6 @@ def summary_rows(
         moved = number(summary["plate_force_change_rms_n"])
         rows.append(Check(f"{label}, plates moved, force", moved, bounds.plates_n, "<=", "N"))
     return rows
-
-
-def number(value: float | None) -> float:
-    """NaN, which passes no bound, where nothing is known."""
-    return float("nan") if value is None else float(value)
 
 
 def flexion_rows(label: str, found: Reconstruction, data: Path, smooth: bool) -> list[Check]:

@@ -1,4 +1,4 @@
-"""Does the dynamic filter err as much as it says? On motions made by its own plant, filter and smoother.
+"""Consistency of the dynamic filter and smoother on motions made by the filter's own plant.
 
 Matched exactly: start, Singer accelerations, white markers, plates and residual, all with the noise the filter
 believes. Truth obeys Newton's law: the residual is drawn, and the two wrenches follow from the motion, shared
@@ -15,18 +15,19 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from benchmarks.checks import Check
+from benchmarks.checks import Check, within
 from benchmarks.dynamic.methods import Mapper
-from benchmarks.dynamic.synthetic import within
 from mbkf.conventions import Array
 from mbkf.filters.dynamic.filter import DynamicFilter
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.dynamic.settings import DynamicSettings
-from mbkf.filters.dynamic.smoother import Frame, smooth
+from mbkf.filters.dynamic.smoother import smooth
+from mbkf.filters.settings import changed
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.model.protocol import load_protocol
 from mbkf.numerics.threads import single_threaded
+from mbkf.sensors.block import Frame
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
 from mbkf.sensors.contact.soles import sole_points
@@ -38,7 +39,8 @@ QUANTITIES = ("positions", "velocities", "torques")
 _TWO_SIDED_95 = 1.959964
 _UNKNOWN_WRENCH = 1e4
 
-SETTINGS = DynamicSettings(
+SETTINGS = changed(
+    DynamicSettings(),
     acceleration_scale=0.1,
     activity_gain=0.0,
     innovation_share=0.0,
@@ -53,7 +55,7 @@ SETTINGS = DynamicSettings(
 
 @dataclass(frozen=True)
 class Judged:
-    """What one frame's estimate says of its errors.
+    """Errors of one frame's estimate relative to its covariance.
 
     Attributes:
         ratios: Per quantity of QUANTITIES its errors over their standard deviations (n,).
@@ -111,7 +113,7 @@ class AlwaysMeasured(ContactDetector):
 
 
 class OwnPlant:
-    """A person in the reference posture who moves as the filter's plant says."""
+    """A person in the reference posture who moves as the filter's plant does."""
 
     def __init__(self) -> None:
         self.model = HumanModel.scaled()
@@ -119,12 +121,12 @@ class OwnPlant:
         self.q = self.model.neutral()
         self.q[2] -= sole_points(self.model, self.q[None])[0, :, :2, 2].min()
         self.centres_m = sole_points(self.model, self.q[None])[0].mean(axis=1)
-        nv, s = self.model.nv, SETTINGS
-        self.law_sd = np.repeat([s.residual_force_n, s.residual_moment_nm], 3)
-        self.plate_sd = np.repeat([s.plate_force_n, s.plate_moment_nm], 3)
-        noise, held = np.full(len(self._sensor.segments), MARKER_SD_M), np.zeros(nv, dtype=bool)
-        feet = AlwaysMeasured(self.centres_m)
-        self.kalman = DynamicFilter(self._sensor, noise, feet, DT_S, held, SETTINGS)
+        law, plates = SETTINGS.law, SETTINGS.contact
+        self.law_sd = np.repeat([law.residual_force_n, law.residual_moment_nm], 3)
+        self.plate_sd = np.repeat([plates.plate_force_n, plates.plate_moment_nm], 3)
+        noise = np.full(len(self._sensor.segments), MARKER_SD_M)
+        unobservable, feet = np.zeros(self.model.nv, dtype=bool), AlwaysMeasured(self.centres_m)
+        self.kalman = DynamicFilter.standard(self._sensor, noise, feet, DT_S, unobservable, SETTINGS)
 
     @cached_property
     def _sensor(self) -> MarkerSensor:
@@ -140,9 +142,9 @@ class OwnPlant:
         return DynamicState(self.q, still, still, np.zeros(12), np.diag(sd**2))
 
     def drawn(self, start: DynamicState, rng: np.random.Generator) -> DynamicState:
-        """A true state before the first frame, as far from the start as that says."""
+        """A true state before the first frame, drawn from the start's covariance."""
         sd = np.sqrt(np.diag(start.P))[: 3 * self.model.nv]
-        return self.kalman.retract(
+        return self.kalman.plant.retract(
             start, np.concatenate([sd * rng.normal(size=len(sd)), np.zeros(12)]), start.P
         )
 
@@ -155,7 +157,7 @@ class OwnPlant:
             rng: Source of the noise.
         """
         plant = self.kalman.plant
-        drawn = np.linalg.cholesky(plant.noise) @ rng.normal(size=(3, self.model.nv))
+        drawn = np.linalg.cholesky(plant.covariance) @ rng.normal(size=(3, self.model.nv))
         noise = drawn * plant.acceleration_sd
         planned = self.model.integrate(state.q, plant.dt_s * state.v + plant.c2 * state.a)
         q = self.model.integrate(planned, noise[0])
@@ -164,18 +166,18 @@ class OwnPlant:
         total = np.linalg.solve(-root.by_wrench, root.residual + self.law_sd * rng.normal(size=6))
         return DynamicState(q, v, a, np.concatenate([share * total, (1.0 - share) * total]), state.P)
 
-    def readings(self, true: DynamicState, rng: np.random.Generator) -> tuple[Array, Array]:
-        """Markers (M, 3) and plates (2, 6), noise of the latter about the soles."""
+    def readings(self, true: DynamicState, rng: np.random.Generator) -> Frame:
+        """Markers and plates, noise of the latter about the soles."""
         markers = self.kalman.sensor.positions(true.q)
         markers = markers + MARKER_SD_M * rng.normal(size=markers.shape)
         noise = self.plate_sd * rng.normal(size=(2, 6))
         noise[:, 3:] += np.cross(self.centres_m, noise[:, :3])
-        return markers, true.w.reshape(2, 6) + noise
+        return Frame(markers, true.w.reshape(2, 6) + noise)
 
     def judged(self, true: DynamicState, found: DynamicState) -> Judged:
-        """Errors against what the estimate says of them."""
+        """Errors relative to the estimate's covariance."""
         nv = self.model.nv
-        e, P = self.kalman.difference(found, true), found.P
+        e, P = self.kalman.plant.difference(found, true), found.P
         joint = self.balance.torques(found.q, found.v, found.a, found.w)
         T = joint.by_state[6:]
         tau = self.balance.tau(true.q, true.v, true.a, true.w)[6:] - joint.tau[6:]
@@ -190,23 +192,18 @@ def simulate(seed: int, *, smoothed: bool = False) -> Run:
     with single_threaded():
         person, rng = OwnPlant(), np.random.default_rng(seed)
         state, memory = person.start(), person.kalman.begin()
-        prior = state.P
-        true, truth, frames, filtered, nis, readings = person.drawn(state, rng), [], [], [], [], []
-        first = state
+        true, truth, steps, filtered, nis, readings = person.drawn(state, rng), [], [], [], [], []
         for t in range(FRAMES):
             true = person.moved(true, 0.5 + 0.3 * np.sin(0.1 * t), rng)
-            markers, plates = person.readings(true, rng)
-            step = person.kalman.step(state, memory, markers, plates)
+            step = person.kalman.step(state, memory, person.readings(true, rng))
             state, memory = step.state, step.memory
-            first = first if t else state
             truth.append(true)
             filtered.append(person.judged(true, state))
             nis.append(step.nis)
-            readings.append(step.readings)
+            readings.append(step.count)
             if smoothed:
-                bare = DynamicState(state.q, state.v, state.a, state.w, prior)
-                frames.append(Frame(bare, step.decision, markers))
-        later = smooth(person.kalman, first, frames, rounds=2) if smoothed else []
+                steps.append(step)
+        later = smooth(person.kalman, steps, rounds=2) if smoothed else []
         after = tuple(person.judged(*pair) for pair in zip(truth, later, strict=smoothed))
     return Run(tuple(filtered), after, np.array(nis), np.array(readings))
 

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.checks import Check
+from benchmarks.checks import Check, information
 from benchmarks.dynamic.captures import load
 from benchmarks.dynamic.methods import SCALES, Mapper, Method, best_on_all, corrected, pooled, rows_or_failure
-from benchmarks.dynamic.synthetic import FCDI, SWEEP_SEEDS, Case, differences, information
+from benchmarks.dynamic.synthetic import FCDI, SWEEP_SEEDS, Case, differences
 from benchmarks.references import rms
 from mbkf.conventions import Array, BoolArray
 from mbkf.io.records import Capture

@@ -78,7 +78,7 @@ class Method:
         filter: Name of the filter.
         smooth: Whether later frames are used, too.
         scale: Factor on the kinematic filter's accelerations.
-        extra: Further fields of :class:`ReconstructSettings`, for whoever tunes.
+        extra: Further fields of :class:`ReconstructSettings`, for tuning.
     """
 
     filter: str
@@ -180,7 +180,7 @@ def pooled(values: Iterable[float]) -> float:
 
 
 def rows_or_failure(label: str, make: Callable[[], list[Check]]) -> list[Check]:
-    """The rows of one method, or one failed row that says why it does not run."""
+    """The rows of one method, or one failed row with the reason why it does not run."""
     try:
         return make()
     except MbkfError as error:

@@ -1,12 +1,9 @@
-"""Synthetic captures with known truth: torques, velocities, divergence and consistency of a filter.
+"""Synthetic captures with known truth: torques, velocities and divergence of a filter.
 
 The body is the true one. Marker positions are corrected on each trial first, as `reconstruct` does by default,
 for every method alike. FCDI (kinematic filter and inverse dynamics) is run at the factor on its accelerations that
 is best for the motion, found for torques and for velocities separately: it is compared at its own best in each.
 RMS values over joint dofs and tracked frames are pooled over seeds.
-
-What the capture defaults say of their errors is shown without a bound: a squat is planned, no random walk as a plant
-believes, and these settings expect skin. `dynamic_consistency` judges the filter where everything is matched.
 """
 
 from __future__ import annotations
@@ -17,7 +14,7 @@ from functools import partial
 
 import numpy as np
 
-from benchmarks.checks import Check
+from benchmarks.checks import Check, information
 from benchmarks.dynamic.methods import (
     SCALES,
     Mapper,
@@ -37,7 +34,7 @@ from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.io.truth import Truth
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.results.summary import ROOT_DOFS, SETTLING_S, compare_with_truth
+from mbkf.pipelines.results.summary import ROOT_DOFS
 from mbkf.pipelines.synth import synthesise
 from mbkf.synthesis.capture import CaptureSettings
 from mbkf.synthesis.person import body_of
@@ -55,7 +52,6 @@ EDGE_S = 0.2
 
 SWEEP_SEEDS = 4
 FCDI = Method("kinematic")
-_TWO_SIDED_95 = 1.959964
 _MM = 1e3
 
 
@@ -89,7 +85,7 @@ class Errors:
         velocity_rad_s: Velocities, over all tracked frames.
         angle_deg: Tangent differences of posture.
         farthest_mm: Largest distance of a marker of the reconstructed body from its true position.
-        untracked: Frames not followed.
+        untracked: Frames not tracked.
     """
 
     torque_nm: float
@@ -98,23 +94,6 @@ class Errors:
     angle_deg: float
     farthest_mm: float
     untracked: int
-
-
-@dataclass(frozen=True)
-class Consistency:
-    """What a filter says of its errors against what they are, per dof and over settled frames.
-
-    Attributes:
-        nees: Mean of (error / sd)² of positions, velocities and torques.
-        coverage: Share of errors inside the 95 % interval, likewise.
-        nis: Normalised innovation squared per reading.
-        joint_nees: NEES per dof of positions and velocities with their whole covariance; NaN without one.
-    """
-
-    nees: tuple[float, float, float]
-    coverage: tuple[float, float, float]
-    nis: float
-    joint_nees: float
 
 
 def make_case(key: tuple[str, int], settings: CaptureSettings = NOISE, *, correct: bool = True) -> Case:
@@ -169,36 +148,6 @@ def offline_torque_nm(case: Case) -> float:
     found = offline_motion(case.capture, case.subject)
     error = (case.truth.tau - found.tau)[:, ROOT_DOFS:]
     return rms(_inside(error, case.capture.markers.rate_hz))
-
-
-def consistency_of(case: Case, method: Method) -> Consistency:
-    """NEES, coverage and NIS of a method on a case."""
-    found = method.run(case.capture, case.subject, keep_covariance=True)
-    joint = compare_with_truth(found, case.truth)["nees_per_dof"]
-    settled = (found.times_s >= found.times_s[0] + SETTLING_S) & found.tracked
-    spreads = (found.sd_q, found.sd_v, found.sd_tau)
-    ratios = [
-        (error / np.where(sd[:, ROOT_DOFS:] > 0.0, sd[:, ROOT_DOFS:], np.nan))[settled]
-        for error, sd in zip(differences(found, case.truth), spreads, strict=True)
-    ]
-    judged = settled & (found.nis_readings > 0)
-    nis = found.nis[judged] / found.nis_readings[judged]
-    return Consistency(
-        _three([float(np.nanmean(ratio**2)) for ratio in ratios]),
-        _three([_share_inside(ratio) for ratio in ratios]),
-        float(nis.mean()) if judged.any() else float("nan"),
-        float("nan") if joint is None else joint,
-    )
-
-
-def _three(values: Sequence[float]) -> tuple[float, float, float]:
-    a, b, c = values
-    return a, b, c
-
-
-def _share_inside(ratio: Array) -> float:
-    known = ratio[np.isfinite(ratio)]
-    return float((np.abs(known) <= _TWO_SIDED_95).mean()) if known.size else float("nan")
 
 
 def _true_markers(found: Reconstruction, truth: Truth) -> Array:
@@ -358,62 +307,3 @@ def method_rows(name: str, found: Sequence[Errors], base: Baseline, smooth: bool
         Check(f"{name}, farthest marker from its true place", farthest, DIVERGED_MM, "<=", "mm"),
         Check(f"{name}, frames not followed", lost, 0.0, "<="),
     ]
-
-
-def consistency_rows(
-    keys: Sequence[tuple[str, int]], methods: Sequence[Method], mapper: Mapper
-) -> list[Check]:
-    """Camera noise, no artefact, known marker positions, default settings: NEES, NIS and coverage, no bounds.
-
-    Args:
-        keys: Motion and seed of each trial.
-        methods: Filters with their settings.
-        mapper: Runs a function on many items, in turn or on several processes.
-    """
-    trials = mapper(partial(make_case, settings=MATCHED, correct=False), keys)
-    rows: list[Check] = []
-    for method in methods:
-        label = f"defaults, camera noise only: {method.label}"
-        rows += rows_or_failure(label, partial(_consistent, label, trials, method, mapper))
-    return rows
-
-
-def _consistent(label: str, trials: Sequence[Case], method: Method, mapper: Mapper) -> list[Check]:
-    found = mapper(partial(consistency_of, method=method), trials)
-    rows = []
-    for k, quantity in enumerate(("positions", "velocities", "torques")):
-        nees = float(np.mean([one.nees[k] for one in found]))
-        inside = 100.0 * float(np.mean([one.coverage[k] for one in found]))
-        rows.append(information(f"{label}, NEES per dof, {quantity}", nees))
-        rows.append(information(f"{label}, 95 % intervals cover, {quantity}", inside, "%"))
-    nis = float(np.mean([one.nis for one in found]))
-    rows.append(information(f"{label}, NIS per reading", nis))
-    joint = float(np.mean([one.joint_nees for one in found]))
-    return [*rows, information(f"{label}, joint NEES, positions and velocities", joint)]
-
-
-def within(name: str, value: float, least: float, most: float, unit: str = "") -> list[Check]:
-    """The two checks of a number that has to lie in a band.
-
-    Args:
-        name: Name of the checks.
-        value: The number.
-        least: Lower end of the band.
-        most: Upper end of the band.
-        unit: Unit of the number.
-    """
-    return [
-        Check(f"{name}, at least", value, least, ">=", unit),
-        Check(f"{name}, at most", value, most, "<=", unit),
-    ]
-
-
-def information(name: str, value: float, unit: str = "") -> Check:
-    """A number shown without a bound.
-
-    Args:
-        name: Name of the row.
-        value: The number.
-        unit: Its unit.
-    """
-    return Check(name, value, float("inf"), "<=", unit)

@@ -1,4 +1,4 @@
-"""Orientation filters on BROAD and on virtual sensors of the source's three movements; faults that must be told.
+"""Orientation filters on BROAD and on virtual sensors of the source's three movements; faults that must be detected.
 
 BROAD is judged by its own protocol: root mean square over the movement phases, no alignment (Laidig et al. 2021).
 """
@@ -197,7 +197,7 @@ def _best(work: Callable[[], object]) -> float:
 
 
 def fault_rows(context: Context) -> Iterator[Check]:
-    """Faults put into real recordings: how many are told by their kind, and how often a sound one is accused."""
+    """Faults put into real recordings: how many are detected by their kind, and the rate of false alarms."""
     data = context.require_data()
     feet = read_imu(
         data / "imu_gaitmap_foot" / "imu_sample.csv", units={"acc": "m/s2", "gyr": "deg/s"}, rate_hz=204.8

@@ -81,7 +81,7 @@ class Compared:
 
     @property
     def normalised(self) -> float:
-        """Mean of squared errors by stated variance; 1 is honest, NaN where none is stated."""
+        """Mean of squared errors over their stated variance: 1 for a consistent one, NaN where none is stated."""
         if np.isnan(self.sd_m).all():
             return math.nan
         return float(np.nanmean((self.lengths_m - self.reference_m) ** 2 / self.sd_m**2))

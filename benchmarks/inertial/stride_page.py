@@ -61,8 +61,8 @@ _LEAD = (
     "a backward smoother: on the study's simulated walk, whose truth is known, and on strides that cameras measured."
 )
 _CASES_NOTE = (
-    "Two steps of 1 m; errors along x in metres. The study ran one signal per case and does not say where its windows "
-    "lie. Its 248 samples are second differences of 250 positions, which puts its windows one sample after the "
+    "Two steps of 1 m; errors along x in metres. The study ran one signal per case and does not state where its "
+    "windows lie. Its 248 samples are second differences of 250 positions, which puts its windows one sample after the "
     "motion's start. Ours: median of the seeds, and the largest in brackets."
 )
 _SWEEP_NOTE = (
@@ -82,7 +82,7 @@ _POSITIONS_NOTE = (
     "red; the Kalman filter, light blue, lies on the truth. Small dots: the truth averaged over windows."
 )
 _MEASURED_NOTE = (
-    "The events of the reference only say which rests are meant; lengths are between the rests that each method found "
+    "The events of the reference only select rests; lengths are between the rests that each method found "
     "itself. One reference stride (0.47 m) is a turn on the spot, in which the heel, where the camera's marker is, "
     "goes 17 cm further than the sensor. Both sensors clip heel strikes at 16 g."
 )

@@ -1,9 +1,9 @@
 """Labelling without a standing pose: a kneeling stranger, a prone subject, and strangers known by protocol alone.
 
-S09_KneeltoRun02 is unlabelled and has no static trial; nobody knows its labels. What can be told: how much is named,
-whether a track keeps its name, whether a body moves along with it, and whether each cluster's markers stand in the
-order that the set's own MarkerSet.xml (OpenSim, generic body) has them. Eight of its columns hold several points one
-after the other: the point leaps over a gap to where another one was lost. A track is a column between such leaps.
+S09_KneeltoRun02 is unlabelled and has no static trial, so its labels are not known. What can be measured: how much is
+named, whether a track keeps its name, whether a body moves along with it, and whether each cluster's markers stand in
+the order that the set's own MarkerSet.xml (OpenSim, generic body) has them. Eight of its columns hold several points
+one after the other: the point leaps over a gap to where another one was lost. A track is a column between such leaps.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ FOLDER = "autolabel_unlabelled_fullbody"
 KNEELING, PRONE, MARKER_SET = "S09_KneeltoRun02_UNLABELLED.c3d", "PronetoRun01_labelled.c3d", "MarkerSet.xml"
 PROTOCOL = "autolabel62"
 MASS_KG = 75.0
-"""Nobody knows it; it does not enter marker positions."""
+"""Not known for this person; it does not enter marker positions."""
 
 LEAP_M = 0.05
 """A column whose point is further from where it was before a gap is another point's from there on."""
@@ -106,7 +106,7 @@ def stranger_rows(trial: Trial, least: float, most: float = math.inf) -> list[Ch
     name = f"{trial.name}, by its protocol alone"
     shares = share_rows(name, [result], 0.0, most)
     shares[0] = replace(shares[0], bound=least, relation=">=" if math.isfinite(least) else "<=")
-    assert found.doubts is not None, "nobody had measured the person"
+    assert found.doubts is not None, "the person was not measured before"
     sure = np.array([label not in found.doubts.labels for label in result.names])
     untold = _PERCENT * float(result.wrong[:, sure].sum()) / result.present
     return [

@@ -66,7 +66,7 @@ class TimedWalk:
             points: (N, 3) its points, m.
         """
         ticks = [perf_counter()]
-        prediction = self.follower.expect(before)
+        prediction = self.follower.predict(before)
         ticks.append(perf_counter())
         labels = self.labeller.label(prediction.markers, points)
         ticks.append(perf_counter())

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.checks import Check, Context
+from benchmarks.checks import Check, Context, number
 from benchmarks.dynamic.captures import SOURCES
 from benchmarks.live.runs import Run, Trial, difference, play
 from mbkf.io.capture import read_capture
@@ -122,8 +122,8 @@ def latency(name: str, found: Run, bound: float) -> list[Check]:
     """
     report, late = found.report, float(np.percentile(found.pauses_ms, 99.0))
     return [
-        Check(f"{name}: latency, median", _known(report["latency_ms_median"]), math.inf, "<=", "ms"),
-        Check(f"{name}: latency, 99th percentile", _known(report["latency_ms_p99"]), bound, "<=", "ms"),
+        Check(f"{name}: latency, median", number(report["latency_ms_median"]), math.inf, "<=", "ms"),
+        Check(f"{name}: latency, 99th percentile", number(report["latency_ms_p99"]), bound, "<=", "ms"),
         Check(f"{name}: an idle process woke late, 99th percentile", late, math.inf, "<=", "ms"),
     ]
 
@@ -138,7 +138,3 @@ def highest_rate(trial: Trial, out: Path) -> float:
             break
         best = float(rate_hz)
     return best
-
-
-def _known(value: float | None) -> float:
-    return math.nan if value is None else value

@@ -64,7 +64,7 @@ class Run:
     """How a run went.
 
     Attributes:
-        report: What live.json says.
+        report: The contents of live.json.
         folder: With results and log.
         pauses_ms: By how much an idle process woke late on this machine meanwhile.
     """
@@ -179,7 +179,7 @@ def _start(words: Sequence[str | Path]) -> subprocess.Popen[str]:
 
 
 def _watch(errors: IO[str] | None, view: bool) -> None:
-    """Reads what a run says, and follows its page as a browser does."""
+    """Reads a run's terminal output, and follows its page as a browser does."""
     for line in errors or ():
         found = PAGE.search(line)
         if view and found:

@@ -128,7 +128,7 @@ def _standing(args: argparse.Namespace) -> tuple[float, float] | tuple[ImuReadin
 
 
 def _posture(path: str, model: HumanModel) -> Array:
-    """(nq,) configuration in the middle of a motion of somebody who stands."""
+    """(nq,) configuration in the middle of a standing motion."""
     from mbkf.errors import InvalidInput
     from mbkf.pipelines.imu.synth import read_motion
 

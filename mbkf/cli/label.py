@@ -19,7 +19,7 @@ examples:
   mbkf label raw.trc --subject subject.toml --out trial.trc
   mbkf label walk7/raw.c3d --subject walk7/subject.toml --truth walk7/trial.c3d --out labelled.c3d
   mbkf label raw.c3d --static standing.c3d --mass 71 --out trial.c3d       (scales from the labelled standing trial)
-  mbkf label raw.c3d --protocol autolabel62 --mass 75 --out trial.c3d      (nobody has scaled this person)
+  mbkf label raw.c3d --protocol autolabel62 --mass 75 --out trial.c3d      (a person not scaled before)
 
 Points may be shuffled in every frame or come as tracks. Points that are no marker are dropped. The numbers that are
 printed also go to FILE.json. A person scaled on the way is written to FILE.toml, for 'mbkf reconstruct --subject'.
@@ -84,7 +84,7 @@ def run(args: argparse.Namespace) -> int:
         write_subject(subject, out.with_suffix(".toml"))
     print_labels(write_labels(raw, found, out, compared), out)
     if found.doubts is not None:
-        for warning in found.doubts.told():
+        for warning in found.doubts.warnings():
             print(f"warning: {warning}", file=sys.stderr)
     if args.subject is None:
         print(
@@ -113,7 +113,7 @@ def _label(args: argparse.Namespace, raw: Capture, report: StageCallback) -> tup
 
 
 def _check_person(args: argparse.Namespace) -> None:
-    """Refuses none or two ways to say who wears the markers."""
+    """Refuses none or two ways to state who wears the markers."""
     from mbkf.errors import InvalidInput
 
     if args.subject is None and args.static is None and args.protocol is None:

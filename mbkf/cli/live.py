@@ -1,4 +1,4 @@
-"""`mbkf live`: follows a stream and shows and writes motion, torques and reactions as they come."""
+"""`mbkf live`: tracks a person through a stream and shows and writes motion, torques and reactions as they come."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ Ctrl-C or --seconds ends it. Then DIR holds what 'mbkf reconstruct' writes, and 
 latencies from arrival to result, and what happened. Marker positions are those of the subject file. A stream that
 breaks off is waited for and taken up again.
 
-Without --subject whoever stands still for a second is scaled from those frames, as 'mbkf scale' would from a static
-trial, and followed from then on; DIR/subject.toml keeps the person. Points without names need --protocol. Without
---mass the plates tell it, if both feet stand on them; their amplifiers must have been set to zero. With --view the
-page tells the person in front of it what is waited for, and then shows what is measured.
+Without --subject a person who stands still for a second is scaled from those frames, as 'mbkf scale' would from a
+static trial, and tracked from then on; DIR/subject.toml keeps the person. Points without names need --protocol. Without
+--mass the plates weigh the person, if both feet stand on them; their amplifiers must have been set to zero. With --view
+the page shows these prompts to the person, and then the measurement.
 """
 
 
@@ -47,8 +47,8 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
     parser = subparsers.add_parser(
         "live",
-        help="follows a stream of markers and plates",
-        description="Follow a scaled subject through a live stream, frame by frame.",
+        help="tracks a person through a stream of markers and plates",
+        description="Track a scaled subject through a live stream, frame by frame.",
         epilog=_EPILOG,
     )
     parser.add_argument(
@@ -57,7 +57,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--subject",
         metavar="SUBJECT.toml",
-        help="written by 'mbkf scale'; else whoever stands still is scaled",
+        help="written by 'mbkf scale'; without it a person who stands still is scaled",
     )
     parser.add_argument(
         "--mass", type=float, metavar="KG", help="without --subject: body mass; by default what plates carry"
@@ -148,7 +148,7 @@ def run(args: argparse.Namespace) -> int:
                 shown = None if waiting is None else waiting.progress
                 start = StandingStart(source, name, person, folder, _teller(waiting), shown)
                 found = _standing(start, waiting, stop, patience)
-                session = LiveSession(found.source, found.subject, settings, folder, name, found.told)
+                session = LiveSession(found.source, found.subject, settings, folder, name, found.report)
             if not session.connect(stop, patience):
                 raise InvalidInput(NO_STREAM)
             sinks = _sinks(args, session, waiting)
@@ -174,7 +174,7 @@ def _check_numbers(args: argparse.Namespace) -> None:
 
 
 def _person(args: argparse.Namespace) -> Subject | KnownPerson:
-    """The subject of the file, or what is known of somebody who is to be scaled."""
+    """The subject of the file, or what is known of a person to be scaled."""
     from mbkf.cli.options import check_positive
     from mbkf.errors import InvalidInput
     from mbkf.io.subject import read_subject
@@ -193,7 +193,7 @@ def _person(args: argparse.Namespace) -> Subject | KnownPerson:
 
 @contextmanager
 def _waiting_page(args: argparse.Namespace) -> Iterator[StandingPage | None]:
-    """The page for whoever is to be scaled, not yet opened; closed at the end."""
+    """The page for the person to be scaled, not yet opened; closed at the end."""
     if not args.view or args.subject is not None:
         yield None
         return
@@ -220,7 +220,7 @@ def _teller(waiting: StandingPage | None) -> Callable[[str], None]:
 def _standing(
     start: StandingStart, waiting: StandingPage | None, stop: threading.Event, patience_s: float | None
 ) -> ScaledPerson:
-    """Somebody who stood still and was scaled.
+    """A person who stood still and was scaled.
 
     Raises:
         InvalidInput: There is no stream, no person was scaled, or the page cannot be served.
@@ -233,7 +233,7 @@ def _standing(
         _say(f"page: {waiting.open(start.stream.trial)}")
     found = start.find(stop, patience_s)
     if found is None:
-        raise InvalidInput("stopped before a person was scaled; live.json tells what was seen")
+        raise InvalidInput("stopped before a person was scaled; live.json lists what was seen")
     return found
 
 

@@ -65,4 +65,4 @@ def stages() -> Iterator[StageCallback]:
 
 
 def _ignore(_stage: str, _done: int, _total: int) -> None:
-    """What happens to reports when nobody watches."""
+    """Takes progress reports that are not shown."""

@@ -15,7 +15,7 @@ examples:
   mbkf replay walk.trc --forces grf.mot --to natnet --speed 2
   mbkf replay raw.c3d --unlabelled --to lsl --jitter 5 --loss 0.1
 
-Playing starts when somebody listens, e.g. 'mbkf live --from lsl --subject subject.toml --out result'.
+Playing starts when a receiver connects, e.g. 'mbkf live --from lsl --subject subject.toml --out result'.
 """
 
 
@@ -61,7 +61,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         type=float,
         default=30.0,
         metavar="S",
-        help="play all the same when nobody listens after this (default: 30)",
+        help="play without a receiver after this (default: 30)",
     )
     add_axes_options(parser)
     parser.set_defaults(run=run)

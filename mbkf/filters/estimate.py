@@ -58,8 +58,7 @@ class Recording:
         return len(self.markers_m)
 
 
-@dataclass(frozen=True)
-class Posterior:
+class Posterior(NamedTuple):
     """A filter's posterior of one frame.
 
     Attributes:

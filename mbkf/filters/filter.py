@@ -10,8 +10,6 @@ The kinematic, torque and dynamic filters are this class with another plant and 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
@@ -95,8 +93,7 @@ class Decisions(NamedTuple):
     notes: Notes
 
 
-@dataclass(frozen=True)
-class Readings:
+class Readings(NamedTuple):
     """A frame's readings linearised at a state: information on its first components, and whitened rows.
 
     Attributes:
@@ -137,7 +134,7 @@ class Readings:
         total[: len(self.vector)] += self.vector
         return total
 
-    @cached_property
+    @property
     def counted(self) -> tuple[Array, Array]:
         """(m, N) rows and (m,) innovations of instruments and laws: those that NIS and likelihood count."""
         kept: list[int] = []
@@ -148,8 +145,23 @@ class Readings:
         return self.rows[kept], self.values[kept]
 
 
-@dataclass(frozen=True)
-class Step(Generic[StateT]):
+class Recall:
+    """Makes the memory for the next step when it is first asked for, after the answer."""
+
+    __slots__ = ("_make", "_memory")
+
+    def __init__(self, make: Callable[[], Memory]) -> None:
+        self._make = make
+        self._memory: Memory | None = None
+
+    def __call__(self) -> Memory:
+        """The memory."""
+        if self._memory is None:
+            self._memory = self._make()
+        return self._memory
+
+
+class Step(NamedTuple, Generic[StateT]):
     """One step of a filter; what only the next step or a report needs is worked out when asked for.
 
     Attributes:
@@ -157,16 +169,16 @@ class Step(Generic[StateT]):
         prior: Prediction it came from.
         decisions: What the frame's readings were taken to be.
         readings: They, linearised at the prior.
-        recall: Makes the memory for the next step.
+        recall: The memory for the next step.
     """
 
     state: StateT
     prior: Prior[StateT]
     decisions: Decisions
     readings: Readings
-    recall: Callable[[], Memory]
+    recall: Recall
 
-    @cached_property
+    @property
     def memory(self) -> Memory:
         """For the next step."""
         return self.recall()
@@ -182,11 +194,11 @@ class Step(Generic[StateT]):
         return self.decisions.notes.seen & ~self.decisions.notes.trusted
 
     @property
-    def count(self) -> int:
+    def read(self) -> int:
         """Number of readings in :attr:`nis`."""
         return self.readings.instruments.readings + len(self.readings.counted[1])
 
-    @cached_property
+    @property
     def nis(self) -> float:
         """Normalised innovation squared of instruments and laws; priors are no readings."""
         (rows, values), known, P = self.readings.counted, self.readings.instruments, self.prior.state.P
@@ -310,7 +322,7 @@ class Filter(Generic[StateT]):
                 kept[k] = block.remember(posterior, points[k], chosen[k], kept[k])
             return Memory(self.plant.remember(posterior, notes, memory.plant), kept)
 
-        return Step(posterior, prior, Decisions(prior.noise, chosen, notes), readings, recall)
+        return Step(posterior, prior, Decisions(prior.noise, chosen, notes), readings, Recall(recall))
 
     def _reviewed(
         self,
@@ -338,8 +350,10 @@ class Filter(Generic[StateT]):
         return self._summed([block.linearise(at, one) for block, at, one in asked])
 
     def _updated(self, prior: StateT, readings: Readings) -> StateT:
-        P = self.update(prior.P, readings.matrix, readings.rows)
-        return self.plant.retract(prior, P @ readings.whole_vector, P)
+        P, vector = self.update(prior.P, readings.matrix, readings.rows), readings.vector
+        if len(readings.values):
+            return self.plant.retract(prior, P @ readings.whole_vector, P)
+        return self.plant.retract(prior, P[:, : len(vector)] @ vector, P)
 
     def _summed(self, said: Sequence[Statement]) -> Readings:
         """All statements together: information of instruments first, then of priors, then rows in order."""

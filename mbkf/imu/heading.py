@@ -18,7 +18,7 @@ from mbkf.model.clinical_table import ClinicalJoint
 
 @dataclass(frozen=True)
 class HeadingSettings:
-    """How headings wander and how joints hold them.
+    """How headings drift, and how strongly joints constrain them.
 
     Attributes:
         walk_rad: Random walk of a segment's heading error, rad/√s: gyroscope drift or a disturbed field.

@@ -119,7 +119,7 @@ class FirstFrameSearch:
         if not near:
             return None
         best = self._improved(points_m, max(near, key=lambda one: one.worth))
-        return best if self.believed(best, len(points_m)) else None
+        return best if self.accepted(best, len(points_m)) else None
 
     def about(self, points_m: Array, q: Array) -> FirstFrame | None:
         """Labels of points (N, 3) of a body that is nearly in the pose q (nq,), or None."""
@@ -127,14 +127,14 @@ class FirstFrameSearch:
         near = np.broadcast_to(0.03**2 * np.eye(3), (len(predicted), 3, 3))
         first = assign(predicted, points_m, lambda chosen: near[chosen], self._assignment)
         found = self._fitted(points_m, first, q)
-        return found if self.believed(found, len(points_m)) else None
+        return found if self.accepted(found, len(points_m)) else None
 
     def settled(self, points_m: Array, labels: Indices) -> FirstFrame | None:
         """Labels of points (N, 3) from rough ones (M,), which some markers may lack, or None."""
         if np.count_nonzero(labels != HIDDEN) < MIN_MARKERS:
             return None
         found = self._improved(points_m, self._fitted(points_m, labels, None))
-        return found if self.believed(found, len(points_m)) else None
+        return found if self.accepted(found, len(points_m)) else None
 
     def _improved(self, points_m: Array, found: FirstFrame) -> FirstFrame:
         """Labels with every doubtful limb searched again from the fitted body, from the fingers and toes inwards."""
@@ -157,7 +157,7 @@ class FirstFrameSearch:
         joints = [self.sensor.model.joint(cluster.segment).joint_id for cluster in self._body]
         return PartialBody(rotations[joints], origins[joints], found.points, 0.0)
 
-    def believed(self, found: FirstFrame, points: int) -> bool:
+    def accepted(self, found: FirstFrame, points: int) -> bool:
         """Whether enough markers of a frame with so many points fit well enough."""
         could = min(points, len(found.points))
         enough = found.labelled >= max(self.least, self.settings.least_explained * could)

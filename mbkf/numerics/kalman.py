@@ -7,6 +7,7 @@ order, which those take without a copy. All results are new arrays.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import blas, lapack
@@ -14,8 +15,7 @@ from scipy.linalg import blas, lapack
 from mbkf.conventions import Array
 
 
-@dataclass(frozen=True)
-class Information:
+class Information(NamedTuple):
     """Information of a set of independent readings on n state components.
 
     For innovations y with Jacobian H and noise R: ``matrix`` = HᵀR⁻¹H (n, n), ``vector`` = HᵀR⁻¹y (n,),
@@ -27,7 +27,7 @@ class Information:
     innovation: float
     readings: int
 
-    def __add__(self, other: Information) -> Information:
+    def __add__(self, other: Information) -> Information:  # type: ignore[override]
         """Both sets of readings together."""
         return Information(
             self.matrix + other.matrix,
@@ -130,6 +130,8 @@ def made_positive(covariance: Array) -> Array:
 
 def _informed_with_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
     N, n, m = len(covariance), len(matrix), len(rows)
+    if not m:
+        return informed(covariance, matrix)
     halves = np.empty((N, n + m), order="F")
     # Columns of an array in Fortran order, so that BLAS writes into them.
     first, W = halves[:, :n], halves[:, n:]

@@ -57,7 +57,7 @@ class CoordinateError:
 
 @dataclass(frozen=True)
 class Demo:
-    """What the demo made: the folder, what labelling said, the result, its summary and a few coordinates' errors."""
+    """Results of the demo: the folder, the labels, the reconstruction, its summary and errors of a few coordinates."""
 
     folder: Path
     labels: dict[str, Any]
@@ -111,7 +111,7 @@ def coordinate_errors(result: Reconstruction, truth: Truth, body: HumanModel) ->
 
     Args:
         result: The reconstruction, on the truth's frames.
-        truth: What really happened.
+        truth: The true motion.
         body: The true body.
     """
     clinical = ClinicalAngles(body)

@@ -1,4 +1,4 @@
-"""What does a capture hold? Markers and their gaps, plates and their offsets, channels, events, axes."""
+"""Contents of a capture: markers and their gaps, plates and their offsets, channels, events, axes."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def describe(capture: Capture) -> CaptureSummary:
         capture: What a reader returned.
 
     Returns:
-        Counts, shares and ranges, with nothing left to compute for whoever shows them.
+        Counts, shares and ranges, ready to be shown.
     """
     markers = capture.markers
     present = markers.present

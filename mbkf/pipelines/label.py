@@ -43,12 +43,12 @@ class Labelling:
     Attributes:
         markers: (T, M, 3) trajectories under the subject's names, NaN where a marker is hidden.
         label_of_point: (T, C) marker of every point of the capture, ``HIDDEN`` for ghosts and empty columns.
-        ghosts: (T,) points that are nobody's.
+        ghosts: (T,) number of points that are no marker's.
         starts: Frames at which labels were found without those of the frame before.
         repaired: How many markers had their labels taken back from a wrong point.
         step_seconds: (T,) computing time of each frame's labels, filter not counted; NaN where searched.
-        relabelled: How many samples lost or changed their label when the whole capture was known.
-        doubts: What may be wrong with the labels, where nobody had measured the person.
+        relabelled: Number of samples whose label was removed or changed by the offline relabelling.
+        doubts: Possible errors in the labels, for a person not measured before.
     """
 
     markers: MarkerTrajectories
@@ -88,7 +88,7 @@ def label_summary(found: Labelling, compared: LabelScore | None = None) -> dict[
         "step_seconds_median": _median(found.step_seconds),
     }
     if found.doubts is not None:
-        summary["doubts"] = found.doubts.summarised()
+        summary["doubts"] = found.doubts.summary()
     if compared is not None:
         summary["correct_fraction"] = compared.correct_fraction
         summary["wrong_fraction"] = compared.wrong_fraction
@@ -162,7 +162,7 @@ def label(
 
 
 def _ghosts(positions_m: Array, label_of_point: Indices) -> Array:
-    """(T,) points that are nobody's."""
+    """(T,) number of points that are no marker's."""
     there = ~np.isnan(positions_m).any(axis=2)
     return np.asarray((there & (label_of_point == HIDDEN)).sum(axis=1))
 

@@ -1,4 +1,4 @@
-"""Labels and a scaled subject from an unlabelled capture of somebody nobody has measured, in any attitude.
+"""Labels and a scaled subject from an unlabelled capture of a person not measured before, in any attitude.
 
 Neither can be had without the other, so both are found by turns: a body of the protocol's own geometry is matched with
 the capture's tracks, the person is scaled from what that names, and the tracks are named anew by the scaled person.
@@ -45,7 +45,7 @@ ROUGH_M, ROUGH_RAD = 0.025, 0.15
 """How far a marker of a person not scaled yet is from the protocol's place, and how far a cluster may be tilted."""
 
 ROUNDS = 4
-"""How often person and labels are brought into line at most."""
+"""Most iterations of scaling and labels."""
 
 SCALING_FRAMES = 20
 """Frames that a person is scaled from in each round."""
@@ -60,7 +60,7 @@ SAME_WORTH = 0.99
 """Two outcomes agree where they name alike and the lesser is worth so much of the other."""
 
 NAMES = "Judging names"
-"""What the last part of the search calls itself."""
+"""Name of the last stage in progress reports."""
 
 LEAST_NAMED = 0.6
 """Share of the protocol's markers that must be found."""
@@ -138,7 +138,7 @@ class _Search:
         found: list[_Named | None] = []
         for done, anchor in enumerate(anchors):
             progress(done, len(anchors))
-            owner, _ = max((self._laid(anchor, size) for size in sizes), key=lambda one: one[1])
+            owner, _ = max((self._searched(anchor, size) for size in sizes), key=lambda one: one[1])
             one = self._scaled(owner)
             agreed = one is not None and any(_agree(one, other) for other in found)
             found.append(one)
@@ -181,7 +181,7 @@ class _Search:
     def _reference_height_m(self) -> float:
         return self._protocol.body.reference_height_m
 
-    def _laid(self, frame: int, size: float) -> tuple[Indices, float]:
+    def _searched(self, frame: int, size: float) -> tuple[Indices, float]:
         """(count,) marker of every track by a body of one size matched with them at a frame, and its score."""
         body = self._protocol.body
         factors = {name: size for name in body.scale_factors}

@@ -21,7 +21,7 @@ class ProtocolObservability:
         protocol: The protocol.
         markers: Names of the markers that were counted, without the lost ones.
         lost: Names of the markers taken away.
-        before: What all followed markers determine.
+        before: Observability with all markers.
         after: What the remaining ones determine; the same as ``before`` when none is lost.
     """
 
@@ -42,7 +42,7 @@ class ProtocolObservability:
 def check_protocol(protocol: Protocol, lost: Collection[str] = ()) -> ProtocolObservability:
     """Observability of a protocol on its reference body, and without the lost markers.
 
-    Computed points (joint centres) do not count: they are never followed.
+    Computed points (joint centres) do not count: they are never tracked.
 
     Args:
         protocol: The protocol.

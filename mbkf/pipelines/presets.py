@@ -23,17 +23,17 @@ BUILT_IN = tuple(name + end for name in SCHEMES for end in ("", LITERAL))
 def with_preset(
     settings: ReconstructSettings, name: str, wanted_filter: str | None = None
 ) -> ReconstructSettings:
-    """Settings with a preset's filter and what the preset says about it.
+    """Settings with a preset's filter and its values.
 
     Args:
         settings: All else.
         name: Name of a preset, or a file.
-        wanted_filter: The filter that was asked for, if one was.
+        wanted_filter: The filter chosen by the user, None for the preset's.
 
     Raises:
         UnknownName: There is no such preset, filter or setting.
         FileFormatError: The file is no preset.
-        InvalidInput: The preset is for another filter than was asked for, or a value cannot be.
+        InvalidInput: The preset is for another filter than the one chosen, or a value is not possible.
     """
     if name in BUILT_IN:
         _check_filter(name, "torque", wanted_filter)

@@ -55,7 +55,7 @@ class ReconstructSettings:
             dynamic filter, "dynamic" ours.
         smooth: Whether later frames correct earlier ones.
         smoothing: How far they do.
-        kinematic, dynamic, torque: What each filter believes.
+        kinematic, dynamic, torque: Settings of each filter.
         correct_markers: Whether marker positions are corrected on the trial first (thesis 4.1.1).
         hide: Markers to hide.
         without_plates: Names of plates to withhold.
@@ -89,19 +89,19 @@ def reconstruct(
     readings: Mapping[str, Array] | None = None,
     progress: StageCallback | None = None,
 ) -> Reconstruction:
-    """Follows the subject through a capture and solves for torques.
+    """Tracks the subject through a capture and solves for torques.
 
     Args:
         capture: Markers and plates.
         subject: The scaled person.
-        settings: How; the defaults are the same for every capture.
+        settings: The filter and its settings; the defaults are the same for every capture.
         imus: Inertial sensors on the body, for the dynamic filter.
         blocks: Blocks of one's own, for the dynamic filter, besides the standard ones.
         readings: (T, …) readings of instruments of one's own, by the name that their block knows.
         progress: Called with the stage, items done and items in all.
 
     Raises:
-        NotObservable: Too few of the subject's markers to follow any body.
+        NotObservable: Too few of the subject's markers to track the body.
         NotConverged: The markers do not fit the subject's body.
         UnknownName: A hidden marker, a withheld plate or the filter does not exist.
     """
@@ -121,8 +121,8 @@ def reconstruct(
                 raise InvalidInput(
                     f"the {settings.filter} filter reads no inertial sensors; use --filter dynamic"
                 )
-            inputs, recording, told = with_imus(inputs, recording, shown.times_s, imus)
-            capture = replace(capture, notes=(*capture.notes, *told))
+            inputs, recording, remarks = with_imus(inputs, recording, shown.times_s, imus)
+            capture = replace(capture, notes=(*capture.notes, *remarks))
         if readings:
             recording = replace(recording, readings=readings)
         result = track(
@@ -180,16 +180,16 @@ def assemble(
     inputs: FilterInputs,
     result: Track,
 ) -> Reconstruction:
-    """Reactions, torques and clinical coordinates of a followed trial, put together.
+    """Reactions, torques and clinical coordinates of a tracked trial, put together.
 
     Args:
         capture: The trial, for its name and notes.
-        subject: The person, as followed.
-        settings: How.
+        subject: The person, as tracked.
+        settings: The filter and its settings.
         measured: (T, M, 3) the subject's markers.
         hidden: (T, M) those taken away on purpose.
         inputs: What the filter was built from, with the plates it read.
-        result: What it found.
+        result: The track.
     """
     sensor, held = inputs.sensor, inputs.held
     model = sensor.model
@@ -274,7 +274,7 @@ def _warnings(result: Track, names: tuple[str, ...], held: BoolArray) -> list[st
     lost = int((~result.tracked).sum())
     if lost:
         warnings.append(
-            f"{lost} of {len(result.tracked)} frames have too few believable markers to follow the body, "
+            f"{lost} of {len(result.tracked)} frames have too few markers within the gate to track the body, "
             "or most of them far from where it was"
         )
     if len(result.starts) > 1:

@@ -34,7 +34,7 @@ def synthesise(
         seed: Chooses subject, motion and noise.
         rate_hz: Camera rate.
         settings: Errors of the instruments.
-        progress: Told of each stage (name, done, all).
+        progress: Called with the stage, items done and items in all.
 
     Raises:
         UnknownName: There is no such motion.

@@ -68,13 +68,13 @@ def tune(
     Args:
         captures: Trials of one subject.
         subject: The scaled person.
-        settings: How.
+        settings: Filter, parameters and held-out trials.
         progress: Called with the stage, items done and items in all.
 
     Raises:
         UnknownName: The filter or a parameter does not exist.
         InvalidInput: A trial is too short, or none is left to learn from.
-        NotObservable: The markers do not follow the body.
+        NotObservable: The markers do not determine the body.
         NotConverged: The markers do not fit the subject's body.
     """
     settings = settings or TuneSettings()

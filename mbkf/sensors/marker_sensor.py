@@ -117,11 +117,11 @@ class MarkerInformation:
             innovation_m: (M, 3) measured minus predicted, NaN where missing.
             trusted: (M,) markers that count; none of them missing.
         """
-        y = np.where(trusted[:, None], innovation_m, 0.0)
+        count = int(np.count_nonzero(trusted))
+        y = innovation_m if count == len(trusted) else np.where(trusted[:, None], innovation_m, 0.0)
         forces = y * self._weight
         matrix = self._masses.mass_matrix(q, trusted)
-        readings = 3 * int(np.count_nonzero(trusted))
-        return Information(matrix, reading.pull(forces), float(np.vdot(forces, y)), readings)
+        return Information(matrix, reading.pull(forces), float(np.vdot(forces, y)), 3 * count)
 
 
 class JacobianInformation:

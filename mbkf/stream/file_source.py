@@ -44,9 +44,9 @@ class FileSource:
             if wait > timeout_s:
                 return None
         self._next = None
-        nobody = np.zeros((0, 3))
+        none = np.zeros((0, 3))
         named = bool(self._played.stream.marker_names)
-        markers, points = (frame.markers_m, nobody) if named else (nobody, frame.markers_m)
+        markers, points = (frame.markers_m, none) if named else (none, frame.markers_m)
         return SourceFrame(frame.number, time.perf_counter(), markers, points, frame.plates)
 
     def news(self) -> list[tuple[str, str]]:

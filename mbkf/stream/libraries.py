@@ -1,4 +1,4 @@
-"""The door to the streaming libraries: imported when they are needed, with a hint where they are missing."""
+"""Streaming libraries, imported when they are needed, with a hint where they are missing."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from types import ModuleType
 from mbkf.errors import MissingDependency
 
 LSL_CONFIG = "[lab]\nKnownPeers = {127.0.0.1}\n[log]\nlevel = -3\n"
-"""This computer is asked for streams, too, also where it is on no network; what fails is told by us."""
+"""Configuration of liblsl: streams of this computer are found without a network, too; liblsl itself logs nothing."""
 
 LSL_CONFIG_VARIABLE = "LSLAPICFG"
 

@@ -1,4 +1,4 @@
-"""A capture cut into what a camera system would send frame by frame: markers, and the plates' samples until its end."""
+"""A capture cut into frames as a camera system sends them: markers, and the plates' samples until each frame's end."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Played:
     """A capture as a stream.
 
     Attributes:
-        stream: What it says of itself.
+        stream: Its description.
         markers_m: (T, M, 3) markers or points.
         wrench: (S, K, 6) readings of all plates about their own origins.
     """
@@ -74,7 +74,7 @@ def played(capture: Capture, unlabelled: bool = False, seed: int = 0) -> Played:
     Args:
         capture: Markers and plates.
         unlabelled: Whether names are dropped; the points of a frame then come in an order of their own. So they do
-            where all names begin with a star, as a C3D calls points that nobody named.
+            where all names begin with a star, the names of unlabelled points in C3D files.
         seed: Of that order.
 
     Raises:

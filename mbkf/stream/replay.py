@@ -13,17 +13,17 @@ import numpy as np
 from mbkf.stream.played import Played, PlayedFrame
 
 LEAD_S = 0.1
-"""The first frame is due this long after somebody listens."""
+"""The first frame is sent this long after a receiver is connected."""
 
 LINGER_S = 0.5
 """After the last frame, the stream stays open this long, so that what was sent arrives."""
 
 
 class Player(Protocol):
-    """What sends frames through some protocol."""
+    """Sends frames through a streaming protocol."""
 
     def listening(self) -> bool:
-        """Whether somebody receives all of it."""
+        """Whether a receiver is connected to every part of the stream."""
 
     def send(self, frame: PlayedFrame, age_s: float) -> None:
         """Sends a frame; ``age_s`` is how long ago its time was."""
@@ -40,7 +40,7 @@ class ReplaySettings:
         speed: Times real time.
         jitter_s: Frames are sent late by up to this, each by another time.
         loss: Share of the frames that are not sent.
-        wait_s: How long somebody who listens is waited for; then it is played all the same.
+        wait_s: How long a receiver is waited for; then the capture is played without one.
         seed: Of jitter and loss.
     """
 
@@ -78,7 +78,7 @@ def replay(
     Args:
         played: The capture.
         player: Where to.
-        settings: How.
+        settings: Speed, jitter and loss.
         stop: Set to end early.
         progress: Called with frames done and in all.
     """

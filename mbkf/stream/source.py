@@ -1,4 +1,4 @@
-"""What a source of live frames looks like, whether it is a network stream or a file."""
+"""Sources of live frames, network streams and files alike: the protocol and its records."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FARTHEST_M = 100.0
 
 @dataclass(frozen=True)
 class StreamDescription:
-    """What a source knows before its first frame.
+    """A stream's description, known before its first frame.
 
     Attributes:
         trial: Name of what it plays, or of the stream.
@@ -77,7 +77,7 @@ class SourceFrame:
 
 
 class FrameSource(Protocol):
-    """Where frames come from.
+    """Delivers frames one by one.
 
     Attributes:
         patient: Whether it waits for a slow reader, as a file does; a camera does not.
@@ -89,7 +89,7 @@ class FrameSource(Protocol):
         """Looks for the stream for so long; None where it is not there (yet).
 
         Raises:
-            MbkfError: It is there, and is not what it should be.
+            MbkfError: The stream is there, but cannot be used.
         """
 
     def read(self, timeout_s: float) -> SourceFrame | None:
@@ -100,14 +100,14 @@ class FrameSource(Protocol):
         """
 
     def news(self) -> list[tuple[str, str]]:
-        """What happened to the connection since this was asked last: a word and a sentence each."""
+        """Events of the connection since the last call, each a kind and a sentence."""
 
     def close(self) -> None:
         """Lets go of the stream."""
 
 
 def plausible(points_m: Array) -> tuple[Array, int]:
-    """Points with those that cannot be true as missing, and how many these are; NaN itself is just a missing point.
+    """Points with implausible ones replaced by NaN, and their number; points that are NaN already are not counted.
 
     Args:
         points_m: (N, 3) as received.

@@ -13,7 +13,7 @@ from mbkf.model.human import HumanModel
 FRICTION = 0.8
 """Coefficient of friction of a shoe on a dry laboratory floor; horizontal force stays below this times vertical."""
 
-NOTHING = 1e-9
+NEGLIGIBLE = 1e-9
 """Part of the load that counts as none."""
 
 
@@ -65,7 +65,7 @@ class Load:
     def shares(self) -> Array:
         """(T, 2) parts of the load on right and left foot, rounded to 0 and 1 where they come that close."""
         right = np.clip(self.share, 0.0, 1.0)
-        right = np.where(right < NOTHING, 0.0, np.where(right > 1 - NOTHING, 1.0, right))
+        right = np.where(right < NEGLIGIBLE, 0.0, np.where(right > 1 - NEGLIGIBLE, 1.0, right))
         return np.column_stack([right, 1 - right])
 
     @property

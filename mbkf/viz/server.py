@@ -1,6 +1,6 @@
 """A small web server for one page: its text, and a WebSocket that sends the newest row, in a thread of its own.
 
-Bound to this computer alone unless another address is asked for; then every request must carry the token. Requests
+Bound to this computer alone unless another address is given; then every request must carry the token. Requests
 that another web page or another host name caused are refused.
 """
 
@@ -48,7 +48,7 @@ class PageServer:
     Attributes:
         url: What to open, token included.
         port: Where it listens.
-        token: What requests have to carry; empty where nothing is asked for.
+        token: Secret that requests have to carry; empty where none is needed.
 
     Raises:
         InvalidInput: The address or port cannot be listened on.
@@ -105,7 +105,7 @@ class PageServer:
         return True
 
     def wake(self) -> None:
-        """Says that there is a new row: it is made now, and not while the next frame is being answered."""
+        """Announces a new row: it is made now, and not while the next frame is being answered."""
         if self._asleep and self._loop is not None:
             self._asleep = False
             with contextlib.suppress(RuntimeError):  # the server has just ended
@@ -153,7 +153,7 @@ class PageServer:
         return _response(HTTPStatus.NOT_FOUND, b"Nothing is here.\n")
 
     def _allowed(self, request: Request, token: str) -> bool:
-        """Whether the request carries the token and comes from this page rather than from a stranger's."""
+        """Whether the request carries the token and comes from this page rather than from another web page."""
         host, origin = request.headers.get("Host", ""), request.headers.get("Origin")
         named = urlsplit(f"//{host}").hostname or ""
         own_name = not self._local or is_loopback(named)
@@ -189,7 +189,7 @@ class PageServer:
 
 
 def checked_port(port: int) -> int:
-    """A port that can be asked for.
+    """A valid port.
 
     Raises:
         InvalidInput: It is not from 0 to 65535.

@@ -105,6 +105,8 @@ def ticks(low: float, high: float, wanted: int) -> tuple[list[float], int]:
     power = 10.0 ** math.floor(math.log10(raw))
     step = next(s * power for s in (1.0, 2.0, 5.0, 10.0) if s * power >= 0.999 * raw)
     first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    if last < first:
+        return ticks(low, high, 2 * wanted)
     return [k * step for k in range(first, last + 1)], max(0, -math.floor(math.log10(step) + 1e-9))
 
 

@@ -1,4 +1,4 @@
-"""What coordinates are called where people read them: titles, units, factors from SI, the positive sense."""
+"""Titles of coordinates for people, with units, factors from SI and the positive sense."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from benchmarks import __main__ as runner
-from benchmarks.checks import Check, Context
+from benchmarks.checks import Check, Context, number, within
 from mbkf.errors import InvalidInput
 
 
@@ -86,3 +86,13 @@ def test_every_benchmark_module_says_what_it_measures_and_can_run():
         module = __import__(f"{benchmarks.__name__}.{name}", fromlist=["run"])
         assert module.__doc__, name
         assert callable(module.run), name
+
+
+def test_a_band_has_two_checks():
+    low, high = within("x", 0.7, 0.8, 1.25)
+    assert (low.passed, high.passed) == (False, True)
+
+
+def test_a_missing_number_passes_no_bound():
+    assert not Check("x", number(None), 1.0, "<=").passed
+    assert Check("x", number(0.5), 1.0, "<=").passed

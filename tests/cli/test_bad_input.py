@@ -105,6 +105,7 @@ def test_markers_in_the_wrong_unit(factor, unit, tmp_path, everywhere):
     everywhere(path, path, f"read in {unit}", "which no person does", "--unit")
 
 
+@pytest.mark.slow
 def test_unit_given_wrongly(person, refuse_scale, refuse_reconstruct):
     refuse_scale([person.static, "--mass", "75", "--unit", "m"], "from the fitted body", "--unit")
     refuse_reconstruct([person.trial, "--unit", "m"], "fit", "--unit")
@@ -138,6 +139,7 @@ def test_nan_forces(person, tmp_path, everywhere, refused, refuse_reconstruct):
     refused(["info", *words], "nan.mot", "set '1'", "not numbers")
 
 
+@pytest.mark.slow
 def test_legs_alone_are_followed(person, tmp_path, capsys):
     from mbkf.io.results_folder import read_reconstruction, read_summary
 
@@ -155,6 +157,7 @@ def test_legs_alone_are_followed(person, tmp_path, capsys):
     assert main(["scale", str(tmp_path / "legs.c3d"), "--out", str(tmp_path / "legs.toml")]) == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["info", "scale", "reconstruct"])
 def test_from_the_shell(command, person, tmp_path):
     """Everything a person sees, in a process of its own."""

@@ -77,6 +77,7 @@ def test_output_file_that_is_a_folder(person, tmp_path, refused):
     refused(["scale", person.static, "--mass", "75", "--out", folder], folder, "is a folder", "--out")
 
 
+@pytest.mark.slow
 def test_output_in_a_missing_parent_is_made(person, tmp_path, capsys):
     subject, out = tmp_path / "a" / "b" / "s.toml", tmp_path / "c" / "d"
     assert main(["scale", str(person.static), "--out", str(subject)]) == 0

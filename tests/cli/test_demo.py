@@ -7,6 +7,8 @@ import pytest
 from mbkf.cli.demo import run
 from mbkf.cli.main import build_parser, main
 
+pytestmark = pytest.mark.slow
+
 
 def test_demo_prints_errors_and_writes_the_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A second of squat through the whole chain."""

@@ -29,6 +29,7 @@ def files(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_orient_writes_tables_pictures_and_numbers(files, tmp_path, capsys):
     words = [
         "imu",
@@ -60,6 +61,7 @@ def test_tune_at_rest_and_by_search(files, tmp_path, capsys):
     assert "differ least" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_angles_writes_what_opensim_opens(files, tmp_path):
     words = ["imu", "angles", str(files / "legs.csv"), "--standing", "0:1.8", "--out", str(tmp_path / "a")]
     assert main(words) == 0
@@ -72,6 +74,7 @@ def test_angles_writes_what_opensim_opens(files, tmp_path):
     assert json.loads((tmp_path / "a" / "angles.json").read_text())["samples"] == 300
 
 
+@pytest.mark.slow
 def test_synth_writes_readings_and_mounts(tmp_path):
     assert main(["synth", "--motion", "squat", "--seconds", "1.2", "--out", str(tmp_path / "s")]) == 0
     words = [
@@ -139,6 +142,7 @@ def test_bad_input_is_one_clear_line(files, tmp_path, monkeypatch, refused, word
     refused(["imu", *names], told)
 
 
+@pytest.mark.slow
 def test_reconstruct_refuses_sensors_it_cannot_use(person, files, tmp_path, refused):
     words = ["reconstruct", person.trial, "--subject", person.subject, "--out", tmp_path / "o"]
     refused([*words, "--imu-mounts", "x.toml"], "--imu")

@@ -8,6 +8,8 @@ import pytest
 from mbkf.cli.main import main
 from tests.foot_walks import foot_walk
 
+pytestmark = pytest.mark.slow
+
 
 def write(readings, path, *, units=("m/s^2", "rad/s"), others=()):
     """A table with units in the column names, as a user would have it."""

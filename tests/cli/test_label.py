@@ -8,6 +8,8 @@ from mbkf.cli.main import main
 from mbkf.io.capture import read_capture
 from mbkf.io.subject import read_subject
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):

@@ -27,6 +27,8 @@ from mbkf.viz.live.page import LivePage
 from mbkf.viz.live.standing_page import StandingPage
 from tests.captures import MASS_KG, made_capture
 
+pytestmark = pytest.mark.slow
+
 
 def begun(words):
     """The command as a process of its own, with what it says kept."""

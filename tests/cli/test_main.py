@@ -119,6 +119,7 @@ def test_a_bug_can_be_traced(outcome, monkeypatch):
         outcome(ValueError("odd"))
 
 
+@pytest.mark.slow
 def test_missing_file_and_unusable_folder_end_in_one_line(tmp_path):
     """The real command line, with everything it prints on stderr."""
     blocked = tmp_path / "file"

@@ -14,6 +14,8 @@ from mbkf.io.storage import read_storage
 from mbkf.io.trc import read_trc
 from mbkf.pipelines.reconstruct import Hidden
 
+pytestmark = pytest.mark.slow
+
 FILES = {"summary.json", "motion.h5", "angles.mot", "torques.sto", "reactions.mot", "markers.trc"}
 
 KEYS = {

@@ -8,6 +8,8 @@ from mbkf.io.subject import read_subject
 from mbkf.model.protocol import load_protocol
 from tests.captures import MASS_KG, snapshot
 
+pytestmark = pytest.mark.slow
+
 
 def scale(*words) -> int:
     return main(["scale", *(str(word) for word in words)])

@@ -9,6 +9,7 @@ from mbkf.io.truth import read_truth
 from mbkf.pipelines.synth import FILES
 
 
+@pytest.mark.slow
 def test_writes_a_folder(tmp_path, capsys):
     out = tmp_path / "made" / "squat"
     assert (

@@ -13,6 +13,8 @@ from mbkf.io.preset import read_preset
 from mbkf.io.trc import write_trc
 from tests.captures import made_capture
 
+pytestmark = pytest.mark.slow
+
 FRAMES = 152
 
 

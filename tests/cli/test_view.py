@@ -11,6 +11,8 @@ from mbkf.io.results_folder import write_reconstruction
 from mbkf.pipelines.results.summary import summarise
 from tests.recordings import walk
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def result(tmp_path_factory):

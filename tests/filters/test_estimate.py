@@ -55,11 +55,13 @@ def test_everything_asked_of_a_follower_is_there(name):
     assert one.dt_s == DT
 
 
+@pytest.mark.slow
 @every_filter
 def test_a_recording_knows_its_length(name):
     assert len(recording()) == len(FRAMES) == len(tracked(name).q)
 
 
+@pytest.mark.slow
 @every_filter
 def test_the_first_estimate_already_moves_as_the_body_does(name):
     one, first, second = two(name)
@@ -161,6 +163,7 @@ GAIN = {"kinematic": (0.97, 0.6, 0.3), "torque": (0.85, 0.6, 0.85), "dynamic": (
 """Largest smoothed error over the filter's, of angles, velocities and torques."""
 
 
+@pytest.mark.slow
 @every_filter
 def test_smoothing_comes_nearer_to_the_truth(name):
     gain = errors(tracked(name, WHOLE)) / errors(tracked(name))
@@ -197,6 +200,7 @@ def test_asked_for_a_part_the_smoother_gives_that_part(name):
         np.testing.assert_array_equal(a.q, b.q)
 
 
+@pytest.mark.slow
 @every_filter
 def test_a_wrong_marker_is_refused_and_hardly_moves_the_estimate(name):
     """Refused means not there: the same as if the marker were out of sight in these frames."""
@@ -224,6 +228,7 @@ def test_a_marker_wrong_where_the_warm_start_begins_does_little(name):
         assert worst(made().model.difference(clean.q, found.q)) < np.deg2rad(20.0)
 
 
+@pytest.mark.slow
 @every_filter
 def test_after_half_a_second_without_markers_the_filter_starts_anew(name):
     read = without(recording(LONG), GAP)
@@ -236,6 +241,7 @@ def test_after_half_a_second_without_markers_the_filter_starts_anew(name):
     assert worst(off[GAP.stop :]) < 5.0
 
 
+@pytest.mark.slow
 @every_filter
 def test_a_short_loss_is_bridged_with_growing_spreads(name):
     found = track(made_follower(name), without(recording(), slice(30, 40)))
@@ -248,7 +254,7 @@ def test_a_short_loss_is_bridged_with_growing_spreads(name):
 def test_a_step_with_what_was_expected_is_the_same_step(name):
     follower, found = estimates(name)
     for t in (5, 30):
-        prediction = follower.expect(found[t])
+        prediction = follower.predict(found[t])
         np.testing.assert_array_equal(
             follower.step(found[t], recording(), t + 1, prediction).q, found[t + 1].q
         )
@@ -261,7 +267,7 @@ def test_what_is_expected_is_as_far_off_as_stated(name):
     everyone = np.ones(len(recording().markers_m[0]), dtype=bool)
     squared = []
     for t in range(20, LAST):
-        markers = follower.expect(found[t]).markers
+        markers = follower.predict(found[t]).markers
         S = markers.spread(everyone)
         S[:, np.arange(3), np.arange(3)] += MARKER_SD_M**2
         y = recording().markers_m[t + 1] - markers.positions_m

@@ -12,16 +12,18 @@ from mbkf.filters.estimate import Recording
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.kinematic.tracking import KinematicTracking
-from mbkf.filters.likelihood import dynamic_likelihood, frame_likelihood, trial_likelihood
+from mbkf.filters.likelihood import frame_likelihood, step_likelihood, trial_likelihood
 from mbkf.filters.tracking_loop import followed
-from mbkf.filters.kinematic.settings import KinematicSettings
+from mbkf.sensors.block import Frame
 from mbkf.sensors.contact.records import Contact
-from tests.dynamics import DT, dynamic_filter, half_weight, random_state, standing
+from mbkf.sensors.foot_contact import FootContact
+from mbkf.sensors.markers import MarkerMemory, Markers
+from tests.dynamics import DT, block_of, dynamic_filter, half_weight, random_state, standing, with_memory
 from tests.motions import marker_positions, protocol_sensor, reference_model, smooth_motion
 
 MODEL = reference_model()
 NV = MODEL.nv
-HELD = np.zeros(NV, dtype=bool)
+EVERYWHERE = np.zeros(NV, dtype=bool)
 
 
 def dense(H, P, sd, y):
@@ -47,19 +49,23 @@ def test_a_step_of_the_dynamic_filter(missing):
     state = random_state(MODEL, rng, standing(MODEL), 0.1)
     markers = kalman.sensor.positions(state.q) + 0.003 * rng.normal(size=(36, 3))
     markers[list(missing)] = np.nan
-    points = kalman.feet.decide(kalman.feet.begin(), state.q, state.v, state.a, np.zeros((2, 6))).centres_m
-    memory = kalman.begin()._replace(noise_scale=1.7)
-    step = kalman.step(state, memory, markers, half_weight(MODEL, points))
-    assert step.decision.load.contacts == (Contact.MEASURED, Contact.MEASURED)
-    prior, s, seen = step.predicted, kalman.settings, step.decision.trusted
+    detector = block_of(kalman, FootContact)[0].detector
+    points = detector.decide(detector.begin(), state.q, state.v, state.a, np.zeros((2, 6))).centres_m
+    memory = with_memory(kalman, Markers, kalman.begin(), MarkerMemory(1.7, None))
+    step = kalman.step(state, memory, Frame(markers, half_weight(MODEL, points)))
+    assert step.decisions.notes.contact.contacts == (Contact.MEASURED, Contact.MEASURED)
+    prior, s, seen = step.prior.state, kalman.settings, step.decisions.notes.trusted
     H, sd, y = marker_part(kalman, prior, seen, markers, kalman.noise_m * 1.7**0.5)
-    rest = np.repeat([s.residual_force_n, s.residual_moment_nm], 3)
-    rest = np.concatenate([rest, np.tile(np.repeat([s.plate_force_n, s.plate_moment_nm], 3), 2)])
-    rows, values = step.frame.rows[:18], step.frame.values[:18]
+    rest = np.repeat([s.law.residual_force_n, s.law.residual_moment_nm], 3)
+    rest = np.concatenate(
+        [rest, np.tile(np.repeat([s.contact.plate_force_n, s.contact.plate_moment_nm], 3), 2)]
+    )
+    rows, values = step.readings.rows[:18], step.readings.values[:18]
     whole = np.zeros((len(H) + 18, len(prior.P)))
     whole[: len(H), :NV], whole[len(H) :] = H, rows * rest[:, None]
     expected = dense(whole, prior.P, np.concatenate([sd, rest]), np.concatenate([y, values * rest]))
-    found = dynamic_likelihood(kalman, step)
+    found, others = step_likelihood(kalman, step)
+    assert others == 18
     assert sum(found) == pytest.approx(expected, rel=1e-5)
     alone = dense(H, prior.P[:NV, :NV], sd, y)
     assert found.readings == pytest.approx(alone, rel=1e-5)
@@ -80,7 +86,7 @@ def recording():
 @pytest.fixture(scope="module")
 def kinematic():
     sensor = protocol_sensor(MODEL)[0]
-    return KinematicTracking(KinematicFilter(sensor, np.full(36, 0.004), DT, HELD, KinematicSettings()))
+    return KinematicTracking(KinematicFilter(sensor, np.full(36, 0.004), DT, EVERYWHERE, KinematicSettings()))
 
 
 def test_frames_of_the_kinematic_filter(kinematic, recording):
@@ -93,7 +99,7 @@ def test_frames_of_the_kinematic_filter(kinematic, recording):
     for t, estimate, _ in followed(kinematic, recording):
         if t not in (20, 25, 39):
             continue
-        prior = estimate.inner.result.evidence.predicted
+        prior = estimate.inner.step.prior.state
         seen = ~np.isnan(recording.markers_m[t, :, 0]) & ~estimate.refused
         assert estimate.refused.sum() == (t == 25)
         H, sd, y = marker_part(
@@ -126,4 +132,4 @@ def test_other_filters_are_refused(kinematic, recording):
 
     _, estimate, _ = list(followed(kinematic, recording))[5]
     with pytest.raises(InvalidInput, match="kinematic and the dynamic"):
-        frame_likelihood(Other(), replace(estimate), np.ones(36, bool))
+        frame_likelihood(Other(), replace(estimate))

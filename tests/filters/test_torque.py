@@ -12,6 +12,8 @@ from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
 from tests.motions import assert_near, marker_positions, protocol_sensor
 
+pytestmark = pytest.mark.slow
+
 RATE_HZ, NOISE_M, FRAMES = 100.0, 0.005, 90
 BOTH = np.ones(2, dtype=bool)
 

@@ -60,6 +60,7 @@ def flow_derivative(body, now, u, h, eps=1e-6):
     return np.stack(columns, axis=1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("force_state", FORCE_STATES)
 def test_sensitivity_is_the_rate_of_errors_along_the_manifold(force_state):
     body, now, u = loaded_body(force_state)
@@ -187,6 +188,7 @@ def test_prediction_keeps_forces_and_returns_its_transition():
     np.testing.assert_array_equal(found.state.P, found.state.P.T)
 
 
+@pytest.mark.slow
 def test_covariance_is_what_the_errors_are():
     """A pendulum whose torque really wanders: mean squared normalised error near 3, its dimension."""
     rng, body, force_sd, angle_sd = np.random.default_rng(6), DampedPendulum(), 8.0, 0.01

@@ -131,6 +131,7 @@ def test_short_readings_are_judged_as_far_as_they_go():
     assert kinds(first) == ["unit"]
 
 
+@pytest.mark.slow
 def test_real_recordings_are_sound(real_data):
     from mbkf.io.imu_files import read_imu
 

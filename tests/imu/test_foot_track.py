@@ -9,6 +9,8 @@ from mbkf.imu.strides import find_strides
 from mbkf.imu.zero_velocity import phases
 from tests.foot_walks import foot_walk
 
+pytestmark = pytest.mark.slow
+
 SETTINGS = FootFilterSettings()
 
 

@@ -35,6 +35,7 @@ def test_the_frame_has_to_be_said():
         OrientSettings("kalman")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", METHODS)
 def test_sensors_of_different_kinds_run_in_one_call_and_in_order(method):
     plain = replace(ONE, name="b", magnetic_field=None)
@@ -106,6 +107,7 @@ def test_progress_is_told():
     assert calls[-1][2] == ONE.samples
 
 
+@pytest.mark.slow
 def test_madgwick_on_the_public_benchmark(real_data):
     """Trial 16 of BROAD: 4.8° in all and 2.7° of inclination, as published for beta 0.1."""
     import scipy.io

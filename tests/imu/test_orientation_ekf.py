@@ -7,6 +7,8 @@ from scipy.spatial.transform import Rotation
 from mbkf.imu.orientation_ekf import OrientationFilter, OrientationSettings
 from tests.imu.turning import RATE_HZ, apart_deg, turning
 
+pytestmark = pytest.mark.slow
+
 DT = 1.0 / RATE_HZ
 BIAS = np.array([0.02, -0.01, 0.015])
 

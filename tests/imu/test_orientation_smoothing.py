@@ -1,6 +1,7 @@
 """The offline filter: later samples help, and it says so."""
 
 import numpy as np
+import pytest
 
 from mbkf.imu.orientation_ekf import OrientationFilter
 from mbkf.imu.orientation_smoothing import smoothed
@@ -8,6 +9,7 @@ from tests.imu.test_orientation_ekf import BIAS, DT, noisy
 from tests.imu.turning import apart_deg, turning
 
 
+@pytest.mark.slow
 def test_later_samples_correct_earlier_ones():
     made = turning(20.0, shake_mps2=3.0)
     gyro, force, field = (part[:, None] for part in noisy(made))

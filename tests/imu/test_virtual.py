@@ -10,6 +10,8 @@ from mbkf.imu.placement import typical_mounts
 from mbkf.imu.virtual import FIELD_UT, ImuErrors, virtual_imus
 from mbkf.model.human import HumanModel
 
+pytestmark = pytest.mark.slow
+
 MODEL = HumanModel.scaled()
 RATE = 200.0
 

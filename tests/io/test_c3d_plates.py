@@ -60,6 +60,7 @@ def arrangement(kind: int, flipped: bool) -> tuple[tuple[float, ...], np.ndarray
     return tuple(-vector if flipped else vector), vector
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [1, 2, 3, 4])
 @pytest.mark.parametrize("flipped", [False, True])
 @given(force=forces, place=places, torque=st.floats(-20000, 20000))

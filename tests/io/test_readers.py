@@ -1,5 +1,7 @@
 """The registries of file formats: suffixes, content, a reader of the user's own."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -105,3 +107,9 @@ def test_suffixes_are_checked():
 
 def test_alternatives_in_words():
     assert [either(names) for names in (("a",), ("a", "b"), ("a", "b", "c"))] == ["a", "a or b", "a, b or c"]
+
+
+def test_suffixes_are_known_without_heavy_libraries():
+    code = "import sys, mbkf.io.capture, mbkf.io.imu_files; print(*sys.modules)"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert not {"ezc3d", "scipy", "h5py", "pinocchio"} & set(loaded.split())

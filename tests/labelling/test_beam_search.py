@@ -88,7 +88,7 @@ def test_nearest_rotations_are_rotations():
     assert np.allclose(nearest_rotations(found), found)
 
 
-def test_the_best_grown_body_is_the_true_one():
+def test_the_best_body_is_the_true_one():
     frame, _, _ = scene()
     best, *rest = search_bodies(BODY, frame.points, upright(BODY[0], frame.points), 4)
     assert (best.points == frame.truth).mean() >= 0.9

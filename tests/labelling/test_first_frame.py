@@ -9,6 +9,8 @@ from mbkf.labelling.assignment import HIDDEN
 from mbkf.labelling.first_frame import FirstFrameSearch, labelled
 from tests.labelling.bodies import posture, reference_sensor, unlabelled
 
+pytestmark = pytest.mark.slow
+
 SENSOR = reference_sensor()
 SEARCH = FirstFrameSearch(SENSOR, np.full(len(SENSOR.segments), 0.006))
 

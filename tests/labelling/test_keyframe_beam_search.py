@@ -13,6 +13,8 @@ from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.labelling.bodies import reference_sensor
 from tests.labelling.movement import RATE_HZ, movement, shuffled
 
+pytestmark = pytest.mark.slow
+
 ROUGH = reference_sensor("autolabel62")
 BODY = clusters(ROUGH, np.full(len(ROUGH.segments), 0.03))
 

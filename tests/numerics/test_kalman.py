@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbkf.numerics.kalman import correct, information, informed, informed_with_rows, read_directly
+from mbkf.numerics.kalman import correct, information, informed, informed_after_rows, informed_with_rows
 from tests.motions import worst
 
 SILENT = np.zeros((1, 1))
@@ -149,13 +149,13 @@ def test_a_steady_filter_reaches_the_riccati_solution():
 @given(st.integers(0, 10**6), st.integers(0, 8))
 @settings(max_examples=50, deadline=None)
 def test_reading_components_directly_is_the_textbook_update(seed, readings):
-    """One reading each of some components; exactly symmetric in, exactly symmetric out."""
+    """One row on each of some components, before any information; exactly symmetric in, exactly symmetric out."""
     rng = np.random.default_rng(seed)
     P = random_covariance(rng, 8)
     P = 0.5 * (P + P.T)
     sd, read = rng.uniform(0.1, 3.0, readings), rng.permutation(8)[:readings]
-    found = read_directly(P, read, 1.0 / sd)
     H = np.eye(8)[read]
+    found = informed_after_rows(P, SILENT, H / sd[:, None])
     S = H @ P @ H.T + np.diag(sd**2)
     np.testing.assert_allclose(found, P - P @ H.T @ np.linalg.inv(S) @ H @ P, rtol=0, atol=1e-13)
     np.testing.assert_array_equal(found, found.T)
@@ -167,7 +167,7 @@ def test_covariances_of_either_order_are_left_alone(order):
     P = np.array(0.5 * (P + P.T), order=order)
     kept, matrix = P.copy(), information(y, H, sd).matrix
     found = informed(P, matrix)
-    read_directly(P, np.array([1, 6, 7]), np.ones(3))
+    informed_after_rows(P, matrix, np.eye(len(P))[[1, 6, 7]])
     np.testing.assert_array_equal(P, kept)
     np.testing.assert_array_equal(found, found.T)
     np.testing.assert_allclose(found, correct(P, information(y, H, sd)).covariance, rtol=0, atol=1e-15)
@@ -209,5 +209,14 @@ def test_information_and_rows_together_are_one_after_the_other(order, rank):
     found = informed_with_rows(P, matrix, rows)
     one = informed_with_rows(informed(P, matrix), SILENT, rows)
     np.testing.assert_allclose(found, one, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(informed_after_rows(P, matrix, rows), one, rtol=0, atol=1e-13)
     np.testing.assert_array_equal(found, found.T)
     np.testing.assert_array_equal(P, kept)
+
+
+@pytest.mark.parametrize("update", [informed_with_rows, informed_after_rows])
+def test_without_rows_there_is_only_the_information(update):
+    P, H, sd, y = random_problem(7)
+    P = 0.5 * (P + P.T)
+    matrix = information(y, H, sd).matrix
+    np.testing.assert_array_equal(update(P, matrix, np.zeros((0, len(P)))), informed(P, matrix))

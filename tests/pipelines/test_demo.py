@@ -8,6 +8,8 @@ import pytest
 from mbkf.errors import FileFormatError
 from mbkf.pipelines.demo import COORDINATES, Demo, run_demo
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def demo(tmp_path_factory: pytest.TempPathFactory) -> Demo:

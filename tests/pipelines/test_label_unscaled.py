@@ -11,6 +11,8 @@ from mbkf.pipelines.labelling.score import score
 from mbkf.pipelines.scale import scale
 from tests.walker import walker
 
+pytestmark = pytest.mark.slow
+
 HEIGHT_M = 1.86
 
 

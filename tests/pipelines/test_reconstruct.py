@@ -157,6 +157,7 @@ def test_hidden_markers_are_reported_and_kept_as_measured(made):
     assert np.linalg.norm((found.predicted_m - made.positions)[hidden], axis=1).max() < 0.05
 
 
+@pytest.mark.slow
 def test_hiding_what_is_not_there_hides_nothing(made):
     positions = made.positions.copy()
     positions[:, 0] = np.nan
@@ -199,6 +200,7 @@ def test_the_order_of_markers_and_strangers_among_them_do_not_matter(made, resul
     assert np.abs(angle_errors(made.model, found.q, result.q)).max() < 1e-6
 
 
+@pytest.mark.slow
 def test_moved_markers_are_corrected_on_the_trial_only_when_wanted(made):
     places = {m.name: m for m in made.subject.markers}
     moved = replace(places["RTHI"], position_m=places["RTHI"].position_m + SHIFT_M, session_sd_m=0.05)
@@ -215,6 +217,7 @@ def test_moved_markers_are_corrected_on_the_trial_only_when_wanted(made):
     assert off < 0.003
 
 
+@pytest.mark.slow
 def test_withheld_plates_are_not_used(made):
     capture = made.with_plates("1", "2")
     all_plates = kinematic(capture, made.subject)

@@ -12,6 +12,8 @@ from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
 from tests.dynamics import trial
 from tests.motions import angle_errors
 
+pytestmark = pytest.mark.slow
+
 QUIET = CaptureSettings(markers_sd_m=0.001, skin_sd_m=0.0, occlusion=0.0, offset_n=(0.0, 0.0))
 SHORT = slice(40, 120)
 LATE = slice(15, None)
@@ -173,7 +175,7 @@ def test_half_a_second_without_markers_is_restarted_and_told(name):
     lost = found.hidden.all(axis=1)
     assert lost.sum() == 50
     assert "the filter started anew at frames 70" in found.warnings
-    told = [w for w in found.warnings if w.startswith("50 of 80 frames have too few believable markers")]
+    told = [w for w in found.warnings if w.startswith("50 of 80 frames have too few markers within the gate")]
     assert len(told) == 1
     np.testing.assert_array_equal(found.tracked, ~lost)
     assert not found.valid[lost].any()

@@ -6,6 +6,8 @@ from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.subject import read_subject
 from mbkf.pipelines.synth import FILES, synthesise, write_folder
 
+pytestmark = pytest.mark.slow
+
 
 def test_folder_is_complete_and_the_subject_exact(tmp_path):
     told = []

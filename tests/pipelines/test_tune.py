@@ -10,11 +10,11 @@ from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.pipelines.reconstruct import ReconstructSettings, subject_markers
 from mbkf.pipelines.trial.inputs import trial_inputs
-from mbkf.pipelines.tune import PARAMETERS, Tuned, TunedParameter, TuneSettings, tune
-from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.pipelines.tune import TuneSettings, tune
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.person import body_of, synthesise_subject
+
+pytestmark = pytest.mark.slow
 
 RATE_HZ, NOISE_M = 100.0, 0.002
 MOTION, STATED = 0.1, 0.5

@@ -158,6 +158,7 @@ def test_static_with_few_markers_scales_what_it_sees(person):
     assert factors["right_shank"]["standard_error"] < 0.7 * factors["right_forearm"]["standard_error"]
 
 
+@pytest.mark.slow
 def test_active_bounds_are_reported():
     """A giant twice as large as the reference: what is seen of every limb ends at the upper bound."""
     giant = Person(5, spread=0.0)

@@ -11,6 +11,8 @@ from mbkf.scaling.naming import NamingProblem
 from mbkf.scaling.renaming import in_line, likeliest
 from tests.scaling.test_naming import trial
 
+pytestmark = pytest.mark.slow
+
 PROTOCOL = load_protocol("oxford_biomechzoo")
 NOT_WORN = ("RPSI", "LPSI", "RMMA", "LMMA", "RD1M", "LD1M")
 

@@ -1,13 +1,14 @@
-"""Inertial sensors on a body: free fall, rest, turning on the spot; rows whitened and silent where nothing was read."""
+"""Inertial sensors on a body: rows whitened and silent where nothing was read, and which joints they observe."""
+
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from mbkf.sensors.inertial_rows import InertialRows, felt_dofs
 
-from mbkf.conventions import GRAVITY_M_S2
-from mbkf.errors import UnknownName
 from mbkf.io.imu_mount import ImuMount
 from mbkf.model.human import HumanModel
+from mbkf.sensors.block import Frame, Notes, OperatingPoint
+from mbkf.sensors.inertial import InertialSensors, InertialSettings, observed_dofs
 from mbkf.sensors.inertial_sensor import InertialSensor
 
 MODEL = HumanModel.scaled()
@@ -19,49 +20,13 @@ SENSOR = InertialSensor(
         ImuMount("b", "left_foot", np.zeros(3), STRAIGHT),
     ],
 )
-REST = np.zeros(MODEL.nv)
-
-
-def test_at_rest_they_read_one_g_up_and_in_free_fall_nothing():
-    np.testing.assert_allclose(
-        SENSOR.values(MODEL.neutral(), REST, REST)[:, 3:], [[0, 0, GRAVITY_M_S2]] * 2, atol=1e-9
-    )
-    falling = REST.copy()
-    falling[2] = -GRAVITY_M_S2
-    np.testing.assert_allclose(SENSOR.values(MODEL.neutral(), REST, falling), 0.0, atol=1e-9)
-
-
-def test_turning_about_the_vertical_pulls_outwards():
-    v = REST.copy()
-    v[5] = 3.0
-    pelvis = SENSOR.values(MODEL.neutral(), v, REST)[0]
-    np.testing.assert_allclose(pelvis[:3], [0, 0, 3.0], atol=1e-12)
-    np.testing.assert_allclose(pelvis[3:], [-9.0 * 0.1, 0, GRAVITY_M_S2], atol=1e-9)
-
-
-def test_a_turn_of_the_world_about_the_vertical_changes_nothing():
-    rng = np.random.default_rng(1)
-    q = MODEL.integrate(MODEL.neutral(), rng.normal(0, 0.4, MODEL.nv))
-    v, a = rng.normal(0, 1, (2, MODEL.nv))
-    turn, (x, y, z, w) = np.array([np.sin(0.4), np.cos(0.4)]), q[3:7]
-    other = q.copy()
-    s, c = turn
-    other[3:7] = [c * x - s * y, c * y + s * x, c * z + s * w, c * w - s * z]
-    np.testing.assert_allclose(SENSOR.values(other, v, a), SENSOR.values(q, v, a), atol=1e-9)
-    np.testing.assert_array_equal(SENSOR.reading(q, v, a).values, SENSOR.values(q, v, a))
-
-
-def test_orientations_are_those_of_the_segments():
-    q = MODEL.integrate(MODEL.neutral(), np.random.default_rng(2).normal(0, 0.4, MODEL.nv))
-    rotations, _ = MODEL.placements(q)
-    np.testing.assert_allclose(SENSOR.orientations(q)[1], rotations[MODEL.joint("left_foot").joint_id])
 
 
 def test_rows_are_whitened_and_missing_readings_are_left_out():
     rng = np.random.default_rng(3)
     q = MODEL.integrate(MODEL.neutral(), rng.normal(0, 0.3, MODEL.nv))
     v, a = rng.normal(0, 1, (2, MODEL.nv))
-    block = InertialRows(SENSOR, 0.1, 2.0)
+    block = InertialSensors(SENSOR, InertialSettings(0.1, 2.0))
     expected = SENSOR.values(q, v, a)
     measured = expected + np.repeat([0.1, 2.0], 3)
     measured[1, 4] = np.nan
@@ -76,9 +41,34 @@ def test_rows_are_whitened_and_missing_readings_are_left_out():
     np.testing.assert_allclose(rows @ step, np.delete(change, 10), atol=1e-9)
 
 
-def test_only_joints_of_carrying_segments_are_felt():
-    felt = felt_dofs(MODEL, ["pelvis", "left_foot"])
-    assert felt[:6].all()
-    assert felt.sum() == 6 + 3
-    with pytest.raises(UnknownName):
-        InertialSensor(MODEL, [ImuMount("a", "tail", np.zeros(3), STRAIGHT)])
+def test_only_joints_of_carrying_segments_are_observed():
+    observed = observed_dofs(MODEL, ["pelvis", "left_foot"])
+    assert observed[:6].all()
+    assert observed.sum() == 6 + 3
+
+
+def point_at(q):
+    return OperatingPoint(SimpleNamespace(q=q, v=np.zeros(MODEL.nv), a=np.zeros(MODEL.nv)), None)
+
+
+def test_they_observe_joints_that_no_marker_shows():
+    block = InertialSensors(SENSOR)
+    foot, hand = (np.arange(MODEL.nv)[MODEL.joint(name).v] for name in ("left_foot", "right_hand"))
+    notes = Notes(unmarked=np.concatenate([foot, hand]), unobserved=np.concatenate([foot, hand]))
+    measured = np.full((2, 6), np.nan)
+    measured[1, 3] = 1.0
+    frame = Frame(np.zeros((0, 3)), np.zeros((0, 6)), measured)
+    decision = block.decide(point_at(MODEL.neutral()), frame, None, notes)
+    assert notes.imus is measured and notes.observed
+    np.testing.assert_array_equal(notes.unobserved, hand)
+    np.testing.assert_array_equal(notes.unmarked, np.concatenate([foot, hand]))
+    assert block.linearise(point_at(MODEL.neutral()), decision).jacobian.shape == (1, 3 * MODEL.nv)
+
+
+@pytest.mark.parametrize("imus", [None, np.full((2, 6), np.nan)])
+def test_where_none_reads_nothing_is_said(imus):
+    block, notes = InertialSensors(SENSOR), Notes(unmarked=np.arange(6), unobserved=np.arange(6))
+    frame = Frame(np.zeros((0, 3)), np.zeros((0, 6)), imus)
+    decision = block.decide(point_at(MODEL.neutral()), frame, None, notes)
+    assert block.linearise(point_at(MODEL.neutral()), decision) is None
+    assert notes.imus is None and not notes.observed and len(notes.unobserved) == 6

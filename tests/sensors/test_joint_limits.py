@@ -1,11 +1,14 @@
 """Soft joint limits: silent inside, a spring outside, for every axis of every joint."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from mbkf.sensors.joint_limits import JointLimits
+from mbkf.sensors.block import Notes
+from mbkf.sensors.joint_limits import JointLimits, JointLimitSettings
 from mbkf.sensors.posture import PostureSensor
-from tests.dynamics import trial
+from tests.dynamics import prepared_at, trial
 from tests.motions import assert_near, reference_model
 
 MODEL = reference_model()
@@ -13,7 +16,7 @@ NV = MODEL.nv
 POSTURE = PostureSensor(MODEL)
 SD = 0.03
 FREE = np.zeros(NV, dtype=bool)
-LIMITS = JointLimits(MODEL, FREE, SD)
+LIMITS = JointLimits(POSTURE, FREE, JointLimitSettings(SD))
 KNEE = MODEL.joint("right_shank").v.stop - 1
 
 
@@ -34,10 +37,11 @@ def test_every_joint_is_limited_on_both_sides_of_standing_and_the_pelvis_is_not(
     assert (LIMITS.lower[6:] < 0).all() and (LIMITS.upper[6:] > 0).all()
 
 
-@pytest.mark.parametrize("name", ["squat", "walk", "jump"])
+@pytest.mark.parametrize("name", ["squat", "walk", pytest.param("jump", marks=pytest.mark.slow)])
 def test_people_who_move_pass_no_limit(name):
     made = trial(name)
-    limits, posture = JointLimits(made.model, FREE, SD), PostureSensor(made.model)
+    posture = PostureSensor(made.model)
+    limits = JointLimits(posture, FREE, JointLimitSettings(SD))
     assert all(limits.information(*posture.deviation(q)) is None for q in made.motion.q)
     assert at(MODEL.neutral()) is None
 
@@ -69,15 +73,25 @@ def test_an_arm_raised_past_the_vertical_is_not_pulled_down(arm, degrees):
     assert at(raised) is None
 
 
-def test_the_pull_begins_at_the_limit():
+def test_the_reading_begins_at_the_limit():
     limit = LIMITS.upper[KNEE] if abs(LIMITS.upper[KNEE]) < abs(LIMITS.lower[KNEE]) else LIMITS.lower[KNEE]
     assert at(bent(KNEE, limit - 1e-6 * np.sign(limit))) is None
     just = at(bent(KNEE, limit + 1e-6 * np.sign(limit)))
     assert 0 < np.abs(just.vector).max() < 1e-5 / SD**2
 
 
-def test_held_dofs_have_no_limits():
-    held = FREE.copy()
-    held[KNEE] = True
-    assert at(bent(KNEE, 3.0), JointLimits(MODEL, held, SD)) is None
+def test_unobservable_dofs_have_no_limits():
+    unobservable = FREE.copy()
+    unobservable[KNEE] = True
+    assert at(bent(KNEE, 3.0), JointLimits(POSTURE, unobservable, JointLimitSettings(SD))) is None
     assert at(bent(KNEE, 3.0)) is not None
+
+
+def test_a_passed_limit_is_read_whether_or_not_its_joint_is_observed():
+    """It does not depend on the frame, and is at hand before it comes."""
+    state = SimpleNamespace(q=bent(KNEE, 3.0))
+    point = prepared_at(LIMITS, state)
+    expected = at(state.q)
+    assert LIMITS.linearise(point, LIMITS.decide(point, None, None, Notes())) is point.prepared
+    np.testing.assert_array_equal(point.prepared.matrix, expected.matrix)
+    np.testing.assert_array_equal(point.prepared.vector, expected.vector)

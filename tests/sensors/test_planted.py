@@ -6,7 +6,6 @@ import pytest
 from mbkf.model.newton_euler import FEET
 from mbkf.sensors.contact.soles import sole_locals
 from mbkf.sensors.marker_sensor import MarkerSensor
-from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.planted import Planted, standing_still
 from tests.motions import moderate_pose, reference_model
 

@@ -1,11 +1,15 @@
 """The posture prior: what it calls deviation, and for which dofs."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from mbkf.numerics.kalman import information
-from mbkf.sensors.posture import PostureSensor, pull
+from mbkf.sensors.block import Notes
+from mbkf.sensors.posture import PosturePrior, PostureSensor, PostureSettings, posture_information
+from tests.dynamics import prepared_at
 from tests.motions import assert_near, moderate_pose, reference_model
 
 MODEL = reference_model()
@@ -52,12 +56,12 @@ def test_where_and_how_the_body_stands_does_not_matter():
     np.testing.assert_array_equal(SENSOR.reading(elsewhere).deviation, SENSOR.reading(q).deviation)
 
 
-def test_a_pull_is_the_information_of_the_stacked_readings():
-    """Held dofs have no reading; each deviation is read as zero."""
+def test_the_prior_is_the_information_of_the_stacked_readings():
+    """Unobservable dofs have no reading; each deviation is read as zero."""
     q = moderate_pose(MODEL, np.random.default_rng(6))
-    held = np.arange(MODEL.nv) % 7 == 0
-    found = pull(*SENSOR.deviation(q), SENSOR.weights(10.0, held))
-    reading, free = SENSOR.reading(q), np.flatnonzero(~held[SENSOR.dofs])
+    unobservable = np.arange(MODEL.nv) % 7 == 0
+    found = posture_information(*SENSOR.deviation(q), SENSOR.weights(10.0, unobservable))
+    reading, free = SENSOR.reading(q), np.flatnonzero(~unobservable[SENSOR.dofs])
     stacked = information(-reading.deviation[free], reading.jacobian[free], 10.0 * SENSOR.sd[free])
     assert_near(found.matrix, stacked.matrix, 1e-14)
     assert_near(found.vector, stacked.vector, 1e-14)
@@ -70,3 +74,32 @@ def test_a_body_on_its_head_is_read_like_one_on_its_feet():
     upside_down = q.copy()
     upside_down[3:7] = [1.0, 0.0, 0.0, 0.0]
     np.testing.assert_array_equal(SENSOR.reading(upside_down).jacobian, SENSOR.reading(q).jacobian)
+
+
+def prior_at(q, unobserved=(), **settings):
+    """What the prior says at a posture while some dofs are unobserved, and what it had prepared."""
+    block = PosturePrior(SENSOR, np.zeros(MODEL.nv, dtype=bool), PostureSettings(**settings))
+    at = prepared_at(block, SimpleNamespace(q=q))
+    return block.linearise(at, Notes(unobserved=np.array(unobserved, dtype=np.intp))), at.prepared
+
+
+def test_while_all_is_observed_the_prior_is_as_prepared():
+    q = moderate_pose(MODEL, np.random.default_rng(8))
+    found, prepared = prior_at(q, posture_scale=2.0, unseen_posture=3.0)
+    assert found is prepared.information
+    weights = SENSOR.weights(2.0, np.zeros(MODEL.nv, dtype=bool))
+    expected = posture_information(*SENSOR.deviation(q), weights)
+    np.testing.assert_array_equal(found.matrix, expected.matrix)
+    np.testing.assert_array_equal(found.vector, expected.vector)
+
+
+def test_what_nothing_observes_has_a_prior_of_its_own_weight():
+    q = moderate_pose(MODEL, np.random.default_rng(8))
+    hidden = np.arange(*MODEL.joint("right_forearm").v.indices(MODEL.nv))
+    found, prepared = prior_at(q, hidden, unseen_posture=3.0)
+    weights = SENSOR.weights(1.0, np.zeros(MODEL.nv, dtype=bool))
+    weights[hidden] *= 3.0
+    expected = posture_information(*SENSOR.deviation(q), weights)
+    np.testing.assert_array_equal(found.matrix, expected.matrix)
+    np.testing.assert_array_equal(found.vector, expected.vector)
+    assert np.abs(found.matrix - prepared.information.matrix).max() > 0.0

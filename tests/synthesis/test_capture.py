@@ -12,6 +12,8 @@ from mbkf.synthesis import cameras, plates
 from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
 from mbkf.synthesis.person import LIMIT, STATURE_RANGE, synthesise_subject
 
+pytestmark = pytest.mark.slow
+
 
 def test_camera_noise_has_the_stated_size(person, motions):
     clean = CaptureSettings(skin_sd_m=0.0, occlusion=0.0)

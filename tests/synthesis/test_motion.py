@@ -11,6 +11,8 @@ from mbkf.synthesis.inverse_kinematics import SIDE_NAMES
 from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.strength import overloaded
 
+pytestmark = pytest.mark.slow
+
 
 def momentum(body, motion):
     """(T, 6) linear momentum and angular momentum about the centre of mass."""

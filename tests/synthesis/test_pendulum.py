@@ -54,6 +54,7 @@ def test_noise_is_as_large_as_stated_and_the_seed_decides():
     np.testing.assert_array_equal(again.markers_m, found.markers_m)
 
 
+@pytest.mark.slow
 def test_artefacts_differ_between_coordinates_and_last():
     motion = pendulum_motion("squat", STUDY, seconds=400.0)
     found = readings(motion, PendulumNoise(camera_m=0.0), np.random.default_rng(1)).markers_m

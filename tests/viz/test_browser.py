@@ -15,6 +15,8 @@ from tests.recordings import PLATE, broken_walk, walk, walker
 from tests.viz.browsing import PATIENCE_S, until
 from tests.viz.streams import feeding
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def live():

@@ -4,7 +4,7 @@ import re
 from xml.etree import ElementTree as ET
 
 import numpy as np
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from mbkf.viz.svg import BOTTOM, HEIGHT, LEFT, RIGHT, TOP, WIDTH, Line, Mark, chart, number, ticks
@@ -26,6 +26,7 @@ def points(d):
 
 
 @given(st.floats(-1e4, 1e4), st.floats(1e-3, 1e4), st.integers(2, 10))
+@example(1.0, 401.0, 2)
 def test_ticks_are_round_and_inside(low, span, wanted):
     found, digits = ticks(low, low + span, wanted)
     assert 1 <= len(found) <= 2 * wanted + 1 or span / wanted < 1e-9

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -47,7 +46,7 @@ class DynamicTracking:
             return None
         state, a = found.state, found.accelerations.mean(axis=0)
         first = self.kalman.first(state.q, state.v, a, state.P, recording.frame(t))
-        return replace(self._estimate(first), tracked=True, started=True)
+        return self._estimate(first)._replace(tracked=True, started=True)
 
     def predict(self, before: Posterior) -> Prediction:
         """By the filter's own plant."""
@@ -118,7 +117,7 @@ class DynamicTracking:
         if estimate.started:
             return np.nan, 0
         step: DynamicStep = estimate.inner
-        return step.nis, step.count
+        return step.nis, step.read
 
     def smooth(
         self, run: Sequence[Posterior], recording: Recording, first: int, wanted: int
@@ -127,7 +126,7 @@ class DynamicTracking:
         del recording, first
         states = smooth(self.kalman, [estimate.inner for estimate in run], ROUNDS, wanted)
         return [
-            replace(e, q=s.q, v=s.v, a=s.a, wrench=s.w.reshape(2, 6), inner=replace(e.inner, state=s))
+            e._replace(q=s.q, v=s.v, a=s.a, wrench=s.w.reshape(2, 6), inner=e.inner._replace(state=s))
             for e, s in zip(run, states, strict=False)
         ]
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -41,8 +42,7 @@ class WarmStart:
     accelerations: Array
 
 
-@dataclass(frozen=True)
-class KinematicRecord:
+class KinematicRecord(NamedTuple):
     """The filter's own record of a frame.
 
     Attributes:
@@ -156,7 +156,7 @@ class KinematicTracking:
     def innovation(self, estimate: Posterior) -> tuple[float, int]:
         """Of the markers."""
         step: KinematicStep | None = estimate.inner.step
-        return (np.nan, 0) if step is None else (step.nis, step.count)
+        return (np.nan, 0) if step is None else (step.nis, step.read)
 
     def smooth(
         self, run: Sequence[Posterior], recording: Recording, first: int, wanted: int
@@ -180,6 +180,6 @@ class KinematicTracking:
         v = np.array([state.v for state in states])
         a = np.gradient(v, self.dt_s, axis=0) if len(v) > 1 else np.zeros_like(v)
         return [
-            replace(e, q=s.q, v=s.v, a=acc, inner=replace(e.inner, state=s))
+            e._replace(q=s.q, v=s.v, a=acc, inner=e.inner._replace(state=s))
             for e, s, acc in list(zip(run, states, a, strict=True))[:wanted]
         ]

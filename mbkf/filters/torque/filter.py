@@ -7,7 +7,6 @@ coordinates of the forces, :data:`mbkf.model.human_dynamics.FORCE_STATES` says.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -217,7 +216,7 @@ class TorqueFilter(Filter[ForcedState]):
         """
         columns, known = self.plates.columns, step.readings.instruments
         whole = np.ix_(columns, columns)
-        read = replace(known, matrix=known.matrix[whole], vector=known.vector[columns])
+        read = known._replace(matrix=known.matrix[whole], vector=known.vector[columns])
         return correct(step.prior.state.P[whole], read).nis
 
     def report(self, state: ForcedState) -> TorqueState:

@@ -58,7 +58,7 @@ class TorqueTracking:
             return None
         first = self.kalman.first(found.state, found.accelerations.mean(axis=0), recording.frame(t))
         record = TorqueRecord(self.kalman.report(first.state), first.memory, None)
-        return replace(self._untouched(record, first.contact, recording), tracked=True, started=True)
+        return self._untouched(record, first.contact, recording)._replace(tracked=True, started=True)
 
     def predict(self, before: Posterior) -> Prediction:
         """By steady motion: the filter's own plant waits for the plates, which say what the torques do."""
@@ -111,7 +111,7 @@ class TorqueTracking:
     def innovation(self, estimate: Posterior) -> tuple[float, int]:
         """Of markers and plates."""
         record: TorqueRecord = estimate.inner
-        return record.nis, 0 if record.step is None else record.step.count
+        return record.nis, 0 if record.step is None else record.step.read
 
     def smooth(
         self, run: Sequence[Posterior], recording: Recording, first: int, wanted: int
@@ -134,7 +134,7 @@ class TorqueTracking:
     def _smoothed(self, estimate: Posterior, step: Array, P: Array) -> Posterior:
         state = self.kalman.report(self.kalman.plant.retract(estimate.inner.state.filtered, step, P))
         inner = replace(estimate.inner, state=state)
-        return replace(estimate, q=state.q, v=state.v, a=state.a, wrench=state.foot_wrench, inner=inner)
+        return estimate._replace(q=state.q, v=state.v, a=state.a, wrench=state.foot_wrench, inner=inner)
 
 
 def _posterior(record: TorqueRecord, step: TorqueStep) -> Posterior:

@@ -11,7 +11,7 @@ from mbkf.io.results import Reconstruction
 from mbkf.pipelines.gait.events import HEEL, FeetInMotion, FootEvents, feet_in_motion, foot_events
 
 POINTS = 101
-"""A cycle is told at 0, 1, … 100 %."""
+"""Curves over a cycle have values at 0, 1, … 100 %."""
 
 CYCLE_S = (0.3, 2.5)
 """Cycles outside this are not gait."""

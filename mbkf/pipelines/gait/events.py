@@ -26,7 +26,7 @@ LEAST_SWING_M = 0.15
 """A foot that moves less than this forwards and backwards under the pelvis does not walk."""
 
 SAME_S = 0.15
-"""A load and a motion nearer to each other than this tell of the same event."""
+"""An event of the load and one of the motion nearer to each other than this are the same event."""
 
 HEEL, TOES = 0, 2
 """Points of a sole."""
@@ -72,7 +72,7 @@ def foot_events(r: Reconstruction, feet: FeetInMotion | None = None) -> tuple[Fo
     """Events of the right and the left foot of a reconstruction.
 
     A filter that estimates reactions knows the load of either foot in every frame. Where reactions are only those of
-    plates, a foot beside the plates is unloaded in name only, so motion adds what loads do not tell.
+    plates, a foot beside the plates is unloaded in name only, so motion adds the events that loads do not show.
     """
     feet = feet or feet_in_motion(r)
     found = []

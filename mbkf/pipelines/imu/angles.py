@@ -32,13 +32,13 @@ STILL_RAD_S, STILL_S = 0.15, 1.0
 
 @dataclass(frozen=True)
 class AnglesSettings:
-    """How angles are found.
+    """Settings of joint angles from inertial sensors.
 
     Attributes:
         orient: Filter of the orientations; sensors lie still while standing, so that their bias is read there.
         from_file: Whether the file's own orientations are used instead (they share one heading).
         hold_headings: Whether joints hold the headings.
-        heading: How.
+        heading: Settings of the headings held by joints.
     """
 
     orient: OrientSettings = field(
@@ -58,8 +58,8 @@ class ImuAngles:
         q: (T, nq) configurations, at the origin, facing x where the person stood; joints without sensors are neutral.
         names: (A,) clinical coordinates that sensors determine.
         angles: (T, A) rad.
-        mounts: How the sensors were found to sit.
-        warnings: What was noticed.
+        mounts: Rotation and place of every sensor on its segment.
+        warnings: Remarks about the readings and the calibration.
     """
 
     time_s: Array
@@ -87,11 +87,11 @@ def imu_angles(
         standing: Times of standing still in the recording, s, or a recording of it with the same magnetometers; by
             default the first second in which no sensor turns.
         posture: (nq,) the posture while standing; the neutral one when None.
-        settings: How.
+        settings: Orientation filter and headings.
         progress: Called as samples are done.
 
     Raises:
-        InvalidInput: Readings cannot be right, no pelvis sensor, or nobody stands still.
+        InvalidInput: Readings are not plausible, there is no pelvis sensor, or the person never stands still.
         UnknownName: A sensor's segment is not known.
     """
     chosen, body = settings or AnglesSettings(), model or HumanModel.scaled()
@@ -127,8 +127,8 @@ def imu_angles(
         for one, segment, turn in zip(sensors, segments, aligned, strict=True)
     )
     found = tuple(clinical.names[k] for k in wanted)
-    told = (*warnings, *_doubts(body, segments, motion, common))
-    return ImuAngles(time_s, motion, found, values[:, wanted], mounts, told)
+    remarks = (*warnings, *_doubts(body, segments, motion, common))
+    return ImuAngles(time_s, motion, found, values[:, wanted], mounts, remarks)
 
 
 def _order(names: Sequence[str], root: str) -> list[int]:
@@ -204,7 +204,7 @@ def _window(sensors: Sequence[ImuReadings], time_s: Array, standing: object) -> 
         first, last = (float(one) for one in standing)
         chosen = np.flatnonzero((time_s >= first) & (time_s <= last))
         if not len(chosen):
-            raise InvalidInput(f"nobody is recorded from {first:g} to {last:g} s; correct --standing")
+            raise InvalidInput(f"there are no readings from {first:g} to {last:g} s; correct --standing")
         return slice(int(chosen[0]), int(chosen[-1]) + 1)
     width = max(2, round(STILL_S * sensors[0].rate_hz))
     worst = np.zeros(len(time_s))
@@ -217,7 +217,7 @@ def _window(sensors: Sequence[ImuReadings], time_s: Array, standing: object) -> 
         if len(calm):
             return slice(int(calm[0]), int(calm[0]) + width)
     raise InvalidInput(
-        "nobody stands still for a second; stand at the start, or say when with --standing T0:T1"
+        "the person never stands still for a second; stand at the start, or give the time with --standing T0:T1"
     )
 
 
@@ -271,7 +271,7 @@ def _by_custom(body: HumanModel, segments: Sequence[str], upright: Array, rest: 
 
 
 def _configurations(body: HumanModel, segments: Sequence[str], course: Array) -> Array:
-    """(T, nq) from orientations of segments (T, S, 4); a joint turns as its nearest sensors above and below say."""
+    """(T, nq) from orientations of segments (T, S, 4); a joint turns as the nearest sensors above and below it."""
     motion = np.tile(body.neutral(), (len(course), 1))
     parents = {segment.name: segment.parent for segment in body.description.segments}
     for k, name in enumerate(segments):
@@ -292,10 +292,10 @@ def _configurations(body: HumanModel, segments: Sequence[str], course: Array) ->
 
 
 def _doubts(body: HumanModel, segments: Sequence[str], motion: Array, common: bool) -> list[str]:
-    """What makes the calibration doubtful: headings by custom only, joints that turn further than joints can."""
-    told = []
+    """Reasons to doubt the calibration: headings from the usual mounting only, joints beyond their anatomical range."""
+    remarks = []
     if not common:
-        told.append(
+        remarks.append(
             "the sensors share no heading (no magnetometers): each is taken to be strapped on as usual, "
             "z away from the body and x up the limb; angles are wrong where one is not"
         )
@@ -305,15 +305,15 @@ def _doubts(body: HumanModel, segments: Sequence[str], motion: Array, common: bo
         flexion = min(body.joint(name).v.start + 1, body.joint(name).v.stop - 1)
         share = float((beyond[:, flexion] > _DOUBT_RAD).mean())
         if share > _DOUBT_SHARE:
-            told.append(
+            remarks.append(
                 f"the joint above {name} bends more than 15 deg beyond its range in {100 * share:.0f} % of the time; "
                 "check --standing, which sensor is which, and how they were put on"
             )
-    return told
+    return remarks
 
 
 def _determined(clinical: ClinicalAngles, name: str, segments: Sequence[str]) -> bool:
-    """Whether sensors on both sides of a joint tell its angle."""
+    """Whether sensors on both sides of a joint determine its angle."""
     for joint in clinical.joints:
         if name in {angle.name for angle in joint.angles}:
             proximal = joint.proximal == "world" or joint.proximal in segments

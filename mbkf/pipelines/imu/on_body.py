@@ -1,4 +1,4 @@
-"""Inertial sensors brought to a followed body: read at its frames, and calibrated on its motion.
+"""Inertial sensors on a tracked body: read at its frames, and calibrated on its motion.
 
 Where a sensor sits and how it is turned follow from a motion that markers have shown: the segment's angular velocity
 gives the rotation (Wahba 1965, by singular values) and the bias, its specific force at any point, which is linear in
@@ -42,7 +42,7 @@ _REPEATED = 10
 
 @dataclass(frozen=True)
 class ImuOnBody:
-    """Readings of sensors and, where known, how they sit; without mounts their names say the segment."""
+    """Readings of sensors and, where known, their mounts; without mounts a sensor's name gives its segment."""
 
     readings: tuple[ImuReadings, ...]
     mounts: tuple[ImuMount, ...] = ()
@@ -51,9 +51,9 @@ class ImuOnBody:
 def with_imus(
     inputs: FilterInputs, recording: Recording, times_s: Array, imus: ImuOnBody
 ) -> tuple[FilterInputs, Recording, tuple[str, ...]]:
-    """A trial's inputs and recording with its sensors, and what to tell about them.
+    """A trial's inputs and recording with its sensors, and warnings about them.
 
-    The trial is first followed by markers alone, to calibrate the sensors on its motion: mounts that are given keep
+    The trial is first tracked by markers alone, to calibrate the sensors on its motion: mounts that are given keep
     their place, only their gyroscopes' biases are found.
 
     Args:
@@ -63,7 +63,7 @@ def with_imus(
         imus: The sensors' readings, and their mounts where known.
 
     Raises:
-        InvalidInput: Readings cannot be right, do not overlap with the trial, or are too still to be calibrated.
+        InvalidInput: Readings are not plausible, do not overlap with the trial, or are too still to be calibrated.
         UnknownName: A sensor's segment is not known.
     """
     warnings = refuse_fatal(problems(imus.readings))

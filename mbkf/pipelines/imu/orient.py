@@ -1,4 +1,4 @@
-"""From files of inertial readings to orientations: checked, put on a regular grid, filtered and judged."""
+"""From files of inertial readings to orientations: checks, resampling, filter, and error against a reference."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class OrientResult:
 
     Attributes:
         courses: One per sensor.
-        compared: The same by the second filter, empty when none was asked for.
+        compared: The same by the second filter, empty without one.
         errors: Per sensor that brings a reference with a known world, its name and error.
-        warnings: What was found wrong, with its likely fix.
+        warnings: Problems of the readings, each with its likely remedy.
     """
 
     courses: tuple[Orientation, ...]
@@ -69,13 +69,13 @@ def orient(
     Args:
         readings: As read.
         frame: World frame of the result: ENU, NED or NWU.
-        settings: How.
+        settings: Filter and its parameters.
         compare: Name of a second filter.
         only: Names of the sensors wanted, all when empty.
         progress: Called as samples are done.
 
     Raises:
-        InvalidInput: The readings cannot be right; says what to do.
+        InvalidInput: The readings are not plausible; the message gives the remedy.
         UnknownName: Unknown sensor, frame or filter.
     """
     chosen = settings or OrientSettings()

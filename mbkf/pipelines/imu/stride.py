@@ -78,7 +78,7 @@ class FootResult:
 
 @dataclass(frozen=True)
 class StrideMeasurement:
-    """What was found: one result per foot, with which settings, and what a reader should know of the readings."""
+    """Strides of one or two feet: a result per foot, the settings, and warnings about the readings."""
 
     feet: tuple[FootResult, ...]
     settings: StrideSettings
@@ -95,11 +95,11 @@ def measure_strides(
 
     Args:
         readings: One record per foot, on one clock.
-        settings: Method and its numbers.
-        progress: Told how many feet are done.
+        settings: Method and its parameters.
+        progress: Called with the number of feet done.
 
     Raises:
-        InvalidInput: No sensor, readings that cannot be right, with gaps or without gyroscope, or a foot that never
+        InvalidInput: No sensor, implausible readings, gaps, no gyroscope, or a foot that never
             stands still.
     """
     chosen = settings or StrideSettings()

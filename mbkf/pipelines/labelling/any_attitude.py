@@ -17,7 +17,7 @@ from mbkf.labelling.tracks import Tracks, follow
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 STAGE = "Searching any attitude"
-"""What the search calls itself; it takes seconds."""
+"""Name of the stage in progress reports; it takes seconds."""
 
 KEYFRAMES = 6
 """Keyframes at which a body is matched with the tracks at once."""
@@ -56,7 +56,13 @@ class AnyAttitude:
     """
 
     def __init__(self, search: FirstFrameSearch, positions_m: Array, rate_hz: float) -> None:
-        """Args: search, the capture's points (T, C, 3), NaN where empty, and their rate."""
+        """Prepares the search.
+
+        Args:
+            search: The subject's search within a frame.
+            positions_m: (T, C, 3) points of the capture, NaN where empty.
+            rate_hz: Frame rate.
+        """
         self.search, self._positions_m, self._rate_hz = search, positions_m, rate_hz
 
     @cached_property

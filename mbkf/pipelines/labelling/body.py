@@ -34,7 +34,7 @@ class LabelBody:
         subject: The person.
         markers: Those that may be worn.
         sensor: They on the person's body.
-        search: For frames nobody knows anything about.
+        search: Finds labels in frames without a prediction.
         settings: How labels are kept from frame to frame.
     """
 

@@ -1,4 +1,4 @@
-"""Labels that may be others: what speaks for them is told, so that nobody takes them for certain.
+"""Ambiguous labels: pairs of names that fit nearly as well the other way round, with their odds, as warnings.
 
 Two markers of a cluster whose places a protocol leaves open, or one of two neighbours of which one is not worn, may fit
 a capture nearly as well by either name. Only a labelled standing trial settles such a case.
@@ -44,8 +44,8 @@ class Doubt:
     off_m: tuple[float, ...]
     others_off_m: tuple[float, ...]
 
-    def told(self) -> str:
-        """In words, evidence included."""
+    def text(self) -> str:
+        """The doubt in words, with its evidence."""
         names = " and ".join(
             f"{own} may be {other} ({_MM * off:.0f} and {_MM * other_off:.0f} mm from their places)"
             for own, other, off, other_off in zip(
@@ -54,7 +54,7 @@ class Doubt:
         )
         return f"{names}; {self.odds:.1f} times likelier as it stands"
 
-    def summarised(self) -> dict[str, Any]:
+    def summary(self) -> dict[str, Any]:
         """Plain numbers for the summary."""
         return {
             "labels": list(self.labels),
@@ -67,7 +67,7 @@ class Doubt:
 
 @dataclass(frozen=True)
 class Doubts:
-    """What may be wrong with the labels of a person whom nobody had measured.
+    """Possible errors in the labels of a person not measured before.
 
     Attributes:
         cases: Labels that may be others, the likeliest others first.
@@ -88,7 +88,7 @@ class Doubts:
         """The labels in doubt, each once."""
         return tuple(dict.fromkeys([*self.far_m, *(label for case in self.cases for label in case.labels)]))
 
-    def told(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[str, ...]:
         """Warnings in words: the person as a whole, labels far from their places, names, and what settles them."""
         found = []
         if self.misfit > MISFIT:
@@ -104,19 +104,19 @@ class Doubts:
         if self.far_m:
             names = ", ".join(f"{name} ({_MM * off:.0f} mm)" for name, off in self.far_m.items())
             found.append(f"further from their places than their protocol allows, hence hardly right: {names}")
-        found += [_group_told(group) for group in _groups(self.cases)]
+        found += [_group_text(group) for group in _groups(self.cases)]
         if found:
             found.append(
                 f"{len(self.labels)} labels are in doubt; a labelled standing trial settles it: --static LABELLED"
             )
         return tuple(found)
 
-    def summarised(self) -> dict[str, Any]:
+    def summary(self) -> dict[str, Any]:
         """Plain numbers for the summary."""
         return {
             "labels": list(self.labels),
             "far_from_place_mm": {name: _MM * off for name, off in self.far_m.items()},
-            "cases": [case.summarised() for case in self.cases],
+            "cases": [case.summary() for case in self.cases],
             "misfit": self.misfit,
             "nameless_tracks": self.nameless,
             "unused_markers": list(self.unused),
@@ -166,10 +166,10 @@ def _groups(cases: Sequence[Doubt]) -> list[list[Doubt]]:
     return sorted(groups, key=lambda group: min(case.odds for case in group))
 
 
-def _group_told(group: Sequence[Doubt]) -> str:
+def _group_text(group: Sequence[Doubt]) -> str:
     """A group in words; its evidence where it is one case only."""
     if len(group) == 1:
-        return group[0].told()
+        return group[0].text()
     labels = dict.fromkeys(label for case in group for label in case.labels)
     others = [name for name in dict.fromkeys(n for case in group for n in case.others) if name not in labels]
     worn = f", or {' or '.join(others)}" if others else ""

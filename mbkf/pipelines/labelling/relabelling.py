@@ -26,12 +26,12 @@ from mbkf.labelling.tracklets import Tracklets, linked
 from mbkf.pipelines.labelling.body import LabelBody, corrected_body
 
 ROUNDS = 4
-"""Labels and smoothed body are brought into line at most so often."""
+"""Most iterations of labels and smoothed body."""
 
 
 @dataclass(frozen=True)
 class Relabelled:
-    """Labels after a second look.
+    """Labels after the offline relabelling.
 
     Attributes:
         label_of_point: (T, C) marker of every point, ``HIDDEN`` where none; markers as the body given has them.
@@ -49,13 +49,13 @@ def relabel_offline(
     q: Array,
     progress: Callable[[int, int], None],
 ) -> Relabelled:
-    """Looks again at labels that a pass gave, in the light of all frames.
+    """Relabels a capture with the smoothed body, which uses all frames.
 
     Args:
         body: The subject as scaled, on whose markers the labels count.
         points: The capture.
         label_of_point: (T, C) labels of its points.
-        q: (T, nq) poses of the pass, NaN where the body was not followed.
+        q: (T, nq) poses of the pass, NaN where the body was not tracked.
         progress: Called with frames done and frames in all.
     """
     settings = RelabellingSettings()
@@ -105,7 +105,7 @@ def trajectories(
 
     Args:
         points: The unlabelled points (T, C, 3).
-        label_of_point: (T, C) index of each point's marker, `HIDDEN` for none.
+        label_of_point: (T, C) index of each point's marker, ``HIDDEN`` for none.
         names: (M,) names of the markers.
     """
     positions = np.full((points.frames, len(names), 3), np.nan)

@@ -1,4 +1,4 @@
-"""One pass over unlabelled points in one direction of time: search, follow, and search again after a loss."""
+"""One pass over unlabelled points in one direction of time: search, track, and search again after a loss."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class LabellingPass:
     Attributes:
         markers_m: (T, M, 3) labelled so far, NaN elsewhere.
         label_of_point: (T, C) marker of each column, ``HIDDEN`` where none.
-        q: (T, nq) poses of the filter, NaN where it did not follow.
+        q: (T, nq) poses of the filter, NaN where the body is not tracked.
         labeller: Assigns points from frame to frame.
         starts: Frames at which labels were found by search.
         step_seconds: (T,) computing time of the labels alone, NaN where they were searched.
@@ -66,7 +66,15 @@ class LabellingPass:
         labeller: RunningLabeller,
         positions_m: Array,
     ) -> None:
-        """Args: filter, markers on its body, search, labeller, and the capture's points (T, C, 3), NaN where empty."""
+        """A pass that has labelled no frame yet.
+
+        Args:
+            follower: The filter.
+            sensor: The markers on its body.
+            any_attitude: Finds labels in frames without a prediction.
+            labeller: Assigns points from frame to frame.
+            positions_m: (T, C, 3) points of the capture, NaN where empty.
+        """
         self._filter, self._sensor, self._search, self._any_attitude = (
             follower,
             sensor,

@@ -1,4 +1,4 @@
-"""The filter on a live stream: frames in as they come, estimates out, by the very steps a whole trial takes.
+"""The filter on a live stream: frames in as they come, estimates out, with the same steps as on a whole trial.
 
 A start looks a quarter of a second ahead, so the frames it needs are awaited and then caught up with; from then on each
 frame is answered at once. Where no frame was lost the results are those of ``reconstruct`` on the same frames.
@@ -21,11 +21,11 @@ from mbkf.io.records import MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject, match_names
 from mbkf.pipelines.reconstruct import subject_markers
 from mbkf.pipelines.trial.followers import FilterInputs
-from mbkf.pipelines.trial.inputs import Beliefs, trial_inputs
+from mbkf.pipelines.trial.inputs import FilterSettings, trial_inputs
 from mbkf.sensors.block import Frame
 
 NUMERICAL = (np.linalg.LinAlgError, ArithmeticError, ValueError, MbkfError)
-"""What arithmetic raises on readings it cannot digest; the filter then starts anew."""
+"""Errors of arithmetic on unusable readings; the filter then starts anew."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class LiveStep:
         estimate: Of that frame, None as long as no start has succeeded.
         awaited: Whether a start, which needs later frames, kept the frame waiting.
         seconds: Computing time.
-        trouble: What went wrong, if something did.
+        trouble: The numerical error, None without one.
     """
 
     number: int
@@ -75,7 +75,7 @@ class LiveFilter:
         try:
             with np.errstate(all="ignore"):
                 found = self.loop.predict()
-        except NUMERICAL:  # the step itself will say so
+        except NUMERICAL:  # the step raises it again
             return None
         self._expecting_s += time.perf_counter() - begin
         return found
@@ -130,10 +130,10 @@ class LiveFilter:
 
 @dataclass(frozen=True)
 class LiveInputs:
-    """What a stream's filter is built from.
+    """Inputs of a stream's filter.
 
     Attributes:
-        names: (M,) the subject's markers that are followed.
+        names: (M,) the subject's markers that are tracked.
         columns: (M,) where they stand among the stream's markers.
         inputs: Body, markers, plates and settings.
     """
@@ -148,7 +148,7 @@ def live_inputs(
     rate_hz: float,
     plates: tuple[PlateReadings, ...],
     subject: Subject,
-    beliefs: Beliefs,
+    settings: FilterSettings,
 ) -> LiveInputs:
     """Body, markers and plates of a stream.
 
@@ -159,7 +159,7 @@ def live_inputs(
         rate_hz: Its frame rate.
         plates: Its plates; their readings are not looked at.
         subject: The person.
-        beliefs: Settings of the filters.
+        settings: Settings of the filters.
 
     Raises:
         NotObservable: Too few of the subject's markers are among the stream's.
@@ -167,5 +167,5 @@ def live_inputs(
     everywhere = MarkerTrajectories(stream_names, np.zeros((1, len(stream_names), 3)), rate_hz)
     shown = subject_markers(everywhere, subject)
     columns = np.array([stream_names.index(name) for name in match_names(stream_names, subject.markers)])
-    inputs, _ = trial_inputs(shown, plates, subject, beliefs)
+    inputs, _ = trial_inputs(shown, plates, subject, settings)
     return LiveInputs(shown.names, columns, inputs)

@@ -23,7 +23,7 @@ from mbkf.pipelines.labelling.body import LabelBody, label_body
 from mbkf.pipelines.labelling.single_pass import LOST_S, LOST_SHARE, RETRY_S, SEARCH_EVERY
 
 LEAST_LABELS = 6
-"""With fewer no body is followed."""
+"""With fewer labels no body is tracked."""
 
 LONGEST_WAIT_S = 2.0
 """Frames do not wait longer than this for a search; older ones go on without names."""
@@ -45,7 +45,7 @@ def live_body(subject: Subject, names: tuple[str, ...] | None = None) -> LabelBo
 
 
 class LiveLabels:
-    """Names a stream's points: :meth:`push` a frame, let the filter step, then tell :meth:`learn` where it came to.
+    """Names a stream's points: :meth:`push` a frame, let the filter step, then give its estimate to :meth:`learn`.
 
     Attributes:
         body: Whose markers are looked for; trajectories come in the order of ``body.names``.
@@ -53,12 +53,13 @@ class LiveLabels:
     """
 
     def __init__(self, body: LabelBody, dt_s: float, *, patient: bool = False) -> None:
-        """Args: as follows.
+        """A labeller that has seen no frame yet.
 
-        body: The subject's markers, in the filter's order, with a model of its own.
-        dt_s: Time between frames.
-        patient: Whether frames can be kept waiting by whoever sends them, as a file can: searches are then made on
-            the spot, not beside the stream.
+        Args:
+            body: The subject's markers, in the filter's order, with a model of its own.
+            dt_s: Time between frames.
+            patient: Whether the source waits for a slow reader, as a file does: searches are then made at once instead
+                of in a thread of their own.
         """
         self.body = body
         self.starts: list[int] = []
@@ -98,7 +99,7 @@ class LiveLabels:
         return self._awaited()
 
     def learn(self, q: Array) -> None:
-        """What the filter made of the frame pushed last: its pose (nq,)."""
+        """Takes the filter's pose (nq,) of the frame pushed last."""
         on_body = self._points_m[:0]
         if self._labeller.learns:
             on_body = self.body.sensor.positions(q)
@@ -150,7 +151,7 @@ class LiveLabels:
         return self.body.search.about(points_m, guess)
 
     def _awaited(self) -> list[Array]:
-        """What a search has to say, and the next one begun; frames that waited too long go on without names."""
+        """Takes a search's result, and begins the next one; frames that waited too long go on without names."""
         if self._search is None:
             self._begin_search()
         if self._search is not None and self._search.done():
@@ -204,14 +205,14 @@ class LiveLabels:
                 poses = [poses[-1], there.q]
                 number += step
             self._poses = poses if number > self._frame else []
-        nobody = np.full(len(self.body.markers), HIDDEN, dtype=np.intp)
+        unlabelled = np.full(len(self.body.markers), HIDDEN, dtype=np.intp)
         self._waiting.clear()
-        return [self._taken(points, labels.get(number, nobody)) for number, points in known.items()]
+        return [self._taken(points, labels.get(number, unlabelled)) for number, points in known.items()]
 
     def _unnamed(self, most: int) -> list[Array]:
         """The oldest frames, without names, so that no more than ``most`` wait."""
-        nobody = np.full(len(self.body.markers), HIDDEN, dtype=np.intp)
+        unlabelled = np.full(len(self.body.markers), HIDDEN, dtype=np.intp)
         due = []
         while len(self._waiting) > most:
-            due.append(labelled(self._waiting.popleft()[1], nobody))
+            due.append(labelled(self._waiting.popleft()[1], unlabelled))
         return due

@@ -1,6 +1,6 @@
-"""What a live run writes while it goes on: a row per answered frame, the plates' samples, and what both belong to.
+"""The log of a live run: a row per answered frame, the plates' samples, and the description of both.
 
-From these three files alone the results are made afterwards, so nothing that was written is lost when a run breaks off.
+The results are made from these three files alone, so nothing that was written is lost when a run breaks off.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ FRAMES_FILE, PLATES_FILE, SUBJECT_FILE = "frames.log", "plates.log", "subject.to
 
 @dataclass(frozen=True)
 class LiveStream:
-    """What a stream's rows belong to.
+    """Description of a logged stream.
 
     Attributes:
         trial: Its name.
@@ -50,7 +50,14 @@ class LiveLog:
     def __init__(
         self, folder: Path, stream: LiveStream, frames: np.dtype, settings: dict[str, Any], names: list[str]
     ) -> None:
-        """Args: folder to make, stream, type of a row, and what else the results need.
+        """Makes the log's folder.
+
+        Args:
+            folder: Folder to make.
+            stream: Description of the stream.
+            frames: Type of a row.
+            settings: Settings of the run, as plain data.
+            names: (M,) markers tracked.
 
         Raises:
             OSError: It cannot be written.
@@ -76,11 +83,11 @@ class LiveLog:
 
 @dataclass(frozen=True)
 class Logged:
-    """What a log holds.
+    """Contents of a log.
 
     Attributes:
-        stream: What it belongs to, its plates with their readings.
-        names: (M,) markers followed.
+        stream: Description of the stream, its plates with their readings.
+        names: (M,) markers tracked.
         settings: Of the run.
         first: Number of its first frame.
         rows: (T,) one row per frame from there on; those of lost frames are blank.

@@ -1,4 +1,4 @@
-"""The results of a live run from its log: what ``reconstruct`` gives on the same frames."""
+"""The results of a live run from its log, equal to those of ``reconstruct`` on the same frames."""
 
 from __future__ import annotations
 

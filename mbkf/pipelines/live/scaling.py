@@ -1,4 +1,4 @@
-"""A person scaled from a stream: when somebody stands still, and the subject that `scale` makes of those frames."""
+"""A person scaled from a stream: recognises standing still, and scales from those frames as from a static trial."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 from mbkf.sensors.posture import PostureSensor
 
 STILL_S = 1.0
-"""Somebody who has stood still for so long is scaled."""
+"""Duration of standing still that a person is scaled from."""
 
 STILL_M = 0.030
 """No marker moves further than this in that time. People told to stand still sway: their hands move by up to 30 mm in
-a second (medians over real standing trials 5 to 29 mm), those of who walks by more than 400 mm."""
+a second (medians over real standing trials 5 to 29 mm), those of a walking person by more than 400 mm."""
 
 LEAST_SEEN = 0.8
 """Share of the markers worn that must be seen."""
@@ -40,18 +40,18 @@ STRAY = 0.1
 """Share of the points without names that may be ghosts, or markers that were hidden at first."""
 
 LIGHTEST_KG = 10.0
-"""Plates that carry less carry nobody."""
+"""Plates that carry less carry no person."""
 
 BENDING = ("hip_flexion_r", "hip_flexion_l", "knee_angle_r", "knee_angle_l")
 MOST_BENT_DEG = 60.0
-"""Who sits or kneels bends hips or knees by 90°; who stands with crouched knees by 40° at most."""
+"""Sitting and kneeling people bend hips or knees by 90°; standing ones, crouched knees included, by 40° at most."""
 
 ON_PLATE = (Contact.MEASURED, Contact.SHARED)
 
 
 @dataclass(frozen=True)
 class Stance:
-    """How still the frames of a stream have been.
+    """State of standing still after a frame.
 
     Attributes:
         frames: For how many frames in a row, the newest one included.
@@ -69,17 +69,23 @@ class Stance:
 
 
 class StillWatch:
-    """Tells when somebody has stood still for long enough, frame by frame.
+    """Recognises, frame by frame, that a person has stood still for long enough.
 
-    Each frame is compared with the first one since somebody moved, so a slow drift does not pass for standing.
+    Each frame is compared with the first one since the last movement, so a slow drift does not pass for standing.
 
     Attributes:
-        wanted: So many frames in a row are asked for.
-        least: So many markers or points must be seen.
+        wanted: Number of frames in a row that are needed.
+        least: Number of markers or points that must be seen.
     """
 
     def __init__(self, rate_hz: float, worn: int, named: bool) -> None:
-        """Args: frame rate, how many markers the person wears, and whether rows of a frame are always the same ones."""
+        """A watch that has seen no frame yet.
+
+        Args:
+            rate_hz: Frame rate.
+            worn: Number of markers the person wears.
+            named: Whether the rows of a frame are always the same markers.
+        """
         self.wanted = max(2, round(STILL_S * rate_hz))
         self.least = max(MIN_MARKERS, int(np.ceil(LEAST_SEEN * worn)))
         self._named = named
@@ -134,10 +140,10 @@ def worn_markers(names: Sequence[str], protocol: Protocol | None) -> tuple[str, 
 
 
 def plates_mass_kg(plates: Sequence[PlateReadings]) -> float:
-    """Mass of who stands still on plates: the mean vertical force on those that carry something, over gravity.
+    """Mass of a person standing still on plates: the mean vertical force on the loaded ones, over gravity.
 
     Raises:
-        NotObservable: Nobody stands on them.
+        NotObservable: The plates are not loaded by a person.
     """
     upwards = [(float(_mean_wrench(plate)[2]), plate.threshold_n) for plate in plates]
     mass_kg = sum(force for force, threshold in upwards if force > threshold) / GRAVITY_M_S2
@@ -154,7 +160,7 @@ def scale_standing(
     mass_kg: float | None = None,
     protocol: Protocol | None = None,
 ) -> Subject:
-    """The person who stands still in a capture: what :func:`mbkf.pipelines.scale.scale` makes of it as static trial.
+    """Scales the person who stands still in a capture, as :func:`mbkf.pipelines.scale.scale` does from a static trial.
 
     Args:
         capture: Frames of standing; points without names are named by the protocol first.
@@ -162,9 +168,9 @@ def scale_standing(
         protocol: The markers worn; where they have names, by default the one the names belong to.
 
     Raises:
-        InvalidInput: A mass that cannot be, no protocol for points without names, or nobody stands upright.
+        InvalidInput: The mass is not possible, or a protocol is missing for points without names.
         UnknownName: No protocol knows the markers.
-        NotObservable: Too few markers, somebody who sits or kneels, or, without a mass, feet beside the plates.
+        NotObservable: Too few markers; a sitting or kneeling person; or, without a mass, feet beside the plates.
         NotConverged: The markers do not fit a person.
     """
     mass = plates_mass_kg(capture.plates) if mass_kg is None else mass_kg
@@ -195,16 +201,16 @@ def _posture(capture: Capture, subject: Subject) -> tuple[HumanModel, Array]:
 
 
 def _require_straight_legs(model: HumanModel, q: Array) -> None:
-    """Refuses who sits or kneels: scaling expects the neutral posture.
+    """Refuses a sitting or kneeling person: scaling expects the neutral posture.
 
     Raises:
-        NotObservable: A hip or knee is bent as nobody's who stands.
+        NotObservable: A hip or knee is bent further than in standing.
     """
     clinical = ClinicalAngles(model)
     angles = dict(zip(clinical.names, np.degrees(clinical.angles(q[None])[0]), strict=True))
     name, bent = max(((name, abs(angles[name])) for name in BENDING), key=lambda one: one[1])
     if bent > MOST_BENT_DEG:
-        raise NotObservable(f"somebody is still, but does not stand ({name} is {bent:.0f}°); stand upright")
+        raise NotObservable(f"the person is still, but does not stand ({name} is {bent:.0f}°); stand upright")
 
 
 def _require_feet_on_plates(model: HumanModel, q: Array, plates: Sequence[PlateReadings]) -> None:
@@ -220,8 +226,8 @@ def _require_feet_on_plates(model: HumanModel, q: Array, plates: Sequence[PlateR
     beside = [side for side, on in zip(("right", "left"), contacts, strict=True) if on not in ON_PLATE]
     if beside:
         raise NotObservable(
-            f"the {' and the '.join(beside)} foot is on no plate, so plates do not tell the mass; stand on them with "
-            "both feet, or give --mass KG"
+            f"the {' and the '.join(beside)} foot is on no plate, so the plates do not carry the whole mass; stand on "
+            "them with both feet, or give --mass KG"
         )
 
 

@@ -1,4 +1,4 @@
-"""A followed trial in clinical coordinates, with standard deviations carried through the change of coordinates."""
+"""A tracked trial in clinical coordinates, with standard deviations carried through the change of coordinates."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def clinical_motion(model: HumanModel, track: Track, tau: Array, tau_sd: Array) 
 
     Args:
         model: The body.
-        track: The followed trial.
+        track: The tracked trial.
         tau: (T, nv) generalised forces.
         tau_sd: (T, nv) their standard deviations.
     """

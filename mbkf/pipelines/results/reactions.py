@@ -1,4 +1,4 @@
-"""Ground reactions and joint torques of a followed trial, and how far the plates agree."""
+"""Ground reactions and joint torques of a tracked trial, compared with the plates."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PRESSURE_FROM_N = 20.0
 
 @dataclass(frozen=True)
 class Reactions:
-    """Reactions of a trial and what Newton's law makes of them; NaN where not known.
+    """Reactions of a trial, the torques and the residual that follow from them; NaN where not known.
 
     Attributes:
         wrench: (T, 2, 6) on right and left foot about the world's origin: estimated, or measured where the filter
@@ -34,7 +34,7 @@ class Reactions:
         plate_change: (T, P, 6) estimated minus measured wrench about the plate's origin where a foot stands on that
             plate alone; None where the filter estimates none or there are no plates.
         valid: (T,) every loaded foot on a measured plate.
-        warnings: What a person should know.
+        warnings: Remarks for the reader.
     """
 
     wrench: Array
@@ -52,11 +52,11 @@ class Reactions:
 def reactions(
     model: HumanModel, track: Track, times_s: Array, rate_hz: float, plates: tuple[PlateReadings, ...]
 ) -> Reactions:
-    """Reactions of a followed trial.
+    """Reactions of a tracked trial.
 
     Args:
         model: The body.
-        track: The followed trial.
+        track: The tracked trial.
         times_s: (T,) times of the frames.
         rate_hz: Frame rate.
         plates: The plates it could read.

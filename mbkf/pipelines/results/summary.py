@@ -13,7 +13,7 @@ from mbkf.io.truth import Truth
 from mbkf.model.human import HumanModel, reference_body
 
 SETTLING_S = 0.5
-"""The filter may settle for this long before its innovations are judged."""
+"""Innovations within this time after the start are left out, while the filter settles."""
 
 ROOT_DOFS = 6
 _MM = 1e3
@@ -23,12 +23,12 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> dic
     """The contents of summary.json, as plain data; None where a number does not apply.
 
     Marker errors are distances, over samples that were seen and not hidden on purpose, in frames in which the
-    body was followed; samples the innovation gate refused count, too. ``missing_fraction`` is what the filter
-    did not get to see.
+    body was tracked; samples the innovation gate refused count, too. ``missing_fraction`` is what the filter
+    did not receive.
 
     Args:
-        reconstruction: What was found.
-        truth: What the synthetic subject really did; adds the object ``truth``.
+        reconstruction: The results.
+        truth: True motion of the synthetic subject; adds the object ``truth``.
 
     Returns:
         The keys of the command line's contract.
@@ -113,8 +113,8 @@ def compare_with_truth(reconstruction: Reconstruction, truth: Truth) -> dict[str
     velocities and torques are those of the joints, without the root's six dofs.
 
     Args:
-        reconstruction: What was found.
-        truth: What really happened, with at least the reconstruction's frames.
+        reconstruction: The results.
+        truth: True motion, with at least the reconstruction's frames.
 
     Returns:
         ``angle_rms_deg``, ``velocity_rms_rad_s``, ``torque_rms_nm``, ``reaction_rms_n`` (per component of the
@@ -163,7 +163,7 @@ def _matching_rows(times_s: Array, truth_s: Array, rate_hz: float) -> Array:
 
 
 def _nees_per_dof(r: Reconstruction, error: Array) -> float | None:
-    """Mean of eᵀ P⁻¹ e / n over frames; 1 for a covariance that says the truth."""
+    """Mean of eᵀ P⁻¹ e / n over frames; 1 for a consistent covariance."""
     if r.covariance is None:
         return None
     judged = np.flatnonzero(np.isfinite(error).all(axis=1) & np.isfinite(r.covariance).all(axis=(1, 2)))

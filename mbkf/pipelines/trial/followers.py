@@ -29,7 +29,7 @@ Blocks = Sequence[AnyBlock] | None
 
 @dataclass(frozen=True)
 class FilterInputs:
-    """What every filter is built from.
+    """Inputs that every filter is built from.
 
     Attributes:
         sensor: The markers on the scaled body.
@@ -37,7 +37,7 @@ class FilterInputs:
         plates: The plates.
         dt_s: Time between frames.
         held: (nv,) dofs that no marker of the trial moves with.
-        kinematic, dynamic, torque: What each filter believes.
+        kinematic, dynamic, torque: Settings of each filter.
         inertial: Inertial sensors on the body, None where there are none.
     """
 

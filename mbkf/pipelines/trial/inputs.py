@@ -1,4 +1,4 @@
-"""What a filter is built from and reads, made of a trial's markers and plates and of its subject."""
+"""A filter's inputs and readings, from a trial's markers and plates and its subject."""
 
 from __future__ import annotations
 
@@ -21,24 +21,24 @@ MIN_PRESENT = 0.02
 """A marker seen in a smaller share of the frames than this does not count for what can be observed."""
 
 
-class Beliefs(Protocol):
-    """What each filter believes."""
+class FilterSettings(Protocol):
+    """Settings of every filter."""
 
     @property
     def kinematic(self) -> KinematicSettings:
-        """Of the kinematic filter."""
+        """Settings of the kinematic filter."""
 
     @property
     def dynamic(self) -> DynamicSettings:
-        """Of the dynamic filter."""
+        """Settings of the dynamic filter."""
 
     @property
     def torque(self) -> TorqueSettings:
-        """Of the torque filter."""
+        """Settings of the torque filter."""
 
 
 def trial_inputs(
-    shown: MarkerTrajectories, plates: tuple[PlateReadings, ...], subject: Subject, beliefs: Beliefs
+    shown: MarkerTrajectories, plates: tuple[PlateReadings, ...], subject: Subject, settings: FilterSettings
 ) -> tuple[FilterInputs, Recording]:
     """Body, markers and plates of a trial, and its readings.
 
@@ -46,22 +46,22 @@ def trial_inputs(
         shown: (T, M, 3) m, under the subject's own names; what is hidden is NaN.
         plates: The plates that are read.
         subject: The person, with marker positions as they are to be used.
-        beliefs: Settings of the filters.
+        settings: Settings of the filters.
     """
     model = HumanModel.of(subject)
     by_name = {marker.name: marker for marker in subject.markers}
-    followed = [by_name[name] for name in shown.names]
-    sensor = MarkerSensor(model, [m.segment for m in followed], np.array([m.position_m for m in followed]))
+    tracked = [by_name[name] for name in shown.names]
+    sensor = MarkerSensor(model, [m.segment for m in tracked], np.array([m.position_m for m in tracked]))
     present = shown.present.mean(axis=0) >= MIN_PRESENT
     inputs = FilterInputs(
         sensor,
-        np.array([m.noise_m for m in followed]),
+        np.array([m.noise_m for m in tracked]),
         plates,
         1.0 / shown.rate_hz,
         ~model.supports[sensor.joint_ids[present]].any(axis=0),
-        beliefs.kinematic,
-        beliefs.dynamic,
-        beliefs.torque,
+        settings.kinematic,
+        settings.dynamic,
+        settings.torque,
     )
     wrenches = plate_wrenches(plates, shown.times_s, shown.rate_hz)
     return inputs, Recording(shown.positions_m, wrenches, inputs.dt_s)

@@ -1,9 +1,9 @@
-"""How markers and plates travel through Lab Streaming Layer: channels and the stream's own XML.
+"""Format of markers and plates in Lab Streaming Layer: channels and the stream's XML description.
 
 A marker stream is of type "MoCap", three channels per marker ("PositionX", … in "meters"), each with a <marker> that
 names it; points without names have none. A plate stream is of type "ForcePlate", six channels per plate ("ForceX" …
 "MomentZ" in "newtons" and "newtonmeters"), force of the plate on the body and moment about the plate's origin. Both may
-end with a channel of type "FrameNumber" that counts frames or samples; without it, time stamps tell.
+end with a channel of type "FrameNumber" that counts frames or samples; without it, numbers follow from time stamps.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _METRES = {"meters": 1.0, "metres": 1.0, "m": 1.0, "millimeters": 1e-3, "millime
 
 @dataclass(frozen=True)
 class MarkerLayout:
-    """Where things stand in a sample of markers.
+    """Channel layout of a sample of markers.
 
     Attributes:
         named: (M, 3) channels of named markers.
@@ -51,7 +51,7 @@ class MarkerLayout:
 
 @dataclass(frozen=True)
 class PlateLayout:
-    """Where things stand in a sample of plates.
+    """Channel layout of a sample of plates.
 
     Attributes:
         loads: (K, 6) channels of each plate.
@@ -129,12 +129,12 @@ def plates_info(lsl: Any, stream: StreamDescription, name: str) -> Any:
 
 
 def plates_name(markers_name: str) -> str:
-    """What the plate stream beside a marker stream is called."""
+    """Name of the plate stream that belongs to a marker stream."""
     return f"{markers_name}-plates"
 
 
 def read_marker_info(info: Any) -> tuple[StreamDescription, MarkerLayout, str]:
-    """What a marker stream is, where things stand in it, and the name of its plate stream ("" for none).
+    """Description and channel layout of a marker stream, and the name of its plate stream ("" for none).
 
     Raises:
         InvalidInput: It states no rate, or no channels of positions.
@@ -172,7 +172,7 @@ def read_marker_info(info: Any) -> tuple[StreamDescription, MarkerLayout, str]:
 
 
 def read_plates_info(info: Any) -> tuple[tuple[PlateReadings, ...], PlateLayout]:
-    """The plates of a plate stream, without readings, and where things stand in it.
+    """The plates of a plate stream, without readings, and its channel layout.
 
     Raises:
         InvalidInput: It states no rate, or its plates and channels do not belong together.
@@ -234,7 +234,7 @@ def _channels(info: Any) -> list[dict[str, str]]:
 
 
 def _groups(channels: list[dict[str, str]], types: tuple[str, ...]) -> list[tuple[list[int], dict[str, str]]]:
-    """Neighbouring channels of these types in this order, and what the first of them says."""
+    """Neighbouring channels of these types in this order, with the description of the first of them."""
     kinds = [channel["type"].lower() for channel in channels]
     size = len(types)
     return [

@@ -9,14 +9,20 @@ from mbkf.stream.lsl.format import marker_info, plates_info
 from mbkf.stream.played import Played, PlayedFrame
 
 KEPT_S = 10
-"""What liblsl keeps for a listener that is slow."""
+"""Duration of samples that liblsl buffers for a slow receiver."""
 
 
 class LslPlayer:
     """A :class:`mbkf.stream.replay.Player`."""
 
     def __init__(self, played: Played, name: str, speed: float = 1.0) -> None:
-        """Args: the capture, what the marker stream is called, and how many times real time it is played."""
+        """Opens the streams.
+
+        Args:
+            played: The capture.
+            name: Name of the marker stream.
+            speed: Times real time.
+        """
         self._speed = speed
         self._begin_s: float | None = None
         self._lsl = lsl()

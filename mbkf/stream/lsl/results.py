@@ -17,7 +17,13 @@ class LslResults:
     """A :class:`mbkf.stream.results.frame.FrameSink`; a stamp is the time of sending less the frame's latency."""
 
     def __init__(self, model: HumanModel, name: str, rate_hz: float) -> None:
-        """Args: the body, the stream's name, and the frame rate."""
+        """Opens the stream.
+
+        Args:
+            model: The scaled body.
+            name: Name of the stream.
+            rate_hz: Frame rate.
+        """
         self._lsl = lsl()
         self._values = ResultValues(model)
         extra = (("frame", "none"), ("tracked", "none"), ("latency", "s"))

@@ -32,16 +32,16 @@ LATE_S = 0.25
 what is answered without them stays wrong."""
 
 GIVEN_UP = 4
-"""After so many frames in a row whose plates came too late nobody waits for them, until they are in time again."""
+"""After so many frames in a row whose plates came too late, plates are not waited for until they are in time again."""
 
 CHUNK = 64
 """Samples of the plates fetched at a time; liblsl is given room for so many, whether they come or not."""
 
 QUIET_S = 0.1
-"""Plates that have said nothing for this long are not waited for any more."""
+"""Plates without samples for this long are not waited for any more."""
 
 KEPT_S = 10
-"""What liblsl keeps for us while we are busy."""
+"""Duration of samples that liblsl buffers."""
 
 
 class LslSource:
@@ -50,7 +50,7 @@ class LslSource:
     patient = False
 
     def __init__(self, name: str | None = None, plates_name: str | None = None) -> None:
-        """Args: name of the marker stream (default: the first), and of the plates' (default: what that says)."""
+        """Args: names of the marker stream (default: the first) and of the plate stream (default: its own)."""
         self._lsl = lsl()
         self._name, self._plates_name = name, plates_name
         self._markers: Any = None
@@ -112,9 +112,9 @@ class LslSource:
         return SourceFrame(number, arrival_s, markers, points, self._samples(number, arrival_s))
 
     def news(self) -> list[tuple[str, str]]:
-        """What happened to the connection."""
-        told, self._news = self._news, []
-        return told
+        """Events of the connection since the last call."""
+        news, self._news = self._news, []
+        return news
 
     def close(self) -> None:
         """Drops both streams."""
@@ -132,7 +132,7 @@ class LslSource:
         """An open inlet, or None where the stream does not answer; stamps are corrected where they are what counts."""
         flags = 0
         if not counted:
-            # Even stamps tell samples apart; those of frames are left as they are, since evened ones hide lost frames.
+            # Smoothed stamps separate plate samples; those of frames stay raw, since smoothing would hide lost frames.
             plates = self._lsl.proc_dejitter if info.name() == self._plates_name else 0
             flags = self._lsl.proc_clocksync | plates
         inlet = self._lsl.StreamInlet(

@@ -3,7 +3,7 @@
 Little endian throughout: message number and length (two bytes each), then the payload. Positions are in m; the channels
 of a force plate follow the C3D convention, as its corners do: plate axes with z down, force of the plate on the body.
 
-Source: the NatNet SDK's description of its packets (NatNetTypes.h) and what the client library ``natnet`` reads.
+Source: the NatNet SDK's description of its packets (NatNetTypes.h) and the parser of the client library ``natnet``.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ MOST_BYTES = 65_000
 
 @dataclass(frozen=True)
 class PlateDescription:
-    """What NatNet tells of a force plate.
+    """Description of a force plate in NatNet.
 
     Attributes:
         number: From 1.

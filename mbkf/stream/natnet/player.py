@@ -64,7 +64,7 @@ class NatNetPlayer:
         self._thread.start()
 
     def listening(self) -> bool:
-        """Whether a client has asked what is streamed."""
+        """Whether a client has requested the stream's description."""
         return bool(self._asked)
 
     def send(self, frame: PlayedFrame, age_s: float) -> None:

@@ -21,10 +21,10 @@ from mbkf.stream.natnet.player import axes_of, has_area
 from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription, empty_plate
 
 CONNECT_S = 2.0
-"""How long a server that answered may take to say what it streams and to send frames."""
+"""How long a connected server may take to describe its stream and to send frames."""
 
 RATE_FRAMES = 10
-"""The rate is told by the time stamps of so many frames."""
+"""The frame rate is computed from the time stamps of so many frames."""
 
 WHOLE_RATE = 2e-3
 """A rate nearer than this share to a whole number is that number."""
@@ -33,11 +33,11 @@ RECONNECT_AFTER_S = 2.0
 """After so long without a frame the connection is made anew."""
 
 MOST_HELD = 64
-"""Frames the client may have given us that were not read; the oldest go first."""
+"""Received frames held until they are read; the oldest are dropped first."""
 
 ROOM_BYTES = 4 * 1024 * 1024
-"""The system keeps so much of what came and was not yet read, as far as it allows: with many plates its usual 200 kB
-are a tenth of a second, and what comes after that is lost."""
+"""Size of the socket's receive buffer, as far as the system allows: its usual 200 kB hold a tenth of a second with many
+plates, and packets beyond that are lost."""
 
 EVERYTHING = "all"
 """Motive's set of all markers; it repeats the others."""
@@ -49,7 +49,18 @@ class NatNetSource:
     patient = False
 
     def __init__(self, server: str, local: str, port: int, multicast: str | None, up: str = "y") -> None:
-        """Args: addresses of camera computer and this one, command port, multicast group if any, Motive's up axis."""
+        """A source that is not connected yet.
+
+        Args:
+            server: Address of the camera computer.
+            local: Address of this computer.
+            port: Command port of Motive.
+            multicast: Multicast group; None for unicast.
+            up: Axis that points up in Motive's stream.
+
+        Raises:
+            MissingDependency: The library ``natnet`` is not installed.
+        """
         self._natnet = library("natnet", "OptiTrack NatNet", "natnet")
         read_all_corners(self._natnet)
         self._options: dict[str, Any] = {
@@ -73,7 +84,7 @@ class NatNetSource:
         self._news: list[tuple[str, str]] = []
 
     def connect(self, timeout_s: float) -> StreamDescription | None:
-        """Asks the server what it streams and waits for its first frames, which tell the rate; none is lost."""
+        """Requests the stream's description and waits for the first frames, which give the rate; none is lost."""
         if self._client is None and not self._open(timeout_s):
             return None
         with self._changed:
@@ -103,9 +114,9 @@ class NatNetSource:
         return SourceFrame(frame.prefix.frame_number, arrived[0], markers, points, self._plates(frame))
 
     def news(self) -> list[tuple[str, str]]:
-        """What happened to the connection."""
-        told, self._news = self._news, []
-        return told
+        """Events of the connection since the last call."""
+        news, self._news = self._news, []
+        return news
 
     def close(self) -> None:
         """Ends the connection."""
@@ -151,10 +162,10 @@ class NatNetSource:
             self._heard_s = time.perf_counter()
 
     def _described(self, described: Any, frames: list[tuple[float, Any]]) -> StreamDescription:
-        """What the server streams, its rate told by the first frames.
+        """The stream's description, its rate computed from the first frames.
 
         Raises:
-            InvalidInput: The time stamps tell no rate, or plates send raw voltages.
+            InvalidInput: The time stamps give no rate, or plates send raw voltages.
         """
         self._sets = [s for s in described.marker_sets if s.name.lower() != EVERYTHING]
         names = [name for one in self._sets for name in one.marker_names]
@@ -219,7 +230,7 @@ class NatNetSource:
 
 
 def _make_room(client: Any) -> None:
-    """Gives a connected client's sockets a long queue; the client does not say what it calls them."""
+    """Gives a connected client's sockets a long queue; they are private attributes of the client."""
     for own in vars(client).values():
         if isinstance(own, socket.socket):
             own.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM_BYTES)

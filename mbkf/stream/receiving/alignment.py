@@ -1,4 +1,4 @@
-"""From a source's frames to the filter's: numbered upwards, gaps filled, plates averaged, nonsense removed."""
+"""Frame alignment: frames numbered, gaps filled, plates averaged over each frame, implausible points removed."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ BRIDGED_S = 1.0
 anew."""
 
 ALIGNED_S = 0.25
-"""After a count was set back, plates whose count fits the frames' within this are taken at their word."""
+"""After a source restarted its count, plate samples whose own count fits that of the frames within this keep it."""
 
 Note = Callable[[str, str, int | None, int], None]
-"""Told of what happened: kind, sentence, frame, how often."""
+"""Takes an event: kind, sentence, frame, number of occurrences."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class ReadyFrame:
     """A frame for the filter.
 
     Attributes:
-        number: It never goes back.
+        number: Frame number; never decreases.
         arrival_s: When it arrived, or for a lost one the frame after it.
         markers_m: (M, 3) the subject's markers, NaN where missing; None where they have to be labelled.
         unlabelled_m: (N, 3) points without names.
@@ -45,7 +45,7 @@ class ReadyFrame:
 
 
 class FrameAlignment:
-    """Makes a stream's frames ready, one by one.
+    """Aligns a stream's frames, one by one.
 
     Attributes:
         frames_in: Frames that arrived.
@@ -53,7 +53,13 @@ class FrameAlignment:
     """
 
     def __init__(self, stream: StreamDescription, columns: Array | None, note: Note) -> None:
-        """Args: the stream, where the subject's markers stand in it (None: unlabelled), and whom to tell."""
+        """An alignment that has seen no frame yet.
+
+        Args:
+            stream: The stream's description.
+            columns: (M,) columns of the subject's markers in the stream; None for points without names.
+            note: Called with events.
+        """
         self._stream, self._columns, self._note = stream, columns, note
         self._numbering = Numbering(stream.rate_hz)
         self._plates = PlateBuffer(stream)
@@ -65,13 +71,13 @@ class FrameAlignment:
         self.lost = 0
 
     def accept(self, frame: SourceFrame) -> tuple[list[ReadyFrame], PlateSamples]:
-        """The frames that are ready with a new one, lost ones before it included, and the plates' new samples."""
+        """Takes the next frame; returns aligned frames, lost ones before it included, and the plates' new samples."""
         self.frames_in += 1
         place = self._numbering.place(frame.number, frame.arrival_s)
         if place.number is None:
             self._note("late", "frames arrived late, twice or out of order and were left out", None, 1)
             return [], self._take_plates(frame, place)
-        self._tell(place)
+        self._note_losses(place)
         samples = self._take_plates(frame, place)
         first = place.number - place.lost
         gap = range(first, place.number) if place.lost <= BRIDGED_S * self._stream.rate_hz else range(0)
@@ -87,7 +93,7 @@ class FrameAlignment:
             ReadyFrame(place.number, frame.arrival_s, markers, points, self._plates.mean(place.number)),
         ], samples
 
-    def _tell(self, place: Numbered) -> None:
+    def _note_losses(self, place: Numbered) -> None:
         if place.reset:
             way = "back" if place.backwards else "ahead"
             self._note(
@@ -128,7 +134,7 @@ class FrameAlignment:
         return taken
 
     def _realign(self, frame: SourceFrame, number: int) -> None:
-        """Plates follow the frames' new count: by their own where it fits, else the latest belongs to this frame."""
+        """Aligns the plates with the frames' new count: by their own count where it fits, else by the latest sample."""
         newest = int(frame.plates.index[-1])
         fitting = round((number - frame.number) * self._ratio)
         wanted = round((number + 0.5) * self._ratio) - newest

@@ -1,7 +1,7 @@
-"""Frame numbers that never go back: what is lost, late or out of order is told from the source's own count.
+"""Frame numbers that never decrease; lost, late and unordered frames are recognised by the source's own count.
 
-A source that restarts counts from nought again, and a broken clock may jump; then the time that passed here decides
-how many frames went by.
+A source that restarts counts from zero again, and its count may jump; the number of missing frames then follows from
+the time that passed on this computer.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Numbered:
     Attributes:
         number: Its number here, None for one that comes too late.
         lost: How many frames are missing before it.
-        reset: Whether the source's count jumped, so that time here decided.
+        reset: Whether the source's count jumped, so that the number follows from the time that passed.
         backwards: Whether it jumped back.
     """
 

@@ -18,7 +18,7 @@ OUTSIDE = 0.5
 
 
 class PlateBuffer:
-    """Keeps what the plates read lately.
+    """Keeps the latest samples of all plates.
 
     Attributes:
         newest: Index of the newest sample, None before the first.

@@ -1,4 +1,4 @@
-"""The thread that reads a source, whatever happens to it, and lays its frames ready for the filter."""
+"""The thread that reads a source and writes aligned frames into the ring buffer; source errors do not end it."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ SILENT_S = 1.0
 """A source without frames for this long counts as silent, which is an event of the run."""
 
 PAUSE_S = 0.5
-"""After a source that failed in an unforeseen way, this long until it is asked again."""
+"""Time until a source is read again after an unforeseen error."""
 
 
 class Reader:
-    """Reads until it is told to stop or the source ends.
+    """Reads until it is stopped or the source ends.
 
     Attributes:
         overwritten: Frames that the filter was too slow for.
@@ -34,7 +34,15 @@ class Reader:
         samples: Callable[[PlateSamples], None],
         note: Callable[[str, str], None],
     ) -> None:
-        """Args: source, what makes its frames ready, where they go, where plate samples go, and whom to tell."""
+        """A thread that is not started yet.
+
+        Args:
+            source: A connected source.
+            alignment: Numbers and aligns its frames.
+            buffer: Takes the aligned frames.
+            samples: Called with the plates' new samples.
+            note: Called with events.
+        """
         self._source, self._alignment, self._buffer = source, alignment, buffer
         self._samples, self._note = samples, note
         self.overwritten = 0
@@ -57,7 +65,7 @@ class Reader:
                 frame = self._source.read(READ_S)
             except EOFError:
                 break
-            except Exception as error:  # a stream must not end a recording, whatever its library does
+            except Exception as error:  # libraries of sources raise errors of any kind
                 self._note("source", f"the source failed ({type(error).__name__}: {error})")
                 self._stopping.wait(PAUSE_S)
                 continue

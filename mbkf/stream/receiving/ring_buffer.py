@@ -1,7 +1,7 @@
-"""Between the thread that reads a stream and the filter: a buffer that overwrites, never a queue that grows.
+"""Ring buffer between the thread that reads a stream and the filter: it overwrites old frames instead of growing.
 
-It holds the frames of a short while, so that a hiccup of the machine loses none; a longer while when the filter starts,
-and nothing is shown that could grow old. When the filter falls behind by more, only the latest frame is kept.
+It holds the frames of a short time, so that a pause of the machine loses none; of a longer time when the filter starts.
+When the filter falls behind by more, all frames but the latest are dropped, which bounds the latency.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ T = TypeVar("T")
 
 
 class RingBuffer(Generic[T]):
-    """Holds a few items; the latest win."""
+    """Holds a limited number of items; a full buffer drops all of them for the next one."""
 
     def __init__(self, size: int, patient: bool = False) -> None:
-        """Args: items held at most, and whether a full buffer makes the giver wait instead of dropping items."""
+        """Args: items held at most, and whether a full buffer makes the writer wait instead of dropping items."""
         self._size, self._patient = max(1, size), patient
         self._items: deque[T] = deque()
         self._changed = threading.Condition()
@@ -61,7 +61,7 @@ class RingBuffer(Generic[T]):
             self._changed.notify_all()
 
     def left(self) -> list[T]:
-        """What nobody took."""
+        """The items still in the buffer, oldest first."""
         with self._changed:
             return list(self._items)
 

@@ -1,4 +1,4 @@
-"""What the live loop tells of one frame, and who may listen."""
+"""The results of one live frame, and the protocol of listeners that receive them."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class LiveFrame:
         latency_s: Time from the frame's arrival to this result.
         lost: Frames lost so far.
         rate_hz: Rate of the frames of the last second.
-        tracked: Whether enough markers were believed to follow the body.
-        started: Whether the filter was started, or restarted, in this frame.
+        tracked: Whether enough markers passed the gate to track the body.
+        started: Whether the filter started, or restarted, in this frame.
     """
 
     number: int
@@ -54,7 +54,7 @@ class LiveFrame:
 
 
 class FrameSink(Protocol):
-    """Somebody who shows or sends on the frames of a live reconstruction."""
+    """A listener: it shows or sends on the frames of a live reconstruction."""
 
     def take(self, frame: LiveFrame) -> None:
         """A new frame. Must never block: what cannot be passed on at once is dropped."""

@@ -1,4 +1,4 @@
-"""A thread between the filter and whoever receives its results: the filter hands over a frame and goes on."""
+"""A sending thread between the filter and a receiver of results, so that a slow receiver never delays the filter."""
 
 from __future__ import annotations
 
@@ -16,7 +16,13 @@ class SendingThread:
     """A :class:`mbkf.stream.results.frame.FrameSink` that calls a function with each frame, in a thread of its own."""
 
     def __init__(self, send: Callable[[LiveFrame], None], name: str, held: int = HELD) -> None:
-        """Args: the function, the thread's name, and how many frames may wait."""
+        """Starts the thread.
+
+        Args:
+            send: Called with each frame.
+            name: Name of the thread.
+            held: Frames that may wait.
+        """
         self._send = send
         self._buffer: RingBuffer[LiveFrame] = RingBuffer(held)
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)

@@ -43,7 +43,7 @@ class ResultValues:
         self.units: tuple[str, ...] = tuple(unit for _, units in groups for unit in units)
 
     def row(self, frame: LiveFrame) -> Array:
-        """(len(names),) the numbers of a frame, NaN where the body is not followed.
+        """(len(names),) the numbers of a frame, NaN where the body is not tracked.
 
         Angles stay continuous with the row before.
         """

@@ -9,23 +9,23 @@ from mbkf.errors import InvalidInput
 from mbkf.stream.source import FrameSource, StreamDescription
 
 CONNECT_S = 0.5
-"""How long a source is looked for before it is seen whether to stop."""
+"""How long one attempt to connect takes before the run checks whether it is to stop."""
 
 
 def wait_for(
     source: FrameSource, source_name: str, stop: threading.Event, patience_s: float | None
 ) -> StreamDescription | None:
-    """What a source says of itself once it is there; None where it was stopped first.
+    """A stream's description once its source is connected; None where it was stopped first.
 
     Args:
         source: Where frames are to come from.
-        source_name: What to call it.
-        stop: Set when nobody wants it any more.
+        source_name: Its name, for messages.
+        stop: Set when the run is to end.
         patience_s: How long to wait at most.
 
     Raises:
         InvalidInput: The source did not appear in time.
-        MbkfError: It is not what it should be.
+        MbkfError: The stream cannot be used.
     """
     begin = time.perf_counter()
     while not stop.is_set():

@@ -34,10 +34,10 @@ def open_log(
 
     Args:
         folder: The output folder.
-        stream: What is followed.
+        stream: The stream's description.
         rows: Type of a row.
-        settings: How it is followed.
-        names: (M,) markers followed.
+        settings: The filter and its settings.
+        names: (M,) markers tracked.
         subject: The person.
 
     Raises:
@@ -55,7 +55,7 @@ def open_log(
 
 
 def write_results(folder: Path, notes: tuple[str, ...]) -> tuple[dict[str, Any] | None, str | None]:
-    """Makes the results from the log and writes them; gives the summary, or why there is none.
+    """Makes the results from the log and writes them; returns the summary, or the reason why there is none.
 
     Args:
         folder: The output folder.

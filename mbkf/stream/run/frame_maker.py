@@ -1,4 +1,4 @@
-"""From a row of the log to what listeners are shown: torques, wrenches and markers of the estimated body."""
+"""From a row of the log to a listener's frame: torques, wrenches and markers of the estimated body."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class FrameMaker:
             self._arrivals.popleft()
 
     def frame(self, ready: ReadyFrame, row: NDArray, latency_s: float, lost: int) -> LiveFrame:
-        """What is shown of a frame.
+        """A listener's frame.
 
         Args:
             ready: Its readings.

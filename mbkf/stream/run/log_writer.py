@@ -15,16 +15,16 @@ from mbkf.pipelines.live.log import LiveLog
 from mbkf.stream.source import PlateSamples
 
 EVERY_S = 0.2
-"""How often what has gathered is written."""
+"""Interval at which new rows are written."""
 
 AGAIN_S = 1.0
-"""How long after a failure writing is tried again."""
+"""Time after a failure until writing is tried again."""
 
 REPORTED_S = 5.0
-"""How often the state of the run is reported meanwhile."""
+"""Interval at which the state of the run is reported."""
 
 MOST_HELD_BYTES = 256 * 1024 * 1024
-"""While nothing can be written, no more than this is held in memory; the oldest rows go first."""
+"""Most memory held while nothing can be written; the oldest rows are dropped first."""
 
 
 @dataclass
@@ -54,7 +54,13 @@ class LogWriter:
     def __init__(
         self, log: LiveLog, failed: Callable[[OSError], None], report: Callable[[], None] | None = None
     ) -> None:
-        """Args: the log, whom to tell that writing failed, and what to call every few seconds."""
+        """Starts the thread.
+
+        Args:
+            log: The log.
+            failed: Called with the error where writing failed.
+            report: Called every few seconds.
+        """
         self._log, self._failed, self._report = log, failed, report
         self._logs = (_Log(log.frames), _Log(log.plates))
         self._changed = threading.Condition()
@@ -77,7 +83,7 @@ class LogWriter:
             self._logs[1].put(rows)
 
     def close(self) -> int:
-        """Writes what is left, as far as it can be, and returns how many frames are not in the log."""
+        """Writes the remaining rows where possible, and returns the number of frames that are not in the log."""
         with self._changed:
             self._closing = True
             self._changed.notify_all()
@@ -87,15 +93,15 @@ class LogWriter:
         return frames.dropped + sum(len(rows) for rows in frames.rows)
 
     def _run(self) -> None:
-        pause, told = EVERY_S, 0.0
+        pause, unreported_s = EVERY_S, 0.0
         while True:
             with self._changed:
                 self._changed.wait_for(lambda: self._closing, pause)
                 closing = self._closing
             pause = EVERY_S if all([self._flush(log) for log in self._logs]) else AGAIN_S
-            told += pause
-            if self._report is not None and told >= REPORTED_S:
-                told = 0.0
+            unreported_s += pause
+            if self._report is not None and unreported_s >= REPORTED_S:
+                unreported_s = 0.0
                 self._report()
             if closing:
                 return

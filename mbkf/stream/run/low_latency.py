@@ -1,4 +1,4 @@
-"""Settings of the interpreter under which a stream's threads answer in time."""
+"""Low-latency mode of the Python interpreter: short thread switches, and no garbage collection of older objects."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 SWITCH_S = 0.0005
-"""How long a thread may keep the interpreter while another one waits; Python's 5 ms would be a frame's whole time."""
+"""Longest time a thread keeps the interpreter while another one waits; Python's default of 5 ms is a whole frame."""
 
 
 @contextmanager
 def low_latency() -> Iterator[None]:
-    """Inside, threads take turns quickly and the collector leaves alone what was there before."""
+    """Low-latency mode inside the block: threads switch quickly, and existing objects are not garbage-collected."""
     usual = sys.getswitchinterval()
     sys.setswitchinterval(SWITCH_S)
     gc.collect()

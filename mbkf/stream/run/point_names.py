@@ -13,7 +13,7 @@ from mbkf.pipelines.live.filter import NUMERICAL
 from mbkf.pipelines.live.labels import LiveLabels, live_body
 from mbkf.stream.receiving.alignment import Note, ReadyFrame
 
-Named = list[tuple[ReadyFrame, Array]]
+NamedFrames = list[tuple[ReadyFrame, Array]]
 """Frames with their markers (M, 3)."""
 
 
@@ -23,13 +23,21 @@ class PointNames:
     def __init__(
         self, subject: Subject, names: tuple[str, ...], dt_s: float, patient: bool, note: Note
     ) -> None:
-        """Args: the person, the markers followed, the time step, whether the source waits, and whom to tell."""
+        """A labeller that has seen no frame yet.
+
+        Args:
+            subject: The scaled person.
+            names: (M,) markers tracked.
+            dt_s: Time step, s.
+            patient: Whether the source waits for a slow reader.
+            note: Called with events.
+        """
         self._body = live_body(subject, names)
         self._dt_s, self._patient, self._note = dt_s, patient, note
         self._waiting: deque[ReadyFrame] = deque()
         self._labels = self._fresh()
 
-    def push(self, frame: ReadyFrame, prediction: Prediction | None) -> Named:
+    def push(self, frame: ReadyFrame, prediction: Prediction | None) -> NamedFrames:
         """A new frame; gives back those that are due.
 
         Args:
@@ -42,21 +50,21 @@ class PointNames:
         except NUMERICAL as error:
             self._note("labels", f"labels are searched anew ({error})", frame.number, 1)
             self._labels = self._fresh()
-            nobody = np.full((len(self._body.names), 3), np.nan)
-            unnamed = [(one, nobody) for one in self._waiting]
+            unseen = np.full((len(self._body.names), 3), np.nan)
+            unnamed = [(one, unseen) for one in self._waiting]
             self._waiting.clear()
             return unnamed
 
     def learn(self, estimate: Posterior) -> None:
-        """What the filter made of the frame pushed last."""
+        """Takes the filter's estimate of the frame pushed last."""
         self._labels.learn(estimate.q)
 
-    def finish(self) -> Named:
+    def finish(self) -> NamedFrames:
         """The frames that still wait, when no more follow."""
         return self._due(self._labels.finish())
 
     def _fresh(self) -> LiveLabels:
         return LiveLabels(self._body, self._dt_s, patient=self._patient)
 
-    def _due(self, found: list[Array]) -> Named:
+    def _due(self, found: list[Array]) -> NamedFrames:
         return [(self._waiting.popleft(), markers) for markers in found]

@@ -1,4 +1,4 @@
-"""Sentences for the person who is to be scaled: what is waited for, and why scaling failed, not too often."""
+"""Prompts for the person to be scaled: what the scaling waits for and why it failed, at a readable pace."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Prompting:
         self._reason, self._said_s = "", events.begin_s
 
     def waiting(self, reason: str) -> None:
-        """Says what is waited for."""
+        """Says what the scaling waits for."""
         now = time.perf_counter()
         if now - self._said_s >= (AGAIN_S if reason == self._reason else TELL_S):
             self.say(f"waiting for a person to stand still: {reason}")

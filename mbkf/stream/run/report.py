@@ -1,6 +1,6 @@
-"""live.json: what a live run received, how quickly it answered and what happened, kept up to date while it runs.
+"""live.json: frames received and lost, latencies and events of a live run, kept up to date while it runs.
 
-Its place on disk is taken at the start, so that it can still be written when the disk is full.
+Its space on disk is reserved at the start, so that it can still be written when the disk is full.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ import numpy as np
 LIVE_FILE = "live.json"
 
 ROOM_BYTES = 128 * 1024
-"""What is set aside for it."""
+"""Space reserved for it on disk."""
 
 
 class ReportFile:
     """A JSON file rewritten in place."""
 
     def __init__(self, path: Path) -> None:
-        """Makes the file and takes its room.
+        """Makes the file and reserves its space.
 
         Raises:
             OSError: It cannot be written.
@@ -53,7 +53,7 @@ def latency_summary(latencies_s: Sequence[float], at_start_s: Sequence[float]) -
     Args:
         latencies_s: Arrival to result, of frames that were answered at once.
         at_start_s: The same of frames that waited for a start of the filter, which looks a quarter of a second ahead,
-            or until it had caught up; only they are told of where there are no others.
+            or until it had caught up; where there are no others, the percentiles are theirs.
     """
     milliseconds = 1e3 * np.array(latencies_s if len(latencies_s) else at_start_s, dtype=float)
     known = len(milliseconds) > 0

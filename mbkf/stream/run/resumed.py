@@ -1,4 +1,4 @@
-"""A source that goes on where somebody else stopped reading, with the frames that were kept for it first."""
+"""A connected source handed over from one reader to the next, beginning with frames that were kept meanwhile."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ class ResumedSource:
     def __init__(
         self, source: FrameSource, stream: StreamDescription, kept: Iterable[SourceFrame] = ()
     ) -> None:
-        """Args: the source, what it said of itself, and frames that were read and are to be read again."""
+        """Args: the connected source, the stream's description, and frames to deliver first."""
         self._source, self._stream = source, stream
         self._kept = deque(kept)
         self.patient = source.patient
 
     def connect(self, timeout_s: float) -> StreamDescription:
-        """What the source said when it was connected."""
+        """The stream's description."""
         del timeout_s
         return self._stream
 
@@ -33,7 +33,7 @@ class ResumedSource:
         return self._kept.popleft() if self._kept else self._source.read(timeout_s)
 
     def news(self) -> list[tuple[str, str]]:
-        """What happened to the connection since this was asked last."""
+        """Events of the connection since the last call."""
         return self._source.news()
 
     def close(self) -> None:

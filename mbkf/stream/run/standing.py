@@ -55,12 +55,12 @@ class ScaledPerson:
     Attributes:
         subject: The person.
         source: The stream, beginning at the frame after those of standing.
-        told: How the subject was obtained, for live.json.
+        report: How the subject was obtained, for live.json.
     """
 
     subject: Subject
     source: ResumedSource
-    told: dict[str, Any]
+    report: dict[str, Any]
 
 
 class StandingStart:
@@ -116,11 +116,11 @@ class StandingStart:
             return False
         if self._known.mass_kg is None and not found.plates:
             raise InvalidInput(
-                "the stream has no force plates that could tell the body mass; give --mass KG, or --subject"
+                "the stream has no force plates to weigh the person; give --mass KG, or --subject"
             )
         if not found.marker_names and self._known.protocol is None:
             raise InvalidInput(
-                "the stream's points have no names; say which markers are worn with --protocol NAME, or give --subject"
+                "the stream's points have no names; give the markers worn with --protocol NAME, or give --subject"
             )
         self.stream = found
         self._stance = StanceFrames(found, self._known.protocol)
@@ -229,7 +229,7 @@ class StandingStart:
         write_subject(subject, self._folder / SUBJECT_FILE)
         rms_mm = subject.report["marker_rms_mm"]
         mass_from = "--mass" if self._known.mass_kg is not None else "plates"
-        told = {
+        report = {
             **self._counts(),
             "subject": SUBJECT_FILE,
             "protocol": subject.protocol,
@@ -251,7 +251,7 @@ class StandingStart:
             f"scaled in {seconds:.1f} s: protocol {subject.protocol}, {weight}, markers fit to {rms_mm:.1f} mm RMS; "
             f"{self._folder / SUBJECT_FILE}"
         )
-        return ScaledPerson(subject, ResumedSource(self._source, self.stream, job.kept), told)
+        return ScaledPerson(subject, ResumedSource(self._source, self.stream, job.kept), report)
 
     def _reason(self) -> str:
         why, refused = self._stance.hindrance, self._prompting.refused

@@ -111,7 +111,7 @@ class Live {
     const quiet = (performance.now() - this.arrived) / 1000;
     if (quiet > 1) this.tell(`no frames for ${quiet.toFixed(0)} s`, "bad");
     else if (this.paused) this.tell("paused", "wait");
-    else if (!s.tracked) this.tell("body not followed", "bad");
+    else if (!s.tracked) this.tell("body not tracked", "bad");
     else this.tell("live", "good");
   }
 

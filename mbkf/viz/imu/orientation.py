@@ -1,4 +1,4 @@
-"""Two orientation filters on one sensor: what each says, and their difference, as quaternions and as angles."""
+"""Two orientation filters on one sensor: both estimates and their difference, as quaternions and as angles."""
 
 from __future__ import annotations
 

@@ -75,7 +75,7 @@ class LivePage:
         self._server.wake()
 
     def close(self) -> None:
-        """Ends the server; open pages say that they are not connected."""
+        """Ends the server; open pages show that they are not connected."""
         self._server.close()
 
     def _packed(self) -> tuple[int, bytes] | None:

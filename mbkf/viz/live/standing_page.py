@@ -1,4 +1,4 @@
-"""The waiting page: tells whoever is to be scaled what the terminal tells, until the live page takes its place."""
+"""The waiting page: shows the terminal's prompts to the person to be scaled, until the live page takes its place."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class StandingPage:
         return self._server.port, self._server.token
 
     def close(self) -> None:
-        """Ends the server if there is one; open pages say so."""
+        """Ends the server if there is one; open pages show it."""
         if self._server is not None:
             self._server.close()
 

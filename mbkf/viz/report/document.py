@@ -30,9 +30,9 @@ def report_page(
     """The report.
 
     Args:
-        reconstruction: What was found.
+        reconstruction: The results.
         summary: Its summary.json.
-        labels: What ``mbkf label`` wrote beside the labelled capture (its JSON), or None.
+        labels: The JSON that ``mbkf label`` wrote beside the labelled capture, or None.
     """
     r = reconstruction
     gait = find_gait(r) if r.tracked.any() else None
@@ -75,7 +75,7 @@ def write_report(
 
 
 def read_labels(path: str | Path) -> dict[str, Any]:
-    """What ``mbkf label`` wrote beside a labelled capture.
+    """The JSON that ``mbkf label`` wrote beside a labelled capture.
 
     Raises:
         FileFormatError: The file is missing, no JSON, or something else.
@@ -91,7 +91,7 @@ def read_labels(path: str | Path) -> dict[str, Any]:
 
 
 def labels_of(folder: str | Path, trial: str) -> dict[str, Any] | None:
-    """What ``mbkf label`` wrote for a trial: TRIAL.json in a result's folder or beside it, None where there is none."""
+    """The JSON that ``mbkf label`` wrote for a trial: TRIAL.json in a result's folder or beside it, or None."""
     place = Path(folder)
     for path in (place / f"{trial}.json", place.absolute().parent / f"{trial}.json"):
         if path.is_file():

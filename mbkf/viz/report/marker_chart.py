@@ -14,7 +14,7 @@ from mbkf.viz.svg import number, ticks
 
 SEEN, UNSEEN, REFUSED, HIDDEN, LOST = range(5)
 CLASSES = ("seen", "unseen", "refused", "hidden", "lost")
-LABELS = ("seen and used", "not seen", "refused by the gate", "hidden on purpose", "body not followed")
+LABELS = ("seen and used", "not seen", "refused by the gate", "hidden on purpose", "body not tracked")
 
 ROW, NAME, CHART, BAR, RIGHT = 13.0, 118.0, 640.0, 120.0, 130.0
 TOP = 30.0
@@ -23,7 +23,7 @@ GHOSTS = 34.0
 
 
 def states(r: Reconstruction) -> NDArray[np.int64]:
-    """(T, M) what became of every marker in every frame: an index of :data:`CLASSES`."""
+    """(T, M) state of every marker in every frame: an index of :data:`CLASSES`."""
     found = np.full(r.hidden.shape, SEEN)
     found[r.rejected] = REFUSED
     found[np.isnan(r.measured_m).any(axis=2)] = UNSEEN
@@ -33,7 +33,7 @@ def states(r: Reconstruction) -> NDArray[np.int64]:
 
 
 def marker_errors_mm(r: Reconstruction) -> tuple[Array, Array]:
-    """(M,) RMS and (M,) largest distance of measured and reconstructed markers, mm, where seen and followed."""
+    """(M,) RMS and (M,) largest distance of measured and reconstructed markers, mm, where seen and tracked."""
     distance = 1e3 * np.linalg.norm(r.measured_m - r.predicted_m, axis=2)
     counted = r.present & r.tracked[:, None]
     squares = np.where(counted, distance**2, 0.0).sum(axis=0)
@@ -57,7 +57,7 @@ def marker_chart(r: Reconstruction, ghosts: Array | None = None) -> str:
 
     Args:
         r: The reconstruction.
-        ghosts: (T,) points dropped as nobody's in every frame, or None where not known.
+        ghosts: (T,) number of points without a marker dropped in every frame, or None where not known.
     """
     found = states(r)
     rms, largest = marker_errors_mm(r)

@@ -268,7 +268,7 @@ def _unobserved(r: Reconstruction) -> str:
     if not r.held_dofs:
         return ""
     segments = sorted({name.rpartition("_")[0].replace("_", " ") for name in r.held_dofs})
-    return paragraph(f"Not shown, because no marker tells: {', '.join(segments)}.")
+    return paragraph(f"Not shown, because no marker observes them: {', '.join(segments)}.")
 
 
 def _ranges(r: Reconstruction) -> str:

@@ -1,4 +1,4 @@
-"""The report's first section: whether the result can be believed, and why not where it cannot."""
+"""The report's first section: quality measures of the result, each with its bound and a verdict."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ GOOD, CARE, NONE = "good", "care", "none"
 
 @dataclass(frozen=True)
 class Verdict:
-    """One number with its judgement: ``kind`` is "good", "care" or "none" (not judged)."""
+    """One number with its verdict: ``kind`` is "good", "care" or "none" (without a bound)."""
 
     title: str
     value: str
@@ -48,7 +48,7 @@ def quality_section(r: Reconstruction, summary: Mapping[str, Any], labels: Mappi
     Args:
         r: The reconstruction.
         summary: Its summary.json.
-        labels: What ``mbkf label`` wrote beside the labelled file, or None.
+        labels: The JSON that ``mbkf label`` wrote beside the labelled file, or None.
     """
     ghosts = None if labels is None else labels.get("ghosts_per_frame")
     shown = set(np.unique(states(r)).tolist())
@@ -67,10 +67,10 @@ def quality_section(r: Reconstruction, summary: Mapping[str, Any], labels: Mappi
 
 
 def verdicts(r: Reconstruction, summary: Mapping[str, Any]) -> list[Verdict]:
-    """The numbers a reader looks at first, judged."""
+    """The main quality measures, each with its verdict."""
     gap = float(longest_gap_s(r).max(initial=0.0))
     missing = summary.get("missing_fraction") or 0.0
-    followed = 100.0 * float(r.tracked.mean()) if r.frames else 0.0
+    tracked = 100.0 * float(r.tracked.mean()) if r.frames else 0.0
     return [
         _markers(summary),
         *_residuals(r, summary),
@@ -79,7 +79,7 @@ def verdicts(r: Reconstruction, summary: Mapping[str, Any]) -> list[Verdict]:
             "Markers missing", f"{100 * missing:.1f} %", NONE, f"longest gap of one marker {gap:.2f} s"
         ),
         Verdict(
-            "Frames followed", f"{followed:.1f} %", GOOD if followed > 99.9 else CARE,
+            "Frames tracked", f"{tracked:.1f} %", GOOD if tracked > 99.9 else CARE,
             f"all reactions measured in {int(r.valid.sum())} of {r.frames} frames",
         ),
     ]  # fmt: skip
@@ -88,7 +88,7 @@ def verdicts(r: Reconstruction, summary: Mapping[str, Any]) -> list[Verdict]:
 def _markers(summary: Mapping[str, Any]) -> Verdict:
     rms, largest = summary.get("marker_rms_mm"), summary.get("marker_max_mm")
     if rms is None or largest is None:
-        return Verdict("Marker error", "–", NONE, "no marker was followed")
+        return Verdict("Marker error", "–", NONE, "no marker was tracked")
     good = rms <= MARKER_RMS_MM and largest <= MARKER_MAX_MM
     remark = f"RMS; largest {largest:.1f} mm. Accepted practice: 20 and 40 mm"
     return Verdict("Marker error", f"{rms:.1f} mm", GOOD if good else CARE, remark)

@@ -1,7 +1,7 @@
-"""The row of numbers a picture is drawn from, alike for the live page and for playback, and what can be plotted.
+"""Rows of numbers that pictures are drawn from, on the live page and in playback, and the quantities to plot.
 
 A row is one frame: the poses of the segments, the markers, the reactions and every curve, one after another as
-32-bit numbers; NaN where something is not known. The page is told once where each part begins.
+32-bit numbers; NaN where something is not known. The page receives the offset of each part once.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from mbkf.model.clinical_table import ClinicalJoint
 from mbkf.viz.wording import SIDE_NAMES, wordings
 
 SEEN, UNSEEN, REFUSED = 0, 1, 2
-"""What a marker's state says: measured and used, not measured (or hidden), measured but not believed."""
+"""States of a marker: measured and used, not measured (or hidden), measured but rejected by the gate."""
 
 RESOLUTION = {
     "segments": 2e-4, "measured": 2e-4, "predicted": 2e-4, "force": 0.2, "force_sd": 0.2, "pressure": 5e-4,
     "angles": 3e-4, "angles_sd": 2e-4, "moments": 0.02, "moments_sd": 0.02,
 }  # fmt: skip
-"""What can be seen of a part's numbers on a screen; finer differences need not travel with a recording."""
+"""Resolution of a part's numbers on a screen; recordings are rounded to it."""
 
 AXES = (("vertical", "Vertical reaction", 2), ("x", "Reaction along x", 0), ("y", "Reaction along y", 1))
 """Components of a reaction: name, title, world axis."""
@@ -34,7 +34,7 @@ STATUS = ("time_s", "number", "latency_ms", "rate_hz", "lost", "tracked")
 
 @dataclass(frozen=True)
 class Quantity:
-    """Something that can be plotted.
+    """A quantity that can be plotted.
 
     Attributes:
         id: Name that stays the same from run to run, e.g. "angle:knee_angle_r".

@@ -1,4 +1,4 @@
-"""What the page is told once about the person, the markers and the plates, and the poses of a frame's segments."""
+"""The scene's static description (person, markers, plates), and the poses of a frame's segments."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ MISSING = 65535
 
 
 def recording(r: Reconstruction) -> dict[str, Any]:
-    """What a page needs to play a reconstruction: ``scene`` and packed ``rows``.
+    """Data for a page that plays a reconstruction: ``scene`` and packed ``rows``.
 
     Raises:
         InvalidInput: The result holds no frames.

@@ -12,16 +12,12 @@ from benchmarks.dynamic.synthetic import (
     FCDI,
     MATCHED,
     Baseline,
-    Consistency,
     Errors,
     baseline,
-    consistency_of,
-    consistency_rows,
     differences,
     errors_of,
     make_case,
     method_rows,
-    within,
 )
 from mbkf.pipelines.results.summary import compare_with_truth
 
@@ -64,21 +60,6 @@ def test_untracked_frames_are_left_out(case):
         assert np.isfinite(error[20:]).all()
 
 
-def test_consistency_of_a_result_that_says_the_truth(case, monkeypatch):
-    found = FCDI.run(case.capture, case.subject)
-    rng = np.random.default_rng(1)
-    wrong = tuple(rng.normal(0.0, 0.1, (found.frames, 46)) for _ in range(3))
-    spread = np.full_like(found.sd_q, 0.1)
-    honest = replace(found, sd_q=spread, sd_v=2.0 * spread, sd_tau=0.5 * spread)
-    monkeypatch.setattr(dynamic_synthetic.Method, "run", lambda *_, **__: honest)
-    monkeypatch.setattr(dynamic_synthetic, "differences", lambda *_: wrong)
-    judged = consistency_of(case, FCDI)
-    assert judged.nees == pytest.approx((1.0, 0.25, 4.0), rel=0.05)
-    assert judged.coverage == pytest.approx((0.95, 0.99991, 0.673), abs=0.01)
-    assert math.isnan(judged.joint_nees)
-    assert judged.nis == pytest.approx(np.mean(found.nis[50:] / found.nis_readings[50:]))
-
-
 def test_a_method_is_bounded_by_its_ratio_to_others():
     rows = method_rows("m", [FOUND, FOUND], BASE, smooth=False)
     ratios = {row.name: (row.value, row.bound, row.passed) for row in rows if row.bounded}
@@ -104,21 +85,3 @@ def test_fcdi_is_compared_at_its_own_best(monkeypatch):
     monkeypatch.setattr(dynamic_synthetic, "offline_torque_nm", lambda trial: 2.0)
     found = baseline([None] * 6, in_turn)
     assert found == Baseline(1.0, 0.3, 0.5, 1.2, 2.0)
-
-
-def test_a_band_has_two_checks():
-    low, high = within("x", 0.7, 0.8, 1.25)
-    assert (low.passed, high.passed) == (False, True)
-
-
-def test_consistency_of_the_defaults_is_shown_without_bounds(monkeypatch):
-    monkeypatch.setattr(dynamic_synthetic, "make_case", lambda key, **_: key)
-    said = Consistency((1.0, 1.0, 2.0), (0.95, 0.95, 0.8), 1.0, 3.0)
-    monkeypatch.setattr(dynamic_synthetic, "consistency_of", lambda case, method: said)
-    rows = consistency_rows([("squat", 0)], [FCDI], in_turn)
-    assert not any(row.bounded for row in rows)
-    assert [row.value for row in rows] == [1.0, 95.0, 1.0, 95.0, 2.0, 80.0, 1.0, 3.0]
-
-
-def test_joint_consistency_uses_the_whole_covariance(case):
-    assert 0.1 < consistency_of(case, FCDI).joint_nees < 10.0

@@ -91,6 +91,7 @@ def test_where_the_body_is_lost_feet_are_nowhere():
     assert_near(np.linalg.norm(feet.forward[: LOST.start], axis=1), 1.0, 1e-12)
 
 
+@pytest.mark.slow
 def test_events_are_those_the_laboratory_stored(real_data):
     folder = real_data / "gaitalytics_walk"
     capture = read_capture(folder / "overground_fullbody_4plates.c3d")

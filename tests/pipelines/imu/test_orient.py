@@ -15,6 +15,7 @@ MADE = turning(5.0, rate_rad_s=2.0)
 ONE = MADE.readings()
 
 
+@pytest.mark.slow
 def test_errors_are_those_against_the_reference_whatever_the_frame():
     found = {frame: orient([ONE], frame=frame).errors for frame in ("NWU", "NED")}
     assert found["NWU"][0][0] == "a"

@@ -15,6 +15,8 @@ from mbkf.io.imu import read_imu_csv
 from mbkf.pipelines.imu.stride import METHODS, StrideSettings, measure_strides, stride_summary
 from tests.foot_walks import foot_walk
 
+pytestmark = pytest.mark.slow
+
 STEP_S = 0.55
 
 

@@ -14,6 +14,8 @@ from mbkf.pipelines.labelling.body import label_body
 from tests.labelling.movement import RATE_HZ, movement, shuffled
 from tests.walker import walker
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def prone():
@@ -27,7 +29,7 @@ def prone():
     return subject, body, replace(walker().raw, markers=markers, plates=()), marker
 
 
-def test_tracks_are_laid_on(prone):
+def test_tracks_are_named(prone):
     _, body, raw, marker = prone
     tracks = follow(raw.markers.positions_m, RATE_HZ)
     owner, score = name_tracks_of_frame(body.sensor, body.search.sd_m, raw.markers.positions_m, tracks, 30)

@@ -9,6 +9,8 @@ from mbkf.labelling.running import RunningSettings
 from mbkf.pipelines.labelling.body import CORRECTED_SD_M, corrected_body, label_body
 from tests.walker import walker
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def person():

@@ -16,10 +16,10 @@ NONE = Doubts((), {}, 0.2, 0, ())
 
 
 def test_a_case_names_both_labels_and_the_evidence():
-    told = CASE.told()
+    told = CASE.text()
     assert "RTH2 may be RTH3 (12 and 31 mm" in told
     assert "4.0 times" in told
-    assert CASE.summarised() == {
+    assert CASE.summary() == {
         "labels": ["RTH2"],
         "may_be": ["RTH3"],
         "odds": 4.0,
@@ -29,10 +29,10 @@ def test_a_case_names_both_labels_and_the_evidence():
 
 
 def test_nothing_is_told_where_nothing_is_in_doubt():
-    assert NONE.told() == ()
+    assert NONE.warnings() == ()
     assert NONE.labels == ()
     # Further points are no sign of wrong labels where no marker is left for them.
-    assert replace(NONE, nameless=3, unused=("RASI",)).told() == ()
+    assert replace(NONE, nameless=3, unused=("RASI",)).warnings() == ()
 
 
 @pytest.mark.parametrize(
@@ -45,7 +45,7 @@ def test_nothing_is_told_where_nothing_is_in_doubt():
     ],
 )
 def test_each_doubt_is_told_with_what_settles_it(one, said):
-    told = one.told()
+    told = one.warnings()
     assert said in told[0]
     assert "--static" in told[-1]
 
@@ -54,9 +54,9 @@ def test_names_that_hang_together_are_told_at_once():
     swap = Doubt(("A", "B"), ("B", "A"), 3.0, (0.01, 0.01), (0.02, 0.02))
     other = Doubt(("B", "C"), ("C", "B"), 2.0, (0.01, 0.01), (0.02, 0.02))
     free = Doubt(("C",), ("D",), 9.0, (0.01,), (0.02,))
-    told = replace(NONE, cases=(swap, CASE, free, other)).told()
+    told = replace(NONE, cases=(swap, CASE, free, other)).warnings()
     assert told[0] == "A, B, C may have each other's names, or D; 2.0 times likelier as they stand"
-    assert told[1] == CASE.told()
+    assert told[1] == CASE.text()
     assert told[2].startswith("4 labels")
 
 

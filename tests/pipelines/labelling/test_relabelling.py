@@ -12,6 +12,8 @@ from mbkf.pipelines.labelling.body import label_body
 from mbkf.pipelines.labelling.relabelling import course, relabel_offline, trajectories
 from tests.walker import walker
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def walk():

@@ -10,6 +10,8 @@ from mbkf.io.records import MarkerTrajectories
 from mbkf.pipelines.labelling.score import score
 from tests.walker import walker
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def walk():

@@ -10,6 +10,8 @@ from mbkf.pipelines.labelling.score import score
 from mbkf.pipelines.labelling.single_pass import LOST_S
 from tests.walker import unlabelled, walker
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def walk():

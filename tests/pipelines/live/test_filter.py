@@ -44,6 +44,7 @@ def steps_of(live, recording):
     return [step for some in steps for step in some] + live.finish(), [len(some) for some in steps]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FILTERS)
 def test_steps_are_those_of_a_whole_trial(name):
     """Also through a start in the middle, after the body was lost."""

@@ -12,6 +12,8 @@ from mbkf.pipelines.live.filter import LiveFilter
 from mbkf.pipelines.live.labels import LONGEST_WAIT_S, LiveLabels, live_body
 from tests.walker import walker
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def walk():

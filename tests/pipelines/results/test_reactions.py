@@ -50,6 +50,7 @@ def found_with(track, plates=()):
     return reactions(trial("squat").model, track, motion().times_s[SOME], RATE_HZ, plates)
 
 
+@pytest.mark.slow
 def test_measured_and_estimated_reactions_agree_where_the_estimate_is_exact():
     measured, estimated = found_with(followed(), plates()), found_with(followed(truly()), plates())
     assert_near(measured.wrench, truly(), 1e-9)

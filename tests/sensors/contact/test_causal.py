@@ -16,7 +16,7 @@ from tests.motions import reference_model
 MODEL = reference_model()
 STILL = np.zeros(MODEL.nv)
 RIGHT, LEFT = 0, 1
-each_motion = pytest.mark.parametrize("name", ["squat", "walk", "jump"])
+each_motion = pytest.mark.parametrize("name", ["squat", "walk", pytest.param("jump", marks=pytest.mark.slow)])
 
 
 def decisions(made, loads, plates=None):
@@ -43,6 +43,7 @@ def test_loaded_feet_are_measured_and_hanging_ones_in_the_air(name):
     assert (found[load == 0.0] == Contact.AIR).all()
 
 
+@pytest.mark.slow
 def test_all_flight_is_in_the_air():
     made = trial("jump")
     off, on = made.motion.flight_s

@@ -8,7 +8,6 @@ from mbkf.conventions import GRAVITY_M_S2
 from mbkf.io.records import PlateReadings
 from mbkf.sensors.contact.offline import assign_feet, stretches
 from mbkf.sensors.contact.soles import sole_points
-from tests.motions import assert_near, moderate_pose, random_model, reference_model
 from tests.motions import assert_near, reference_model
 
 MODEL = reference_model()

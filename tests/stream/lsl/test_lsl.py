@@ -156,6 +156,7 @@ def test_points_without_names_arrive(name):
     np.testing.assert_array_equal([frame.unlabelled_m for frame in frames], made.markers_m)
 
 
+@pytest.mark.slow
 def test_a_stream_that_dies_and_returns_is_taken_up_again(name):
     made = played(CAPTURE)
     player, source = LslPlayer(made, name), LslSource(name)

@@ -200,6 +200,7 @@ def room_of(one):
     return one.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
 
 
+@pytest.mark.slow
 def test_a_server_that_dies_and_returns_is_taken_up_again(served, monkeypatch):
     monkeypatch.setattr("mbkf.stream.natnet.source.RECONNECT_AFTER_S", 0.2)
     player = served()

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from mbkf.sensors.contact.plates import plate_wrenches
-from mbkf.stream.receiving.alignment import BRIDGED_S, Intake
 from mbkf.stream.receiving.alignment import BRIDGED_S, FrameAlignment
 from mbkf.stream.receiving.reader import Reader
 from mbkf.stream.receiving.ring_buffer import RingBuffer

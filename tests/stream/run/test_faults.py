@@ -31,6 +31,8 @@ from tests.stream.scripted import (
     without_plates,
 )
 
+pytestmark = pytest.mark.slow
+
 
 def later(frames, seconds):
     return [replace(frame, arrival_s=frame.arrival_s + seconds) for frame in frames]

@@ -1,8 +1,12 @@
 """The folder of a run keeps every log until its results are written."""
 
+import pytest
+
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.stream.run.folder import LOG_FOLDER, drop_log, write_results
 from tests.stream.scripted import follow, frames_of
+
+pytestmark = pytest.mark.slow
 
 
 def test_a_log_that_was_left_behind_is_set_aside(tmp_path, capture, subject):

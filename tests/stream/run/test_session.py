@@ -30,6 +30,8 @@ from tests.stream.scripted import (
     offline,
 )
 
+pytestmark = pytest.mark.slow
+
 FILES = {
     "live.json",
     "summary.json",

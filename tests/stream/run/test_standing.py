@@ -21,6 +21,8 @@ from mbkf.stream.source import PlateSamples
 from tests.captures import MASS_KG, made_capture
 from tests.stream.scripted import SETTINGS, ScriptedSource, assert_same, frames_of, offline
 
+pytestmark = pytest.mark.slow
+
 COMES, STANDS = 40, 130
 """Frames in which somebody comes, and stands; then somebody moves."""
 
@@ -79,7 +81,7 @@ class Impatient(ScriptedSource):
 def test_the_subject_is_that_of_scale_and_the_results_those_of_reconstruct(tmp_path, visit):
     visit = replace(visit, plates=())
     found, said = begin(tmp_path, ScriptedSource(*frames_of(visit)))
-    told = found.told
+    told = found.report
     assert (told["frames"], told["frames_left_out"], told["attempts"]) == (100, 0, 1)
     assert COMES - 5 <= told["first_frame"] <= COMES
     expected = scale(cut(visit, told["first_frame"], told["last_frame"]), mass_kg=MASS_KG)
@@ -106,7 +108,7 @@ def test_points_without_names_are_named_by_the_protocol(tmp_path, visit):
     found, said = begin(
         tmp_path, ScriptedSource(stream, frames[: COMES + 110]), mass_kg=None, protocol=protocol
     )
-    told = found.told
+    told = found.report
     assert told["mass_from"] == "plates"
     assert "stay where you are" in said[1]
     mass_kg = pytest.approx(MASS_KG, abs=1e-6)
@@ -119,7 +121,7 @@ def test_points_without_names_are_named_by_the_protocol(tmp_path, visit):
 
 def test_plates_tell_the_mass_where_none_is_given(tmp_path, visit):
     found, said = begin(tmp_path, ScriptedSource(*frames_of(visit)), mass_kg=None)
-    assert (found.told["mass_from"], found.told["mass_kg"]) == ("plates", pytest.approx(MASS_KG))
+    assert (found.report["mass_from"], found.report["mass_kg"]) == ("plates", pytest.approx(MASS_KG))
     assert f"{MASS_KG:.1f} kg by the plates" in said[-1]
 
 
@@ -177,10 +179,11 @@ def test_after_a_failure_the_next_second_of_standing_is_taken(tmp_path, visit):
     still = frames[COMES : COMES + STANDS]
     wrong = [replace(frame, markers_m=frame.markers_m[::-1]) for frame in still]
     found, said = begin(tmp_path, ScriptedSource(stream, wrong + still))
-    assert found.told["attempts"] == 2
+    assert found.report["attempts"] == 2
     assert any("scaling failed" in line and "stand still once more" in line for line in said)
     same_person(
-        found.subject, scale(cut(visit, found.told["first_frame"], found.told["last_frame"]), mass_kg=MASS_KG)
+        found.subject,
+        scale(cut(visit, found.report["first_frame"], found.report["last_frame"]), mass_kg=MASS_KG),
     )
 
 
@@ -196,7 +199,7 @@ def test_the_stream_is_read_while_scaling_runs(tmp_path, visit, monkeypatch):
 
     monkeypatch.setattr(standing, "scale_standing", slow)
     found, _ = begin(tmp_path, source)
-    told = found.told
+    told = found.report
     assert told["frames_in"] == len(frames) + len(more)
     after = len(frames) + len(more) - told["last_frame"] - 1
     assert (told["frames_kept_waiting"], told["frames_left_out"]) == (MOST_KEPT, after - MOST_KEPT)
@@ -231,8 +234,8 @@ def test_a_source_that_fails_or_falls_silent_is_gone_on_with(tmp_path, visit, mo
     stream, frames = frames_of(replace(visit, plates=()))
     broken = [*frames[: COMES + 60], OSError("unreachable"), None, *frames[COMES + 60 :]]
     found, _ = begin(tmp_path, ScriptedSource(stream, broken))
-    assert [event["kind"] for event in found.told["events"]] == ["source"]
-    assert found.told["frames"] == 100
+    assert [event["kind"] for event in found.report["events"]] == ["source"]
+    assert found.report["frames"] == 100
 
 
 def test_patience_ends(tmp_path, visit):
@@ -250,7 +253,7 @@ def test_what_is_waited_for_is_told_now_and_then(tmp_path, visit, monkeypatch):
     stream, frames = frames_of(replace(visit, plates=()))
     found, said = begin(tmp_path, ScriptedSource(stream, frames))
     assert any("waiting for a person to stand still" in line and "moved" in line for line in said)
-    assert "waiting" in {event["kind"] for event in found.told["events"]}
+    assert "waiting" in {event["kind"] for event in found.report["events"]}
 
 
 def test_the_share_of_standing_grows_while_somebody_is_still_and_begins_anew_after_a_failure(tmp_path, visit):
@@ -259,7 +262,7 @@ def test_the_share_of_standing_grows_while_somebody_is_still_and_begins_anew_aft
     wrong = [replace(frame, markers_m=frame.markers_m[::-1]) for frame in still]
     shares = []
     found, _ = begin(tmp_path, ScriptedSource(stream, frames[:COMES] + wrong + still), progress=shares.append)
-    assert found.told["attempts"] == 2
+    assert found.report["attempts"] == 2
     assert max(shares[: COMES - 5]) < 0.1, "who comes does not stand"
     full = shares.index(1.0)
     np.testing.assert_allclose(shares[full - 90 : full + 1], np.arange(10, 101) / 100.0)

@@ -1,12 +1,14 @@
 """The comparison picture is written and shows both filters."""
 
 import numpy as np
+import pytest
 
 from mbkf.imu.orientation import OrientSettings, orientations
 from mbkf.viz.imu.orientation import write_comparison
 from tests.imu.turning import turning
 
 
+@pytest.mark.slow
 def test_a_picture_of_both_is_written(tmp_path):
     one = turning(3.0).readings()
     first, second = (

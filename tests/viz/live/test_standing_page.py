@@ -19,6 +19,8 @@ from tests.recordings import PLATE, walk, walker
 from tests.viz.browsing import until
 from tests.viz.streams import feeding
 
+pytestmark = pytest.mark.slow
+
 SENTENCES = (
     "stand still for 1 s, upright and in sight of the cameras",
     "waiting for a person to stand still: marker RWRA moved 38 mm",

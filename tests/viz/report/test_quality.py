@@ -49,7 +49,7 @@ def test_one_large_residual_is_noticed():
 
 def test_losses_are_told():
     found = judged(broken_walk())
-    assert found["Frames followed"].kind == CARE
+    assert found["Frames tracked"].kind == CARE
     assert found["Markers missing"].remark == "longest gap of one marker 0.30 s"
 
 

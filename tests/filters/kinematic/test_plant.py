@@ -81,13 +81,13 @@ def test_covariance_is_carried_by_the_transition(rng):
     assert_near(model.difference(state.q, after.q), state.v * DT, 1e-15)
 
 
-def test_a_held_dof_gets_no_noise(rng):
+def test_an_unobservable_dof_gets_no_noise(rng):
     model = reference_model()
-    held = np.arange(model.nv) % 3 == 0
-    plant = WhiteAccelerationPlant(model, DT, np.where(held, 0.0, model.acceleration_sd))
+    unobservable = np.arange(model.nv) % 3 == 0
+    plant = WhiteAccelerationPlant(model, DT, np.where(unobservable, 0.0, model.acceleration_sd))
     state = KinematicState(model.neutral(), np.zeros(model.nv), np.zeros((2 * model.nv, 2 * model.nv)))
     P = plant.predict(state).P
-    both = np.r_[held, held]
+    both = np.r_[unobservable, unobservable]
     assert not P[both].any()
     assert (np.diag(P)[~both] > 0).all()
 

@@ -22,8 +22,8 @@ def test_it_is_what_a_track_records():
     markers[:3] = np.nan
     markers[20:50] = np.nan
     recording = Recording(markers, np.zeros((FRAMES, 0, 6)), 1.0 / RATE_HZ)
-    held = np.zeros(MODEL.nv, dtype=bool)
-    kalman = KinematicFilter(sensor, np.full(36, 0.005), recording.dt_s, held, KinematicSettings())
+    everywhere = np.zeros(MODEL.nv, dtype=bool)
+    kalman = KinematicFilter(sensor, np.full(36, 0.005), recording.dt_s, everywhere, KinematicSettings())
     follower = KinematicTracking(kalman)
     recorded = track(follower, recording)
     course = list(followed(follower, recording))

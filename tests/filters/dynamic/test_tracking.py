@@ -7,9 +7,8 @@ import pytest
 
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.dynamic.tracking import ROUNDS
-from mbkf.filters.dynamic.tracking import ROUNDS
-from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.sensors.contact.records import Contact
+from tests.dynamics import settings_with
 from tests.followed import FRAMES, SETTLED, WHOLE, estimates, made, made_follower, recording, torques, tracked
 from tests.motions import worst
 
@@ -25,6 +24,7 @@ def residuals_n(found):
     return np.linalg.norm(torques(found)[:, :3], axis=1)
 
 
+@pytest.mark.slow
 def test_a_start_agrees_with_the_plates():
     follower, found = estimates("dynamic")
     first = found[0]
@@ -63,7 +63,7 @@ def test_wrenches_and_motion_come_with_the_states_spread():
 
 def test_where_only_white_noise_is_expected_the_spread_is_the_filters():
     follower = made_follower("dynamic")
-    follower.kalman.settings = replace(follower.kalman.settings, innovation_share=0.0)
+    follower.kalman.settings = settings_with(innovation_share=0.0)
     estimate = estimates("dynamic")[1][5]
     np.testing.assert_array_equal(follower.errors(estimate).covariance(), estimate.inner.state.P)
 

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from mbkf.filters.kinematic.settings import KinematicSettings
-from mbkf.sensors.gating import STRAYED_M, judged
+from mbkf.sensors.gating import TRACK_LOSS_M, ObservedDofs, gated
+from mbkf.sensors.markers import MarkerSettings
+from tests.motions import protocol_sensor, reference_model
 
 MARKERS, NV = 10, 8
-SETTINGS = KinematicSettings(gate=30.0, gate_radius_m=0.0)
+SETTINGS = MarkerSettings(gate=30.0, gate_radius_m=0.0)
 
 
 class Reading:
@@ -27,8 +28,12 @@ class Reading:
 
 
 def believable(y, H, P, noise, settings):
-    """(M,) markers believed, each being all that is seen of its segment."""
-    return judged(y, Reading(H), P, noise, settings).trusted
+    """(M,) markers used, each being all that is seen of its segment."""
+    return sorted_out(y, Reading(H), P, noise, settings).trusted
+
+
+def sorted_out(y, reading, P, noise, settings):
+    return gated(y, reading, P, noise, settings.gate, settings.gate_radius_m)
 
 
 @pytest.fixture
@@ -124,7 +129,7 @@ def test_the_jacobian_is_asked_for_only_of_far_markers(problem):
     reach = float(np.sqrt(np.nanmax((y**2).sum(axis=1))))
     for radius in (reach + 1e-9, 0.9 * reach, 0.0):
         settings, reading = replace(SETTINGS, gate_radius_m=radius), Reading(H)
-        seen, trusted, *_ = judged(y, reading, P, noise, settings)
+        seen, trusted, *_ = sorted_out(y, reading, P, noise, settings)
         np.testing.assert_array_equal(seen, np.arange(MARKERS) != 3)
         kept = (y**2).sum(axis=1) <= radius**2
         kept |= mahalanobis(y, H, P, noise) <= settings.gate
@@ -140,11 +145,11 @@ def test_a_segment_all_of_whose_markers_are_off_has_moved():
     reading.moves = np.array([[1.0, 0.0], [1.0, 0.0], [1.0, 1.0], [1.0, 1.0], [0.0, 1.0], [0.0, 1.0]])
     P, noise = 1e-8 * np.eye(4), np.full(6, 0.005)
     y[2:4, 0] = 0.5
-    together = judged(y, reading, P, noise, SETTINGS)
+    together = sorted_out(y, reading, P, noise, SETTINGS)
     np.testing.assert_array_equal(np.flatnonzero(together.displaced), [2, 3])
     assert together.trusted.all()
     y[3] = 0.0
-    alone = judged(y, reading, P, noise, SETTINGS)
+    alone = sorted_out(y, reading, P, noise, SETTINGS)
     np.testing.assert_array_equal(np.flatnonzero(~alone.trusted), [2])
     assert alone.displaced is None
 
@@ -154,9 +159,23 @@ def test_markers_that_are_mostly_far_off_have_left_the_state_behind(problem, jum
     y, H, P, noise = problem
     near = replace(SETTINGS, gate_radius_m=0.03)
     y = 0.1 * y
-    assert not judged(y, Reading(H), P, noise, near).strayed
+    assert not sorted_out(y, Reading(H), P, noise, near).lost
     for movers in (MARKERS // 2, MARKERS // 2 + 1, MARKERS):
         moved = y.copy()
         moved[:movers, 0] += jump_m
-        expected = jump_m > STRAYED_M and 2 * movers > MARKERS
-        assert judged(moved, Reading(H), P, noise, near).strayed == expected
+        expected = jump_m > TRACK_LOSS_M and 2 * movers > MARKERS
+        assert sorted_out(moved, Reading(H), P, noise, near).lost == expected
+
+
+def test_a_segment_none_of_whose_markers_is_used_is_unmarked():
+    """Its own joint's dofs alone, and no dof that no marker of the capture moves with."""
+    model = reference_model()
+    sensor = protocol_sensor(model)[0]
+    hand = np.arange(model.nv)[model.joint("right_hand").v]
+    unobservable = np.arange(model.nv) == hand[0]
+    observed, trusted = ObservedDofs(sensor, unobservable), np.ones(len(sensor.segments), dtype=bool)
+    assert len(observed.unmarked(trusted)) == 0
+    trusted[np.isin(sensor.segments, ["right_hand"])] = False
+    np.testing.assert_array_equal(observed.unmarked(trusted), hand[1:])
+    np.testing.assert_array_equal(observed.carriers(~trusted), hand[1:])
+    assert len(observed.unmarked(np.ones_like(trusted))) == 0

@@ -60,15 +60,15 @@ def test_smoothed_accelerations_are_central_differences():
     assert gone < 0.5
 
 
-def dense_smoother(found):
+def dense_smoother(plant, found):
     """Corrections (T, 2 nv) and covariances by Rauch, Tung and Striebel, from the filter's own transitions."""
     step, P = np.zeros_like(found[-1].inner.state.P[0]), found[-1].inner.state.P
     steps, covariances = [step], [P]
     for k in range(len(found) - 2, -1, -1):
-        known, here = found[k + 1].inner.result.evidence, found[k].inner.state
-        prior = known.predicted.P
-        gain = np.linalg.solve(prior, known.plant.transition(here) @ here.P).T
-        correction = found[k + 1].inner.state.P @ known.vector
+        done, here = found[k + 1].inner.step, found[k].inner.state
+        prior = done.prior.state.P
+        gain = np.linalg.solve(prior, plant.transition(here) @ here.P).T
+        correction = found[k + 1].inner.state.P @ done.readings.whole_vector
         step = gain @ (correction + step)
         P = here.P + gain @ (P - prior) @ gain.T
         steps.append(step)
@@ -80,7 +80,7 @@ def test_the_smoother_is_the_dense_one():
     follower, found = estimates("kinematic")
     found = found[:12]
     smoothed = follower.smooth(found, recording(), 0, len(found))
-    steps, covariances = dense_smoother(found)
+    steps, covariances = dense_smoother(follower.kalman.plant, found)
     model, nv = made().model, made().model.nv
     for one, before, step, P in zip(smoothed, found, steps, covariances, strict=True):
         sd = np.sqrt(np.diag(P))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.conventions import GRAVITY_M_S2
+from mbkf.sensors.block import Frame
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.contact.soles import sole_points
 from tests.dynamics import (
@@ -20,6 +21,8 @@ from tests.dynamics import (
     trial,
 )
 from tests.motions import assert_near, reference_model, worst
+
+pytestmark = pytest.mark.slow
 
 MODEL = reference_model()
 NV = MODEL.nv
@@ -36,7 +39,7 @@ def walked(plates=2, name="walk", frames=(20, 90)):
 
 
 def contacts(run):
-    return np.array([step.decision.load.contacts for step in run.steps])
+    return np.array([step.decisions.notes.contact.contacts for step in run.steps])
 
 
 def wrenches(run):
@@ -60,7 +63,7 @@ def test_feet_in_the_air_carry_nothing(name):
 def test_newtons_law_holds_after_every_step(plates):
     """Up to what the second order leaves in quick feet; the prior breaks it by far more."""
     run = walked(plates)
-    before, after = residuals(run, lambda s: s.predicted)[20:], residuals(run, lambda s: s.state)[20:]
+    before, after = residuals(run, lambda s: s.prior.state)[20:], residuals(run, lambda s: s.state)[20:]
     weight = GRAVITY_M_S2 * run.trial.model.mass_kg
     rms_before, rms_after = (np.sqrt((r[:, :3] ** 2).mean()) for r in (before, after))
     assert rms_after < 0.03 * weight
@@ -100,10 +103,10 @@ def test_a_free_foot_does_not_take_what_a_plate_reads_too_much():
     state, memory = at_rest(MODEL, STANDING, np.concatenate([load, np.zeros(6)])), kalman.begin()
     pulls = []
     for _ in range(40):
-        step = kalman.step(state, memory, markers, load[None])
+        step = kalman.step(state, memory, Frame(markers, load[None]))
         state, memory = step.state, step.memory
         pulls.append(state.w[8])
-    assert step.decision.load.contacts[1] == Contact.UNMEASURED
+    assert step.decisions.notes.contact.contacts[1] == Contact.UNMEASURED
     assert np.mean(pulls[10:]) > -30.0
 
 
@@ -117,9 +120,9 @@ def test_two_feet_on_one_plate_carry_what_it_reads():
         kalman.sensor.positions(STANDING),
     )
     for _ in range(10):
-        step = kalman.step(state, memory, markers, both[None])
+        step = kalman.step(state, memory, Frame(markers, both[None]))
         state, memory = step.state, step.memory
-    assert step.decision.load.contacts == (Contact.SHARED, Contact.SHARED)
+    assert step.decisions.notes.contact.contacts == (Contact.SHARED, Contact.SHARED)
     assert_near(about(middle) @ (state.w[:6] + state.w[6:] - both), 0.0, 5.0)
     assert (state.w[[2, 8]] > 0.2 * both[2]).all()
     sd = np.sqrt(np.diag(state.P)[3 * NV :])

@@ -1,17 +1,20 @@
 """The feet's twelve rows: minus the derivative of their innovations, about the soles, by what each foot stands on."""
 
 from itertools import product
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from mbkf.filters.foot_rows import FootRows
 
-from mbkf.filters.dynamic.settings import DynamicSettings
+from mbkf.sensors.block import OperatingPoint
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
+from mbkf.sensors.foot_contact import FootContact, FootContactSettings, FootDecision
+from mbkf.sensors.layout import Layout
 
 FIRST, WEIGHT_N, DT = 6, 700.0, 0.01
-SETTINGS = DynamicSettings()
-ROWS = FootRows(FIRST, WEIGHT_N, DT, SETTINGS)
+SETTINGS = FootContactSettings()
+BLOCK = FootContact(None, WEIGHT_N, DT, SETTINGS)
+BLOCK.bind(Layout.of(2, q=2, v=2, a=2, wrench=12))
 MEMORY = ContactMemory((), (), float("nan"), (0.0, 0.0))
 SINGLE = (Contact.UNMEASURED, Contact.AIR, Contact.MEASURED)
 PAIRS = [*product(SINGLE, repeat=2), (Contact.SHARED, Contact.SHARED)]
@@ -26,8 +29,10 @@ def load(contacts, seed=0):
 
 
 def filled(loaded, w, lifted=()):
-    rows, values = np.zeros((12, FIRST + 12)), np.empty(12)
-    return rows, values, ROWS.fill(rows, values, w, loaded, lifted)
+    at = OperatingPoint(SimpleNamespace(w=w), None)
+    rows, values, first, plates = BLOCK.linearise(at, FootDecision(loaded, lifted))
+    assert rows.shape == (12, 12) and first == FIRST
+    return rows, values, plates
 
 
 def about(centre_m, wrench):
@@ -40,10 +45,9 @@ def test_rows_are_minus_the_derivative_of_the_innovations(contacts):
     loaded, w = load(contacts), np.tile([10.0, -5.0, 200.0, 3.0, 2.0, 1.0], 2)
     rows, values, plates = filled(loaded, w)
     assert plates == 6 * sum(foot == Contact.MEASURED for foot in contacts) or Contact.SHARED in contacts
-    assert (rows[:, :FIRST] == 0.0).all()
     step = np.random.default_rng(1).normal(size=12)
     moved = filled(loaded, w + step)[1]
-    np.testing.assert_allclose(moved - values, -rows[:, FIRST:] @ step, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(moved - values, -rows @ step, rtol=1e-9, atol=1e-9)
 
 
 def test_a_plate_reads_the_wrench_about_the_sole_with_its_own_noise():
@@ -74,17 +78,40 @@ def test_a_free_foot_carries_what_the_plates_do_not_under_its_sole():
 
 
 @pytest.mark.parametrize("lifted", [(), (0,)])
-def test_a_free_foot_that_pulls_is_held_at_nothing(lifted):
+def test_a_free_foot_that_pulls_carries_nothing(lifted):
     loaded, w = load((Contact.UNMEASURED, Contact.AIR)), np.zeros(12)
     w[2] = -50.0 if not lifted else 20.0
     rows, values, _ = filled(loaded, w, lifted)
     assert values[2] == pytest.approx(-w[2] / SETTINGS.pulling_force_n)
-    assert rows[2, FIRST + 2] == pytest.approx(1.0 / SETTINGS.pulling_force_n)
+    assert rows[2, 2] == pytest.approx(1.0 / SETTINGS.pulling_force_n)
 
 
 def test_wrenches_wander_about_the_soles():
     loaded = load((Contact.UNMEASURED, Contact.UNMEASURED))
     sd = np.repeat([SETTINGS.wrench_force, SETTINGS.wrench_moment], 3) * DT**0.5
-    for centre, wander in zip(loaded.centres_m, ROWS.wander(loaded), strict=True):
+    P = np.zeros((FIRST + 12, FIRST + 12))
+    BLOCK.inflate(P, FootDecision(loaded))
+    assert not P[:FIRST].any() and not P[FIRST : FIRST + 6, FIRST + 6 :].any()
+    for centre, first in zip(loaded.centres_m, (FIRST, FIRST + 6), strict=True):
+        wander = P[first : first + 6, first : first + 6]
         to_sole = np.array([about(centre, one) for one in np.eye(6)]).T
         np.testing.assert_allclose(to_sole @ wander @ to_sole.T, np.diag(sd**2), rtol=1e-9, atol=1e-9)
+
+
+def test_feet_that_pull_at_the_floor_are_read_anew():
+    """Unmeasured ones only, and only where they pull by more than they are kept from that."""
+    decision = FootDecision(load((Contact.UNMEASURED, Contact.MEASURED)))
+    w = np.zeros(12)
+    w[[2, 8]] = -3.1 * SETTINGS.pulling_force_n
+    assert BLOCK.review(SimpleNamespace(w=w), decision).lifted == (0,)
+    w[2] = -2.9 * SETTINGS.pulling_force_n
+    assert BLOCK.review(SimpleNamespace(w=w), decision) is None
+    assert BLOCK.review(SimpleNamespace(w=w - 1e3), FootDecision(load((Contact.AIR, Contact.AIR)))) is None
+
+
+@pytest.mark.parametrize("contacts", PAIRS)
+def test_the_noise_is_that_of_the_plates_that_are_read(contacts):
+    sd = np.repeat([SETTINGS.plate_force_n, SETTINGS.plate_moment_nm], 3)
+    plates = 1 if Contact.SHARED in contacts else contacts.count(Contact.MEASURED)
+    expected = plates * 2.0 * np.log(sd).sum()
+    assert BLOCK.log_noise(FootDecision(load(contacts))) == pytest.approx(expected)

@@ -85,6 +85,7 @@ def test_the_default_lag_is_below_two_seconds():
     assert SmoothingSettings().lag_s == pytest.approx(1.9)
 
 
+@pytest.mark.slow
 @every_filter
 def test_short_stretches_are_nearly_the_whole(name):
     """What readings say fades within the 0.2 s a stretch looks ahead: less than the spread is left, mostly nothing."""
@@ -96,6 +97,7 @@ def test_short_stretches_are_nearly_the_whole(name):
     assert (errors(parts) < 1.03 * errors(whole)).all()
 
 
+@pytest.mark.slow
 @every_filter
 def test_the_last_stretch_is_the_whole(name):
     """It has seen the same later readings; the dynamic smoother is linearised elsewhere before it."""

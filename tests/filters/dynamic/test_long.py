@@ -8,9 +8,12 @@ eigenvalue of the correlations was 5e-7, early on, and fell no further.)
 import numpy as np
 import pytest
 
-from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
+from mbkf.filters.dynamic.plant import DynamicState, SingerPlant, SingerSettings
 from mbkf.numerics.kalman import informed_with_rows
+from mbkf.sensors.block import Frame
 from tests.dynamics import follow, trial
+
+pytestmark = pytest.mark.slow
 
 STEPS = 100_000
 SIZE = 15
@@ -20,6 +23,7 @@ class Slider:
     """A mass on a rail: as much of a body as the plant asks for."""
 
     nv = 1
+    movement_sd = np.array([300.0])
 
     def integrate(self, q, dv):
         return q + dv
@@ -50,7 +54,8 @@ def followed_slider(steps):
     rows = [hostile_rows(rng) for _ in range(256)]
     markers = [np.array([[10.0 ** rng.uniform(-2, 10)]]) for _ in range(256)]
     wander = np.repeat([3000.0, 300.0, 3000.0, 300.0], 3) ** 2 * 0.01
-    plant, kinds, blind = SingerPlant(Slider(), 0.01, np.array([300.0]), 0.05), rng.integers(0, 256, steps), 0
+    plant = SingerPlant(Slider(), 0.01, np.zeros(1, dtype=bool), SingerSettings(decay_s=0.05))
+    kinds, blind = rng.integers(0, 256, steps), 0
     state = DynamicState(
         np.zeros(1), np.zeros(1), np.zeros(1), np.zeros(12), np.diag([1e4, 1e-8, 1e6] + [1e6] * 12)
     )
@@ -60,7 +65,7 @@ def followed_slider(steps):
         P[every, every] += wander
         blind = blind - 1 if blind else 500 * (k == 17 and rng.random() < 0.2)
         if not blind:
-            P = informed_with_rows(P.T, markers[k], rows[k])
+            P = informed_with_rows(P, markers[k], rows[k])
         state = DynamicState(state.q, state.v, state.a, state.w, P)
         yield P
 
@@ -89,7 +94,7 @@ def test_the_whole_filter_survives_markers_that_flicker(plates):
         markers = kalman.sensor.positions(m.q[t]) + 0.002 * rng.normal(size=(len(hidden), 3))
         hidden ^= rng.random(len(hidden)) < 0.1
         markers[hidden | (n % 100 > 95)] = np.nan
-        step = kalman.step(state, memory, markers, m.foot_wrench[t, :plates])
+        step = kalman.step(state, memory, Frame(markers, m.foot_wrench[t, :plates]))
         state, memory = step.state, step.memory
         if n % 10 == 0:
             np.testing.assert_array_equal(state.P, state.P.T)

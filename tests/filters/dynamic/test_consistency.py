@@ -16,6 +16,8 @@ from benchmarks.dynamic.consistency import (
     simulate,
 )
 
+pytestmark = pytest.mark.slow
+
 
 @cache
 def simulated():

@@ -3,8 +3,8 @@
 from itertools import pairwise
 
 import numpy as np
-from mbkf.filters.prediction import steady_motion
 
+from mbkf.filters.torque.tracking import steady_motion
 from tests.dynamics import DT
 from tests.followed import estimates, inputs, made
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+import pytest
 
 from mbkf.filters.fixed_lag import SmoothingSettings
 from mbkf.filters.tracking import track
@@ -12,6 +13,8 @@ from mbkf.imu.virtual import ImuErrors, virtual_imus
 from mbkf.pipelines.trial.followers import follower
 from mbkf.sensors.inertial_sensor import InertialSensor
 from tests.followed import FRAMES, inputs, made, recording, without
+
+pytestmark = pytest.mark.slow
 
 LOST = slice(25, 50)
 """A quarter of a second without any marker, in a squat that goes down."""
@@ -82,7 +85,7 @@ def test_the_smoother_uses_them_too():
 
 
 def test_unseen_arms_are_not_thrown_about():
-    """Held near their usual posture, while a filter without sensors lets them go where Newton's law needs them."""
+    """Held near their mean posture, while a filter without sensors lets them go where Newton's law needs them."""
     found = followed(imus=True)
     clear = made().model
     arms = np.concatenate([np.arange(*clear.joint(f"{side}_{part}").v.indices(clear.nv))

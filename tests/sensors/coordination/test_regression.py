@@ -30,7 +30,7 @@ def fitted(features, targets, n, ridge=RIDGE):
 def test_what_is_linear_is_foretold_exactly(seed):
     features, targets, blocks = shown(seed, noise=0.0)
     found = learn(features, targets, blocks, 1e-6)
-    np.testing.assert_allclose(found.expected(features[3])[0], targets[3], atol=1e-6)
+    np.testing.assert_allclose(found.predicted(features[3])[0], targets[3], atol=1e-6)
     assert found.error_sd.max() < 1e-6
 
 
@@ -38,7 +38,7 @@ def test_the_mean_is_that_of_ridge_regression():
     features, targets, blocks = shown()
     new = np.random.default_rng(1).normal(size=features.shape[1])
     constant, *weights = fitted(features, targets, len(features))
-    found, _ = learn(features, targets, blocks, RIDGE).expected(new)
+    found, _ = learn(features, targets, blocks, RIDGE).predicted(new)
     np.testing.assert_allclose(found, constant + new @ np.array(weights), atol=1e-9)
 
 
@@ -61,7 +61,7 @@ def test_what_does_not_follow_keeps_its_mean():
     features = np.repeat(rng.normal(size=(8, 6)), 15, axis=0) + 0.01 * rng.normal(size=(120, 6))
     targets = np.repeat(rng.normal(size=(8, 1)), 15, axis=0)
     found = learn(features, targets, blocks, RIDGE)
-    mean, sd = found.expected(features[0] + 1.0)
+    mean, sd = found.predicted(features[0] + 1.0)
     assert mean == pytest.approx(targets.mean(axis=0))
     left_out = targets[::15, 0] - (targets[::15, 0].sum() - targets[::15, 0]) / 7
     assert sd == pytest.approx(np.sqrt((left_out**2).mean() * (1 + 1 / 8) * 7 / 5))
@@ -72,7 +72,7 @@ def test_the_further_from_what_was_shown_the_less_is_known(seed, further):
     features, targets, blocks = shown(seed % 10)
     way = np.random.default_rng(seed).normal(size=features.shape[1])
     found = learn(features, targets, blocks, RIDGE)
-    near, far = (found.expected(found.features + k * way)[1] for k in (1.0, 1.0 + further))
+    near, far = (found.predicted(found.features + k * way)[1] for k in (1.0, 1.0 + further))
     assert (far > near).all()
 
 
@@ -81,7 +81,7 @@ def test_few_blocks_tell_no_more_than_a_vague_mean(blocks):
     features, targets, _ = shown()
     found = learn(features, targets, np.repeat(np.arange(blocks), 90 // blocks), RIDGE)
     for at in (features[0], features[0] + 10.0):
-        mean, sd = found.expected(at)
+        mean, sd = found.predicted(at)
         np.testing.assert_array_equal(mean, targets.mean(axis=0))
         assert (sd > 3.0 * targets.std(axis=0)).all()
 
@@ -94,5 +94,5 @@ def test_one_block_tells_nothing():
 def test_some_targets_are_foretold_as_among_all():
     features, targets, blocks = shown()
     found = learn(features, targets, blocks, RIDGE)
-    mean, sd = found.expected(features[5])
-    np.testing.assert_array_equal(found.only(slice(1, 3)).expected(features[5]), [mean[1:], sd[1:]])
+    mean, sd = found.predicted(features[5])
+    np.testing.assert_array_equal(found.only(slice(1, 3)).predicted(features[5]), [mean[1:], sd[1:]])

@@ -6,9 +6,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from mbkf.filters.dynamic.smoother import Frame, smooth
+from mbkf.filters.dynamic.smoother import smooth
 from tests.dynamics import follow, trial
 from tests.motions import angle_errors, assert_near, worst
+
+pytestmark = pytest.mark.slow
 
 ROUNDS = 4
 MOTIONS = {"squat": range(40, 100), "walk": range(60, 120)}
@@ -20,17 +22,10 @@ def run_of(name):
     return follow(trial(name), MOTIONS[name])
 
 
-def frames_of(run):
-    return [
-        Frame(step.state, step.decision, markers)
-        for step, markers in zip(run.steps, run.markers_m, strict=True)
-    ]
-
-
 @cache
 def smoothed(name, rounds=ROUNDS):
     run = run_of(name)
-    return list(smooth(run.kalman, run.states[0], frames_of(run), rounds))
+    return list(smooth(run.kalman, run.steps, rounds))
 
 
 def residual_n(run, states):
@@ -65,7 +60,7 @@ def test_rounds_converge(name):
     run = run_of(name)
     before, after = smoothed(name, ROUNDS - 1), smoothed(name, ROUNDS)
     sd = [np.sqrt(np.diag(s.P)) for s in after]
-    change = [run.kalman.difference(a, b) for a, b in zip(before, after, strict=True)]
+    change = [run.kalman.plant.difference(a, b) for a, b in zip(before, after, strict=True)]
     assert worst(np.array(change) / np.array(sd)) < 0.3
 
 
@@ -82,7 +77,7 @@ def test_the_last_frame_is_the_filters(name):
     run = run_of(name)
     last, own = smoothed(name, 1)[-1], run.states[-1]
     sd = np.sqrt(np.diag(own.P))
-    assert worst(run.kalman.difference(own, last) / sd) < 0.3
+    assert worst(run.kalman.plant.difference(own, last) / sd) < 0.3
     assert worst((last.P - own.P) / sd[:, None] / sd) < 0.1
 
 
@@ -90,22 +85,21 @@ def test_the_last_frame_is_the_filters(name):
 def test_stretches_that_look_ahead_are_nearly_the_whole(name):
     """The first half, smoothed with 20 more frames in sight (half of what is usual), against smoothing all."""
     run, half = run_of(name), 30
-    frames = frames_of(run)
-    part = list(smooth(run.kalman, run.states[0], frames[: half + 20], ROUNDS, wanted=half))
+    part = list(smooth(run.kalman, run.steps[: half + 20], ROUNDS, wanted=half))
     assert len(part) == half
     for t, (found, whole) in enumerate(zip(part, smoothed(name), strict=False)):
         sd, share = np.sqrt(np.diag(whole.P)), 0.25 if t < half // 2 else 1.0
-        assert worst(run.kalman.difference(whole, found) / sd) < 0.3 * share
+        assert worst(run.kalman.plant.difference(whole, found) / sd) < 0.3 * share
         assert worst((found.P - whole.P) / sd[:, None] / sd) < 0.2 * share
 
 
 def test_looking_ahead_is_what_makes_a_stretch_good():
-    run, half, frames = run_of("squat"), 30, frames_of(run_of("squat"))
+    run, half = run_of("squat"), 30
     off = []
     for ahead in (0, 5, 20):
-        part = smooth(run.kalman, run.states[0], frames[: half + ahead], 2, wanted=half)
+        part = smooth(run.kalman, run.steps[: half + ahead], 2, wanted=half)
         pairs = zip(part, smoothed("squat", 2), strict=False)
-        sd_and_change = [(np.sqrt(np.diag(w.P)), run.kalman.difference(w, found)) for found, w in pairs]
+        sd_and_change = [(np.sqrt(np.diag(w.P)), run.kalman.plant.difference(w, found)) for found, w in pairs]
         off.append(max(worst(change / sd) for sd, change in sd_and_change))
     assert off[2] < 0.3 * off[1] < 0.3 * off[0]
 
@@ -123,12 +117,12 @@ def test_covariances_are_symmetric_positive_and_not_larger(name):
     assert np.median(gained[5:-5]) < 0.7
 
 
-def test_states_covariances_given_with_frames_do_not_matter():
+def test_covariances_of_all_but_the_first_step_do_not_matter():
     run = run_of("squat")
-    frames = frames_of(run)[:10]
-    bare = [replace(frame, state=replace(frame.state, P=np.zeros((1, 1)))) for frame in frames]
+    first, *rest = run.steps[:10]
+    bare = [replace(step, state=replace(step.state, P=np.zeros((1, 1)))) for step in rest]
     for a, b in zip(
-        smooth(run.kalman, run.states[0], frames, 2), smooth(run.kalman, run.states[0], bare, 2), strict=True
+        smooth(run.kalman, [first, *rest], 2), smooth(run.kalman, [first, *bare], 2), strict=True
     ):
         np.testing.assert_array_equal(a.q, b.q)
         np.testing.assert_array_equal(a.P, b.P)
@@ -136,6 +130,6 @@ def test_states_covariances_given_with_frames_do_not_matter():
 
 def test_a_single_frame_is_what_it_was():
     run = run_of("squat")
-    (found,) = smooth(run.kalman, run.states[0], frames_of(run)[:1], 3)
-    assert_near(run.kalman.difference(run.states[0], found), 0.0, 1e-12)
+    (found,) = smooth(run.kalman, run.steps[:1], 3)
+    assert_near(run.kalman.plant.difference(run.states[0], found), 0.0, 1e-12)
     assert_near(found.P, run.states[0].P, 1e-9 * worst(run.states[0].P))

@@ -1,0 +1,390 @@
+"""What the tests of every block share: how blocks are found, made from a pool of arguments, and shown frames.
+
+A block is a class that derives from :class:`mbkf.sensors.block.Block`, in the package or in a module of tests/blocks.
+The arguments of its constructor are filled by their type, by their name, or by their default (:meth:`Scene.made`); a
+frame has something to read under every name (:class:`AnyReading`). So a new block needs no line here unless its
+constructor wants what no other wants.
+"""
+
+import importlib
+import inspect
+import pkgutil
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import cache, cached_property
+from typing import get_type_hints
+
+import numpy as np
+
+import mbkf
+import tests.blocks
+from mbkf.conventions import GRAVITY_M_S2
+from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
+from mbkf.imu.placement import typical_mounts
+from mbkf.model.newton_euler import FEET, NewtonEuler
+from mbkf.numerics.kalman import Information
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.sensors.foot_contact import FootContact
+from mbkf.sensors.inertial import InertialSensors
+from mbkf.sensors.inertial_sensor import InertialSensor
+from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.sensors.markers import Markers
+from mbkf.sensors.posture import PostureSensor
+from tests.dynamics import DT, LOAD, MARKER_SD_M, SPREAD, random_covariance, trial
+
+HOMES = ("mbkf.", "tests.blocks.")
+LAST, LIVED = 130, 115
+"""A frame of the walk in which a foot stands on its plate, and how many frames a block has seen by then."""
+
+HIDDEN = ("hand", "forearm", "upper_arm", "foot", "toes", "head")
+"""Segments out of sight in the last frames of some situations."""
+
+LITTLE, MOST_STEPS = 2e-4, 20
+"""How much of what information says of a state is left when its slope is compared, and steps on the way there."""
+
+NO_IMUS, NO_NAMES = None, {}
+
+
+@cache
+def block_classes():
+    """Every block by its name; abstract ones, which no filter holds, are left out."""
+    for package in (mbkf, tests.blocks):
+        for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            if not found.name.endswith("__main__"):
+                importlib.import_module(found.name)
+    kinds = {kind for kind in descendants(Block) if kind.__module__.startswith(HOMES)}
+    return {kind.__name__: kind for kind in sorted(kinds, key=lambda kind: kind.__name__)}
+
+
+def descendants(kind):
+    for child in kind.__subclasses__():
+        if not inspect.isabstract(child):
+            yield child
+        yield from descendants(child)
+
+
+class AnyReading(Mapping):
+    """Readings (3,) under every name, the same whenever asked; all NaN if so asked."""
+
+    def __init__(self, missing=False):
+        self._missing = missing
+
+    def __getitem__(self, name):
+        if self._missing:
+            return np.full(3, np.nan)
+        return 0.1 * np.random.default_rng(sum(name.encode())).normal(size=3)
+
+    def __contains__(self, name):
+        return True
+
+    def __iter__(self):
+        return iter(())
+
+    def __len__(self):
+        return 0
+
+
+@dataclass(frozen=True)
+class Situation:
+    """Frames with true states and what the standard instruments note of each; the last is the one that is read."""
+
+    states: list
+    frames: list
+    notes: list
+
+    def noted(self, t=-1):
+        """The notes of a frame, to be written into."""
+        return replace(self.notes[t])
+
+
+class Scene:
+    """A walk over two plates with markers and inertial sensors, its instruments in one order or another."""
+
+    def __init__(self, seed=None):
+        walk, rng = trial("walk"), np.random.default_rng(seed)
+        self.walk, self.model = walk, walk.model
+        mounts = typical_mounts(self.model, seed=1)
+        counts = (len(walk.subject.markers), len(walk.plates), len(mounts))
+        self.order = [np.arange(n) if seed is None else rng.permutation(n) for n in counts]
+        markers = [walk.subject.markers[k] for k in self.order[0]]
+        local = np.array([marker.position_m for marker in markers])
+        self.sensor = MarkerSensor(self.model, [marker.segment for marker in markers], local)
+        self.inertial = InertialSensor(self.model, [mounts[k] for k in self.order[2]])
+        self.detector = ContactDetector(self.model, [walk.plates[k] for k in self.order[1]], DT)
+        self.noise_m = np.linspace(0.5, 1.5, counts[0])[self.order[0]] * MARKER_SD_M
+        self.everywhere = np.zeros(self.model.nv, dtype=bool)
+
+    @cached_property
+    def by_type(self):
+        """Arguments of constructors by their type."""
+        return {
+            type(self.model): self.model,
+            MarkerSensor: self.sensor,
+            InertialSensor: self.inertial,
+            PostureSensor: PostureSensor(self.model),
+            ContactDetector: self.detector,
+            NewtonEuler: NewtonEuler(self.model),
+        }
+
+    @cached_property
+    def by_name(self):
+        """Arguments of constructors by their name."""
+        movement = self.model.movement_sd
+        return {
+            "noise_m": self.noise_m,
+            "dt_s": DT,
+            "unobservable": self.everywhere,
+            "weight_n": GRAVITY_M_S2 * self.model.mass_kg,
+            "feet": FEET,
+            "movement_sd": movement,
+            "velocity_sd": 0.1 * movement,
+            "acceleration_sd": 10.0 * movement,
+        }
+
+    def arguments(self, kind):
+        """What a block is made with: by type, by name, by default; settings as they come, other numbers 0.5."""
+        found, hints = {}, get_type_hints(kind.__init__)
+        for name, one in inspect.signature(kind).parameters.items():
+            hint = hints.get(name)
+            if hint in self.by_type:
+                found[name] = self.by_type[hint]
+            elif name in self.by_name:
+                found[name] = self.by_name[name]
+            elif name == "model":
+                found[name] = self.model
+            elif one.default is not inspect.Parameter.empty:
+                found[name] = one.default
+            elif is_dataclass(hint):
+                found[name] = hint()
+            elif hint is float:
+                found[name] = 0.5
+            else:
+                raise TypeError(f"{kind.__name__}: give '{name}' a default or a value in Scene.by_name")
+        return found
+
+    def made(self, kind, **changes):
+        """A block, bound to the layout of a filter that holds it."""
+        block = kind(**(self.arguments(kind) | changes))
+        block.bind(self.plant(block).layout)
+        return block
+
+    def plant(self, *blocks):
+        """The dynamic filter's plant with what blocks add to the state."""
+        extras = [extra for block in blocks for extra in block.states()]
+        return SingerPlant(self.model, DT, self.everywhere, extras=extras)
+
+    def frame(self, t, hidden=False, worn=False):
+        """Exact readings of a frame; the hidden segments out of sight, and inertial sensors worn, if so asked."""
+        m = self.walk.motion
+        markers = self.sensor.positions(m.q[t])
+        if hidden:
+            markers[[segment.endswith(HIDDEN) for segment in self.sensor.segments]] = np.nan
+        imus = self.inertial.values(m.q[t], m.v[t], m.a[t]) if worn else NO_IMUS
+        return Frame(markers, m.foot_wrench[t][self.order[1]], imus, AnyReading())
+
+    @cache
+    def situation(self, name):
+        """Everything seen; limbs hidden; hidden, with inertial sensors; joints bent too far; nothing read at last."""
+        hides, worn = name in ("hidden", "worn"), name == "worn"
+        times = range(LAST - LIVED, LAST + 1)
+        frames = [self.frame(t, hides and t > LAST - 3, worn) for t in times]
+        m = self.walk.motion
+        states = [self.state(m.q[t], m.v[t], m.a[t], m.foot_wrench[t]) for t in times]
+        if name == "bent":
+            states[-1] = replace(states[-1], q=bent(self.model))
+        if name.startswith("nothing"):
+            frames[-1] = self.nothing(absent=name == "nothing there")
+        return Situation(states, frames, self._noted(states, frames))
+
+    def nothing(self, absent):
+        """A frame in which no instrument reads; absent ones are not even named."""
+        markers, plates = np.full((len(self.noise_m), 3), np.nan), np.full((len(self.order[1]), 6), np.nan)
+        imus = None if absent else np.full((len(self.order[2]), 6), np.nan)
+        return Frame(markers, plates, imus, NO_NAMES if absent else AnyReading(missing=True))
+
+    def state(self, q, v, a, wrench):
+        """A true state, to which :meth:`near` gives errors, a covariance and what blocks add."""
+        return DynamicState(q, v, a, wrench.ravel(), np.zeros((0, 0)))
+
+    def near(self, state, plant, seed=3):
+        """A state a little off, with a full covariance and the states that blocks add."""
+        rng, nv = np.random.default_rng(seed), self.model.nv
+        extra, extra_sd = plant.layout.start()
+        size = 3 * nv + 12
+        P = np.zeros((plant.layout.size,) * 2)
+        P[:size, :size] = 0.01 * random_covariance(self.model, rng)
+        P[range(size, len(P)), range(size, len(P))] = extra_sd**2
+        sd = np.concatenate([np.repeat(SPREAD, nv), np.tile(LOAD, 2), extra_sd])
+        whole = replace(state, P=np.asfortranarray(P), extra=extra)
+        return plant.retract(whole, 0.05 * sd * rng.normal(size=len(sd)), whole.P)
+
+    def _noted(self, states, frames):
+        """What markers, plates and inertial sensors note, frame by frame."""
+        standard = [self.made(kind) for kind in (Markers, FootContact, InertialSensors)]
+        kept, found = [block.begin() for block in standard], []
+        for state, frame in zip(states, frames, strict=True):
+            notes, here = Notes(), replace(state, P=np.eye(3 * self.model.nv + 12) * 1e-4)
+            for k, block in enumerate(standard):
+                at = OperatingPoint(here, block.prepare(here, kept[k]))
+                kept[k] = block.remember(here, at, block.decide(at, frame, kept[k], notes), kept[k])
+            found.append(notes)
+        return found
+
+
+def bent(model):
+    """Standing with knees and elbows 0.3 rad beyond their nearest limits."""
+    step = np.zeros(model.nv)
+    for segment in ("right_shank", "left_forearm"):
+        own = np.arange(model.nv)[model.joint(segment).v]
+        limits = model.limits[own]
+        near = limits[np.arange(len(own)), np.abs(limits).argmin(axis=1)]
+        k = np.abs(near).argmax()
+        step[own[k]] = near[k] + 0.3 * np.sign(near[k])
+    return model.integrate(model.neutral(), step)
+
+
+SITUATIONS = ("seen", "hidden", "worn", "bent")
+SILENT = ("nothing read", "nothing there")
+scene = cache(Scene)
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A block that has lived through a situation up to its last frame, which it has decided upon.
+
+    Attributes:
+        block, plant: The block and a plant with its states.
+        state: Where it is linearised.
+        frame, memory: What it read and what it kept before.
+        decision: What it took the readings for.
+        situation: What happened.
+    """
+
+    block: Block
+    plant: SingerPlant
+    state: DynamicState
+    frame: Frame
+    memory: object
+    decision: object
+    situation: Situation
+
+    def says(self, state=None, decision=None):
+        """Its statement, at its state or at another, as a smoother asks."""
+        state = self.state if state is None else state
+        at = OperatingPoint(state, self.block.prepare(state, None))
+        return self.block.linearise(at, self.decision if decision is None else decision)
+
+    def moved(self, x, state=None):
+        """A state displaced by the first components of a tangent vector."""
+        state = self.state if state is None else state
+        step = np.zeros(self.plant.layout.size)
+        step[: len(x)] = x
+        return self.plant.retract(state, step, state.P)
+
+
+def shown(kind, name, seed=None, off=3):
+    """A block of a kind after a situation.
+
+    ``seed`` shuffles the instruments, ``off`` chooses how wrong the state is at which the block is linearised.
+    """
+    here = scene(seed)
+    happened, block = here.situation(name), here.made(kind)
+    plant, memory = here.plant(block), block.begin()
+    extra = plant.layout.start()[0]
+    P = 1e-4 * np.eye(plant.layout.size)
+    for t, (true, frame) in enumerate(zip(happened.states[:-1], happened.frames[:-1], strict=True)):
+        state = replace(true, extra=extra, P=P)
+        at = OperatingPoint(state, block.prepare(state, memory))
+        memory = block.remember(state, at, block.decide(at, frame, memory, happened.noted(t)), memory)
+    state, frame = here.near(happened.states[-1], plant, off), happened.frames[-1]
+    at = OperatingPoint(state, block.prepare(state, memory))
+    decision = block.decide(at, frame, memory, happened.noted())
+    return Shown(block, plant, state, frame, memory, decision, happened)
+
+
+def all_rows(said):
+    """The rows of a statement that consists of rows, one after the other; none of one that does not."""
+    if said is None or isinstance(said, Information):
+        return []
+    return [said] if isinstance(said, Rows) else list(said)
+
+
+def speaks(said):
+    if isinstance(said, Information):
+        return bool(np.any(said.matrix))
+    return any(len(one.innovation) for one in all_rows(said))
+
+
+def stacked(said, size):
+    """(k, N) whitened rows and (k,) innovations of a statement; information as some rows that say the same."""
+    if isinstance(said, Information):
+        values, vectors = np.linalg.eigh(said.matrix)
+        there = values > 1e-12 * values.max(initial=0.0)
+        rows = vectors[:, there].T * np.sqrt(values[there])[:, None]
+        innovation = vectors[:, there].T @ said.vector / np.sqrt(values[there])
+        return np.pad(rows, ((0, 0), (0, size - len(said.vector)))), innovation
+    parts = all_rows(said)
+    widths = [(one.first, size - one.first - one.jacobian.shape[1]) for one in parts]
+    rows = [np.pad(one.jacobian, ((0, 0), width)) for one, width in zip(parts, widths, strict=True)]
+    if not rows:
+        return np.zeros((0, size)), np.zeros(0)
+    return np.vstack(rows), np.concatenate([one.innovation for one in parts])
+
+
+def whole(said, size):
+    """(N, N) information and (N,) vector of a statement."""
+    rows, innovation = stacked(said, size)
+    return rows.T @ rows, innovation @ rows
+
+
+def derivative(found):
+    """What a statement says of its own slope, and what finite differences say, along the whole tangent space.
+
+    Rows fall by their Jacobian. The vector Hᵀ R⁻¹ y of information falls by its matrix where y vanishes, so the
+    state is first moved to where little of it is left.
+    """
+    state, size, h = found.state, found.plant.layout.size, 1e-6
+    said = found.says()
+    if isinstance(said, Information):
+        least = LITTLE * np.linalg.norm(said.vector)
+        for _ in range(MOST_STEPS):
+            if np.linalg.norm(said.vector) <= least:
+                break
+            state = found.moved(0.9 * np.linalg.pinv(said.matrix, 1e-9, True) @ said.vector, state)
+            said = found.says(state)
+        stated = np.pad(said.matrix, ((0, 0), (0, size - len(said.vector))))
+
+        def value(x):
+            return found.says(found.moved(x, state)).vector
+
+        # Information needs no larger step: it holds on configurations and their rates.
+        steps = np.full(size, h)
+    else:
+        stated = stacked(said, size)[0]
+        steps = np.where(np.arange(size) < 2 * found.plant.model.nv, h, 1e3 * h)
+
+        def value(x):
+            return stacked(found.says(found.moved(x, state)), size)[1]
+
+    columns = [(value(e) - value(-e)) / (2.0 * step) for e, step in zip(np.diag(steps), steps, strict=True)]
+    return stated, -np.stack(columns, axis=-1)
+
+
+def noises(kind, here):
+    """Changes that double a noise of a block: an argument of its constructor, or a number among its settings."""
+    for name, value in here.arguments(kind).items():
+        if is_dataclass(value) and name.endswith("settings"):
+            numbers = {one.name: getattr(value, one.name) for one in fields(value)}
+            for leaf, number in numbers.items():
+                if isinstance(number, float):
+                    yield {name: replace(value, **{leaf: 2.0 * number})}
+        elif isinstance(value, float) or (isinstance(value, np.ndarray) and value.dtype.kind == "f"):
+            yield {name: 2.0 * value}
+
+
+def noisier(decision):
+    """Decisions with one of their own standard deviations doubled."""
+    for name in getattr(decision, "_fields", ()):
+        if "sd" in name.split("_"):
+            yield decision._replace(**{name: 2.0 * getattr(decision, name)})
