@@ -16,9 +16,9 @@ from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.errors import InvalidInput
 from mbkf.filters.dynamic.filter import DynamicFilter
 from mbkf.filters.dynamic.settings import DynamicSettings
-from mbkf.filters.inverse_dynamics import TorqueSolver
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.settings import KinematicSettings
+from mbkf.model.newton_euler import NewtonEuler
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.reconstruct import subject_markers
 from mbkf.pipelines.synth import synthesise
@@ -40,7 +40,7 @@ INFORMATION = math.inf
 
 @dataclass(frozen=True)
 class Walk:
-    """A walk to follow: filters, torque solver, markers (T, M, 3) and the wrenches (2, 6) that stand for plates.
+    """A walk to follow: filters, Newton–Euler equations, markers (T, M, 3) and the wrenches (2, 6) that stand for plates.
 
     ``plates`` (T, K, 6) are what the dynamic filter reads.
     """
@@ -48,7 +48,7 @@ class Walk:
     kalman: KinematicFilter
     dynamic: DynamicFilter
     plates: Array
-    solver: TorqueSolver
+    balance: NewtonEuler
     measured_m: Array
     foot_wrench: Array
 
@@ -107,7 +107,7 @@ def make_walk(seconds: float) -> Walk:
     loads = plate_wrenches(plates, measured.times_s, measured.rate_hz)
     feet = ContactDetector(model, plates, kalman.plant.dt_s)
     dynamic = DynamicFilter.standard(sensor, noise, feet, kalman.plant.dt_s, held, DynamicSettings())
-    return Walk(kalman, dynamic, loads, TorqueSolver(model), measured.positions_m, wrench)
+    return Walk(kalman, dynamic, loads, NewtonEuler(model), measured.positions_m, wrench)
 
 
 def time_kinematic(walk: Walk) -> Times:
@@ -127,7 +127,7 @@ def time_kinematic(walk: Walk) -> Times:
             done = kalman.step(state, memory, Frame(markers, no_plates))
             result, memory = done.state, done.memory
             ticks.append(perf_counter())
-            walk.solver.torques(result.q, result.v, (result.v - state.v) / dt, walk.foot_wrench)
+            walk.balance.tau(result.q, result.v, (result.v - state.v) / dt, walk.foot_wrench.ravel())
             ticks.append(perf_counter())
             state = result
             rows.append(np.diff(ticks))

@@ -81,8 +81,9 @@ class PendulumAccelerationFilter:
             belief: Noise settings.
         """
         self.body, self.belief = DoublePendulum(shape, residual=False), belief
-        motion = SingerSettings(acceleration_scale=belief.acceleration, decay_s=belief.decay_s)
-        self.plant = SingerPlant(PlainManifold.as_model(), dt_s, np.zeros(4, dtype=bool), motion)
+        spread = np.full(4, belief.acceleration)
+        motion = SingerSettings(activity_gain=0.0, decay_s=belief.decay_s)
+        self.plant = SingerPlant(PlainManifold.as_model(spread), dt_s, np.zeros(4, dtype=bool), motion)
         self._walk = belief.load_noise**2 * dt_s
         plate = [belief.force_n, belief.force_n, belief.moment_nm]
         self._sd = np.array([belief.marker_m] * 8 + plate + [belief.residual] * 3)

@@ -5,7 +5,8 @@ import pinocchio as pin
 import pytest
 
 from mbkf.conventions import GRAVITY_M_S2
-from mbkf.filters.inverse_dynamics import TorqueSolver, inverse_dynamics
+from mbkf.filters.inverse_dynamics import inverse_dynamics
+from mbkf.model.newton_euler import NewtonEuler
 from tests.motions import assert_near, moderate_pose, random_model, smooth_motion, track_of, worst
 
 DOWN = np.array([0.0, 0.0, -GRAVITY_M_S2])
@@ -147,8 +148,8 @@ def test_frames_not_followed_stay_nan(model, rng):
 
 def test_one_instant_and_a_whole_trial_agree(model, rng):
     motion = moving(model, rng, frames=3)
-    wrench, solver = exact_foot_wrenches(model, motion, rng), TorqueSolver(model)
+    wrench, balance = exact_foot_wrenches(model, motion, rng), NewtonEuler(model)
     found = inverse_dynamics(model, motion, wrench)
     for t in range(3):
-        one = solver.torques(motion.q[t], motion.v[t], motion.a[t], wrench[t])
+        one = balance.tau(motion.q[t], motion.v[t], motion.a[t], wrench[t].ravel())
         np.testing.assert_array_equal(one, found.tau[t])

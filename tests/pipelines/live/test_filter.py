@@ -7,19 +7,17 @@ import pytest
 
 from mbkf.errors import FileFormatError, NotObservable
 from mbkf.filters.kinematic.tracking import warm_up_frames
+from mbkf.filters.record import FrameRecorder, blank
+from mbkf.filters.tracking import track_of
 from mbkf.filters.tracking_loop import followed
 from mbkf.io.subject import write_subject
-from mbkf.model.clinical import ClinicalAngles
 from mbkf.pipelines.live.filter import LiveFilter, live_inputs
 from mbkf.pipelines.live.log import (
     FRAMES_FILE,
     SUBJECT_FILE,
     LiveLog,
     LiveStream,
-    LogRows,
-    blank,
     read_live_log,
-    track_of,
 )
 from mbkf.pipelines.live.results import live_results
 from mbkf.pipelines.reconstruct import ReconstructSettings, subject_markers
@@ -40,7 +38,7 @@ def recorded(positions=None):
 
 
 def steps_of(live, recording):
-    steps = [live.push(t, recording.markers_m[t], recording.plates[t]) for t in range(len(recording))]
+    steps = [live.push(t, recording.frame(t)) for t in range(len(recording))]
     return [step for some in steps for step in some] + live.finish(), [len(some) for some in steps]
 
 
@@ -106,7 +104,7 @@ def test_what_was_expected_is_what_the_step_goes_on_from(name, monkeypatch):
         expected, before = asked.expect(), len(calls)
         assert (expected is None) == (asked.latest is None)
         assert asked.expect() is expected
-        found += asked.push(t, recording.markers_m[t], recording.plates[t])
+        found += asked.push(t, recording.frame(t))
         assert expected is None or len(calls) == before
     for one, other in zip(found, plain, strict=False):
         np.testing.assert_array_equal(one.estimate.q, other.estimate.q)
@@ -116,12 +114,12 @@ def test_after_a_cut_nothing_is_known():
     inputs, recording = recorded()
     live = LiveFilter(follower("kinematic", inputs))
     for t in range(40):
-        live.push(t, recording.markers_m[t], recording.plates[t])
+        live.push(t, recording.frame(t))
     assert live.latest is not None
     assert live.cut() == []
     assert live.latest is None
     for t in range(40, 50):
-        assert live.push(t, recording.markers_m[t], recording.plates[t]) == []
+        assert live.push(t, recording.frame(t)) == []
     assert [step.number for step in live.cut()] == list(range(40, 50))
 
 
@@ -141,7 +139,7 @@ def log(tmp_path):
     """A log of frames 3 to 60, two of them missing, and what made its rows."""
     live = live_inputs(CAPTURE.markers.names, 100.0, CAPTURE.plates, SUBJECT, SETTINGS)
     chosen = follower("dynamic", live.inputs)
-    rows = LogRows(chosen, len(live.names), len(ClinicalAngles(chosen.model).names))
+    rows = FrameRecorder(chosen, len(live.names))
     plates = tuple(
         replace(p, force_n=p.force_n[:0], moment_nm=p.moment_nm[:0], centre_of_pressure_m=p.force_n[:0])
         for p in CAPTURE.plates
@@ -153,11 +151,13 @@ def log(tmp_path):
     _, recording = recorded()
     filter_ = LiveFilter(chosen)
     for t in range(3, 61):
-        for step in filter_.push(t, recording.markers_m[t], recording.plates[t]):
+        for step in filter_.push(t, recording.frame(t)):
             if step.number not in (30, 31):
                 markers = recording.markers_m[step.number]
                 row, spread = rows.row(step.number, markers, step.estimate, step.seconds)
-                rows.judge(row, step.estimate, spread)
+                if step.estimate is not None:
+                    rows.spread(row, spread)
+                    rows.innovation(row, step.estimate)
                 made.frames.append(row)
     samples = np.zeros(500, dtype=made.plates.dtype)
     samples["index"] = np.arange(30, 530)

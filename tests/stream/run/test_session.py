@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput, NotObservable
+from mbkf.filters.record import FrameRecorder
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.pipelines.live.filter import live_inputs
-from mbkf.pipelines.live.log import LogRows
 from mbkf.pipelines.live.results import live_results
 from mbkf.pipelines.reconstruct import ReconstructSettings
 from mbkf.pipelines.trial.followers import follower
@@ -80,7 +80,7 @@ def test_every_frame_is_shown_with_what_the_results_say_of_it(tmp_path, capture,
         ("torques", found.tau),
         ("wrench", found.foot_wrench),
         ("measured_m", found.measured_m),
-        ("angle_sd", found.sd_q),
+        ("angle_sd", found.angles_sd),
         ("torques_sd", found.sd_tau),
         ("predicted_m", found.predicted_m),
     ):
@@ -114,7 +114,7 @@ def test_the_rate_is_that_of_the_last_second(capture, subject):
     maker = FrameMaker(live, stream.rate_hz)
     for arrival_s in (0.0, 5.0, 5.5, 6.0):
         maker.arrived(arrival_s)
-    rows = LogRows(follower("dynamic", live.inputs), len(live.names), live.inputs.sensor.model.nv)
+    rows = FrameRecorder(follower("dynamic", live.inputs), len(live.names))
     unseen = np.full((len(live.names), 3), np.nan)
     ready = ReadyFrame(7, 6.0, unseen, np.zeros((0, 3)), np.zeros((2, 6)))
     shown = maker.frame(ready, rows.row(7, unseen, None, 0.0), 0.001, 3)
