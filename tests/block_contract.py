@@ -10,6 +10,7 @@ import importlib
 import inspect
 import pkgutil
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache, cached_property
 from typing import get_type_hints
@@ -24,7 +25,7 @@ from mbkf.filters.torque.plant import ForcedState, TorquePlant
 from mbkf.filters.torque.settings import SCHEMES
 from mbkf.imu.placement import typical_mounts
 from mbkf.model.human_dynamics import HumanDynamics
-from mbkf.model.newton_euler import FEET, NewtonEuler
+from mbkf.model.newton_euler import NewtonEuler
 from mbkf.numerics.kalman import Information
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.contact.causal import ContactDetector
@@ -98,7 +99,7 @@ class Situation:
 
     def noted(self, t=-1):
         """The notes of a frame, to be written into."""
-        return replace(self.notes[t])
+        return copy(self.notes[t])
 
 
 class Scene:
@@ -140,7 +141,6 @@ class Scene:
             "dt_s": DT,
             "unobservable": self.everywhere,
             "weight_n": GRAVITY_M_S2 * self.model.mass_kg,
-            "feet": FEET,
             "movement_sd": movement,
             "velocity_sd": 0.1 * movement,
             "acceleration_sd": 10.0 * movement,
