@@ -10,6 +10,7 @@ import importlib
 import inspect
 import pkgutil
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache, cached_property
 from typing import get_type_hints
@@ -20,8 +21,11 @@ import mbkf
 import tests.blocks
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
+from mbkf.filters.torque.plant import ForcedState, TorquePlant
+from mbkf.filters.torque.settings import SCHEMES
 from mbkf.imu.placement import typical_mounts
-from mbkf.model.newton_euler import FEET, NewtonEuler
+from mbkf.model.human_dynamics import HumanDynamics
+from mbkf.model.newton_euler import NewtonEuler
 from mbkf.numerics.kalman import Information
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.contact.causal import ContactDetector
@@ -95,7 +99,7 @@ class Situation:
 
     def noted(self, t=-1):
         """The notes of a frame, to be written into."""
-        return replace(self.notes[t])
+        return copy(self.notes[t])
 
 
 class Scene:
@@ -125,6 +129,7 @@ class Scene:
             PostureSensor: PostureSensor(self.model),
             ContactDetector: self.detector,
             NewtonEuler: NewtonEuler(self.model),
+            HumanDynamics: HumanDynamics(self.model),
         }
 
     @cached_property
@@ -136,10 +141,10 @@ class Scene:
             "dt_s": DT,
             "unobservable": self.everywhere,
             "weight_n": GRAVITY_M_S2 * self.model.mass_kg,
-            "feet": FEET,
             "movement_sd": movement,
             "velocity_sd": 0.1 * movement,
             "acceleration_sd": 10.0 * movement,
+            "residual_sd": np.repeat([10.0, 5.0], 3),
         }
 
     def arguments(self, kind):
@@ -170,7 +175,12 @@ class Scene:
         return block
 
     def plant(self, *blocks):
-        """The dynamic filter's plant with what blocks add to the state."""
+        """The dynamic filter's plant with what blocks add to the state; the torque filter's for a forced body."""
+        for block in blocks:
+            if hasattr(block, "body"):
+                size = 2 * self.model.nv + block.body.nu
+                nothing = np.zeros((size, size))
+                return TorquePlant(block.body, DT, lambda _: nothing, SCHEMES["FDMC"], wrenches=12)
         extras = [extra for block in blocks for extra in block.states()]
         return SingerPlant(self.model, DT, self.everywhere, extras=extras)
 
@@ -210,6 +220,12 @@ class Scene:
     def near(self, state, plant, seed=3):
         """A state a little off, with a full covariance and the states that blocks add."""
         rng, nv = np.random.default_rng(seed), self.model.nv
+        if isinstance(plant, TorquePlant):
+            sd = np.concatenate([np.repeat(SPREAD[:2], nv), np.full(plant.body.nu - 12, 5.0), np.tile(LOAD, 2)])
+            A = 0.1 * rng.normal(size=(len(sd),) * 2) / len(sd) ** 0.5
+            P = (0.01 * np.eye(len(sd)) + A @ A.T) * sd * sd[:, None]
+            P = np.asfortranarray(0.5 * (P + P.T))
+            return plant.retract(seen_by(plant, state, P), 0.05 * sd * rng.normal(size=len(sd)), P)
         extra, extra_sd = plant.layout.start()
         size = 3 * nv + 12
         P = np.zeros((plant.layout.size,) * 2)
@@ -230,6 +246,14 @@ class Scene:
                 kept[k] = block.remember(here, at, block.decide(at, frame, kept[k], notes), kept[k])
             found.append(notes)
         return found
+
+
+def seen_by(plant, state, P):
+    """A true state as a plant's, with a covariance and what blocks add."""
+    if isinstance(plant, TorquePlant):
+        u = plant.body.forces(state.q, state.v, state.a, state.w.reshape(2, 6))
+        return ForcedState(state.q, state.v, u, P)
+    return replace(state, extra=plant.layout.start()[0], P=P)
 
 
 def bent(model):
@@ -291,10 +315,9 @@ def shown(kind, name, seed=None, off=3):
     here = scene(seed)
     happened, block = here.situation(name), here.made(kind)
     plant, memory = here.plant(block), block.begin()
-    extra = plant.layout.start()[0]
     P = 1e-4 * np.eye(plant.layout.size)
     for t, (true, frame) in enumerate(zip(happened.states[:-1], happened.frames[:-1], strict=True)):
-        state = replace(true, extra=extra, P=P)
+        state = seen_by(plant, true, P)
         at = OperatingPoint(state, block.prepare(state, memory))
         memory = block.remember(state, at, block.decide(at, frame, memory, happened.noted(t)), memory)
     state, frame = here.near(happened.states[-1], plant, off), happened.frames[-1]
@@ -358,15 +381,14 @@ def derivative(found):
         def value(x):
             return found.says(found.moved(x, state)).vector
 
-        # Information needs no larger step: it holds on configurations and their rates.
-        steps = np.full(size, h)
     else:
         stated = stacked(said, size)[0]
-        steps = np.where(np.arange(size) < 2 * found.plant.model.nv, h, 1e3 * h)
 
         def value(x):
             return stacked(found.says(found.moved(x, state)), size)[1]
 
+    # Accelerations and forces are large.
+    steps = np.where(np.arange(size) < 2 * found.plant.layout.nv, h, 1e3 * h)
     columns = [(value(e) - value(-e)) / (2.0 * step) for e, step in zip(np.diag(steps), steps, strict=True)]
     return stated, -np.stack(columns, axis=-1)
 

@@ -1,6 +1,6 @@
 """Cases of tests/test_jacobians.py: sensors, plants, and the readings of the filters."""
 
-from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from mbkf.sensors.block import Frame
 from mbkf.sensors.foot_wrench import FootWrenchSensor
 from mbkf.sensors.joint_limits import JointLimits, JointLimitSettings
 from mbkf.sensors.markers import Markers
-from mbkf.sensors.posture import PostureSensor, posture_information
+from mbkf.sensors.posture import PosturePrior, PostureSensor, PostureSettings, posture_information
 from tests.derivatives import checks, named, slope
 from tests.derivatives_of_bodies import forced_body
 from tests.dynamics import block_of, dynamic_filter, markers_of, random_state, standing
@@ -45,6 +45,7 @@ def markers(rng):
 
 @checks(
     "sensors.posture.PostureReading.jacobian",
+    "sensors.posture.PreparedPosture.jacobian",
     "sensors.posture.PostureSensor.reading",
     "sensors.posture.PostureSensor.deviation",
     "sensors.posture.posture_information",
@@ -55,6 +56,7 @@ def posture(rng):
     numeric = central_difference(model, lambda at: sensor.deviation(at)[0], q)
     read = central_difference(model, lambda at: sensor.reading(at).deviation, q)
     weights = rng.uniform(0.5, 2.0, model.nv)
+    prior = PosturePrior(sensor, np.zeros(model.nv, dtype=bool), PostureSettings())
 
     def squared(at):
         return 0.5 * np.sum((weights * sensor.deviation(at)[0]) ** 2)
@@ -62,6 +64,7 @@ def posture(rng):
     return named(
         "sensors.posture",
         ("PostureReading.jacobian", sensor.reading(q).jacobian, read),
+        ("PreparedPosture.jacobian", prior.prepare(SimpleNamespace(q=q), None).jacobian, numeric),
         ("PostureSensor.reading", sensor.reading(q).jacobian, numeric[sensor.dofs]),
         ("PostureSensor.deviation", sensor.deviation(q)[1], numeric),
         # Half the square of the weighed deviations falls along the vector.
@@ -155,7 +158,7 @@ def dynamic_readings(rng):
     # The same decision, of markers that lie where the state has them.
     decided = list(done.decisions.blocks)
     decided[k] = decided[k]._replace(measured_m=markers_of(kalman, s.q))
-    decisions = replace(done.decisions, blocks=tuple(decided))
+    decisions = done.decisions._replace(blocks=decided)
 
     def read(x):
         return kalman.linearise(kalman.plant.retract(s, x, s.P), decisions)

@@ -13,7 +13,7 @@ from mbkf.filters.settings import changed
 from mbkf.io.records import PlateReadings
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
-from mbkf.sensors.block import Frame, OperatingPoint
+from mbkf.sensors.block import Frame, Notes, OperatingPoint
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.marker_sensor import MarkerSensor
@@ -95,6 +95,15 @@ def dynamic_filter(
 def settings_with(**values):
     """The dynamic filter's default settings but for these, by their own names."""
     return changed(DynamicSettings(), **values)
+
+
+def notes_of(**values):
+    """Notes that say this of a frame."""
+    notes = Notes()
+    for name, value in values.items():
+        assert hasattr(notes, name), name
+        setattr(notes, name, value)
+    return notes
 
 
 def prepared_at(block, state, memory=None):

@@ -46,6 +46,7 @@ ELSEWHERE = {
     "model.forced_body.ForcedBody.transport": "model/test_human_dynamics.py",
     "filters.torque.integrators.trapezoidal_newton": "filters/test_integrators.py TN",
     "sensors.gating.gated": "sensors/test_gating.py",
+    "filters.filter.Filter.prepared_by": "filters/test_filter.py",
     "numerics.discretisation.Discrete.phi": "numerics/test_discretisation.py",
     "numerics.kalman.Correction.gain_effect": "numerics/test_kalman.py",
     "numerics.kalman.information": "numerics/test_kalman.py",
@@ -53,8 +54,10 @@ ELSEWHERE = {
     "numerics.kalman.informed_with_rows": "numerics/test_kalman.py",
     "numerics.levenberg_marquardt.ArrowEquations.corner_gradient": "numerics/test_levenberg_marquardt.py",
     "numerics.levenberg_marquardt.ArrowEquations.frame_gradient": "numerics/test_levenberg_marquardt.py",
+    "numerics.windows.second_derivative": "numerics/test_windows.py",
     "numerics.rotations.log_and_inverse_jacobian": "numerics/test_rotations.py",
     "scaling.problem.ScalingProblem.linearise": "scaling/test_problem.py",
+    "sensors.block.Rows.jacobian": "block_contract.py jacobian",
     "sensors.pose_fit.segment_by_segment": "sensors/test_pose_fit.py",
 }
 """What holds no derivative of its own or is algebra: the test file that checks each, and the name it has
@@ -81,6 +84,8 @@ def derivatives_in(module):
 
 
 def members(one):
+    if getattr(one, "_is_protocol", False):
+        return  # a promise: those who keep it have the derivative
     kinds = {f.name: f.type for f in dataclasses.fields(one)} if dataclasses.is_dataclass(one) else {}
     kinds |= {name: one.__annotations__[name] for name in getattr(one, "_fields", ())}
     for name, kind in kinds.items():
@@ -88,7 +93,8 @@ def members(one):
             yield name
     for name, member in vars(one).items():
         function = function_of(member)
-        if function is not None and not name.startswith("_") and speaks(name, function):
+        promised = getattr(function, "__isabstractmethod__", False)
+        if function is not None and not promised and not name.startswith("_") and speaks(name, function):
             yield name
 
 
@@ -166,8 +172,10 @@ def test_what_is_checked_elsewhere_is_named_there(address):
 def test_the_search_sees_what_it_should():
     made = types.ModuleType("mbkf.made.up")
     source = """
+from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 @dataclass
 class Reading:
     value: float
@@ -178,8 +186,12 @@ class Reading:
     def jacobian(self): "."
     @cached_property
     def change(self): "Its derivative by heat."
+class Promise(Protocol):
+    def transition(self, x): "."
 class Plant:
     def transition(self, x): "."
+    @abstractmethod
+    def linearise(self, x): "."
     def predict(self, x): "."
     def _slope(self, x): "."
 def jacobian_of(x): "."

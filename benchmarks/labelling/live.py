@@ -15,6 +15,7 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.labelling.score import LabelScore, score
 from mbkf.pipelines.live.filter import LiveFilter
 from mbkf.pipelines.live.labels import LiveLabels, live_body
+from mbkf.sensors.block import Frame
 
 _PERCENT = 100.0
 
@@ -34,7 +35,7 @@ def streamed(points_m: Array, truth: MarkerTrajectories, subject: Subject) -> La
     with single_threaded():
         for number, frame in enumerate(points_m):
             for markers in labels.push(frame, live.expect()):
-                steps = live.push(len(named), markers, np.zeros((0, 6)))
+                steps = live.push(len(named), Frame(markers, np.zeros((0, 6))))
                 named.append(markers)
                 last = steps[-1] if steps else None
                 if last is not None and last.number == number and last.estimate is not None:

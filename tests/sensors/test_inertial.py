@@ -7,9 +7,10 @@ import pytest
 
 from mbkf.io.imu_mount import ImuMount
 from mbkf.model.human import HumanModel
-from mbkf.sensors.block import Frame, Notes, OperatingPoint
+from mbkf.sensors.block import Frame, OperatingPoint
 from mbkf.sensors.inertial import InertialSensors, InertialSettings, observed_dofs
 from mbkf.sensors.inertial_sensor import InertialSensor
+from tests.dynamics import notes_of
 
 MODEL = HumanModel.scaled()
 STRAIGHT = np.array([0.0, 0.0, 0.0, 1.0])
@@ -54,7 +55,7 @@ def point_at(q):
 def test_they_observe_joints_that_no_marker_shows():
     block = InertialSensors(SENSOR)
     foot, hand = (np.arange(MODEL.nv)[MODEL.joint(name).v] for name in ("left_foot", "right_hand"))
-    notes = Notes(unmarked=np.concatenate([foot, hand]), unobserved=np.concatenate([foot, hand]))
+    notes = notes_of(unmarked=np.concatenate([foot, hand]), unobserved=np.concatenate([foot, hand]))
     measured = np.full((2, 6), np.nan)
     measured[1, 3] = 1.0
     frame = Frame(np.zeros((0, 3)), np.zeros((0, 6)), measured)
@@ -67,7 +68,7 @@ def test_they_observe_joints_that_no_marker_shows():
 
 @pytest.mark.parametrize("imus", [None, np.full((2, 6), np.nan)])
 def test_where_none_reads_nothing_is_said(imus):
-    block, notes = InertialSensors(SENSOR), Notes(unmarked=np.arange(6), unobserved=np.arange(6))
+    block, notes = InertialSensors(SENSOR), notes_of(unmarked=np.arange(6), unobserved=np.arange(6))
     frame = Frame(np.zeros((0, 3)), np.zeros((0, 6)), imus)
     decision = block.decide(point_at(MODEL.neutral()), frame, None, notes)
     assert block.linearise(point_at(MODEL.neutral()), decision) is None

@@ -7,9 +7,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from mbkf.numerics.kalman import information
-from mbkf.sensors.block import Notes
 from mbkf.sensors.posture import PosturePrior, PostureSensor, PostureSettings, posture_information
-from tests.dynamics import prepared_at
+from tests.dynamics import notes_of, prepared_at
 from tests.motions import assert_near, moderate_pose, reference_model
 
 MODEL = reference_model()
@@ -80,7 +79,7 @@ def prior_at(q, unobserved=(), **settings):
     """What the prior says at a posture while some dofs are unobserved, and what it had prepared."""
     block = PosturePrior(SENSOR, np.zeros(MODEL.nv, dtype=bool), PostureSettings(**settings))
     at = prepared_at(block, SimpleNamespace(q=q))
-    return block.linearise(at, Notes(unobserved=np.array(unobserved, dtype=np.intp))), at.prepared
+    return block.linearise(at, notes_of(unobserved=np.array(unobserved, dtype=np.intp))), at.prepared
 
 
 def test_while_all_is_observed_the_prior_is_as_prepared():
