@@ -221,7 +221,9 @@ class Scene:
         """A state a little off, with a full covariance and the states that blocks add."""
         rng, nv = np.random.default_rng(seed), self.model.nv
         if isinstance(plant, TorquePlant):
-            sd = np.concatenate([np.repeat(SPREAD[:2], nv), np.full(plant.body.nu - 12, 5.0), np.tile(LOAD, 2)])
+            sd = np.concatenate(
+                [np.repeat(SPREAD[:2], nv), np.full(plant.body.nu - 12, 5.0), np.tile(LOAD, 2)]
+            )
             A = 0.1 * rng.normal(size=(len(sd),) * 2) / len(sd) ** 0.5
             P = (0.01 * np.eye(len(sd)) + A @ A.T) * sd * sd[:, None]
             P = np.asfortranarray(0.5 * (P + P.T))
