@@ -154,7 +154,7 @@ class Scene:
             "movement_sd": movement,
             "velocity_sd": 0.1 * movement,
             "acceleration_sd": 10.0 * movement,
-            "sd": np.repeat([5.0, 2.0], 3),
+            "residual_sd": np.repeat([10.0, 5.0], 3),
         }
 
     def arguments(self, kind):

@@ -30,7 +30,6 @@ class PlainManifold:
 
     movement_sd: Array
     nv: ClassVar[int] = 4
-    movement_sd: ClassVar[Array] = np.ones(4)
 
     def integrate(self, q: Array, dv: Array) -> Array:
         """(4,) q + dv."""

@@ -28,8 +28,9 @@ class PelvisResidual(Block[Any, None, None, None]):
 
     prior = True
 
-    def __init__(self, body: HumanDynamics, sd: Array) -> None:
-        self.body, self.sd = body, sd
+    def __init__(self, body: HumanDynamics, residual_sd: Array) -> None:
+        """Args: the forced body, and standard deviations (6,) of force, N, and moment, N m."""
+        self.body, self.sd = body, residual_sd
 
     def decide(self, at: OperatingPoint[Any, None], frame: Frame, memory: None, notes: Notes) -> None:
         """The same in every frame."""

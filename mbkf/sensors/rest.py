@@ -30,7 +30,7 @@ class PostureAndRest(Block[Any, None, None, None]):
     prior = True
 
     def __init__(
-        self, sensor: PostureSensor, unobservable: BoolArray, posture_scale: float, velocity_sd: float
+        self, sensor: PostureSensor, unobservable: BoolArray, posture_scale: float, rest_sd: float
     ) -> None:
         """Makes the block.
 
@@ -38,12 +38,12 @@ class PostureAndRest(Block[Any, None, None, None]):
             sensor: Deviation of every joint from neutral.
             unobservable: (nv,) dofs that no marker of the capture moves with.
             posture_scale: Factor k on the body's table of spreads, per reading.
-            velocity_sd: σ_v, rad/s or m/s, per reading.
+            rest_sd: σ_v, rad/s or m/s, per reading.
         """
         self.sensor = sensor
         self._free = np.flatnonzero(~unobservable[sensor.dofs])
         self._posture_sd = posture_scale * sensor.sd[self._free]
-        self._moving, self._certainty = np.flatnonzero(~unobservable), velocity_sd**-2
+        self._moving, self._certainty = np.flatnonzero(~unobservable), rest_sd**-2
 
     def bind(self, layout: Layout) -> None:
         """Where velocities stand in the state."""

@@ -216,8 +216,9 @@ def test_information_and_rows_together_are_one_after_the_other(order, rank):
     found = informed_with_rows(P, matrix, rows)
     one = informed_with_rows(informed(P, matrix), SILENT, rows)
     np.testing.assert_allclose(found, one, rtol=0, atol=1e-13)
-    for update in (informed_after_rows, informed_whole):
-        np.testing.assert_allclose(update(P, matrix, rows), one, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(informed_after_rows(P, matrix, rows), one, rtol=0, atol=1e-13)
+    # One matrix of all readings rounds more.
+    np.testing.assert_allclose(informed_whole(P, matrix, rows), one, rtol=0, atol=1e-11)
     np.testing.assert_array_equal(found, found.T)
     np.testing.assert_array_equal(P, kept)
 
