@@ -178,9 +178,7 @@ class Scene:
         """The dynamic filter's plant with what blocks add to the state; the torque filter's for a forced body."""
         for block in blocks:
             if hasattr(block, "body"):
-                size = 2 * self.model.nv + block.body.nu
-                nothing = np.zeros((size, size))
-                return TorquePlant(block.body, DT, lambda _: nothing, SCHEMES["FDMC"], wrenches=12)
+                return TorquePlant(block.body, DT, lambda x: np.zeros_like(x.P), SCHEMES["FDMC"], wrenches=12)
         extras = [extra for block in blocks for extra in block.states()]
         return SingerPlant(self.model, DT, self.everywhere, extras=extras)
 
@@ -221,7 +219,9 @@ class Scene:
         """A state a little off, with a full covariance and the states that blocks add."""
         rng, nv = np.random.default_rng(seed), self.model.nv
         if isinstance(plant, TorquePlant):
-            sd = np.concatenate([np.repeat(SPREAD[:2], nv), np.full(plant.body.nu - 12, 5.0), np.tile(LOAD, 2)])
+            sd = np.concatenate(
+                [np.repeat(SPREAD[:2], nv), np.full(plant.body.nu - 12, 5.0), np.tile(LOAD, 2)]
+            )
             A = 0.1 * rng.normal(size=(len(sd),) * 2) / len(sd) ** 0.5
             P = (0.01 * np.eye(len(sd)) + A @ A.T) * sd * sd[:, None]
             P = np.asfortranarray(0.5 * (P + P.T))
@@ -394,15 +394,19 @@ def derivative(found):
 
 
 def noises(kind, here):
-    """Changes that double a noise of a block: an argument of its constructor, or a number among its settings."""
+    """Changes that double noises of a block: an argument of its constructor, a number among its settings, or all."""
+    every = {}
     for name, value in here.arguments(kind).items():
         if is_dataclass(value) and name.endswith("settings"):
             numbers = {one.name: getattr(value, one.name) for one in fields(value)}
-            for leaf, number in numbers.items():
-                if isinstance(number, float):
-                    yield {name: replace(value, **{leaf: 2.0 * number})}
+            doubled = {leaf: 2.0 * number for leaf, number in numbers.items() if isinstance(number, float)}
+            every[name] = replace(value, **doubled)
+            for leaf, number in doubled.items():
+                yield {name: replace(value, **{leaf: number})}
         elif isinstance(value, float) or (isinstance(value, np.ndarray) and value.dtype.kind == "f"):
+            every[name] = 2.0 * value
             yield {name: 2.0 * value}
+    yield every
 
 
 def noisier(decision):

@@ -207,13 +207,16 @@ def torque_sensitivity(rng):
     return named("filters.torque.plant.TorquePlant", ("sensitivity", stated, numeric))
 
 
-@checks("filters.torque.plant.ForcedPrediction.phi", tolerance=1e-4)
+@checks(
+    "filters.torque.plant.ForcedPrediction.phi", "filters.torque.plant.TorquePlant.transition", tolerance=1e-4
+)
 def torque_transition(rng):
     """With F averaged over a short step, exp(F Δt) is Φ to second order."""
     body, q, v, _, u = forced_body(rng)
     n, dt = 2 * body.nv + body.nu, 1e-3
     plant = TorquePlant(body, dt, lambda _: np.zeros((n, n)), Scheme("RK4", mean_slope=True))
-    stated = plant.predict(ForcedState(q, v, u, np.zeros((n, n)))).phi[: 2 * body.nv]
-    return named(
-        "filters.torque.plant.ForcedPrediction", ("phi", stated, flow_derivative(body, Motion(q, v), u, dt))
+    state, numeric = ForcedState(q, v, u, np.zeros((n, n))), flow_derivative(body, Motion(q, v), u, dt)
+    phi, transition = (one[: 2 * body.nv] for one in (plant.predict(state).phi, plant.transition(state)))
+    return named("filters.torque.plant.ForcedPrediction", ("phi", phi, numeric)) | named(
+        "filters.torque.plant.TorquePlant", ("transition", transition, numeric)
     )

@@ -5,7 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbkf.numerics.kalman import correct, information, informed, informed_after_rows, informed_with_rows
+from mbkf.numerics.kalman import (
+    correct,
+    information,
+    informed,
+    informed_after_rows,
+    informed_whole,
+    informed_with_rows,
+)
 from tests.motions import worst
 
 SILENT = np.zeros((1, 1))
@@ -210,11 +217,14 @@ def test_information_and_rows_together_are_one_after_the_other(order, rank):
     one = informed_with_rows(informed(P, matrix), SILENT, rows)
     np.testing.assert_allclose(found, one, rtol=0, atol=1e-13)
     np.testing.assert_allclose(informed_after_rows(P, matrix, rows), one, rtol=0, atol=1e-13)
+    whole = informed_whole(P, matrix, rows)
+    np.testing.assert_allclose(whole, one, rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(whole, whole.T)
     np.testing.assert_array_equal(found, found.T)
     np.testing.assert_array_equal(P, kept)
 
 
-@pytest.mark.parametrize("update", [informed_with_rows, informed_after_rows])
+@pytest.mark.parametrize("update", [informed_with_rows, informed_after_rows, informed_whole])
 def test_without_rows_there_is_only_the_information(update):
     P, H, sd, y = random_problem(7)
     P = 0.5 * (P + P.T)
