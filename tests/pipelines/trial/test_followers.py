@@ -15,6 +15,7 @@ from mbkf.filters.torque.tracking import TorqueTracking
 from mbkf.pipelines.trial.followers import FILTERS, follower
 from mbkf.sensors.foot_contact import FootContact
 from mbkf.sensors.foot_plates import FootPlates
+from mbkf.sensors.markers import MarkerSettings
 from tests.dynamics import DT
 from tests.followed import inputs, made
 
@@ -54,7 +55,7 @@ def test_settings_reach_their_own_filter():
     known = replace(
         inputs(),
         kinematic=KinematicSettings(acceleration_scale=3.0),
-        dynamic=DynamicSettings(marker_noise_scale=2.0),
+        dynamic=DynamicSettings(markers=MarkerSettings(marker_noise_scale=2.0)),
         torque=preset("FDMC"),
     )
     assert follower("kinematic", known).kalman.settings.acceleration_scale == 3.0
