@@ -1,4 +1,4 @@
-"""Measured promises: each benchmark's numbers must stay within stated bounds.
+"""Benchmarks: measured numbers, each with a stated bound that it has to keep.
 
 A benchmark is a module or a package of this package that defines ``run(context: Context) -> list[Check]``; its name on
 the command line is the module's name, and the first sentence of its docstring says what it measures. Modules without

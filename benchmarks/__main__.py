@@ -89,7 +89,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(args: argparse.Namespace) -> list[Check]:
-    """Run what was asked for, print its table and write ``checks.json``."""
+    """Runs the benchmarks, prints their tables and writes ``checks.json``."""
     known = names()
     for name in args.names:
         if name not in known:

@@ -47,7 +47,7 @@ class Check:
 
 @dataclass(frozen=True)
 class Context:
-    """What a benchmark may use.
+    """A benchmark's input.
 
     Attributes:
         data: Folder of the public reference captures, or None when there is none.

@@ -1,4 +1,4 @@
-"""Calls `mbkf` as a person would and reads what it wrote."""
+"""Runs commands of `mbkf` as a user would, and reads the files they write."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from mbkf.io.storage import Table, read_storage
 
 @dataclass(frozen=True)
 class Written:
-    """What `mbkf reconstruct` wrote: summary, angles, torques; and the wall time of the commands."""
+    """Files written by `mbkf reconstruct`: summary, angles, torques; and the wall time of the commands."""
 
     summary: dict[str, Any]
     angles: Table
@@ -54,7 +54,7 @@ def mbkf(*words: str | Path, fresh: bool = False) -> float:
 
 
 def read_folder(folder: Path, seconds: float = 0.0) -> Written:
-    """What a reconstruction's folder holds."""
+    """Reads a reconstruction's folder."""
     angles, torques = (read_storage(folder / name) for name in ("angles.mot", "torques.sto"))
     return Written(read_summary(folder), angles, torques, seconds)
 

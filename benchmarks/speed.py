@@ -40,7 +40,7 @@ INFORMATION = math.inf
 
 @dataclass(frozen=True)
 class Walk:
-    """A walk to follow: filters, Newton–Euler equations, markers (T, M, 3) and the wrenches (2, 6) that stand for plates.
+    """A walk to follow: filters, Newton–Euler equations, markers (T, M, 3), wrenches (2, 6) in the place of plates.
 
     ``plates`` (T, K, 6) are what the dynamic filter reads.
     """

@@ -21,7 +21,8 @@ import mbkf
 import tests.blocks
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
-from mbkf.filters.torque.plant import TorquePlant
+from mbkf.filters.torque.plant import ForcedState, TorquePlant
+from mbkf.filters.torque.settings import SCHEMES
 from mbkf.imu.placement import typical_mounts
 from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.model.newton_euler import NewtonEuler
@@ -35,7 +36,6 @@ from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers
 from mbkf.sensors.posture import PostureSensor
 from tests.dynamics import DT, LOAD, MARKER_SD_M, SPREAD, random_covariance, trial
-from tests.forced_bodies import forced_state, near_forced, torque_plant
 
 HOMES = ("mbkf.", "tests.blocks.")
 LAST, LIVED = 130, 115
@@ -178,7 +178,9 @@ class Scene:
         """The dynamic filter's plant with what blocks add to the state; the torque filter's for a forced body."""
         for block in blocks:
             if hasattr(block, "body"):
-                return torque_plant(block.body)
+                size = 2 * self.model.nv + block.body.nu
+                nothing = np.zeros((size, size))
+                return TorquePlant(block.body, DT, lambda _: nothing, SCHEMES["FDMC"], wrenches=12)
         extras = [extra for block in blocks for extra in block.states()]
         return SingerPlant(self.model, DT, self.everywhere, extras=extras)
 
@@ -219,7 +221,13 @@ class Scene:
         """A state a little off, with a full covariance and the states that blocks add."""
         rng, nv = np.random.default_rng(seed), self.model.nv
         if isinstance(plant, TorquePlant):
-            return near_forced(plant, state, rng)
+            sd = np.concatenate(
+                [np.repeat(SPREAD[:2], nv), np.full(plant.body.nu - 12, 5.0), np.tile(LOAD, 2)]
+            )
+            A = 0.1 * rng.normal(size=(len(sd),) * 2) / len(sd) ** 0.5
+            P = (0.01 * np.eye(len(sd)) + A @ A.T) * sd * sd[:, None]
+            P = np.asfortranarray(0.5 * (P + P.T))
+            return plant.retract(seen_by(plant, state, P), 0.05 * sd * rng.normal(size=len(sd)), P)
         extra, extra_sd = plant.layout.start()
         size = 3 * nv + 12
         P = np.zeros((plant.layout.size,) * 2)
@@ -245,7 +253,8 @@ class Scene:
 def seen_by(plant, state, P):
     """A true state as a plant's, with a covariance and what blocks add."""
     if isinstance(plant, TorquePlant):
-        return forced_state(plant.body, state, P)
+        u = plant.body.forces(state.q, state.v, state.a, state.w.reshape(2, 6))
+        return ForcedState(state.q, state.v, u, P)
     return replace(state, extra=plant.layout.start()[0], P=P)
 
 
@@ -387,19 +396,15 @@ def derivative(found):
 
 
 def noises(kind, here):
-    """Changes that double noises of a block: an argument of its constructor, a number among its settings, or all."""
-    every = {}
+    """Changes that double a noise of a block: an argument of its constructor, or a number among its settings."""
     for name, value in here.arguments(kind).items():
         if is_dataclass(value) and name.endswith("settings"):
             numbers = {one.name: getattr(value, one.name) for one in fields(value)}
-            doubled = {leaf: 2.0 * number for leaf, number in numbers.items() if isinstance(number, float)}
-            every[name] = replace(value, **doubled)
-            for leaf, number in doubled.items():
-                yield {name: replace(value, **{leaf: number})}
+            for leaf, number in numbers.items():
+                if isinstance(number, float):
+                    yield {name: replace(value, **{leaf: 2.0 * number})}
         elif isinstance(value, float) or (isinstance(value, np.ndarray) and value.dtype.kind == "f"):
-            every[name] = 2.0 * value
             yield {name: 2.0 * value}
-    yield every
 
 
 def noisier(decision):

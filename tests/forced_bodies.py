@@ -5,7 +5,7 @@ import numpy as np
 from mbkf.filters.torque.plant import ForcedState, TorquePlant
 from mbkf.filters.torque.settings import SCHEMES
 from mbkf.model.forced_body import LinearAcceleration
-from tests.dynamics import DT, LOAD, SPREAD
+from tests.dynamics import DT
 
 
 class PlainBody:
@@ -62,13 +62,3 @@ def forced_state(body, motion, P):
     """The state of a motion q, v, a under foot wrenches w (12,)."""
     u = body.forces(motion.q, motion.v, motion.a, motion.w.reshape(2, 6))
     return ForcedState(motion.q, motion.v, u, P)
-
-
-def near_forced(plant, motion, rng):
-    """A state a little off a motion, with a full covariance in Fortran order."""
-    nv, nu = plant.body.nv, plant.body.nu
-    sd = np.concatenate([np.repeat(SPREAD[:2], nv), np.full(nu - 12, 5.0), np.tile(LOAD, 2)])
-    A = 0.1 * rng.normal(size=(len(sd),) * 2) / len(sd) ** 0.5
-    P = (0.01 * np.eye(len(sd)) + A @ A.T) * sd * sd[:, None]
-    P = np.asfortranarray(0.5 * (P + P.T))
-    return plant.retract(forced_state(plant.body, motion, P), 0.05 * sd * rng.normal(size=len(sd)), P)

@@ -124,9 +124,7 @@ def test_alone_in_a_filter_it_is_the_textbook_update(name):
         sd = np.sqrt(np.diag(P))
         step = found.plant.difference(found.state, done.state)
         assert worst((step - K @ y) / sd) < 1e-6 * max(1.0, worst(K @ y / sd))
-        # Few readings as information on the whole state have a root of its rounding.
-        exact = 1e-6 if isinstance(found.says(), Information) else 1e-8
-        assert worst((done.state.P - (P - K @ H @ P)) / sd / sd[:, None]) < exact
+        assert worst((done.state.P - (P - K @ H @ P)) / sd / sd[:, None]) < 1e-8
         np.testing.assert_array_equal(done.state.P, done.state.P.T)
 
 

@@ -34,7 +34,7 @@ START_ACCELERATION_SD = 5.0
 
 @dataclass(frozen=True)
 class AccelerationBelief:
-    """What the filter believes.
+    """Noise settings of the filter.
 
     Attributes:
         acceleration: σ_a of every component of z, rad/s² and m/s².
@@ -67,7 +67,7 @@ class PendulumAccelerationFilter:
     """Extended Kalman filter in acceleration coordinates.
 
     Attributes:
-        body: The pendulum it believes in.
+        body: The pendulum model.
         plant: Decaying accelerations.
         belief: The settings.
     """
@@ -147,14 +147,14 @@ def _moved(x: DynamicState, step: Array, P: Array) -> DynamicState:
 
 @dataclass(frozen=True)
 class AccelerationMethod:
-    """The filter as a method; ``smooth`` looks back, too."""
+    """The filter as a method; ``smooth`` adds the backward smoother."""
 
     shape: PendulumShape
     belief: AccelerationBelief = AccelerationBelief()
     smooth: bool = False
 
     def run(self, trial: Trial) -> Estimate:
-        """Follows a trial; frames after a breakdown are NaN."""
+        """Tracks a trial; frames after a divergence are NaN."""
         kalman = PendulumAccelerationFilter(self.shape, trial.dt_s, self.belief)
         truth, read = trial.motion, trial.read
         states = [kalman.start(truth.q[0], truth.v[0], truth.a[0], truth.efforts[0, 1:])]

@@ -73,7 +73,7 @@ class Sheet:
         title: What it shows.
         columns: Headings with units.
         rows: Texts and numbers.
-        note: What a reader should know, in a sentence or two.
+        note: Remarks for the reader, in a sentence or two.
     """
 
     name: str
@@ -96,7 +96,7 @@ def _plain(cell: str | float) -> str:
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement of the thesis and what a hundred seeds make of it.
+    """A statement of the thesis, and its measurement over a hundred seeds.
 
     Attributes:
         source: Where it stands.
@@ -118,7 +118,7 @@ def judged(holds: bool, partly: bool = False) -> str:
 
 @dataclass(frozen=True)
 class Findings:
-    """What a part of the benchmark has found: its ``bands``, ``sheets`` and ``claims``."""
+    """Results of a part of the benchmark: ``bands``, ``sheets`` and ``claims``."""
 
     bands: Sequence[Band] = ()
     sheets: Sequence[Sheet] = ()

@@ -1,7 +1,7 @@
 """Consistency of the filter: NEES and NIS on motions drawn from its own plant (thesis 2.3.1).
 
 A trial starts as `sin` does, from an error that P_0 expects, under efforts that really wander by σ_P; its markers and
-plate have exactly the noise that the filter believes in. Efforts that nothing steers let the bars tumble, so a trial
+plate have exactly the noise of the filter's settings. Efforts that nothing steers let the bars tumble, so a trial
 lasts a second.
 """
 

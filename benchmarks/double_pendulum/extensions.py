@@ -1,4 +1,4 @@
-"""What the thesis does not have: a backward smoother, artefact states, and the filter in acceleration coordinates."""
+"""Extensions of the thesis: a backward smoother, artefact states, and the filter in acceleration coordinates."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ SMOOTHED_NOISE = 100.0
 """σ_P of the smoother, which need not follow quickly because it looks ahead."""
 
 ARTEFACT_NOISE = 2000.0
-"""σ_P with artefact states: markers that are believed follow quicker."""
+"""σ_P with artefact states, whose smaller marker noise makes the filter follow faster."""
 
 CAMERA_M = 1e-4
 """Marker noise with artefact states, which leave only the camera's to it."""
@@ -158,7 +158,7 @@ def _comparisons() -> list[tuple[str, str, Recipe, dict[str, Method]]]:
 
 
 def _causal(shape: PendulumShape) -> dict[str, Method]:
-    """What the thesis has, and the filter in acceleration coordinates."""
+    """The filters of the thesis, and the filter in acceleration coordinates."""
     return {
         "FD": believing(FD, shape, 1e-3),
         "FDMC": believing(FDMC, shape, 1e-3),
@@ -168,7 +168,7 @@ def _causal(shape: PendulumShape) -> dict[str, Method]:
 
 
 def _all(shape: PendulumShape) -> dict[str, Method]:
-    """Those, artefact states and smoothers."""
+    """The causal filters, artefact states and smoothers."""
     return _causal(shape) | {
         "FD, artefact states (1st order)": artefact_method(1),
         "FD, artefact states (2nd order)": artefact_method(2),

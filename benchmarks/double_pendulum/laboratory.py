@@ -51,7 +51,7 @@ class Laboratory:
 
     Attributes:
         seeds: Trials per pair; the seeds are 0, 1, 2, …
-        quick: Whether this is a first look.
+        quick: Whether only a few seeds are run.
     """
 
     def __init__(self, mapper: Mapper, seeds: int, quick: bool, report: StageCallback) -> None:

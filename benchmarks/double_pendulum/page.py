@@ -42,11 +42,11 @@ _MARKS = {"holds": "good", "partly": "half", "does not hold": "bad"}
 
 @dataclass(frozen=True)
 class Report:
-    """What the page shows.
+    """Contents of the page.
 
     Attributes:
         seeds: Trials per number.
-        quick: Whether that was a first look.
+        quick: Whether only a few seeds were run.
         bands, claims, sheets, drawings: The contents.
     """
 

@@ -24,7 +24,7 @@ from mbkf.model.double_pendulum import PendulumShape
 from mbkf.synthesis.pendulum import PendulumNoise
 
 WRONG = PendulumShape(mass_1_kg=60.0, mass_2_kg=15.0)
-"""What the filters believe of 50 and 25 kg: the whole mass is right, its distribution is not."""
+"""Assumed masses instead of 50 and 25 kg: the whole mass is right, its distribution is not."""
 
 HIGH_RESIDUAL = 100.0
 """Residual noise, N/√s and N m/√s, with which the residual may be large; the standard one is 1e-3."""

@@ -30,7 +30,7 @@ PRINTED_NOISE = Belief(Scheme(), 0.4, force_n=0.05, moment_nm=0.05)
 
 
 def table_findings(lab: Laboratory) -> Findings:
-    """Both tables, their bands and what the thesis reads off them."""
+    """Both tables, their bands and the thesis's conclusions from them."""
     names = list(TABLE_A2)
     methods = {name: annex_method(name) for name in names}
     methods[SIMPLIFIED] = annex_method("FE SE CT", complete=False)
@@ -205,7 +205,7 @@ def _speed_claims(speed: dict[str, float]) -> list[Claim]:
 
 
 def _printed_noise(lab: Laboratory) -> tuple[Sheet, Claim]:
-    """Table A.1 taken at its word, and without the artefact it does not mention."""
+    """Table A.1 exactly as printed, and without the artefact it does not mention."""
     bare = PendulumNoise(camera_m=1e-3, artefact_m=0.0, force_n=0.05, moment_nm=0.005)
     literal = Recipe(shape=ANNEX, noise=bare)
     rows = {

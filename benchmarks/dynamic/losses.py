@@ -106,7 +106,7 @@ def streaks(present: BoolArray, fraction: float, seed: int) -> BoolArray:
 
 
 def occlusion_errors(case: Occluded, method: Method) -> OcclusionErrors:
-    """Runs a method on what is shown and compares with what was withheld."""
+    """Runs a method on the visible samples and compares with the withheld ones."""
     found = method.run(case.shown, case.subject)
     order = [found.marker_names.index(name) for name in case.shown.markers.names]
     distance = _MM * np.linalg.norm(found.predicted_m[:, order] - case.withheld_m, axis=2)

@@ -72,7 +72,7 @@ class _Sendable:
 
 @dataclass(frozen=True)
 class Method:
-    """A filter and how it is set.
+    """A filter with its settings.
 
     Attributes:
         filter: Name of the filter.
@@ -88,7 +88,7 @@ class Method:
 
     @property
     def label(self) -> str:
-        """What a person calls it."""
+        """Name in tables."""
         return f"{self.filter}, smoothed" if self.smooth else self.filter
 
     def settings(self, **more: Any) -> ReconstructSettings:
@@ -107,7 +107,13 @@ class Method:
         return ReconstructSettings(**words)
 
     def run(self, capture: Capture, subject: Subject, **more: Any) -> Reconstruction:
-        """Reconstructs a capture; ``more`` are further fields of :class:`ReconstructSettings`."""
+        """Reconstructs a capture.
+
+        Args:
+            capture: Markers and plates.
+            subject: The person.
+            more: Further fields of :class:`ReconstructSettings`.
+        """
         return reconstruct(capture, subject, settings=self.settings(**more))
 
 

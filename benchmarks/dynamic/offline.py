@@ -31,7 +31,7 @@ from mbkf.sensors.posture import PostureSensor
 
 @dataclass(frozen=True)
 class OfflineMotion:
-    """What the offline practice finds: q (T, nq), v, a (T, nv) and generalised forces tau (T, nv)."""
+    """Result of the offline practice: q (T, nq), v, a (T, nv) and generalised forces tau (T, nv)."""
 
     q: Array
     v: Array

@@ -57,14 +57,14 @@ _MM = 1e3
 
 @dataclass(frozen=True)
 class Case:
-    """One synthetic trial: who, what was recorded, what was true.
+    """One synthetic trial: person, capture and truth.
 
     Attributes:
-        motion, seed: Which.
+        motion, seed: Name of the motion, random seed.
         given: The true person, with markers where they were in the static trial.
         subject: The same with marker positions corrected on this trial.
         capture: The labelled trial.
-        truth: What really happened.
+        truth: The true motion.
     """
 
     motion: str
@@ -188,7 +188,7 @@ def errors(trials: Sequence[Case], method: Method, mapper: Mapper) -> list[Error
 
 @dataclass(frozen=True)
 class Baseline:
-    """What others reach on the trials of one motion, pooled.
+    """Pooled errors of the reference methods on the trials of one motion.
 
     Attributes:
         torque_nm: FCDI's torque RMS at the scale that is best for it.

@@ -1,4 +1,4 @@
-"""Virtual sensors on a body: joint angles from eight of them alone, and what they add to markers.
+"""Virtual sensors on a body: joint angles from eight sensors alone, and the gain of sensors beside markers.
 
 Truth is the motion the readings were made from: the synthetic walk, and the Rajagopal walk as the dynamic filter with
 its smoother reconstructed it. Standing calibration knows the posture, as a static trial with markers gives it; a row
@@ -44,7 +44,7 @@ SETTLED_S = 5.0
 
 @dataclass(frozen=True)
 class Worn:
-    """A motion, the posture in which its wearer stood before, and what sensors read in both."""
+    """A motion, the standing posture before it, and the sensors' readings in both."""
 
     name: str
     motion: BodyMotion

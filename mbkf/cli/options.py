@@ -23,10 +23,15 @@ def add_axes_options(parser: argparse.ArgumentParser) -> None:
 
 
 def check_positive(option: str, value: float, or_zero: bool = False) -> None:
-    """Refuses what is not a positive number.
+    """Refuses a value that is not a positive number.
+
+    Args:
+        option: Name of the option.
+        value: Its value.
+        or_zero: Whether zero is accepted, too.
 
     Raises:
-        InvalidInput: It is not.
+        InvalidInput: The value is not positive, or not finite.
     """
     from mbkf.errors import InvalidInput
 

@@ -194,7 +194,7 @@ class Step(NamedTuple, Generic[StateT]):
         return self.decisions.notes.seen & ~self.decisions.notes.trusted
 
     @property
-    def read(self) -> int:
+    def nis_readings(self) -> int:
         """Number of readings in :attr:`nis`."""
         return self.readings.instruments.readings + len(self.readings.counted[1])
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
@@ -67,6 +68,7 @@ NO_MARKERS = np.zeros(0, dtype=bool)
 """Flags of no markers."""
 
 
+@dataclass(slots=True)
 class Notes:
     """What blocks tell each other about a frame; complete when all of them have decided.
 
@@ -83,15 +85,15 @@ class Notes:
     """
 
     # Arrays here are replaced, never written into, so that the defaults can be shared.
-    seen: BoolArray = NO_MARKERS
-    trusted: BoolArray = NO_MARKERS
-    unmarked: NDArray[np.intp] = NO_DOFS
-    unobserved: NDArray[np.intp] = NO_DOFS
+    seen: BoolArray = field(default_factory=lambda: NO_MARKERS)
+    trusted: BoolArray = field(default_factory=lambda: NO_MARKERS)
+    unmarked: NDArray[np.intp] = field(default_factory=lambda: NO_DOFS)
+    unobserved: NDArray[np.intp] = field(default_factory=lambda: NO_DOFS)
     observed: bool = False
     lost: bool = False
     imus: Array | None = None
     contact: ContactDecision | None = None
-    coordinated: NDArray[np.intp] = NO_DOFS
+    coordinated: NDArray[np.intp] = field(default_factory=lambda: NO_DOFS)
 
 
 class Rows(NamedTuple):

@@ -106,7 +106,7 @@ def test_priors_are_no_innovations():
     empty = Frame(np.zeros((0, 3)), np.zeros((0, 6)))
     first, second = (one.step(line(N), one.begin(), empty) for one in (alone, both))
     assert second.nis == pytest.approx(first.nis, rel=1e-12)
-    assert second.count == first.count == 6
+    assert second.nis_readings == first.nis_readings == 6
     assert np.abs(second.state.q - first.state.q).max() > 0.0
 
 

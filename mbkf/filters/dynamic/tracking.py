@@ -117,7 +117,7 @@ class DynamicTracking:
         if estimate.started:
             return np.nan, 0
         step: DynamicStep = estimate.inner
-        return step.nis, step.read
+        return step.nis, step.nis_readings
 
     def smooth(
         self, run: Sequence[Posterior], recording: Recording, first: int, wanted: int

@@ -156,7 +156,7 @@ class KinematicTracking:
     def innovation(self, estimate: Posterior) -> tuple[float, int]:
         """Of the markers."""
         step: KinematicStep | None = estimate.inner.step
-        return (np.nan, 0) if step is None else (step.nis, step.read)
+        return (np.nan, 0) if step is None else (step.nis, step.nis_readings)
 
     def smooth(
         self, run: Sequence[Posterior], recording: Recording, first: int, wanted: int

@@ -111,7 +111,7 @@ class TorqueTracking:
     def innovation(self, estimate: Posterior) -> tuple[float, int]:
         """Of markers and plates."""
         record: TorqueRecord = estimate.inner
-        return record.nis, 0 if record.step is None else record.step.read
+        return record.nis, 0 if record.step is None else record.step.nis_readings
 
     def smooth(
         self, run: Sequence[Posterior], recording: Recording, first: int, wanted: int

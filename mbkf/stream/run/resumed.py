@@ -14,7 +14,13 @@ class ResumedSource:
     def __init__(
         self, source: FrameSource, stream: StreamDescription, kept: Iterable[SourceFrame] = ()
     ) -> None:
-        """Args: the connected source, the stream's description, and frames to deliver first."""
+        """Takes over a source.
+
+        Args:
+            source: The connected source.
+            stream: Its description.
+            kept: Frames to deliver first.
+        """
         self._source, self._stream = source, stream
         self._kept = deque(kept)
         self.patient = source.patient

@@ -110,7 +110,7 @@ def test_a_step_is_the_textbook_update(seed):
     assert worst((frame.kalman.plant.difference(prior, found.state) - step) / scale) < 1e-7
     y, H, R = y[:instruments], H[:instruments], R[:instruments, :instruments]
     assert found.nis == pytest.approx(y @ np.linalg.solve(H @ P @ H.T + R, y), rel=1e-7)
-    assert found.count == instruments
+    assert found.nis_readings == instruments
 
 
 def test_the_prior_is_the_plants_and_the_wrenches_wander_about_the_soles():
@@ -197,7 +197,7 @@ def test_a_wrong_marker_is_refused_and_changes_nothing():
     found, without = frame.step(markers=wrong), frame.step(markers=missing)
     np.testing.assert_array_equal(np.flatnonzero(found.refused), [4])
     assert_same_state(found.state, without.state, 1e-12)
-    assert found.count == without.count
+    assert found.nis_readings == without.nis_readings
     assert noise_scale(frame.kalman, found) == noise_scale(frame.kalman, without)
 
 

@@ -151,7 +151,7 @@ class Simulation:
         self.state = result.state
         error = np.r_[MODEL.difference(self.state.q, self.q), self.v - self.state.v][self.states]
         nees = error @ np.linalg.solve(self.state.P[np.ix_(self.states, self.states)], error)
-        return nees, result.nis, result.count
+        return nees, result.nis, result.nis_readings
 
 
 def test_errors_and_innovations_are_as_large_as_the_filter_says():
@@ -220,7 +220,7 @@ def test_refused_and_missing_markers_are_told_apart():
     measured[names.index("LKNE")] = np.nan
     result = stepped(kalman, state, measured)
     assert np.flatnonzero(result.refused).tolist() == [names.index("RKNE")]
-    assert result.count == 3 * 34
+    assert result.nis_readings == 3 * 34
     assert result.tracked
     assert worst(MODEL.difference(state.q, result.state.q)) < 0.01
 

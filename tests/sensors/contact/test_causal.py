@@ -21,7 +21,7 @@ each_motion = pytest.mark.parametrize("name", ["squat", "walk", pytest.param("ju
 
 def decisions(made, loads, plates=None):
     """(T, 2) contacts over a true motion whose plates read ``loads`` (T, K, 6)."""
-    feet, m = made.feet(plates), made.motion
+    feet, m = made.detector(plates), made.motion
     memory, found = feet.begin(), []
     for q, v, a, load in zip(m.q, m.v, m.a, loads, strict=True):
         decided = feet.decide(memory, q, v, a, load)
@@ -55,7 +55,7 @@ def test_all_flight_is_in_the_air():
 @each_motion
 def test_a_measured_foot_gets_its_own_plate(name):
     made = trial(name)
-    feet, m = made.feet(), made.motion
+    feet, m = made.detector(), made.motion
     memory = feet.begin()
     for t in range(len(m.q)):
         decided = feet.decide(memory, m.q[t], m.v[t], m.a[t], m.foot_wrench[t])
@@ -183,7 +183,7 @@ def test_no_plates_at_all():
 @each_motion
 def test_decisions_repeat_and_leave_their_inputs_alone(name):
     made = trial(name)
-    m, feet = made.motion, made.feet()
+    m, feet = made.motion, made.detector()
     memory = feet.begin()
     for t in range(0, len(m.q), 7):
         inputs = m.q[t].copy(), m.v[t].copy(), m.a[t].copy(), m.foot_wrench[t].copy()
@@ -210,7 +210,7 @@ def test_memory_cannot_be_changed():
 def test_a_planted_foot_is_at_rest(name):
     """Over a true motion the point and, where it lies flat, the segment are nearly at rest."""
     made = trial(name)
-    feet, m = made.feet(), made.motion
+    feet, m = made.detector(), made.motion
     memory, speeds, turns = feet.begin(), [], []
     for q, v, a, load in zip(m.q, m.v, m.a, m.foot_wrench, strict=True):
         decided = feet.decide(memory, q, v, a, load)
