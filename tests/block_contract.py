@@ -33,7 +33,7 @@ from mbkf.sensors.inertial import InertialSensors
 from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 from tests.dynamics import DT, LOAD, MARKER_SD_M, SPREAD, trial
 
 HOMES = ("mbkf.", "tests.blocks.")

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.numerics.information_update import informed_whole
 
 
 class Information(NamedTuple):

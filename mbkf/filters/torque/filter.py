@@ -30,7 +30,7 @@ from mbkf.sensors.foot_plates import Ahead, FootPlates, FootPlateSettings, Plate
 from mbkf.sensors.marker_sensor import JacobianInformation, MarkerSensor
 from mbkf.sensors.markers import Markers, MarkerSettings
 from mbkf.sensors.pelvis_residual import PelvisResidual
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 from mbkf.sensors.rest import PostureAndRest
 
 TorqueStep = Step[ForcedState]
