@@ -216,8 +216,7 @@ def torque_transition(rng):
     n, dt = 2 * body.nv + body.nu, 1e-3
     plant = TorquePlant(body, dt, lambda _: np.zeros((n, n)), Scheme("RK4", mean_slope=True))
     state, numeric = ForcedState(q, v, u, np.zeros((n, n))), flow_derivative(body, Motion(q, v), u, dt)
-    return named(
-        "filters.torque.plant",
-        ("ForcedPrediction.phi", plant.predict(state).phi[: 2 * body.nv], numeric),
-        ("TorquePlant.transition", plant.transition(state)[: 2 * body.nv], numeric),
+    phi, transition = (one[: 2 * body.nv] for one in (plant.predict(state).phi, plant.transition(state)))
+    return named("filters.torque.plant.ForcedPrediction", ("phi", phi, numeric)) | named(
+        "filters.torque.plant.TorquePlant", ("transition", transition, numeric)
     )

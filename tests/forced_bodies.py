@@ -1,8 +1,11 @@
-"""Small forced bodies with plain coordinates, shared by the tests of integrators and plants."""
+"""Small forced bodies with plain coordinates, for integrators and plants, and whole bodies near a motion."""
 
 import numpy as np
 
+from mbkf.filters.torque.plant import ForcedState, TorquePlant
+from mbkf.filters.torque.settings import SCHEMES
 from mbkf.model.forced_body import LinearAcceleration
+from tests.dynamics import DT
 
 
 class PlainBody:
@@ -48,3 +51,14 @@ class DampedPendulum(PlainBody):
     def linearise(self, q, v, u):
         by_q, by_v = np.diag(-9.0 * np.cos(q)), np.diag(-1.2 * v**2)
         return LinearAcceleration(self.acceleration(q, v, u), by_q, by_v, np.eye(1))
+
+
+def torque_plant(body):
+    """The torque filter's plant of a whole body, without noise."""
+    return TorquePlant(body, DT, lambda x: np.zeros_like(x.P), SCHEMES["FDMC"], wrenches=12)
+
+
+def forced_state(body, motion, P):
+    """The state of a motion q, v, a under foot wrenches w (12,)."""
+    u = body.forces(motion.q, motion.v, motion.a, motion.w.reshape(2, 6))
+    return ForcedState(motion.q, motion.v, u, P)

@@ -217,8 +217,9 @@ def test_information_and_rows_together_are_one_after_the_other(order, rank):
     one = informed_with_rows(informed(P, matrix), SILENT, rows)
     np.testing.assert_allclose(found, one, rtol=0, atol=1e-13)
     np.testing.assert_allclose(informed_after_rows(P, matrix, rows), one, rtol=0, atol=1e-13)
-    # One matrix of all readings rounds more.
-    np.testing.assert_allclose(informed_whole(P, matrix, rows), one, rtol=0, atol=1e-11)
+    whole = informed_whole(P, matrix, rows)
+    np.testing.assert_allclose(whole, one, rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(whole, whole.T)
     np.testing.assert_array_equal(found, found.T)
     np.testing.assert_array_equal(P, kept)
 

@@ -5,9 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mbkf.errors import InvalidInput
 from mbkf.filters.kinematic.plant import KinematicState
-from mbkf.filters.torque.filter import FootReading, TorqueFilter
+from mbkf.filters.torque.filter import TorqueFilter
 from mbkf.filters.torque.settings import TorqueSettings, preset
+from mbkf.sensors.block import Frame
+from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
 from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
 from tests.motions import assert_near, marker_positions, protocol_sensor
@@ -28,6 +31,24 @@ def motions(model):
     return {name: synthesise_motion(model, name, 1.5, RATE_HZ, seed=5) for name in ("squat", "walk")}
 
 
+class Told:
+    """A detector that is told each foot's wrench: a measured foot that carries nothing is in the air."""
+
+    def __init__(self, measured):
+        self.measured = measured
+
+    def begin(self):
+        return ContactMemory((), (), float("nan"), (0.0, 0.0))
+
+    def decide(self, memory, q, v, a, wrench):
+        loaded = (wrench != 0.0).any(axis=1)
+        kinds = [
+            Contact.UNMEASURED if not known else Contact.MEASURED if on else Contact.AIR
+            for known, on in zip(self.measured, loaded, strict=True)
+        ]
+        return ContactDecision(tuple(kinds), wrench, np.zeros((2, 3)), False, memory)
+
+
 class Run:
     """A filter run over the beginning of a true motion, with noisy markers and plates."""
 
@@ -42,18 +63,25 @@ class Run:
             rows = [k for k, name in enumerate(sensor.segments) if name in segments]
             self.markers[start:stop, rows] = np.nan
         noise = np.full(len(sensor.segments), NOISE_M)
-        self.filter = TorqueFilter(sensor, noise, 1 / RATE_HZ, np.zeros(model.nv, dtype=bool), settings)
+        everywhere = np.zeros(model.nv, dtype=bool)
+        self.told = Told(measured)
+        self.filter = TorqueFilter.standard(sensor, noise, self.told, 1 / RATE_HZ, everywhere, settings)
         loaded = (motion.foot_wrench[:frames] != 0).any(axis=2, keepdims=True)
         spread = np.array([1.0, 1.0, 1.0, 0.2, 0.2, 0.2])
         self.wrench = motion.foot_wrench[:frames] + loaded * spread * rng.normal(size=(frames, 2, 6))
         P = np.diag(np.repeat([0.01, 0.5], model.nv) ** 2)
         start = KinematicState(motion.q[0], motion.v[0], P)
-        states = [self.filter.start(start, motion.a[0], self.wrench[0], measured)]
-        self.steps = []
+        first = self.filter.first(start, motion.a[0], self.frame(0))
+        state, memory, self.steps, self.memories = first.state, first.memory, [], [first.memory]
+        self.states = [self.filter.report(state)]
         for t in range(1, frames):
-            self.steps.append(self.filter.step(states[-1], self.markers[t], self.wrench[t], measured))
-            states.append(self.steps[-1].state)
-        self.states = states
+            self.steps.append(self.filter.step(state, memory, self.frame(t)))
+            state, memory = self.steps[-1].state, self.steps[-1].memory
+            self.states.append(self.filter.report(state))
+            self.memories.append(memory)
+
+    def frame(self, t):
+        return Frame(self.markers[t], self.wrench[t])
 
     def error(self, name, skip=15):
         true = getattr(self.truth, name)[: len(self.states)]
@@ -95,7 +123,9 @@ def test_start_agrees_with_plates_and_motion(model, motions):
     run = Run(model, motion, settings, frames=1)
     P = np.diag(np.repeat([0.003, 0.1], model.nv) ** 2)
     guess = motion.a[0] + np.random.default_rng(0).normal(size=model.nv)
-    state = run.filter.start(KinematicState(motion.q[0], motion.v[0], P), guess, motion.foot_wrench[0], BOTH)
+    frame = Frame(run.markers[0], motion.foot_wrench[0])
+    first = run.filter.first(KinematicState(motion.q[0], motion.v[0], P), guess, frame)
+    state = run.filter.report(first.state)
     assert np.abs(state.tau[:3]).max() < 5.0
     n = len(state.filtered.P)
     assert n == 166
@@ -117,7 +147,7 @@ def test_a_hidden_leg_is_carried_by_dynamics(model, motions):
     legs = ("right_shank", "right_foot", "right_toes")
     run = Run(model, motions["squat"], TorqueSettings(), hide=(legs, 40, 55))
     assert run.angle_rms() < np.deg2rad(4.0)
-    assert run.steps[44].readings < run.steps[20].readings
+    assert run.steps[44].read < run.steps[20].read
     last = model.difference(run.truth.q[FRAMES - 1], run.states[-1].q)
     assert rms(last[6:]) < np.deg2rad(2.0)
 
@@ -140,38 +170,66 @@ def test_a_frame_without_readings_is_the_prediction(model, motions):
     settings = replace(settings, tracking=loose, residual_spread_force_n=1e9, residual_spread_moment_nm=1e9)
     run = Run(model, motions["squat"], settings, frames=5)
     nothing = np.full_like(run.markers[0], np.nan)
-    step = run.filter.step(run.states[-1], nothing, run.wrench[4], ~BOTH)
+    run.told.measured = ~BOTH
+    step = run.filter.step(run.steps[-1].state, run.memories[-1], Frame(nothing, run.wrench[4]))
     assert not step.tracked
-    assert step.readings == 0
-    assert_near(step.state.q, step.prediction.state.q, 1e-6)
-    assert_near(step.state.filtered.u, step.prediction.state.u, 1e-3)
+    assert step.read == 0
+    assert_near(step.state.q, step.prior.state.q, 1e-6)
+    assert_near(step.state.u, step.prior.state.u, 1e-3)
 
 
 def test_a_step_gives_a_smoother_what_it_needs(model, motions):
     """Prior covariance = Φ P Φᵀ + Q with the posterior before, and a step is a pure function."""
     run = Run(model, motions["squat"], TorqueSettings(), frames=5)
-    before, again = run.states[-2], run.filter.step(run.states[-2], run.markers[4], run.wrench[4], BOTH)
-    np.testing.assert_array_equal(again.state.filtered.P, run.states[-1].filtered.P)
+    before = run.steps[-2].state
+    again = run.filter.step(before, run.memories[-2], run.frame(4))
+    np.testing.assert_array_equal(again.state.P, run.steps[-1].state.P)
     np.testing.assert_array_equal(again.state.q, run.states[-1].q)
-    phi, prior = again.prediction.phi, again.prediction.state
-    Q = prior.P - phi @ before.filtered.P @ phi.T
+    prior = again.prior.state
+    Q = prior.P - prior.phi @ before.P @ prior.phi.T
     assert np.linalg.eigvalsh(0.5 * (Q + Q.T)).min() > -1e-7 * np.abs(Q).max()
-    np.testing.assert_array_equal(prior.u, before.filtered.u)
+    np.testing.assert_array_equal(prior.u, before.u)
 
 
-def test_what_cannot_be_computed_is_untracked(model, motions):
+def test_nis_is_the_steps_own(model, motions):
+    """From the components that are read as from the whole state, up to rounding."""
+    run = Run(model, motions["squat"], TorqueSettings(), frames=5)
+    for step in run.steps:
+        assert run.filter.nis(step) == pytest.approx(step.nis, rel=1e-5)
+
+
+def test_contact_is_decided_where_the_state_before_leads(model, motions):
+    """Not at the prediction by forces; it goes on where nothing else can be computed."""
     run = Run(model, motions["squat"], TorqueSettings(), frames=3)
-    broken = replace(run.states[-1].filtered, P=-1e3 * np.eye(166))
-    step = run.filter.step(replace(run.states[-1], filtered=broken), run.markers[2], run.wrench[2], BOTH)
-    assert not step.tracked
-    assert step.state.q is run.states[-1].q
+    asked = []
+    told = run.told.decide
+
+    def decide(memory, q, v, a, wrench):
+        asked.append((q, v, a))
+        return told(memory, q, v, a, wrench)
+
+    run.told.decide = decide
+    last, state = run.states[-1], run.steps[-1].state
+    run.filter.step(state, run.memories[-1], run.frame(2))
+    stayed = run.filter.stayed(state, run.memories[-1], run.frame(2))
+    for q, v, a in asked:
+        np.testing.assert_array_equal(q, model.integrate(last.q, last.v / RATE_HZ))
+        np.testing.assert_array_equal(v, last.v + last.a / RATE_HZ)
+        np.testing.assert_array_equal(a, last.a)
+    assert len(asked) == 2
+    assert stayed.state is state
+    assert stayed.contact.contacts == (Contact.MEASURED, Contact.MEASURED)
 
 
-def test_a_zero_wrench_means_the_air_unless_told():
-    wrench = np.array([[0.0] * 6, [1.0] * 6])
-    told = FootReading.of(wrench, BOTH)
-    assert told.airborne.tolist() == [True, False]
-    assert FootReading.of(wrench, ~BOTH).airborne.tolist() == [False, False]
-    landed = FootReading.of(wrench, BOTH, np.array([False, True]))
-    assert landed.airborne.tolist() == [False, True]
-    assert not landed.wrench.any()
+def test_a_state_that_is_no_covariance_is_refused(model, motions):
+    run = Run(model, motions["squat"], TorqueSettings(), frames=3)
+    broken = replace(run.steps[-1].state, P=-1e3 * np.eye(166))
+    with pytest.raises(np.linalg.LinAlgError):
+        run.filter.step(broken, run.memories[-1], run.frame(2))
+
+
+def test_plates_are_a_block_that_the_filter_cannot_do_without(model, motions):
+    made = Run(model, motions["squat"], TorqueSettings(), frames=1).filter
+    for blocks in (made.blocks[:1], [*made.blocks, made.plates]):
+        with pytest.raises(InvalidInput, match="one block FootPlates"):
+            TorqueFilter(made.sensor, made.noise_m, 1 / RATE_HZ, made.body, made.settings, blocks)

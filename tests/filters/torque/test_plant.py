@@ -4,14 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import scipy.linalg
 
 from mbkf.filters.torque.integrators import Motion, runge_kutta
-from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant, on_state, update
+from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant
 from mbkf.model.forced_body import WithIdleStates
 from mbkf.model.human_dynamics import FORCE_STATES, HumanDynamics
 from mbkf.numerics.discretisation import COVARIANCES, PROPAGATIONS
-from mbkf.numerics.kalman import information
+from mbkf.numerics.kalman import correct, information
 from tests.forced_bodies import Cart, DampedPendulum
 from tests.motions import assert_near, moderate_pose, random_model, worst
 
@@ -27,6 +26,11 @@ def density_of(body, forces=4.0):
 
 def plant_of(body, **scheme):
     return TorquePlant(body, DT, lambda _: density_of(body), Scheme(**scheme))
+
+
+def corrected(plant, prior, readings):
+    found = correct(prior.P, readings)
+    return plant.retract(prior, found.step, found.covariance)
 
 
 def loaded_body(force_state, seed=3):
@@ -134,9 +138,9 @@ def test_linear_body_is_the_exact_kalman_filter(name):
         y = rng.normal(size=4)
         K = np.linalg.solve(H @ P @ H.T + np.diag(sd**2), H @ P).T
         x, P = x + K @ (y - H @ x), (np.eye(6) - K @ H) @ P
-        prior = plant.predict(state).state
+        prior = plant.predict(state)
         seen = np.concatenate([prior.q, prior.v, prior.u])
-        state = update(body, prior, information(y - H @ seen, H, sd)).state
+        state = corrected(plant, prior, information(y - H @ seen, H, sd))
     assert_near(np.concatenate([state.q, state.v, state.u]), x, 1e-9)
     assert_near(state.P, P, 1e-9)
 
@@ -153,7 +157,7 @@ def test_sub_steps_compose(propagation, covariance):
     coarse = replace(found.scheme, substeps=1)
     rough = TorquePlant(body, DT, found.density, coarse).predict(state)
     assert worst(fine.phi - exact.phi) <= worst(rough.phi - exact.phi) / 30 + 1e-13
-    assert worst(fine.state.P - exact.state.P) <= worst(rough.state.P - exact.state.P) / 30 + 1e-12
+    assert worst(fine.P - exact.P) <= worst(rough.P - exact.P) / 30 + 1e-12
 
 
 @pytest.mark.parametrize("substeps", [1, 3])
@@ -169,7 +173,7 @@ def test_fading_states_settle_at_their_stationary_spread(substeps):
     alone = TorquePlant(DampedPendulum(), DT, lambda _: np.zeros((3, 3)), scheme)
     other = ForcedState(state.q, state.v, state.u[:1], state.P[:3, :3])
     for _ in range(200):
-        state, other = plant.predict(state).state, alone.predict(other).state
+        state, other = plant.predict(state), alone.predict(other)
     assert state.u[0] == 2.0
     assert state.u[1] == pytest.approx(5.0 * np.exp(-rate * 200 * DT), rel=1e-9)
     assert state.P[3, 3] == pytest.approx(noise**2 / (2 * rate), rel=1e-6)
@@ -182,10 +186,10 @@ def test_prediction_keeps_forces_and_returns_its_transition():
     A = 1e-3 * np.random.default_rng(5).normal(size=(2 * body.nv + body.nu,) * 2)
     state = ForcedState(now.q, now.v, u, A @ A.T)
     found = plant_of(body).predict(state)
-    np.testing.assert_array_equal(found.state.u, u)
-    added = found.state.P - found.phi @ state.P @ found.phi.T
+    np.testing.assert_array_equal(found.u, u)
+    added = found.P - found.phi @ state.P @ found.phi.T
     assert np.linalg.eigvalsh(0.5 * (added + added.T)).min() > -1e-9 * worst(added)
-    np.testing.assert_array_equal(found.state.P, found.state.P.T)
+    np.testing.assert_array_equal(found.P, found.P.T)
 
 
 @pytest.mark.slow
@@ -203,18 +207,33 @@ def test_covariance_is_what_the_errors_are():
                 moved = runge_kutta(body, Motion(x[:1], x[1:2]), x[2:], DT / fine)
                 wander = force_sd * np.sqrt(DT / fine) * rng.normal()
                 x = np.array([moved.q[0], moved.v[0], x[2] + wander])
-            prior = plant.predict(state).state
+            prior = plant.predict(state)
             y = x[:1] + angle_sd * rng.normal(size=1) - prior.q
-            state = update(body, prior, information(y, H, np.array([angle_sd]))).state
+            state = corrected(plant, prior, information(y, H, np.array([angle_sd])))
             error = x - np.concatenate([state.q, state.v, state.u])
             nees.append(error @ np.linalg.solve(state.P, error))
     assert np.mean(nees) == pytest.approx(3.0, abs=0.6)
 
 
-def test_information_lands_on_its_columns():
-    part = information(np.array([1.0]), np.array([[2.0, 3.0]]), np.array([0.5]))
-    whole = on_state(4, np.array([3, 1]), part)
-    H = np.array([[0.0, 3.0, 0.0, 2.0]])
-    assert_near(whole.matrix, H.T @ H / 0.25, 1e-12)
-    assert_near(whole.vector, H[0] / 0.25, 1e-12)
-    assert_near(scipy.linalg.norm(whole.vector[[0, 2]]), 0.0, 0.0)
+def test_a_state_and_its_tangent_vector():
+    """Difference undoes retraction; wrenches are the end of the forces."""
+    body, now, u = loaded_body("inertial")
+    plant, nv = TorquePlant(body, DT, lambda _: density_of(body), Scheme(), wrenches=12), body.nv
+    state = ForcedState(now.q, now.v, u, np.eye(plant.layout.size))
+    step = 0.1 * np.random.default_rng(7).normal(size=plant.layout.size)
+    moved = plant.retract(state, step, 2.0 * state.P)
+    assert_near(plant.difference(state, moved), step, 1e-9)
+    np.testing.assert_array_equal(moved.P, 2.0 * state.P)
+    layout = plant.layout
+    assert (layout.q, layout.v, layout["u"]) == (slice(0, nv), slice(nv, 2 * nv), slice(2 * nv, layout.size))
+    assert layout.wrench == slice(layout.size - 12, layout.size)
+    assert "wrench" not in plant_of(Cart()).layout
+
+
+def test_the_transition_is_that_of_the_prediction():
+    body, now, u = loaded_body("inertial")
+    state = ForcedState(now.q, now.v, u, np.eye(2 * body.nv + body.nu))
+    plant = plant_of(body)
+    np.testing.assert_array_equal(
+        plant.transition(state), plant.predict(state, plant.noise(plant.begin())).phi
+    )

@@ -96,6 +96,24 @@ def test_a_loss_of_markers_leaves_the_plates():
     assert step.contact == found[21].contact
 
 
+def test_what_cannot_be_computed_is_untracked():
+    """The state stays, contact is still decided, and a smoother passes over the frame."""
+    follower, found = estimates("torque")
+    record = found[20].inner
+    filtered = replace(record.state.filtered, P=-1e3 * np.eye(166))
+    broken = found[20]._replace(inner=replace(record, state=replace(record.state, filtered=filtered)))
+    step = follower.step(broken, recording(), 21)
+    assert not step.tracked and not step.started
+    assert step.q is broken.inner.state.q
+    assert step.contact == found[21].contact
+    assert not step.refused.any()
+    assert np.isnan(follower.innovation(step)[0]) and follower.innovation(step)[1] == 0
+    smoothed = follower.smooth(
+        [found[20], step._replace(inner=replace(step.inner, state=record.state))], recording(), 20, 2
+    )
+    np.testing.assert_allclose(smoothed[0].q, found[20].q, rtol=0, atol=1e-12)
+
+
 @pytest.mark.parametrize("keep", [1, 5])
 def test_smoothing_a_few_frames(keep):
     follower, found = estimates("torque")

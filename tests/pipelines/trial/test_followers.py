@@ -13,6 +13,9 @@ from mbkf.filters.kinematic.tracking import KinematicTracking
 from mbkf.filters.torque.settings import preset
 from mbkf.filters.torque.tracking import TorqueTracking
 from mbkf.pipelines.trial.followers import FILTERS, follower
+from mbkf.sensors.foot_contact import FootContact
+from mbkf.sensors.foot_plates import FootPlates
+from mbkf.sensors.markers import MarkerSettings
 from tests.dynamics import DT
 from tests.followed import inputs, made
 
@@ -45,14 +48,14 @@ def test_all_wait_as_long_before_they_start_anew(name):
 def test_held_dofs_reach_the_filter(name):
     held = np.zeros(made().model.nv, dtype=bool)
     held[30] = True
-    np.testing.assert_array_equal(follower(name, inputs(held=held)).kalman.held, held)
+    np.testing.assert_array_equal(follower(name, inputs(held=held)).kalman.unobservable, held)
 
 
 def test_settings_reach_their_own_filter():
     known = replace(
         inputs(),
         kinematic=KinematicSettings(acceleration_scale=3.0),
-        dynamic=DynamicSettings(marker_noise_scale=2.0),
+        dynamic=DynamicSettings(markers=MarkerSettings(marker_noise_scale=2.0)),
         torque=preset("FDMC"),
     )
     assert follower("kinematic", known).kalman.settings.acceleration_scale == 3.0
@@ -65,8 +68,9 @@ def test_settings_reach_their_own_filter():
 @pytest.mark.parametrize("name", ["torque", "dynamic"])
 def test_plates_reach_the_filters_that_read_them(name):
     found = follower(name, inputs(plates=made().plates[:1]))
-    feet = found.feet if name == "torque" else found.kalman.feet
-    assert len(feet.surfaces_m) == 1
+    kinds = (FootPlates, FootContact)
+    (block,) = (one for one in found.kalman.blocks if isinstance(one, kinds))
+    assert len(block.detector.surfaces_m) == 1
 
 
 def test_wrong_names_are_refused():

@@ -1,0 +1,84 @@
+"""Plates as readings of wrench states: which feet are read, how exactly, and where contact is decided."""
+
+import numpy as np
+import pytest
+
+from mbkf.filters.torque.plant import ForcedState
+from mbkf.model.human_dynamics import HumanDynamics
+from mbkf.sensors.block import Frame, Notes
+from mbkf.sensors.contact.records import Contact, ContactDecision
+from mbkf.sensors.foot_plates import FootPlates, FootPlateSettings, FootReading
+from tests.dynamics import DT, prepared_at, trial
+from tests.forced_bodies import torque_plant
+from tests.motions import assert_near
+
+FRAME = 100
+NO_MARKERS = np.full((1, 3), np.nan)
+
+
+def contact(right, left, wrench):
+    return ContactDecision((right, left), wrench, np.zeros((2, 3)), False, None)
+
+
+@pytest.fixture(scope="module")
+def scene():
+    m = trial("squat")
+    body, motion = HumanDynamics(m.model), m.motion
+    u = body.forces(motion.q[FRAME], motion.v[FRAME], motion.a[FRAME], motion.foot_wrench[FRAME])
+    plant = torque_plant(body)
+    block = FootPlates(body, m.detector(), DT)
+    block.bind(plant.layout)
+    P = np.eye(plant.layout.size)
+    return block, ForcedState(motion.q[FRAME], motion.v[FRAME], u, P), motion.foot_wrench[FRAME]
+
+
+def test_what_is_known_of_feet():
+    wrench = np.arange(12.0).reshape(2, 6)
+    read = FootReading.of(contact(Contact.MEASURED, Contact.AIR, wrench))
+    assert read.known.tolist() == [True, True] and read.airborne.tolist() == [False, True]
+    np.testing.assert_array_equal(read.wrench, [wrench[0], np.zeros(6)])
+    for kind in (Contact.UNMEASURED, Contact.SHARED):
+        read = FootReading.of(contact(kind, Contact.MEASURED, wrench))
+        assert read.known.tolist() == [False, True] and not read.airborne.any()
+
+
+def test_noise_by_what_a_foot_stands_on(scene):
+    block, wrench, s = scene[0], np.ones((2, 6)), FootPlateSettings()
+    sd = block.sd(FootReading.of(contact(Contact.AIR, Contact.MEASURED, wrench)))
+    plate = [s.plate_force_n] * 3 + [s.plate_moment_nm] * 3
+    np.testing.assert_array_equal(sd, [s.air_force_n] * 3 + [s.air_moment_nm] * 3 + plate)
+    assert np.isinf(block.sd(FootReading.of(contact(Contact.UNMEASURED, Contact.SHARED, wrench)))).all()
+
+
+def test_true_plates_leave_no_innovation(scene):
+    block, state, wrench = scene
+    decision = block.decide(prepared_at(block, state), Frame(NO_MARKERS, wrench), block.begin(), Notes())
+    assert decision.contact.contacts == (Contact.MEASURED, Contact.MEASURED)
+    found = block.linearise(prepared_at(block, state), decision)
+    assert found.readings == 12 and found.innovation < 1e-12
+    silent = np.setdiff1d(np.arange(len(found.vector)), block.columns)
+    assert not found.matrix[silent].any()
+    assert np.linalg.matrix_rank(found.matrix[-12:, -12:]) == 12
+
+
+def test_feet_without_a_reading_are_left_out(scene):
+    block, state, wrench = scene
+    decision = contact(Contact.UNMEASURED, Contact.MEASURED, wrench)
+    first = block.decide(prepared_at(block, state), Frame(NO_MARKERS, wrench), block.begin(), Notes())
+    found = block.linearise(
+        prepared_at(block, state), first._replace(contact=decision, reading=FootReading.of(decision))
+    )
+    assert found.readings == 6
+    assert not found.matrix[-12:-6].any() and found.matrix[-6:].any()
+
+
+def test_contact_is_decided_where_the_posterior_leads(scene):
+    block, state, wrench = scene
+    at, frame, notes = prepared_at(block, state), Frame(NO_MARKERS, wrench), Notes()
+    decision = block.decide(at, frame, block.begin(), notes)
+    memory = block.remember(state, at, decision, block.begin())
+    assert notes.contact is decision.contact and memory.contact is decision.contact.memory
+    a = block.body.acceleration(state.q, state.v, state.u)
+    assert_near(memory.ahead.q, block.body.integrate(state.q, DT * state.v), 0.0)
+    assert_near(memory.ahead.v, state.v + DT * a, 0.0)
+    assert_near(memory.ahead.a, a, 0.0)
