@@ -1,56 +1,31 @@
-"""What the tests of every block share: how blocks are found, made from a pool of arguments, and shown frames.
+"""What the tests of every block share: how blocks are found, shown a situation, and what their statements are.
 
 A block is a class that derives from :class:`mbkf.sensors.block.Block`, in the package or in a module of tests/blocks.
-The arguments of its constructor are filled by their type, by their name, or by their default (:meth:`Scene.made`); a
-frame has something to read under every name (:class:`AnyReading`). So a new block needs no line here unless its
-constructor wants what no other wants.
+It is made and shown frames by :mod:`tests.block_scenes`, so that a new one needs no line here unless its constructor
+wants what no other wants.
 """
 
 import importlib
 import inspect
 import pkgutil
-from collections.abc import Mapping
-from copy import copy
 from dataclasses import dataclass, fields, is_dataclass, replace
-from functools import cache, cached_property
-from typing import get_type_hints
+from functools import lru_cache
 
 import numpy as np
 
 import mbkf
 import tests.blocks
-from mbkf.conventions import GRAVITY_M_S2
-from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
-from mbkf.filters.torque.plant import ForcedState, TorquePlant
-from mbkf.filters.torque.settings import SCHEMES
-from mbkf.imu.placement import typical_mounts
-from mbkf.model.human_dynamics import HumanDynamics
-from mbkf.model.newton_euler import NewtonEuler
 from mbkf.numerics.kalman import Information
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
-from mbkf.sensors.contact.causal import ContactDetector
-from mbkf.sensors.foot_contact import FootContact
-from mbkf.sensors.inertial import InertialSensors
-from mbkf.sensors.inertial_sensor import InertialSensor
-from mbkf.sensors.marker_sensor import MarkerSensor
-from mbkf.sensors.markers import Markers
-from mbkf.sensors.posture import PostureSensor
-from tests.dynamics import DT, LOAD, MARKER_SD_M, SPREAD, random_covariance, trial
+from mbkf.sensors.block import Block, Frame, OperatingPoint, Rows
+from tests.block_scenes import Situation, scene
 
 HOMES = ("mbkf.", "tests.blocks.")
-LAST, LIVED = 130, 115
-"""A frame of the walk in which a foot stands on its plate, and how many frames a block has seen by then."""
-
-HIDDEN = ("hand", "forearm", "upper_arm", "foot", "toes", "head")
-"""Segments out of sight in the last frames of some situations."""
 
 LITTLE, MOST_STEPS = 2e-4, 20
 """How much of what information says of a state is left when its slope is compared, and steps on the way there."""
 
-NO_IMUS, NO_NAMES = None, {}
 
-
-@cache
+@lru_cache(None)
 def block_classes():
     """Every block by its name; abstract ones, which no filter holds, are left out."""
     for package in (mbkf, tests.blocks):
@@ -68,213 +43,6 @@ def descendants(kind):
         yield from descendants(child)
 
 
-class AnyReading(Mapping):
-    """Readings (3,) under every name, the same whenever asked; all NaN if so asked."""
-
-    def __init__(self, missing=False):
-        self._missing = missing
-
-    def __getitem__(self, name):
-        if self._missing:
-            return np.full(3, np.nan)
-        return 0.1 * np.random.default_rng(sum(name.encode())).normal(size=3)
-
-    def __contains__(self, name):
-        return True
-
-    def __iter__(self):
-        return iter(())
-
-    def __len__(self):
-        return 0
-
-
-@dataclass(frozen=True)
-class Situation:
-    """Frames with true states and what the standard instruments note of each; the last is the one that is read."""
-
-    states: list
-    frames: list
-    notes: list
-
-    def noted(self, t=-1):
-        """The notes of a frame, to be written into."""
-        return copy(self.notes[t])
-
-
-class Scene:
-    """A walk over two plates with markers and inertial sensors, its instruments in one order or another."""
-
-    def __init__(self, seed=None):
-        walk, rng = trial("walk"), np.random.default_rng(seed)
-        self.walk, self.model = walk, walk.model
-        mounts = typical_mounts(self.model, seed=1)
-        counts = (len(walk.subject.markers), len(walk.plates), len(mounts))
-        self.order = [np.arange(n) if seed is None else rng.permutation(n) for n in counts]
-        markers = [walk.subject.markers[k] for k in self.order[0]]
-        local = np.array([marker.position_m for marker in markers])
-        self.sensor = MarkerSensor(self.model, [marker.segment for marker in markers], local)
-        self.inertial = InertialSensor(self.model, [mounts[k] for k in self.order[2]])
-        self.detector = ContactDetector(self.model, [walk.plates[k] for k in self.order[1]], DT)
-        self.noise_m = np.linspace(0.5, 1.5, counts[0])[self.order[0]] * MARKER_SD_M
-        self.everywhere = np.zeros(self.model.nv, dtype=bool)
-
-    @cached_property
-    def by_type(self):
-        """Arguments of constructors by their type."""
-        return {
-            type(self.model): self.model,
-            MarkerSensor: self.sensor,
-            InertialSensor: self.inertial,
-            PostureSensor: PostureSensor(self.model),
-            ContactDetector: self.detector,
-            NewtonEuler: NewtonEuler(self.model),
-            HumanDynamics: HumanDynamics(self.model),
-        }
-
-    @cached_property
-    def by_name(self):
-        """Arguments of constructors by their name."""
-        movement = self.model.movement_sd
-        return {
-            "noise_m": self.noise_m,
-            "dt_s": DT,
-            "unobservable": self.everywhere,
-            "weight_n": GRAVITY_M_S2 * self.model.mass_kg,
-            "movement_sd": movement,
-            "velocity_sd": 0.1 * movement,
-            "acceleration_sd": 10.0 * movement,
-            "residual_sd": np.repeat([10.0, 5.0], 3),
-        }
-
-    def arguments(self, kind):
-        """What a block is made with: by type, by name, by default; settings as they come, other numbers 0.5."""
-        found, hints = {}, get_type_hints(kind.__init__)
-        for name, one in inspect.signature(kind).parameters.items():
-            hint = hints.get(name)
-            if hint in self.by_type:
-                found[name] = self.by_type[hint]
-            elif name in self.by_name:
-                found[name] = self.by_name[name]
-            elif name == "model":
-                found[name] = self.model
-            elif one.default is not inspect.Parameter.empty:
-                found[name] = one.default
-            elif is_dataclass(hint):
-                found[name] = hint()
-            elif hint is float:
-                found[name] = 0.5
-            else:
-                raise TypeError(f"{kind.__name__}: give '{name}' a default or a value in Scene.by_name")
-        return found
-
-    def made(self, kind, **changes):
-        """A block, bound to the layout of a filter that holds it."""
-        block = kind(**(self.arguments(kind) | changes))
-        block.bind(self.plant(block).layout)
-        return block
-
-    def plant(self, *blocks):
-        """The dynamic filter's plant with what blocks add to the state; the torque filter's for a forced body."""
-        for block in blocks:
-            if hasattr(block, "body"):
-                size = 2 * self.model.nv + block.body.nu
-                nothing = np.zeros((size, size))
-                return TorquePlant(block.body, DT, lambda _: nothing, SCHEMES["FDMC"], wrenches=12)
-        extras = [extra for block in blocks for extra in block.states()]
-        return SingerPlant(self.model, DT, self.everywhere, extras=extras)
-
-    def frame(self, t, hidden=False, worn=False):
-        """Exact readings of a frame; the hidden segments out of sight, and inertial sensors worn, if so asked."""
-        m = self.walk.motion
-        markers = self.sensor.positions(m.q[t])
-        if hidden:
-            markers[[segment.endswith(HIDDEN) for segment in self.sensor.segments]] = np.nan
-        imus = self.inertial.values(m.q[t], m.v[t], m.a[t]) if worn else NO_IMUS
-        return Frame(markers, m.foot_wrench[t][self.order[1]], imus, AnyReading())
-
-    @cache
-    def situation(self, name):
-        """Everything seen; limbs hidden; hidden, with inertial sensors; joints bent too far; nothing read at last."""
-        hides, worn = name in ("hidden", "worn"), name == "worn"
-        times = range(LAST - LIVED, LAST + 1)
-        frames = [self.frame(t, hides and t > LAST - 3, worn) for t in times]
-        m = self.walk.motion
-        states = [self.state(m.q[t], m.v[t], m.a[t], m.foot_wrench[t]) for t in times]
-        if name == "bent":
-            states[-1] = replace(states[-1], q=bent(self.model))
-        if name.startswith("nothing"):
-            frames[-1] = self.nothing(absent=name == "nothing there")
-        return Situation(states, frames, self._noted(states, frames))
-
-    def nothing(self, absent):
-        """A frame in which no instrument reads; absent ones are not even named."""
-        markers, plates = np.full((len(self.noise_m), 3), np.nan), np.full((len(self.order[1]), 6), np.nan)
-        imus = None if absent else np.full((len(self.order[2]), 6), np.nan)
-        return Frame(markers, plates, imus, NO_NAMES if absent else AnyReading(missing=True))
-
-    def state(self, q, v, a, wrench):
-        """A true state, to which :meth:`near` gives errors, a covariance and what blocks add."""
-        return DynamicState(q, v, a, wrench.ravel(), np.zeros((0, 0)))
-
-    def near(self, state, plant, seed=3):
-        """A state a little off, with a full covariance and the states that blocks add."""
-        rng, nv = np.random.default_rng(seed), self.model.nv
-        if isinstance(plant, TorquePlant):
-            sd = np.concatenate(
-                [np.repeat(SPREAD[:2], nv), np.full(plant.body.nu - 12, 5.0), np.tile(LOAD, 2)]
-            )
-            A = 0.1 * rng.normal(size=(len(sd),) * 2) / len(sd) ** 0.5
-            P = (0.01 * np.eye(len(sd)) + A @ A.T) * sd * sd[:, None]
-            P = np.asfortranarray(0.5 * (P + P.T))
-            return plant.retract(seen_by(plant, state, P), 0.05 * sd * rng.normal(size=len(sd)), P)
-        extra, extra_sd = plant.layout.start()
-        size = 3 * nv + 12
-        P = np.zeros((plant.layout.size,) * 2)
-        P[:size, :size] = 0.01 * random_covariance(self.model, rng)
-        P[range(size, len(P)), range(size, len(P))] = extra_sd**2
-        sd = np.concatenate([np.repeat(SPREAD, nv), np.tile(LOAD, 2), extra_sd])
-        whole = replace(state, P=np.asfortranarray(P), extra=extra)
-        return plant.retract(whole, 0.05 * sd * rng.normal(size=len(sd)), whole.P)
-
-    def _noted(self, states, frames):
-        """What markers, plates and inertial sensors note, frame by frame."""
-        standard = [self.made(kind) for kind in (Markers, FootContact, InertialSensors)]
-        kept, found = [block.begin() for block in standard], []
-        for state, frame in zip(states, frames, strict=True):
-            notes, here = Notes(), replace(state, P=np.eye(3 * self.model.nv + 12) * 1e-4)
-            for k, block in enumerate(standard):
-                at = OperatingPoint(here, block.prepare(here, kept[k]))
-                kept[k] = block.remember(here, at, block.decide(at, frame, kept[k], notes), kept[k])
-            found.append(notes)
-        return found
-
-
-def seen_by(plant, state, P):
-    """A true state as a plant's, with a covariance and what blocks add."""
-    if isinstance(plant, TorquePlant):
-        u = plant.body.forces(state.q, state.v, state.a, state.w.reshape(2, 6))
-        return ForcedState(state.q, state.v, u, P)
-    return replace(state, extra=plant.layout.start()[0], P=P)
-
-
-def bent(model):
-    """Standing with knees and elbows 0.3 rad beyond their nearest limits."""
-    step = np.zeros(model.nv)
-    for segment in ("right_shank", "left_forearm"):
-        own = np.arange(model.nv)[model.joint(segment).v]
-        limits = model.limits[own]
-        near = limits[np.arange(len(own)), np.abs(limits).argmin(axis=1)]
-        k = np.abs(near).argmax()
-        step[own[k]] = near[k] + 0.3 * np.sign(near[k])
-    return model.integrate(model.neutral(), step)
-
-
-SITUATIONS = ("seen", "hidden", "worn", "bent")
-SILENT = ("nothing read", "nothing there")
-scene = cache(Scene)
-
-
 @dataclass(frozen=True)
 class Shown:
     """A block that has lived through a situation up to its last frame, which it has decided upon.
@@ -288,8 +56,8 @@ class Shown:
     """
 
     block: Block
-    plant: SingerPlant
-    state: DynamicState
+    plant: object
+    state: object
     frame: Frame
     memory: object
     decision: object
@@ -318,11 +86,11 @@ def shown(kind, name, seed=None, off=3):
     happened, block = here.situation(name), here.made(kind)
     plant, memory = here.plant(block), block.begin()
     P = 1e-4 * np.eye(plant.layout.size)
-    for t, (true, frame) in enumerate(zip(happened.states[:-1], happened.frames[:-1], strict=True)):
-        state = seen_by(plant, true, P)
+    for t, (true, frame) in enumerate(zip(happened.motion[:-1], happened.frames[:-1], strict=True)):
+        state = here.state(true, plant, P)
         at = OperatingPoint(state, block.prepare(state, memory))
         memory = block.remember(state, at, block.decide(at, frame, memory, happened.noted(t)), memory)
-    state, frame = here.near(happened.states[-1], plant, off), happened.frames[-1]
+    state, frame = here.near(happened.motion[-1], plant, off), happened.frames[-1]
     at = OperatingPoint(state, block.prepare(state, memory))
     decision = block.decide(at, frame, memory, happened.noted())
     return Shown(block, plant, state, frame, memory, decision, happened)
@@ -389,22 +157,24 @@ def derivative(found):
         def value(x):
             return stacked(found.says(found.moved(x, state)), size)[1]
 
-    # Accelerations and forces are large.
-    steps = np.where(np.arange(size) < 2 * found.plant.layout.nv, h, 1e3 * h)
+    steps = np.where(np.arange(size) < found.plant.layout.v.stop, h, 1e3 * h)
     columns = [(value(e) - value(-e)) / (2.0 * step) for e, step in zip(np.diag(steps), steps, strict=True)]
     return stated, -np.stack(columns, axis=-1)
 
 
 def noises(kind, here):
-    """Changes that double a noise of a block: an argument of its constructor, or a number among its settings."""
+    """Changes that double a number of a block's constructor or settings, one at a time and all of them."""
+    everything = {}
     for name, value in here.arguments(kind).items():
         if is_dataclass(value) and name.endswith("settings"):
             numbers = {one.name: getattr(value, one.name) for one in fields(value)}
-            for leaf, number in numbers.items():
-                if isinstance(number, float):
-                    yield {name: replace(value, **{leaf: 2.0 * number})}
+            doubled = {leaf: 2.0 * number for leaf, number in numbers.items() if isinstance(number, float)}
+            yield from ({name: replace(value, **{leaf: number})} for leaf, number in doubled.items())
+            everything[name] = replace(value, **doubled)
         elif isinstance(value, float) or (isinstance(value, np.ndarray) and value.dtype.kind == "f"):
             yield {name: 2.0 * value}
+            everything[name] = 2.0 * value
+    yield everything
 
 
 def noisier(decision):

@@ -200,7 +200,7 @@ def simulate(seed: int, *, smoothed: bool = False) -> Run:
             truth.append(true)
             filtered.append(person.judged(true, state))
             nis.append(step.nis)
-            readings.append(step.count)
+            readings.append(step.nis_readings)
             if smoothed:
                 steps.append(step)
         later = smooth(person.kalman, steps, rounds=2) if smoothed else []

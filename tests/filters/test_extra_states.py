@@ -1,4 +1,4 @@
-"""States that a block brings: where they lie, how they start and wander, that they converge, and that they are smoothed.
+"""States that a block brings: where they lie, how they start and wander; they converge, and the smoother handles them.
 
 The block is that of tests/blocks: a tracker on the hand whose origin drifts.
 """
@@ -125,8 +125,8 @@ def test_it_converges_to_the_truth_with_the_spread_it_states():
 
 def test_readings_of_ones_own_are_counted():
     with_tracker, without = run()[5], run(range(5, 6))[5]
-    assert with_tracker.count == without.count + 3
-    assert 0.0 < with_tracker.nis < 4.0 * with_tracker.count
+    assert with_tracker.nis_readings == without.nis_readings + 3
+    assert 0.0 < with_tracker.nis < 4.0 * with_tracker.nis_readings
 
 
 def test_while_the_instrument_is_silent_the_state_only_wanders():

@@ -120,7 +120,7 @@ def test_covariances_are_symmetric_positive_and_not_larger(name):
 def test_covariances_of_all_but_the_first_step_do_not_matter():
     run = run_of("squat")
     first, *rest = run.steps[:10]
-    bare = [replace(step, state=replace(step.state, P=np.zeros((1, 1)))) for step in rest]
+    bare = [step._replace(state=replace(step.state, P=np.zeros((1, 1)))) for step in rest]
     for a, b in zip(
         smooth(run.kalman, [first, *rest], 2), smooth(run.kalman, [first, *bare], 2), strict=True
     ):
