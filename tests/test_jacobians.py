@@ -44,7 +44,7 @@ ELSEWHERE = {
     "model.forced_body.ForcedBody.linearise": "model/test_forced_body.py",
     "model.forced_body.ForcedBody.retraction": "model/test_human_dynamics.py",
     "model.forced_body.ForcedBody.transport": "model/test_human_dynamics.py",
-    "filters.torque.integrators.trapezoidal_newton": "filters/test_integrators.py TN",
+    "filters.torque.integrators.trapezoidal_newton": "filters/torque/test_integrators.py TN",
     "sensors.gating.gated": "sensors/test_gating.py",
     "filters.filter.Filter.prepared_by": "filters/test_filter.py",
     "numerics.discretisation.Discrete.phi": "numerics/test_discretisation.py",
