@@ -135,7 +135,7 @@ class Scene:
             hint = hints.get(name)
             if hint in self.by_type:
                 found[name] = self.by_type[hint]
-            elif name in self.by_name and isinstance(self.by_name[name], float) == (hint is float):
+            elif name in self.by_name and (hint is not float or isinstance(self.by_name[name], float)):
                 found[name] = self.by_name[name]
             elif name == "model":
                 found[name] = self.model
