@@ -26,7 +26,7 @@ from mbkf.sensors.inertial import InertialSensors
 from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 from tests.dynamics import DT, LOAD, MARKER_SD_M, SPREAD, trial
 
 LAST, LIVED = 130, 115
