@@ -26,7 +26,7 @@ from mbkf.sensors.inertial import InertialSensors
 from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 from tests.dynamics import DT, LOAD, MARKER_SD_M, SPREAD, trial
 
 LAST, LIVED = 130, 115
@@ -135,7 +135,7 @@ class Scene:
             hint = hints.get(name)
             if hint in self.by_type:
                 found[name] = self.by_type[hint]
-            elif name in self.by_name and isinstance(self.by_name[name], float) == (hint is float):
+            elif name in self.by_name and (hint is not float or isinstance(self.by_name[name], float)):
                 found[name] = self.by_name[name]
             elif name == "model":
                 found[name] = self.model
