@@ -145,7 +145,7 @@ def singer_plant(rng):
     return named("filters.dynamic.plant.SingerPlant", ("transition", plant.transition(s), numeric))
 
 
-@checks("filters.filter.Filter.linearise", "filters.filter.Readings.rows", tolerance=1e-6)
+@checks("filters.filter.Filter.linearise", "filters.readings.Readings.rows", tolerance=1e-6)
 def dynamic_readings(rng):
     """Whitened innovations fall by the rows; without priors, what markers say falls by their information."""
     model = random_model(rng)
@@ -169,7 +169,7 @@ def dynamic_readings(rng):
     falls = -slope(lambda x: read(x).values, zero, 1e-5)
     informs = -slope(lambda x: read(np.r_[x, zero[model.nv :]]).vector, zero[: model.nv])
     return {
-        "filters.filter.Readings.rows": (found.rows, falls),
+        "filters.readings.Readings.rows": (found.rows, falls),
         "filters.filter.Filter.linearise": (found.matrix / 1e6, informs / 1e6),
     }
 
