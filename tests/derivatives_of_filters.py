@@ -63,11 +63,13 @@ def posture(rng):
         return 0.5 * np.sum((weights * sensor.deviation(at)[0]) ** 2)
 
     return named(
-        "sensors.posture",
+        "sensors.posture_sensor",
         ("PostureReading.jacobian", sensor.reading(q).jacobian, read),
-        ("PreparedPosture.jacobian", prior.prepare(SimpleNamespace(q=q), None).jacobian, numeric),
         ("PostureSensor.reading", sensor.reading(q).jacobian, numeric[sensor.dofs]),
         ("PostureSensor.deviation", sensor.deviation(q)[1], numeric),
+    ) | named(
+        "sensors.posture",
+        ("PreparedPosture.jacobian", prior.prepare(SimpleNamespace(q=q), None).jacobian, numeric),
         # Half the square of the weighed deviations falls along the vector.
         (
             "posture_information",

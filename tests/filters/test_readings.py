@@ -1,72 +1,42 @@
-"""What blocks say together: sums of information on states of different length, rows in order, what NIS counts."""
+"""Readings of a frame as one whole: information, its product with vectors, and the rows that count."""
 
 import numpy as np
 
-from mbkf.filters.readings import summed
-from mbkf.numerics.kalman import Information, information
+from mbkf.filters.readings import Readings
+from mbkf.numerics.kalman import information
 from mbkf.sensors.block import Rows
-from mbkf.sensors.layout import Layout
-from tests.motions import assert_near
 
-LAYOUT = Layout.of(2, q=2, v=2, a=1)
-RNG = np.random.default_rng(0)
-
-
-class Speaker:
-    """Stands for a block: an instrument, or a prior."""
-
-    def __init__(self, prior):
-        self.prior = prior
-
-
-def dense(n, m=4):
-    """Readings on the first n components, as information and as dense H, y."""
-    H, y = RNG.normal(size=(m, n)), RNG.normal(size=m)
-    return information(y, H, np.ones(m)), np.pad(H, ((0, 0), (0, LAYOUT.size - n))), y
+N, n = 9, 4
+RNG = np.random.default_rng(2)
+H, Y, SD = RNG.normal(size=(6, n)), RNG.normal(size=6), RNG.uniform(0.5, 2.0, 6)
+PARTS = (
+    Rows(RNG.normal(size=(2, N)), RNG.normal(size=2), readings=2),
+    Rows(RNG.normal(size=(3, 4)), RNG.normal(size=3), first=5, readings=1),
+)
+ROWS = np.vstack([PARTS[0].jacobian, np.pad(PARTS[1].jacobian, ((0, 0), (5, 0)))])
+VALUES = np.concatenate([part.innovation for part in PARTS])
+MARKERS = information(Y, H, SD)
+READINGS = Readings(MARKERS, MARKERS.matrix, MARKERS.vector, ROWS, VALUES, (PARTS,))
 
 
-def test_everything_together_is_the_stacked_regression():
-    short, H1, y1 = dense(2)
-    long, H2, y2 = dense(4)
-    rows = Rows(RNG.normal(size=(3, 2)), RNG.normal(size=3), first=3, readings=2)
-    H3 = np.zeros((3, LAYOUT.size))
-    H3[:, 3:5] = rows.jacobian
-    found = summed(
-        [Speaker(False), Speaker(True), Speaker(False), Speaker(True)], [short, long, rows, None], LAYOUT
-    )
-    H, y = np.vstack([H1, H2, H3]), np.concatenate([y1, y2, rows.innovation])
-    assert_near(found.whole_matrix, H.T @ H, 1e-12)
-    assert_near(found.whole_vector, H.T @ y, 1e-12)
-    x = RNG.normal(size=LAYOUT.size)
-    assert_near(found.apply(x), H.T @ (H @ x), 1e-12)
+def stacked():
+    """All readings as whitened rows on the whole state, and their innovations."""
+    markers = np.hstack([H / SD[:, None], np.zeros((6, N - n))])
+    return np.vstack([markers, ROWS]), np.concatenate([Y / SD, VALUES])
 
 
-def test_priors_count_in_no_nis():
-    known, _, _ = dense(2)
-    believed, _, _ = dense(2)
-    rows = Rows(np.ones((3, 5)), np.arange(3.0), readings=2)
-    pulls = Rows(np.ones((1, 5)), np.ones(1))
-    found = summed([Speaker(False), Speaker(True), Speaker(False)], [known, believed, [pulls, rows]], LAYOUT)
-    assert found.instruments.readings == known.readings
-    np.testing.assert_array_equal(found.instruments.matrix, known.matrix)
-    assert_near(found.matrix, known.matrix + believed.matrix, 1e-15)
-    counted, values = found.counted
-    assert counted.shape == (2, 5)
-    np.testing.assert_array_equal(values, [0.0, 1.0])
+def test_the_whole_is_what_all_rows_say():
+    rows, values = stacked()
+    np.testing.assert_allclose(READINGS.whole_matrix, rows.T @ rows, atol=1e-12)
+    np.testing.assert_allclose(READINGS.whole_vector, values @ rows, atol=1e-12)
 
 
-def test_instruments_of_different_length_add_up():
-    first, H1, y1 = dense(2)
-    second, H2, y2 = dense(4)
-    found = summed([Speaker(False), Speaker(False)], [first, second], LAYOUT).instruments
-    H, y = np.vstack([H1, H2])[:, :4], np.concatenate([y1, y2])
-    assert_near(found.matrix, H.T @ H, 1e-12)
-    assert_near(found.vector, H.T @ y, 1e-12)
-    assert (found.readings, found.innovation) == (8, float(y1 @ y1) + float(y2 @ y2))
+def test_applying_is_multiplying():
+    x = RNG.normal(size=N)
+    np.testing.assert_allclose(READINGS.apply(x), READINGS.whole_matrix @ x, atol=1e-12)
 
 
-def test_silence_says_nothing():
-    found = summed([Speaker(False), Speaker(True)], [None, []], LAYOUT)
-    assert not found.whole_matrix.any() and not found.whole_vector.any()
-    assert isinstance(found.instruments, Information) and found.instruments.readings == 0
-    assert found.rows.shape == (0, LAYOUT.size)
+def test_the_first_rows_of_each_part_are_the_readings_that_count():
+    rows, values = READINGS.counted
+    np.testing.assert_array_equal(rows, ROWS[[0, 1, 2]])
+    np.testing.assert_array_equal(values, VALUES[[0, 1, 2]])
