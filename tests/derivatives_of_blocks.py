@@ -20,7 +20,6 @@ def tolerance(kind):
 
 
 def add_case(kind):
-    @checks(address(kind), tolerance=tolerance(kind))
     def compare(rng):
         pairs = []
         for situation in SITUATIONS:
@@ -34,7 +33,8 @@ def add_case(kind):
         stated, numeric = zip(*pairs, strict=True)
         return {address(kind): (np.vstack(stated), np.vstack(numeric))}
 
-    return compare
+    compare.__name__ = kind.__name__
+    checks(address(kind), tolerance=tolerance(kind))(compare)
 
 
 for found in block_classes().values():
