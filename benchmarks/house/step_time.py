@@ -86,29 +86,29 @@ def _worker(tree: Path, folder: Path) -> Iterator[Timed]:
     """A process that uses this tree's mbkf and times blocks of steps."""
     if not (tree / "mbkf" / "__init__.py").is_file():
         raise InvalidInput(f"{tree}: holds no mbkf; give the folder of a checked-out tree with --old")
-    process = subprocess.Popen(
+    with subprocess.Popen(
         [sys.executable, "-P", str(WORKER), str(folder)],
         env=_environment(tree),
         cwd=folder,
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
-    )
-    assert process.stdin is not None and process.stdout is not None
-    try:
-        used = process.stdout.readline().strip()
+    ) as process:
+        commands, answers = process.stdin, process.stdout
+        assert commands is not None and answers is not None
+        used = answers.readline().strip()
         if used != str((tree / "mbkf").resolve()):
             raise InvalidInput(f"{tree}: its filters do not follow the capture (mbkf used: '{used}')")
 
         def timed(name: str) -> float:
-            process.stdin.write(f"{name} {STEPS}\n")  # type: ignore[union-attr]
-            process.stdin.flush()  # type: ignore[union-attr]
-            return float(process.stdout.readline())  # type: ignore[union-attr]
+            commands.write(f"{name} {STEPS}\n")
+            commands.flush()
+            answer = answers.readline()
+            if not answer:
+                raise InvalidInput(f"{tree}: its {name} filter ended in the middle of the squat")
+            return float(answer)
 
         yield timed
-    finally:
-        process.stdin.close()
-        process.wait(timeout=30.0)
 
 
 def _environment(tree: Path) -> Mapping[str, str]:

@@ -9,6 +9,7 @@ it uses. Then it reads lines ``filter steps`` and answers each with the median t
 from __future__ import annotations
 
 import sys
+from importlib import import_module
 from pathlib import Path
 from statistics import median
 from time import perf_counter
@@ -24,16 +25,16 @@ FILTERS = ("dynamic", "kinematic")
 def followed(folder: Path) -> tuple[Any, dict[str, Any]]:
     """The trial's recording and a filter for it by name, from where this tree keeps them."""
     try:
-        from mbkf.pipelines.trial.followers import follower
-        from mbkf.pipelines.trial.inputs import trial_inputs
+        homes = "mbkf.pipelines.trial.followers", "mbkf.pipelines.trial.inputs"
+        filters, inputs_of = (import_module(home) for home in homes)
     except ImportError:  # before pipelines had folders
-        from mbkf.pipelines.followers import follower  # type: ignore[import-not-found, no-redef]
-        from mbkf.pipelines.trial_inputs import trial_inputs  # type: ignore[import-not-found, no-redef]
+        homes = "mbkf.pipelines.followers", "mbkf.pipelines.trial_inputs"
+        filters, inputs_of = (import_module(home) for home in homes)
     capture = mbkf.read_capture(folder / "trial.c3d")
     subject = mbkf.read_subject(folder / "subject.toml")
     shown = subject_markers(capture.markers, subject)
-    inputs, recording = trial_inputs(shown, capture.plates, subject, ReconstructSettings())
-    return recording, {name: follower(name, inputs) for name in FILTERS}
+    inputs, recording = inputs_of.trial_inputs(shown, capture.plates, subject, ReconstructSettings())
+    return recording, {name: filters.follower(name, inputs) for name in FILTERS}
 
 
 def main(folder: Path) -> None:
