@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from tests.block_contract import SITUATIONS, block_classes, derivative, shown, speaks
+from tests.block_contract import block_classes, derivative, shown, speaks
+from tests.block_scenes import SITUATIONS
 from tests.derivatives import checks
 
 LEFT_OUT = {"PlantedFeet": "the derivative by the configuration, as it says"}

@@ -147,7 +147,6 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
 
     def bind(self, layout: Layout) -> None:
         """Told once which slice of the state is which; a block that speaks of added states keeps it."""
-        del layout
 
     def begin(self) -> MemoryT:
         """Memory before the first frame."""
@@ -160,7 +159,6 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
             state: The predicted state, or that at which a smoother linearises.
             memory: Of the frame before; None where a smoother asks.
         """
-        del state, memory
         return None  # type: ignore[return-value]
 
     @abstractmethod
@@ -185,7 +183,6 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
 
     def review(self, posterior: StateT, decision: DecisionT) -> DecisionT | None:
         """Another decision where the posterior shows the first to be wrong, None where it stands; asked once."""
-        del posterior, decision
         return None
 
     def remember(
@@ -199,12 +196,10 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
             decision: What was decided.
             memory: Of the frame before.
         """
-        del posterior, at, decision
         return memory
 
     def log_noise(self, decision: DecisionT) -> float:
         """Log det R of the readings that NIS and likelihood count."""
-        del decision
         return 0.0
 
 

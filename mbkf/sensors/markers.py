@@ -60,10 +60,6 @@ class MarkerSettings:
     min_markers: int = 6
 
 
-WHITE = MarkerSettings(innovation_share=0.0)
-"""Markers whose noise is what their protocol states."""
-
-
 class MarkerMemory(NamedTuple):
     """Square of the factor on the noise, and (M, 3) markers used in the frame before where skin is modelled."""
 
@@ -142,7 +138,6 @@ class Markers(Block[Any, MarkerReading, MarkerDecision, MarkerMemory]):
 
     def prepare(self, state: Any, memory: MarkerMemory | None) -> MarkerReading:
         """Predicted markers."""
-        del memory
         return self.sensor.reading(state.q)
 
     def decide(

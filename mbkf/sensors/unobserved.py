@@ -54,7 +54,6 @@ class UnobservedJoints(Block[Any, None, Notes, None]):
 
     def decide(self, at: OperatingPoint[Any, None], frame: Frame, memory: None, notes: Notes) -> Notes:
         """Depends on which joints are observed."""
-        del at, frame, memory
         return notes
 
     def linearise(self, at: OperatingPoint[Any, None], decision: Notes) -> Rows | None:

@@ -1,4 +1,4 @@
-"""States that a block brings: where they lie, how they start and wander, that they converge, and that they are smoothed.
+"""States that a block brings: where they lie, how they start and wander; they converge, and the smoother handles them.
 
 The block is that of tests/blocks: a tracker on the hand whose origin drifts.
 """
