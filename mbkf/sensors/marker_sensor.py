@@ -10,7 +10,7 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.errors import ShapeError
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.model.point_masses import PointMasses
 from mbkf.numerics.kalman import Information, information
 
@@ -73,7 +73,7 @@ class MarkerSensor:
         joint_ids: (M,) Pinocchio joints that carry them.
     """
 
-    def __init__(self, model: HumanModel, segments: Sequence[str], local_m: Array) -> None:
+    def __init__(self, model: Body, segments: Sequence[str], local_m: Array) -> None:
         self.model = model
         self.segments = tuple(segments)
         self.local_m = read_only(local_m)

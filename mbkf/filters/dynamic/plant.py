@@ -19,7 +19,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.sensors.block import Notes
 from mbkf.sensors.layout import WRENCH, ExtraState, Layout
 
@@ -82,7 +82,7 @@ class SingerPlant:
 
     def __init__(
         self,
-        model: HumanModel,
+        model: Body,
         dt_s: float,
         unobservable: BoolArray,
         settings: SingerSettings = SingerSettings(),
