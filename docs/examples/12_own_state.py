@@ -43,9 +43,7 @@ altimeter = (height_m + drift_m + SD_M * rng.normal(size=frames))[:, None]
 gap = mbkf.ReconstructSettings(hide=(mbkf.Hidden(trial.markers.names, from_s=0.6, to_s=0.8),))
 errors = {}
 for name, blocks in {"markers alone": [], "and altimeter": [Altimeter()]}.items():
-    result = mbkf.reconstruct(
-        trial, person, settings=gap, blocks=blocks, readings={"altimeter": altimeter}
-    )
+    result = mbkf.reconstruct(trial, person, settings=gap, blocks=blocks, readings={"altimeter": altimeter})
     inside = (result.times_s > 0.6) & (result.times_s < 0.8)
     errors[name] = 1e3 * np.sqrt(np.mean((result.q[inside, 2] - height_m[inside]) ** 2))
     print(f"{name}: height of the pelvis {errors[name]:.1f} mm RMS from the truth while no marker is seen")

@@ -10,7 +10,6 @@ The kinematic, torque and dynamic filters are this class with another plant and 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cache
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
@@ -254,12 +253,15 @@ class Filter(Generic[StateT]):
             readings = summed(self.blocks, said, self.layout)
             posterior = self._updated(state, readings)
 
-        @cache
+        made: list[Memory] = []
+
         def recall() -> Memory:
-            kept = list(memory.blocks)
-            for k, block in self._remembering:
-                kept[k] = block.remember(posterior, points[k], chosen[k], kept[k])
-            return Memory(self.plant.remember(posterior, notes, memory.plant), kept)
+            if not made:
+                kept = list(memory.blocks)
+                for k, block in self._remembering:
+                    kept[k] = block.remember(posterior, points[k], chosen[k], kept[k])
+                made.append(Memory(self.plant.remember(posterior, notes, memory.plant), kept))
+            return made[0]
 
         return Step(posterior, prior, Decisions(prior.noise, chosen, notes), readings, recall)
 

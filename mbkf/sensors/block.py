@@ -103,14 +103,15 @@ class Rows(NamedTuple):
         jacobian: (k, n) R^(-1/2) H.
         innovation: (k,) R^(-1/2) y.
         first: Component of the state that the first column stands for.
-        readings: How many of the rows, the first ones, are readings that NIS and likelihood count; the others are
-            priors.
+        readings: How many of the rows, the first ones, are readings that NIS and likelihood count; others are priors.
+        vector: (n,) HᵀR⁻¹y of priors where the block rounds it less than the product does; None for the product.
     """
 
     jacobian: Array
     innovation: Array
     first: int = 0
     readings: int = 0
+    vector: Array | None = None
 
 
 Statement = Information | Rows | Sequence[Rows] | None

@@ -70,4 +70,7 @@ class UnobservedJoints(Block[Any, None, Notes, None]):
             calm = self._calm[dofs]
             rows[len(dofs) + k, nv + dofs] = calm
             values[len(dofs) + k] = -calm * state.a[dofs]
-        return Rows(rows, values, self._v)
+            return Rows(rows, values, self._v)
+        vector = np.zeros(nv)
+        vector[dofs] = -(rest**2) * state.v[dofs]
+        return Rows(rows, values, self._v, vector=vector)

@@ -1,10 +1,14 @@
 """Readings of a frame as one whole: information, its product with vectors, and the rows that count."""
 
+from types import SimpleNamespace
+
 import numpy as np
 
-from mbkf.filters.readings import Readings
+from mbkf.filters.readings import Readings, summed
 from mbkf.numerics.kalman import information
 from mbkf.sensors.block import Rows
+from mbkf.sensors.layout import Layout
+from tests.motions import assert_near
 
 N, n = 9, 4
 RNG = np.random.default_rng(2)
@@ -40,3 +44,15 @@ def test_the_first_rows_of_each_part_are_the_readings_that_count():
     rows, values = READINGS.counted
     np.testing.assert_array_equal(rows, ROWS[[0, 1, 2]])
     np.testing.assert_array_equal(values, VALUES[[0, 1, 2]])
+
+
+def test_a_vector_that_its_block_gave_stands_for_the_product():
+    rows = Rows(
+        np.array([[0.5, 0.0], [0.0, 0.25]]), np.array([2.0, 4.0]), first=2, vector=np.array([1.0, 1.0])
+    )
+    plain = rows._replace(vector=None)
+    given, formed = (
+        summed([SimpleNamespace(prior=True)], [one], Layout.of(2, q=2, v=2)) for one in (rows, plain)
+    )
+    assert_near(given.whole_vector, formed.whole_vector, 1e-15)
+    np.testing.assert_array_equal(given.whole_matrix, formed.whole_matrix)
