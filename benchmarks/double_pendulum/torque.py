@@ -19,7 +19,7 @@ from mbkf.numerics.smoothing import BackwardPass
 from mbkf.synthesis.pendulum import MARKER_BARS, MARKER_SHARES
 
 SENSORS = ("m1", "m2", "m3", "m4", "tau_1", "F_x", "F_y", "T_2")
-"""Markers from top to bottom, then efforts (eq. 3.61)."""
+"""Markers from top to bottom, then efforts (thesis eq. 3.61)."""
 
 STANDARD_SENSORS = tuple(name for name in SENSORS if name != "tau_1")
 """All but the torque sensor at the joint, which no laboratory has."""

@@ -1,4 +1,4 @@
-"""What the force plates should read of the wrenches that a dynamic filter holds at the feet (eqs. 4.10–4.13)."""
+"""What the force plates should read of the wrenches that a dynamic filter holds at the feet (thesis eqs. 4.10–4.13)."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ class WrenchReading:
 
     Attributes:
         wrench: (12,) force N and moment N m about the plates' points, world axes; right, then left.
-        by_q: (12, nv) derivative along the tangent space of q, D_z T_p of eq. 4.13.
-        by_state: (12, 12) derivative by the wrench states, D of eq. 4.13.
+        by_q: (12, nv) derivative along the tangent space of q, D_z T_p of thesis eq. 4.13.
+        by_state: (12, 12) derivative by the wrench states, D of thesis eq. 4.13.
     """
 
     wrench: Array

@@ -1,7 +1,7 @@
 """What inertial sensors on a body read: angular velocity and specific force in their own axes, with derivatives.
 
 ω = Rᵀ ω_segment and f = Rᵀ (p̈ − g) at the sensor's place p, from the body's positions, velocities and accelerations
-(the source's eqs. 38–43 take finite differences instead). A turn of the world about the vertical changes neither.
+(the virtual sensors of Madgwick eqs. 38–43 take finite differences instead). A turn of the world about the vertical changes neither.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What the cameras should see: marker positions and their derivatives (eqs. 3.4, 3.5)."""
+"""What the cameras should see: marker positions and their derivatives (thesis eqs. 3.4, 3.5)."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class MarkerReading:
 
 
 class MarkerSensor:
-    """Markers fixed to segments of a body: m = r_b + A_b m̄ (eq. 3.4).
+    """Markers fixed to segments of a body: m = r_b + A_b m̄ (thesis eq. 3.4).
 
     Attributes:
         model: The body.

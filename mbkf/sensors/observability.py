@@ -1,4 +1,4 @@
-"""Which degrees of freedom markers determine: ranks of H and of the observability matrix (eq. 4.14)."""
+"""Which degrees of freedom markers determine: ranks of H and of the observability matrix (thesis eq. 4.14)."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def null_space(matrix: Array, tolerance: float = RANK_TOLERANCE) -> Array:
 
 
 def observability_matrix(measurement: Array, plant: Array) -> Array:
-    """[H; HF; HF²; …] (eq. 4.14), as far as its rows are not all zero and at most n blocks.
+    """[H; HF; HF²; …] (thesis eq. 4.14), as far as its rows are not all zero and at most n blocks.
 
     Args:
         measurement: (m, n) H.

@@ -1,4 +1,4 @@
-"""The pose that fits one frame of markers: segment by segment first, then all at once (eq. 4.1 with positions only)."""
+"""The pose that fits one frame of markers: by segment first, then all at once (thesis eq. 4.1, positions only)."""
 
 from __future__ import annotations
 

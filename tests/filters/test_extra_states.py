@@ -1,4 +1,4 @@
-"""States that a block brings: where they lie, how they start and wander, that they converge, and that they are smoothed.
+"""States that a block brings: where they lie, how they start and drift, that they converge and are smoothed.
 
 The block is that of tests/blocks: a tracker on the hand whose origin drifts.
 """

@@ -52,7 +52,7 @@ def load_variance(settings: TorqueSettings, mass_kg: float) -> Array:
 
 
 class ForceNoise:
-    """Spectral density of the plant noise w̃ on (δq, δv, δT_e) (eqs. 2.42, 2.46).
+    """Spectral density of the plant noise w̃ on (δq, δv, δT_e) (thesis eqs. 2.42, 2.46).
 
     Attributes:
         body: The body.

@@ -13,7 +13,7 @@ squat 7.7, walk 8.8, jump 8.5), and RMS change of the plate forces that the filt
 | FD, literal, per frame | 1.9, 1 N | 7.6, 18 N | 8.8, 10 N | 11 N |
 | FDMC, literal, per frame | 2.0, 1 N | 8.1, 18 N | 9.4, 10 N | 11 N |
 
-Read as spectral densities (SPEC §6), the covariances of Table 4.3 let a plate force change by 2 N in a frame where
+Read as spectral densities, the covariances of Table 4.3 let a plate force change by 2 N in a frame where
 walking changes it by 90 N: the filter lags, bends the motion, and loses it where it is quick. Ten sub-steps or a
 wrench on the ankle change none of this. Read as what a frame adds they follow, if noisily. What the stable settings
 change, each of which helps: "inertial" force states (see FORCE_STATES), which also leave the simplified F little to
@@ -31,14 +31,14 @@ from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.torque.plant import Scheme
 
 MASS_OF_TABLE_KG = 100.0
-"""Covariances of forces scale with the subject's mass over this (eq. 4.18)."""
+"""Covariances of forces scale with the subject's mass over this (thesis eq. 4.18)."""
 
 
 @dataclass(frozen=True)
 class TorqueSettings:
     """What the torque-state filter believes.
 
-    Forces and moments are for a subject of 100 kg and scale with the subject's mass (eq. 4.18).
+    Forces and moments are for a subject of 100 kg and scale with the subject's mass (thesis eq. 4.18).
 
     Attributes:
         scheme: Integrator, propagation and covariance.
@@ -93,7 +93,7 @@ SCHEMES = {
     "FD": Scheme("TN", "exponential", "van_loan"),
     "FDMC": Scheme("FE", "second", "series", complete=False),
 }
-"""The thesis's two filters: the exact one and the one light enough for real time (SPEC §6)."""
+"""The thesis's two filters: the exact one and the one light enough for real time."""
 
 
 def preset(name: str, *, literal: bool = False) -> TorqueSettings:

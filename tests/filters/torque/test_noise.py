@@ -63,7 +63,7 @@ def test_consistent_noise_leaves_accelerations_and_loads_their_own(force_state):
 
 
 def test_independent_noise_is_the_table_scaled_by_mass():
-    """Thesis Table 4.3 and eq. 4.18."""
+    """Thesis Table 4.3 and thesis eq. 4.18."""
     body, state, noise = made(preset("FD", literal=True))
     nv, model, scale = body.nv, body.model, body.model.mass_kg / 100.0
     density = noise(state)
