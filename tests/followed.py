@@ -20,7 +20,7 @@ from tests.motions import angle_errors, marker_positions
 FRAMES = range(40, 100)
 """Frames of the squat: it goes down."""
 
-WHOLE = SmoothingSettings(stretch_s=10.0)
+WHOLE = SmoothingSettings(window_s=10.0)
 """The whole run in one stretch."""
 
 SETTLED = slice(15, -5)

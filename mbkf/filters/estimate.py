@@ -108,7 +108,16 @@ class TrackingFilter(Protocol):
     restart_after_s: float
 
     def start(self, recording: Recording, t: int, guess: Array | None) -> Posterior | None:
-        """An estimate at frame t that already knows its velocity from the next frames, or None where nothing fits."""
+        """An estimate at frame t that already knows its velocity from the next frames.
+
+        Args:
+            recording: The readings.
+            t: The frame.
+            guess: (nq,) configuration near which the body may be; None where nothing is known of it.
+
+        Returns:
+            None where the frame's markers do not fit the body.
+        """
 
     def predict(self, before: Posterior) -> Prediction:
         """What the frame after an estimate should show: what a labeller needs between prediction and correction."""

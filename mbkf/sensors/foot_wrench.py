@@ -38,7 +38,13 @@ class FootWrenchSensor:
         self.ids = [dynamics.model.joint(name).joint_id for name in dynamics.model.roles.feet]
 
     def reading(self, q: Array, state: Array, points_m: Array) -> WrenchReading:
-        """Readings of wrench states (12,) at q about the points (2, 3) in the world."""
+        """What plates under both feet read.
+
+        Args:
+            q: (nq,) configuration.
+            state: (12,) wrench states of right and left foot.
+            points_m: (2, 3) points in the world about which the moments are taken.
+        """
         rotations, origins, jacobian = self.dynamics.model.placements_and_jacobian(q)
         local, by_state, by_q = self.dynamics.local_wrench(q, state)
         wrench = np.empty(12)

@@ -135,7 +135,14 @@ class JacobianInformation:
         self.noise_m, self._nv = noise_m, sensor.model.nv
 
     def at(self, q: Array, reading: MarkerReading, innovation_m: Array, trusted: BoolArray) -> Information:
-        """As :meth:`MarkerInformation.at`."""
+        """As :meth:`MarkerInformation.at`.
+
+        Args:
+            q: (nq,) configuration; not needed here.
+            reading: The sensor's reading at q.
+            innovation_m: (M, 3) measured minus predicted positions.
+            trusted: (M,) markers to count.
+        """
         del q
         H = reading.jacobian[trusted].reshape(-1, self._nv)
         return information(innovation_m[trusted].ravel(), H, np.repeat(self.noise_m[trusted], 3))

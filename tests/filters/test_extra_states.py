@@ -156,7 +156,7 @@ def test_a_trial_is_tracked_with_it(smoothing):
     plain, made = kalman(), trial("squat")
     noise = np.full(len(plain.noise_m), MARKER_SD_M)
     starter = KinematicFilter(plain.sensor, noise, DT, plain.unobservable, KinematicSettings())
-    chosen = SmoothingSettings(stretch_s=10.0) if smoothing else None
+    chosen = SmoothingSettings(window_s=10.0) if smoothing else None
     found = track(DynamicTracking(plain, starter), read(), smoothing=chosen)
     assert found.tracked.all() and np.isfinite(found.torque_sd).all()
     off = [made.model.difference(made.motion.q[t], q) for t, q in zip(FRAMES, found.q, strict=True)]

@@ -12,7 +12,7 @@ from tests.dynamics import DT
 from tests.followed import WHOLE, errors, estimates, made, made_follower, recording, tracked, without
 from tests.motions import angle_errors
 
-SHORT = SmoothingSettings(stretch_s=0.1, ahead_s=0.2)
+SHORT = SmoothingSettings(window_s=0.1, ahead_s=0.2)
 """Stretches of 10 frames that look 20 frames ahead; the lag is 30."""
 
 every_filter = pytest.mark.parametrize("name", FILTERS)

@@ -125,7 +125,17 @@ class DynamicFilter(Filter[DynamicState]):
         settings: DynamicSettings,
         inertial: InertialSensor | None = None,
     ) -> DynamicFilter:
-        """The filter with :func:`dynamic_blocks`, whose arguments these are."""
+        """The filter with the blocks of :func:`dynamic_blocks`.
+
+        Args:
+            sensor: The markers on the body.
+            noise_m: (M,) their noise, m.
+            detector: Finds what the feet stand on.
+            dt_s: Time between frames.
+            unobservable: (nv,) dofs that no marker of the capture moves with.
+            settings: Settings of plant and blocks.
+            inertial: Inertial sensors on the body.
+        """
         blocks = dynamic_blocks(sensor, noise_m, detector, dt_s, unobservable, settings, inertial)
         return cls(sensor, noise_m, dt_s, unobservable, settings, blocks)
 

@@ -21,6 +21,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from mbkf.conventions import Array, BoolArray
+from mbkf.filters.filter import Plant
 from mbkf.model.human import HumanModel
 from mbkf.sensors.block import Notes
 from mbkf.sensors.layout import WRENCH, ExtraState, Layout
@@ -69,7 +70,7 @@ class DynamicState:
     extra: Array = field(default_factory=lambda: np.zeros(0))
 
 
-class SingerPlant:
+class SingerPlant(Plant[DynamicState]):
     """Predicts a :class:`DynamicState`.
 
     Attributes:

@@ -11,7 +11,7 @@ from mbkf.filters.dynamic.filter import DynamicFilter
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.dynamic.smoother import smooth
 from mbkf.filters.error_covariance import ErrorCovariance
-from mbkf.filters.estimate import Posterior, Prediction, Recording
+from mbkf.filters.estimate import Posterior, Prediction, Recording, TrackingFilter
 from mbkf.filters.filter import Step
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.tracking import warm_start
@@ -27,7 +27,7 @@ ROUNDS = 2
 """How often a smoothed stretch is linearised; a third round changes the residual by less than 0.1 N."""
 
 
-class DynamicTracking:
+class DynamicTracking(TrackingFilter):
     """Drives a :class:`DynamicFilter`; see :class:`mbkf.filters.estimate.TrackingFilter`."""
 
     def __init__(self, kalman: DynamicFilter, starter: KinematicFilter) -> None:

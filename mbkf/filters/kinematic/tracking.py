@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.estimate import NO_WRENCH, Posterior, Prediction, Recording
+from mbkf.filters.estimate import NO_WRENCH, Posterior, Prediction, Recording, TrackingFilter
 from mbkf.filters.filter import Memory, Step
 from mbkf.filters.kinematic.filter import KinematicFilter, VelocityStep
 from mbkf.filters.kinematic.plant import KinematicState
@@ -90,7 +90,7 @@ def warm_start(
     return WarmStart(state.reversed_in_time(), accelerations[: max(1, round(SETTLING_S / dt))])
 
 
-class KinematicTracking:
+class KinematicTracking(TrackingFilter):
     """Drives a :class:`KinematicFilter`; see :class:`mbkf.filters.estimate.TrackingFilter`."""
 
     def __init__(self, kalman: KinematicFilter) -> None:

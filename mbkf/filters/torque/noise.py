@@ -29,7 +29,14 @@ class Conditioned:
 
 
 def condition(covariance: Array, rows: Array, variance: Array, missing: Array) -> Conditioned:
-    """Conditions x ~ N(·, C) on A x + r = y, r of independent ``variance`` (m,), where y − A x̄ = ``missing`` (m,)."""
+    """Conditions x ~ N(x̄, C) on readings y = A x + r with independent r.
+
+    Args:
+        covariance: (n, n) C.
+        rows: (m, n) A.
+        variance: (m,) of r.
+        missing: (m,) innovation y − A x̄.
+    """
     carried = covariance @ rows.T
     S = rows @ carried + np.diag(variance)
     factor = scipy.linalg.cho_factor(S, check_finite=False)
@@ -60,6 +67,13 @@ class ForceNoise:
     """
 
     def __init__(self, body: HumanDynamics, dt_s: float, settings: TorqueSettings) -> None:
+        """Makes the noise of a body.
+
+        Args:
+            body: The body.
+            dt_s: Time step.
+            settings: Variances of the thesis's Table 4.3 or their replacements.
+        """
         self.body, self.settings = body, settings
         mass = body.model.mass_kg
         toes = body.model.acceleration_sd if settings.toe_acceleration is None else settings.toe_acceleration

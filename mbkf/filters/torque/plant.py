@@ -14,6 +14,7 @@ import numpy as np
 import scipy.linalg
 
 from mbkf.conventions import Array
+from mbkf.filters.filter import Plant
 from mbkf.filters.torque.integrators import Motion, integrator
 from mbkf.model.forced_body import ForcedBody, LinearAcceleration
 from mbkf.numerics.discretisation import Discrete, discretise, symmetric
@@ -63,7 +64,7 @@ NoiseDensity = Callable[[ForcedState], Array]
 """The spectral density (n, n) of w̃ at a state: G Σᴾ Gᵀ of thesis eq. 2.46."""
 
 
-class TorquePlant:
+class TorquePlant(Plant[ForcedState]):
     """Predicts mean and covariance of a forced body over one frame.
 
     Attributes:

@@ -9,7 +9,7 @@ from typing import cast
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.estimate import Posterior, Prediction, Recording
+from mbkf.filters.estimate import Posterior, Prediction, Recording, TrackingFilter
 from mbkf.filters.filter import Memory
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.tracking import warm_start
@@ -41,7 +41,7 @@ class TorqueRecord:
     nis: float = np.nan
 
 
-class TorqueTracking:
+class TorqueTracking(TrackingFilter):
     """Drives a :class:`TorqueFilter`; see :class:`mbkf.filters.estimate.TrackingFilter`."""
 
     def __init__(self, kalman: TorqueFilter, starter: KinematicFilter) -> None:

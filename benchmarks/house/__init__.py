@@ -1,0 +1,1 @@
+"""What the source tree itself must show: documentation of its public definitions."""
