@@ -68,7 +68,7 @@ class Reconstruction:
             moment about the pelvis's origin.
         tracked: (T,) enough markers to follow the body.
         valid: (T,) every loaded foot stands on a measured plate.
-        held_dofs: Names of dofs that nothing observes.
+        unobserved_dofs: Names of dofs that no marker of the capture moves with.
         nis: (T,) normalised innovation squared.
         nis_readings: (T,) number of scalar readings in it.
         step_seconds: (T,) computing time of a frame.
@@ -120,7 +120,7 @@ class Reconstruction:
     residual_moment_nm: Array
     tracked: BoolArray
     valid: BoolArray
-    held_dofs: tuple[str, ...]
+    unobserved_dofs: tuple[str, ...]
     nis: Array
     nis_readings: Array
     step_seconds: Array
@@ -133,7 +133,7 @@ class Reconstruction:
     plate_corners_m: Array | None = None
 
     def __post_init__(self) -> None:
-        for name in ("dof_names", "coordinate_names", "marker_names", "held_dofs", "warnings"):
+        for name in ("dof_names", "coordinate_names", "marker_names", "unobserved_dofs", "warnings"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
         sizes = {
             "T": np.shape(self.times_s)[0],

@@ -13,7 +13,7 @@ from mbkf.filters.settings import changed, flat
 from mbkf.filters.torque.settings import SCHEMES, preset
 from mbkf.io.preset import SUFFIX, Preset, preset_folder, read_preset, saved_presets
 from mbkf.pipelines.reconstruct import ReconstructSettings
-from mbkf.pipelines.trial.followers import FILTERS
+from mbkf.pipelines.trial.filters import FILTERS
 
 LITERAL = "-literal"
 BUILT_IN = tuple(name + end for name in SCHEMES for end in ("", LITERAL))

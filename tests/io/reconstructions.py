@@ -29,7 +29,7 @@ def made_up(frames=12, seed=0, **changes):
         "rejected": np.zeros((T, M), bool), "foot_wrench": np.concatenate([force, moment], axis=2),
         "foot_cop_m": cop, "foot_free_moment_nm": free, "residual_force_n": rng.normal(size=(T, 3)),
         "residual_moment_nm": rng.normal(size=(T, 3)), "tracked": np.ones(T, bool), "valid": np.ones(T, bool),
-        "held_dofs": ("pelvis_5",), "nis": rng.random(T), "nis_readings": np.full(T, 6),
+        "unobserved_dofs": ("pelvis_5",), "nis": rng.random(T), "nis_readings": np.full(T, 6),
         "step_seconds": np.full(T, 1e-3), "warnings": ("a remark, ünicode",),
         "settings": {"filter": "dynamic", "jerk": 200.0, "hide": ["A"]},
     }  # fmt: skip

@@ -87,3 +87,10 @@ def test_damaged_files_are_refused(tmp_path, damage, message):
         damage(file)
     with pytest.raises(FileFormatError, match=message):
         read_h5(path)
+
+
+def test_unobserved_dofs_keep_the_key_of_older_files(tmp_path):
+    write_h5(made_up(), tmp_path / "motion.h5")
+    with h5py.File(tmp_path / "motion.h5") as file:
+        assert list(file["held_dofs"].asstr()) == ["pelvis_5"]
+    assert read_h5(tmp_path / "motion.h5").unobserved_dofs == ("pelvis_5",)

@@ -190,16 +190,16 @@ def legs_alone():
 
 def test_legs_alone_are_followed_and_the_rest_is_named():
     found = reconstruct(*legs_alone(), settings=ReconstructSettings(correct_markers=False))
-    assert len(found.held_dofs) == 26
-    assert "26 dofs move no marker and are held in the neutral posture" in " ".join(found.warnings)
+    assert len(found.unobserved_dofs) == 26
+    assert "26 dofs move no marker and keep the neutral posture" in " ".join(found.warnings)
     assert rms(leg_errors(found)) < np.deg2rad(1.0)
 
 
-def test_held_dofs_keep_the_neutral_posture():
+def test_unobserved_dofs_keep_the_neutral_posture():
     found = reconstruct(*legs_alone(), settings=ReconstructSettings(correct_markers=False))
     model = trial("squat").model
     away = angle_errors(model, found.q, np.tile(model.neutral(), (len(found.q), 1)))
-    held = np.isin(found.dof_names, found.held_dofs)
+    held = np.isin(found.dof_names, found.unobserved_dofs)
     assert np.abs(away[:, held]).max() < np.deg2rad(1.0)
 
 

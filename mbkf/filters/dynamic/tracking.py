@@ -24,7 +24,7 @@ DynamicStep = Step[DynamicState]
 """A step of the dynamic filter."""
 
 ROUNDS = 2
-"""How often a smoothed stretch is linearised; a third round changes the residual by less than 0.1 N."""
+"""How often a smoothed window is linearised; a third round changes the residual by less than 0.1 N."""
 
 
 class DynamicTracking(TrackingFilter):

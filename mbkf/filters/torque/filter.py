@@ -74,14 +74,14 @@ def torque_blocks(
             sensor,
             noise_m,
             dt_s,
-            body.held,
+            body.fixed,
             markers,
             inflate=False,
             track_loss=False,
             compress=JacobianInformation,
         ),
         FootPlates(body, detector, dt_s, plates),
-        PostureAndRest(PostureSensor(body.model), body.held, weak.posture_scale, weak.velocity_sd),
+        PostureAndRest(PostureSensor(body.model), body.fixed, weak.posture_scale, weak.velocity_sd),
         PelvisResidual(body, residual_sd(body, settings)),
     ]
 
@@ -150,7 +150,7 @@ class TorqueFilter(Filter[ForcedState]):
         super().__init__(plant, blocks, informed_whole)
         self.sensor, self.settings, self.body, self.plates = sensor, settings, body, plates[0]
         self.noise_m = noise_m * settings.tracking.marker_noise_scale
-        self.unobservable = body.held
+        self.unobservable = body.fixed
         self._start = TorqueStart(body, plant, settings, residual_sd(body, settings))
 
     @classmethod

@@ -77,7 +77,7 @@ class ForceNoise:
         self.body, self.settings = body, settings
         mass = body.model.mass_kg
         toes = body.model.acceleration_sd if settings.toe_acceleration is None else settings.toe_acceleration
-        self._toes = np.where(body.kinematic & ~body.held, toes, 0.0) ** 2 * dt_s
+        self._toes = np.where(body.kinematic & ~body.fixed, toes, 0.0) ** 2 * dt_s
         jerk = settings.jerk_scale * body.model.acceleration_sd
         self._jerk = np.where(body.kinematic, 0.0, jerk**2)
         self._residual, self._load = residual_variance(settings, mass), load_variance(settings, mass)

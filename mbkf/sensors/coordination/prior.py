@@ -102,7 +102,7 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
     """Head, arms and toes as they went with trunk and legs.
 
     Attributes:
-        followers: Dofs of each joint that follows.
+        dependents: Dofs of each joint that follows.
     """
 
     prior = True
@@ -126,7 +126,7 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
         joints = [joint for joint in model.joints.values() if joint.kind != "free"]
         dofs = {joint.segment: np.arange(joint.v.start, joint.v.stop) for joint in joints}
         self._leading = np.concatenate([dofs[segment] for segment in model.roles.leading])
-        self.followers = [
+        self.dependents = [
             own
             for name, own in dofs.items()
             if name not in model.roles.leading and not unobservable[own].all()
@@ -137,7 +137,7 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
         noted_s = self._every * dt_s
         self._block = max(1, round(BLOCK_S / noted_s))
         self._keep = max(1, round(settings.coordination_memory_s / noted_s))
-        self._first = np.array([own[0] for own in self.followers], dtype=np.intp)
+        self._first = np.array([own[0] for own in self.dependents], dtype=np.intp)
         # A reading that errs alike for a while counts once in that time, not in every frame.
         self._repeat = max(1.0, settings.coordination_errs_s / dt_s) ** 0.5
         self._v = 0
@@ -176,7 +176,7 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
         features = self.features(at.state.q, at.state.v)
         x, v, x_sd, v_sd = np.zeros((4, self._model.nv))
         for j, one in learned.items():
-            own, (mean, sd) = self.followers[j], one.predicted(features)
+            own, (mean, sd) = self.dependents[j], one.predicted(features)
             x[own], v[own] = mean[: len(own)], mean[len(own) :]
             x_sd[own] = self._repeat * np.maximum(sd[: len(own)], LEAST_SD_RAD)
             v_sd[own] = self._repeat * np.maximum(sd[len(own) :], LEAST_SD_RAD / PACE_S)
@@ -257,7 +257,7 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
     def _learned_together(
         self, joints: NDArray[np.intp], frames: Sequence[NotedFrame]
     ) -> dict[int, Coordination]:
-        columns = [np.r_[self.followers[j], self._model.nv + self.followers[j]] for j in joints]
+        columns = [np.r_[self.dependents[j], self._model.nv + self.dependents[j]] for j in joints]
         movements = np.array([one.movement for one in frames])[:, np.concatenate(columns)]
         features = np.array([one.features for one in frames])
         blocks = np.array([one.block for one in frames])
