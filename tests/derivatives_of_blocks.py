@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from tests.block_contract import SITUATIONS, block_classes, derivative, shown, speaks
+from tests.block_contract import block_classes, derivative, shown, speaks
+from tests.block_scenes import SITUATIONS
 from tests.derivatives import checks
 
 LEFT_OUT = {"PlantedFeet": "the derivative by the configuration, as it says"}
@@ -20,7 +21,6 @@ def tolerance(kind):
 
 
 def add_case(kind):
-    @checks(address(kind), tolerance=tolerance(kind))
     def compare(rng):
         pairs = []
         for situation in SITUATIONS:
@@ -34,7 +34,8 @@ def add_case(kind):
         stated, numeric = zip(*pairs, strict=True)
         return {address(kind): (np.vstack(stated), np.vstack(numeric))}
 
-    return compare
+    compare.__name__ = kind.__name__
+    checks(address(kind), tolerance=tolerance(kind))(compare)
 
 
 for found in block_classes().values():

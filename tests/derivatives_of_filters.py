@@ -12,7 +12,8 @@ from mbkf.sensors.block import Frame
 from mbkf.sensors.foot_wrench import FootWrenchSensor
 from mbkf.sensors.joint_limits import JointLimits, JointLimitSettings
 from mbkf.sensors.markers import Markers
-from mbkf.sensors.posture import PosturePrior, PostureSensor, PostureSettings, posture_information
+from mbkf.sensors.posture import PosturePrior, PostureSettings, posture_information
+from mbkf.sensors.posture_sensor import PostureSensor
 from tests.derivatives import checks, named, slope
 from tests.derivatives_of_bodies import forced_body
 from tests.dynamics import block_of, dynamic_filter, markers_of, random_state, standing
@@ -44,10 +45,10 @@ def markers(rng):
 
 
 @checks(
-    "sensors.posture.PostureReading.jacobian",
+    "sensors.posture_sensor.PostureReading.jacobian",
     "sensors.posture.PreparedPosture.jacobian",
-    "sensors.posture.PostureSensor.reading",
-    "sensors.posture.PostureSensor.deviation",
+    "sensors.posture_sensor.PostureSensor.reading",
+    "sensors.posture_sensor.PostureSensor.deviation",
     "sensors.posture.posture_information",
 )
 def posture(rng):

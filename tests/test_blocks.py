@@ -10,20 +10,18 @@ import pytest
 
 from mbkf.filters.filter import Filter
 from mbkf.numerics.kalman import Information
-from mbkf.sensors.block import Block, OperatingPoint
+from mbkf.sensors.block import Block, Notes, OperatingPoint
 from tests.block_contract import (
-    SILENT,
-    SITUATIONS,
     all_rows,
     block_classes,
     noises,
     noisier,
-    scene,
     shown,
     speaks,
     stacked,
     whole,
 )
+from tests.block_scenes import SILENT, SITUATIONS, scene
 from tests.motions import worst
 
 BLOCKS = block_classes()
@@ -104,7 +102,8 @@ class Told(Block):
         self._notes = notes
 
     def decide(self, at, frame, memory, notes):
-        vars(notes).update(vars(self._notes))
+        for name in Notes.__annotations__:
+            setattr(notes, name, getattr(self._notes, name))
 
     def linearise(self, at, decision):
         return None
@@ -145,7 +144,7 @@ def test_asked_again_it_says_the_same_and_writes_into_nothing_it_was_given(name)
     for situation in (*SITUATIONS, *SILENT):
         found = shown(BLOCKS[name], situation)
         notes = found.situation.noted()
-        given = (found.state, found.frame[:3], found.memory, found.decision, tuple(vars(notes).values()))
+        given = (found.state, found.frame[:3], found.memory, found.decision, notes)
         inputs = list(arrays_in(given))
         kept = [one.copy() for one in inputs]
         size, first = found.plant.layout.size, found.says()

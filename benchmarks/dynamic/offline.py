@@ -26,7 +26,7 @@ from mbkf.pipelines.reconstruct import subject_markers
 from mbkf.sensors.contact.offline import assign_feet
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 
 
 @dataclass(frozen=True)

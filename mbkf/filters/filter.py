@@ -2,7 +2,7 @@
 
     x⁻ = f(x),  P⁻ = Φ P Φᵀ + Q                        plant
     Λ = Σ HᵀR⁻¹H,  λ = Σ HᵀR⁻¹y                         blocks, linearised at x⁻
-    P⁺ = (P⁻⁻¹ + Λ)⁻¹,  x⁺ = x⁻ ⊕ P⁺ λ                  update, without inverting P⁻ (mbkf.numerics.kalman)
+    P⁺ = (P⁻⁻¹ + Λ)⁻¹,  x⁺ = x⁻ ⊕ P⁺ λ                  update, without inverting P⁻ (mbkf.numerics.information_update)
 
 The kinematic, torque and dynamic filters are this class with another plant and other blocks.
 """
@@ -15,8 +15,10 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.numerics.kalman import Information, correct, informed_with_rows
-from mbkf.sensors.block import AnyBlock, Block, Frame, Notes, OperatingPoint, Rows, State, Statement
+from mbkf.filters.readings import Readings, summed
+from mbkf.numerics.information_update import informed_with_rows
+from mbkf.numerics.kalman import correct
+from mbkf.sensors.block import AnyBlock, Block, Frame, Notes, OperatingPoint, State, Statement
 from mbkf.sensors.layout import Layout
 
 Update = Callable[[Array, Array, Array], Array]
@@ -103,58 +105,6 @@ class Decisions(NamedTuple):
     noise: Any
     blocks: Sequence[Any]
     notes: Notes
-
-
-class Readings(NamedTuple):
-    """A frame's readings linearised at a state: information on its first components, and whitened rows.
-
-    Attributes:
-        instruments: Information of instruments and laws alone.
-        matrix: (n, n) information on the first n components, priors included.
-        vector: (n,) its vector.
-        rows: (k, N) R^(-1/2) H of all else.
-        values: (k,) their innovations R^(-1/2) y.
-        parts: The rows as their blocks gave them.
-    """
-
-    instruments: Information
-    matrix: Array
-    vector: Array
-    rows: Array
-    values: Array
-    parts: Sequence[Sequence[Rows]]
-
-    @property
-    def whole_matrix(self) -> Array:
-        """(N, N) Hᵀ R⁻¹ H of all readings."""
-        total = self.rows.T @ self.rows
-        n = len(self.vector)
-        total[:n, :n] += self.matrix
-        return total
-
-    def apply(self, vector: Array) -> Array:
-        """(N,) Hᵀ R⁻¹ H times a vector (N,)."""
-        total = (self.rows @ vector) @ self.rows
-        n = len(self.vector)
-        total[:n] += self.matrix @ vector[:n]
-        return total
-
-    @property
-    def whole_vector(self) -> Array:
-        """(N,) Hᵀ R⁻¹ y of all readings."""
-        total = self.values @ self.rows if len(self.values) else np.zeros(self.rows.shape[1])
-        total[: len(self.vector)] += self.vector
-        return total
-
-    @property
-    def counted(self) -> tuple[Array, Array]:
-        """(m, N) rows and (m,) innovations of instruments and laws: those that NIS and likelihood count."""
-        kept: list[int] = []
-        first = 0
-        for part in (one for parts in self.parts for one in parts):
-            kept += range(first, first + part.readings)
-            first += len(part.innovation)
-        return self.rows[kept], self.values[kept]
 
 
 class Recall:
@@ -250,7 +200,6 @@ class Filter(Generic[StateT]):
         self._reviewing = self._with_own("review")
         self._remembering = self._with_own("remember")
         self._preparing = self._with_own("prepare")
-        self._no_rows = np.zeros((0, self.layout.size)), np.zeros(0)
 
     def _with_own(self, method: str) -> list[tuple[int, AnyBlock]]:
         """Numbers and blocks that override a method of :class:`mbkf.sensors.block.Block`."""
@@ -322,10 +271,10 @@ class Filter(Generic[StateT]):
         self.inflate(state.P, chosen)
         for block, at, one in zip(self.blocks, points, chosen, strict=True):
             said.append(block.linearise(at, one))
-        readings = self._summed(said)
+        readings = summed(self.blocks, said, self.layout)
         posterior = self._updated(state, readings)
         if self._reviewed(posterior, chosen, said, points):
-            readings = self._summed(said)
+            readings = summed(self.blocks, said, self.layout)
             posterior = self._updated(state, readings)
 
         def recall() -> Memory:
@@ -359,68 +308,11 @@ class Filter(Generic[StateT]):
     def linearise(self, state: StateT, decisions: Decisions) -> Readings:
         """A frame's readings, decided before, linearised at another state (for smoothing)."""
         asked = zip(self.blocks, self._points(state, None), decisions.blocks, strict=True)
-        return self._summed([block.linearise(at, one) for block, at, one in asked])
+        said = [block.linearise(at, one) for block, at, one in asked]
+        return summed(self.blocks, said, self.layout)
 
     def _updated(self, prior: StateT, readings: Readings) -> StateT:
         P, vector = self.update(prior.P, readings.matrix, readings.rows), readings.vector
         if len(readings.values):
             return self.plant.retract(prior, P @ readings.whole_vector, P)
         return self.plant.retract(prior, P[:, : len(vector)] @ vector, P)
-
-    def _summed(self, said: Sequence[Statement]) -> Readings:
-        """All statements together: information of instruments first, then of priors, then rows in order."""
-        known: list[Information] = []
-        believed: list[Information] = []
-        parts: list[Sequence[Rows]] = []
-        for block, one in zip(self.blocks, said, strict=True):
-            kind = type(one)
-            if kind is Information:
-                (believed if block.prior else known).append(one)  # type: ignore[arg-type]
-                parts.append(())
-            elif one is None:
-                parts.append(())
-            else:
-                parts.append((one,) if kind is Rows else one)  # type: ignore[arg-type]
-        instruments = _sum(known, self.layout.nv)
-        matrix, vector = instruments.matrix, instruments.vector
-        if believed:
-            prior = _sum(believed, self.layout.nv)
-            matrix, vector = _added(matrix, vector, prior)
-        return Readings(instruments, matrix, vector, *self._stacked(parts), parts)
-
-    def _stacked(self, parts: Sequence[Sequence[Rows]]) -> tuple[Array, Array]:
-        """(k, N) rows on the whole state and (k,) innovations."""
-        flat = [one for part in parts for one in part]
-        if not flat:
-            return self._no_rows
-        total = sum(len(one.innovation) for one in flat)
-        rows, values, at = np.zeros((total, self.layout.size)), np.empty(total), 0
-        for one in flat:
-            end = at + len(one.innovation)
-            rows[at:end, one.first : one.first + one.jacobian.shape[1]] = one.jacobian
-            values[at:end] = one.innovation
-            at = end
-        return rows, values
-
-
-def _sum(parts: Sequence[Information], nv: int) -> Information:
-    """All of them, on as many components as the longest; nothing about the first ``nv`` where there are none."""
-    if not parts:
-        return Information(np.zeros((nv, nv)), np.zeros(nv), 0.0, 0)
-    total = parts[0]
-    for one in parts[1:]:
-        matrix, vector = _added(total.matrix, total.vector, one)
-        total = Information(matrix, vector, total.innovation + one.innovation, total.readings + one.readings)
-    return total
-
-
-def _added(matrix: Array, vector: Array, other: Information) -> tuple[Array, Array]:
-    """New arrays: a matrix (n, n) and vector (n,) with another information, on as many components as the longer."""
-    n, m = len(vector), len(other.vector)
-    if n == m:
-        return matrix + other.matrix, vector + other.vector
-    larger, longer = np.zeros((max(n, m), max(n, m))), np.zeros(max(n, m))
-    larger[:n, :n], longer[:n] = matrix, vector
-    larger[:m, :m] += other.matrix
-    longer[:m] += other.vector
-    return larger, longer

@@ -20,7 +20,7 @@ from mbkf.labelling.seeds import any_attitude, upright
 from mbkf.labelling.skeleton import clusters, limbs
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import PoseFit, fit_pose, segment_by_segment
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 
 LEAST_SD_M = 0.010
 """Body and person differ by this much at least."""

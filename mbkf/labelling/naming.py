@@ -12,7 +12,7 @@ from mbkf.labelling.placing import likeness
 from mbkf.labelling.tracks import Tracks
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 
 LOOKS = 60
 """Frames, spread over the capture, at which tracks are compared with the body."""

@@ -33,7 +33,7 @@ from mbkf.scaling.problem import ScalingSettings
 from mbkf.scaling.renaming import in_line, likeliest
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 
 ANCHORS = (0.35, 0.65, 0.05, 0.95)
 """Where in the capture a body is matched with the tracks, until two outcomes agree; the likeliest is kept."""

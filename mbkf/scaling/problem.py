@@ -22,7 +22,7 @@ from mbkf.model.human import HumanModel
 from mbkf.model.protocol import ProtocolMarker
 from mbkf.numerics.levenberg_marquardt import ArrowEquations
 from mbkf.sensors.marker_sensor import MarkerSensor
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 
 FACTOR_BOUNDS = (0.5, 1.6)
 """Range of a scale factor; one that ends here is reported as an active bound."""

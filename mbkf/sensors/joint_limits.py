@@ -13,7 +13,7 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.numerics.kalman import Information
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 
 
 @dataclass(frozen=True)

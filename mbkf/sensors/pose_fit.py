@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from mbkf.conventions import Array
 from mbkf.numerics.levenberg_marquardt import ArrowEquations, minimise
 from mbkf.sensors.marker_sensor import MarkerSensor
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 
 _TRUNK_WEIGHT = 0.05
 _NEUTRAL_PULL = 2e-3

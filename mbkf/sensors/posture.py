@@ -9,66 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from mbkf.conventions import Array, BoolArray
-from mbkf.model.human import HumanModel
 from mbkf.numerics.kalman import Information
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
-
-
-@dataclass(frozen=True)
-class PostureReading:
-    """Deviation from neutral (n,) in rad and its Jacobian (n, nv)."""
-
-    deviation: Array
-    jacobian: Array
-
-
-class PostureSensor:
-    """The deviation of every joint from the neutral posture.
-
-    Attributes:
-        dofs: (n,) tangent indices with a prior.
-        sd: (n,) spread of each, rad.
-    """
-
-    def __init__(self, model: HumanModel) -> None:
-        self.model = model
-        self.dofs = np.flatnonzero(model.posture_sd > 0)
-        self.sd = model.posture_sd[self.dofs]
-        self._neutral = model.neutral()
-        root = next(joint for joint in model.joints.values() if joint.kind == "free")
-        self._root, self._root_dofs = root.q, root.v
-        self._last: tuple[Array, tuple[Array, Array]] | None = None
-
-    def reading(self, q: Array) -> PostureReading:
-        """Deviation and Jacobian at q (nq,)."""
-        deviation, jacobian = self.deviation(q)
-        return PostureReading(deviation[self.dofs], jacobian[self.dofs])
-
-    def weights(self, scale: float, unobservable: BoolArray) -> Array:
-        """(nv,) 1/sd of each dof's reading, 0 where there is none: for :func:`posture_information`."""
-        weights = np.zeros(self.model.nv)
-        weights[self.dofs] = 1.0 / (scale * self.sd)
-        weights[unobservable] = 0.0
-        return weights
-
-    def deviation(self, q: Array) -> tuple[Array, Array]:
-        """Deviation (nv,) of every dof, rad, and its Jacobian (nv, nv).
-
-        The root is set aside, for its turn may be far from neutral. Several blocks ask at the same configuration, so
-        the last answer is kept.
-        """
-        if self._last is not None and self._last[0] is q:
-            return self._last[1]
-        posture = q.copy()
-        posture[self._root] = self._neutral[self._root]
-        jacobian = self.model.difference_derivative(self._neutral, posture)
-        jacobian[self._root_dofs, self._root_dofs] = 0.0
-        found = self.model.difference(self._neutral, posture), jacobian
-        self._last = (q, found)
-        return found
+from mbkf.sensors.posture_sensor import PostureSensor
 
 
 def posture_information(deviation: Array, jacobian: Array, weights: Array) -> Information:

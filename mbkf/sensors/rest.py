@@ -17,7 +17,7 @@ from mbkf.conventions import BoolArray
 from mbkf.numerics.kalman import Information, information
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
 from mbkf.sensors.layout import Layout
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 
 
 class PostureAndRest(Block[Any, None, None, None]):

@@ -67,7 +67,7 @@ def filter_of(*blocks, size=N):
 
 
 def test_statements_of_all_kinds_are_summed():
-    """Information on different numbers of components, instruments and priors, rows alone and several, and nothing."""
+    """Information of instruments and priors on few or many components, rows alone and several, and nothing."""
     short, long, belief = (
         information(RNG.normal(size=3), RNG.normal(size=(3, k)), np.ones(3)) for k in (2, 5, 4)
     )

@@ -1,7 +1,5 @@
 """The likelihood of a frame is the density of its stacked innovations, for both filters, whatever is missing."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
@@ -132,4 +130,4 @@ def test_other_filters_are_refused(kinematic, recording):
 
     _, estimate, _ = list(followed(kinematic, recording))[5]
     with pytest.raises(InvalidInput, match="kinematic and the dynamic"):
-        frame_likelihood(Other(), replace(estimate))
+        frame_likelihood(Other(), estimate)

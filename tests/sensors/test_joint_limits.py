@@ -7,7 +7,7 @@ import pytest
 
 from mbkf.sensors.block import Notes
 from mbkf.sensors.joint_limits import JointLimits, JointLimitSettings
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 from tests.dynamics import prepared_at, trial
 from tests.motions import assert_near, reference_model
 

@@ -5,7 +5,7 @@ import pytest
 
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_most_markers, fit_pose, segment_by_segment
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 from tests.motions import assert_near, moderate_pose, protocol_sensor, random_model, reference_model, worst
 
 FAINT = 1e-6

@@ -7,7 +7,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from mbkf.numerics.kalman import information
-from mbkf.sensors.posture import PosturePrior, PostureSensor, PostureSettings, posture_information
+from mbkf.sensors.posture import PosturePrior, PostureSettings, posture_information
+from mbkf.sensors.posture_sensor import PostureSensor
 from tests.dynamics import notes_of, prepared_at
 from tests.motions import assert_near, moderate_pose, reference_model
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.sensors.layout import Layout
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 from mbkf.sensors.rest import PostureAndRest
 from tests.dynamics import prepared_at
 from tests.motions import assert_near, moderate_pose, random_model

@@ -27,7 +27,8 @@ from mbkf.sensors.markers import Markers
 from mbkf.sensors.mean_posture import MeanPosture
 from mbkf.sensors.newton_euler import NewtonEulerLaw
 from mbkf.sensors.planted import PlantedFeet
-from mbkf.sensors.posture import PosturePrior, PostureSensor
+from mbkf.sensors.posture import PosturePrior
+from mbkf.sensors.posture_sensor import PostureSensor
 from mbkf.sensors.unobserved import UnobservedJoints
 
 START_WRENCH_SD = 1000.0

@@ -10,12 +10,13 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.filters.filter import Filter, Step
 from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
 from mbkf.filters.kinematic.settings import KinematicSettings
-from mbkf.numerics.kalman import informed_after_rows
+from mbkf.numerics.information_update import informed_after_rows
 from mbkf.sensors.block import AnyBlock
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers, MarkerSettings
 from mbkf.sensors.pose_fit import PoseFit, fit_most_markers, segment_by_segment
-from mbkf.sensors.posture import PosturePrior, PostureSensor, PostureSettings
+from mbkf.sensors.posture import PosturePrior, PostureSettings
+from mbkf.sensors.posture_sensor import PostureSensor
 from mbkf.sensors.unobserved import UnobservedJoints
 
 START_SPEED_SD_M_S = 2.0

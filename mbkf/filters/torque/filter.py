@@ -21,7 +21,8 @@ from mbkf.filters.torque.report import TorqueState, reported
 from mbkf.filters.torque.settings import MASS_OF_TABLE_KG, TorqueSettings
 from mbkf.filters.torque.start import TorqueStart
 from mbkf.model.human_dynamics import HumanDynamics
-from mbkf.numerics.kalman import correct, informed_whole
+from mbkf.numerics.information_update import informed_whole
+from mbkf.numerics.kalman import correct
 from mbkf.sensors.block import AnyBlock, Frame, Notes, OperatingPoint
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import ContactDecision
@@ -29,7 +30,7 @@ from mbkf.sensors.foot_plates import Ahead, FootPlates, FootPlateSettings, Plate
 from mbkf.sensors.marker_sensor import JacobianInformation, MarkerSensor
 from mbkf.sensors.markers import Markers, MarkerSettings
 from mbkf.sensors.pelvis_residual import PelvisResidual
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 from mbkf.sensors.rest import PostureAndRest
 
 TorqueStep = Step[ForcedState]

@@ -24,7 +24,7 @@ from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 
 STILL_S = 1.0
 """Duration of standing still that a person is scaled from."""

@@ -15,7 +15,7 @@ from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers
-from mbkf.sensors.posture import PostureSensor
+from mbkf.sensors.posture_sensor import PostureSensor
 from tests.dynamics import (
     DT,
     MARKER_SD_M,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mbkf.filters.dynamic.plant import DynamicState, SingerPlant, SingerSettings
-from mbkf.numerics.kalman import informed_with_rows
+from mbkf.numerics.information_update import informed_with_rows
 from mbkf.sensors.block import Frame
 from tests.dynamics import follow, trial
 

@@ -147,7 +147,7 @@ def test_a_hidden_leg_is_carried_by_dynamics(model, motions):
     legs = ("right_shank", "right_foot", "right_toes")
     run = Run(model, motions["squat"], TorqueSettings(), hide=(legs, 40, 55))
     assert run.angle_rms() < np.deg2rad(4.0)
-    assert run.steps[44].read < run.steps[20].read
+    assert run.steps[44].nis_readings < run.steps[20].nis_readings
     last = model.difference(run.truth.q[FRAMES - 1], run.states[-1].q)
     assert rms(last[6:]) < np.deg2rad(2.0)
 
@@ -173,7 +173,7 @@ def test_a_frame_without_readings_is_the_prediction(model, motions):
     run.told.measured = ~BOTH
     step = run.filter.step(run.steps[-1].state, run.memories[-1], Frame(nothing, run.wrench[4]))
     assert not step.tracked
-    assert step.read == 0
+    assert step.nis_readings == 0
     assert_near(step.state.q, step.prior.state.q, 1e-6)
     assert_near(step.state.u, step.prior.state.u, 1e-3)
 

@@ -1,0 +1,131 @@
+"""All that a frame's blocks say, added up: Λ = Σ HᵀR⁻¹H and λ = Σ HᵀR⁻¹y, and what of it NIS counts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.numerics.kalman import Information
+from mbkf.sensors.block import AnyBlock, Rows, Statement
+from mbkf.sensors.layout import Layout
+
+
+class Readings(NamedTuple):
+    """A frame's readings linearised at a state: information on its first components, and whitened rows.
+
+    Attributes:
+        instruments: Information of instruments and laws alone.
+        matrix: (n, n) information on the first n components, priors included.
+        vector: (n,) its vector.
+        rows: (k, N) R^(-1/2) H of all else.
+        values: (k,) their innovations R^(-1/2) y.
+        parts: The rows as their blocks gave them.
+    """
+
+    instruments: Information
+    matrix: Array
+    vector: Array
+    rows: Array
+    values: Array
+    parts: Sequence[Sequence[Rows]]
+
+    @property
+    def whole_matrix(self) -> Array:
+        """(N, N) Hᵀ R⁻¹ H of all readings."""
+        total = self.rows.T @ self.rows
+        n = len(self.vector)
+        total[:n, :n] += self.matrix
+        return total
+
+    def apply(self, vector: Array) -> Array:
+        """(N,) Hᵀ R⁻¹ H times a vector (N,)."""
+        total = (self.rows @ vector) @ self.rows
+        n = len(self.vector)
+        total[:n] += self.matrix @ vector[:n]
+        return total
+
+    @property
+    def whole_vector(self) -> Array:
+        """(N,) Hᵀ R⁻¹ y of all readings."""
+        total = self.values @ self.rows if len(self.values) else np.zeros(self.rows.shape[1])
+        total[: len(self.vector)] += self.vector
+        return total
+
+    @property
+    def counted(self) -> tuple[Array, Array]:
+        """(m, N) rows and (m,) innovations of instruments and laws: those that NIS and likelihood count."""
+        kept: list[int] = []
+        first = 0
+        for part in (one for parts in self.parts for one in parts):
+            kept += range(first, first + part.readings)
+            first += len(part.innovation)
+        return self.rows[kept], self.values[kept]
+
+
+def summed(blocks: Sequence[AnyBlock], said: Sequence[Statement], layout: Layout) -> Readings:
+    """All statements of a frame together: information of instruments first, then of priors, then rows in order.
+
+    Args:
+        blocks: The blocks.
+        said: What each of them says.
+        layout: Slices of the tangent state.
+    """
+    known: list[Information] = []
+    believed: list[Information] = []
+    parts: list[Sequence[Rows]] = []
+    for block, one in zip(blocks, said, strict=True):
+        kind = type(one)
+        if kind is Information:
+            (believed if block.prior else known).append(one)  # type: ignore[arg-type]
+            parts.append(())
+        elif one is None:
+            parts.append(())
+        else:
+            parts.append((one,) if kind is Rows else one)  # type: ignore[arg-type]
+    instruments = _sum(known, layout.nv)
+    matrix, vector = instruments.matrix, instruments.vector
+    if believed:
+        prior = _sum(believed, layout.nv)
+        matrix, vector = _added(matrix, vector, prior)
+    return Readings(instruments, matrix, vector, *_stacked(parts, layout.size), parts)
+
+
+def _stacked(parts: Sequence[Sequence[Rows]], size: int) -> tuple[Array, Array]:
+    """(k, N) rows on the whole state and (k,) innovations."""
+    flat = [one for part in parts for one in part]
+    if not flat:
+        return np.zeros((0, size)), np.zeros(0)
+    total = sum(len(one.innovation) for one in flat)
+    rows, values, at = np.zeros((total, size)), np.empty(total), 0
+    for one in flat:
+        end = at + len(one.innovation)
+        rows[at:end, one.first : one.first + one.jacobian.shape[1]] = one.jacobian
+        values[at:end] = one.innovation
+        at = end
+    return rows, values
+
+
+def _sum(parts: Sequence[Information], nv: int) -> Information:
+    """All of them, on as many components as the longest; nothing about the first ``nv`` where there are none."""
+    if not parts:
+        return Information(np.zeros((nv, nv)), np.zeros(nv), 0.0, 0)
+    total = parts[0]
+    for one in parts[1:]:
+        matrix, vector = _added(total.matrix, total.vector, one)
+        total = Information(matrix, vector, total.innovation + one.innovation, total.readings + one.readings)
+    return total
+
+
+def _added(matrix: Array, vector: Array, other: Information) -> tuple[Array, Array]:
+    """New arrays: a matrix (n, n) and vector (n,) with another information, on as many components as the longer."""
+    n, m = len(vector), len(other.vector)
+    if n == m:
+        return matrix + other.matrix, vector + other.vector
+    larger, longer = np.zeros((max(n, m), max(n, m))), np.zeros(max(n, m))
+    larger[:n, :n], longer[:n] = matrix, vector
+    larger[:m, :m] += other.matrix
+    longer[:m] += other.vector
+    return larger, longer

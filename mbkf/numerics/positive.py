@@ -1,0 +1,22 @@
+"""The nearest covariance to a matrix that rounding has spoilt."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import Array
+
+
+def made_positive(covariance: Array) -> Array:
+    """The nearest symmetric matrix without negative eigenvalues, for a covariance that rounding has spoilt.
+
+    Components are first brought to a common scale, which a state of metres, radians and newtons does not have.
+
+    Raises:
+        numpy.linalg.LinAlgError: It holds NaN or infinite numbers.
+    """
+    scale = np.sqrt(np.maximum(np.abs(np.diagonal(covariance)), 1e-300))
+    correlation = covariance / scale / scale[:, None]
+    values, vectors = np.linalg.eigh(0.5 * (correlation + correlation.T))
+    positive = (vectors * np.maximum(values, 1e-12)) @ vectors.T * scale * scale[:, None]
+    return np.asfortranarray(0.5 * (positive + positive.T))
