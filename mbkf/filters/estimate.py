@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -81,7 +81,7 @@ class Posterior(NamedTuple):
     refused: BoolArray
     tracked: bool
     started: bool
-    inner: Any
+    inner: object
 
 
 class Prediction(NamedTuple):
@@ -96,7 +96,7 @@ class Prediction(NamedTuple):
 
     q: Array
     markers: MarkerPrediction
-    prior: Any
+    prior: object
 
 
 class TrackingFilter(Protocol):

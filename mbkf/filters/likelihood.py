@@ -8,16 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput
-from mbkf.filters.dynamic.tracking import DynamicTracking
+from mbkf.filters.dynamic.tracking import DynamicStep, DynamicTracking
 from mbkf.filters.estimate import Posterior, Recording, TrackingFilter
 from mbkf.filters.filter import Filter, Step
-from mbkf.filters.kinematic.tracking import KinematicTracking
+from mbkf.filters.kinematic.tracking import KinematicRecord, KinematicStep, KinematicTracking
 from mbkf.filters.tracking_loop import followed
 from mbkf.numerics.likelihood import LogLikelihood, log_likelihood
 
@@ -85,9 +85,11 @@ def frame_likelihood(filter: TrackingFilter, estimate: Posterior) -> tuple[LogLi
         LinAlgError: The prior covariance is none.
     """
     if isinstance(filter, DynamicTracking):
-        return step_likelihood(filter.kalman, estimate.inner)
+        return step_likelihood(filter.kalman, cast("DynamicStep", estimate.inner))
     if isinstance(filter, KinematicTracking):
-        return step_likelihood(filter.kalman, estimate.inner.step)
+        return step_likelihood(
+            filter.kalman, cast("KinematicStep", cast("KinematicRecord", estimate.inner).step)
+        )
     raise InvalidInput("the likelihood is known of the kinematic and the dynamic filter only")
 
 

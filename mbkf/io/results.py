@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import Any
 
 import numpy as np
 
@@ -125,7 +124,7 @@ class Reconstruction:
     nis_readings: Array
     step_seconds: Array
     warnings: tuple[str, ...] = ()
-    settings: dict[str, Any] = field(default_factory=dict)
+    settings: dict[str, object] = field(default_factory=dict)
     plate_change: Array | None = None
     foot_wrench_sd: Array | None = None
     footing: Array | None = None

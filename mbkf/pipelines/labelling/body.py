@@ -82,7 +82,7 @@ def label_body(markers: Sequence[SubjectMarker], subject: Subject, settings: Run
         subject: The scaled person.
         settings: Settings of the labeller.
     """
-    seen = subject.report.get("markers")
+    seen = subject.scaled_markers
     worn = tuple(m for m in markers if seen is None or m.name in seen)
     model = HumanModel.of(subject)
     sensor = MarkerSensor(model, [m.segment for m in worn], np.array([m.position_m for m in worn]))

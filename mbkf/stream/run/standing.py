@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from mbkf.errors import InvalidInput
 from mbkf.io.subject import Subject, write_subject
@@ -60,7 +59,7 @@ class ScaledPerson:
 
     subject: Subject
     source: ResumedSource
-    report: dict[str, Any]
+    report: dict[str, object]
 
 
 class StandingStart:
@@ -263,10 +262,10 @@ class StandingStart:
             self._progress(None)
         self._prompting.waiting("no frames come from the stream" if silent else self._stance.hindrance)
 
-    def _counts(self) -> dict[str, Any]:
+    def _counts(self) -> dict[str, object]:
         return {"attempts": self._attempts, "frames_in": self._frames_in}
 
-    def _report(self, state: str, **more: Any) -> dict[str, Any]:
+    def _report(self, state: str, **more: object) -> dict[str, object]:
         return {
             "state": state,
             "source": self._source_name,
