@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from mbkf.filters.filter import Filter, Step
 from mbkf.filters.kinematic.tracking import KinematicRecord, KinematicStep, KinematicTracking
 from mbkf.filters.tracking_loop import followed
 from mbkf.numerics.likelihood import LogLikelihood, log_likelihood
+from mbkf.sensors.block import StateT
 
 OUTLIER = 0.0
 """Log density of an outlier's coordinate, uniform over a metre."""
@@ -93,7 +94,7 @@ def frame_likelihood(filter: TrackingFilter, estimate: Posterior) -> tuple[LogLi
     raise InvalidInput("the likelihood is known of the kinematic and the dynamic filter only")
 
 
-def step_likelihood(kalman: Filter[Any], step: Step[Any]) -> tuple[LogLikelihood, int]:
+def step_likelihood(kalman: Filter[StateT], step: Step[StateT]) -> tuple[LogLikelihood, int]:
     """Of instruments and laws in one step, priors left out, and how many of them are rows.
 
     Args:

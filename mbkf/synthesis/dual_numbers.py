@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -36,7 +35,7 @@ class Dual:
         """x, ẋ, ẍ."""
         return self.value, self.first, self.second
 
-    def __getitem__(self, index: Any) -> Dual:
+    def __getitem__(self, index: int | slice | tuple[int | slice | None, ...]) -> Dual:
         return Dual(*(x[index] for x in self.orders))
 
     def __neg__(self) -> Dual:

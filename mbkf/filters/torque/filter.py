@@ -7,7 +7,7 @@ coordinates of the forces, :data:`mbkf.model.human_dynamics.FORCE_STATES` says.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
@@ -186,8 +186,11 @@ class TorqueFilter(Filter[ForcedState]):
             acceleration: (nv,) estimate.
             frame: Readings of the frame; the plates' are used.
         """
+        # Where the motion leads is given, so that no forces are read of the state.
         begun = PlateMemory(self.plates.detector.begin(), Ahead(motion.q, motion.v, acceleration))
-        decision = self.plates.decide(OperatingPoint(motion, None), frame, begun, Notes())
+        decision = self.plates.decide(
+            OperatingPoint(cast("ForcedState", motion), None), frame, begun, Notes()
+        )
         feet = decision.reading
         state = self._start.state(motion, acceleration, feet, self.plates.sd(feet))
         memory = self._with_plates(self.begin(), self.plates.next_memory(state, decision))

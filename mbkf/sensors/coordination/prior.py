@@ -10,14 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.human import HumanModel
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 from mbkf.sensors.coordination.regression import Coordination, learn
 from mbkf.sensors.layout import Layout
 
@@ -98,7 +98,7 @@ NONE = np.zeros(0)
 """No numbers."""
 
 
-class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecision, CoordinationMemory]):
+class CoordinationPrior(Block[State, Mapping[int, Coordination], CoordinationDecision, CoordinationMemory]):
     """Head, arms and toes as they went with trunk and legs.
 
     Attributes:
@@ -150,7 +150,7 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
         """Nothing was shown yet."""
         return CoordinationMemory(0, (), (), {})
 
-    def prepare(self, state: Any, memory: CoordinationMemory | None) -> Mapping[int, Coordination]:
+    def prepare(self, state: State, memory: CoordinationMemory | None) -> Mapping[int, Coordination]:
         """How the joints that were out of sight in the frame before go with the others, by their number.
 
         Learned once, when they go; not of those that were observed too little.
@@ -161,7 +161,7 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
 
     def decide(
         self,
-        at: OperatingPoint[Any, Mapping[int, Coordination]],
+        at: OperatingPoint[State, Mapping[int, Coordination]],
         frame: Frame,
         memory: CoordinationMemory,
         notes: Notes,
@@ -186,7 +186,7 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
         return CoordinationDecision(dofs, q, v[dofs], x_sd[dofs], v_sd[dofs], gone, legible, notes.unobserved)
 
     def linearise(
-        self, at: OperatingPoint[Any, Mapping[int, Coordination]], decision: CoordinationDecision
+        self, at: OperatingPoint[State, Mapping[int, Coordination]], decision: CoordinationDecision
     ) -> list[Rows]:
         """Whitened rows on the configuration and on the velocity."""
         dofs, state = decision.dofs, at.state
@@ -202,8 +202,8 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
 
     def remember(
         self,
-        posterior: Any,
-        at: OperatingPoint[Any, Mapping[int, Coordination]],
+        posterior: State,
+        at: OperatingPoint[State, Mapping[int, Coordination]],
         decision: CoordinationDecision,
         memory: CoordinationMemory,
     ) -> CoordinationMemory:
@@ -270,7 +270,7 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
             for j, own, end in zip(joints, columns, ends, strict=True)
         }
 
-    def _noted(self, frame: int, state: Any, unobserved: NDArray[np.intp]) -> NotedFrame:
+    def _noted(self, frame: int, state: State, unobserved: NDArray[np.intp]) -> NotedFrame:
         observed = np.ones(self._model.nv, dtype=bool)
         observed[unobserved] = False
         movement = np.concatenate([self.posture(state.q), state.v])

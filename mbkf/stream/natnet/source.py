@@ -6,6 +6,7 @@ import socket
 import threading
 import time
 from collections import deque
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -236,7 +237,7 @@ def _make_room(client: Any) -> None:
             own.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM_BYTES)
 
 
-def read_all_corners(natnet: Any) -> None:
+def read_all_corners(natnet: ModuleType) -> None:
     """Makes the client library read a force plate's description to its end.
 
     natnet 0.3.0 reads three of a plate's four corners, and everything after them wrongly.
