@@ -35,7 +35,7 @@ class Dual:
         """x, ẋ, ẍ."""
         return self.value, self.first, self.second
 
-    def __getitem__(self, index: int | slice | tuple[int | slice | None, ...]) -> Dual:
+    def __getitem__(self, index: Index) -> Dual:
         return Dual(*(x[index] for x in self.orders))
 
     def __neg__(self) -> Dual:
