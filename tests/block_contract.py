@@ -16,16 +16,8 @@ import numpy as np
 import mbkf
 import tests.blocks
 from mbkf.numerics.kalman import Information
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
-from mbkf.sensors.contact.causal import ContactDetector
-from mbkf.sensors.foot_contact import FootContact
-from mbkf.sensors.inertial import InertialSensors
-from mbkf.sensors.inertial_sensor import InertialSensor
-from mbkf.sensors.marker_sensor import MarkerSensor
-from mbkf.sensors.markers import Markers
-from mbkf.sensors.posture_sensor import PostureSensor
+from mbkf.sensors.block import Block, Frame, OperatingPoint, Rows
 from tests.block_scenes import Situation, scene
-from tests.dynamics import DT, LOAD, MARKER_SD_M, SPREAD, trial
 
 HOMES = ("mbkf.", "tests.blocks.")
 

@@ -63,11 +63,13 @@ def posture(rng):
         return 0.5 * np.sum((weights * sensor.deviation(at)[0]) ** 2)
 
     return named(
-        "sensors.posture",
+        "sensors.posture_sensor",
         ("PostureReading.jacobian", sensor.reading(q).jacobian, read),
-        ("PreparedPosture.jacobian", prior.prepare(SimpleNamespace(q=q), None).jacobian, numeric),
         ("PostureSensor.reading", sensor.reading(q).jacobian, numeric[sensor.dofs]),
         ("PostureSensor.deviation", sensor.deviation(q)[1], numeric),
+    ) | named(
+        "sensors.posture",
+        ("PreparedPosture.jacobian", prior.prepare(SimpleNamespace(q=q), None).jacobian, numeric),
         # Half the square of the weighed deviations falls along the vector.
         (
             "posture_information",
@@ -145,7 +147,7 @@ def singer_plant(rng):
     return named("filters.dynamic.plant.SingerPlant", ("transition", plant.transition(s), numeric))
 
 
-@checks("filters.filter.Filter.linearise", "filters.filter.Readings.rows", tolerance=1e-6)
+@checks("filters.filter.Filter.linearise", "filters.readings.Readings.rows", tolerance=1e-6)
 def dynamic_readings(rng):
     """Whitened innovations fall by the rows; without priors, what markers say falls by their information."""
     model = random_model(rng)
@@ -169,7 +171,7 @@ def dynamic_readings(rng):
     falls = -slope(lambda x: read(x).values, zero, 1e-5)
     informs = -slope(lambda x: read(np.r_[x, zero[model.nv :]]).vector, zero[: model.nv])
     return {
-        "filters.filter.Readings.rows": (found.rows, falls),
+        "filters.readings.Readings.rows": (found.rows, falls),
         "filters.filter.Filter.linearise": (found.matrix / 1e6, informs / 1e6),
     }
 

@@ -26,9 +26,12 @@ def annotations(body: list[ast.stmt], prefix: str = "") -> Iterator[tuple[str, s
             yield from annotations(node.body, f"{prefix}{node.name}.")
         elif isinstance(node, ast.AnnAssign) and not ast.unparse(node.target).startswith("_"):
             yield prefix + ast.unparse(node.target), ast.unparse(node.annotation)
-        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-            if not node.name.startswith("_") or node.name.startswith("__"):
-                yield from signature(node, prefix)
+        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and not is_private(node.name):
+            yield from signature(node, prefix)
+
+
+def is_private(name: str) -> bool:
+    return name.startswith("_") and not name.startswith("__")
 
 
 def signature(node: ast.FunctionDef | ast.AsyncFunctionDef, prefix: str) -> Iterator[tuple[str, str]]:

@@ -18,7 +18,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.filters.readings import Readings, summed
 from mbkf.numerics.information_update import informed_with_rows
 from mbkf.numerics.kalman import correct
-from mbkf.sensors.block import AnyBlock, Block, Frame, Notes, OperatingPoint, State, Statement
+from mbkf.sensors.block import AnyBlock, Block, Frame, Notes, OperatingPoint, State
 from mbkf.sensors.layout import Layout
 
 Update = Callable[[Array, Array, Array], Array]
@@ -107,22 +107,6 @@ class Decisions(NamedTuple):
     notes: Notes
 
 
-class Recall:
-    """Makes the memory for the next step when it is first asked for, after the answer."""
-
-    __slots__ = ("_make", "_memory")
-
-    def __init__(self, make: Callable[[], Memory]) -> None:
-        self._make = make
-        self._memory: Memory | None = None
-
-    def __call__(self) -> Memory:
-        """The memory."""
-        if self._memory is None:
-            self._memory = self._make()
-        return self._memory
-
-
 class Step(NamedTuple, Generic[StateT]):
     """One step of a filter; what only the next step or a report needs is worked out when asked for.
 
@@ -131,14 +115,14 @@ class Step(NamedTuple, Generic[StateT]):
         prior: Prediction it came from.
         decisions: What the frame's readings were taken to be.
         readings: They, linearised at the prior.
-        recall: The memory for the next step.
+        recall: Makes the memory for the next step, once, when it is first asked for: after the answer.
     """
 
     state: StateT
     prior: Prior[StateT]
     decisions: Decisions
     readings: Readings
-    recall: Recall
+    recall: Callable[[], Memory]
 
     @property
     def memory(self) -> Memory:
@@ -273,32 +257,25 @@ class Filter(Generic[StateT]):
             said.append(block.linearise(at, one))
         readings = summed(self.blocks, said, self.layout)
         posterior = self._updated(state, readings)
-        if self._reviewed(posterior, chosen, said, points):
+        again = [(k, block, block.review(posterior, chosen[k])) for k, block in self._reviewing]
+        for k, block, one in again:
+            if one is not None:
+                chosen[k], said[k] = one, block.linearise(points[k], one)
+        if any(one is not None for _, _, one in again):
             readings = summed(self.blocks, said, self.layout)
             posterior = self._updated(state, readings)
 
+        made: list[Memory] = []
+
         def recall() -> Memory:
-            kept = list(memory.blocks)
-            for k, block in self._remembering:
-                kept[k] = block.remember(posterior, points[k], chosen[k], kept[k])
-            return Memory(self.plant.remember(posterior, notes, memory.plant), kept)
+            if not made:
+                kept = list(memory.blocks)
+                for k, block in self._remembering:
+                    kept[k] = block.remember(posterior, points[k], chosen[k], kept[k])
+                made.append(Memory(self.plant.remember(posterior, notes, memory.plant), kept))
+            return made[0]
 
-        return Step(posterior, prior, Decisions(prior.noise, chosen, notes), readings, Recall(recall))
-
-    def _reviewed(
-        self,
-        posterior: StateT,
-        chosen: list[Any],
-        said: list[Statement],
-        points: Sequence[OperatingPoint[StateT, Any]],
-    ) -> bool:
-        """Whether a block took another decision in view of the posterior; it then stands in ``chosen``, ``said``."""
-        again = False
-        for k, block in self._reviewing:
-            one = block.review(posterior, chosen[k])
-            if one is not None:
-                chosen[k], said[k], again = one, block.linearise(points[k], one), True
-        return again
+        return Step(posterior, prior, Decisions(prior.noise, chosen, notes), readings, recall)
 
     def inflate(self, P: Array, chosen: Sequence[Any]) -> None:
         """Adds to a predicted covariance, in place, the process noise that depends on the blocks' decisions."""

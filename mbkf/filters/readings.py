@@ -23,6 +23,7 @@ class Readings(NamedTuple):
         rows: (k, N) R^(-1/2) H of all else.
         values: (k,) their innovations R^(-1/2) y.
         parts: The rows as their blocks gave them.
+        added: (N,) Hᵀ R⁻¹ y of rows whose block gave it, None for none; their ``values`` are 0.
     """
 
     instruments: Information
@@ -31,6 +32,7 @@ class Readings(NamedTuple):
     rows: Array
     values: Array
     parts: Sequence[Sequence[Rows]]
+    added: Array | None = None
 
     @property
     def whole_matrix(self) -> Array:
@@ -52,7 +54,7 @@ class Readings(NamedTuple):
         """(N,) Hᵀ R⁻¹ y of all readings."""
         total = self.values @ self.rows if len(self.values) else np.zeros(self.rows.shape[1])
         total[: len(self.vector)] += self.vector
-        return total
+        return total if self.added is None else total + self.added
 
     @property
     def counted(self) -> tuple[Array, Array]:
@@ -90,22 +92,27 @@ def summed(blocks: Sequence[AnyBlock], said: Sequence[Statement], layout: Layout
     if believed:
         prior = _sum(believed, layout.nv)
         matrix, vector = _added(matrix, vector, prior)
-    return Readings(instruments, matrix, vector, *_stacked(parts, layout.size), parts)
+    rows, values, added = _stacked(parts, layout.size)
+    return Readings(instruments, matrix, vector, rows, values, parts, added)
 
 
-def _stacked(parts: Sequence[Sequence[Rows]], size: int) -> tuple[Array, Array]:
-    """(k, N) rows on the whole state and (k,) innovations."""
+def _stacked(parts: Sequence[Sequence[Rows]], size: int) -> tuple[Array, Array, Array | None]:
+    """(k, N) rows on the whole state, (k,) innovations, and what :attr:`Readings.added` says."""
     flat = [one for part in parts for one in part]
     if not flat:
-        return np.zeros((0, size)), np.zeros(0)
+        return np.zeros((0, size)), np.zeros(0), None
     total = sum(len(one.innovation) for one in flat)
     rows, values, at = np.zeros((total, size)), np.empty(total), 0
+    added: Array | None = None
     for one in flat:
         end = at + len(one.innovation)
         rows[at:end, one.first : one.first + one.jacobian.shape[1]] = one.jacobian
-        values[at:end] = one.innovation
+        values[at:end] = one.innovation if one.vector is None else 0.0
+        if one.vector is not None:
+            added = np.zeros(size) if added is None else added
+            added[one.first : one.first + len(one.vector)] += one.vector
         at = end
-    return rows, values
+    return rows, values, added
 
 
 def _sum(parts: Sequence[Information], nv: int) -> Information:

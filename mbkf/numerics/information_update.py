@@ -64,22 +64,6 @@ def informed_after_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
     return informed(covariance, matrix)
 
 
-def informed_whole(covariance: Array, matrix: Array, rows: Array) -> Array:
-    """The same from all readings as one information matrix, made exactly symmetric: slower, for any prior covariance.
-
-    Args:
-        covariance: (N, N) prior covariance P, symmetric up to rounding.
-        matrix: (n, n) information Λ on the first n components.
-        rows: (m, N) whitened Jacobian of the other readings, whatever was read.
-    """
-    if len(rows):
-        total = rows.T @ rows
-        total[: len(matrix), : len(matrix)] += matrix
-        matrix = total
-    posterior = informed(covariance, matrix)
-    return 0.5 * (posterior + posterior.T)
-
-
 def _informed_root(covariance: Array, matrix: Array) -> Array:
     """(n, n) G C⁻ᵀ with C Cᵀ = S, see :func:`informed`: P times it is the square root of the reduction of P."""
     n = len(matrix)

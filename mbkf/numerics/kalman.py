@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.numerics.information_update import informed_whole
+from mbkf.numerics.information_update import informed
 
 
 class Information(NamedTuple):
@@ -81,3 +81,19 @@ def correct(covariance: Array, readings: Information) -> Correction:
     step = posterior[:, :n] @ readings.vector
     nis = readings.innovation - float(readings.vector @ step[:n])
     return Correction(step, posterior, nis, readings)
+
+
+def informed_whole(covariance: Array, matrix: Array, rows: Array) -> Array:
+    """(N, N) posterior covariance from all readings as one information matrix, made exactly symmetric: slower, for any prior covariance.
+
+    Args:
+        covariance: (N, N) prior covariance P, symmetric up to rounding.
+        matrix: (n, n) information Λ on the first n components.
+        rows: (m, N) whitened Jacobian of the other readings, whatever was read.
+    """
+    if len(rows):
+        total = rows.T @ rows
+        total[: len(matrix), : len(matrix)] += matrix
+        matrix = total
+    posterior = informed(covariance, matrix)
+    return 0.5 * (posterior + posterior.T)

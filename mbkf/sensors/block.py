@@ -103,14 +103,15 @@ class Rows(NamedTuple):
         jacobian: (k, n) R^(-1/2) H.
         innovation: (k,) R^(-1/2) y.
         first: Component of the state that the first column stands for.
-        readings: How many of the rows, the first ones, are readings that NIS and likelihood count; the others are
-            priors.
+        readings: How many of the rows, the first ones, are readings that NIS and likelihood count; others are priors.
+        vector: (n,) HᵀR⁻¹y of priors where the block rounds it less than the product does; None for the product.
     """
 
     jacobian: Array
     innovation: Array
     first: int = 0
     readings: int = 0
+    vector: Array | None = None
 
 
 Statement = Information | Rows | Sequence[Rows] | None
@@ -147,7 +148,6 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
 
     def bind(self, layout: Layout) -> None:
         """Told once which slice of the state is which; a block that speaks of added states keeps it."""
-        del layout
 
     def begin(self) -> MemoryT:
         """Memory before the first frame."""
@@ -160,7 +160,6 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
             state: The predicted state, or that at which a smoother linearises.
             memory: Of the frame before; None where a smoother asks.
         """
-        del state, memory
         return None  # type: ignore[return-value]
 
     @abstractmethod
@@ -185,7 +184,6 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
 
     def review(self, posterior: StateT, decision: DecisionT) -> DecisionT | None:
         """Another decision where the posterior shows the first to be wrong, None where it stands; asked once."""
-        del posterior, decision
         return None
 
     def remember(
@@ -199,12 +197,10 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
             decision: What was decided.
             memory: Of the frame before.
         """
-        del posterior, at, decision
         return memory
 
     def log_noise(self, decision: DecisionT) -> float:
         """Log det R of the readings that NIS and likelihood count."""
-        del decision
         return 0.0
 
 

@@ -57,18 +57,15 @@ class JointLimits(Block[State, Information | None, None, None]):
 
     def prepare(self, state: State, memory: None) -> Information | None:
         """What the passed limits say; it does not depend on the frame."""
-        del memory
         return self.information(*self._sensor.deviation(state.q))
 
     def decide(
         self, at: OperatingPoint[State, Information | None], frame: Frame, memory: None, notes: Notes
     ) -> None:
         """Nothing is to be decided."""
-        del at, frame, memory, notes
 
     def linearise(self, at: OperatingPoint[State, Information | None], decision: None) -> Information | None:
         """Information on the configuration, None where no limit is passed."""
-        del decision
         return at.prepared
 
     def information(self, deviation: Array, jacobian: Array) -> Information | None:

@@ -61,10 +61,6 @@ class MarkerSettings:
     min_markers: int = 6
 
 
-WHITE = MarkerSettings(innovation_share=0.0)
-"""Markers whose noise is what their protocol states."""
-
-
 class MarkerMemory(NamedTuple):
     """Square of the factor on the noise, and (M, 3) markers used in the frame before where skin is modelled."""
 
@@ -143,7 +139,6 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
 
     def prepare(self, state: State, memory: MarkerMemory | None) -> MarkerReading:
         """Predicted markers."""
-        del memory
         return self.sensor.reading(state.q)
 
     def decide(

@@ -45,7 +45,6 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
 
     def prepare(self, state: LoadedState, memory: None) -> Rows:
         """The law's rows at a state; they do not depend on the frame."""
-        del memory
         nv = len(state.v)
         root, sharp = self.balance.root(state.q, state.v, state.a, state.w), self._sharp[:, None]
         rows = np.empty((6, 3 * nv + 12))
@@ -59,7 +58,6 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
         self, at: OperatingPoint[LoadedState, Rows], frame: Frame, memory: None, notes: Notes
     ) -> Notes:
         """Depends on what the blocks after this one observe."""
-        del at, frame, memory
         return notes
 
     def linearise(self, at: OperatingPoint[LoadedState, Rows], decision: Notes) -> Rows:
@@ -72,5 +70,4 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
 
     def log_noise(self, decision: Notes) -> float:
         """Log det R of the six equations."""
-        del decision
         return -2.0 * float(np.log(self._sharp).sum())

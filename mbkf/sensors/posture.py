@@ -72,7 +72,6 @@ class PosturePrior(Block[State, PreparedPosture, Notes, None]):
 
     def prepare(self, state: State, memory: None) -> PreparedPosture:
         """What the prior says while every segment is observed."""
-        del memory
         deviation, jacobian = self.sensor.deviation(state.q)
         return PreparedPosture(deviation, jacobian, posture_information(deviation, jacobian, self._weights))
 
@@ -80,7 +79,6 @@ class PosturePrior(Block[State, PreparedPosture, Notes, None]):
         self, at: OperatingPoint[State, PreparedPosture], frame: Frame, memory: None, notes: Notes
     ) -> Notes:
         """Depends on which joints are observed."""
-        del at, frame, memory
         return notes
 
     def linearise(self, at: OperatingPoint[State, PreparedPosture], decision: Notes) -> Information:

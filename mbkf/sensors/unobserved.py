@@ -55,7 +55,6 @@ class UnobservedJoints(Block[State, None, Notes, None]):
 
     def decide(self, at: OperatingPoint[State, None], frame: Frame, memory: None, notes: Notes) -> Notes:
         """Depends on which joints are observed."""
-        del at, frame, memory
         return notes
 
     def linearise(self, at: OperatingPoint[State, None], decision: Notes) -> Rows | None:
@@ -72,4 +71,7 @@ class UnobservedJoints(Block[State, None, Notes, None]):
             calm = self._calm[dofs]
             rows[len(dofs) + k, nv + dofs] = calm
             values[len(dofs) + k] = -calm * cast(AcceleratedState, state).a[dofs]
-        return Rows(rows, values, self._v)
+            return Rows(rows, values, self._v)
+        vector = np.zeros(nv)
+        vector[dofs] = -(rest**2) * state.v[dofs]
+        return Rows(rows, values, self._v, vector=vector)

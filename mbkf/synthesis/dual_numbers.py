@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from types import EllipsisType
+from typing import TypeAlias
 
 import numpy as np
 
 from mbkf.conventions import Array
+
+Index: TypeAlias = int | slice | EllipsisType | tuple[int | slice | EllipsisType | None, ...]
+"""What indexes the arrays of a dual number."""
 
 
 class Dual:

@@ -1,9 +1,9 @@
-"""The filter of plant and blocks: what a frame's readings are as one whole, and how blocks' statements are summed."""
+"""The filter of plant and blocks: how statements are summed, what counts as innovation, what is decided anew."""
 
 import numpy as np
 import pytest
 
-from mbkf.filters.filter import Filter, Readings
+from mbkf.filters.filter import Filter
 from mbkf.numerics.kalman import information
 from mbkf.sensors.block import Block, Frame, Rows
 from mbkf.sensors.markers import Markers
@@ -20,33 +20,7 @@ PARTS = (
     Rows(RNG.normal(size=(2, N)), RNG.normal(size=2), readings=2),
     Rows(RNG.normal(size=(3, 4)), RNG.normal(size=3), first=5, readings=1),
 )
-ROWS = np.vstack([PARTS[0].jacobian, np.pad(PARTS[1].jacobian, ((0, 0), (5, 0)))])
 VALUES = np.concatenate([part.innovation for part in PARTS])
-MARKERS = information(Y, H, SD)
-READINGS = Readings(MARKERS, MARKERS.matrix, MARKERS.vector, ROWS, VALUES, (PARTS,))
-
-
-def stacked():
-    """All readings as whitened rows on the whole state, and their innovations."""
-    markers = np.hstack([H / SD[:, None], np.zeros((6, N - n))])
-    return np.vstack([markers, ROWS]), np.concatenate([Y / SD, VALUES])
-
-
-def test_the_whole_is_what_all_rows_say():
-    rows, values = stacked()
-    np.testing.assert_allclose(READINGS.whole_matrix, rows.T @ rows, atol=1e-12)
-    np.testing.assert_allclose(READINGS.whole_vector, values @ rows, atol=1e-12)
-
-
-def test_applying_is_multiplying():
-    x = RNG.normal(size=N)
-    np.testing.assert_allclose(READINGS.apply(x), READINGS.whole_matrix @ x, atol=1e-12)
-
-
-def test_the_first_rows_of_each_part_are_the_readings_that_count():
-    rows, values = READINGS.counted
-    np.testing.assert_array_equal(rows, ROWS[[0, 1, 2]])
-    np.testing.assert_array_equal(values, VALUES[[0, 1, 2]])
 
 
 class Statements(Block):

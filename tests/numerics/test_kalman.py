@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbkf.numerics.information_update import informed, informed_after_rows, informed_whole, informed_with_rows
-from mbkf.numerics.kalman import correct, information
+from mbkf.numerics.information_update import informed, informed_after_rows, informed_with_rows
+from mbkf.numerics.kalman import correct, information, informed_whole
 from tests.motions import worst
 
 SILENT = np.zeros((1, 1))

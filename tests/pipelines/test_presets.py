@@ -32,7 +32,7 @@ def test_a_saved_preset_changes_its_filter_alone(wanted, folder):
     for name in ("lab", str(folder / "lab.toml")):
         found = with_preset(PLAIN, name, wanted)
         assert found.filter == "dynamic"
-        assert (found.dynamic.acceleration_scale, found.dynamic.innovation_share) == (0.4, 0.0)
+        assert (found.dynamic.motion.acceleration_scale, found.dynamic.markers.innovation_share) == (0.4, 0.0)
         assert (found.kinematic, found.torque, found.smooth) == (PLAIN.kinematic, PLAIN.torque, True)
 
 

@@ -8,8 +8,6 @@ deviation σ_a; T → ∞ with σ_a²/T fixed is the constant-acceleration plant
 
 σ_a follows the motion: a joint at rest is expected to stay so, a busy one to change quickly. How wrenches wander
 depends on where the feet then are and is the contact block's (:mod:`mbkf.sensors.foot_contact`).
-R. A. Singer, "Estimating optimal tracking filter performance for manned maneuvering targets", IEEE Transactions on
-Aerospace and Electronic Systems AES-6 (1970) 473–483.
 """
 
 from __future__ import annotations

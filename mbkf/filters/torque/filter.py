@@ -21,8 +21,7 @@ from mbkf.filters.torque.report import TorqueState, reported
 from mbkf.filters.torque.settings import MASS_OF_TABLE_KG, TorqueSettings
 from mbkf.filters.torque.start import TorqueStart
 from mbkf.model.human_dynamics import HumanDynamics
-from mbkf.numerics.information_update import informed_whole
-from mbkf.numerics.kalman import correct
+from mbkf.numerics.kalman import correct, informed_whole
 from mbkf.sensors.block import AnyBlock, Frame, Notes, OperatingPoint
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import ContactDecision

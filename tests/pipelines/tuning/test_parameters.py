@@ -5,15 +5,16 @@ import math
 import pytest
 
 from mbkf.errors import InvalidInput, UnknownName
+from mbkf.filters.settings import flat
 from mbkf.pipelines.reconstruct import ReconstructSettings
 from mbkf.pipelines.tuning.parameters import PARAMETERS, parameter_names
 
 
 @pytest.mark.parametrize("kind", PARAMETERS)
 def test_parameters_are_settings_of_their_filter(kind):
-    defaults = getattr(ReconstructSettings(), kind)
+    defaults = flat(getattr(ReconstructSettings(), kind))
     for one in PARAMETERS[kind].values():
-        assert all(getattr(defaults, name) > 0.0 for name in one.fields)
+        assert all(defaults[name] > 0.0 for name in one.fields)
         assert one.lowest < 1.0 < one.highest
         assert math.isfinite(one.highest)
 

@@ -1,0 +1,31 @@
+"""The nearest covariance: without negative eigenvalues, and the matrix itself where it has none."""
+
+import numpy as np
+import pytest
+
+from mbkf.numerics.positive import made_positive
+
+SCALES = np.array([1e-4, 1.0, 1e3, 30.0])
+
+
+def test_a_spoilt_covariance_becomes_positive_and_stays_near():
+    rng = np.random.default_rng(0)
+    A = rng.normal(size=(4, 3))
+    P = SCALES[:, None] * (A @ A.T) * SCALES
+    spoilt = P - 1e-9 * np.diag(SCALES**2)
+    assert np.linalg.eigvalsh(spoilt / SCALES / SCALES[:, None]).min() < 0.0
+    found = made_positive(spoilt)
+    np.testing.assert_array_equal(found, found.T)
+    assert np.linalg.eigvalsh(found / SCALES / SCALES[:, None]).min() >= 0.0
+    np.testing.assert_allclose(found / SCALES / SCALES[:, None], P / SCALES / SCALES[:, None], atol=1e-8)
+
+
+def test_a_covariance_stays_what_it_is():
+    A = np.random.default_rng(1).normal(size=(4, 6))
+    P = SCALES[:, None] * (A @ A.T) * SCALES
+    np.testing.assert_allclose(made_positive(P), P, rtol=1e-12)
+
+
+def test_what_is_no_number_is_refused():
+    with pytest.raises(np.linalg.LinAlgError):
+        made_positive(np.full((3, 3), np.nan))

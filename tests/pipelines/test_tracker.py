@@ -1,0 +1,144 @@
+"""A tracker for a loop of one's own gives what `reconstruct` gives, and takes blocks of one's own."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import mbkf
+from mbkf.errors import InvalidInput, NotObservable, ShapeError
+from mbkf.pipelines.reconstruct import ReconstructSettings
+
+FRAMES = 45
+
+
+@cache
+def squat():
+    person, recorded = mbkf.synthesise("squat", seconds=2.0, seed=4)
+    trial = recorded.trial
+    return person, trial, mbkf.plate_wrenches(trial.plates, trial.markers.times_s, trial.markers.rate_hz)
+
+
+def followed(blocks=None, settings=None, plates=None, readings=None):
+    person, trial, wrenches = squat()
+    plates = trial.plates if plates is None else plates
+    tracker = mbkf.Tracker(
+        person, trial.markers.names, plates, trial.markers.rate_hz, settings=settings, blocks=blocks
+    )
+    found = []
+    for t in range(FRAMES):
+        own = {} if readings is None else {name: values[t] for name, values in readings.items()}
+        tracker.push(trial.markers.positions_m[t], wrenches[t, : len(plates)], readings=own)
+        found += tracker.answers
+    return tracker, found
+
+
+@pytest.mark.parametrize("name", ["kinematic", "dynamic"])
+def test_it_takes_the_steps_of_reconstruct(name):
+    person, trial, _ = squat()
+    settings = ReconstructSettings(filter=name, correct_markers=False)
+    result = mbkf.reconstruct(trial, person, settings=settings)
+    _, found = followed(settings=settings)
+    assert [one.number for one in found] == list(range(len(found)))
+    for one in found[::10]:
+        t = one.number
+        np.testing.assert_array_equal(one.q, result.q[t])
+        np.testing.assert_array_equal(one.q_sd, result.sd_q[t])
+        for k, coordinate in enumerate(result.coordinate_names):
+            assert one.angles[coordinate] == pytest.approx(result.angles[t, k], abs=1e-12)
+            assert one.angles_sd[coordinate] == pytest.approx(result.angles_sd[t, k], rel=1e-9)
+        if name == "dynamic":
+            np.testing.assert_allclose(one.tau, result.tau[t], atol=1e-9)
+            np.testing.assert_array_equal(one.wrenches, result.foot_wrench[t])
+            np.testing.assert_array_equal(one.wrenches_sd, result.foot_wrench_sd[t])
+            assert one.torques["knee_angle_r"] == pytest.approx(result.torque("knee_angle_r")[t])
+            assert one.torques_sd["knee_angle_r"] == pytest.approx(result.torque_sd("knee_angle_r")[t])
+
+
+def test_frames_before_a_start_are_answered_with_it():
+    person, trial, wrenches = squat()
+    tracker = mbkf.Tracker(person, trial.markers.names, trial.plates, trial.markers.rate_hz)
+    answers = []
+    for t in range(30):
+        estimate = tracker.push(trial.markers.positions_m[t], wrenches[t])
+        answers.append((estimate is not None, len(tracker.answers)))
+    first = next(t for t, (there, _) in enumerate(answers) if there)
+    assert answers[first][1] == first + 1
+    assert all(given == (True, 1) for given in answers[first + 1 :])
+
+
+def test_frames_that_wait_are_answered_at_the_end():
+    person, trial, wrenches = squat()
+    tracker = mbkf.Tracker(person, trial.markers.names, trial.plates, trial.markers.rate_hz)
+    for t in range(5):
+        assert tracker.push(trial.markers.positions_m[t], wrenches[t]) is None
+    assert [one.number for one in tracker.finish()] == list(range(5))
+
+
+class Barometer(mbkf.Block):
+    """A reading of the pelvis's height, with a bias of its own in the state."""
+
+    def __init__(self):
+        self.q = self.bias = 0
+
+    def states(self):
+        return [mbkf.ExtraState("barometer", np.zeros(1), np.ones(1), np.zeros(1))]
+
+    def bind(self, layout):
+        self.bias, self.index = layout["barometer"].start, layout.extra_index("barometer")
+
+    def decide(self, at, frame, memory, notes):
+        return frame.readings["height"]
+
+    def linearise(self, at, decision):
+        up = 2.0 * np.array(
+            [
+                at.state.q[3] * at.state.q[5] - at.state.q[6] * at.state.q[4],
+                at.state.q[4] * at.state.q[5] + at.state.q[6] * at.state.q[3],
+                0.5 - at.state.q[3] ** 2 - at.state.q[4] ** 2,
+            ]
+        )
+        away = (decision - at.state.q[2] - at.state.extra[self.index][0]) / 0.01
+        return [Joined.rows(up, self.bias, away)]
+
+
+class Joined:
+    """One row over two places of the state."""
+
+    @staticmethod
+    def rows(up, bias, away):
+        row = np.zeros((1, bias + 1))
+        row[0, :3], row[0, bias] = up / 0.01, 1.0 / 0.01
+        return mbkf.Rows(row, np.array([away]), readings=1)
+
+
+def test_a_block_of_ones_own_may_bring_a_state():
+    """A barometer that reads 0.3 m too much: its bias is found, and the body stays where markers have it."""
+    person, trial, _ = squat()
+    plain = followed()[1]
+    heights = np.array([plain[min(t, len(plain) - 1)].q[2] for t in range(FRAMES)]) + 0.3
+    blocks = [*mbkf.standard_blocks(person, trial.markers.names, trial.plates, 100.0), Barometer()]
+    _, found = followed(blocks, readings={"height": heights})
+    state = found[-1].posterior.inner.state
+    assert state.extra[0] == pytest.approx(0.3, abs=0.01)
+    assert abs(found[-1].q[2] - plain[-1].q[2]) < 0.005
+
+
+def test_offline_takes_blocks_and_readings_too():
+    person, trial, _ = squat()
+    heights = np.full(trial.markers.frames, 1.0)
+    result = mbkf.reconstruct(trial, person, blocks=[Barometer()], readings={"height": heights})
+    assert np.isfinite(result.q).all()
+
+
+def test_wrong_arrays_and_filters_are_refused():
+    person, trial, wrenches = squat()
+    tracker = mbkf.Tracker(person, trial.markers.names, trial.plates, 100.0)
+    with pytest.raises(ShapeError, match="markers_m"):
+        tracker.push(trial.markers.positions_m[0, :-1], wrenches[0])
+    with pytest.raises(ShapeError, match="wrenches"):
+        tracker.push(trial.markers.positions_m[0], wrenches[0, :1])
+    with pytest.raises(NotObservable):
+        mbkf.Tracker(person, ["a", "b"])
+    with pytest.raises(InvalidInput, match="dynamic"):
+        mbkf.Tracker(person, settings=ReconstructSettings(filter="kinematic"), blocks=[Barometer()])

@@ -1,0 +1,56 @@
+"""Feet without a plate: a low, slow foot carries after a delay, a flying one never, and one over an idle plate not."""
+
+import numpy as np
+
+from mbkf.sensors.contact.plates import PlateAreas
+from mbkf.sensors.contact.records import Contact, ContactMemory
+from mbkf.sensors.contact.soles import sole_points
+from mbkf.sensors.contact.thresholds import STAND_AFTER_S
+from mbkf.sensors.contact.unmeasured import UnmeasuredFeet
+from tests.dynamics import DT, plates_under, standing
+from tests.motions import reference_model
+
+MODEL = reference_model()
+STILL = np.zeros(MODEL.nv)
+AIR = (Contact.AIR, Contact.AIR)
+NO_PLATES = np.zeros(0, dtype=bool)
+
+
+def decided(q, memory, a=STILL, plates=(), unloaded=NO_PLATES, contacts=AIR):
+    feet = UnmeasuredFeet(MODEL, PlateAreas(plates), 0.0 if plates else np.nan, DT)
+    soles = sole_points(MODEL, q[None])[0].tolist()
+    return feet.decide(memory, (q, STILL, a), soles, contacts, unloaded)
+
+
+def memory(touching_s, plates=0):
+    return ContactMemory((-1,) * plates, (None,) * plates, 0.0, touching_s)
+
+
+def test_a_standing_foot_carries_after_its_delay():
+    fresh = decided(standing(MODEL), memory((0.0, 0.0)))
+    assert fresh.touching_s == (DT, DT)
+    later = decided(standing(MODEL), memory((STAND_AFTER_S, STAND_AFTER_S)))
+    assert list(later.carrying) == [0, 1]
+
+
+def test_feet_high_above_the_floor_carry_where_the_body_does_not_fall():
+    """Something unknown is under them, a box say; in free fall nothing is."""
+    high = standing(MODEL, 0.5)
+    assert list(decided(high, memory((0.0, 0.0))).carrying) == [0, 1]
+    falling = STILL.copy()
+    falling[2] = -9.8
+    assert list(decided(high, memory((0.0, 0.0)), falling).carrying) == []
+
+
+def test_over_an_unloaded_plate_a_foot_carries_nothing():
+    q = standing(MODEL)
+    plates = plates_under(MODEL, q)
+    found = decided(q, memory((1.0, 1.0), 2), plates=plates, unloaded=np.ones(2, dtype=bool))
+    assert list(found.carrying) == [] and found.touching_s == (0.0, 0.0)
+
+
+def test_measured_feet_are_not_asked():
+    both = (Contact.MEASURED, Contact.MEASURED)
+    found = decided(standing(MODEL), memory((1.0, 1.0)), contacts=both)
+    assert list(found.carrying) == [] and found.touching_s == (0.0, 0.0)
+    assert abs(found.sole_height_m) < 0.02
