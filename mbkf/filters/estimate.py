@@ -1,4 +1,4 @@
-"""What every filter tells of a frame, in one form, so that trials, live streams and smoothers treat all alike."""
+"""One form of every filter's posterior and predictions, for trials, live streams and smoothers."""
 
 from __future__ import annotations
 

@@ -99,7 +99,7 @@ class Decisions(NamedTuple):
     Attributes:
         noise: Process noise of the step into the frame.
         blocks: Decision of each block.
-        notes: What blocks told each other.
+        notes: What blocks shared.
     """
 
     noise: Any

@@ -75,7 +75,7 @@ def trial_likelihood(
 
 
 def frame_likelihood(filter: TrackingFilter, estimate: Posterior) -> tuple[LogLikelihood, int]:
-    """Of one frame's believed markers, and of its loads and how many numbers those are.
+    """Of one frame's markers inside the gate, and of its loads and how many numbers those are.
 
     Args:
         filter: A kinematic or dynamic filter.

@@ -1,4 +1,4 @@
-"""Points of a C3D file: labels made unambiguous, measured markers and derived points told apart."""
+"""Points of a C3D file: labels made unambiguous, measured markers and derived points separated."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 OpenSim's axes: x forward, y up, z right. Only the range from the first to the last tracked frame is written.
 OpenSim's reader of tables refuses NaN, so frames inside that range with a value missing are left out of the
-tables (their times tell; OpenSim interpolates), and columns that are never known are left out altogether;
+tables (the times show it; OpenSim interpolates), and columns that are never known are left out altogether;
 markers.trc keeps every frame.
 """
 

@@ -1,6 +1,6 @@
 """The dynamic filter: positions, velocities, accelerations and foot wrenches that obey Newton's law together.
 
-For given q and v, (a, w) and (τ, w) tell the same, τ = ID(q, v, a) − Jᵀw. A state of accelerations instead of torques
+For given q and v, (a, w) and (τ, w) are equivalent, τ = ID(q, v, a) − Jᵀw. A state of accelerations instead of torques
 has a linear plant that is never stiff; Newton's law at the pelvis is one of its readings, and torques follow.
 """
 

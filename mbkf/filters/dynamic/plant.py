@@ -6,8 +6,8 @@ deviation σ_a; T → ∞ with σ_a²/T fixed is the constant-acceleration plant
     q' = q ⊕ (v Δt + a c₂),  v' = v + a c₁,  a' = ρ a,  w' = w
     ρ = e^(−Δt/T),  c₁ = T(1 − ρ),  c₂ = T(Δt − c₁)
 
-σ_a follows the motion: a joint at rest is expected to stay so, a busy one to change quickly. How wrenches wander
-depends on where the feet then are and is the contact block's (:mod:`mbkf.sensors.foot_contact`).
+σ_a follows the motion: a joint at rest is expected to stay so, a busy one to change quickly. The process noise of the
+wrenches depends on the contact of the feet and is the contact block's (:mod:`mbkf.sensors.foot_contact`).
 """
 
 from __future__ import annotations

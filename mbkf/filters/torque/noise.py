@@ -1,4 +1,4 @@
-"""How the forces of the whole body wander: each by itself as in the thesis, or together, as Newton–Euler demands.
+"""Process noise of the whole body's forces: independent as in the thesis, or correlated as Newton–Euler demands.
 
 Forces that follow free accelerations and loads change by δτ = M δa − Jᵀ δw, or by M δa alone where loads are taken
 off ("inertial"). Noise that is independent instead leaves a foot of 1e-3 kg m² with the difference of two moments of

@@ -73,8 +73,8 @@ class TorquePlant(Plant[ForcedState]):
         dt_s: Time between frames.
         density: Noise density, taken at the beginning of a frame.
         scheme: How it is discretised.
-        drift: (nu, nu) A of u̇ = A u + w̃, for states that fade instead of wandering; None for 0. The motion sees u as
-            it is at the beginning of a step.
+        drift: (nu, nu) A of u̇ = A u + w̃, for states with a correlation time; None for random walks. The motion
+            sees u as it is at the beginning of a step.
     """
 
     def __init__(

@@ -36,7 +36,7 @@ MASS_OF_TABLE_KG = 100.0
 
 @dataclass(frozen=True)
 class TorqueSettings:
-    """What the torque-state filter believes.
+    """Noise and structure of the torque-state filter.
 
     Forces and moments are for a subject of 100 kg and scale with the subject's mass (thesis eq. 4.18).
 

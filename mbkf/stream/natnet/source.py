@@ -276,7 +276,7 @@ def _rate(frames: list[Any]) -> float:
     count = last.prefix.frame_number - first.prefix.frame_number
     passed = last.suffix.timestamp - first.suffix.timestamp
     if count <= 0 or passed <= 0.0:
-        raise InvalidInput("NatNet: the frames' numbers and time stamps tell no rate")
+        raise InvalidInput("NatNet: the frames' numbers and time stamps determine no rate")
     rate_hz = count / passed
     whole = float(round(rate_hz))
     return whole if abs(rate_hz - whole) <= WHOLE_RATE * rate_hz else float(round(rate_hz, 4))
