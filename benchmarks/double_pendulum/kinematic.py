@@ -66,7 +66,7 @@ class KinematicMethod:
     """FCDI as a method.
 
     Attributes:
-        shape: The pendulum it believes in.
+        shape: The pendulum it assumes.
         acceleration: σ_a of every component of z, rad/s² and m/s².
         marker_m: Standard deviation of a marker coordinate.
     """

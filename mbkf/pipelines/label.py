@@ -29,7 +29,7 @@ CANDIDATES = 8
 PASSES = 3
 """At most so many passes are made from starts that disagree; the likeliest is kept."""
 
-JUDGED = 40
+COMPARED = 40
 """Frames, spread over the capture, by which passes are compared."""
 
 SCAN_S = 0.1
@@ -235,7 +235,7 @@ def _likeliest(
 def _likelihood(body: LabelBody, run: _Run) -> float:
     """Worth of a run's labels, summed over a few frames."""
     total, shown = 0.0, run.labelling.markers.positions_m
-    for t in np.unique(np.linspace(0, len(shown) - 1, JUDGED).astype(int)):
+    for t in np.unique(np.linspace(0, len(shown) - 1, COMPARED).astype(int)):
         if not np.isnan(run.q[t]).any():
             total += body.search.worth(shown[t], run.q[t])
     return total

@@ -1,9 +1,9 @@
 """Limits by which contact of the feet with plates and floor is decided, causally and offline.
 
 Both uses share the geometry and the limits below unless a comment gives the reason for a difference. The causal
-decision (:mod:`mbkf.sensors.contact.causal`) sees predicted motion and no later frame; what it misses or invents disturbs the
-filter at once. The offline assignment (:mod:`mbkf.sensors.contact.offline`) sees the whole tracked trial and only has
-to refuse frames whose reactions are not fully measured.
+decision (:mod:`mbkf.sensors.contact.causal`) sees predicted motion and no later frame; what it misses or invents
+disturbs the filter at once. The offline assignment (:mod:`mbkf.sensors.contact.offline`) sees the whole tracked trial
+and only has to refuse frames whose reactions are not fully measured.
 """
 
 from mbkf.conventions import GRAVITY_M_S2
