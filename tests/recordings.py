@@ -55,7 +55,7 @@ def walk():
         valid=np.ones(T, bool), unobserved_dofs=(), nis=np.full(T, 90.0), nis_readings=np.full(T, 100),
         step_seconds=np.full(T, 1e-3), warnings=("a remark with <b>markup</b>",),
         settings={"dynamic": {"jerk": 200.0}, "hide": []}, foot_wrench_sd=np.full((T, 2, 6), 5.0),
-        footing=np.where(force[..., 2] > 0, Contact.MEASURED, Contact.AIR), plate_corners_m=PLATE[None],
+        foot_contact=np.where(force[..., 2] > 0, Contact.MEASURED, Contact.AIR), plate_corners_m=PLATE[None],
     )  # fmt: skip
 
 

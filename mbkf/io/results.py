@@ -19,13 +19,13 @@ SHAPES: dict[str, str] = {
     "foot_wrench": "T 2 6", "foot_cop_m": "T 2 3", "foot_free_moment_nm": "T 2",
     "residual_force_n": "T 3", "residual_moment_nm": "T 3", "tracked": "T", "valid": "T",
     "nis": "T", "nis_readings": "T", "step_seconds": "T", "plate_change": "T P 6",
-    "foot_wrench_sd": "T 2 6", "footing": "T 2", "covariance": "T 2nv 2nv", "plate_corners_m": "P 4 3",
+    "foot_wrench_sd": "T 2 6", "foot_contact": "T 2", "covariance": "T 2nv 2nv", "plate_corners_m": "P 4 3",
 }  # fmt: skip
 """Dimensions of every array: T frames, nv dofs, A coordinates, M markers, P plates."""
 
 DTYPES: dict[str, type] = {name: np.bool_ for name in ("singular", "hidden", "rejected", "tracked", "valid")}
 DTYPES["nis_readings"] = np.int64
-DTYPES["footing"] = np.int64
+DTYPES["foot_contact"] = np.int64
 """Arrays that are not floating-point."""
 
 
@@ -76,7 +76,7 @@ class Reconstruction:
         plate_change: (T, P, 6) estimated minus measured plate wrench (N, N m), NaN where a plate is not
             compared; None without plates.
         foot_wrench_sd: (T, 2, 6) standard deviations of ``foot_wrench``; None where the filter does not estimate it.
-        footing: (T, 2) what right and left foot stand on: -1 something without a reading, 0 air, 1 a plate of its
+        foot_contact: (T, 2) what right and left foot stand on: -1 something without a reading, 0 air, 1 a plate of its
             own, 2 a plate both share; None where the filter does not ask.
         covariance: (T, 2nv, 2nv) of (q, v) in the tangent space; only kept on request and never written.
         plate_corners_m: (P, 4, 3) world corners of the capture's plates, NaN where their file has no geometry; None
@@ -127,7 +127,7 @@ class Reconstruction:
     settings: dict[str, object] = field(default_factory=dict)
     plate_change: Array | None = None
     foot_wrench_sd: Array | None = None
-    footing: Array | None = None
+    foot_contact: Array | None = None
     covariance: Array | None = field(default=None, repr=False)
     plate_corners_m: Array | None = None
 

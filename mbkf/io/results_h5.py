@@ -41,6 +41,9 @@ _NAME_LISTS = {
 }  # fmt: skip
 """Lists of names and the data sets that hold them."""
 
+_KEYS = {"foot_contact": "footing"}
+"""Data sets of arrays that have another name in Python."""
+
 _NEVER_WRITTEN = ("covariance",)
 
 
@@ -72,7 +75,7 @@ def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
             packed = (
                 {"compression": "gzip", "compression_opts": 1, "shuffle": True} if array.size > 256 else {}
             )
-            dataset = file.create_dataset(name, data=array, **packed)
+            dataset = file.create_dataset(_KEYS.get(name, name), data=array, **packed)
             dataset.attrs["unit"] = UNITS.get(name, "1")
     with replacing(path) as partial:
         partial.write_bytes(made.getbuffer())
@@ -101,8 +104,9 @@ def read_h5(path: str | Path) -> Reconstruction:
             for name, key in _NAME_LISTS.items():
                 values[name] = tuple(file[key].asstr()[:])
             for name in ARRAYS:
-                if name in file:
-                    values[name] = np.asarray(file[name][()], dtype=DTYPES.get(name, np.float64))
+                key = _KEYS.get(name, name)
+                if key in file:
+                    values[name] = np.asarray(file[key][()], dtype=DTYPES.get(name, np.float64))
         return Reconstruction(**values)
     except (OSError, KeyError, TypeError, ValueError) as error:
         raise FileFormatError(source, f"damaged or not a reconstruction ({error})") from error

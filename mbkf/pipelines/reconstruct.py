@@ -244,7 +244,7 @@ def assemble(
         settings=recorded(settings),
         plate_change=ground.plate_change,
         foot_wrench_sd=ground.wrench_sd,
-        footing=result.contact,
+        foot_contact=result.contact,
         covariance=result.covariance,
         plate_corners_m=_corners(capture),
     )

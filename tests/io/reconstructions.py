@@ -46,7 +46,7 @@ def made_up_whole(frames=12, **changes):
     optional = {
         "plate_change": np.full((frames, 2, 6), np.nan),
         "foot_wrench_sd": rng.uniform(1.0, 9.0, (frames, 2, 6)),
-        "footing": rng.integers(-1, 3, (frames, 2)),
+        "foot_contact": rng.integers(-1, 3, (frames, 2)),
         "covariance": np.zeros((frames, 12, 12)),
         "plate_corners_m": rng.normal(size=(2, 4, 3)),
     }

@@ -131,7 +131,7 @@ def test_the_result_says_how_it_was_made(made, result):
     assert result.dof_names == dof_names(made.model)
     assert result.unobserved_dofs == ()
     assert result.settings["correct_markers"] is True
-    assert (result.foot_wrench_sd, result.footing, result.plate_change, result.covariance) == (None,) * 4
+    assert (result.foot_wrench_sd, result.foot_contact, result.plate_change, result.covariance) == (None,) * 4
     assert not result.smoothed
     assert result.tracked.all()
 

@@ -79,7 +79,7 @@ def foot_events(r: Reconstruction, feet: FeetInMotion | None = None) -> tuple[Fo
     for foot in range(2):
         vertical = np.where(r.tracked, r.foot_wrench[:, foot, 2], np.nan)
         by_load = events_of_load(r.times_s, vertical)
-        if r.footing is None:
+        if r.foot_contact is None:
             by_motion = events_of_motion(feet, foot)
             by_load = FootEvents(
                 _with_missing(by_load.strikes_s, by_motion.strikes_s),
