@@ -25,7 +25,7 @@ import benchmarks
 from benchmarks.checks import Check, Context
 from mbkf.errors import InvalidInput, MbkfError, UnknownName
 
-DATA_VARIABLE = "MBKF_DATA"
+DATA_VARIABLE, OLD_VARIABLE = "MBKF_DATA", "MBKF_OLD_TREE"
 _PIPED_WIDTH = 120
 ENTRY_POINT = "run"
 """A module or package at the top of this package that defines a function of this name is a benchmark."""
@@ -79,6 +79,13 @@ def _parser() -> argparse.ArgumentParser:
         help=f"folder of the reference captures (default: ${DATA_VARIABLE})",
     )
     parser.add_argument(
+        "--old",
+        type=Path,
+        metavar="TREE",
+        default=os.environ.get(OLD_VARIABLE) or None,
+        help=f"another source tree, with which the time of a step is compared (default: ${OLD_VARIABLE})",
+    )
+    parser.add_argument(
         "--out",
         type=Path,
         metavar="DIR",
@@ -96,6 +103,8 @@ def _run(args: argparse.Namespace) -> list[Check]:
             raise UnknownName("benchmark", name, known)
     if args.data is not None and not args.data.is_dir():
         raise InvalidInput(f"{args.data}: no such folder; give the reference captures with --data DIR")
+    if args.old is not None and not args.old.is_dir():
+        raise InvalidInput(f"{args.old}: no such folder; give a checked-out source tree with --old TREE")
     console = Console()
     if not console.is_terminal:
         console = Console(width=_PIPED_WIDTH)
@@ -105,10 +114,15 @@ def _run(args: argparse.Namespace) -> list[Check]:
         out.mkdir(parents=True, exist_ok=True)
         start = perf_counter()
         module = importlib.import_module(f"benchmarks.{name}")
-        results[name] = getattr(module, ENTRY_POINT)(Context(data=args.data, out=out, quick=args.quick))
+        results[name] = getattr(module, ENTRY_POINT)(context_of(args, out))
         console.print(_table(name, results[name], perf_counter() - start))
     _write(args.out / "checks.json", results, args.quick)
     return [check for checks in results.values() for check in checks]
+
+
+def context_of(args: argparse.Namespace, out: Path) -> Context:
+    """A benchmark's input from the command line, with its folder."""
+    return Context(data=args.data, out=out.resolve(), quick=args.quick, old=args.old)
 
 
 def _table(name: str, checks: Sequence[Check], seconds: float) -> Table:

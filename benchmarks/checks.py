@@ -53,11 +53,13 @@ class Context:
         data: Folder of the public reference captures, or None when there is none.
         out: Folder for the benchmark's files; exists.
         quick: Whether to do a shorter run, for a first look.
+        old: Folder of another source tree that this one is compared with, or None when there is none.
     """
 
     data: Path | None
     out: Path
     quick: bool = False
+    old: Path | None = None
 
     def require_data(self) -> Path:
         """The folder of reference captures.

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.house.circles import circle_in, circles, imported_modules, imports_of, module_name
 from benchmarks.house.documentation import classes_of, documentation, faults
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -56,39 +57,9 @@ def tree_of(path: Path) -> ast.Module:
     return ast.parse(path.read_text(encoding="utf-8"), str(path))
 
 
-def module_name(path: Path) -> str:
-    parts = path.relative_to(ROOT).with_suffix("").parts
-    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
-
-
 def room_of(path: Path) -> str:
     """First folder below the package, or the file's own name at the top."""
     return path.relative_to(PACKAGE).with_suffix("").parts[0]
-
-
-def imported_modules(tree: ast.AST, package: str) -> set[str]:
-    """Dotted names a file imports, wherever the statement stands.
-
-    ``from a import b`` counts as ``a.b``, which may be a module or a name of ``a``; relative imports are
-    resolved against ``package``.
-    """
-    found = set()
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            base = node.module or ""
-            if node.level:
-                above = package.split(".")[: len(package.split(".")) - node.level + 1]
-                base = ".".join([*above, base] if base else above)
-            found |= {f"{base}.{alias.name}" for alias in node.names}
-    return found
-
-
-def imports_of(path: Path) -> set[str]:
-    name = module_name(path)
-    package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-    return imported_modules(tree_of(path), package)
 
 
 def forbidden(room: str, imports: set[str]) -> list[str]:
@@ -136,39 +107,14 @@ def test_the_import_rule_sees_what_it_should(room, source, bad):
     assert forbidden(room, imported_modules(ast.parse(source), f"mbkf.{room}")) == bad
 
 
-def imported_files(path: Path, modules: dict[str, Path]) -> set[Path]:
-    """Files that a file imports anywhere, for types only or inside a function included; itself left out."""
-    found = {modules.get(name) or modules.get(name.rpartition(".")[0]) for name in imports_of(path)}
-    return {other for other in found if other is not None and other != path}
-
-
-def circle_in(edges: dict[Path, set[Path]]) -> list[str]:
-    """One circle of files, the first of them named again at the end; empty where there is none."""
-    done: set[Path] = set()
-
-    def visit(path: Path, way: list[Path]) -> list[Path]:
-        if path in way:
-            return [*way[way.index(path) :], path]
-        if path in done:
-            return []
-        for other in sorted(edges[path]):
-            if found := visit(other, [*way, path]):
-                return found
-        done.add(path)
-        return []
-
-    return next(([relative(one) for one in found] for path in edges if (found := visit(path, []))), [])
-
-
 def test_no_files_import_each_other_in_a_circle():
-    modules = {module_name(path): path for path in chain(SOURCES, BENCHMARKS)}
-    assert circle_in({path: imported_files(path, modules) for path in modules.values()}) == []
+    assert circles() == []
 
 
 def test_a_circle_is_found():
     a, b, c = (ROOT / name for name in ("a.py", "b.py", "c.py"))
     assert circle_in({a: {b}, b: {c}, c: set()}) == []
-    assert circle_in({a: {b}, b: {c}, c: {b}}) == ["b.py", "c.py", "b.py"]
+    assert circle_in({a: {b}, b: {c}, c: {b}}) == [b, c, b]
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=relative)

@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 
 import scipy.linalg  # noqa: F401, a BLAS loaded later would not be limited
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 
 @contextmanager
 def single_threaded() -> Iterator[None]:
     """Inside, linear algebra of this process uses one thread."""
-    with threadpool_limits(limits=1, user_api="blas"):
+    with _pools().limit(limits=1, user_api="blas"):
         yield
+
+
+@cache
+def _pools() -> ThreadpoolController:
+    """The libraries' threads; looking for them takes milliseconds, longer than a step of a filter."""
+    return ThreadpoolController()

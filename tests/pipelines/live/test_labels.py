@@ -10,6 +10,7 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.labelling.score import score
 from mbkf.pipelines.live.filter import LiveFilter
 from mbkf.pipelines.live.labels import LONGEST_WAIT_S, LiveLabels, live_body
+from mbkf.sensors.block import Frame
 from tests.walker import walker
 
 pytestmark = pytest.mark.slow
@@ -30,7 +31,7 @@ def streamed(points_m, rate_hz, subject):
     with single_threaded():
         for number, frame in enumerate(points_m):
             for markers in labels.push(frame, live.expect()):
-                steps = live.push(len(named), markers, plates)
+                steps = live.push(len(named), Frame(markers, plates))
                 named.append(markers)
             if named and steps and steps[-1].number == number and steps[-1].estimate is not None:
                 labels.learn(steps[-1].estimate.q)
