@@ -142,10 +142,10 @@ class StandingStart:
             with single_threaded(), low_latency():
                 found = self._look(stop, patience_s, report)
         except InvalidInput as error:
-            report.write(self._report("nobody scaled", ended_by=str(error)), last=True)
+            report.write(self._report("no subject scaled", ended_by=str(error)), last=True)
             raise
         if found is None:
-            report.write(self._report("nobody scaled", ended_by="it was stopped"), last=True)
+            report.write(self._report("no subject scaled", ended_by="it was stopped"), last=True)
         return found
 
     def _look(
