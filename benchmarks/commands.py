@@ -10,11 +10,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
-from typing import Any
 
 from mbkf.cli.main import main
 from mbkf.errors import MbkfError
-from mbkf.io.results_folder import read_summary
+from mbkf.io.results_folder import Summary, read_summary
 from mbkf.io.storage import Table, read_storage
 
 
@@ -22,7 +21,7 @@ from mbkf.io.storage import Table, read_storage
 class Written:
     """Files written by `mbkf reconstruct`: summary, angles, torques; and the wall time of the commands."""
 
-    summary: dict[str, Any]
+    summary: Summary
     angles: Table
     torques: Table
     seconds: float

@@ -99,14 +99,14 @@ def make_walk(seconds: float) -> Walk:
     followed = [marker for name in measured.names for marker in subject.markers if marker.name == name]
     sensor = MarkerSensor(model, [m.segment for m in followed], np.array([m.position_m for m in followed]))
     noise = np.array([marker.noise_m for marker in followed])
-    held = np.zeros(model.nv, dtype=bool)
-    kalman = KinematicFilter(sensor, noise, 1.0 / measured.rate_hz, held, KinematicSettings())
+    unobservable = np.zeros(model.nv, dtype=bool)
+    kalman = KinematicFilter(sensor, noise, 1.0 / measured.rate_hz, unobservable, KinematicSettings())
     wrench = np.zeros((2, 6))
     wrench[:, 2] = 0.5 * model.mass_kg * GRAVITY_M_S2
     plates = capture.trial.plates
     loads = plate_wrenches(plates, measured.times_s, measured.rate_hz)
     feet = ContactDetector(model, plates, kalman.plant.dt_s)
-    dynamic = DynamicFilter.standard(sensor, noise, feet, kalman.plant.dt_s, held, DynamicSettings())
+    dynamic = DynamicFilter.standard(sensor, noise, feet, kalman.plant.dt_s, unobservable, DynamicSettings())
     return Walk(kalman, dynamic, loads, NewtonEuler(model), measured.positions_m, wrench)
 
 

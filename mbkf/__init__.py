@@ -7,7 +7,7 @@ the libraries behind a name are loaded when it is first used.
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from mbkf.errors import MbkfError
 from mbkf.version import __version__
@@ -99,7 +99,7 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
     """Loads a public name's module on first use."""
     if name not in _HOMES:
         raise AttributeError(f"module 'mbkf' has no attribute '{name}'")

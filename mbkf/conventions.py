@@ -12,8 +12,9 @@ k scale factors, P covariance, H measurement Jacobian, R measurement covariance.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,9 +26,15 @@ SIDES = ("r", "l")
 """Suffixes of right and left, in the order used by every paired array."""
 
 Array = NDArray[np.float64]
-"""Floating-point array; its shape stands in the docstring of whoever uses it."""
+"""Floating-point array; its shape stands in the docstring beside its use."""
 
 BoolArray = NDArray[np.bool_]
+
+TomlTable: TypeAlias = dict[str, Any]
+"""A table of a TOML file as tomllib reads it; readers check each value that they take."""
+
+JsonTable: TypeAlias = Mapping[str, Any]
+"""An object of a JSON file, of this version or an older one; readers check each value that they take."""
 
 StageCallback = Callable[[str, int, int], None]
 """What a pipeline calls as it goes: name of the stage, items done, items in all."""

@@ -12,7 +12,13 @@ class MbkfError(Exception):
 
 
 class FileFormatError(MbkfError):
-    """A file is missing, unreadable or not what its name promises."""
+    """A file is missing, unreadable or not what its name promises.
+
+    Attributes:
+        path: The file.
+        reason: What is wrong with it.
+        line: Line of the fault, from 1; None where no line is to blame.
+    """
 
     def __init__(self, path: str | Path, reason: str, line: int | None = None) -> None:
         self.path, self.reason, self.line = Path(path), reason, line
@@ -21,10 +27,17 @@ class FileFormatError(MbkfError):
 
 
 class UnknownName(MbkfError):
-    """A name (marker, segment, protocol, plate, option …) is not among the valid ones."""
+    """A name (marker, segment, protocol, plate, option …) is not among the valid ones.
+
+    Attributes:
+        kind: What is named, as a noun: "marker", "segment", …
+        name: The name that is not known.
+        choices: The valid ones; the closest of them are part of the text.
+        where: File or option in which the name stands; empty where it goes without saying.
+    """
 
     def __init__(self, kind: str, name: str, choices: Iterable[str], where: str = "") -> None:
-        self.kind, self.name, self.choices = kind, name, tuple(choices)
+        self.kind, self.name, self.choices, self.where = kind, name, tuple(choices), where
         close = difflib.get_close_matches(name, self.choices, n=3, cutoff=0.5)
         listed = close or self.choices[:12]
         hint = "did you mean" if close else "known are"
@@ -33,7 +46,13 @@ class UnknownName(MbkfError):
 
 
 class ShapeError(MbkfError):
-    """An array does not have the documented shape."""
+    """An array does not have the documented shape.
+
+    Attributes:
+        name: The array.
+        expected: Its documented shape.
+        got: The shape it has.
+    """
 
     def __init__(self, name: str, expected: str, got: tuple[int, ...]) -> None:
         self.name, self.expected, self.got = name, expected, got
@@ -53,7 +72,13 @@ class NotConverged(MbkfError):
 
 
 class MissingDependency(MbkfError):
-    """A library that is not part of the plain installation is needed."""
+    """A library that is not part of the plain installation is needed.
+
+    Attributes:
+        package: The library.
+        needed_for: What needs it.
+        extra: Extra of mbkf that installs it.
+    """
 
     def __init__(self, package: str, needed_for: str, extra: str) -> None:
         self.package, self.needed_for, self.extra = package, needed_for, extra

@@ -1,4 +1,4 @@
-"""A short true squat through every filter, for the tests of followers and of what is made of their tracks."""
+"""A short true squat through every filter, for the tests of filters and of what is made of their tracks."""
 
 from dataclasses import replace
 from functools import cache
@@ -12,7 +12,7 @@ from mbkf.filters.inverse_dynamics import inverse_dynamics
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.filters.tracking import track
-from mbkf.pipelines.trial.followers import FilterInputs, follower
+from mbkf.pipelines.trial.filters import FilterInputs, tracking_filter
 from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.dynamics import DT, MARKER_SD_M, trial
 from tests.motions import angle_errors, marker_positions
@@ -20,7 +20,7 @@ from tests.motions import angle_errors, marker_positions
 FRAMES = range(40, 100)
 """Frames of the squat: it goes down."""
 
-WHOLE = SmoothingSettings(stretch_s=10.0)
+WHOLE = SmoothingSettings(window_s=10.0)
 """The whole run in one stretch."""
 
 SETTLED = slice(15, -5)
@@ -49,8 +49,8 @@ def inputs(plates=None, **changes):
     return replace(known, **changes)
 
 
-def made_follower(name, **changes):
-    return follower(name, inputs(**changes))
+def made_filter(name, **changes):
+    return tracking_filter(name, inputs(**changes))
 
 
 @cache
@@ -73,13 +73,13 @@ def without(read, frames, markers=slice(None)):
 @cache
 def tracked(name, smoothing=None):
     """The short run through a filter."""
-    return track(made_follower(name), recording(), smoothing=smoothing, keep_covariance=True)
+    return track(made_filter(name), recording(), smoothing=smoothing, keep_covariance=True)
 
 
 @cache
 def estimates(name):
-    """The filter's estimates of the short run, with the follower."""
-    one = made_follower(name)
+    """The filter's estimates of the short run, with the filter."""
+    one = made_filter(name)
     found = [one.start(recording(), 0, None)]
     for t in range(1, len(FRAMES)):
         found.append(one.step(found[-1], recording(), t))

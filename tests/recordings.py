@@ -52,10 +52,10 @@ def walk():
         hidden=np.zeros((T, M), bool), rejected=np.zeros((T, M), bool), foot_wrench=force,
         foot_cop_m=motion.centre_of_pressure, foot_free_moment_nm=np.zeros((T, 2)),
         residual_force_n=np.full((T, 3), 1.0), residual_moment_nm=np.full((T, 3), 0.5), tracked=np.ones(T, bool),
-        valid=np.ones(T, bool), held_dofs=(), nis=np.full(T, 90.0), nis_readings=np.full(T, 100),
+        valid=np.ones(T, bool), unobserved_dofs=(), nis=np.full(T, 90.0), nis_readings=np.full(T, 100),
         step_seconds=np.full(T, 1e-3), warnings=("a remark with <b>markup</b>",),
         settings={"dynamic": {"jerk": 200.0}, "hide": []}, foot_wrench_sd=np.full((T, 2, 6), 5.0),
-        footing=np.where(force[..., 2] > 0, Contact.MEASURED, Contact.AIR), plate_corners_m=PLATE[None],
+        foot_contact=np.where(force[..., 2] > 0, Contact.MEASURED, Contact.AIR), plate_corners_m=PLATE[None],
     )  # fmt: skip
 
 

@@ -33,7 +33,7 @@ START_ACCELERATION_SD = 5.0
 
 
 @dataclass(frozen=True)
-class AccelerationBelief:
+class AccelerationSettings:
     """Noise settings of the filter.
 
     Attributes:
@@ -69,24 +69,24 @@ class PendulumAccelerationFilter:
     Attributes:
         body: The pendulum model.
         plant: Decaying accelerations.
-        belief: The settings.
+        settings: The settings.
     """
 
-    def __init__(self, shape: PendulumShape, dt_s: float, belief: AccelerationBelief) -> None:
+    def __init__(self, shape: PendulumShape, dt_s: float, settings: AccelerationSettings) -> None:
         """A filter of one pendulum.
 
         Args:
             shape: Lengths, masses and inertias.
             dt_s: Time step, s.
-            belief: Noise settings.
+            settings: Noise settings.
         """
-        self.body, self.belief = DoublePendulum(shape, residual=False), belief
-        spread = np.full(4, belief.acceleration)
-        motion = SingerSettings(activity_gain=0.0, decay_s=belief.decay_s)
+        self.body, self.settings = DoublePendulum(shape, residual=False), settings
+        spread = np.full(4, settings.acceleration)
+        motion = SingerSettings(activity_gain=0.0, decay_s=settings.decay_s)
         self.plant = SingerPlant(PlainManifold.as_model(spread), dt_s, np.zeros(4, dtype=bool), motion)
-        self._walk = belief.load_noise**2 * dt_s
-        plate = [belief.force_n, belief.force_n, belief.moment_nm]
-        self._sd = np.array([belief.marker_m] * 8 + plate + [belief.residual] * 3)
+        self._walk = settings.load_noise**2 * dt_s
+        plate = [settings.force_n, settings.force_n, settings.moment_nm]
+        self._sd = np.array([settings.marker_m] * 8 + plate + [settings.residual] * 3)
 
     def start(self, q: Array, v: Array, a: Array, plate: Array) -> DynamicState:
         """The initial state, at known coordinates.
@@ -150,12 +150,12 @@ class AccelerationMethod:
     """The filter as a method; ``smooth`` adds the backward smoother."""
 
     shape: PendulumShape
-    belief: AccelerationBelief = AccelerationBelief()
+    settings: AccelerationSettings = AccelerationSettings()
     smooth: bool = False
 
     def run(self, trial: Trial) -> Estimate:
         """Tracks a trial; frames after a divergence are NaN."""
-        kalman = PendulumAccelerationFilter(self.shape, trial.dt_s, self.belief)
+        kalman = PendulumAccelerationFilter(self.shape, trial.dt_s, self.settings)
         truth, read = trial.motion, trial.read
         states = [kalman.start(truth.q[0], truth.v[0], truth.a[0], truth.efforts[0, 1:])]
         frames: list[_Frame] = []

@@ -14,7 +14,7 @@ import numpy as np
 from benchmarks.double_pendulum.bands import Band, Findings, Sheet
 from benchmarks.double_pendulum.laboratory import Laboratory
 from benchmarks.double_pendulum.thesis import STUDY
-from benchmarks.double_pendulum.torque import START_VARIANCE, Belief, PendulumFilter
+from benchmarks.double_pendulum.torque import START_VARIANCE, PendulumFilter, PendulumSettings
 from mbkf.conventions import Array
 from mbkf.filters.torque.integrators import Motion, runge_kutta
 from mbkf.filters.torque.plant import Scheme
@@ -31,7 +31,7 @@ from mbkf.synthesis.pendulum import (
 
 SEEDS, QUICK_SEEDS = 200, 10
 FRAMES, SUBSTEPS = 100, 5
-LOW_NOISE = Belief(effort_noise=0.4, residual_noise=None, force_n=0.05, moment_nm=0.05)
+LOW_NOISE = PendulumSettings(effort_noise=0.4, residual_noise=None, force_n=0.05, moment_nm=0.05)
 """Table A.1's noise, here of filter and truth alike."""
 
 STATE_DOF, READING_DOF = 12, 11

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from benchmarks.double_pendulum.consistency import FRAMES, READING_DOF, STATE_DOF, Consistency
 from benchmarks.double_pendulum.kinematic import KinematicMethod
-from benchmarks.double_pendulum.studies import HIGH_RESIDUAL, WRONG, believing
+from benchmarks.double_pendulum.studies import HIGH_RESIDUAL, WRONG, with_model
 from benchmarks.double_pendulum.sweeps import Sweep, Sweeps
 from benchmarks.double_pendulum.thesis import FCDI, FD, FDMC, KINEMATIC_ACCELERATION, STUDY, STUDY_RECIPE
 from benchmarks.double_pendulum.trials import Estimate, Method, Recipe, Trial
@@ -195,8 +195,8 @@ def _study_drawings(trial: Trial) -> Iterator[Drawing]:
     for number, residual, words in (("3.20", 1e-3, "tightly"), ("3.21", HIGH_RESIDUAL, "loosely")):
         methods: dict[str, Method] = {
             "FCDI": KinematicMethod(WRONG, KINEMATIC_ACCELERATION),
-            "FD": believing(FD, WRONG, residual),
-            "FDMC": believing(FDMC, WRONG, residual),
+            "FD": with_model(FD, WRONG, residual),
+            "FDMC": with_model(FDMC, WRONG, residual),
         }
         title = f"Torque τ_1 with wrong masses, residual {words} restricted (σ = {residual:g})"
         yield Drawing(number, title, _torques(trial, _followed(trial, methods)))

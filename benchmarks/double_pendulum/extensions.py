@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from benchmarks.double_pendulum.acceleration import AccelerationBelief, AccelerationMethod
+from benchmarks.double_pendulum.acceleration import AccelerationMethod, AccelerationSettings
 from benchmarks.double_pendulum.bands import OPEN, Band, Findings, Row, Sheet
 from benchmarks.double_pendulum.kinematic import KinematicMethod
 from benchmarks.double_pendulum.laboratory import Laboratory, Pair
-from benchmarks.double_pendulum.studies import NO_ARTEFACT, WRONG, believing
+from benchmarks.double_pendulum.studies import NO_ARTEFACT, WRONG, with_model
 from benchmarks.double_pendulum.sweeps import Sweeps, with_noise
 from benchmarks.double_pendulum.thesis import (
     ANNEX,
@@ -48,10 +48,10 @@ ALIKE = 0.03
 
 def artefact_method(order: int) -> Method:
     """FD with artefact states."""
-    belief = replace(
-        FD.belief, effort_noise=ARTEFACT_NOISE, marker_m=CAMERA_M, artefact=Artefact(order=order)
+    settings = replace(
+        FD.settings, effort_noise=ARTEFACT_NOISE, marker_m=CAMERA_M, artefact=Artefact(order=order)
     )
-    return replace(FD, belief=belief)
+    return replace(FD, settings=settings)
 
 
 def smoother_findings(lab: Laboratory) -> Findings:
@@ -145,7 +145,7 @@ def _comparisons() -> list[tuple[str, str, Recipe, dict[str, Method]]]:
     annex: dict[str, Method] = {
         "FD": annex_method("TN EX VL"),
         "FDMC": annex_method("FE SE CT", complete=False),
-        OWN: AccelerationMethod(ANNEX, AccelerationBelief(force_n=0.05, moment_nm=0.05)),
+        OWN: AccelerationMethod(ANNEX, AccelerationSettings(force_n=0.05, moment_nm=0.05)),
         "FCDI": KinematicMethod(ANNEX, KINEMATIC_ACCELERATION),
     }
     return [
@@ -160,8 +160,8 @@ def _comparisons() -> list[tuple[str, str, Recipe, dict[str, Method]]]:
 def _causal(shape: PendulumShape) -> dict[str, Method]:
     """The filters of the thesis, and the filter in acceleration coordinates."""
     return {
-        "FD": believing(FD, shape, 1e-3),
-        "FDMC": believing(FDMC, shape, 1e-3),
+        "FD": with_model(FD, shape, 1e-3),
+        "FDMC": with_model(FDMC, shape, 1e-3),
         OWN: replace(IN_ACCELERATIONS, shape=shape),
         "FCDI": replace(FCDI, shape=shape),
     }

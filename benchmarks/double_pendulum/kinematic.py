@@ -17,7 +17,7 @@ from mbkf.numerics.kalman import correct, information
 from mbkf.synthesis.pendulum import MARKER_BARS, MARKER_SHARES
 
 TORQUE_ROW = 3
-"""τ_1 is what the equation of θ_2 asks for; residual efforts take what is left of the other three (eq. 3.12)."""
+"""τ_1 is what the equation of θ_2 asks for; residual efforts take what is left of the other three (thesis eq. 3.12)."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class KinematicMethod:
     """FCDI as a method.
 
     Attributes:
-        shape: The pendulum it believes in.
+        shape: The pendulum it assumes.
         acceleration: σ_a of every component of z, rad/s² and m/s².
         marker_m: Standard deviation of a marker coordinate.
     """
@@ -76,7 +76,7 @@ class KinematicMethod:
     marker_m: float = 1e-3
 
     def run(self, trial: Trial) -> Estimate:
-        """Follows a trial; accelerations are differences of filtered velocities (eq. 3.7)."""
+        """Follows a trial; accelerations are differences of filtered velocities (thesis eq. 3.7)."""
         body, dt, truth = DoublePendulum(self.shape, residual=False), trial.dt_s, trial.motion
         spread = np.full(4, self.acceleration)
         plant = WhiteAccelerationPlant(PlainManifold.as_model(spread), dt, spread)

@@ -32,7 +32,7 @@ HIGH_RESIDUAL = 100.0
 NO_ARTEFACT = PendulumNoise(artefact_m=0.0)
 
 
-def believing(method: TorqueMethod, shape: PendulumShape, residual: float) -> TorqueMethod:
+def with_model(method: TorqueMethod, shape: PendulumShape, residual: float) -> TorqueMethod:
     """The same filter with another pendulum model and residual noise.
 
     Args:
@@ -40,7 +40,7 @@ def believing(method: TorqueMethod, shape: PendulumShape, residual: float) -> To
         shape: Lengths, masses and inertias it assumes.
         residual: Standard deviation of the residual efforts.
     """
-    return replace(method, shape=shape, belief=replace(method.belief, residual_noise=residual))
+    return replace(method, shape=shape, settings=replace(method.settings, residual_noise=residual))
 
 
 def delay_findings(lab: Laboratory) -> Findings:
@@ -87,10 +87,10 @@ def delay_findings(lab: Laboratory) -> Findings:
 def mass_findings(lab: Laboratory) -> Findings:
     """Study 2: masses wrongly distributed, residual covariance low and high."""
     methods: dict[str, Method] = {
-        "FD, low residual": believing(FD, WRONG, 1e-3),
-        "FD, high residual": believing(FD, WRONG, HIGH_RESIDUAL),
-        "FDMC, low residual": believing(FDMC, WRONG, 1e-3),
-        "FDMC, high residual": believing(FDMC, WRONG, HIGH_RESIDUAL),
+        "FD, low residual": with_model(FD, WRONG, 1e-3),
+        "FD, high residual": with_model(FD, WRONG, HIGH_RESIDUAL),
+        "FDMC, low residual": with_model(FDMC, WRONG, 1e-3),
+        "FDMC, high residual": with_model(FDMC, WRONG, HIGH_RESIDUAL),
         "FCDI": KinematicMethod(WRONG, KINEMATIC_ACCELERATION),
     }
     found = dict(
@@ -115,7 +115,7 @@ def mass_findings(lab: Laboratory) -> Findings:
         for name, one in found.items()
     )
     columns = ("filter", "RMS z", "RMS ż", "RMS τ_1 (N m)", "τ_1 over FCDI's")
-    sheet = Sheet("study_masses", "Study 2: 60 and 15 kg believed of 50 and 25 kg", columns, cells)
+    sheet = Sheet("study_masses", "Study 2: 60 and 15 kg assumed for 50 and 25 kg", columns, cells)
     won = 100.0 * float((ratio < 1.0).mean())
     claims = [
         Claim(

@@ -83,7 +83,7 @@ def measure_sweeps(lab: Laboratory) -> Sweeps:
 
 def with_noise(effort_noise: float) -> TorqueMethod:
     """FD with another σ_P."""
-    return replace(FD, belief=replace(FD.belief, effort_noise=effort_noise))
+    return replace(FD, settings=replace(FD.settings, effort_noise=effort_noise))
 
 
 def sweep_findings(sweeps: Sweeps) -> Findings:
@@ -171,10 +171,10 @@ def sensor_findings(lab: Laboratory) -> Findings:
     """Sensors taken away or added one by one, and residual states from none to free ones."""
     sets = {"standard": STANDARD_SENSORS, "with τ_1": SENSORS}
     sets |= {f"without {name}": tuple(s for s in STANDARD_SENSORS if s != name) for name in STANDARD_SENSORS}
-    sensors = {name: replace(FD, belief=replace(FD.belief, sensors=used)) for name, used in sets.items()}
+    sensors = {name: replace(FD, settings=replace(FD.settings, sensors=used)) for name, used in sets.items()}
     residuals = {
         "none" if value is None else f"{value:g}": replace(
-            FD, belief=replace(FD.belief, residual_noise=value)
+            FD, settings=replace(FD.settings, residual_noise=value)
         )
         for value in RESIDUALS
     }

@@ -16,7 +16,7 @@ from benchmarks.double_pendulum.thesis import (
     Printed,
     annex_method,
 )
-from benchmarks.double_pendulum.torque import Belief, TorqueMethod
+from benchmarks.double_pendulum.torque import PendulumSettings, TorqueMethod
 from benchmarks.double_pendulum.trials import Recipe, Scores
 from mbkf.conventions import Array
 from mbkf.filters.torque.plant import Scheme
@@ -25,7 +25,7 @@ from mbkf.synthesis.pendulum import PendulumNoise
 
 ROUNDS = 3
 SIMPLIFIED = "FE SE CT, simplified F"
-PRINTED_NOISE = Belief(Scheme(), 0.4, force_n=0.05, moment_nm=0.05)
+PRINTED_NOISE = PendulumSettings(Scheme(), 0.4, force_n=0.05, moment_nm=0.05)
 """Noise settings of the filter in Table A.1."""
 
 

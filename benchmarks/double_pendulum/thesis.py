@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from benchmarks.double_pendulum.bands import Row, Sheet
 from benchmarks.double_pendulum.kinematic import KinematicMethod
-from benchmarks.double_pendulum.torque import Belief, TorqueMethod
+from benchmarks.double_pendulum.torque import PendulumSettings, TorqueMethod
 from benchmarks.double_pendulum.trials import Recipe
 from mbkf.filters.torque.plant import Scheme
 from mbkf.filters.torque.settings import SCHEMES
@@ -32,8 +32,8 @@ KINEMATIC_ACCELERATION = 10.0
 SLUGGISH_ACCELERATION = 3.0
 """σ_a of FCDI where its delay is measured; the thesis leaves it open."""
 
-FD = TorqueMethod(STUDY, Belief(SCHEMES["FD"], EFFORT_NOISE))
-FDMC = TorqueMethod(STUDY, Belief(SCHEMES["FDMC"], EFFORT_NOISE))
+FD = TorqueMethod(STUDY, PendulumSettings(SCHEMES["FD"], EFFORT_NOISE))
+FDMC = TorqueMethod(STUDY, PendulumSettings(SCHEMES["FDMC"], EFFORT_NOISE))
 FCDI = KinematicMethod(STUDY, KINEMATIC_ACCELERATION)
 
 PROPAGATIONS = {"PE": "first", "SE": "second", "EX": "exponential"}
@@ -96,13 +96,13 @@ def annex_method(name: str, complete: bool = True, effort_noise: float = EFFORT_
     """
     integrator, propagation, covariance = name.split()
     scheme = Scheme(integrator, PROPAGATIONS[propagation], COVARIANCES[covariance], complete)
-    return TorqueMethod(ANNEX, Belief(scheme, effort_noise, force_n=0.05, moment_nm=0.05))
+    return TorqueMethod(ANNEX, PendulumSettings(scheme, effort_noise, force_n=0.05, moment_nm=0.05))
 
 
 def settings_sheet() -> Sheet:
     """The settings of all studies as a table, those the thesis leaves open included."""
     studies, annex = STUDY_RECIPE.noise, ANNEX_RECIPE.noise
-    believed, printed = FD.belief, annex_method("TN EX VL").belief
+    ours, printed = FD.settings, annex_method("TN EX VL").settings
     rows: tuple[Row, ...] = (
         ("masses of bars 1 and 2 (kg)", *(f"{one.mass_1_kg:g}, {one.mass_2_kg:g}" for one in (STUDY, ANNEX))),
         ("length of a bar (m)", *(f"{one.length_m:g}" for one in (STUDY, ANNEX))),
@@ -110,13 +110,13 @@ def settings_sheet() -> Sheet:
         ("skin artefact (m), low pass at 0.5 Hz", *(f"{one.artefact_m:g}" for one in (studies, annex))),
         ("noise of force sensors (N)", *(f"{one.force_n:g}" for one in (studies, annex))),
         ("noise of moment sensors (N m)", *(f"{one.moment_nm:g}" for one in (studies, annex))),
-        ("filter: markers (m)", *(f"{one.marker_m:g}" for one in (believed, printed))),
+        ("filter: markers (m)", *(f"{one.marker_m:g}" for one in (ours, printed))),
         (
             "filter: forces (N), moments (N m)",
-            *(f"{b.force_n:g}, {b.moment_nm:g}" for b in (believed, printed)),
+            *(f"{b.force_n:g}, {b.moment_nm:g}" for b in (ours, printed)),
         ),
-        ("filter: plant σ_P (N/√s, N m/√s)", *(f"{one.effort_noise:g}" for one in (believed, printed))),
-        ("filter: residual (N/√s, N m/√s)", *(f"{one.residual_noise:g}" for one in (believed, printed))),
+        ("filter: plant σ_P (N/√s, N m/√s)", *(f"{one.effort_noise:g}" for one in (ours, printed))),
+        ("filter: residual (N/√s, N m/√s)", *(f"{one.residual_noise:g}" for one in (ours, printed))),
     )
     note = (
         "100 Hz, 3 s, started at the truth. FD: trapezoidal rule by Newton, exponential, Van Loan; FDMC: forward "

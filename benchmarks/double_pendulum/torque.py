@@ -19,7 +19,7 @@ from mbkf.numerics.smoothing import BackwardPass
 from mbkf.synthesis.pendulum import MARKER_BARS, MARKER_SHARES
 
 SENSORS = ("m1", "m2", "m3", "m4", "tau_1", "F_x", "F_y", "T_2")
-"""Markers from top to bottom, then efforts (eq. 3.61)."""
+"""Markers from top to bottom, then efforts (thesis eq. 3.61)."""
 
 STANDARD_SENSORS = tuple(name for name in SENSORS if name != "tau_1")
 """All but the torque sensor at the joint, which no laboratory has."""
@@ -64,8 +64,8 @@ class Artefact:
 
 
 @dataclass(frozen=True)
-class Belief:
-    """What the dynamic filter believes; efforts change with the spectral density σ².
+class PendulumSettings:
+    """Noise and structure of the dynamic filter; efforts change with the spectral density σ².
 
     Attributes:
         scheme: Integrator, propagation, covariance, F.
@@ -102,38 +102,38 @@ class PendulumFilter:
     Attributes:
         body: The pendulum, with artefacts as idle states where they are modelled.
         plant: Its discretised dynamics.
-        belief: The settings.
+        settings: The settings.
     """
 
-    def __init__(self, shape: PendulumShape, dt_s: float, belief: Belief) -> None:
+    def __init__(self, shape: PendulumShape, dt_s: float, settings: PendulumSettings) -> None:
         """A filter of one pendulum.
 
         Args:
             shape: Lengths, masses and inertias.
             dt_s: Time step, s.
-            belief: Discretisation, sensors and noise settings.
+            settings: Discretisation, sensors and noise settings.
         """
-        for name in belief.sensors:
+        for name in settings.sensors:
             if name not in SENSORS:
                 raise UnknownName("pendulum sensor", name, SENSORS)
-        self.belief = belief
-        self.pendulum = DoublePendulum(shape, belief.residual_noise is not None)
-        artefact, forces = belief.artefact, self.pendulum.nu
+        self.settings = settings
+        self.pendulum = DoublePendulum(shape, settings.residual_noise is not None)
+        artefact, forces = settings.artefact, self.pendulum.nu
         idle = 0 if artefact is None else 8 * artefact.order
         self.body: ForcedBody = WithIdleStates(self.pendulum, idle) if idle else self.pendulum
         size = 8 + self.body.nu
         density = np.zeros(size)
-        density[8:12] = belief.effort_noise**2
-        density[12 : 8 + forces] = (belief.residual_noise or 0.0) ** 2
+        density[8:12] = settings.effort_noise**2
+        density[12 : 8 + forces] = (settings.residual_noise or 0.0) ** 2
         drift: Array | None = None
         if artefact is not None:
             density[8 + forces :] = np.tile(artefact.density, 8)
             drift = scipy.linalg.block_diag(np.zeros((forces, forces)), *[artefact.drift] * 8)
         matrix = np.diag(density)
-        self.plant = TorquePlant(self.body, dt_s, lambda _: matrix, belief.scheme, drift)
-        moment, force = belief.moment_nm, belief.force_n
-        self._sd = np.array([belief.marker_m] * 8 + [moment, force, force, moment])
-        used = [name in belief.sensors for name in SENSORS]
+        self.plant = TorquePlant(self.body, dt_s, lambda _: matrix, settings.scheme, drift)
+        moment, force = settings.moment_nm, settings.force_n
+        self._sd = np.array([settings.marker_m] * 8 + [moment, force, force, moment])
+        used = [name in settings.sensors for name in SENSORS]
         self._used = np.concatenate([np.repeat(used[:4], 2), used[4:]])
         self._H = np.zeros((12, size))
         self._H[8:, 8:12] = np.eye(4)
@@ -152,8 +152,8 @@ class PendulumFilter:
         u[:4] = efforts
         counts = (4, 4, 4, self.pendulum.nu - 4)
         variance = np.repeat(START_VARIANCE, counts)
-        if self.belief.artefact is not None:
-            variance = np.concatenate([variance, np.tile(self.belief.artefact.variance, 8)])
+        if self.settings.artefact is not None:
+            variance = np.concatenate([variance, np.tile(self.settings.artefact.variance, 8)])
         return ForcedState(q, v, u, np.diag(variance))
 
     def step(self, state: ForcedState, markers_m: Array, efforts: Array) -> Step:
@@ -180,10 +180,10 @@ class PendulumFilter:
 
 @dataclass(frozen=True)
 class TorqueMethod:
-    """The dynamic filter as a method: the ``shape`` it believes in, its ``belief``, and whether it looks back."""
+    """The dynamic filter as a method: the ``shape`` it assumes, its ``settings``, and whether it looks back."""
 
     shape: PendulumShape
-    belief: Belief
+    settings: PendulumSettings
     smooth: bool = False
 
     def run(self, trial: Trial) -> Estimate:
@@ -200,7 +200,7 @@ class TorqueMethod:
 
     def follow(self, trial: Trial) -> tuple[list[ForcedState], list[Step]]:
         """States of the frames, and the steps between them; fewer than frames where the filter broke down."""
-        kalman = PendulumFilter(self.shape, trial.dt_s, self.belief)
+        kalman = PendulumFilter(self.shape, trial.dt_s, self.settings)
         truth, read = trial.motion, trial.read
         states, steps = [kalman.start(truth.q[0], truth.v[0], truth.efforts[0])], []
         for t in range(1, len(truth.times_s)):

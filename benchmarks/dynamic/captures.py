@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture
 from mbkf.io.resample import average_over_frames
 from mbkf.io.results import Reconstruction
+from mbkf.io.results_folder import Summary
 from mbkf.io.storage import Table, read_storage
 from mbkf.io.subject import Subject
 from mbkf.pipelines.results.summary import summarise
@@ -127,10 +127,16 @@ def capture_rows(name: str, data: Path, methods: Sequence[Method]) -> list[Check
     person = load(name, data)
     kinematic = summarise(KINEMATIC.run(person.capture, person.subject))
     rows = [
-        Check(f"{name}: kinematic, marker RMS", kinematic["marker_rms_mm"], np.inf, "<=", "mm"),
-        Check(f"{name}: kinematic, residual force", kinematic["residual_force_rms_n"], np.inf, "<=", "N"),
+        Check(f"{name}: kinematic, marker RMS", number(kinematic["marker_rms_mm"]), np.inf, "<=", "mm"),
         Check(
-            f"{name}: kinematic, residual moment", kinematic["residual_moment_rms_nm"], np.inf, "<=", "N m"
+            f"{name}: kinematic, residual force", number(kinematic["residual_force_rms_n"]), np.inf, "<=", "N"
+        ),
+        Check(
+            f"{name}: kinematic, residual moment",
+            number(kinematic["residual_moment_rms_nm"]),
+            np.inf,
+            "<=",
+            "N m",
         ),
     ]
     for method in methods:
@@ -139,9 +145,7 @@ def capture_rows(name: str, data: Path, methods: Sequence[Method]) -> list[Check
     return rows
 
 
-def _method_rows(
-    label: str, person: Person, method: Method, kinematic: Mapping[str, Any], data: Path
-) -> list[Check]:
+def _method_rows(label: str, person: Person, method: Method, kinematic: Summary, data: Path) -> list[Check]:
     found = method.run(person.capture, person.subject)
     rows = summary_rows(label, summarise(found), kinematic, BOUNDS[person.name])
     if person.name == "rajagopal walk":
@@ -150,9 +154,7 @@ def _method_rows(
     return rows
 
 
-def summary_rows(
-    label: str, summary: Mapping[str, Any], kinematic: Mapping[str, Any], bounds: Bounds
-) -> list[Check]:
+def summary_rows(label: str, summary: Summary, kinematic: Summary, bounds: Bounds) -> list[Check]:
     """The rows of one method's summary.json beside the kinematic filter's.
 
     Args:
@@ -163,7 +165,7 @@ def summary_rows(
     """
     marker = bounds.marker_mm
     if marker is None:
-        marker = MARKER_FACTOR * kinematic["marker_rms_mm"]
+        marker = MARKER_FACTOR * number(kinematic["marker_rms_mm"])
     rows = [
         Check(f"{label}, marker RMS", number(summary["marker_rms_mm"]), marker, "<=", "mm"),
         Check(f"{label}, residual force", number(summary["residual_force_rms_n"]), bounds.force_n, "<=", "N"),

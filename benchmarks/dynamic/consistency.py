@@ -1,7 +1,7 @@
 """Consistency of the dynamic filter and smoother on motions made by the filter's own plant.
 
 Matched exactly: start, Singer accelerations, white markers, plates and residual, all with the noise the filter
-believes. Truth obeys Newton's law: the residual is drawn, and the two wrenches follow from the motion, shared
+assumes. Truth obeys Newton's law: the residual is drawn, and the two wrenches follow from the motion, shared
 between the feet along a sine. A random walk cannot do that, so theirs is made wide enough (10 kN a frame) to be no
 information; the 12 innovations of their readings are then 0 by comparison, and NIS counts the others. Posture,
 limits and gate are made harmless, and feet are measured always. What remains is the filter's own linearisation.

@@ -68,7 +68,13 @@ class Captured:
 
 
 def scaled(mass_kg: float, static: str | None = None, trial: str | None = None) -> tuple[str, ...]:
-    """The command that scales a person from a standing trial or, where there is none, from a moving one."""
+    """The command that scales a person from a standing trial or, where there is none, from a moving one.
+
+    Args:
+        mass_kg: The person's mass.
+        static: Standing trial below the data folder.
+        trial: Moving trial below the data folder.
+    """
     source = () if static is None else (f"{{data}}/{static}",)
     moving = () if trial is None else ("--trial", f"{{data}}/{trial}")
     return ("scale", *source, *moving, "--mass", str(mass_kg), "--out", SUBJECT)

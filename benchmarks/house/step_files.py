@@ -12,14 +12,16 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import mbkf
 from mbkf.errors import InvalidInput
+from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.estimate import Recording, TrackingFilter
+from mbkf.filters.filter import Step
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.reconstruct import ReconstructSettings, subject_markers
-from mbkf.pipelines.trial.followers import follower
+from mbkf.pipelines.trial.filters import tracking_filter
 from mbkf.pipelines.trial.inputs import trial_inputs
 from mbkf.sensors.contact.records import Contact
 
@@ -109,7 +111,7 @@ def executed_in_a_step() -> set[str]:
             # The step after it asks for what this one keeps in mind.
             after = kalman.step(before, recording, FRAME)
             kalman.step(after, recording, FRAME + 1)
-    notes = after.inner.decisions.notes
+    notes = cast("Step[DynamicState]", after.inner).decisions.notes
     on_plates = notes.contact is not None and set(notes.contact.contacts) == {Contact.MEASURED}
     if not (notes.seen.all() and notes.trusted.all() and on_plates):
         raise InvalidInput(f"frame {FRAME}: not every marker is seen, or a foot is off its plate")
@@ -120,7 +122,7 @@ def _squat() -> tuple[TrackingFilter, Recording]:
     person, recorded = mbkf.synthesise("squat", seconds=SECONDS, seed=1)
     shown = subject_markers(recorded.trial.markers, person)
     inputs, recording = trial_inputs(shown, recorded.trial.plates, person, ReconstructSettings())
-    return follower("dynamic", inputs), recording
+    return tracking_filter("dynamic", inputs), recording
 
 
 @contextmanager

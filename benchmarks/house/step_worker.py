@@ -25,7 +25,7 @@ FILTERS = ("dynamic", "kinematic")
 def followed(folder: Path) -> tuple[Any, dict[str, Any]]:
     """The trial's recording and a filter for it by name, from where this tree keeps them."""
     try:
-        homes = "mbkf.pipelines.trial.followers", "mbkf.pipelines.trial.inputs"
+        homes = "mbkf.pipelines.trial.filters", "mbkf.pipelines.trial.inputs"
         filters, inputs_of = (import_module(home) for home in homes)
     except ImportError:  # before pipelines had folders
         homes = "mbkf.pipelines.followers", "mbkf.pipelines.trial_inputs"
@@ -34,7 +34,8 @@ def followed(folder: Path) -> tuple[Any, dict[str, Any]]:
     subject = mbkf.read_subject(folder / "subject.toml")
     shown = subject_markers(capture.markers, subject)
     inputs, recording = inputs_of.trial_inputs(shown, capture.plates, subject, ReconstructSettings())
-    return recording, {name: filters.follower(name, inputs) for name in FILTERS}
+    made = getattr(filters, "tracking_filter", None) or filters.follower
+    return recording, {name: made(name, inputs) for name in FILTERS}
 
 
 def main(folder: Path) -> None:

@@ -117,7 +117,7 @@ def _tuning_rows(name: str, one: ImuReadings, moving: BoolArray) -> Iterator[Che
     yield Check(f"{name}, tuned at rest: beta", gains.beta, math.inf, "<=")
     static = OrientSettings("madgwick", madgwick=MadgwickSettings(gains.beta, gains.zeta))
     yield _shown(f"{name}, tuned at rest: total", _error(one, moving, static).total)
-    found = searched_gains(one, one.orientation, frame="ENU", judged=moving)
+    found = searched_gains(one, one.orientation, frame="ENU", counted=moving)
     yield Check(f"{name}, searched: beta", found.settings.beta, math.inf, "<=")
     yield Check(f"{name}, searched: zeta", found.settings.zeta, math.inf, "<=")
     yield _shown(f"{name}, searched: total", found.error.total)

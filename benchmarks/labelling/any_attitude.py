@@ -184,7 +184,7 @@ def in_order(subject: Subject, marker_set: Path) -> tuple[int, int]:
     for marker in ElementTree.parse(marker_set).iter("Marker"):
         forward, up, right = (float(x) for x in (marker.findtext("location") or "").split())
         generic[marker.get("name")] = np.array([forward, -right, up])
-    own = {m.name: m.position_m for m in subject.markers if m.name in subject.report["markers"]}
+    own = {m.name: m.position_m for m in subject.markers if m.name in (subject.scaled_markers or ())}
     found = [cluster for cluster in _clusters(subject) if all(name in own for name in cluster)]
     right = 0
     for cluster in found:

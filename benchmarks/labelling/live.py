@@ -29,8 +29,8 @@ def streamed(points_m: Array, truth: MarkerTrajectories, subject: Subject) -> La
         subject: The scaled person.
     """
     body = live_body(subject)
-    follower = live_body(subject).follower(1.0 / truth.rate_hz)
-    labels, live = LiveLabels(body, follower.dt_s, patient=True), LiveFilter(follower)
+    tracking = live_body(subject).tracking_filter(1.0 / truth.rate_hz)
+    labels, live = LiveLabels(body, tracking.dt_s, patient=True), LiveFilter(tracking)
     named: list[Array] = []
     with single_threaded():
         for number, frame in enumerate(points_m):

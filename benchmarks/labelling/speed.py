@@ -38,7 +38,7 @@ class TimedWalk:
         self.markers = made.trial.markers
         dt = 1.0 / self.markers.rate_hz
         nowhere = np.zeros(model.nv, dtype=bool)
-        self.follower = KinematicTracking(
+        self.tracking = KinematicTracking(
             KinematicFilter(self.sensor, noise, dt, nowhere, KinematicSettings())
         )
         self.recording = Recording(self.markers.positions_m, np.zeros((self.markers.frames, 0, 6)), dt)
@@ -54,7 +54,7 @@ class TimedWalk:
     def plain(self, before: Posterior, t: int) -> list[float]:
         """Seconds of the filter's step without labels."""
         begin = perf_counter()
-        self.follower.step(before, self.recording, t)
+        self.tracking.step(before, self.recording, t)
         return [perf_counter() - begin]
 
     def labelled(self, before: Posterior, t: int, points: Array) -> tuple[Posterior, Array]:
@@ -66,11 +66,11 @@ class TimedWalk:
             points: (N, 3) its points, m.
         """
         ticks = [perf_counter()]
-        prediction = self.follower.predict(before)
+        prediction = self.tracking.predict(before)
         ticks.append(perf_counter())
         labels = self.labeller.label(prediction.markers, points)
         ticks.append(perf_counter())
-        estimate = self.follower.step(before, self.recording, t, prediction)
+        estimate = self.tracking.step(before, self.recording, t, prediction)
         ticks.append(perf_counter())
         on_body = self.sensor.positions(estimate.q) if self.labeller.learns else points[:0]
         self.labeller.remember(labels, points, on_body)
@@ -84,7 +84,7 @@ def speed_rows() -> list[Check]:
     factor = rng.normal(size=(PRODUCT_SIZE, PRODUCT_SIZE))
     rows: list[Array] = []
     with single_threaded():
-        estimate = walk.follower.start(walk.recording, 0, None)
+        estimate = walk.tracking.start(walk.recording, 0, None)
         assert estimate is not None, "the synthetic walk starts"
         for t in range(1, walk.markers.frames):
             points, after = walk.points_m(t, rng), estimate

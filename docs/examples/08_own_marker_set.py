@@ -29,7 +29,7 @@ subject = mbkf.scale(recorded.static, protocol=protocol)
 result = mbkf.reconstruct(recorded.trial, subject)
 knee_deg = np.degrees(result.angle("knee_angle_r"))
 print(f"{len(result.marker_names)} markers followed; knee up to {knee_deg.max():.0f} deg")
-print(f"{len(result.held_dofs)} dofs move no marker and keep the neutral posture")
+print(f"{len(result.unobserved_dofs)} dofs move no marker and keep the neutral posture")
 
 reference = mbkf.reconstruct(recorded.trial, mbkf.scale(recorded.static))
 apart_deg = np.degrees(result.angle("knee_angle_r") - reference.angle("knee_angle_r"))

@@ -5,7 +5,10 @@ from __future__ import annotations
 import argparse
 import importlib
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mbkf.io.imu import ImuReadings
 
 SUBCOMMANDS = ("orient", "tune", "synth", "angles", "stride")
 """Each is the module ``mbkf.cli.imu_<name>``."""
@@ -51,7 +54,7 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def read(paths: Sequence[str], args: argparse.Namespace) -> tuple[Any, ...]:
+def read(paths: Sequence[str], args: argparse.Namespace) -> tuple[ImuReadings, ...]:
     """The sensors of all files named on the command line.
 
     Raises:

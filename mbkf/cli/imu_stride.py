@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mbkf.io.imu import ImuReadings
@@ -146,7 +146,7 @@ def _print(measured: StrideMeasurement, out: str) -> None:
 
     from mbkf.pipelines.imu.stride import STRAIGHT_DEG, stride_summary
 
-    summary = stride_summary(measured)
+    summary: dict[str, Any] = stride_summary(measured)
     table = Table(title=f"{out}: {summary['method_meaning']}", title_justify="left")
     headings: Sequence[str] = ("foot", "strides", "length m", "duration s", "speed m/s", "walked m")
     for heading in headings:

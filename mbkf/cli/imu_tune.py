@@ -13,7 +13,7 @@ examples:
   mbkf imu tune trial.mat --static 0:30
   mbkf imu tune trial.mat --search --against file --frame ENU --out gains.json
 
-A still sensor tells the gyroscope's noise and drift: beta = sqrt(3/4) noise, zeta = sqrt(3/4) drift. Those gains only
+A still sensor shows the gyroscope's noise and drift: beta = sqrt(3/4) noise, zeta = sqrt(3/4) drift. Those gains only
 suit a sensor that hardly moves; --search finds the gains that follow a reference best: the orientation in the file, or
 the offline Kalman filter (--against smooth).
 """

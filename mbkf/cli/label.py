@@ -5,13 +5,13 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from mbkf.conventions import StageCallback
     from mbkf.io.records import Capture
     from mbkf.io.subject import Subject
-    from mbkf.pipelines.label import Labelling
+    from mbkf.pipelines.label import Labelling, LabelSummary
 
 _EPILOG = """\
 examples:
@@ -142,7 +142,7 @@ def _checked(out: Path, raw: Path) -> Path:
     return out
 
 
-def print_labels(summary: dict[str, Any], out: Path) -> None:
+def print_labels(summary: LabelSummary, out: Path) -> None:
     """Says what was labelled, and how well where the truth is known."""
     print(
         f"{out}: {summary['markers']} markers in {summary['frames']} frames, "

@@ -146,7 +146,7 @@ def run(args: argparse.Namespace) -> int:
                 session = LiveSession(source, person, settings, folder, name)
             else:
                 shown = None if waiting is None else waiting.progress
-                start = StandingStart(source, name, person, folder, _teller(waiting), shown)
+                start = StandingStart(source, name, person, folder, _say_on_both(waiting), shown)
                 found = _standing(start, waiting, stop, patience)
                 session = LiveSession(found.source, found.subject, settings, folder, name, found.report)
             if not session.connect(stop, patience):
@@ -206,15 +206,15 @@ def _waiting_page(args: argparse.Namespace) -> Iterator[StandingPage | None]:
         page.close()
 
 
-def _teller(waiting: StandingPage | None) -> Callable[[str], None]:
+def _say_on_both(waiting: StandingPage | None) -> Callable[[str], None]:
     """Says a sentence in the terminal, and on the page if there is one."""
 
-    def tell(text: str) -> None:
+    def show(text: str) -> None:
         _say(text)
         if waiting is not None:
             waiting.say(text)
 
-    return tell
+    return show
 
 
 def _standing(

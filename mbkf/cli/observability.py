@@ -103,12 +103,14 @@ def _undetermined(found: Observability) -> Table:
     """One row per dof that some posture leaves open, with its share in the null space."""
     from rich.table import Table
 
-    table = Table("not determined", "unseen, standing", "unseen, bent", title="100 %: not seen at all")
-    names = set(found.unseen) | set(found.sometimes_unseen)
-    bent = np.median(found.unseen_share[1:], axis=0)
+    table = Table(
+        "not determined", "unobserved, standing", "unobserved, bent", title="100 %: not seen at all"
+    )
+    names = set(found.unobserved) | set(found.sometimes_unobserved)
+    bent = np.median(found.unobserved_share[1:], axis=0)
     for i, name in enumerate(found.dofs):
         if name in names:
-            table.add_row(name, f"{100 * found.unseen_share[0, i]:.0f} %", f"{100 * bent[i]:.0f} %")
+            table.add_row(name, f"{100 * found.unobserved_share[0, i]:.0f} %", f"{100 * bent[i]:.0f} %")
     return table
 
 
@@ -130,7 +132,9 @@ def _overview(checks: list[ProtocolObservability]) -> Table:
     table = Table("protocol", "markers", "rank of H", "segments not fully determined")
     for check in checks:
         found = check.after
-        segments = dict.fromkeys(name.rsplit("_", 1)[0] for name in found.unseen + found.sometimes_unseen)
+        segments = dict.fromkeys(
+            name.rsplit("_", 1)[0] for name in found.unobserved + found.sometimes_unobserved
+        )
         rank = f"{found.ranks.min()} of {len(found.dofs)}"
         blind = ", ".join(_both_sides(list(segments))) or "none"
         table.add_row(check.protocol.name, str(len(check.markers)), rank, blind)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from mbkf.io.results_folder import Summary
     from mbkf.pipelines.imu.on_body import ImuOnBody
     from mbkf.pipelines.reconstruct import Hidden
 
@@ -151,7 +152,7 @@ def parse_hide(text: str) -> Hidden:
     return Hidden(markers, *times)
 
 
-def print_summary(summary: dict[str, Any], folder: Path) -> None:
+def print_summary(summary: Summary, folder: Path) -> None:
     """Prints the numbers a person looks at first."""
     from rich.console import Console
     from rich.table import Table

@@ -1,4 +1,4 @@
-"""`mbkf tune`: what a filter should believe of noise, found on trials and saved as a preset."""
+"""`mbkf tune`: noise settings of a filter, found on trials and saved as a preset."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Filters on the body: a plant that predicts, sensor blocks that correct, one update for all (SPEC §5)."""
+"""Filters on the body: a plant that predicts, sensor blocks that correct, one update for all."""

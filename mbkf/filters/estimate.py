@@ -1,10 +1,10 @@
-"""What every filter tells of a frame, in one form, so that trials, live streams and smoothers treat all alike."""
+"""One form of every filter's posterior and predictions, for trials, live streams and smoothers."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -81,7 +81,7 @@ class Posterior(NamedTuple):
     refused: BoolArray
     tracked: bool
     started: bool
-    inner: Any
+    inner: object
 
 
 class Prediction(NamedTuple):
@@ -96,7 +96,7 @@ class Prediction(NamedTuple):
 
     q: Array
     markers: MarkerPrediction
-    prior: Any
+    prior: object
 
 
 class TrackingFilter(Protocol):
@@ -108,7 +108,16 @@ class TrackingFilter(Protocol):
     restart_after_s: float
 
     def start(self, recording: Recording, t: int, guess: Array | None) -> Posterior | None:
-        """An estimate at frame t that already knows its velocity from the next frames, or None where nothing fits."""
+        """An estimate at frame t that already knows its velocity from the next frames.
+
+        Args:
+            recording: The readings.
+            t: The frame.
+            guess: (nq,) configuration near which the body may be; None where nothing is known of it.
+
+        Returns:
+            None where the frame's markers do not fit the body.
+        """
 
     def predict(self, before: Posterior) -> Prediction:
         """What the frame after an estimate should show: what a labeller needs between prediction and correction."""

@@ -51,13 +51,25 @@ class Plant(Protocol[StateT]):
         """(N, N) Φ at a state."""
 
     def retract(self, state: StateT, step: Array, P: Array) -> StateT:
-        """The state moved by a tangent vector (N,), with another covariance."""
+        """The state moved along its tangent space.
+
+        Args:
+            state: The state.
+            step: (N,) tangent vector.
+            P: (N, N) covariance of the moved state.
+        """
 
     def difference(self, origin: StateT, state: StateT) -> Array:
         """(N,) tangent vector from one state's mean to another's."""
 
     def remember(self, posterior: StateT, notes: Notes, memory: Any) -> Any:
-        """Memory for the next frame."""
+        """Memory for the next frame.
+
+        Args:
+            posterior: Corrected state.
+            notes: What the blocks noted of the frame.
+            memory: Of the frame before.
+        """
 
 
 class Memory(NamedTuple):
@@ -87,7 +99,7 @@ class Decisions(NamedTuple):
     Attributes:
         noise: Process noise of the step into the frame.
         blocks: Decision of each block.
-        notes: What blocks told each other.
+        notes: What blocks shared.
     """
 
     noise: Any

@@ -1,8 +1,8 @@
-"""Smoothing while the filter runs: stretches are smoothed when the frames just after them are in (fixed lag).
+"""Fixed-lag smoothing: a window is smoothed when the frames just after it are in.
 
-What later readings say fades within a few tenths of a second, so a stretch that looks ``ahead_s`` beyond its end is
-smoothed as well as by the whole trial, and memory does not grow with the trial. Live, the result of a frame is known
-at most ``lag_s`` later.
+The information of later readings fades within a few tenths of a second, so a window that looks ``ahead_s`` beyond its
+end is smoothed as well as by the whole trial, and memory does not grow with the trial. Live, the result of a frame is
+known at most ``lag_s`` later.
 """
 
 from __future__ import annotations
@@ -17,33 +17,40 @@ class SmoothingSettings:
     """How far a smoother looks.
 
     Attributes:
-        stretch_s: Length of a stretch that is smoothed at once.
+        window_s: Length of a window that is smoothed at once.
         ahead_s: How far beyond its end it looks.
     """
 
-    stretch_s: float = 1.5
+    window_s: float = 1.5
     ahead_s: float = 0.4
 
     @property
     def lag_s(self) -> float:
         """Longest time after a frame until its smoothed estimate is known (computing time not counted)."""
-        return self.stretch_s + self.ahead_s
+        return self.window_s + self.ahead_s
 
 
 class FixedLagSmoother:
     """Takes estimates frame by frame and gives smoothed ones back as soon as they are due.
 
-    A stretch begins with the last frame of the one before, so that differences over time have both their ends.
+    A window begins with the last frame of the one before, so that differences over time have both their ends.
 
     Attributes:
-        follower: The filter.
+        filter: The filter.
         recording: The readings the estimates came from.
     """
 
-    def __init__(self, follower: TrackingFilter, recording: Recording, settings: SmoothingSettings) -> None:
-        self.follower, self.recording = follower, recording
-        self._stretch = max(1, round(settings.stretch_s / follower.dt_s))
-        self._ahead = max(1, round(settings.ahead_s / follower.dt_s))
+    def __init__(self, filter: TrackingFilter, recording: Recording, settings: SmoothingSettings) -> None:
+        """Makes a smoother.
+
+        Args:
+            filter: The filter.
+            recording: The readings the estimates come from.
+            settings: How far the smoother looks.
+        """
+        self.filter, self.recording = filter, recording
+        self._window = max(1, round(settings.window_s / filter.dt_s))
+        self._ahead = max(1, round(settings.ahead_s / filter.dt_s))
         self._run: list[Posterior] = []
         self._first = 0
         self._given = 0
@@ -54,8 +61,8 @@ class FixedLagSmoother:
         if not self._run:
             self._first = t
         self._run.append(estimate)
-        if len(self._run) == self._given + self._stretch + self._ahead:
-            done += self._smooth(self._stretch)
+        if len(self._run) == self._given + self._window + self._ahead:
+            done += self._smooth(self._window)
         return done
 
     def finish(self) -> list[tuple[int, Posterior]]:
@@ -67,7 +74,7 @@ class FixedLagSmoother:
 
     def _smooth(self, wanted: int) -> list[tuple[int, Posterior]]:
         until = self._given + wanted
-        smoothed = self.follower.smooth(self._run, self.recording, self._first, until)
+        smoothed = self.filter.smooth(self._run, self.recording, self._first, until)
         done = list(enumerate(smoothed, start=self._first))[self._given :]
         self._run, self._given = self._run[until - 1 :], 1
         self._first += until - 1

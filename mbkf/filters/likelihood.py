@@ -8,18 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import cast
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput
-from mbkf.filters.dynamic.tracking import DynamicTracking
+from mbkf.filters.dynamic.tracking import DynamicStep, DynamicTracking
 from mbkf.filters.estimate import Posterior, Recording, TrackingFilter
 from mbkf.filters.filter import Filter, Step
-from mbkf.filters.kinematic.tracking import KinematicTracking
+from mbkf.filters.kinematic.tracking import KinematicRecord, KinematicStep, KinematicTracking
 from mbkf.filters.tracking_loop import followed
 from mbkf.numerics.likelihood import LogLikelihood, log_likelihood
+from mbkf.sensors.block import StateT
 
 OUTLIER = 0.0
 """Log density of an outlier's coordinate, uniform over a metre."""
@@ -44,12 +45,12 @@ class TrialLikelihood:
 
 
 def trial_likelihood(
-    follower: TrackingFilter, recording: Recording, progress: Callable[[int, int], None] | None = None
+    filter: TrackingFilter, recording: Recording, progress: Callable[[int, int], None] | None = None
 ) -> TrialLikelihood:
     """Runs a filter over a trial for its likelihood.
 
     Args:
-        follower: A kinematic or dynamic filter.
+        filter: A kinematic or dynamic filter.
         recording: What the instruments read.
         progress: Called with frames done and frames in all.
 
@@ -62,10 +63,10 @@ def trial_likelihood(
     markers, loads = OUTLIER * 3.0 * seen.sum(axis=1), np.zeros(frames)
     load_readings = np.zeros(frames, dtype=int)
     first = frames
-    for t, estimate, _ in followed(follower, recording):
+    for t, estimate, _ in followed(filter, recording):
         first = min(first, t)
         if not estimate.started:
-            found, load_readings[t] = frame_likelihood(follower, estimate)
+            found, load_readings[t] = frame_likelihood(filter, estimate)
             outliers = 3.0 * np.count_nonzero(estimate.refused)
             markers[t], loads[t] = found.readings + OUTLIER * outliers, found.rows
         if progress is not None and (t % 20 == 0 or t == frames - 1):
@@ -73,25 +74,27 @@ def trial_likelihood(
     return TrialLikelihood(markers, loads, 3 * seen.sum(axis=1), load_readings, first)
 
 
-def frame_likelihood(follower: TrackingFilter, estimate: Posterior) -> tuple[LogLikelihood, int]:
-    """Of one frame's believed markers, and of its loads and how many numbers those are.
+def frame_likelihood(filter: TrackingFilter, estimate: Posterior) -> tuple[LogLikelihood, int]:
+    """Of one frame's markers inside the gate, and of its loads and how many numbers those are.
 
     Args:
-        follower: A kinematic or dynamic filter.
+        filter: A kinematic or dynamic filter.
         estimate: Its posterior of the frame, not a start.
 
     Raises:
         InvalidInput: It is another filter.
         LinAlgError: The prior covariance is none.
     """
-    if isinstance(follower, DynamicTracking):
-        return step_likelihood(follower.kalman, estimate.inner)
-    if isinstance(follower, KinematicTracking):
-        return step_likelihood(follower.kalman, estimate.inner.step)
+    if isinstance(filter, DynamicTracking):
+        return step_likelihood(filter.kalman, cast("DynamicStep", estimate.inner))
+    if isinstance(filter, KinematicTracking):
+        return step_likelihood(
+            filter.kalman, cast("KinematicStep", cast("KinematicRecord", estimate.inner).step)
+        )
     raise InvalidInput("the likelihood is known of the kinematic and the dynamic filter only")
 
 
-def step_likelihood(kalman: Filter[Any], step: Step[Any]) -> tuple[LogLikelihood, int]:
+def step_likelihood(kalman: Filter[StateT], step: Step[StateT]) -> tuple[LogLikelihood, int]:
     """Of instruments and laws in one step, priors left out, and how many of them are rows.
 
     Args:

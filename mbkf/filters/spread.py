@@ -29,7 +29,7 @@ class SpreadReader:
         self._feet = [model.joint(segment).joint_id for segment in model.roles.feet]
 
     def torque(self, q: Array, step_covariance: Array, dt_s: float) -> Array:
-        """(nv,) of the generalised forces that eq. 3.7's accelerations cause, M (v_k − v_{k−1}) / Δt.
+        """(nv,) of the generalised forces that thesis eq. 3.7's accelerations cause, M (v_k − v_{k−1}) / Δt.
 
         Args:
             q: (nq,) configuration.

@@ -31,8 +31,8 @@ class Track:
         angle_sd, rate_sd: (T, A) of the clinical coordinates and their rates.
         torque_sd: (T, nv) of generalised forces; NaN where not known.
         foot_height_sd: (T, 2) of the height of right and left foot, m.
-        refused: (T, M) markers seen but not believed.
-        tracked: (T,) whether enough markers were believed.
+        refused: (T, M) markers seen but refused by the gate.
+        tracked: (T,) whether enough markers passed the gate.
         nis: (T,) normalised innovation squared; NaN at a start.
         readings: (T,) numbers in it.
         step_seconds: (T,) computing time of each step.
@@ -114,7 +114,7 @@ def track(
 
 
 def track_of(rows: NDArray, smoothed: bool = False, covariance: Array | None = None) -> Track:
-    """The trial that records tell of.
+    """The trial of a table of records.
 
     Args:
         rows: (T,) records of its frames (:mod:`mbkf.filters.record`).

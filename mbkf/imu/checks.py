@@ -167,7 +167,7 @@ def _saturated(one: ImuReadings, name: str, values: Array) -> list[Problem]:
             if not often or abs(limit) < _LEAST_RANGES[name]:
                 continue
             if any(b - a >= STUCK_S * one.rate_hz for a, b in runs):
-                continue  # a stuck axis, told elsewhere
+                continue  # a stuck axis, reported elsewhere
             share = sum(b - a for a, b in runs)
             unit, size = ("deg/s", limit / _DEGREE) if name == "gyroscope" else ("g", limit / GRAVITY_M_S2)
             text = (

@@ -1,7 +1,7 @@
 """Headings of a chain of segments held together by its joints, so that none drifts away on its own.
 
 Joints of the legs hardly turn about the vertical: seen from above, the side-to-side axes of neighbouring segments stay
-within some degrees of each other. Each joint is read so, with its own spread; headings wander slowly between.
+within some degrees of each other. Each joint is read so, with its own spread; headings drift slowly between.
 """
 
 from __future__ import annotations

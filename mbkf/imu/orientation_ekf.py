@@ -1,6 +1,6 @@
 """Error-state Kalman filter of orientation, gyroscope bias and velocity, for many sensors side by side.
 
-Gravity is told from linear acceleration because a limb stays about where it is: the specific force, turned into the
+Gravity is split from linear acceleration because a limb stays about where it is: the specific force, turned into the
 world and less gravity, is integrated to a velocity, and a pseudo-reading of zero velocity has a spread that follows the
 present movement (adaptive to linear acceleration). The field is read as a heading only, so that it cannot
 tilt the estimate, and with less weight the more its strength and dip differ from their running means (adaptive to

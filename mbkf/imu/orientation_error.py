@@ -45,17 +45,19 @@ def error_angles(estimate: Array, reference: Array) -> tuple[Array, Array, Array
     return total, heading, 2.0 * np.arctan2(tilt, turn)
 
 
-def orientation_error(estimate: Array, reference: Array, judged: BoolArray | None = None) -> OrientationError:
+def orientation_error(
+    estimate: Array, reference: Array, counted: BoolArray | None = None
+) -> OrientationError:
     """RMS errors over the samples where both orientations are known.
 
     Args:
         estimate: (T, 4) orientations, NaN where unknown.
         reference: (T, 4) true ones, NaN where unknown.
-        judged: (T,) samples that count; all where None.
+        counted: (T,) samples that count; all where None.
     """
     there = np.isfinite(estimate).all(axis=1) & np.isfinite(reference).all(axis=1)
-    if judged is not None:
-        there &= judged
+    if counted is not None:
+        there &= counted
     angles = error_angles(estimate[there], reference[there])
     rms = [float(np.sqrt(np.mean(one**2))) if there.any() else float("nan") for one in angles]
     return OrientationError(rms[0], rms[1], rms[2], int(there.sum()))

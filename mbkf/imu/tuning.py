@@ -128,7 +128,7 @@ def searched_gains(
     reference: Array,
     *,
     frame: str,
-    judged: BoolArray | None = None,
+    counted: BoolArray | None = None,
     magnetometer: bool = True,
     progress: Callable[[int, int], None] | None = None,
 ) -> SearchedGains:
@@ -138,7 +138,7 @@ def searched_gains(
         one: Sensor.
         reference: (T, 4) orientations, NaN where unknown.
         frame: Its world: ENU, NED or NWU.
-        judged: (T,) samples that count.
+        counted: (T,) samples that count.
         magnetometer: Whether the field is used; without it headings are compared after one common turn.
         progress: Called with runs done and expected.
 
@@ -155,7 +155,7 @@ def searched_gains(
         settings = OrientSettings("madgwick", magnetometer, MadgwickSettings(beta, zeta))
         (course,) = orientations([one], frame=frame, settings=settings)
         q = course.quaternion if magnetometer else _turned(course.quaternion, reference)
-        error = orientation_error(q, reference, judged)
+        error = orientation_error(q, reference, counted)
         if not error.samples:
             raise InvalidInput(f"sensor {one.name}: the reference has no sample to compare with")
         errors[beta, zeta] = error

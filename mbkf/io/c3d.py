@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.axes import WORLD_AXES, check_body_size, length_unit, up_axis
 from mbkf.io.c3d_analog import analog_channels, events, plate_readings, raw_plates
 from mbkf.io.c3d_layout import LAST_FRAME_OF_HEADER, C3dLayout, check_frames, check_layout
-from mbkf.io.c3d_parameters import C3dParameters
+from mbkf.io.c3d_parameters import C3dContent, C3dParameters
 from mbkf.io.c3d_plates import RawPlate, plate_axes
 from mbkf.io.c3d_points import read_points
 from mbkf.io.c3d_write import write_c3d
@@ -86,7 +85,7 @@ def read_c3d(
     )
 
 
-def _load(path: Path) -> Any:
+def _load(path: Path) -> C3dContent:
     """The file's content as ezc3d gives it; every error of ezc3d becomes one kind of error."""
     import ezc3d
 
@@ -113,7 +112,7 @@ def _check_complete(path: Path, layout: C3dLayout, parameters: C3dParameters, fr
         )
 
 
-def _rate(path: Path, content: Any, parameters: C3dParameters) -> float:
+def _rate(path: Path, content: C3dContent, parameters: C3dParameters) -> float:
     rate_hz = parameters.number("POINT", "RATE") or float(content["header"]["points"]["frame_rate"])
     if not (math.isfinite(rate_hz) and rate_hz > 0.0):
         raise FileFormatError(path, f"POINT:RATE is {rate_hz:g}, not a frame rate; export the trial again")

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
 from mbkf.io.axes import METRES_PER_UNIT, rotation_to_world
-from mbkf.io.c3d_parameters import C3dParameters
+from mbkf.io.c3d_parameters import C3dContent, C3dParameters
 from mbkf.io.c3d_plates import RawPlate, check_geometry, wrench_at_surface
 from mbkf.io.records import AnalogChannel, CaptureEvent, PlateReadings
 from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare, require_finite
@@ -19,7 +18,7 @@ _OFF_PLATE_M = 0.1
 _OFF_PLATE_SHARE = 0.5
 
 
-def analog_rate_hz(content: Any, parameters: C3dParameters) -> float:
+def analog_rate_hz(content: C3dContent, parameters: C3dParameters) -> float:
     """Sample rate of the analog channels in Hz, from their number per frame."""
     frames = content["data"]["points"].shape[2]
     samples = content["data"]["analogs"].shape[2]
@@ -28,7 +27,7 @@ def analog_rate_hz(content: Any, parameters: C3dParameters) -> float:
     return float(str(np.float32(rate_hz * per_frame)))
 
 
-def analog_channels(content: Any, parameters: C3dParameters) -> tuple[AnalogChannel, ...]:
+def analog_channels(content: C3dContent, parameters: C3dParameters) -> tuple[AnalogChannel, ...]:
     """Every analog channel, scaled by the file's parameters, in its own unit.
 
     Args:
@@ -55,7 +54,7 @@ def analog_channels(content: Any, parameters: C3dParameters) -> tuple[AnalogChan
 
 
 def raw_plates(
-    path: Path, content: Any, parameters: C3dParameters, unit: str, notes: list[str]
+    path: Path, content: C3dContent, parameters: C3dParameters, unit: str, notes: list[str]
 ) -> list[RawPlate]:
     """The force plates a file declares, checked but not yet converted.
 
@@ -181,7 +180,7 @@ def _doubts(name: str, wrench: Array, pressure: Array, corners: Array, threshold
     return doubts
 
 
-def events(content: Any, parameters: C3dParameters) -> tuple[CaptureEvent, ...]:
+def events(content: C3dContent, parameters: C3dParameters) -> tuple[CaptureEvent, ...]:
     """Labelled instants, from the group EVENT, or from the header where that group has none.
 
     Args:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from mbkf.conventions import Array
+
+C3dContent: TypeAlias = Any
+"""What ezc3d reads or is to write; the library carries no types."""
 
 CONTINUATIONS = 1000
 """More lists than this (LABELS2, LABELS3 …) no file has."""
@@ -16,13 +19,13 @@ CONTINUATIONS = 1000
 class C3dParameters:
     """Read access to the parameters ezc3d returns; names are found in any case, missing ones are empty."""
 
-    def __init__(self, groups: Mapping[str, Mapping[str, Any]]) -> None:
+    def __init__(self, groups: Mapping[str, Mapping[str, Mapping[str, object]]]) -> None:
         self._groups = {
             group.upper(): {name.upper(): item["value"] for name, item in members.items() if "value" in item}
             for group, members in groups.items()
         }
 
-    def group(self, group: str) -> dict[str, Any]:
+    def group(self, group: str) -> dict[str, object]:
         """All parameters of a group, name in capitals → value."""
         return dict(self._groups.get(group.upper(), {}))
 

@@ -1,20 +1,18 @@
-"""Points of a C3D file: labels made unambiguous, measured markers and derived points told apart."""
+"""Points of a C3D file: labels made unambiguous, measured markers and derived points separated."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.io.axes import finite, positions_to_world
-from mbkf.io.c3d_parameters import C3dParameters
+from mbkf.io.c3d_parameters import C3dContent, C3dParameters
 from mbkf.io.derived import UNIT_PARAMETERS, classify, group_kinds
 from mbkf.io.records import DerivedPoint, MarkerTrajectories
 
 
 def read_points(
-    content: Any,
+    content: C3dContent,
     parameters: C3dParameters,
     up: str,
     unit: str,
@@ -99,7 +97,7 @@ def _unique(labels: list[str], notes: list[str]) -> list[str]:
     return result
 
 
-def _present(content: Any, points: Array) -> BoolArray:
+def _present(content: C3dContent, points: Array) -> BoolArray:
     """(T, N) whether a point was seen: residual not negative, coordinates numbers and not all zero."""
     residuals = np.asarray(content["data"]["meta_points"]["residuals"], dtype=np.float64)
     present = finite(points)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.atomic import replacing
 from mbkf.io.axes import METRES_PER_UNIT, finite, length_unit, rotation_to_world
+from mbkf.io.c3d_parameters import C3dContent
 from mbkf.io.c3d_plates import plate_axes
 from mbkf.io.derived import GROUP_KINDS, UNIT_PARAMETERS
 from mbkf.io.records import Capture, DerivedPoint, PlateReadings
@@ -58,7 +58,7 @@ def write_c3d(capture: Capture, path: str | Path) -> None:
         content.write(str(temporary))
 
 
-def _fill_points(content: Any, capture: Capture) -> None:
+def _fill_points(content: C3dContent, capture: Capture) -> None:
     markers, derived = capture.markers, capture.derived
     values = [markers.positions_m * _MM]
     values += [_in_file_axes(point, capture)[:, None, :] for point in derived]
@@ -90,7 +90,7 @@ def _in_file_axes(point: DerivedPoint, capture: Capture) -> Array:
     return point.values @ rotation_to_world(capture.up_axis).T * (METRES_PER_UNIT[unit] * _MM)
 
 
-def _fill_analog(content: Any, capture: Capture) -> None:
+def _fill_analog(content: C3dContent, capture: Capture) -> None:
     """Six channels per plate, then every analog channel with a name of its own."""
     markers = capture.markers
     rates = [plate.rate_hz for plate in capture.plates] + [channel.rate_hz for channel in capture.analog]
@@ -138,7 +138,7 @@ def _sampled(times_s: Array, stamps_s: Array, values: Array, per_frame: int) -> 
     return sampled
 
 
-def _declare_plates(content: Any, corners: list[Array]) -> None:
+def _declare_plates(content: C3dContent, corners: list[Array]) -> None:
     count = len(corners)
     group = "FORCE_PLATFORM"
     content.add_parameter(group, "USED", count)
@@ -167,7 +167,7 @@ def _plate_channels(plate: PlateReadings, corners: Array) -> Array:
     return np.hstack([plate.force_n @ axes, moment @ axes * _MM])
 
 
-def _fill_events(content: Any, capture: Capture) -> None:
+def _fill_events(content: C3dContent, capture: Capture) -> None:
     if not capture.events:
         return
     minutes, seconds = np.divmod([event.time_s for event in capture.events], 60.0)

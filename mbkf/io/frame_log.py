@@ -29,7 +29,7 @@ class FrameLogWriter:
         dtype: Type of a row.
     """
 
-    def __init__(self, path: str | Path, dtype: np.dtype, header: dict[str, Any]) -> None:
+    def __init__(self, path: str | Path, dtype: np.dtype, header: dict[str, object]) -> None:
         """Creates the file.
 
         Args:
@@ -83,7 +83,7 @@ class FrameLogWriter:
         self.close()
 
 
-def read_frame_log(path: str | Path) -> tuple[dict[str, Any], NDArray]:
+def read_frame_log(path: str | Path) -> tuple[dict[str, object], NDArray]:
     """Header and rows of a log; a row cut off at its end is left out.
 
     Raises:

@@ -53,7 +53,7 @@ class FormatRegistry(Generic[Format]):
         """Registers a format.
 
         Raises:
-            InvalidInput: A suffix is not one, or a format that is told by its suffix alone has it already.
+            InvalidInput: A suffix is not one, or a format that is recognised by its suffix alone has it already.
         """
         for suffix in one.suffixes:
             if suffix != FOLDER and (not suffix.startswith(".") or suffix != suffix.lower()):
@@ -61,7 +61,7 @@ class FormatRegistry(Generic[Format]):
             taken = next((o for o in self._formats if suffix in o.suffixes and o.recognises is None), None)
             if taken is not None and one.recognises is None:
                 raise InvalidInput(
-                    f"'{suffix}' files are read as {taken.title} already; give 'recognises' to tell them apart"
+                    f"'{suffix}' files are read as {taken.title} already; give 'recognises' to distinguish them"
                 )
         self._formats.append(one)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import Any
 
 import numpy as np
 
@@ -20,13 +19,13 @@ SHAPES: dict[str, str] = {
     "foot_wrench": "T 2 6", "foot_cop_m": "T 2 3", "foot_free_moment_nm": "T 2",
     "residual_force_n": "T 3", "residual_moment_nm": "T 3", "tracked": "T", "valid": "T",
     "nis": "T", "nis_readings": "T", "step_seconds": "T", "plate_change": "T P 6",
-    "foot_wrench_sd": "T 2 6", "footing": "T 2", "covariance": "T 2nv 2nv", "plate_corners_m": "P 4 3",
+    "foot_wrench_sd": "T 2 6", "foot_contact": "T 2", "covariance": "T 2nv 2nv", "plate_corners_m": "P 4 3",
 }  # fmt: skip
 """Dimensions of every array: T frames, nv dofs, A coordinates, M markers, P plates."""
 
 DTYPES: dict[str, type] = {name: np.bool_ for name in ("singular", "hidden", "rejected", "tracked", "valid")}
 DTYPES["nis_readings"] = np.int64
-DTYPES["footing"] = np.int64
+DTYPES["foot_contact"] = np.int64
 """Arrays that are not floating-point."""
 
 
@@ -68,7 +67,7 @@ class Reconstruction:
             moment about the pelvis's origin.
         tracked: (T,) enough markers to follow the body.
         valid: (T,) every loaded foot stands on a measured plate.
-        held_dofs: Names of dofs that nothing observes.
+        unobserved_dofs: Names of dofs that no marker of the capture moves with.
         nis: (T,) normalised innovation squared.
         nis_readings: (T,) number of scalar readings in it.
         step_seconds: (T,) computing time of a frame.
@@ -77,7 +76,7 @@ class Reconstruction:
         plate_change: (T, P, 6) estimated minus measured plate wrench (N, N m), NaN where a plate is not
             compared; None without plates.
         foot_wrench_sd: (T, 2, 6) standard deviations of ``foot_wrench``; None where the filter does not estimate it.
-        footing: (T, 2) what right and left foot stand on: -1 something without a reading, 0 air, 1 a plate of its
+        foot_contact: (T, 2) what right and left foot stand on: -1 something without a reading, 0 air, 1 a plate of its
             own, 2 a plate both share; None where the filter does not ask.
         covariance: (T, 2nv, 2nv) of (q, v) in the tangent space; only kept on request and never written.
         plate_corners_m: (P, 4, 3) world corners of the capture's plates, NaN where their file has no geometry; None
@@ -120,20 +119,20 @@ class Reconstruction:
     residual_moment_nm: Array
     tracked: BoolArray
     valid: BoolArray
-    held_dofs: tuple[str, ...]
+    unobserved_dofs: tuple[str, ...]
     nis: Array
     nis_readings: Array
     step_seconds: Array
     warnings: tuple[str, ...] = ()
-    settings: dict[str, Any] = field(default_factory=dict)
+    settings: dict[str, object] = field(default_factory=dict)
     plate_change: Array | None = None
     foot_wrench_sd: Array | None = None
-    footing: Array | None = None
+    foot_contact: Array | None = None
     covariance: Array | None = field(default=None, repr=False)
     plate_corners_m: Array | None = None
 
     def __post_init__(self) -> None:
-        for name in ("dof_names", "coordinate_names", "marker_names", "held_dofs", "warnings"):
+        for name in ("dof_names", "coordinate_names", "marker_names", "unobserved_dofs", "warnings"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
         sizes = {
             "T": np.shape(self.times_s)[0],

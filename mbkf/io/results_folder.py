@@ -8,7 +8,7 @@ import shutil
 import uuid
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict
 
 from mbkf.errors import FileFormatError
 from mbkf.io.atomic import check_folder
@@ -20,8 +20,66 @@ SUMMARY_FILE = "summary.json"
 MOTION_FILE = "motion.h5"
 
 
+class Summary(TypedDict):
+    """The contents of summary.json: the key numbers of a reconstruction; None where a number does not apply.
+
+    Attributes:
+        trial, protocol, filter: Names of capture, protocol and filter.
+        smoothed: Whether later frames were used.
+        version: Version of mbkf.
+        mass_kg: Mass of the subject.
+        frames, rate_hz, duration_s: Size of the trial.
+        markers_used: Number of markers.
+        missing_fraction: Share of marker samples that the filter did not receive.
+        marker_rms_mm, marker_max_mm: Distances of seen markers from the body.
+        marker_rms_mm_by_name: The same by marker.
+        hidden_marker_rms_mm, hidden_marker_max_mm: Distances of markers hidden on purpose.
+        residual_force_rms_n, residual_moment_rms_nm: Residual at the pelvis in valid frames.
+        valid_frames: Frames in which every loaded foot stands on a measured plate.
+        plate_force_change_rms_n, plate_moment_change_rms_nm: Estimated minus measured plate wrenches.
+        torque_peak_nm_per_kg, torque_sd_nm: Flexion torques by joint, and their standard deviations.
+        nis_per_dof: Normalised innovation squared per reading.
+        step_seconds_median, step_seconds_p99: Computing time of a frame.
+        realtime_factor: Duration over computing time.
+        truth: Errors against a synthetic subject's known motion.
+        warnings: Remarks for the reader.
+        settings: Settings of the run, as plain data.
+    """
+
+    trial: str
+    protocol: str
+    filter: str
+    smoothed: bool
+    version: str
+    mass_kg: float
+    frames: int
+    rate_hz: float
+    duration_s: float
+    markers_used: int
+    missing_fraction: float | None
+    marker_rms_mm: float | None
+    marker_max_mm: float | None
+    marker_rms_mm_by_name: dict[str, float | None]
+    hidden_marker_rms_mm: float | None
+    hidden_marker_max_mm: float | None
+    residual_force_rms_n: float | None
+    residual_moment_rms_nm: float | None
+    valid_frames: int
+    plate_force_change_rms_n: float | None
+    plate_moment_change_rms_nm: float | None
+    torque_peak_nm_per_kg: dict[str, float | None]
+    torque_sd_nm: dict[str, float | None]
+    nis_per_dof: float | None
+    step_seconds_median: float | None
+    step_seconds_p99: float | None
+    realtime_factor: float | None
+    truth: dict[str, float | None] | None
+    warnings: list[str]
+    settings: dict[str, object]
+
+
 def write_reconstruction(
-    reconstruction: Reconstruction, summary: Mapping[str, Any], folder: str | Path
+    reconstruction: Reconstruction, summary: Mapping[str, object], folder: str | Path
 ) -> Path:
     """Writes a reconstruction and its summary.
 
@@ -30,7 +88,7 @@ def write_reconstruction(
 
     Args:
         reconstruction: The result.
-        summary: Plain data for summary.json (see ``mbkf.pipelines.results.summary``); NaN becomes null.
+        summary: Plain data for summary.json (:class:`Summary`, or a mapping of one's own); NaN becomes null.
         folder: Where to write; made where missing.
 
     Returns:
@@ -68,7 +126,7 @@ def read_reconstruction(path: str | Path) -> Reconstruction:
     return read_h5(source / MOTION_FILE if source.is_dir() else source)
 
 
-def read_summary(folder: str | Path) -> dict[str, Any]:
+def read_summary(folder: str | Path) -> Summary:
     """The contents of a folder's summary.json.
 
     Raises:

@@ -35,7 +35,15 @@ UNITS = {
 """Unit of each array; the others (flags, counts, the innovation statistic) have none and carry "1"."""
 
 _TEXTS = ("trial", "protocol", "filter", "version")
-_NAME_LISTS = ("dof_names", "coordinate_names", "marker_names", "held_dofs", "warnings")
+_NAME_LISTS = {
+    "dof_names": "dof_names", "coordinate_names": "coordinate_names", "marker_names": "marker_names",
+    "unobserved_dofs": "held_dofs", "warnings": "warnings",
+}  # fmt: skip
+"""Lists of names and the data sets that hold them."""
+
+_KEYS = {"foot_contact": "footing"}
+"""Data sets of arrays that have another name in Python."""
+
 _NEVER_WRITTEN = ("covariance",)
 
 
@@ -58,8 +66,8 @@ def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
         file.attrs["rate_hz"] = reconstruction.rate_hz
         file.attrs["settings"] = json.dumps(reconstruction.settings, default=_plain)
         file.attrs["subject"] = json.dumps(dataclasses.asdict(reconstruction.subject), default=_plain)
-        for name in _NAME_LISTS:
-            file.create_dataset(name, data=list(getattr(reconstruction, name)), dtype=h5py.string_dtype())
+        for name, key in _NAME_LISTS.items():
+            file.create_dataset(key, data=list(getattr(reconstruction, name)), dtype=h5py.string_dtype())
         for name in ARRAYS:
             array = getattr(reconstruction, name)
             if array is None or name in _NEVER_WRITTEN:
@@ -67,7 +75,7 @@ def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
             packed = (
                 {"compression": "gzip", "compression_opts": 1, "shuffle": True} if array.size > 256 else {}
             )
-            dataset = file.create_dataset(name, data=array, **packed)
+            dataset = file.create_dataset(_KEYS.get(name, name), data=array, **packed)
             dataset.attrs["unit"] = UNITS.get(name, "1")
     with replacing(path) as partial:
         partial.write_bytes(made.getbuffer())
@@ -93,11 +101,12 @@ def read_h5(path: str | Path) -> Reconstruction:
             values["rate_hz"] = float(file.attrs["rate_hz"])
             values["settings"] = json.loads(file.attrs["settings"])
             values["subject"] = _subject(json.loads(file.attrs["subject"]))
-            for name in _NAME_LISTS:
-                values[name] = tuple(file[name].asstr()[:])
+            for name, key in _NAME_LISTS.items():
+                values[name] = tuple(file[key].asstr()[:])
             for name in ARRAYS:
-                if name in file:
-                    values[name] = np.asarray(file[name][()], dtype=DTYPES.get(name, np.float64))
+                key = _KEYS.get(name, name)
+                if key in file:
+                    values[name] = np.asarray(file[key][()], dtype=DTYPES.get(name, np.float64))
         return Reconstruction(**values)
     except (OSError, KeyError, TypeError, ValueError) as error:
         raise FileFormatError(source, f"damaged or not a reconstruction ({error})") from error

@@ -2,7 +2,7 @@
 
 OpenSim's axes: x forward, y up, z right. Only the range from the first to the last tracked frame is written.
 OpenSim's reader of tables refuses NaN, so frames inside that range with a value missing are left out of the
-tables (their times tell; OpenSim interpolates), and columns that are never known are left out altogether;
+tables (the times show it; OpenSim interpolates), and columns that are never known are left out altogether;
 markers.trc keeps every frame.
 """
 
@@ -63,7 +63,7 @@ def reactions_table(reconstruction: Reconstruction) -> Table:
     columns: list[Array] = []
     for foot, side in enumerate(SIDES):
         force, moment = r.foot_wrench[:, foot, :3], r.foot_wrench[:, foot, 3:]
-        point = _held(r.foot_cop_m[:, foot])
+        point = _filled(r.foot_cop_m[:, foot])
         about_point = moment - np.cross(point, force)
         for prefix, vectors in (("force_{}_v", force), ("force_{}_p", point), ("torque_{}_", about_point)):
             names += [f"ground_{prefix.format(side)}{axis}" for axis in "xyz"]
@@ -96,7 +96,7 @@ def _tracked_range(tracked: BoolArray) -> tuple[int, int]:
     return (int(found[0]), int(found[-1]) + 1) if len(found) else (0, 0)
 
 
-def _held(points: Array) -> Array:
+def _filled(points: Array) -> Array:
     """Points (T, 3), gaps filled by the last one before, or the first one after; zero where there is none."""
     seen = ~np.isnan(points).any(axis=1)
     if not seen.any():

@@ -64,7 +64,7 @@ def read_storage(path: str | Path) -> Table:
         path: The file.
 
     Returns:
-        The table; degrees stay degrees (``in_degrees`` tells).
+        The table; degrees stay degrees (see ``in_degrees``).
 
     Raises:
         FileFormatError: The file is missing, has no header or names, or a row is not as long as the names;

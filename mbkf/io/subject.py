@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
@@ -58,8 +58,14 @@ class Subject:
     markers: tuple[SubjectMarker, ...]
     protocol: str
     height_m: float | None = None
-    report: dict[str, Any] = field(default_factory=dict)
+    report: dict[str, object] = field(default_factory=dict)
     body_text: str = ""
+
+    @property
+    def scaled_markers(self) -> Collection[str] | None:
+        """Names of the markers that scaling saw; None where the report does not list them."""
+        found = self.report.get("markers")
+        return found if isinstance(found, Collection) else None
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.mass_kg) and self.mass_kg > 0):

@@ -55,7 +55,7 @@ class Truth:
     markers_m: Array
     dof_names: tuple[str, ...]
     version: str = ""
-    settings: dict[str, Any] = field(default_factory=dict)
+    settings: dict[str, object] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name in UNITS:

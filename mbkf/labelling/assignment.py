@@ -3,7 +3,7 @@
 The point of marker i lies about its prediction with innovation covariance S_i; a point of no marker (a ghost) may lie
 anywhere, with density λ per m³. The cost of a pair is minus twice the log-likelihood ratio of the two hypotheses
 (Blackman & Popoli, *Design and Analysis of Modern Tracking Systems*, 1999, ch. 6), with d²_ij the squared Mahalanobis
-distance where the thesis (eq. 4.6) has the Euclidean one:
+distance where thesis eq. 4.6 has the Euclidean one:
 
     c_ij = d²_ij + ln det(2π S_i) + 2 ln λ
 

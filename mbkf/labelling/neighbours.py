@@ -1,4 +1,4 @@
-"""Names of neighbouring markers: those of one segment that only the posture of the whole body tells apart.
+"""Names of neighbouring markers: those of one segment that only the posture of the whole body distinguishes.
 
 A trial may show only one of two markers a few centimetres apart. Two exchanged markers of a wrist fit the forearm as
 well, turned by half a turn. A first frame or a gap may get such names wrong; here a few frames are fitted with either

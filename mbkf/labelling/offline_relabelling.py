@@ -117,7 +117,7 @@ def relabel(
         course: The smoothed body's markers.
         noise_m: (M,) marker noise, NaN for markers that are not looked for.
         dt_s: Time between frames.
-        settings: Limits that tell markers from ghosts.
+        settings: Limits that separate markers from ghosts.
     """
     cost = _costs(positions_m, tracklets, course, noise_m, dt_s, settings)
     votes = _votes(label_of_point, len(noise_m), tracklets)

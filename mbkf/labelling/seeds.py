@@ -14,7 +14,7 @@ TILT_M = 0.06
 """How much higher one marker of an upright root may stand than in the neutral posture."""
 
 LEAST_SPAN_M = 0.05
-"""Two markers nearer than this do not tell which way a body faces."""
+"""Two markers nearer than this do not determine which way a body faces."""
 
 Seeds = tuple[Array, Array]
 """(n, 3, 3) orientations and (n, 3) origins of the root."""

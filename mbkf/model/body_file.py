@@ -36,7 +36,7 @@ AXES_BY_JOINT = {"free": "", "spherical": "", "universal": "xy", "hinge": "y"}
 """Axes of each kind of joint where the file gives none."""
 
 _NOTES = ("_source", "_printed_m", "_printed_kg_m2", "_correction")
-"""Endings of keys of a segment that only tell people where its numbers come from."""
+"""Endings of keys of a segment that only document where its numbers come from."""
 
 _SEGMENT_KEYS = {
     "name", "parent", "joint", "axes", "origin_m", "mass_kg", "com_m", "inertia_kg_m2", "scale", "length_factor",

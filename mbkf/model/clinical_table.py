@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
 
+from mbkf.conventions import TomlTable
 from mbkf.model.sides import mirrored
 
 
@@ -61,7 +61,7 @@ class ClinicalJoint:
         return self.angles + self.translations
 
 
-def clinical_joints(entries: Iterable[dict[str, Any]]) -> tuple[ClinicalJoint, ...]:
+def clinical_joints(entries: Iterable[TomlTable]) -> tuple[ClinicalJoint, ...]:
     """Every joint of a body file's tables, those with ``mirror = true`` on both sides.
 
     Raises:
@@ -96,7 +96,7 @@ def _check(joint: ClinicalJoint) -> None:
             raise ValueError(f"joint {joint.name}: sign of {angle.name} is 1 or -1, not {angle.sign}")
 
 
-def _joint(entry: dict[str, Any]) -> ClinicalJoint:
+def _joint(entry: TomlTable) -> ClinicalJoint:
     return ClinicalJoint(
         name=entry["name"],
         proximal=entry["proximal"],

@@ -15,7 +15,7 @@ class Compiled:
     """A CasADi function of dense arrays that writes into its own buffers; every call returns new arrays.
 
     Attributes:
-        function: The CasADi function, for whoever wants to look at it.
+        function: The CasADi function itself.
     """
 
     def __init__(self, name: str, inputs: Sequence[ca.SX], outputs: Sequence[ca.SX]) -> None:

@@ -5,7 +5,7 @@ thesis's.
 
 Two bars hinged together at point 1; point 0 is the free end of bar 1, point 2 that of bar 2, which the ground holds
 with F_x, F_y and T_2 (the "plate"). τ_1 is the torque of the joint. Independent coordinates z = [x_0, y_0, θ_1, θ_2]
-(eq. 3.56), angles absolute, counter-clockwise from the downward vertical; x to the right, y up, m and rad.
+(thesis eq. 3.56), angles absolute, counter-clockwise from the downward vertical; x to the right, y up, m and rad.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from mbkf.model.compiled import Compiled
 from mbkf.model.forced_body import LinearAcceleration, PlainCoordinates
 
 EFFORTS = ("tau_1", "F_x", "F_y", "T_2")
-"""Components of T_e (eq. 3.58), N m, N, N, N m."""
+"""Components of T_e (thesis eq. 3.58), N m, N, N, N m."""
 
 RESIDUALS = ("R_x", "R_y", "R_theta_1")
 """Residual efforts, which act on x_0, y_0 and θ_1; they follow those of T_e where they are part of it."""
@@ -70,7 +70,7 @@ class Inertial:
 
 
 class DoublePendulum(PlainCoordinates):
-    """Natural coordinates q̄ of the three points (eq. 3.53), carried to z by q̄' = R ż; derivatives by CasADi.
+    """Natural coordinates q̄ of the three points (thesis eq. 3.53), carried to z by q̄' = R ż; derivatives by CasADi.
 
     Speaks :class:`mbkf.model.forced_body.ForcedBody`.
 
@@ -103,7 +103,7 @@ class DoublePendulum(PlainCoordinates):
     # Dynamics.
 
     def acceleration(self, q: Array, v: Array, u: Array) -> Array:
-        """(4,) z̈ = M⁻¹ (Q_g + Bᵀ T_e) (eq. 3.38), M = Rᵀ M̄ R and Q_g = Rᵀ (Q̄ − M̄ Ṙ ż) (eqs. 2.16, 2.17).
+        """(4,) z̈ = M⁻¹ (Q_g + Bᵀ T_e) (thesis eq. 3.38), M = Rᵀ M̄ R and Q_g = Rᵀ (Q̄ − M̄ Ṙ ż) (thesis eqs. 2.16, 2.17).
 
         Args:
             q: (4,) coordinates.
@@ -113,7 +113,7 @@ class DoublePendulum(PlainCoordinates):
         return self._accelerate(q, v, u)[0]
 
     def linearise(self, q: Array, v: Array, u: Array) -> LinearAcceleration:
-        """The acceleration with its complete derivatives (eqs. 3.42–3.50).
+        """The acceleration with its complete derivatives (thesis eqs. 3.42–3.50).
 
         Args:
             q: (4,) coordinates.
@@ -133,7 +133,7 @@ class DoublePendulum(PlainCoordinates):
         return Inertial(*self._given(q, v, a))
 
     def efforts(self, q: Array, v: Array, a: Array) -> Array:
-        """(nu,) T_e that cause a motion without residual, by inverse dynamics (eq. 3.12).
+        """(nu,) T_e that cause a motion without residual, by inverse dynamics (thesis eq. 3.12).
 
         Args:
             q: (4,) coordinates.
@@ -147,19 +147,19 @@ class DoublePendulum(PlainCoordinates):
     # Geometry.
 
     def points(self, q: Array) -> Array:
-        """(6,) natural coordinates x_0, y_0, x_1, y_1, x_2, y_2 (eq. 3.53)."""
+        """(6,) natural coordinates x_0, y_0, x_1, y_1, x_2, y_2 (thesis eq. 3.53)."""
         return self._points(q)[0]
 
     def velocity_matrix(self, q: Array) -> Array:
-        """(6, 4) R of eq. 3.57: velocities of the points are R ż."""
+        """(6, 4) R of thesis eq. 3.57: velocities of the points are R ż."""
         return self._maps(q)[0]
 
     def mass_matrix(self, q: Array) -> Array:
-        """(4, 4) M = Rᵀ M̄ R (eq. 2.16)."""
+        """(4, 4) M = Rᵀ M̄ R (thesis eq. 2.16)."""
         return self._maps(q)[1]
 
     def effort_matrix(self, q: Array) -> Array:
-        """(4, nu) Bᵀ of eq. 3.59, with the residual's columns behind where it is part of T_e."""
+        """(4, nu) Bᵀ of thesis eq. 3.59, with the residual's columns behind where it is part of T_e."""
         return self._maps(q)[2]
 
     def on_bars(self, q: Array, share: Array, bar: Array) -> PointReading:
@@ -183,7 +183,7 @@ class DoublePendulum(PlainCoordinates):
 
 
 def _natural_inertia(shape: PendulumShape) -> ca.DM:
-    """(6, 6) M̄ of eq. 3.55, constant."""
+    """(6, 6) M̄ of thesis eq. 3.55, constant."""
     bar = np.array([[1.0 / 3.0, 1.0 / 6.0], [1.0 / 6.0, 1.0 / 3.0]])
     M = np.zeros((3, 3))
     M[:2, :2] += shape.mass_1_kg * bar
@@ -192,7 +192,7 @@ def _natural_inertia(shape: PendulumShape) -> ca.DM:
 
 
 def _natural_forces(shape: PendulumShape) -> ca.DM:
-    """(6,) Q̄ of eq. 3.55: half of each bar's weight at each of its ends."""
+    """(6,) Q̄ of thesis eq. 3.55: half of each bar's weight at each of its ends."""
     one, two = shape.mass_1_kg, shape.mass_2_kg
     return ca.DM(-0.5 * shape.gravity_m_s2 * np.array([0.0, one, 0.0, one + two, 0.0, two]))
 
@@ -205,7 +205,7 @@ def _points(z: ca.SX, shape: PendulumShape) -> ca.SX:
 
 
 def _velocity_matrix(z: ca.SX, shape: PendulumShape) -> ca.SX:
-    """R of eq. 3.57 as printed; a test holds it to be what the points' positions give."""
+    """R of thesis eq. 3.57 as printed; a test holds it to be what the points' positions give."""
     L, (one, two) = shape.length_m, ca.vertsplit(z)[2:]
     c1, s1, c2, s2 = (L * f(angle) for angle in (one, two) for f in (ca.cos, ca.sin))
     return ca.vertcat(
@@ -219,7 +219,7 @@ def _velocity_matrix(z: ca.SX, shape: PendulumShape) -> ca.SX:
 
 
 def _effort_matrix(z: ca.SX, shape: PendulumShape, residual: bool) -> ca.SX:
-    """Bᵀ of eq. 3.59."""
+    """Bᵀ of thesis eq. 3.59."""
     L, (one, two) = shape.length_m, ca.vertsplit(z)[2:]
     Bt = ca.vertcat(
         ca.horzcat(0, 1, 0, 0),

@@ -56,8 +56,8 @@ class HumanDynamics:
 
     Attributes:
         model: The body.
-        held: (nv,) dofs that do not move.
-        kinematic: (nv,) dofs with prescribed acceleration: the toes and the held ones.
+        fixed: (nv,) dofs that do not move.
+        kinematic: (nv,) dofs with prescribed acceleration: the toes and the fixed ones.
         torque_dofs: The dofs that u's first entries act on: the root's six, then the joints but for the toes.
         wrench_frame: Where u's wrenches live, see :data:`WRENCH_FRAMES`.
         force_state: What its first entries are, see :data:`FORCE_STATES`.
@@ -67,7 +67,7 @@ class HumanDynamics:
     def __init__(
         self,
         model: Body,
-        held: BoolArray | None = None,
+        fixed: BoolArray | None = None,
         wrench_frame: str = "ankle",
         force_state: str = "inertial",
     ) -> None:
@@ -75,7 +75,7 @@ class HumanDynamics:
 
         Args:
             model: The body.
-            held: (nv,) dofs that do not move; none when None.
+            fixed: (nv,) dofs that do not move; none when None.
             wrench_frame: Where u's wrenches live, one of :data:`WRENCH_FRAMES`.
             force_state: What u's first entries are, one of :data:`FORCE_STATES`.
 
@@ -91,8 +91,8 @@ class HumanDynamics:
         toes = np.zeros(model.nv, dtype=bool)
         for name in model.roles.toes:
             toes[model.joint(name).v] = True
-        self.held = np.zeros(model.nv, dtype=bool) if held is None else held
-        self.kinematic = toes | self.held
+        self.fixed = np.zeros(model.nv, dtype=bool) if fixed is None else fixed
+        self.kinematic = toes | self.fixed
         self.torque_dofs = np.flatnonzero(~toes)
         self.nu = len(self.torque_dofs) + 12
         self._free = np.flatnonzero(~self.kinematic)
@@ -154,7 +154,7 @@ class HumanDynamics:
     def linearise(self, q: Array, v: Array, u: Array) -> LinearAcceleration:
         """The acceleration with its complete analytic derivatives.
 
-        ∂z̈/∂q = M⁻¹ (∂(Bᵀ T_e + Q_g)/∂q − ∂(M a)/∂q), a held in the last term.
+        ∂z̈/∂q = M⁻¹ (∂(Bᵀ T_e + Q_g)/∂q − ∂(M a)/∂q), a constant in the last term.
 
         Args:
             q: (nq,) configuration.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -12,12 +11,12 @@ from mbkf.conventions import StageCallback
 from mbkf.io.atomic import check_folder
 from mbkf.io.capture import read_capture
 from mbkf.io.results import Reconstruction
-from mbkf.io.results_folder import write_reconstruction
+from mbkf.io.results_folder import Summary, write_reconstruction
 from mbkf.io.subject import write_subject
 from mbkf.io.truth import Truth
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
-from mbkf.pipelines.label import label
+from mbkf.pipelines.label import LabelSummary, label
 from mbkf.pipelines.labelling.files import write_labels
 from mbkf.pipelines.labelling.score import score
 from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
@@ -60,9 +59,9 @@ class Demo:
     """Results of the demo: the folder, the labels, the reconstruction, its summary and errors of a few coordinates."""
 
     folder: Path
-    labels: dict[str, Any]
+    labels: LabelSummary
     result: Reconstruction
-    summary: dict[str, Any]
+    summary: Summary
     errors: tuple[CoordinateError, ...]
 
 

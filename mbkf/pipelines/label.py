@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NotRequired, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +29,7 @@ CANDIDATES = 8
 PASSES = 3
 """At most so many passes are made from starts that disagree; the likeliest is kept."""
 
-JUDGED = 40
+COMPARED = 40
 """Frames, spread over the capture, by which passes are compared."""
 
 SCAN_S = 0.1
@@ -73,9 +73,41 @@ class Labelling:
         return int(np.flatnonzero(self.markers.present.any(axis=1))[0])
 
 
-def label_summary(found: Labelling, compared: LabelScore | None = None) -> dict[str, Any]:
+class LabelSummary(TypedDict):
+    """Plain numbers about labels, as they stand beside the labelled file.
+
+    Attributes:
+        frames, markers: How many frames, and how many markers in them.
+        assigned_fraction: Share of marker samples that a point was assigned to.
+        ghosts_dropped, ghosts_per_frame: Points that are no marker, in all and by frame.
+        swaps_repaired: Exchanged labels that were put right.
+        samples_relabelled: Marker samples that offline relabelling changed.
+        first_labelled_frame: First frame with labels.
+        starts: Frames in which the labeller started.
+        step_seconds_median: Computing time of a frame.
+        doubts: Labels that may be others; only where the person was not measured before.
+        correct_fraction, wrong_fraction, missed_fraction: Against a truth; only where it is known.
+    """
+
+    frames: int
+    markers: int
+    assigned_fraction: float
+    ghosts_dropped: int
+    ghosts_per_frame: list[int]
+    swaps_repaired: int
+    samples_relabelled: int
+    first_labelled_frame: int
+    starts: list[int]
+    step_seconds_median: float | None
+    doubts: NotRequired[dict[str, object]]
+    correct_fraction: NotRequired[float]
+    wrong_fraction: NotRequired[float]
+    missed_fraction: NotRequired[float]
+
+
+def label_summary(found: Labelling, compared: LabelScore | None = None) -> LabelSummary:
     """Plain numbers for the summary beside the labelled file; doubts and truth only where there are any."""
-    summary: dict[str, Any] = {
+    summary: LabelSummary = {
         "frames": found.markers.frames,
         "markers": int(found.markers.present.any(axis=0).sum()),
         "assigned_fraction": found.assigned_fraction,
@@ -203,7 +235,7 @@ def _likeliest(
 def _likelihood(body: LabelBody, run: _Run) -> float:
     """Worth of a run's labels, summed over a few frames."""
     total, shown = 0.0, run.labelling.markers.positions_m
-    for t in np.unique(np.linspace(0, len(shown) - 1, JUDGED).astype(int)):
+    for t in np.unique(np.linspace(0, len(shown) - 1, COMPARED).astype(int)):
         if not np.isnan(run.q[t]).any():
             total += body.search.worth(shown[t], run.q[t])
     return total

@@ -253,7 +253,7 @@ class _Search:
 
     def _spread(self, subject: Subject) -> Array:
         """(M,) how far each marker may be from its place: little where scaling saw it."""
-        seen = subject.report["markers"]
+        seen = subject.scaled_markers or ()
         return np.array(
             [
                 np.hypot(m.noise_m, min(m.session_sd_m, SEEN_SD_M) if m.name in seen else m.session_sd_m)

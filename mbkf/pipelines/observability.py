@@ -34,8 +34,10 @@ class ProtocolObservability:
     @property
     def lost_dofs(self) -> tuple[str, ...]:
         """Dofs that the loss takes: determined before in every posture, afterwards not in every one."""
-        seen_before = set(self.before.dofs) - set(self.before.unseen) - set(self.before.sometimes_unseen)
-        blind_after = set(self.after.unseen) | set(self.after.sometimes_unseen)
+        seen_before = (
+            set(self.before.dofs) - set(self.before.unobserved) - set(self.before.sometimes_unobserved)
+        )
+        blind_after = set(self.after.unobserved) | set(self.after.sometimes_unobserved)
         return tuple(name for name in self.before.dofs if name in seen_before & blind_after)
 
 

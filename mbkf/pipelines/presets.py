@@ -6,14 +6,16 @@ import os
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from mbkf.errors import FileFormatError, InvalidInput, UnknownName
 from mbkf.filters.settings import changed, flat
 from mbkf.filters.torque.settings import SCHEMES, preset
 from mbkf.io.preset import SUFFIX, Preset, preset_folder, read_preset, saved_presets
 from mbkf.pipelines.reconstruct import ReconstructSettings
-from mbkf.pipelines.trial.followers import FILTERS
+from mbkf.pipelines.trial.filters import FILTERS
+
+SettingsT = TypeVar("SettingsT")
 
 LITERAL = "-literal"
 BUILT_IN = tuple(name + end for name in SCHEMES for end in ("", LITERAL))
@@ -49,7 +51,7 @@ def with_preset(
     return replace(settings, **changes)
 
 
-def with_values(settings: Any, found: Preset, where: str) -> Any:
+def with_values(settings: SettingsT, found: Preset, where: str) -> SettingsT:
     """A filter's settings with the preset's values.
 
     Args:

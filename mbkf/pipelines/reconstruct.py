@@ -24,7 +24,7 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.imu.on_body import ImuOnBody, with_imus
 from mbkf.pipelines.results.clinical import clinical_motion
 from mbkf.pipelines.results.reactions import reactions
-from mbkf.pipelines.trial.followers import FILTERS, FilterInputs, follower, standard
+from mbkf.pipelines.trial.filters import FILTERS, FilterInputs, standard, tracking_filter
 from mbkf.pipelines.trial.inputs import trial_inputs
 from mbkf.scaling.correction import correct_markers
 from mbkf.scaling.frames import MIN_MARKERS
@@ -126,7 +126,7 @@ def reconstruct(
         if readings:
             recording = replace(recording, readings=readings)
         result = track(
-            follower(settings.filter, inputs, [*standard(inputs), *blocks] if blocks else None),
+            tracking_filter(settings.filter, inputs, [*standard(inputs), *blocks] if blocks else None),
             recording,
             smoothing=settings.smoothing if settings.smooth else None,
             keep_covariance=settings.keep_covariance,
@@ -191,7 +191,7 @@ def assemble(
         inputs: What the filter was built from, with the plates it read.
         result: The track.
     """
-    sensor, held = inputs.sensor, inputs.held
+    sensor, unobservable = inputs.sensor, inputs.unobservable
     model = sensor.model
     ground = reactions(model, result, measured.times_s, measured.rate_hz, inputs.plates)
     tau = ground.tau
@@ -236,15 +236,15 @@ def assemble(
         residual_moment_nm=ground.residual_moment_nm,
         tracked=result.tracked,
         valid=ground.valid & result.tracked & located,
-        held_dofs=tuple(name for name, fixed in zip(names, held, strict=True) if fixed),
+        unobserved_dofs=tuple(name for name, without in zip(names, unobservable, strict=True) if without),
         nis=result.nis,
         nis_readings=result.readings,
         step_seconds=result.step_seconds,
-        warnings=(*capture.notes, *ground.warnings, *_warnings(result, names, held)),
+        warnings=(*capture.notes, *ground.warnings, *_warnings(result, names, unobservable)),
         settings=recorded(settings),
         plate_change=ground.plate_change,
         foot_wrench_sd=ground.wrench_sd,
-        footing=result.contact,
+        foot_contact=result.contact,
         covariance=result.covariance,
         plate_corners_m=_corners(capture),
     )
@@ -264,12 +264,12 @@ def _predicted(sensor: MarkerSensor, result: Track, measured: MarkerTrajectories
     return np.where(shown[:, :, None], on_body, with_skin)
 
 
-def _warnings(result: Track, names: tuple[str, ...], held: BoolArray) -> list[str]:
+def _warnings(result: Track, names: tuple[str, ...], unobservable: BoolArray) -> list[str]:
     warnings = []
-    if held.any():
-        listed = ", ".join(name for name, fixed in zip(names, held, strict=True) if fixed)
+    if unobservable.any():
+        listed = ", ".join(name for name, without in zip(names, unobservable, strict=True) if without)
         warnings.append(
-            f"{int(held.sum())} dofs move no marker and are held in the neutral posture: {listed}"
+            f"{int(unobservable.sum())} dofs move no marker and keep the neutral posture: {listed}"
         )
     lost = int((~result.tracked).sum())
     if lost:

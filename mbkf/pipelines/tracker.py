@@ -23,7 +23,7 @@ from mbkf.model.newton_euler import NewtonEuler
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.live.filter import LiveFilter, LiveInputs, live_inputs
 from mbkf.pipelines.reconstruct import ReconstructSettings
-from mbkf.pipelines.trial.followers import follower, standard
+from mbkf.pipelines.trial.filters import standard, tracking_filter
 from mbkf.sensors.block import NO_READINGS, AnyBlock, Frame
 
 
@@ -166,7 +166,7 @@ class Tracker:
         self._given = len(_marker_names(subject, markers))
         self.names, self._columns, self._plates = live.names, live.columns, len(plates)
         with single_threaded():
-            self._filter = follower(settings.filter, live.inputs, blocks)
+            self._filter = tracking_filter(settings.filter, live.inputs, blocks)
         self._live, self._balance = LiveFilter(self._filter), NewtonEuler(self._filter.model)
         self._number = 0
         self.answers: list[Estimate] = []

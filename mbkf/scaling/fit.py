@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
-from typing import Any
 
 import numpy as np
 
@@ -213,7 +212,7 @@ def _report(
     frames: ScalingFrames,
     dropped: BoolArray,
     settings: ScalingSettings,
-) -> dict[str, Any]:
+) -> dict[str, object]:
     """Plain numbers: fit per marker (mm), factors with standard errors and active bounds, markers left out."""
     state, body = solution.state, problem.body
     errors_mm = 1e3 * np.linalg.norm(problem.errors_m(state), axis=2)

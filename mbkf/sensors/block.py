@@ -70,7 +70,7 @@ NO_MARKERS = np.zeros(0, dtype=bool)
 
 @dataclass(slots=True)
 class Notes:
-    """What blocks tell each other about a frame; complete when all of them have decided.
+    """What blocks share about a frame; complete when all of them have decided.
 
     Attributes:
         seen: (M,) markers seen.
@@ -172,7 +172,7 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
             at: The predicted state.
             frame: The readings.
             memory: Of the frame before.
-            notes: What blocks tell each other: those before this one in the filter's list have decided.
+            notes: What blocks share: those before this one in the filter's list have decided.
         """
 
     def inflate(self, P: Array, decision: DecisionT) -> None:

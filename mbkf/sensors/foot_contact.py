@@ -13,7 +13,7 @@ whose posterior force pulls at the floor is read again as carrying nothing.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
 from mbkf.sensors.layout import Layout
+from mbkf.sensors.states import LoadedState
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ class FootDecision(NamedTuple):
     lifted: tuple[int, ...] = ()
 
 
-class FootContact(Block[Any, None, FootDecision, ContactMemory]):
+class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
     """Force plates under the feet: twelve rows on the wrenches of right and left foot.
 
     Attributes:
@@ -99,7 +100,7 @@ class FootContact(Block[Any, None, FootDecision, ContactMemory]):
         return self.detector.begin()
 
     def decide(
-        self, at: OperatingPoint[Any, None], frame: Frame, memory: ContactMemory, notes: Notes
+        self, at: OperatingPoint[LoadedState, None], frame: Frame, memory: ContactMemory, notes: Notes
     ) -> FootDecision:
         """Plates to feet, and feet that stand elsewhere."""
         state = at.state
@@ -115,7 +116,7 @@ class FootContact(Block[Any, None, FootDecision, ContactMemory]):
             own = P[mine, mine]
             own += walk[foot]
 
-    def linearise(self, at: OperatingPoint[Any, None], decision: FootDecision) -> Rows:
+    def linearise(self, at: OperatingPoint[LoadedState, None], decision: FootDecision) -> Rows:
         """Twelve rows; readings of plates come first."""
         w, contact, lifted = at.state.w, decision.contact, decision.lifted
         kinds, rows, values, plates = contact.contacts, np.zeros((12, 12)), np.empty(12), 0
@@ -132,7 +133,7 @@ class FootContact(Block[Any, None, FootDecision, ContactMemory]):
             plates += 6 * (kinds[foot] == Contact.MEASURED)
         return Rows(rows, values, self._first, plates)
 
-    def review(self, posterior: Any, decision: FootDecision) -> FootDecision | None:
+    def review(self, posterior: LoadedState, decision: FootDecision) -> FootDecision | None:
         """Unmeasured feet whose force pulls at the floor, clearly more than it is kept from that, carry nothing."""
         kinds = decision.contact.contacts
         if Contact.UNMEASURED not in kinds:
@@ -143,8 +144,8 @@ class FootContact(Block[Any, None, FootDecision, ContactMemory]):
 
     def remember(
         self,
-        posterior: Any,
-        at: OperatingPoint[Any, None],
+        posterior: LoadedState,
+        at: OperatingPoint[LoadedState, None],
         decision: FootDecision,
         memory: ContactMemory,
     ) -> ContactMemory:

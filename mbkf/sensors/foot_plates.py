@@ -14,7 +14,7 @@ q ⊕ v Δt and v + a Δt, and not at the prediction, whose forces may be wrong 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,7 @@ from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
 from mbkf.sensors.foot_wrench import FootWrenchSensor
 from mbkf.sensors.layout import Layout
+from mbkf.sensors.states import ForceState
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,7 @@ class PlateDecision(NamedTuple):
     reading: FootReading
 
 
-class FootPlates(Block[Any, None, PlateDecision, PlateMemory]):
+class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
     """Force plates that read wrench states.
 
     Attributes:
@@ -132,7 +133,7 @@ class FootPlates(Block[Any, None, PlateDecision, PlateMemory]):
         return PlateMemory(self.detector.begin(), None)
 
     def decide(
-        self, at: OperatingPoint[Any, None], frame: Frame, memory: PlateMemory, notes: Notes
+        self, at: OperatingPoint[ForceState, None], frame: Frame, memory: PlateMemory, notes: Notes
     ) -> PlateDecision:
         """Plates to feet, and feet that stand elsewhere."""
         state = at.state
@@ -142,7 +143,7 @@ class FootPlates(Block[Any, None, PlateDecision, PlateMemory]):
         notes.contact = self.detector.decide(memory.contact, *where, frame.plates)
         return PlateDecision(notes.contact, FootReading.of(notes.contact))
 
-    def linearise(self, at: OperatingPoint[Any, None], decision: PlateDecision) -> Information:
+    def linearise(self, at: OperatingPoint[ForceState, None], decision: PlateDecision) -> Information:
         """Information on the whole state, of which positions and wrenches are read."""
         state, feet = at.state, decision.reading
         _, ankles = self.body.model.placements(state.q)
@@ -158,13 +159,17 @@ class FootPlates(Block[Any, None, PlateDecision, PlateMemory]):
         return Information(matrix, vector, own.innovation, own.readings)
 
     def remember(
-        self, posterior: Any, at: OperatingPoint[Any, None], decision: PlateDecision, memory: PlateMemory
+        self,
+        posterior: ForceState,
+        at: OperatingPoint[ForceState, None],
+        decision: PlateDecision,
+        memory: PlateMemory,
     ) -> PlateMemory:
         """What the detector keeps, and where the posterior leads."""
         del at, memory
         return self.next_memory(posterior, decision)
 
-    def next_memory(self, posterior: Any, decision: PlateDecision) -> PlateMemory:
+    def next_memory(self, posterior: ForceState, decision: PlateDecision) -> PlateMemory:
         """Memory after a frame with this posterior."""
         q, v, dt = posterior.q, posterior.v, self._dt_s
         a = self.body.acceleration(q, v, posterior.u)

@@ -1,4 +1,4 @@
-"""What the force plates should read of the wrenches that a dynamic filter holds at the feet (eqs. 4.10–4.13)."""
+"""What the force plates should read of the wrenches that a dynamic filter holds at the feet (thesis eqs. 4.10–4.13)."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ class WrenchReading:
 
     Attributes:
         wrench: (12,) force N and moment N m about the plates' points, world axes; right, then left.
-        by_q: (12, nv) derivative along the tangent space of q, D_z T_p of eq. 4.13.
-        by_state: (12, 12) derivative by the wrench states, D of eq. 4.13.
+        by_q: (12, nv) derivative along the tangent space of q, D_z T_p of thesis eq. 4.13.
+        by_state: (12, 12) derivative by the wrench states, D of thesis eq. 4.13.
     """
 
     wrench: Array
@@ -38,7 +38,13 @@ class FootWrenchSensor:
         self.ids = [dynamics.model.joint(name).joint_id for name in dynamics.model.roles.feet]
 
     def reading(self, q: Array, state: Array, points_m: Array) -> WrenchReading:
-        """Readings of wrench states (12,) at q about the points (2, 3) in the world."""
+        """What plates under both feet read.
+
+        Args:
+            q: (nq,) configuration.
+            state: (12,) wrench states of right and left foot.
+            points_m: (2, 3) points in the world about which the moments are taken.
+        """
         rotations, origins, jacobian = self.dynamics.model.placements_and_jacobian(q)
         local, by_state, by_q = self.dynamics.local_wrench(q, state)
         wrench = np.empty(12)

@@ -1,4 +1,4 @@
-"""Where a marker is while nobody sees it: on the body, and as far off it as its skin was when last seen.
+"""Where a marker is while no camera sees it: on the body, and as far off it as its skin was when last seen.
 
 Skin slides slowly, so a marker's offset from the rigid body outlives a short gap. In its segment's axes it is taken
 for a Gauss–Markov process: its best estimate fades after the last sight, and bridges a gap where both ends are known.

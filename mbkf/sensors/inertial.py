@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -16,6 +15,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.inertial_sensor import InertialSensor
+from mbkf.sensors.states import AcceleratedState
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class InertialSettings:
     imu_force_sd_mps2: float = 0.5
 
 
-class InertialSensors(Block[Any, None, Array | None, None]):
+class InertialSensors(Block[AcceleratedState, None, Array | None, None]):
     """Gyroscopes and accelerometers, on a state that begins with (q, v, a).
 
     Attributes:
@@ -45,7 +45,9 @@ class InertialSensors(Block[Any, None, Array | None, None]):
         self._weight = np.tile(1.0 / deviations, len(sensor.mounts))
         self.observed = observed_dofs(sensor.model, [mount.segment for mount in sensor.mounts])
 
-    def decide(self, at: OperatingPoint[Any, None], frame: Frame, memory: None, notes: Notes) -> Array | None:
+    def decide(
+        self, at: OperatingPoint[AcceleratedState, None], frame: Frame, memory: None, notes: Notes
+    ) -> Array | None:
         """The frame's readings (S, 6), None where none was read; joints they observe are noted."""
         if frame.imus is None or not np.isfinite(frame.imus).any():
             return None
@@ -53,7 +55,7 @@ class InertialSensors(Block[Any, None, Array | None, None]):
         notes.unobserved = notes.unmarked[~self.observed[notes.unmarked]]
         return frame.imus
 
-    def linearise(self, at: OperatingPoint[Any, None], decision: Array | None) -> Rows | None:
+    def linearise(self, at: OperatingPoint[AcceleratedState, None], decision: Array | None) -> Rows | None:
         """Rows on (q, v, a)."""
         if decision is None:
             return None

@@ -1,7 +1,8 @@
 """What inertial sensors on a body read: angular velocity and specific force in their own axes, with derivatives.
 
 ω = Rᵀ ω_segment and f = Rᵀ (p̈ − g) at the sensor's place p, from the body's positions, velocities and accelerations
-(the source's eqs. 38–43 take finite differences instead). A turn of the world about the vertical changes neither.
+(eqs. 38–43 of docs/references.md, key ``Madgwick``, take finite differences instead). A turn of the world about the
+vertical changes neither.
 """
 
 from __future__ import annotations
@@ -59,7 +60,16 @@ class InertialSensor:
         ]
 
     def values(self, q: Array, v: Array, a: Array) -> Array:
-        """(S, 6) angular velocity rad/s and specific force m/s² in sensor axes."""
+        """Expected readings.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            a: (nv,) acceleration.
+
+        Returns:
+            (S, 6) angular velocity rad/s and specific force m/s² in sensor axes.
+        """
         pin.forwardKinematics(self.model.pin_model, self._data, q, v, a)
         return self._read()[0]
 
@@ -69,7 +79,13 @@ class InertialSensor:
         return rotations[self._joints] @ self._to_sensor.transpose(0, 2, 1)
 
     def reading(self, q: Array, v: Array, a: Array) -> InertialReading:
-        """Expected readings with their derivatives by q, v and a."""
+        """Expected readings with their derivatives.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            a: (nv,) acceleration.
+        """
         model, data = self.model.pin_model, self._data
         pin.computeForwardKinematicsDerivatives(model, data, q, v, a)
         values, up = self._read()

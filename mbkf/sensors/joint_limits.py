@@ -6,13 +6,12 @@ An inequality: a joint inside its limits is not read at all.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.numerics.kalman import Information
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, State
 from mbkf.sensors.posture_sensor import PostureSensor
 
 
@@ -27,7 +26,7 @@ class JointLimitSettings:
     limit_sd_rad: float = 0.03
 
 
-class JointLimits(Block[Any, Information | None, None, None]):
+class JointLimits(Block[State, Information | None, None, None]):
     """Least and greatest rotation of every joint about its axes, from the neutral posture.
 
     Attributes:
@@ -56,16 +55,16 @@ class JointLimits(Block[Any, Information | None, None, None]):
         self.upper = np.where(unobservable, np.inf, model.limits[:, 1])
         self._turning = [joint.v for joint in model.joints.values() if joint.kind == "spherical"]
 
-    def prepare(self, state: Any, memory: None) -> Information | None:
+    def prepare(self, state: State, memory: None) -> Information | None:
         """What the passed limits say; it does not depend on the frame."""
         return self.information(*self._sensor.deviation(state.q))
 
     def decide(
-        self, at: OperatingPoint[Any, Information | None], frame: Frame, memory: None, notes: Notes
+        self, at: OperatingPoint[State, Information | None], frame: Frame, memory: None, notes: Notes
     ) -> None:
         """Nothing is to be decided."""
 
-    def linearise(self, at: OperatingPoint[Any, Information | None], decision: None) -> Information | None:
+    def linearise(self, at: OperatingPoint[State, Information | None], decision: None) -> Information | None:
         """Information on the configuration, None where no limit is passed."""
         return at.prepared
 

@@ -13,17 +13,18 @@ predicted, its joint's spread is inflated.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.numerics.kalman import Information
-from mbkf.sensors.block import NO_DOFS, Block, Frame, Notes, OperatingPoint
+from mbkf.sensors.block import NO_DOFS, Block, Frame, Notes, OperatingPoint, State
 from mbkf.sensors.gating import ObservedDofs, gated
 from mbkf.sensors.marker_sensor import JacobianInformation, MarkerInformation, MarkerReading, MarkerSensor
 from mbkf.sensors.skin import SkinMarkers
+from mbkf.sensors.states import AcceleratedState
 
 DISPLACED_SD_RAD = 0.5
 DISPLACED_SD_RAD_S = 3.0
@@ -87,7 +88,7 @@ class MarkerDecision(NamedTuple):
     before_m: Array | None
 
 
-class Markers(Block[Any, MarkerReading, MarkerDecision, MarkerMemory]):
+class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
     """Optical markers.
 
     Attributes:
@@ -136,12 +137,12 @@ class Markers(Block[Any, MarkerReading, MarkerDecision, MarkerMemory]):
         """The markers' own noise."""
         return MarkerMemory(1.0, None)
 
-    def prepare(self, state: Any, memory: MarkerMemory | None) -> MarkerReading:
+    def prepare(self, state: State, memory: MarkerMemory | None) -> MarkerReading:
         """Predicted markers."""
         return self.sensor.reading(state.q)
 
     def decide(
-        self, at: OperatingPoint[Any, MarkerReading], frame: Frame, memory: MarkerMemory, notes: Notes
+        self, at: OperatingPoint[State, MarkerReading], frame: Frame, memory: MarkerMemory, notes: Notes
     ) -> MarkerDecision:
         """Gates the markers and notes which dofs they leave unobserved."""
         innovation, s = frame.markers_m - at.prepared.positions_m, self.settings
@@ -167,21 +168,21 @@ class Markers(Block[Any, MarkerReading, MarkerDecision, MarkerMemory]):
             P[dofs, dofs] += DISPLACED_SD_RAD**2
             P[self._nv + dofs, self._nv + dofs] += DISPLACED_SD_RAD_S**2
 
-    def linearise(self, at: OperatingPoint[Any, MarkerReading], decision: MarkerDecision) -> Information:
+    def linearise(self, at: OperatingPoint[State, MarkerReading], decision: MarkerDecision) -> Information:
         """Information on the configuration; on (q, v, a) where skin artefacts are modelled."""
         state, reading, trusted = at.state, at.prepared, decision.trusted
         innovation = decision.measured_m - reading.positions_m
         if self._skin is None or decision.before_m is None:
             found = self._information.at(state.q, reading, innovation, trusted)
         else:
-            q, v, a = state.q, state.v, state.a
+            q, v, a = state.q, state.v, cast(AcceleratedState, state).a
             found = self._skin.at(q, v, a, reading, innovation, trusted, decision.before_m)
         return found if decision.noise_scale == 1.0 else found.scaled(1.0 / decision.noise_scale)
 
     def remember(
         self,
-        posterior: Any,
-        at: OperatingPoint[Any, MarkerReading],
+        posterior: State,
+        at: OperatingPoint[State, MarkerReading],
         decision: MarkerDecision,
         memory: MarkerMemory,
     ) -> MarkerMemory:

@@ -7,13 +7,15 @@ guess than the standing posture or the last one. Used beside inertial sensors, w
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+from mbkf.model.human import HumanModel
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,7 @@ class MeanPostureDecision(NamedTuple):
     notes: Notes
 
 
-class MeanPosture(Block[Any, None, MeanPostureDecision, "Array | None"]):
+class MeanPosture(Block[State, None, MeanPostureDecision, "Array | None"]):
     """Mean posture of unobserved limbs."""
 
     prior = True
@@ -59,12 +61,12 @@ class MeanPosture(Block[Any, None, MeanPostureDecision, "Array | None"]):
         self._share = 1.0 - np.exp(-dt_s / settings.mean_posture_s)
 
     def decide(
-        self, at: OperatingPoint[Any, None], frame: Frame, memory: Array | None, notes: Notes
+        self, at: OperatingPoint[State, None], frame: Frame, memory: Array | None, notes: Notes
     ) -> MeanPostureDecision:
         """The mean so far; which joints it is used for depends on the other blocks."""
         return MeanPostureDecision(memory if notes.imus is not None else None, notes)
 
-    def linearise(self, at: OperatingPoint[Any, None], decision: MeanPostureDecision) -> Rows | None:
+    def linearise(self, at: OperatingPoint[State, None], decision: MeanPostureDecision) -> Rows | None:
         """Rows on the configuration; joints that the coordination prior predicts are left to it."""
         mean, notes = decision
         if mean is None:
@@ -80,8 +82,8 @@ class MeanPosture(Block[Any, None, MeanPostureDecision, "Array | None"]):
 
     def remember(
         self,
-        posterior: Any,
-        at: OperatingPoint[Any, None],
+        posterior: State,
+        at: OperatingPoint[State, None],
         decision: MeanPostureDecision,
         memory: Array | None,
     ) -> Array | None:

@@ -7,12 +7,12 @@ contact is in the state they vanish. They are read as zero. Torques of the joint
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+from mbkf.sensors.states import LoadedState
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class NewtonEulerSettings:
     imu_residual_scale: float = 30.0
 
 
-class NewtonEulerLaw(Block[Any, Rows, Notes, None]):
+class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
     """Newton's law at the root, on a state (q, v, a, wrenches).
 
     Attributes:
@@ -43,7 +43,7 @@ class NewtonEulerLaw(Block[Any, Rows, Notes, None]):
         self.balance, self.settings = balance, settings
         self._sharp = 1.0 / np.repeat([settings.residual_force_n, settings.residual_moment_nm], 3)
 
-    def prepare(self, state: Any, memory: None) -> Rows:
+    def prepare(self, state: LoadedState, memory: None) -> Rows:
         """The law's rows at a state; they do not depend on the frame."""
         nv = len(state.v)
         root, sharp = self.balance.root(state.q, state.v, state.a, state.w), self._sharp[:, None]
@@ -54,11 +54,13 @@ class NewtonEulerLaw(Block[Any, Rows, Notes, None]):
         rows[:, 3 * nv : 3 * nv + 6] = rows[:, 3 * nv + 6 :] = root.by_wrench * sharp
         return Rows(rows, -root.residual * self._sharp, readings=6)
 
-    def decide(self, at: OperatingPoint[Any, Rows], frame: Frame, memory: None, notes: Notes) -> Notes:
+    def decide(
+        self, at: OperatingPoint[LoadedState, Rows], frame: Frame, memory: None, notes: Notes
+    ) -> Notes:
         """Depends on what the blocks after this one observe."""
         return notes
 
-    def linearise(self, at: OperatingPoint[Any, Rows], decision: Notes) -> Rows:
+    def linearise(self, at: OperatingPoint[LoadedState, Rows], decision: Notes) -> Rows:
         """The prepared rows, loosened where a limb is observed by nothing while inertial sensors read."""
         rows = at.prepared
         if decision.imus is None or not len(decision.unobserved):

@@ -1,4 +1,4 @@
-"""Which degrees of freedom markers determine: ranks of H and of the observability matrix (eq. 4.14)."""
+"""Which degrees of freedom markers determine: ranks of H and of the observability matrix (thesis eq. 4.14)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ RANK_TOLERANCE = 1e-6
 """Singular values below this part of the largest one count as zero."""
 
 SHARE_THRESHOLD = 0.01
-"""A dof is called unseen when more than this share of it lies in the null space."""
+"""A dof is called unobserved when more than this share of it lies in the null space."""
 
 BENT_POSTURES = 4
 _BEND_RAD = 0.35
@@ -32,7 +32,7 @@ class Observability:
         dofs: (nv,) names of the tangent dofs.
         ranks: (P,) rank of the marker Jacobian H; nv where every dof is determined.
         state_ranks: (P,) rank of [H; HF; HF²; …] for positions and velocities; 2 nv where it is full.
-        unseen_share: (P, nv) share of each dof in the null space of H: 0 fully seen, 1 not at all.
+        unobserved_share: (P, nv) share of each dof in the null space of H: 0 fully seen, 1 not at all.
         sd: (P, nv) standard deviation that one frame leaves on each dof, rad (m for the pelvis's
             translations); infinite where it is not determined.
     """
@@ -40,7 +40,7 @@ class Observability:
     dofs: tuple[str, ...]
     ranks: NDArray[np.int64]
     state_ranks: NDArray[np.int64]
-    unseen_share: Array
+    unobserved_share: Array
     sd: Array
 
     @property
@@ -55,14 +55,14 @@ class Observability:
         return np.asarray(np.median(self.sd[1:], axis=0))
 
     @property
-    def unseen(self) -> tuple[str, ...]:
-        """Dofs that no posture determines fully; each may still be seen in part (see ``unseen_share``)."""
-        return self._named(np.all(self.unseen_share > SHARE_THRESHOLD, axis=0))
+    def unobserved(self) -> tuple[str, ...]:
+        """Dofs that no posture determines fully; each may still be seen in part (see ``unobserved_share``)."""
+        return self._named(np.all(self.unobserved_share > SHARE_THRESHOLD, axis=0))
 
     @property
-    def sometimes_unseen(self) -> tuple[str, ...]:
+    def sometimes_unobserved(self) -> tuple[str, ...]:
         """Dofs that are determined in some postures only (a straight elbow hides the arm's turning, say)."""
-        hidden = self.unseen_share > SHARE_THRESHOLD
+        hidden = self.unobserved_share > SHARE_THRESHOLD
         return self._named(np.any(hidden, axis=0) & ~np.all(hidden, axis=0))
 
     def _named(self, chosen: NDArray) -> tuple[str, ...]:
@@ -81,7 +81,7 @@ def null_space(matrix: Array, tolerance: float = RANK_TOLERANCE) -> Array:
 
 
 def observability_matrix(measurement: Array, plant: Array) -> Array:
-    """[H; HF; HF²; …] (eq. 4.14), as far as its rows are not all zero and at most n blocks.
+    """[H; HF; HF²; …] (thesis eq. 4.14), as far as its rows are not all zero and at most n blocks.
 
     Args:
         measurement: (m, n) H.
@@ -141,17 +141,17 @@ def analyse(model: Body, segments: Sequence[str], local_m: Array, noise_m: Array
     for q in generic_postures(model):
         H = sensor.reading(q).jacobian
         rows = H.reshape(-1, model.nv)
-        unseen = null_space(rows)
+        unobserved = null_space(rows)
         of_state = np.hstack([rows, np.zeros_like(rows)])
-        ranks.append(model.nv - unseen.shape[1])
+        ranks.append(model.nv - unobserved.shape[1])
         state_ranks.append(numerical_rank(observability_matrix(of_state, plant)))
-        shares.append(np.sum(unseen**2, axis=1))
+        shares.append(np.sum(unobserved**2, axis=1))
         deviations.append(_one_frame_sd((H / noise_m[:, None, None]).reshape(-1, model.nv), shares[-1]))
     return Observability(
         dofs=dof_names(model),
         ranks=read_only(ranks, dtype=np.int64),
         state_ranks=read_only(state_ranks, dtype=np.int64),
-        unseen_share=read_only(shares),
+        unobserved_share=read_only(shares),
         sd=read_only(deviations),
     )
 

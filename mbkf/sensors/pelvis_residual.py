@@ -8,17 +8,16 @@ infinite σ leaves the residual a random walk, as in the thesis.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.numerics.kalman import Information, information
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
+from mbkf.sensors.states import ForceState
 
 
-class PelvisResidual(Block[Any, None, None, None]):
+class PelvisResidual(Block[ForceState, None, None, None]):
     """The pelvis residual near zero.
 
     Attributes:
@@ -32,10 +31,10 @@ class PelvisResidual(Block[Any, None, None, None]):
         """Args: the forced body, and standard deviations (6,) of force, N, and moment, N m."""
         self.body, self.sd = body, residual_sd
 
-    def decide(self, at: OperatingPoint[Any, None], frame: Frame, memory: None, notes: Notes) -> None:
+    def decide(self, at: OperatingPoint[ForceState, None], frame: Frame, memory: None, notes: Notes) -> None:
         """The same in every frame."""
 
-    def linearise(self, at: OperatingPoint[Any, None], decision: None) -> Information:
+    def linearise(self, at: OperatingPoint[ForceState, None], decision: None) -> Information:
         """Information on the whole state."""
         state = at.state
         torque = self.body.joint_forces(state.q, state.v, state.u)

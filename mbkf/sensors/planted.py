@@ -8,13 +8,14 @@ the reading is met and is left out.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+from mbkf.model.human import HumanModel
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Planted
 from mbkf.sensors.layout import Layout
@@ -33,7 +34,7 @@ class PlantedSettings:
     planted_turn_sd: float = 0.2
 
 
-class PlantedFeet(Block[Any, None, tuple[Planted, ...], None]):
+class PlantedFeet(Block[State, None, tuple[Planted, ...], None]):
     """Loaded feet without a marker in sight.
 
     Attributes:
@@ -65,7 +66,7 @@ class PlantedFeet(Block[Any, None, tuple[Planted, ...], None]):
         self._v = layout.v.start
 
     def decide(
-        self, at: OperatingPoint[Any, None], frame: Frame, memory: None, notes: Notes
+        self, at: OperatingPoint[State, None], frame: Frame, memory: None, notes: Notes
     ) -> tuple[Planted, ...]:
         """What of which foot stands still."""
         if not len(notes.unmarked) or notes.contact is None:
@@ -74,7 +75,7 @@ class PlantedFeet(Block[Any, None, tuple[Planted, ...], None]):
         found = [self.detector.planted(notes.contact, at.state.q, foot) for foot in lost]
         return tuple(one for one in found if one is not None)
 
-    def linearise(self, at: OperatingPoint[Any, None], decision: tuple[Planted, ...]) -> list[Rows]:
+    def linearise(self, at: OperatingPoint[State, None], decision: tuple[Planted, ...]) -> list[Rows]:
         """Rows on the velocity."""
         s, state = self.settings, at.state
         sds = s.planted_speed_sd, s.planted_turn_sd

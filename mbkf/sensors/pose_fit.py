@@ -1,4 +1,4 @@
-"""The pose that fits one frame of markers: segment by segment first, then all at once (eq. 4.1 with positions only)."""
+"""The pose that fits one frame of markers: by segment first, then all at once (thesis eq. 4.1, positions only)."""
 
 from __future__ import annotations
 
@@ -134,7 +134,15 @@ def fit_pose(
 def fit_most_markers(
     sensor: MarkerSensor, posture: PostureSensor, measured_m: Array, noise_m: Array, start: Array
 ) -> PoseFit:
-    """:func:`fit_pose` without the markers that lie far from the body, at most a quarter of them, the worst first."""
+    """:func:`fit_pose` without the markers that lie far from the body, at most a quarter of them, the worst first.
+
+    Args:
+        sensor: The markers on the body.
+        posture: The posture prior.
+        measured_m: (M, 3) measured positions, NaN where missing.
+        noise_m: (M,) marker noise, m.
+        start: (nq,) first guess.
+    """
     kept = measured_m.copy()
     fit = fit_pose(sensor, posture, kept, noise_m, start)
     for _ in range(int(_STRAY_SHARE * np.count_nonzero(~np.isnan(measured_m[:, 0])))):

@@ -7,11 +7,11 @@ keep it, while an observed one is moved by less than its own noise.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.numerics.kalman import Information
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, State
 from mbkf.sensors.posture_sensor import PostureSensor
 
 
@@ -49,7 +49,7 @@ class PreparedPosture(NamedTuple):
     information: Information
 
 
-class PosturePrior(Block[Any, PreparedPosture, Notes, None]):
+class PosturePrior(Block[State, PreparedPosture, Notes, None]):
     """The posture prior.
 
     Attributes:
@@ -70,18 +70,18 @@ class PosturePrior(Block[Any, PreparedPosture, Notes, None]):
         self.sensor, self.settings = sensor, settings
         self._weights = sensor.weights(settings.posture_scale, unobservable)
 
-    def prepare(self, state: Any, memory: None) -> PreparedPosture:
+    def prepare(self, state: State, memory: None) -> PreparedPosture:
         """What the prior says while every segment is observed."""
         deviation, jacobian = self.sensor.deviation(state.q)
         return PreparedPosture(deviation, jacobian, posture_information(deviation, jacobian, self._weights))
 
     def decide(
-        self, at: OperatingPoint[Any, PreparedPosture], frame: Frame, memory: None, notes: Notes
+        self, at: OperatingPoint[State, PreparedPosture], frame: Frame, memory: None, notes: Notes
     ) -> Notes:
         """Depends on which joints are observed."""
         return notes
 
-    def linearise(self, at: OperatingPoint[Any, PreparedPosture], decision: Notes) -> Information:
+    def linearise(self, at: OperatingPoint[State, PreparedPosture], decision: Notes) -> Information:
         """Information on the configuration, of less weight for joints that nothing observes."""
         unobserved, prepared = decision.unobserved, at.prepared
         if not len(unobserved) or self.settings.unseen_posture == 1.0:

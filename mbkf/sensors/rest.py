@@ -9,18 +9,16 @@ forces alone where markers are out of sight; the other filters hold back unobser
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from mbkf.conventions import BoolArray
 from mbkf.numerics.kalman import Information, information
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, State
 from mbkf.sensors.layout import Layout
 from mbkf.sensors.posture_sensor import PostureSensor
 
 
-class PostureAndRest(Block[Any, None, None, None]):
+class PostureAndRest(Block[State, None, None, None]):
     """Weak priors on posture and velocity.
 
     Attributes:
@@ -49,10 +47,10 @@ class PostureAndRest(Block[Any, None, None, None]):
         """Where velocities stand in the state."""
         self._nv, self._v, self._stop = layout.nv, layout.v.start + self._moving, layout.v.stop
 
-    def decide(self, at: OperatingPoint[Any, None], frame: Frame, memory: None, notes: Notes) -> None:
+    def decide(self, at: OperatingPoint[State, None], frame: Frame, memory: None, notes: Notes) -> None:
         """The same in every frame."""
 
-    def linearise(self, at: OperatingPoint[Any, None], decision: None) -> Information:
+    def linearise(self, at: OperatingPoint[State, None], decision: None) -> Information:
         """Information on positions and velocities."""
         state, nv, rest = at.state, self._nv, self._v
         away = self.sensor.reading(state.q)

@@ -26,7 +26,15 @@ class SkinMarkers:
     def __init__(
         self, sensor: MarkerSensor, noise_m: Array, camera_m: float, decay_s: float, dt_s: float
     ) -> None:
-        """Args: markers, artefact σ (M,), white camera noise, how long an artefact lasts, time between frames."""
+        """Makes the information of a marker set.
+
+        Args:
+            sensor: The markers on the body.
+            noise_m: (M,) standard deviation of the skin's artefacts.
+            camera_m: Standard deviation of the cameras' white noise.
+            decay_s: Correlation time of an artefact.
+            dt_s: Time between frames.
+        """
         self.sensor, self.dt_s = sensor, dt_s
         self.rho = float(np.exp(-dt_s / decay_s))
         new = np.sqrt(noise_m**2 + camera_m**2)

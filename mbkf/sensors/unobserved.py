@@ -7,13 +7,14 @@ Without it their velocity would go on for ever. The spreads are wide, so that it
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import cast
 
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 from mbkf.sensors.layout import Layout
+from mbkf.sensors.states import AcceleratedState
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class UnobservedSettings:
     unseen_acceleration_share: float = 10.0
 
 
-class UnobservedJoints(Block[Any, None, Notes, None]):
+class UnobservedJoints(Block[State, None, Notes, None]):
     """Damping of velocity, and of acceleration where the state holds one, per reading."""
 
     prior = True
@@ -52,11 +53,11 @@ class UnobservedJoints(Block[Any, None, Notes, None]):
         """Where velocities, and accelerations after them, stand in the state."""
         self._v = layout.v.start
 
-    def decide(self, at: OperatingPoint[Any, None], frame: Frame, memory: None, notes: Notes) -> Notes:
+    def decide(self, at: OperatingPoint[State, None], frame: Frame, memory: None, notes: Notes) -> Notes:
         """Depends on which joints are observed."""
         return notes
 
-    def linearise(self, at: OperatingPoint[Any, None], decision: Notes) -> Rows | None:
+    def linearise(self, at: OperatingPoint[State, None], decision: Notes) -> Rows | None:
         """A row on the velocity, and one on the acceleration, of each unobserved dof."""
         dofs, state = decision.unobserved, at.state
         if not len(dofs):
@@ -69,7 +70,7 @@ class UnobservedJoints(Block[Any, None, Notes, None]):
         if self._calm is not None:
             calm = self._calm[dofs]
             rows[len(dofs) + k, nv + dofs] = calm
-            values[len(dofs) + k] = -calm * state.a[dofs]
+            values[len(dofs) + k] = -calm * cast(AcceleratedState, state).a[dofs]
             return Rows(rows, values, self._v)
         vector = np.zeros(nv)
         vector[dofs] = -(rest**2) * state.v[dofs]

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from types import EllipsisType
+from typing import TypeAlias
 
 import numpy as np
 
 from mbkf.conventions import Array
+
+Index: TypeAlias = int | slice | EllipsisType | tuple[int | slice | EllipsisType | None, ...]
+"""What indexes the arrays of a dual number."""
 
 
 class Dual:
@@ -36,7 +40,7 @@ class Dual:
         """x, ẋ, ẍ."""
         return self.value, self.first, self.second
 
-    def __getitem__(self, index: Any) -> Dual:
+    def __getitem__(self, index: Index) -> Dual:
         return Dual(*(x[index] for x in self.orders))
 
     def __neg__(self) -> Dual:

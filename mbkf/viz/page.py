@@ -6,7 +6,6 @@ import importlib.util
 import json
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 from mbkf.errors import FileFormatError
 
@@ -18,7 +17,7 @@ SCRIPTS = (
 """The page's own scripts, in the order they are needed."""
 
 
-def page(recording: dict[str, Any] | None = None) -> str:
+def page(recording: dict[str, object] | None = None) -> str:
     """The page.
 
     Args:
@@ -46,7 +45,7 @@ def asset(name: str) -> str:
     return (ASSETS / name).read_text(encoding="utf-8")
 
 
-def embedded(name: str, data: dict[str, Any]) -> str:
+def embedded(name: str, data: dict[str, object]) -> str:
     """Plain data as a script element that holds JSON, whatever its texts contain."""
     text = json.dumps(data, allow_nan=False, separators=(",", ":"), ensure_ascii=False)
     return f'<script type="application/json" id="{name}">' + text.replace("<", "\\u003c") + "</script>"

@@ -8,8 +8,8 @@ import scipy.linalg
 
 from benchmarks.double_pendulum.acceleration import (
     PLATE,
-    AccelerationBelief,
     AccelerationMethod,
+    AccelerationSettings,
     PendulumAccelerationFilter,
 )
 from benchmarks.double_pendulum.bodies import body_findings
@@ -20,8 +20,8 @@ from benchmarks.double_pendulum.torque import (
     SENSORS,
     STANDARD_SENSORS,
     Artefact,
-    Belief,
     PendulumFilter,
+    PendulumSettings,
     TorqueMethod,
 )
 from benchmarks.double_pendulum.trials import Recipe, Trial, score
@@ -51,7 +51,7 @@ def test_every_row_of_the_first_band_is_kept():
 
 
 def test_the_24_rows_are_all_discretisations():
-    schemes = {annex_method(name).belief.scheme for name in TABLE_A2}
+    schemes = {annex_method(name).settings.scheme for name in TABLE_A2}
     assert len(schemes) == 24
     assert {one.integrator for one in schemes} == {"FE", "HE", "TF", "TN"}
     assert annex_method("FE PE CT").shape == ANNEX
@@ -68,7 +68,8 @@ def test_perfect_readings_are_followed_closely(clean):
 def test_a_sensor_that_is_off_is_one_whose_readings_are_missing(clean):
     trial = shortened(clean, 30)
     off = replace(
-        FD, belief=replace(FD.belief, sensors=tuple(s for s in STANDARD_SENSORS if s not in {"m2", "F_y"}))
+        FD,
+        settings=replace(FD.settings, sensors=tuple(s for s in STANDARD_SENSORS if s not in {"m2", "F_y"})),
     )
     markers, efforts = trial.read.markers_m.copy(), trial.read.efforts.copy()
     markers[:, 2:4], efforts[:, 2] = np.nan, np.nan
@@ -79,18 +80,18 @@ def test_a_sensor_that_is_off_is_one_whose_readings_are_missing(clean):
 
 def test_the_torque_sensor_decides_the_torque(clean):
     trial = shortened(clean, 60)
-    sensed = replace(FD, belief=replace(FD.belief, sensors=SENSORS, moment_nm=1e-3)).run(trial)
+    sensed = replace(FD, settings=replace(FD.settings, sensors=SENSORS, moment_nm=1e-3)).run(trial)
     np.testing.assert_allclose(sensed.efforts[1:, 0], trial.motion.efforts[1:, 0], atol=1e-3)
 
 
 def test_unknown_sensor_is_refused():
     with pytest.raises(UnknownName, match="F_z"):
-        PendulumFilter(STUDY, 0.01, Belief(sensors=("m1", "F_z")))
+        PendulumFilter(STUDY, 0.01, PendulumSettings(sensors=("m1", "F_z")))
 
 
 def test_without_residual_states_there_are_twelve(clean):
-    belief = replace(FD.belief, residual_noise=None)
-    kalman = PendulumFilter(STUDY, 0.01, belief)
+    settings = replace(FD.settings, residual_noise=None)
+    kalman = PendulumFilter(STUDY, 0.01, settings)
     motion = clean.motion
     start = kalman.start(motion.q[0], motion.v[0], motion.efforts[0])
     assert len(start.P) == 12
@@ -114,8 +115,8 @@ def test_artefact_states_take_up_what_slides(order):
     trial = CLEAN.trial(0)
     markers = trial.read.markers_m.copy()
     markers[:, 0] += 0.02
-    belief = replace(FD.belief, marker_m=1e-4, artefact=Artefact(order=order))
-    kalman = PendulumFilter(STUDY, trial.dt_s, belief)
+    settings = replace(FD.settings, marker_m=1e-4, artefact=Artefact(order=order))
+    kalman = PendulumFilter(STUDY, trial.dt_s, settings)
     state = kalman.start(trial.motion.q[0], trial.motion.v[0], trial.motion.efforts[0])
     for t in range(1, 60):
         state = kalman.step(state, markers[t], trial.read.efforts[t]).state
@@ -126,7 +127,7 @@ def test_artefact_states_take_up_what_slides(order):
 
 def test_smoothing_changes_all_frames_but_the_last_and_helps():
     trial = Recipe().trial(3)
-    causal = TorqueMethod(STUDY, Belief(effort_noise=100.0))
+    causal = TorqueMethod(STUDY, PendulumSettings(effort_noise=100.0))
     before, after = causal.run(trial), replace(causal, smooth=True).run(trial)
     np.testing.assert_array_equal(after.q[-1], before.q[-1])
     assert score(trial, after).torque < 0.6 * score(trial, before).torque
@@ -141,7 +142,7 @@ def test_inverse_dynamics_of_the_truth_is_the_truth(clean):
 
 def test_readings_of_the_acceleration_filter_fall_as_their_jacobian_says():
     rng = np.random.default_rng(0)
-    kalman = PendulumAccelerationFilter(STUDY, 0.01, AccelerationBelief())
+    kalman = PendulumAccelerationFilter(STUDY, 0.01, AccelerationSettings())
     x0 = np.concatenate([rng.normal(size=8), 10.0 * rng.normal(size=4), np.zeros(12)])
     x0[12 + PLATE] = 300.0 * rng.normal(size=3)
     markers, plate = rng.normal(size=8), rng.normal(size=3)

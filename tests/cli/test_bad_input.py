@@ -148,10 +148,12 @@ def test_legs_alone_are_followed(person, tmp_path, capsys):
     words = ["reconstruct", tmp_path / "legs.c3d", "--subject", person.subject, "--out", tmp_path / "out"]
     assert main([str(word) for word in words]) == 0
     found, summary = read_reconstruction(tmp_path / "out"), read_summary(tmp_path / "out")
-    assert "right_upper_arm_x" in found.held_dofs
-    assert any("held" in warning and "right_upper_arm_x" in warning for warning in summary["warnings"])
-    held = np.isin(found.dof_names, found.held_dofs)
-    assert found.sd_q[-1][held].min() > np.deg2rad(4.9)  # as far as people's postures differ
+    assert "right_upper_arm_x" in found.unobserved_dofs
+    assert any(
+        "neutral posture" in warning and "right_upper_arm_x" in warning for warning in summary["warnings"]
+    )
+    unobserved = np.isin(found.dof_names, found.unobserved_dofs)
+    assert found.sd_q[-1][unobserved].min() > np.deg2rad(4.9)  # as far as people's postures differ
     assert summary["marker_rms_mm"] < 3.0
     assert np.isfinite(found.q[found.tracked]).all()
     assert main(["scale", str(tmp_path / "legs.c3d"), "--out", str(tmp_path / "legs.toml")]) == 0

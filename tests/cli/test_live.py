@@ -265,7 +265,7 @@ def test_nobody_who_stands_still_ends_in_one_line(person, tmp_path, capsys):
     assert run(["live", "--from", f"file:{person.trial}", "--speed", 0, "--out", out]) == 2
     last = capsys.readouterr().err.splitlines()[-1]
     assert last.startswith("mbkf: error: the source ended before a person was scaled: marker")
-    assert json.loads((out / "live.json").read_text())["state"] == "nobody scaled"
+    assert json.loads((out / "live.json").read_text())["state"] == "no subject scaled"
 
 
 @pytest.mark.parametrize(

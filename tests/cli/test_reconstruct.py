@@ -98,7 +98,7 @@ def test_every_filter_writes_the_same_files(name, person, reconstruct):
     assert (summary["filter"], summary["smoothed"]) == (name, False)
     assert (summary["plate_force_change_rms_n"] is None) == (name == "kinematic")
     motion = read_reconstruction(out)
-    assert (motion.foot_wrench_sd is None, motion.footing is None) == ((name == "kinematic",) * 2)
+    assert (motion.foot_wrench_sd is None, motion.foot_contact is None) == ((name == "kinematic",) * 2)
 
 
 @pytest.mark.parametrize("name", ["kinematic", "torque", "dynamic"])
@@ -141,7 +141,7 @@ def test_what_a_withheld_plate_read_is_estimated(person, reconstruct):
     right, left = part.foot_wrench[15:, :, 2].T
     np.testing.assert_allclose(right, whole.foot_wrench[15:, 0, 2], atol=1.0)
     assert (np.abs(left - whole.foot_wrench[15:, 1, 2]) < 3 * part.foot_wrench_sd[15:, 1, 2]).all()
-    assert (part.footing[15:] == [1, -1]).all()
+    assert (part.foot_contact[15:] == [1, -1]).all()
     assert (part.foot_wrench_sd[15:, 1, 2] > 10 * whole.foot_wrench_sd[15:, 1, 2]).all()
     assert whole.valid.all()
     assert not part.valid[15:].any()

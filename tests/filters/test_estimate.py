@@ -1,4 +1,4 @@
-"""What every filter promises as a follower: the same questions, answers of the same shape, the same robustness."""
+"""What every filter promises: the same questions, answers of the same shape, the same robustness."""
 
 import inspect
 from dataclasses import replace
@@ -10,7 +10,7 @@ from mbkf.filters.estimate import NO_WRENCH, TrackingFilter
 from mbkf.filters.kinematic.tracking import WARM_UP_S
 from mbkf.filters.spread import SpreadReader
 from mbkf.filters.tracking import track
-from mbkf.pipelines.trial.followers import FILTERS
+from mbkf.pipelines.trial.filters import FILTERS
 from tests.dynamics import DT, MARKER_SD_M
 from tests.followed import (
     FRAMES,
@@ -19,7 +19,7 @@ from tests.followed import (
     estimates,
     inputs,
     made,
-    made_follower,
+    made_filter,
     recording,
     tracked,
     without,
@@ -44,8 +44,8 @@ def two(name):
 
 
 @every_filter
-def test_everything_asked_of_a_follower_is_there(name):
-    one = made_follower(name)
+def test_everything_asked_of_a_filter_is_there(name):
+    one = made_filter(name)
     for asked, member in inspect.getmembers(TrackingFilter, inspect.isfunction):
         if not asked.startswith("_"):
             mine = list(inspect.signature(getattr(one, asked)).parameters)
@@ -146,7 +146,7 @@ def test_innovations(name):
 @every_filter
 def test_a_start_without_markers_is_none(name):
     empty = without(recording(), slice(None))
-    assert made_follower(name).start(empty, 0, None) is None
+    assert made_filter(name).start(empty, 0, None) is None
 
 
 @every_filter
@@ -206,11 +206,11 @@ def test_a_wrong_marker_is_refused_and_hardly_moves_the_estimate(name):
     """Refused means not there: the same as if the marker were out of sight in these frames."""
     wrong = recording().markers_m.copy()
     wrong[WRONG, MARKER] += [0.0, 0.0, 0.3]
-    found = track(made_follower(name), replace(recording(), markers_m=wrong))
+    found = track(made_filter(name), replace(recording(), markers_m=wrong))
     expected = np.zeros((len(FRAMES), 36), dtype=bool)
     expected[WRONG, MARKER] = True
     np.testing.assert_array_equal(found.refused, expected)
-    hidden = track(made_follower(name), without(recording(), WRONG, MARKER))
+    hidden = track(made_filter(name), without(recording(), WRONG, MARKER))
     np.testing.assert_allclose(found.q, hidden.q, rtol=0, atol=1e-12)
     moved = angle_errors(made().model, found.q, tracked(name).q) / found.position_sd
     assert worst(moved) < 2.0
@@ -223,7 +223,7 @@ def test_a_marker_wrong_where_the_warm_start_begins_does_little(name):
     for marker in (7, 12, 20):
         wrong = recording().markers_m.copy()
         wrong[begin, marker] += [0.0, 0.0, 0.3]
-        found = made_follower(name).start(replace(recording(), markers_m=wrong), 0, None)
+        found = made_filter(name).start(replace(recording(), markers_m=wrong), 0, None)
         clean = estimates(name)[1][0]
         assert worst(made().model.difference(clean.q, found.q)) < np.deg2rad(20.0)
 
@@ -232,7 +232,7 @@ def test_a_marker_wrong_where_the_warm_start_begins_does_little(name):
 @every_filter
 def test_after_half_a_second_without_markers_the_filter_starts_anew(name):
     read = without(recording(LONG), GAP)
-    found = track(made_follower(name), read)
+    found = track(made_filter(name), read)
     assert found.starts == (0, GAP.stop)
     np.testing.assert_array_equal(np.flatnonzero(~found.tracked), np.arange(GAP.start, GAP.stop))
     truth = made().motion.q[LONG.start : LONG.stop]
@@ -244,7 +244,7 @@ def test_after_half_a_second_without_markers_the_filter_starts_anew(name):
 @pytest.mark.slow
 @every_filter
 def test_a_short_loss_is_bridged_with_growing_spreads(name):
-    found = track(made_follower(name), without(recording(), slice(30, 40)))
+    found = track(made_filter(name), without(recording(), slice(30, 40)))
     assert found.starts == (0,)
     assert not found.tracked[30:40].any() and found.tracked[40:].all()
     assert (found.position_sd[39, 3:6] > 2 * found.position_sd[29, 3:6]).all()
@@ -252,22 +252,22 @@ def test_a_short_loss_is_bridged_with_growing_spreads(name):
 
 @every_filter
 def test_a_step_with_what_was_expected_is_the_same_step(name):
-    follower, found = estimates(name)
+    tracking, found = estimates(name)
     for t in (5, 30):
-        prediction = follower.predict(found[t])
+        prediction = tracking.predict(found[t])
         np.testing.assert_array_equal(
-            follower.step(found[t], recording(), t + 1, prediction).q, found[t + 1].q
+            tracking.step(found[t], recording(), t + 1, prediction).q, found[t + 1].q
         )
 
 
 @every_filter
 def test_what_is_expected_is_as_far_off_as_stated(name):
     """Innovations lie within H P Hᵀ + R, marker by marker: well within, since a squat is slower than most motion."""
-    follower, found = estimates(name)
+    tracking, found = estimates(name)
     everyone = np.ones(len(recording().markers_m[0]), dtype=bool)
     squared = []
     for t in range(20, LAST):
-        markers = follower.predict(found[t]).markers
+        markers = tracking.predict(found[t]).markers
         S = markers.spread(everyone)
         S[:, np.arange(3), np.arange(3)] += MARKER_SD_M**2
         y = recording().markers_m[t + 1] - markers.positions_m
@@ -284,9 +284,9 @@ def test_a_body_that_is_suddenly_elsewhere_is_found_there(name, jump_m):
     read = recording(LONG)
     moved = read.markers_m.copy()
     moved[there:] += np.array([jump_m, 0.0, 0.0])
-    follower = made_follower(name)
-    found = track(follower, replace(read, markers_m=moved))
-    settled = there + round(2.5 * follower.restart_after_s / DT)
+    tracking = made_filter(name)
+    found = track(tracking, replace(read, markers_m=moved))
+    settled = there + round(2.5 * tracking.restart_after_s / DT)
     assert found.tracked[settled:].all()
     sensor = inputs().sensor
     off = np.array([sensor.positions(q) for q in found.q[settled:]]) - moved[settled:]

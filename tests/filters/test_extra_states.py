@@ -1,4 +1,4 @@
-"""States that a block brings: where they lie, how they start and wander; they converge, and the smoother handles them.
+"""States that a block brings: where they lie, how they start and drift, that they converge and are smoothed.
 
 The block is that of tests/blocks: a tracker on the hand whose origin drifts.
 """
@@ -156,7 +156,7 @@ def test_a_trial_is_tracked_with_it(smoothing):
     plain, made = kalman(), trial("squat")
     noise = np.full(len(plain.noise_m), MARKER_SD_M)
     starter = KinematicFilter(plain.sensor, noise, DT, plain.unobservable, KinematicSettings())
-    chosen = SmoothingSettings(stretch_s=10.0) if smoothing else None
+    chosen = SmoothingSettings(window_s=10.0) if smoothing else None
     found = track(DynamicTracking(plain, starter), read(), smoothing=chosen)
     assert found.tracked.all() and np.isfinite(found.torque_sd).all()
     off = [made.model.difference(made.motion.q[t], q) for t, q in zip(FRAMES, found.q, strict=True)]

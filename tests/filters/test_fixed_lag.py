@@ -1,4 +1,4 @@
-"""Smoothing while the filter runs: what comes back, when, and how near it is to smoothing everything at once."""
+"""Fixed-lag smoothing: what comes back, when, and how near it is to smoothing everything at once."""
 
 from dataclasses import replace
 
@@ -7,19 +7,19 @@ import pytest
 
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
 from mbkf.filters.tracking import track
-from mbkf.pipelines.trial.followers import FILTERS
+from mbkf.pipelines.trial.filters import FILTERS
 from tests.dynamics import DT
-from tests.followed import WHOLE, errors, estimates, made, made_follower, recording, tracked, without
+from tests.followed import WHOLE, errors, estimates, made, made_filter, recording, tracked, without
 from tests.motions import angle_errors
 
-SHORT = SmoothingSettings(stretch_s=0.1, ahead_s=0.2)
-"""Stretches of 10 frames that look 20 frames ahead; the lag is 30."""
+SHORT = SmoothingSettings(window_s=0.1, ahead_s=0.2)
+"""Windows of 10 frames that look 20 frames ahead; the lag is 30."""
 
 every_filter = pytest.mark.parametrize("name", FILTERS)
 
 
 class Counter:
-    """A follower that smooths nothing and remembers what it was asked; estimates are plain numbers."""
+    """A filter that smooths nothing and remembers what it was asked; estimates are plain numbers."""
 
     dt_s = DT
 
@@ -40,13 +40,13 @@ class Told:
 
 def returned(frames, settings, starts=(0,)):
     """The frames that come back, with the frame that was put in when they did, and what was asked of the smoother."""
-    follower = Counter()
-    smoother = FixedLagSmoother(follower, None, settings)
+    tracking = Counter()
+    smoother = FixedLagSmoother(tracking, None, settings)
     found = []
     for t in frames:
         found += [(t, k, e) for k, e in smoother.push(t, Told(t, t in starts))]
     found += [(frames[-1], k, e) for k, e in smoother.finish()]
-    return found, follower.asked
+    return found, tracking.asked
 
 
 @pytest.mark.parametrize("frames", [range(1), range(29), range(30), range(95), range(7, 60)])
@@ -64,7 +64,7 @@ def test_no_frame_waits_longer_than_the_lag():
     assert min(waits[:-40]) == 20  # every one is looked ahead of
 
 
-def test_stretches_begin_with_the_frame_before():
+def test_windows_begin_with_the_frame_before():
     _, asked = returned(range(60), SHORT)
     assert asked == [(0, 30, 10), (9, 31, 11), (19, 31, 11), (29, 31, 11), (39, 21, 21)]
 
@@ -87,8 +87,8 @@ def test_the_default_lag_is_below_two_seconds():
 
 @pytest.mark.slow
 @every_filter
-def test_short_stretches_are_nearly_the_whole(name):
-    """What readings say fades within the 0.2 s a stretch looks ahead: less than the spread is left, mostly nothing."""
+def test_short_windows_are_nearly_the_whole(name):
+    """What readings say fades within the 0.2 s a window looks ahead: less than the spread is left, mostly nothing."""
     whole, parts, model = tracked(name, WHOLE), tracked(name, SHORT), made().model
     q = angle_errors(model, parts.q, whole.q) / whole.position_sd
     v = (parts.v - whole.v) / whole.velocity_sd
@@ -99,7 +99,7 @@ def test_short_stretches_are_nearly_the_whole(name):
 
 @pytest.mark.slow
 @every_filter
-def test_the_last_stretch_is_the_whole(name):
+def test_the_last_window_is_the_whole(name):
     """It has seen the same later readings; the dynamic smoother is linearised elsewhere before it."""
     whole, parts, model = tracked(name, WHOLE), tracked(name, SHORT), made().model
     q = angle_errors(model, parts.q[30:], whole.q[30:]) / whole.position_sd[30:]
@@ -118,9 +118,9 @@ def test_pushing_is_what_a_trial_does():
 def test_frames_before_a_restart_know_nothing_of_those_after():
     """The same smoothed motion as if the trial ended with the loss."""
     read = without(recording(range(20, 130)), slice(30, 80))
-    found = track(made_follower("kinematic"), read, smoothing=WHOLE)
+    found = track(made_filter("kinematic"), read, smoothing=WHOLE)
     assert found.starts == (0, 80)
     ended = replace(read, markers_m=read.markers_m[:80], plates=read.plates[:80])
-    alone = track(made_follower("kinematic"), ended, smoothing=WHOLE)
+    alone = track(made_filter("kinematic"), ended, smoothing=WHOLE)
     np.testing.assert_array_equal(found.q[:80], alone.q)
     np.testing.assert_array_equal(found.a[:80], alone.a)

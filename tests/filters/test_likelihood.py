@@ -116,8 +116,8 @@ def test_a_refused_marker_counts_as_an_outlier(kinematic, recording):
 
 def test_trials_of_the_dynamic_filter(kinematic, recording):
     done = []
-    follower = DynamicTracking(dynamic_filter(MODEL), kinematic.kalman)
-    found = trial_likelihood(follower, recording, lambda at, total: done.append((at, total)))
+    tracking = DynamicTracking(dynamic_filter(MODEL), kinematic.kalman)
+    found = trial_likelihood(tracking, recording, lambda at, total: done.append((at, total)))
     assert done[-1] == (40, 40)
     assert np.isfinite(found.markers).all()
     assert (found.load_readings[3:] == 6).all()

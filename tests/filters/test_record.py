@@ -7,7 +7,7 @@ import pytest
 
 from mbkf.filters.record import FIELDS, UNASKED, FrameRecorder, blank, record_dtype
 from mbkf.filters.tracking import Track, track_of
-from tests.followed import estimates, made_follower, recording, tracked
+from tests.followed import estimates, made_filter, recording, tracked
 
 SIZES = {"M": 3, "nq": 8, "nv": 7, "A": 7}
 
@@ -34,8 +34,8 @@ def test_a_blank_record_says_nothing():
 
 @pytest.mark.parametrize("name", ["kinematic", "dynamic"])
 def test_rows_one_by_one_are_the_whole_trial(name):
-    follower, found = estimates(name)
-    recorder = FrameRecorder(follower, recording().markers_m.shape[1])
+    tracking, found = estimates(name)
+    recorder = FrameRecorder(tracking, recording().markers_m.shape[1])
     rows = blank(recorder.dtype, len(found))
     for t, one in enumerate(found):
         row, spread = recorder.row(t, recording().markers_m[t], one, 0.001)
@@ -49,7 +49,7 @@ def test_rows_one_by_one_are_the_whole_trial(name):
 
 
 def test_a_frame_without_an_estimate_stays_blank():
-    recorder = FrameRecorder(made_follower("kinematic"), recording().markers_m.shape[1])
+    recorder = FrameRecorder(made_filter("kinematic"), recording().markers_m.shape[1])
     row, spread = recorder.row(7, recording().markers_m[0], None, 0.0)
     assert spread is None and not row["known"][0] and row["number"][0] == 7
     np.testing.assert_array_equal(row["measured_m"][0], recording().markers_m[0])

@@ -72,7 +72,7 @@ def test_the_first_frame_already_knows_its_velocity(motion, followed):
 
 
 def test_accelerations_are_differences_of_velocities(followed):
-    """Eq. 3.7 once the filter has settled."""
+    """Thesis eq. 3.7 once the filter has settled."""
     expected = np.diff(followed.v, axis=0) * RATE_HZ
     np.testing.assert_allclose(followed.a[SETTLED + 1 :], expected[SETTLED:], rtol=1e-13, atol=1e-12)
     assert np.isfinite(followed.a).all()

@@ -24,9 +24,9 @@ def test_it_is_what_a_track_records():
     recording = Recording(markers, np.zeros((FRAMES, 0, 6)), 1.0 / RATE_HZ)
     everywhere = np.zeros(MODEL.nv, dtype=bool)
     kalman = KinematicFilter(sensor, np.full(36, 0.005), recording.dt_s, everywhere, KinematicSettings())
-    follower = KinematicTracking(kalman)
-    recorded = track(follower, recording)
-    course = list(followed(follower, recording))
+    tracking = KinematicTracking(kalman)
+    recorded = track(tracking, recording)
+    course = list(followed(tracking, recording))
     assert [t for t, _, _ in course] == list(range(3, FRAMES))
     assert tuple(t for t, estimate, _ in course if estimate.started) == recorded.starts
     assert len(recorded.starts) == 2

@@ -29,7 +29,7 @@ def made_up(frames=12, seed=0, **changes):
         "rejected": np.zeros((T, M), bool), "foot_wrench": np.concatenate([force, moment], axis=2),
         "foot_cop_m": cop, "foot_free_moment_nm": free, "residual_force_n": rng.normal(size=(T, 3)),
         "residual_moment_nm": rng.normal(size=(T, 3)), "tracked": np.ones(T, bool), "valid": np.ones(T, bool),
-        "held_dofs": ("pelvis_5",), "nis": rng.random(T), "nis_readings": np.full(T, 6),
+        "unobserved_dofs": ("pelvis_5",), "nis": rng.random(T), "nis_readings": np.full(T, 6),
         "step_seconds": np.full(T, 1e-3), "warnings": ("a remark, ünicode",),
         "settings": {"filter": "dynamic", "jerk": 200.0, "hide": ["A"]},
     }  # fmt: skip
@@ -46,7 +46,7 @@ def made_up_whole(frames=12, **changes):
     optional = {
         "plate_change": np.full((frames, 2, 6), np.nan),
         "foot_wrench_sd": rng.uniform(1.0, 9.0, (frames, 2, 6)),
-        "footing": rng.integers(-1, 3, (frames, 2)),
+        "foot_contact": rng.integers(-1, 3, (frames, 2)),
         "covariance": np.zeros((frames, 12, 12)),
         "plate_corners_m": rng.normal(size=(2, 4, 3)),
     }

@@ -15,7 +15,7 @@ def test_every_array_is_read_only_and_has_its_shape_documented():
         assert not getattr(r, name).flags.writeable
     assert r.tracked.dtype == bool
     assert r.nis_readings.dtype == np.int64
-    assert r.footing.dtype == np.int64
+    assert r.foot_contact.dtype == np.int64
     assert r.frames == 12
 
 

@@ -34,16 +34,18 @@ def test_what_a_filter_does_not_estimate_is_not_written_and_comes_back_as_none(t
     write_h5(made_up(), tmp_path / "motion.h5")
     back = read_h5(tmp_path / "motion.h5")
     with h5py.File(tmp_path / "motion.h5") as file:
-        for name in ("plate_change", "foot_wrench_sd", "footing", "covariance", "plate_corners_m"):
+        for name in ("plate_change", "foot_wrench_sd", "covariance", "plate_corners_m"):
             assert name not in file
             assert getattr(back, name) is None
+        assert "footing" not in file
+        assert back.foot_contact is None
 
 
 def test_every_quantity_carries_its_unit(tmp_path):
     write_h5(made_up_whole(), tmp_path / "motion.h5")
     assert set(UNITS) | set(DTYPES) | {"nis", "covariance"} == set(ARRAYS)
     with h5py.File(tmp_path / "motion.h5") as file:
-        assert set(ARRAYS) - set(file) == {"covariance"}
+        assert set(ARRAYS) - set(file) == {"covariance", "foot_contact"}  # the latter as "footing"
         for name in ARRAYS:
             if name in file:
                 assert file[name].attrs["unit"] == UNITS.get(name, "1")
@@ -87,3 +89,14 @@ def test_damaged_files_are_refused(tmp_path, damage, message):
         damage(file)
     with pytest.raises(FileFormatError, match=message):
         read_h5(path)
+
+
+def test_keys_are_those_of_older_files(tmp_path):
+    r = made_up_whole()
+    write_h5(r, tmp_path / "motion.h5")
+    with h5py.File(tmp_path / "motion.h5") as file:
+        assert tuple(file["held_dofs"].asstr()) == r.unobserved_dofs == ("pelvis_5",)
+        np.testing.assert_array_equal(file["footing"], r.foot_contact)
+    back = read_h5(tmp_path / "motion.h5")
+    assert back.unobserved_dofs == r.unobserved_dofs
+    np.testing.assert_array_equal(back.foot_contact, r.foot_contact)

@@ -1,4 +1,4 @@
-"""The pendulum in natural coordinates: eqs. 3.53–3.59, energy, inverse and forward dynamics, points on the bars."""
+"""The pendulum in natural coordinates: thesis eqs. 3.53–3.59; energy, inverse and forward dynamics, points."""
 
 import numpy as np
 import pytest
@@ -95,7 +95,7 @@ def natural_inertia(shape):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_derivatives_are_the_thesis_s_formulas(seed):
-    """Eqs. 3.42–3.50 with R_z numeric; the last derivative of eq. 3.47 is by ż, so that C = 2 Rᵀ M̄ Ṙ."""
+    """Thesis eqs. 3.42–3.50 with R_z numeric; the last derivative of thesis eq. 3.47 is by ż, so that C = 2 Rᵀ M̄ Ṙ."""
     body, (q, v, rng) = DoublePendulum(SHAPE), moving(seed)
     u = 100.0 * rng.normal(size=7)
     R, M, Bt, M_bar = (

@@ -22,7 +22,7 @@ from tests.motions import (
     worst,
 )
 
-TABLE_4_2 = {  # mass kg, com m, inertia 1e-2 kg m²; shank's y and z of the com corrected (SPEC §2)
+TABLE_4_2 = {  # mass kg, com m, inertia 1e-2 kg m²; shank's y and z of the com corrected
     "pelvis": (14.200, (0, 0, -0.211), (26.220, 13.450, 26.220)),
     "torso": (24.950, (0, 0, 0.101), (24.640, 37.190, 19.210)),
     "neck": (1.061, (0, 0, 0.061), (0.268, 0.215, 0.215)),
@@ -141,7 +141,7 @@ def test_table_4_1_says_which_factor_scales_which_axis(values):
 @given(FACTORS, st.floats(20.0, 200.0))
 @settings(max_examples=30, deadline=None)
 def test_scaling_laws(values, mass):
-    """Masses by k_m, centres of mass by k, inertias by k_m k² (eqs. 4.2–4.4), joint places by the parent's k."""
+    """Masses by k_m, centres of mass by k, inertias by k_m k² (thesis eqs. 4.2–4.4), joint places by the parent's k."""
     description, scale = reference_model().description, np.array(values)
     model, k_m = HumanModel(description, scale, mass), mass / 81.52
     length = {"pelvis": 3, "torso": 3} | {

@@ -17,11 +17,11 @@ LOAD = np.array([80.0, 40.0, 500.0, 60.0, 60.0, 20.0])
 class Moment:
     """A body at a random instant of a random motion under random loads."""
 
-    def __init__(self, force_state="inertial", frame="ankle", seed=1, held=()):
+    def __init__(self, force_state="inertial", frame="ankle", seed=1, fixed=()):
         rng = np.random.default_rng(seed)
         self.model = random_model(rng)
         mask = np.zeros(self.model.nv, dtype=bool)
-        mask[list(held)] = True
+        mask[list(fixed)] = True
         self.body = HumanDynamics(self.model, mask, frame, force_state)
         self.q, self.v = moderate_pose(self.model, rng), 2.0 * rng.normal(size=self.model.nv)
         self.a = np.where(self.body.kinematic, 0.0, 10.0 * rng.normal(size=self.model.nv))
@@ -118,14 +118,14 @@ def test_local_wrench_has_the_same_power_on_the_foot(frame):
 
 
 def test_prescribed_dofs_do_not_accelerate():
-    held = (9, 10, 20)
-    m = Moment(held=held)
+    fixed = (9, 10, 20)
+    m = Moment(fixed=fixed)
     a = m.body.acceleration(m.q, m.v, m.u + 1.0)
-    assert not a[list(held)].any()
+    assert not a[list(fixed)].any()
     toes = [m.model.joint(f"{side}_toes").v.start for side in ("right", "left")]
     assert not a[toes].any()
-    np.testing.assert_array_equal(np.flatnonzero(m.body.kinematic), sorted([*held, *toes]))
-    assert not m.body.linearise(m.q, m.v, m.u).by_u[list(held)].any()
+    np.testing.assert_array_equal(np.flatnonzero(m.body.kinematic), sorted([*fixed, *toes]))
+    assert not m.body.linearise(m.q, m.v, m.u).by_u[list(fixed)].any()
 
 
 def test_tangent_space_turns_with_the_motion():

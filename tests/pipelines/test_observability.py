@@ -38,7 +38,7 @@ def test_the_reference_protocol_determines_all_52_dofs_and_their_velocities():
 @pytest.mark.parametrize("name", BLIND)
 def test_each_protocol_lacks_what_it_has_no_markers_for(name):
     found = check_protocol(load_protocol(name)).after
-    assert segments_of(found.unseen + found.sometimes_unseen) == BLIND[name]
+    assert segments_of(found.unobserved + found.sometimes_unobserved) == BLIND[name]
 
 
 def test_computed_points_do_not_count():

@@ -129,9 +129,9 @@ def test_the_result_says_how_it_was_made(made, result):
     assert (result.trial, result.protocol, result.filter) == ("made", "reference36", "kinematic")
     assert result.rate_hz == RATE_HZ
     assert result.dof_names == dof_names(made.model)
-    assert result.held_dofs == ()
+    assert result.unobserved_dofs == ()
     assert result.settings["correct_markers"] is True
-    assert (result.foot_wrench_sd, result.footing, result.plate_change, result.covariance) == (None,) * 4
+    assert (result.foot_wrench_sd, result.foot_contact, result.plate_change, result.covariance) == (None,) * 4
     assert not result.smoothed
     assert result.tracked.all()
 
@@ -175,8 +175,8 @@ def test_legs_alone_leave_the_rest_neutral_and_uncertain(made):
     above = np.concatenate(
         [np.arange(made.model.nv)[j.v] for s, j in made.model.joints.items() if s not in LEGS]
     )
-    assert found.held_dofs == tuple(dof_names(made.model)[i] for i in above)
-    assert "dofs move no marker and are held in the neutral posture" in " ".join(found.warnings)
+    assert found.unobserved_dofs == tuple(dof_names(made.model)[i] for i in above)
+    assert "dofs move no marker and keep the neutral posture" in " ".join(found.warnings)
     np.testing.assert_allclose(found.q[:, 7:35], np.tile(made.model.neutral()[7:35], (FRAMES, 1)), atol=1e-9)
     assert (found.sd_q[:, above] >= made.model.posture_sd[above] * (1 - 1e-6)).all()
     below = np.setdiff1d(np.arange(3, made.model.nv), above)

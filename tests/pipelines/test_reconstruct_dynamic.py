@@ -93,7 +93,7 @@ def test_plates_are_moved_by_less_than_their_noise():
 
 def test_feet_stand_on_their_plates():
     found = made()
-    np.testing.assert_array_equal(found.footing, 1)
+    np.testing.assert_array_equal(found.foot_contact, 1)
     assert (found.foot_wrench_sd > 0).all()
     assert np.abs((found.foot_wrench - truth("foot_wrench")) / found.foot_wrench_sd)[LATE].max() < 4.0
 
@@ -110,7 +110,7 @@ def test_every_number_has_a_spread_that_covers_its_error():
 def test_a_withheld_plate_is_estimated_and_said_to_be():
     withheld = capture().plates[LEFT].name
     found = made(without_plates=(withheld,))
-    assert (found.footing == [1, -1]).all(axis=1)[2:].all()
+    assert (found.foot_contact == [1, -1]).all(axis=1)[2:].all()
     assert "where no plate reads: its reaction is estimated" in " ".join(found.warnings)
     assert not found.valid.any()
     assert found.plate_change.shape == (80, 1, 6)
@@ -138,7 +138,7 @@ def test_without_plates_reactions_are_estimated_and_residuals_are_not():
 
 def test_without_plates_the_feet_carry_the_body():
     found = made(without_plates=("1", "2"))
-    assert (found.footing == -1).all(axis=1).mean() > 0.9
+    assert (found.foot_contact == -1).all(axis=1).mean() > 0.9
     total = found.foot_wrench[:, :, 2].sum(axis=1)
     assert rms((total - truth("foot_wrench")[:, :, 2].sum(axis=1))[LATE]) < 100.0
     off = np.abs((found.tau - truth("tau")) / found.sd_tau)[LATE, 6:]
@@ -149,7 +149,7 @@ def test_without_plates_the_feet_carry_the_body():
 def test_without_plates_the_kinematic_filter_tells_no_torques():
     found = made(without_plates=("1", "2"), filter="kinematic")
     assert np.isnan(found.tau).all()
-    assert found.foot_wrench_sd is None and found.footing is None
+    assert found.foot_wrench_sd is None and found.foot_contact is None
     assert "no force plates: torques and residuals are not computed" in found.warnings
 
 
@@ -190,16 +190,16 @@ def legs_alone():
 
 def test_legs_alone_are_followed_and_the_rest_is_named():
     found = reconstruct(*legs_alone(), settings=ReconstructSettings(correct_markers=False))
-    assert len(found.held_dofs) == 26
-    assert "26 dofs move no marker and are held in the neutral posture" in " ".join(found.warnings)
+    assert len(found.unobserved_dofs) == 26
+    assert "26 dofs move no marker and keep the neutral posture" in " ".join(found.warnings)
     assert rms(leg_errors(found)) < np.deg2rad(1.0)
 
 
-def test_held_dofs_keep_the_neutral_posture():
+def test_unobserved_dofs_keep_the_neutral_posture():
     found = reconstruct(*legs_alone(), settings=ReconstructSettings(correct_markers=False))
     model = trial("squat").model
     away = angle_errors(model, found.q, np.tile(model.neutral(), (len(found.q), 1)))
-    held = np.isin(found.dof_names, found.held_dofs)
+    held = np.isin(found.dof_names, found.unobserved_dofs)
     assert np.abs(away[:, held]).max() < np.deg2rad(1.0)
 
 
@@ -209,7 +209,7 @@ def test_the_thesiss_filter_tells_torques_where_it_has_them():
     known = ~np.isnan(found.sd_tau[1])
     assert known.sum() == 50
     assert rms((found.tau - truth("tau"))[LATE][:, known][:, 6:]) < 5.0
-    np.testing.assert_array_equal(found.footing, 1)
+    np.testing.assert_array_equal(found.foot_contact, 1)
 
 
 def test_settings_of_a_filter_reach_it():

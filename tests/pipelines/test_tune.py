@@ -139,4 +139,4 @@ def test_inputs_are_those_of_a_reconstruction(subject, trial):
     assert recording.plates.shape == (160, 0, 6)
     np.testing.assert_array_equal(inputs.noise_m, STATED * NOISE_M)
     np.testing.assert_array_equal(recording.markers_m, trial.markers.positions_m)
-    assert not inputs.held.any()
+    assert not inputs.unobservable.any()

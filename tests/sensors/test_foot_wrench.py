@@ -1,4 +1,4 @@
-"""Plate readings of foot wrenches: the rigid transfer of eqs. 4.10–4.13 and its derivatives."""
+"""Plate readings of foot wrenches: the rigid transfer of thesis eqs. 4.10–4.13 and its derivatives."""
 
 import numpy as np
 import pytest
@@ -30,7 +30,7 @@ def test_a_plate_reads_what_was_put_on_the_foot(frame):
 
 
 def test_the_printed_transfer():
-    """Eq. 4.11 with the thesis's state: [I, 0; r̃, A], r from the plate's centre to the foot's centre of mass."""
+    """Thesis eq. 4.11 with the thesis's state: [I, 0; r̃, A], r from the plate's centre to the foot's centre of mass."""
     sensor, q, wrench = made("thesis")
     state = sensor.dynamics.wrench_state(q, wrench)
     model = sensor.dynamics.model

@@ -43,7 +43,7 @@ def test_ranks_equal_those_of_the_finite_difference_jacobian(model):
     segments, places = zip(*markers, strict=True)
     sensor = MarkerSensor(model, segments, np.array(places))
     found = observed(model, markers)
-    for q, rank, share in zip(generic_postures(model), found.ranks, found.unseen_share, strict=True):
+    for q, rank, share in zip(generic_postures(model), found.ranks, found.unobserved_share, strict=True):
         _, singular, directions = np.linalg.svd(finite_difference_jacobian(model, sensor, q))
         assert rank == np.sum(singular > 1e-6 * singular[0])
         np.testing.assert_allclose(share, np.sum(directions[rank:] ** 2, axis=0), atol=1e-5)
@@ -53,19 +53,19 @@ def test_three_markers_on_the_pelvis_determine_it_alone(model):
     found = observed(model, PELVIS)
     assert (found.ranks == 6).all()
     assert (found.state_ranks == 12).all()
-    assert found.unseen == found.dofs[6:]
-    assert found.sometimes_unseen == ()
+    assert found.unobserved == found.dofs[6:]
+    assert found.sometimes_unobserved == ()
     assert not found.complete
-    np.testing.assert_allclose(found.unseen_share[:, 6:], 1.0, atol=1e-9)
+    np.testing.assert_allclose(found.unobserved_share[:, 6:], 1.0, atol=1e-9)
 
 
 def test_two_markers_in_line_with_the_hip_leave_the_turn_about_that_line(model):
     on_axis = [("right_thigh", (0.0, 0.0, -0.2)), ("right_thigh", (0.0, 0.0, -0.4))]
     found = observed(model, PELVIS + on_axis)
     assert (found.ranks == 8).all()
-    assert "right_thigh_z" in found.unseen
-    assert "right_thigh_x" not in found.unseen
-    assert "right_thigh_y" not in found.unseen
+    assert "right_thigh_z" in found.unobserved
+    assert "right_thigh_x" not in found.unobserved
+    assert "right_thigh_y" not in found.unobserved
 
 
 def test_a_bent_knee_shows_what_a_straight_one_hides(model):
@@ -73,8 +73,8 @@ def test_a_bent_knee_shows_what_a_straight_one_hides(model):
     markers = [*PELVIS, ("right_thigh", (0.0, 0.0, -0.3)), ("right_foot", (0.0, 0.0, 0.0))]
     found = observed(model, markers)
     i = found.dofs.index("right_thigh_z")
-    assert found.unseen_share[0, i] == pytest.approx(1.0)
-    assert (found.unseen_share[1:, i] < 0.9).all()
+    assert found.unobserved_share[0, i] == pytest.approx(1.0)
+    assert (found.unobserved_share[1:, i] < 0.9).all()
     assert np.isinf(found.sd[0, i])
 
 
@@ -101,10 +101,10 @@ def test_observability_matrix_of_a_chain_and_of_the_kinematic_plant():
 
 def test_null_space_is_what_the_matrix_does_not_see():
     matrix = np.random.default_rng(1).normal(size=(4, 3)) @ np.random.default_rng(2).normal(size=(3, 6))
-    unseen = null_space(matrix)
-    assert unseen.shape == (6, 3)
-    np.testing.assert_allclose(matrix @ unseen, 0.0, atol=1e-12)
-    np.testing.assert_allclose(unseen.T @ unseen, np.eye(3), atol=1e-12)
+    unobserved = null_space(matrix)
+    assert unobserved.shape == (6, 3)
+    np.testing.assert_allclose(matrix @ unobserved, 0.0, atol=1e-12)
+    np.testing.assert_allclose(unobserved.T @ unobserved, np.eye(3), atol=1e-12)
     assert numerical_rank(np.zeros((2, 2))) == 0
 
 

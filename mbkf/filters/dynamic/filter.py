@@ -1,6 +1,6 @@
 """The dynamic filter: positions, velocities, accelerations and foot wrenches that obey Newton's law together.
 
-For given q and v, (a, w) and (τ, w) tell the same, τ = ID(q, v, a) − Jᵀw. A state of accelerations instead of torques
+For given q and v, (a, w) and (τ, w) are equivalent, τ = ID(q, v, a) − Jᵀw. A state of accelerations instead of torques
 has a linear plant that is never stiff; Newton's law at the pelvis is one of its readings, and torques follow.
 """
 
@@ -126,7 +126,17 @@ class DynamicFilter(Filter[DynamicState]):
         settings: DynamicSettings,
         inertial: InertialSensor | None = None,
     ) -> DynamicFilter:
-        """The filter with :func:`dynamic_blocks`, whose arguments these are."""
+        """The filter with the blocks of :func:`dynamic_blocks`.
+
+        Args:
+            sensor: The markers on the body.
+            noise_m: (M,) their noise, m.
+            detector: Finds what the feet stand on.
+            dt_s: Time between frames.
+            unobservable: (nv,) dofs that no marker of the capture moves with.
+            settings: Settings of plant and blocks.
+            inertial: Inertial sensors on the body.
+        """
         blocks = dynamic_blocks(sensor, noise_m, detector, dt_s, unobservable, settings, inertial)
         return cls(sensor, noise_m, dt_s, unobservable, settings, blocks)
 

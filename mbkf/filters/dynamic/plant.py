@@ -6,8 +6,8 @@ deviation σ_a; T → ∞ with σ_a²/T fixed is the constant-acceleration plant
     q' = q ⊕ (v Δt + a c₂),  v' = v + a c₁,  a' = ρ a,  w' = w
     ρ = e^(−Δt/T),  c₁ = T(1 − ρ),  c₂ = T(Δt − c₁)
 
-σ_a follows the motion: a joint at rest is expected to stay so, a busy one to change quickly. How wrenches wander
-depends on where the feet then are and is the contact block's (:mod:`mbkf.sensors.foot_contact`).
+σ_a follows the motion: a joint at rest is expected to stay so, a busy one to change quickly. The process noise of the
+wrenches depends on the contact of the feet and is the contact block's (:mod:`mbkf.sensors.foot_contact`).
 """
 
 from __future__ import annotations
@@ -20,6 +20,8 @@ from scipy.linalg import expm
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
+from mbkf.filters.filter import Plant
+from mbkf.model.human import HumanModel
 from mbkf.sensors.block import Notes
 from mbkf.sensors.layout import WRENCH, ExtraState, Layout
 
@@ -67,7 +69,7 @@ class DynamicState:
     extra: Array = field(default_factory=lambda: np.zeros(0))
 
 
-class SingerPlant:
+class SingerPlant(Plant[DynamicState]):
     """Predicts a :class:`DynamicState`.
 
     Attributes:

@@ -1,7 +1,7 @@
 """Smoother of the dynamic filter: later frames correct earlier ones, iterated until Newton's law holds.
 
 Each round is an exact linear smoother around the trajectory of the round before: the iterated Kalman smoother, a
-Gauss–Newton method (B. M. Bell, SIAM Journal on Optimization 4 (1994) 626–636). Long trials are smoothed in stretches
+Gauss–Newton method (B. M. Bell, SIAM Journal on Optimization 4 (1994) 626–636). Long trials are smoothed in windows
 that look a little beyond their ends (:mod:`mbkf.filters.fixed_lag`).
 """
 
@@ -39,7 +39,7 @@ def smooth(
     rounds: int,
     wanted: int | None = None,
 ) -> Iterator[DynamicState]:
-    """Smoothed states of a stretch, in order.
+    """Smoothed states of a window, in order.
 
     Args:
         kalman: The filter that ran through it.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import cast
 
 import numpy as np
 
@@ -11,8 +12,8 @@ from mbkf.filters.dynamic.filter import DynamicFilter
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.dynamic.smoother import smooth
 from mbkf.filters.error_covariance import ErrorCovariance
-from mbkf.filters.estimate import Posterior, Prediction, Recording
-from mbkf.filters.filter import Step
+from mbkf.filters.estimate import Posterior, Prediction, Recording, TrackingFilter
+from mbkf.filters.filter import Prior, Step
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.tracking import warm_start
 from mbkf.filters.spread import Spread, SpreadReader, root
@@ -24,10 +25,15 @@ DynamicStep = Step[DynamicState]
 """A step of the dynamic filter."""
 
 ROUNDS = 2
-"""How often a smoothed stretch is linearised; a third round changes the residual by less than 0.1 N."""
+"""How often a smoothed window is linearised; a third round changes the residual by less than 0.1 N."""
 
 
-class DynamicTracking:
+def _record(estimate: Posterior) -> DynamicStep:
+    """The dynamic filter's own record of a frame."""
+    return cast(DynamicStep, estimate.inner)
+
+
+class DynamicTracking(TrackingFilter):
     """Drives a :class:`DynamicFilter`; see :class:`mbkf.filters.estimate.TrackingFilter`."""
 
     def __init__(self, kalman: DynamicFilter, starter: KinematicFilter) -> None:
@@ -50,7 +56,7 @@ class DynamicTracking:
 
     def predict(self, before: Posterior) -> Prediction:
         """By the filter's own plant."""
-        was: DynamicStep = before.inner
+        was = _record(before)
         prior = self.kalman.predict(was.state, was.memory)
         nv = self.model.nv
         reading = self.kalman.prepared_by(Markers, prior)
@@ -60,8 +66,8 @@ class DynamicTracking:
         self, before: Posterior, recording: Recording, t: int, prediction: Prediction | None = None
     ) -> Posterior:
         """One frame on."""
-        was: DynamicStep = before.inner
-        prior = None if prediction is None else prediction.prior
+        was = _record(before)
+        prior = None if prediction is None else cast("Prior[DynamicState] | None", prediction.prior)
         return self._estimate(self.kalman.step(was.state, was.memory, recording.frame(t), prior))
 
     def covariance(self, estimate: Posterior) -> Array:
@@ -71,7 +77,7 @@ class DynamicTracking:
 
     def spread(self, estimate: Posterior) -> Spread:
         """Standard deviations; torques' from the whole state through Newton–Euler."""
-        state: DynamicState = estimate.inner.state
+        state = _record(estimate).state
         torque = self.kalman.balance.torques(state.q, state.v, state.a, state.w)
         errors = self.errors(estimate)
         variance = errors.position_variance
@@ -92,7 +98,7 @@ class DynamicTracking:
 
     def errors(self, estimate: Posterior) -> ErrorCovariance:
         """Those of the whole state; what the filter itself states where only white noise is expected."""
-        step: DynamicStep = estimate.inner
+        step = _record(estimate)
         s, P, notes = self.kalman.settings, step.state.P, step.decisions.notes
         share = s.markers.innovation_share
         if share <= 0.0:
@@ -110,13 +116,13 @@ class DynamicTracking:
 
     def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) from the state's covariance."""
-        return np.sqrt(np.diag(estimate.inner.state.P)[self.kalman.layout.wrench]).reshape(2, 6)
+        return np.sqrt(np.diag(_record(estimate).state.P)[self.kalman.layout.wrench]).reshape(2, 6)
 
     def innovation(self, estimate: Posterior) -> tuple[float, int]:
         """Of markers, plates and Newton's law."""
         if estimate.started:
             return np.nan, 0
-        step: DynamicStep = estimate.inner
+        step = _record(estimate)
         return step.nis, step.nis_readings
 
     def smooth(
@@ -124,9 +130,9 @@ class DynamicTracking:
     ) -> list[Posterior]:
         """Iterated smoother; see :mod:`mbkf.filters.dynamic.smoother`."""
         del recording, first
-        states = smooth(self.kalman, [estimate.inner for estimate in run], ROUNDS, wanted)
+        states = smooth(self.kalman, [_record(estimate) for estimate in run], ROUNDS, wanted)
         return [
-            e._replace(q=s.q, v=s.v, a=s.a, wrench=s.w.reshape(2, 6), inner=e.inner._replace(state=s))
+            e._replace(q=s.q, v=s.v, a=s.a, wrench=s.w.reshape(2, 6), inner=_record(e)._replace(state=s))
             for e, s in zip(run, states, strict=False)
         ]
 

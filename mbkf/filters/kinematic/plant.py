@@ -12,6 +12,8 @@ from scipy.linalg import blas
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
+from mbkf.filters.filter import Plant
+from mbkf.model.human import HumanModel
 from mbkf.sensors.block import Notes
 from mbkf.sensors.layout import Layout
 
@@ -37,7 +39,7 @@ class KinematicState:
         return KinematicState(self.q, -self.v, sign[:, None] * self.P * sign)
 
 
-class WhiteAccelerationPlant:
+class WhiteAccelerationPlant(Plant[KinematicState]):
     """q' = q ⊕ (v Δt + a Δt²/2), v' = v + a Δt with a white, constant over the step.
 
     Φ = [[A, B Δt], [0, 1]] is exact on the manifold: A and B are the derivatives of the retraction, which reduce to 1

@@ -7,18 +7,18 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class KinematicSettings:
-    """What the kinematic filter believes of noise and of markers that misbehave.
+    """Noise of the kinematic filter and its gate for outlying markers.
 
     Attributes:
         acceleration_scale: Factor on the body's table of typical accelerations (σ_a per dof).
         marker_noise_scale: Factor on the markers' own noise.
-        gate: Squared Mahalanobis distance (3 readings) above which a marker is not believed.
+        gate: Squared Mahalanobis distance (3 readings) above which a marker is refused.
         gate_radius_m: Distance below which no marker is refused, m.
         posture_scale: The posture prior's spread is the body's table times this, per reading.
         velocity_sd: Spread of a velocity about rest, rad/s or m/s, per reading; holds back the joints of segments
             none of whose markers is seen.
         restart_rms_m: A pose fit better than this is accepted to start or restart the filter, m.
-        restart_after_s: Time without enough believable markers after which the filter starts anew.
+        restart_after_s: Time without enough markers inside their gates after which the filter starts anew.
         min_markers: Fewer markers than this in a frame leave the body untracked.
     """
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.estimate import NO_WRENCH, Posterior, Prediction, Recording
-from mbkf.filters.filter import Memory, Step
+from mbkf.filters.estimate import NO_WRENCH, Posterior, Prediction, Recording, TrackingFilter
+from mbkf.filters.filter import Memory, Prior, Step
 from mbkf.filters.kinematic.filter import KinematicFilter, VelocityStep
 from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.filters.spread import Spread, SpreadReader
@@ -90,7 +90,12 @@ def warm_start(
     return WarmStart(state.reversed_in_time(), accelerations[: max(1, round(SETTLING_S / dt))])
 
 
-class KinematicTracking:
+def _record(estimate: Posterior) -> KinematicRecord:
+    """The kinematic filter's own record of a frame."""
+    return cast(KinematicRecord, estimate.inner)
+
+
+class KinematicTracking(TrackingFilter):
     """Drives a :class:`KinematicFilter`; see :class:`mbkf.filters.estimate.TrackingFilter`."""
 
     def __init__(self, kalman: KinematicFilter) -> None:
@@ -113,7 +118,7 @@ class KinematicTracking:
 
     def predict(self, before: Posterior) -> Prediction:
         """By the filter's own plant."""
-        was: KinematicRecord = before.inner
+        was = _record(before)
         prior, nv = self.kalman.predict(was.state, self._memory(was)), self.model.nv
         markers = MarkerPrediction(self.kalman.prepared_by(Markers, prior), prior.state.P[:nv, :nv])
         return Prediction(prior.state.q, markers, prior)
@@ -122,8 +127,8 @@ class KinematicTracking:
         self, before: Posterior, recording: Recording, t: int, prediction: Prediction | None = None
     ) -> Posterior:
         """One frame on."""
-        was: KinematicRecord = before.inner
-        prior = None if prediction is None else prediction.prior
+        was = _record(before)
+        prior = None if prediction is None else cast("Prior[KinematicState] | None", prediction.prior)
         step = self.kalman.step(was.state, self._memory(was), recording.frame(t), prior)
         state, since = step.state, was.since + 1
         settled = since >= len(was.settling)
@@ -136,11 +141,11 @@ class KinematicTracking:
 
     def covariance(self, estimate: Posterior) -> Array:
         """(2 nv, 2 nv) of (q, v)."""
-        return estimate.inner.state.P
+        return _record(estimate).state.P
 
     def spread(self, estimate: Posterior) -> Spread:
         """Standard deviations; torques as far as accelerations cause them, NaN at a start."""
-        inner: KinematicRecord = estimate.inner
+        inner = _record(estimate)
         q, P, nv = inner.state.q, inner.state.P, self.model.nv
         torque = np.full(nv, np.nan)
         if inner.step is not None and inner.before is not None:
@@ -155,7 +160,7 @@ class KinematicTracking:
 
     def innovation(self, estimate: Posterior) -> tuple[float, int]:
         """Of the markers."""
-        step: KinematicStep | None = estimate.inner.step
+        step = _record(estimate).step
         return (np.nan, 0) if step is None else (step.nis, step.nis_readings)
 
     def smooth(
@@ -169,7 +174,7 @@ class KinematicTracking:
         states: list[KinematicState] = []
         back = BackwardPass(2 * self.model.nv)
         for k in range(len(run) - 1, -1, -1):
-            inner: KinematicRecord = run[k].inner
+            inner = _record(run[k])
             state = inner.state
             states.append(self.kalman.plant.retract(state, back.step(state.P), back.covariance(state.P)))
             if k and inner.step is not None and inner.before is not None:
@@ -180,6 +185,6 @@ class KinematicTracking:
         v = np.array([state.v for state in states])
         a = np.gradient(v, self.dt_s, axis=0) if len(v) > 1 else np.zeros_like(v)
         return [
-            e._replace(q=s.q, v=s.v, a=acc, inner=e.inner._replace(state=s))
+            e._replace(q=s.q, v=s.v, a=acc, inner=_record(e)._replace(state=s))
             for e, s, acc in list(zip(run, states, a, strict=True))[:wanted]
         ]

@@ -7,7 +7,7 @@ coordinates of the forces, :data:`mbkf.model.human_dynamics.FORCE_STATES` says.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
@@ -74,14 +74,14 @@ def torque_blocks(
             sensor,
             noise_m,
             dt_s,
-            body.held,
+            body.fixed,
             markers,
             inflate=False,
             track_loss=False,
             compress=JacobianInformation,
         ),
         FootPlates(body, detector, dt_s, plates),
-        PostureAndRest(PostureSensor(body.model), body.held, weak.posture_scale, weak.velocity_sd),
+        PostureAndRest(PostureSensor(body.model), body.fixed, weak.posture_scale, weak.velocity_sd),
         PelvisResidual(body, residual_sd(body, settings)),
     ]
 
@@ -150,7 +150,7 @@ class TorqueFilter(Filter[ForcedState]):
         super().__init__(plant, blocks, informed_whole)
         self.sensor, self.settings, self.body, self.plates = sensor, settings, body, plates[0]
         self.noise_m = noise_m * settings.tracking.marker_noise_scale
-        self.unobservable = body.held
+        self.unobservable = body.fixed
         self._start = TorqueStart(body, plant, settings, residual_sd(body, settings))
 
     @classmethod
@@ -185,8 +185,11 @@ class TorqueFilter(Filter[ForcedState]):
             acceleration: (nv,) estimate.
             frame: Readings of the frame; the plates' are used.
         """
+        # Where the motion leads is given, so that no forces are read of the state.
         begun = PlateMemory(self.plates.detector.begin(), Ahead(motion.q, motion.v, acceleration))
-        decision = self.plates.decide(OperatingPoint(motion, None), frame, begun, Notes())
+        decision = self.plates.decide(
+            OperatingPoint(cast("ForcedState", motion), None), frame, begun, Notes()
+        )
         feet = decision.reading
         state = self._start.state(motion, acceleration, feet, self.plates.sd(feet))
         memory = self._with_plates(self.begin(), self.plates.next_memory(state, decision))

@@ -34,12 +34,32 @@ Integrator = Callable[[ForcedBody, Motion, Array, float], Motion]
 
 
 def forward_euler(body: ForcedBody, now: Motion, u: Array, h: float) -> Motion:
-    """z⁺ = z + ż h, ż⁺ = ż + z̈ h (eq. 3.32), order 1."""
+    """z⁺ = z + ż h, ż⁺ = ż + z̈ h (thesis eq. 3.32), order 1.
+
+    Args:
+        body: The body.
+        now: Motion at the beginning of the step.
+        u: (nu,) forces, constant over the step: N m, N.
+        h: Step in s.
+
+    Returns:
+        The motion at its end.
+    """
     return Motion(body.integrate(now.q, h * now.v), now.v + h * body.acceleration(now.q, now.v, u))
 
 
 def heun(body: ForcedBody, now: Motion, u: Array, h: float) -> Motion:
-    """Mean of the rates here and where an Euler step leads (eq. 3.34), order 2."""
+    """Mean of the rates here and where an Euler step leads (thesis eq. 3.34), order 2.
+
+    Args:
+        body: The body.
+        now: Motion at the beginning of the step.
+        u: (nu,) forces, constant over the step: N m, N.
+        h: Step in s.
+
+    Returns:
+        The motion at its end.
+    """
     a = body.acceleration(now.q, now.v, u)
     ahead = Motion(body.integrate(now.q, h * now.v), now.v + h * a)
     a_ahead = body.acceleration(ahead.q, ahead.v, u)
@@ -47,7 +67,17 @@ def heun(body: ForcedBody, now: Motion, u: Array, h: float) -> Motion:
 
 
 def trapezoidal_fixed_point(body: ForcedBody, now: Motion, u: Array, h: float) -> Motion:
-    """Mean of the rates at both ends (eq. 3.35), order 2; solved by repeating it."""
+    """Mean of the rates at both ends (thesis eq. 3.35), order 2; solved by repeating it.
+
+    Args:
+        body: The body.
+        now: Motion at the beginning of the step.
+        u: (nu,) forces, constant over the step: N m, N.
+        h: Step in s.
+
+    Returns:
+        The motion at its end.
+    """
     a = body.acceleration(now.q, now.v, u)
     v = now.v + h * a
     for _ in range(FIXED_POINT_ITERATIONS):
@@ -61,10 +91,19 @@ def trapezoidal_fixed_point(body: ForcedBody, now: Motion, u: Array, h: float) -
 
 
 def trapezoidal_newton(body: ForcedBody, now: Motion, u: Array, h: float) -> Motion:
-    """The same rule (eq. 3.35), solved by Newton's method in v⁺.
+    """The same rule (thesis eq. 3.35), solved by Newton's method in v⁺.
 
     g(v⁺) = v⁺ − v − h/2 (z̈ + z̈(q⁺, v⁺)) with q⁺ = q ⊕ h/2 (v + v⁺), so ∂g = I − h/2 (z̈_z D h/2 + z̈_ż), D the
     derivative of the retraction.
+
+    Args:
+        body: The body.
+        now: Motion at the beginning of the step.
+        u: (nu,) forces, constant over the step: N m, N.
+        h: Step in s.
+
+    Returns:
+        The motion at its end.
     """
     a = body.acceleration(now.q, now.v, u)
     v = now.v + h * a
@@ -83,7 +122,17 @@ def trapezoidal_newton(body: ForcedBody, now: Motion, u: Array, h: float) -> Mot
 
 
 def runge_kutta(body: ForcedBody, now: Motion, u: Array, h: float) -> Motion:
-    """Classical Runge–Kutta in the tangent space at q (Munthe-Kaas), order 4: ξ̇ = D(ξ)⁻¹ v, v̇ = z̈(q ⊕ ξ, v)."""
+    """Classical Runge–Kutta in the tangent space at q (Munthe-Kaas), order 4: ξ̇ = D(ξ)⁻¹ v, v̇ = z̈(q ⊕ ξ, v).
+
+    Args:
+        body: The body.
+        now: Motion at the beginning of the step.
+        u: (nu,) forces, constant over the step: N m, N.
+        h: Step in s.
+
+    Returns:
+        The motion at its end.
+    """
 
     def rate(xi: Array, v: Array) -> tuple[Array, Array]:
         q = body.integrate(now.q, xi)

@@ -1,4 +1,4 @@
-"""How the forces of the whole body wander: each by itself as in the thesis, or together, as Newton–Euler demands.
+"""Process noise of the whole body's forces: independent as in the thesis, or correlated as Newton–Euler demands.
 
 Forces that follow free accelerations and loads change by δτ = M δa − Jᵀ δw, or by M δa alone where loads are taken
 off ("inertial"). Noise that is independent instead leaves a foot of 1e-3 kg m² with the difference of two moments of
@@ -29,7 +29,14 @@ class Conditioned:
 
 
 def condition(covariance: Array, rows: Array, variance: Array, missing: Array) -> Conditioned:
-    """Conditions x ~ N(·, C) on A x + r = y, r of independent ``variance`` (m,), where y − A x̄ = ``missing`` (m,)."""
+    """Conditions x ~ N(x̄, C) on readings y = A x + r with independent r.
+
+    Args:
+        covariance: (n, n) C.
+        rows: (m, n) A.
+        variance: (m,) of r.
+        missing: (m,) innovation y − A x̄.
+    """
     carried = covariance @ rows.T
     S = rows @ carried + np.diag(variance)
     factor = scipy.linalg.cho_factor(S, check_finite=False)
@@ -52,7 +59,7 @@ def load_variance(settings: TorqueSettings, mass_kg: float) -> Array:
 
 
 class ForceNoise:
-    """Spectral density of the plant noise w̃ on (δq, δv, δT_e) (eqs. 2.42, 2.46).
+    """Spectral density of the plant noise w̃ on (δq, δv, δT_e) (thesis eqs. 2.42, 2.46).
 
     Attributes:
         body: The body.
@@ -60,10 +67,17 @@ class ForceNoise:
     """
 
     def __init__(self, body: HumanDynamics, dt_s: float, settings: TorqueSettings) -> None:
+        """Makes the noise of a body.
+
+        Args:
+            body: The body.
+            dt_s: Time step.
+            settings: Variances of the thesis's Table 4.3 or their replacements.
+        """
         self.body, self.settings = body, settings
         mass = body.model.mass_kg
         toes = body.model.acceleration_sd if settings.toe_acceleration is None else settings.toe_acceleration
-        self._toes = np.where(body.kinematic & ~body.held, toes, 0.0) ** 2 * dt_s
+        self._toes = np.where(body.kinematic & ~body.fixed, toes, 0.0) ** 2 * dt_s
         jerk = settings.jerk_scale * body.model.acceleration_sd
         self._jerk = np.where(body.kinematic, 0.0, jerk**2)
         self._residual, self._load = residual_variance(settings, mass), load_variance(settings, mass)

@@ -1,4 +1,4 @@
-"""The plant of the torque-state filters: x = [z, ż, T_e], forces a Wiener process (thesis 3.2.3, eqs. 3.36–3.41).
+"""The plant of the torque-state filters: x = [z, ż, T_e], forces a Wiener process (thesis eqs. 3.36–3.41).
 
 ẋ = [ż, M⁻¹(Q_g + Bᵀ T_e), A T_e] + w̃, with A = 0 in the thesis. Serves any body of
 :class:`mbkf.model.forced_body.ForcedBody`; the covariance lives in the tangent space (δz, δż, δT_e) of dimension
@@ -14,6 +14,7 @@ import numpy as np
 import scipy.linalg
 
 from mbkf.conventions import Array
+from mbkf.filters.filter import Plant
 from mbkf.filters.torque.integrators import Motion, integrator
 from mbkf.model.forced_body import ForcedBody, LinearAcceleration
 from mbkf.numerics.discretisation import Discrete, discretise, symmetric
@@ -43,10 +44,10 @@ class Scheme:
     """How the plant is discretised.
 
     Attributes:
-        integrator: "FE", "HE", "TF", "TN" or "RK4" (eqs. 3.32–3.35).
-        propagation: "first", "second" or "exponential" (eqs. 3.51, 3.52, 2.39).
-        covariance: "series" or "van_loan" (eqs. 2.45, 2.43).
-        complete: Whether F keeps all derivatives (eq. 3.40) or ∂z̈/∂T_e alone (eq. 4.15).
+        integrator: "FE", "HE", "TF", "TN" or "RK4" (thesis eqs. 3.32–3.35).
+        propagation: "first", "second" or "exponential" (thesis eqs. 3.51, 3.52, 2.39).
+        covariance: "series" or "van_loan" (thesis eqs. 2.45, 2.43).
+        complete: Whether F keeps all derivatives (thesis eq. 3.40) or ∂z̈/∂T_e alone (thesis eq. 4.15).
         mean_slope: Whether F is the mean of those at both ends of a step rather than the one at its beginning.
         substeps: Equal parts a frame is cut into.
     """
@@ -60,10 +61,10 @@ class Scheme:
 
 
 NoiseDensity = Callable[[ForcedState], Array]
-"""The spectral density (n, n) of w̃ at a state: G Σᴾ Gᵀ of eq. 2.46."""
+"""The spectral density (n, n) of w̃ at a state: G Σᴾ Gᵀ of thesis eq. 2.46."""
 
 
-class TorquePlant:
+class TorquePlant(Plant[ForcedState]):
     """Predicts mean and covariance of a forced body over one frame.
 
     Attributes:
@@ -72,8 +73,8 @@ class TorquePlant:
         dt_s: Time between frames.
         density: Noise density, taken at the beginning of a frame.
         scheme: How it is discretised.
-        drift: (nu, nu) A of u̇ = A u + w̃, for states that fade instead of wandering; None for 0. The motion sees u as
-            it is at the beginning of a step.
+        drift: (nu, nu) A of u̇ = A u + w̃, for states with a correlation time; None for random walks. The motion
+            sees u as it is at the beginning of a step.
     """
 
     def __init__(
@@ -105,7 +106,7 @@ class TorquePlant:
         self._fade: Array | None = None if drift is None else scipy.linalg.expm(step_s * drift)
 
     def sensitivity(self, v: Array, slope: LinearAcceleration) -> Array:
-        """(n, n) F of the error (eq. 3.40, simplified by eq. 4.15).
+        """(n, n) F of the error (thesis eq. 3.40, simplified by thesis eq. 4.15).
 
         On the manifold the zero block ∂ż/∂z becomes the turning of the tangent space with the motion, which is
         kinematics and belongs to the simplified F as well.
@@ -147,7 +148,7 @@ class TorquePlant:
         return self._advanced(state)[2].phi
 
     def predict(self, state: ForcedState, noise: None = None) -> ForcedPrediction:
-        """The state one frame later (eqs. 2.48, 2.49)."""
+        """The state one frame later (thesis eqs. 2.48, 2.49)."""
         del noise
         now, u, whole = self._advanced(state)
         P = symmetric(whole.phi @ state.P @ whole.phi.T + whole.noise)

@@ -61,7 +61,7 @@ def reported(body: HumanDynamics, wrenches: FootWrenchSensor, state: ForcedState
     torque = body.joint_forces(state.q, state.v, state.u)
     T = np.hstack([torque.by_q, torque.by_v, torque.by_u])
     tau_sd[body.torque_dofs] = np.sqrt(np.maximum(((T @ state.P) * T).sum(axis=1), 0.0))
-    tau_sd[body.held] = np.nan
+    tau_sd[body.fixed] = np.nan
     return TorqueState(
         state.q,
         state.v,

@@ -31,14 +31,14 @@ from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.torque.plant import Scheme
 
 MASS_OF_TABLE_KG = 100.0
-"""Covariances of forces scale with the subject's mass over this (eq. 4.18)."""
+"""Covariances of forces scale with the subject's mass over this (thesis eq. 4.18)."""
 
 
 @dataclass(frozen=True)
 class TorqueSettings:
-    """What the torque-state filter believes.
+    """Noise and structure of the torque-state filter.
 
-    Forces and moments are for a subject of 100 kg and scale with the subject's mass (eq. 4.18).
+    Forces and moments are for a subject of 100 kg and scale with the subject's mass (thesis eq. 4.18).
 
     Attributes:
         scheme: Integrator, propagation and covariance.

@@ -17,7 +17,7 @@ from mbkf.sensors.foot_plates import FootReading
 class TorqueStart:
     """Makes a first state.
 
-    Torques follow by inverse dynamics under the reactions (eq. 3.12), and so does their covariance. With consistent
+    Torques follow by inverse dynamics under the reactions (thesis eq. 3.12); so does their covariance. With consistent
     noise, motion and reactions are first made to agree on a small residual.
 
     Attributes:

@@ -9,7 +9,7 @@ from typing import cast
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.filters.estimate import Posterior, Prediction, Recording
+from mbkf.filters.estimate import Posterior, Prediction, Recording, TrackingFilter
 from mbkf.filters.filter import Memory
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.tracking import warm_start
@@ -41,7 +41,12 @@ class TorqueRecord:
     nis: float = np.nan
 
 
-class TorqueTracking:
+def _record(estimate: Posterior) -> TorqueRecord:
+    """The torque filter's own record of a frame."""
+    return cast(TorqueRecord, estimate.inner)
+
+
+class TorqueTracking(TrackingFilter):
     """Drives a :class:`TorqueFilter`; see :class:`mbkf.filters.estimate.TrackingFilter`."""
 
     def __init__(self, kalman: TorqueFilter, starter: KinematicFilter) -> None:
@@ -69,7 +74,7 @@ class TorqueTracking:
     ) -> Posterior:
         """One frame on. A filter that has diverged until nothing can be computed keeps its state and is untracked."""
         del prediction
-        was: TorqueRecord = before.inner
+        was = _record(before)
         frame = recording.frame(t)
         try:
             record = self._advanced(was, frame)
@@ -94,11 +99,11 @@ class TorqueTracking:
     def covariance(self, estimate: Posterior) -> Array:
         """(2 nv, 2 nv) of (q, v)."""
         nv = self.model.nv
-        return estimate.inner.state.filtered.P[: 2 * nv, : 2 * nv]
+        return _record(estimate).state.filtered.P[: 2 * nv, : 2 * nv]
 
     def spread(self, estimate: Posterior) -> Spread:
         """Standard deviations; torques are states of this filter."""
-        state: TorqueState = estimate.inner.state
+        state = _record(estimate).state
         P, nv = self.covariance(estimate), self.model.nv
         return Spread(
             self._reader, state.q, np.diagonal(P)[:nv], np.diagonal(P)[nv:], state.tau_sd, lambda: P[:nv, :nv]
@@ -106,11 +111,11 @@ class TorqueTracking:
 
     def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) of the state's wrenches, carried to the world's origin."""
-        return estimate.inner.state.foot_wrench_sd
+        return _record(estimate).state.foot_wrench_sd
 
     def innovation(self, estimate: Posterior) -> tuple[float, int]:
         """Of markers and plates."""
-        record: TorqueRecord = estimate.inner
+        record = _record(estimate)
         return record.nis, 0 if record.step is None else record.step.nis_readings
 
     def smooth(
@@ -119,9 +124,9 @@ class TorqueTracking:
         """Linear smoother about the filter's own course."""
         del recording, first
         found: list[Posterior] = []
-        back = BackwardPass(len(run[0].inner.state.filtered.P))
+        back = BackwardPass(len(_record(run[0]).state.filtered.P))
         for k in range(len(run) - 1, -1, -1):
-            inner: TorqueRecord = run[k].inner
+            inner = _record(run[k])
             here = inner.state.filtered
             if k < wanted:
                 found.append(self._smoothed(run[k], back.step(here.P), back.covariance(here.P)))
@@ -132,8 +137,8 @@ class TorqueTracking:
         return found[::-1]
 
     def _smoothed(self, estimate: Posterior, step: Array, P: Array) -> Posterior:
-        state = self.kalman.report(self.kalman.plant.retract(estimate.inner.state.filtered, step, P))
-        inner = replace(estimate.inner, state=state)
+        state = self.kalman.report(self.kalman.plant.retract(_record(estimate).state.filtered, step, P))
+        inner = replace(_record(estimate), state=state)
         return estimate._replace(q=state.q, v=state.v, a=state.a, wrench=state.foot_wrench, inner=inner)
 
 

@@ -79,7 +79,7 @@ def foot_events(r: Reconstruction, feet: FeetInMotion | None = None) -> tuple[Fo
     for foot in range(2):
         vertical = np.where(r.tracked, r.foot_wrench[:, foot, 2], np.nan)
         by_load = events_of_load(r.times_s, vertical)
-        if r.footing is None:
+        if r.foot_contact is None:
             by_motion = events_of_motion(feet, foot)
             by_load = FootEvents(
                 _with_missing(by_load.strikes_s, by_motion.strikes_s),
@@ -129,11 +129,11 @@ def _peaks(times_s: Array, signal: Array) -> Array:
     known = ~np.isnan(signal)
     if known.sum() < 3:
         return np.empty(0)
-    held = np.interp(times_s, times_s[known], signal[known])
-    prominence = max(LEAST_SWING_M, 0.3 * float(np.ptp(held)))
-    peaks, _ = find_peaks(held, prominence=prominence)
+    filled = np.interp(times_s, times_s[known], signal[known])
+    prominence = max(LEAST_SWING_M, 0.3 * float(np.ptp(filled)))
+    peaks, _ = find_peaks(filled, prominence=prominence)
     peaks = peaks[known[peaks]]
-    left, middle, right = held[peaks - 1], held[peaks], held[peaks + 1]
+    left, middle, right = filled[peaks - 1], filled[peaks], filled[peaks + 1]
     bend = left - 2.0 * middle + right
     shift = np.where(bend < 0, 0.5 * (left - right) / np.where(bend == 0, 1.0, bend), 0.0)
     return np.asarray(times_s[peaks] + shift * float(np.median(np.diff(times_s))))

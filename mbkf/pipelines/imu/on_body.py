@@ -25,7 +25,7 @@ from mbkf.io.imu import ImuReadings, on_regular_grid
 from mbkf.io.imu_mount import ImuMount
 from mbkf.model.body import Body
 from mbkf.numerics.cardan import quaternion_matrices
-from mbkf.pipelines.trial.followers import FilterInputs, follower
+from mbkf.pipelines.trial.filters import FilterInputs, tracking_filter
 from mbkf.sensors.inertial_sensor import InertialSensor
 
 LEAST_TURNING_RAD_S = 0.3
@@ -73,7 +73,7 @@ def with_imus(
         raise InvalidInput(
             "the inertial readings do not overlap with the trial in time; both need the same clock"
         )
-    first = track(follower("dynamic", inputs), recording)
+    first = track(tracking_filter("dynamic", inputs), recording)
     mounts, biases = calibrated(model, first, measured, imus)
     measured[:, :, :3] -= biases
     return (

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -93,13 +92,13 @@ def orient(
     return OrientResult(courses, compared, tuple(errors), warnings)
 
 
-def orientation_summary(result: OrientResult, settings: OrientSettings) -> dict[str, Any]:
+def orientation_summary(result: OrientResult, settings: OrientSettings) -> dict[str, object]:
     """Plain data for ``orientation.json``; angles in degrees."""
     errors = dict(result.errors)
     sensors = []
     for k, course in enumerate(result.courses):
         error = errors.get(course.name)
-        row: dict[str, Any] = {
+        row: dict[str, object] = {
             "name": course.name,
             "samples": len(course.time_s),
             "missing_fraction": float(np.isnan(course.quaternion).any(axis=1).mean()),

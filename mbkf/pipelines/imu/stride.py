@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
@@ -202,10 +201,10 @@ def _together(feet: Sequence[FootResult]) -> tuple[FootResult, ...]:
     )
 
 
-def stride_summary(measured: StrideMeasurement) -> dict[str, Any]:
+def stride_summary(measured: StrideMeasurement) -> dict[str, object]:
     """Plain data for summary.json; None where something is unknown."""
     feet, settings = measured.feet, measured.settings
-    summary: dict[str, Any] = {
+    summary: dict[str, object] = {
         "version": __version__,
         "method": settings.method,
         "method_meaning": METHODS[settings.method],
@@ -217,10 +216,10 @@ def stride_summary(measured: StrideMeasurement) -> dict[str, Any]:
     return summary
 
 
-def _foot_numbers(foot: FootResult) -> dict[str, Any]:
+def _foot_numbers(foot: FootResult) -> dict[str, object]:
     straight = _straight(foot.strides)
     known = np.flatnonzero(np.isfinite(foot.position_m).all(axis=1))
-    numbers: dict[str, Any] = {
+    numbers: dict[str, object] = {
         "rate_hz": foot.rate_hz,
         "strides": len(foot.strides),
         "straight_strides": len(straight),
@@ -239,7 +238,7 @@ def _foot_numbers(foot: FootResult) -> dict[str, Any]:
     return numbers
 
 
-def _both_numbers(feet: Sequence[FootResult]) -> dict[str, Any]:
+def _both_numbers(feet: Sequence[FootResult]) -> dict[str, object]:
     """What the feet show together: step times from landing to landing, cadence, and how alike the sides are."""
     landings = sorted(
         (float(foot.time_s[_landing(foot, stride)]), n)

@@ -70,7 +70,7 @@ class AnyAttitude:
         return follow(self._positions_m, self._rate_hz)
 
     def at(self, frame: int) -> FirstFrame | None:
-        """Labels of a frame's points, in the order of their columns, or None where none are believed."""
+        """Labels of a frame's points, in the order of their columns, or None where none are plausible."""
         points = self._positions_m[frame]
         columns = np.flatnonzero(~np.isnan(points).any(axis=1))
         sensor, sd = self.search.sensor, self.search.sd_m

@@ -54,10 +54,12 @@ class LabelBody:
         """Of the M markers."""
         return tuple(m.name for m in self.markers)
 
-    def follower(self, dt_s: float) -> KinematicTracking:
+    def tracking_filter(self, dt_s: float) -> KinematicTracking:
         """A kinematic filter of the body."""
-        held = ~self.sensor.model.supports[self.sensor.joint_ids].any(axis=0)
-        return KinematicTracking(KinematicFilter(self.sensor, self.noise_m, dt_s, held, KinematicSettings()))
+        unobservable = ~self.sensor.model.supports[self.sensor.joint_ids].any(axis=0)
+        return KinematicTracking(
+            KinematicFilter(self.sensor, self.noise_m, dt_s, unobservable, KinematicSettings())
+        )
 
     def labeller(self, dt_s: float) -> RunningLabeller:
         """A labeller that knows nothing yet."""
@@ -67,7 +69,9 @@ class LabelBody:
     def start_pass(self, positions_m: Array, dt_s: float) -> LabellingPass:
         """A pass over points (T, C, 3) with a filter and a labeller of its own."""
         any_attitude = AnyAttitude(self.search, positions_m, 1.0 / dt_s)
-        return LabellingPass(self.follower(dt_s), self.sensor, any_attitude, self.labeller(dt_s), positions_m)
+        return LabellingPass(
+            self.tracking_filter(dt_s), self.sensor, any_attitude, self.labeller(dt_s), positions_m
+        )
 
 
 def label_body(markers: Sequence[SubjectMarker], subject: Subject, settings: RunningSettings) -> LabelBody:
@@ -78,7 +82,7 @@ def label_body(markers: Sequence[SubjectMarker], subject: Subject, settings: Run
         subject: The scaled person.
         settings: Settings of the labeller.
     """
-    seen = subject.report.get("markers")
+    seen = subject.scaled_markers
     worn = tuple(m for m in markers if seen is None or m.name in seen)
     model = HumanModel.of(subject)
     sensor = MarkerSensor(model, [m.segment for m in worn], np.array([m.position_m for m in worn]))

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -54,7 +53,7 @@ class Doubt:
         )
         return f"{names}; {self.odds:.1f} times likelier as it stands"
 
-    def summary(self) -> dict[str, Any]:
+    def summary(self) -> dict[str, object]:
         """Plain numbers for the summary."""
         return {
             "labels": list(self.labels),
@@ -111,7 +110,7 @@ class Doubts:
             )
         return tuple(found)
 
-    def summary(self) -> dict[str, Any]:
+    def summary(self) -> dict[str, object]:
         """Plain numbers for the summary."""
         return {
             "labels": list(self.labels),

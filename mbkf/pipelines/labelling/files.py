@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
 
 from mbkf.io.atomic import replacing
 from mbkf.io.capture import write_capture
 from mbkf.io.records import Capture
-from mbkf.pipelines.label import Labelling, label_summary, labelled_capture
+from mbkf.pipelines.label import Labelling, LabelSummary, label_summary, labelled_capture
 from mbkf.pipelines.labelling.score import LabelScore
 
 
 def write_labels(
     raw: Capture, found: Labelling, path: str | Path, compared: LabelScore | None = None
-) -> dict[str, Any]:
+) -> LabelSummary:
     """Writes the labelled capture in the format of its suffix, and its summary as FILE.json; returns the summary.
 
     Args:

@@ -123,9 +123,9 @@ def course(body: LabelBody, markers: MarkerTrajectories, progress: Callable[[int
         progress: Called with the number of frames done.
     """
     positions, dt = markers.positions_m, 1.0 / markers.rate_hz
-    follower, sensor = body.follower(dt), body.sensor
+    filter, sensor = body.tracking_filter(dt), body.sensor
     recording = Recording(positions, np.zeros((len(positions), 0, 6)), dt)
-    smoother = FixedLagSmoother(follower, recording, SmoothingSettings())
+    smoother = FixedLagSmoother(filter, recording, SmoothingSettings())
     places = SmoothedMarkers(
         np.full(positions.shape, np.nan),
         np.full((*positions.shape, 3), np.nan),
@@ -140,10 +140,10 @@ def course(body: LabelBody, markers: MarkerTrajectories, progress: Callable[[int
             rotations, _ = sensor.model.placements(estimate.q)
             places.on_body_m[t] = reading.positions_m
             places.rotations[t] = rotations[sensor.joint_ids]
-            HP = H @ follower.covariance(estimate)[:nv, :nv]
+            HP = H @ filter.covariance(estimate)[:nv, :nv]
             places.variance_m2[t] = np.einsum("mij,mij->m", HP, H) / 3.0
 
-    for t, estimate, _ in followed(follower, recording):
+    for t, estimate, _ in followed(filter, recording):
         keep(smoother.push(t, estimate))
         progress(t)
     keep(smoother.finish())

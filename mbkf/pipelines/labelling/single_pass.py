@@ -60,7 +60,7 @@ class LabellingPass:
 
     def __init__(
         self,
-        follower: TrackingFilter,
+        filter: TrackingFilter,
         sensor: MarkerSensor,
         any_attitude: AnyAttitude,
         labeller: RunningLabeller,
@@ -69,14 +69,14 @@ class LabellingPass:
         """A pass that has labelled no frame yet.
 
         Args:
-            follower: The filter.
+            filter: The filter.
             sensor: The markers on its body.
             any_attitude: Finds labels in frames without a prediction.
             labeller: Assigns points from frame to frame.
             positions_m: (T, C, 3) points of the capture, NaN where empty.
         """
         self._filter, self._sensor, self._search, self._any_attitude = (
-            follower,
+            filter,
             sensor,
             any_attitude.search,
             any_attitude,
@@ -88,7 +88,7 @@ class LabellingPass:
         self.q = np.full((frames, sensor.model.nq), np.nan)
         self.starts: list[int] = []
         self.step_seconds = np.full(frames, np.nan)
-        self._recording = Recording(self.markers_m, np.zeros((frames, 0, 6)), follower.dt_s)
+        self._recording = Recording(self.markers_m, np.zeros((frames, 0, 6)), filter.dt_s)
 
     def run(
         self, start: int, first: FirstFrame | None, progress: Callable[[int], None] | None = None

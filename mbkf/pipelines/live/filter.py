@@ -20,7 +20,7 @@ from mbkf.filters.tracking_loop import TrackingLoop
 from mbkf.io.records import MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject, match_names
 from mbkf.pipelines.reconstruct import subject_markers
-from mbkf.pipelines.trial.followers import FilterInputs
+from mbkf.pipelines.trial.filters import FilterInputs
 from mbkf.pipelines.trial.inputs import FilterSettings, trial_inputs
 from mbkf.sensors.block import Frame
 
@@ -50,10 +50,10 @@ class LiveStep:
 class LiveFilter:
     """Takes frames in order, one by one, and gives back the steps that are due."""
 
-    def __init__(self, follower: TrackingFilter) -> None:
-        self.loop = TrackingLoop(follower)
-        self._follower = follower
-        self._ahead = warm_up_frames(follower.dt_s)
+    def __init__(self, filter: TrackingFilter) -> None:
+        self.loop = TrackingLoop(filter)
+        self._filter = filter
+        self._ahead = warm_up_frames(filter.dt_s)
         self._waiting: deque[tuple[int, Frame]] = deque()
         self._expecting_s = 0.0
 
@@ -115,7 +115,7 @@ class LiveFilter:
         begin, self._expecting_s = time.perf_counter() - self._expecting_s, 0.0
         number = self._waiting[0][0]
         waiting = list(self._waiting) if self.loop.must_start else [self._waiting[0]]
-        recording = Recording.of([frame for _, frame in waiting], self._follower.dt_s)
+        recording = Recording.of([frame for _, frame in waiting], self._filter.dt_s)
         self._waiting.popleft()
         try:
             with np.errstate(all="ignore"):  # what comes of it is looked at

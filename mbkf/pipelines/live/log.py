@@ -48,7 +48,12 @@ class LiveLog:
     """Writes the folder of a running stream."""
 
     def __init__(
-        self, folder: Path, stream: LiveStream, frames: np.dtype, settings: dict[str, Any], names: list[str]
+        self,
+        folder: Path,
+        stream: LiveStream,
+        frames: np.dtype,
+        settings: dict[str, object],
+        names: list[str],
     ) -> None:
         """Makes the log's folder.
 
@@ -95,7 +100,7 @@ class Logged:
 
     stream: LiveStream
     names: tuple[str, ...]
-    settings: dict[str, Any]
+    settings: dict[str, object]
     first: int
     rows: NDArray
 
@@ -106,7 +111,8 @@ def read_live_log(folder: Path) -> Logged:
     Raises:
         FileFormatError: There is no log, or not one row in it.
     """
-    header, rows = read_frame_log(folder / FRAMES_FILE)
+    described, rows = read_frame_log(folder / FRAMES_FILE)
+    header: dict[str, Any] = described
     if not len(rows):
         raise FileFormatError(folder / FRAMES_FILE, "no frame was written")
     _, samples = read_frame_log(folder / PLATES_FILE)
@@ -122,7 +128,7 @@ def read_live_log(folder: Path) -> Logged:
     return Logged(stream, tuple(header["markers"]), header["settings"], first, whole)
 
 
-def _described(plate: PlateReadings) -> dict[str, Any]:
+def _described(plate: PlateReadings) -> dict[str, object]:
     return {
         "name": plate.name,
         "rate_hz": plate.rate_hz,

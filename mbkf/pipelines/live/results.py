@@ -31,7 +31,7 @@ def live_results(folder: Path, notes: tuple[str, ...] = ()) -> Reconstruction:
     """
     logged = read_live_log(folder)
     subject = read_subject(folder / SUBJECT_FILE)
-    settings = ReconstructSettings(filter=logged.settings["filter"], correct_markers=False)
+    settings = ReconstructSettings(filter=str(logged.settings["filter"]), correct_markers=False)
     result = track_of(logged.rows)
     if not result.starts:
         raise NotObservable(

@@ -30,7 +30,7 @@ STILL_S = 1.0
 """Duration of standing still that a person is scaled from."""
 
 STILL_M = 0.030
-"""No marker moves further than this in that time. People told to stand still sway: their hands move by up to 30 mm in
+"""No marker moves further than this in that time. People asked to stand still sway: their hands move by up to 30 mm in
 a second (medians over real standing trials 5 to 29 mm), those of a walking person by more than 400 mm."""
 
 LEAST_SEEN = 0.8

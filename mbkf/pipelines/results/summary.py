@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.results import Reconstruction
+from mbkf.io.results_folder import Summary
 from mbkf.io.truth import Truth
 from mbkf.model.human import HumanModel, reference_body
 
@@ -19,7 +18,7 @@ ROOT_DOFS = 6
 _MM = 1e3
 
 
-def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> dict[str, Any]:
+def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Summary:
     """The contents of summary.json, as plain data; None where a number does not apply.
 
     Marker errors are distances, over samples that were seen and not hidden on purpose, in frames in which the
@@ -35,6 +34,9 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> dic
     """
     r = reconstruction
     missing = ~r.present
+    seen_mm, hidden_mm = _marker_errors(r)
+    change = np.full((0, 1, 6), np.nan) if r.plate_change is None else r.plate_change
+    peaks, sd = _torques(r)
     computing = float(np.nansum(r.step_seconds))
     return {
         "trial": r.trial,
@@ -48,12 +50,18 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> dic
         "duration_s": r.frames / float(r.rate_hz),
         "markers_used": len(r.marker_names),
         "missing_fraction": float(missing.mean()) if missing.size else None,
-        **_marker_errors(r),
+        "marker_rms_mm": _rms(seen_mm),
+        "marker_max_mm": _largest(seen_mm),
+        "marker_rms_mm_by_name": {name: _rms(seen_mm[:, m]) for m, name in enumerate(r.marker_names)},
+        "hidden_marker_rms_mm": _rms(hidden_mm),
+        "hidden_marker_max_mm": _largest(hidden_mm),
         "residual_force_rms_n": _rms_of_norm(r.residual_force_n[r.valid]),
         "residual_moment_rms_nm": _rms_of_norm(r.residual_moment_nm[r.valid]),
         "valid_frames": int(r.valid.sum()),
-        **_plate_changes(r),
-        **_torques(r),
+        "plate_force_change_rms_n": _rms(change[..., :3]),
+        "plate_moment_change_rms_nm": _rms(change[..., 3:]),
+        "torque_peak_nm_per_kg": peaks,
+        "torque_sd_nm": sd,
         "nis_per_dof": _nis_per_reading(r),
         "step_seconds_median": _quantile(r.step_seconds, 50),
         "step_seconds_p99": _quantile(r.step_seconds, 99),
@@ -64,30 +72,14 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> dic
     }
 
 
-def _marker_errors(r: Reconstruction) -> dict[str, Any]:
+def _marker_errors(r: Reconstruction) -> tuple[Array, Array]:
+    """(T, M) distances in mm of markers seen while the body was tracked, and of hidden ones; NaN for the others."""
     distance = _MM * np.linalg.norm(r.measured_m - r.predicted_m, axis=2)
-    counted = np.where(r.present & r.tracked[:, None], distance, np.nan)
-    hidden = np.where(r.hidden, distance, np.nan)
-    by_name = {name: _rms(counted[:, m]) for m, name in enumerate(r.marker_names)}
-    return {
-        "marker_rms_mm": _rms(counted),
-        "marker_max_mm": _largest(counted),
-        "marker_rms_mm_by_name": by_name,
-        "hidden_marker_rms_mm": _rms(hidden),
-        "hidden_marker_max_mm": _largest(hidden),
-    }
+    return np.where(r.present & r.tracked[:, None], distance, np.nan), np.where(r.hidden, distance, np.nan)
 
 
-def _plate_changes(r: Reconstruction) -> dict[str, Any]:
-    change = np.full((0, 1, 6), np.nan) if r.plate_change is None else r.plate_change
-    return {
-        "plate_force_change_rms_n": _rms(change[..., :3]),
-        "plate_moment_change_rms_nm": _rms(change[..., 3:]),
-    }
-
-
-def _torques(r: Reconstruction) -> dict[str, Any]:
-    """Flexion torque of every joint but the root, by the joint's name."""
+def _torques(r: Reconstruction) -> tuple[dict[str, float | None], dict[str, float | None]]:
+    """Flexion torque of every joint but the root by the joint's name: peak in N m/kg, mean deviation in N m."""
     main = {
         j.name: j.main
         for j in reference_body(r.subject).clinical_joints
@@ -96,14 +88,14 @@ def _torques(r: Reconstruction) -> dict[str, Any]:
     peaks = {joint: _largest(np.abs(r.moment(name)[r.tracked])) for joint, name in main.items()}
     sd = {joint: _mean(r.moment_sd(name)[r.tracked]) for joint, name in main.items()}
     per_kg = {joint: None if peak is None else peak / r.subject.mass_kg for joint, peak in peaks.items()}
-    return {"torque_peak_nm_per_kg": per_kg, "torque_sd_nm": sd}
+    return per_kg, sd
 
 
 def _nis_per_reading(r: Reconstruction) -> float | None:
     """Mean over frames after the first half second of the innovation squared per reading."""
     settled = r.times_s >= (r.times_s[0] + SETTLING_S if r.frames else 0.0)
-    judged = settled & (r.nis_readings > 0) & np.isfinite(r.nis)
-    return _mean(r.nis[judged] / r.nis_readings[judged])
+    counted = settled & (r.nis_readings > 0) & np.isfinite(r.nis)
+    return _mean(r.nis[counted] / r.nis_readings[counted])
 
 
 def compare_with_truth(reconstruction: Reconstruction, truth: Truth) -> dict[str, float | None]:
@@ -166,8 +158,8 @@ def _nees_per_dof(r: Reconstruction, error: Array) -> float | None:
     """Mean of eᵀ P⁻¹ e / n over frames; 1 for a consistent covariance."""
     if r.covariance is None:
         return None
-    judged = np.flatnonzero(np.isfinite(error).all(axis=1) & np.isfinite(r.covariance).all(axis=(1, 2)))
-    e, P = error[judged], r.covariance[judged]
+    known = np.flatnonzero(np.isfinite(error).all(axis=1) & np.isfinite(r.covariance).all(axis=(1, 2)))
+    e, P = error[known], r.covariance[known]
     try:
         weighted = np.linalg.solve(P, e[..., None])[..., 0]
     except np.linalg.LinAlgError:  # a dof without any uncertainty

@@ -13,7 +13,7 @@ from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.io.records import MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
-from mbkf.pipelines.trial.followers import FilterInputs
+from mbkf.pipelines.trial.filters import FilterInputs
 from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.sensors.marker_sensor import MarkerSensor
 

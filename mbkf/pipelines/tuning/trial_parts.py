@@ -18,7 +18,7 @@ from mbkf.filters.settings import changed
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
 from mbkf.pipelines.reconstruct import ReconstructSettings, subject_markers
-from mbkf.pipelines.trial.followers import FilterInputs, follower
+from mbkf.pipelines.trial.filters import FilterInputs, tracking_filter
 from mbkf.pipelines.trial.inputs import trial_inputs
 from mbkf.scaling.correction import correct_markers
 
@@ -86,7 +86,7 @@ class TrialPart:
         return value if math.isfinite(value) else -math.inf
 
     def _run(self, inputs: FilterInputs) -> TrialLikelihood:
-        return trial_likelihood(follower(self._kind, inputs), self._recording)
+        return trial_likelihood(tracking_filter(self._kind, inputs), self._recording)
 
 
 def split_trials(

@@ -37,7 +37,13 @@ class ContactDetector:
     """
 
     def __init__(self, model: Body, plates: Sequence[PlateReadings], dt_s: float) -> None:
-        """Args: the body, the plates (their readings are not used), and the time between frames."""
+        """Makes a detector.
+
+        Args:
+            model: The body.
+            plates: The plates; their readings are not used.
+            dt_s: Time between frames.
+        """
         self._least_n = np.array([least_load(plate.threshold_n) for plate in plates])
         self.surfaces_m = [surface_height(plate) for plate in plates]
         self._areas = PlateAreas(plates)

@@ -1,9 +1,9 @@
 """Limits by which contact of the feet with plates and floor is decided, causally and offline.
 
-Both uses share the geometry and the limits below unless a sentence tells why they must differ. The causal decision
-(:mod:`mbkf.sensors.contact.causal`) sees predicted motion and no later frame; what it misses or invents disturbs the
-filter at once. The offline assignment (:mod:`mbkf.sensors.contact.offline`) sees the whole tracked trial and only has
-to refuse frames whose reactions are not fully measured.
+Both uses share the geometry and the limits below unless a comment gives the reason for a difference. The causal
+decision (:mod:`mbkf.sensors.contact.causal`) sees predicted motion and no later frame; what it misses or invents
+disturbs the filter at once. The offline assignment (:mod:`mbkf.sensors.contact.offline`) sees the whole tracked trial
+and only has to refuse frames whose reactions are not fully measured.
 """
 
 from mbkf.conventions import GRAVITY_M_S2
@@ -42,7 +42,7 @@ LEAVE_SLACK = 1.7
 decisions that alternate between frames."""
 
 SOLE_ENDS = 2
-"""Causal: points of a sole that tell its height, heel and ball. The toe end dips below the floor when the toes bend,
+"""Causal: points of a sole that give its height, heel and ball. The toe end dips below the floor when the toes bend,
 and the learnt floor would follow; the offline floor is a median over the trial and takes all three."""
 
 FLOOR_SHARE = 0.1
@@ -62,7 +62,7 @@ within the stretch, and each frame follows the majority of the frames up to so m
 
 BETWEEN_M = 0.02
 """Causal: a centre of pressure nearer to a sole than this belongs to that foot, and not to two feet on one plate.
-Offline, two feet on one plate are never told apart: one of them remains without a plate."""
+Offline, two feet on one plate are never distinguished: one of them remains without a plate."""
 
 STANDING_SHARE = 0.05
 """Offline: share of body weight that the plates must carry for a frame outside flight to be fully measured."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+from mbkf.model.human import HumanModel
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 from mbkf.sensors.coordination.regression import Coordination, learn
 from mbkf.sensors.layout import Layout
 
@@ -98,11 +100,11 @@ NONE = np.zeros(0)
 """No numbers."""
 
 
-class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecision, CoordinationMemory]):
+class CoordinationPrior(Block[State, Mapping[int, Coordination], CoordinationDecision, CoordinationMemory]):
     """Head, arms and toes as they went with trunk and legs.
 
     Attributes:
-        followers: Dofs of each joint that follows.
+        dependents: Dofs of each joint that follows.
     """
 
     prior = True
@@ -126,7 +128,7 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
         joints = [joint for joint in model.joints.values() if joint.kind != "free"]
         dofs = {joint.segment: np.arange(joint.v.start, joint.v.stop) for joint in joints}
         self._leading = np.concatenate([dofs[segment] for segment in model.roles.leading])
-        self.followers = [
+        self.dependents = [
             own
             for name, own in dofs.items()
             if name not in model.roles.leading and not unobservable[own].all()
@@ -137,7 +139,7 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
         noted_s = self._every * dt_s
         self._block = max(1, round(BLOCK_S / noted_s))
         self._keep = max(1, round(settings.coordination_memory_s / noted_s))
-        self._first = np.array([own[0] for own in self.followers], dtype=np.intp)
+        self._first = np.array([own[0] for own in self.dependents], dtype=np.intp)
         # A reading that errs alike for a while counts once in that time, not in every frame.
         self._repeat = max(1.0, settings.coordination_errs_s / dt_s) ** 0.5
         self._v = 0
@@ -150,7 +152,7 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
         """Nothing was shown yet."""
         return CoordinationMemory(0, (), (), {})
 
-    def prepare(self, state: Any, memory: CoordinationMemory | None) -> Mapping[int, Coordination]:
+    def prepare(self, state: State, memory: CoordinationMemory | None) -> Mapping[int, Coordination]:
         """How the joints that were out of sight in the frame before go with the others, by their number.
 
         Learned once, when they go; not of those that were observed too little.
@@ -161,7 +163,7 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
 
     def decide(
         self,
-        at: OperatingPoint[Any, Mapping[int, Coordination]],
+        at: OperatingPoint[State, Mapping[int, Coordination]],
         frame: Frame,
         memory: CoordinationMemory,
         notes: Notes,
@@ -176,7 +178,7 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
         features = self.features(at.state.q, at.state.v)
         x, v, x_sd, v_sd = np.zeros((4, self._model.nv))
         for j, one in learned.items():
-            own, (mean, sd) = self.followers[j], one.predicted(features)
+            own, (mean, sd) = self.dependents[j], one.predicted(features)
             x[own], v[own] = mean[: len(own)], mean[len(own) :]
             x_sd[own] = self._repeat * np.maximum(sd[: len(own)], LEAST_SD_RAD)
             v_sd[own] = self._repeat * np.maximum(sd[len(own) :], LEAST_SD_RAD / PACE_S)
@@ -186,7 +188,7 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
         return CoordinationDecision(dofs, q, v[dofs], x_sd[dofs], v_sd[dofs], gone, legible, notes.unobserved)
 
     def linearise(
-        self, at: OperatingPoint[Any, Mapping[int, Coordination]], decision: CoordinationDecision
+        self, at: OperatingPoint[State, Mapping[int, Coordination]], decision: CoordinationDecision
     ) -> list[Rows]:
         """Whitened rows on the configuration and on the velocity."""
         dofs, state = decision.dofs, at.state
@@ -202,8 +204,8 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
 
     def remember(
         self,
-        posterior: Any,
-        at: OperatingPoint[Any, Mapping[int, Coordination]],
+        posterior: State,
+        at: OperatingPoint[State, Mapping[int, Coordination]],
         decision: CoordinationDecision,
         memory: CoordinationMemory,
     ) -> CoordinationMemory:
@@ -257,7 +259,7 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
     def _learned_together(
         self, joints: NDArray[np.intp], frames: Sequence[NotedFrame]
     ) -> dict[int, Coordination]:
-        columns = [np.r_[self.followers[j], self._model.nv + self.followers[j]] for j in joints]
+        columns = [np.r_[self.dependents[j], self._model.nv + self.dependents[j]] for j in joints]
         movements = np.array([one.movement for one in frames])[:, np.concatenate(columns)]
         features = np.array([one.features for one in frames])
         blocks = np.array([one.block for one in frames])
@@ -270,7 +272,7 @@ class CoordinationPrior(Block[Any, Mapping[int, Coordination], CoordinationDecis
             for j, own, end in zip(joints, columns, ends, strict=True)
         }
 
-    def _noted(self, frame: int, state: Any, unobserved: NDArray[np.intp]) -> NotedFrame:
+    def _noted(self, frame: int, state: State, unobserved: NDArray[np.intp]) -> NotedFrame:
         observed = np.ones(self._model.nv, dtype=bool)
         observed[unobserved] = False
         movement = np.concatenate([self.posture(state.q), state.v])

@@ -2,8 +2,8 @@
 
 Targets y are read off features f as ȳ + Wᵀ (f − f̄), the conditional mean of jointly Gaussian variables with a ridge
 λ² on the features' covariance (Bishop, *Pattern Recognition and Machine Learning*, 2006, 2.3.1 and 3.1.4). Frames that
-follow each other tell nearly the same, so its errors are those on whole blocks of time that it has not seen. A target
-that the plain mean of the other blocks foretells as well keeps that mean.
+follow each other carry nearly the same information, so its errors are those on whole blocks of time that it has not
+seen. A target that the plain mean of the other blocks foretells as well keeps that mean.
 """
 
 from __future__ import annotations

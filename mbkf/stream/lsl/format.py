@@ -9,7 +9,8 @@ end with a channel of type "FrameNumber" that counts frames or samples; without 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from types import ModuleType
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -19,6 +20,9 @@ from mbkf.io.axes import rotation_to_world
 from mbkf.io.records import PlateReadings
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
 from mbkf.stream.source import StreamDescription, empty_plate
+
+StreamInfo: TypeAlias = Any
+"""A stream's description as pylsl holds it; the library carries no types."""
 
 MARKERS_TYPE, PLATES_TYPE = "MoCap", "ForcePlate"
 MARKER_TYPES = ("mocap", "motioncapture", "motion capture")
@@ -70,7 +74,7 @@ class PlateLayout:
         return turned.reshape(found.shape)
 
 
-def marker_info(lsl: Any, stream: StreamDescription, name: str, points: int) -> Any:
+def marker_info(lsl: ModuleType, stream: StreamDescription, name: str, points: int) -> StreamInfo:
     """The stream information of markers, or of points without names where the stream has no marker names.
 
     Args:
@@ -96,7 +100,7 @@ def marker_info(lsl: Any, stream: StreamDescription, name: str, points: int) -> 
     return info
 
 
-def plates_info(lsl: Any, stream: StreamDescription, name: str) -> Any:
+def plates_info(lsl: ModuleType, stream: StreamDescription, name: str) -> StreamInfo:
     """The stream information of the force plates that belong to a marker stream.
 
     Args:
@@ -133,7 +137,7 @@ def plates_name(markers_name: str) -> str:
     return f"{markers_name}-plates"
 
 
-def read_marker_info(info: Any) -> tuple[StreamDescription, MarkerLayout, str]:
+def read_marker_info(info: StreamInfo) -> tuple[StreamDescription, MarkerLayout, str]:
     """Description and channel layout of a marker stream, and the name of its plate stream ("" for none).
 
     Raises:
@@ -171,7 +175,7 @@ def read_marker_info(info: Any) -> tuple[StreamDescription, MarkerLayout, str]:
     return description, layout, desc.child_value("plates_stream")
 
 
-def read_plates_info(info: Any) -> tuple[tuple[PlateReadings, ...], PlateLayout]:
+def read_plates_info(info: StreamInfo) -> tuple[tuple[PlateReadings, ...], PlateLayout]:
     """The plates of a plate stream, without readings, and its channel layout.
 
     Raises:
@@ -207,7 +211,7 @@ def read_plates_info(info: Any) -> tuple[tuple[PlateReadings, ...], PlateLayout]
     return tuple(plates), PlateLayout(np.array(loads, dtype=int).reshape(-1, 6), _counter(channels), rotation)
 
 
-def _described(info: Any, stream: StreamDescription, start_s: float) -> Any:
+def _described(info: StreamInfo, stream: StreamDescription, start_s: float) -> StreamInfo:
     desc = info.desc()
     desc.append_child_value("manufacturer", "mbkf")
     desc.append_child_value("trial", stream.trial)
@@ -224,7 +228,7 @@ def _channel(channels: Any, **values: str) -> None:
         entry.append_child_value(key, value)
 
 
-def _channels(info: Any) -> list[dict[str, str]]:
+def _channels(info: StreamInfo) -> list[dict[str, str]]:
     found = []
     entry = info.desc().child("channels").child("channel")
     while not entry.empty():

@@ -6,6 +6,7 @@ import socket
 import threading
 import time
 from collections import deque
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -236,7 +237,7 @@ def _make_room(client: Any) -> None:
             own.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM_BYTES)
 
 
-def read_all_corners(natnet: Any) -> None:
+def read_all_corners(natnet: ModuleType) -> None:
     """Makes the client library read a force plate's description to its end.
 
     natnet 0.3.0 reads three of a plate's four corners, and everything after them wrongly.
@@ -275,7 +276,7 @@ def _rate(frames: list[Any]) -> float:
     count = last.prefix.frame_number - first.prefix.frame_number
     passed = last.suffix.timestamp - first.suffix.timestamp
     if count <= 0 or passed <= 0.0:
-        raise InvalidInput("NatNet: the frames' numbers and time stamps tell no rate")
+        raise InvalidInput("NatNet: the frames' numbers and time stamps determine no rate")
     rate_hz = count / passed
     whole = float(round(rate_hz))
     return whole if abs(rate_hz - whole) <= WHOLE_RATE * rate_hz else float(round(rate_hz, 4))

@@ -9,7 +9,6 @@ import re
 import secrets
 import threading
 from http import HTTPStatus
-from typing import Any
 from urllib.parse import parse_qs, urlparse
 
 from websockets.exceptions import ConnectionClosed
@@ -128,7 +127,7 @@ class WebSocketResults:
             return
 
     def _prepare(self, frame: LiveFrame) -> None:
-        message: dict[str, Any] = {
+        message: dict[str, object] = {
             "frame": frame.number,
             "time_s": frame.time_s,
             "tracked": frame.tracked,

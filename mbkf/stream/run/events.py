@@ -6,7 +6,6 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from typing import Any
 
 MERGED_S = 2.0
 """An event of the same kind within this time prolongs the one before."""
@@ -73,7 +72,7 @@ class EventLog:
             else:
                 self._unlisted += 1
 
-    def plain(self) -> list[dict[str, Any]]:
+    def plain(self) -> list[dict[str, object]]:
         """All events as plain data, for JSON."""
         with self._lock:
             listed = [asdict(event) for event in self._events]

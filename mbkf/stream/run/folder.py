@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import shutil
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from mbkf.errors import MbkfError
 from mbkf.io.atomic import replacing
-from mbkf.io.results_folder import write_reconstruction
+from mbkf.io.results_folder import Summary, write_reconstruction
 from mbkf.io.subject import Subject, write_subject
 from mbkf.pipelines.live.log import SUBJECT_FILE, LiveLog, LiveStream
 from mbkf.pipelines.live.results import live_results
@@ -54,7 +53,7 @@ def open_log(
     return log
 
 
-def write_results(folder: Path, notes: tuple[str, ...]) -> tuple[dict[str, Any] | None, str | None]:
+def write_results(folder: Path, notes: tuple[str, ...]) -> tuple[Summary | None, str | None]:
     """Makes the results from the log and writes them; returns the summary, or the reason why there is none.
 
     Args:

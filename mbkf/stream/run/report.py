@@ -34,7 +34,7 @@ class ReportFile:
         with path.open("wb") as file:
             file.write(b"{}\n".ljust(ROOM_BYTES))
 
-    def write(self, report: Mapping[str, Any], last: bool = False) -> None:
+    def write(self, report: Mapping[str, object], last: bool = False) -> None:
         """Writes the report over the one before; the last one gives the rest of the room back.
 
         Raises:

@@ -6,8 +6,8 @@ import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
+from mbkf.io.results_folder import Summary
 from mbkf.io.subject import Subject
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.reconstruct import ReconstructSettings
@@ -39,8 +39,8 @@ class LiveOutcome:
         problem: Why not.
     """
 
-    report: dict[str, Any]
-    summary: dict[str, Any] | None
+    report: dict[str, object]
+    summary: Summary | None
     problem: str | None
 
 
@@ -54,7 +54,7 @@ class LiveSession:
         settings: ReconstructSettings,
         folder: Path,
         source_name: str,
-        scaling: Mapping[str, Any] | None = None,
+        scaling: Mapping[str, object] | None = None,
     ) -> None:
         """A run that is not connected yet.
 
@@ -148,7 +148,7 @@ class LiveSession:
         report.write(plain, last=True)
         return LiveOutcome(plain, summary, problem)
 
-    def _write_results(self) -> tuple[dict[str, Any] | None, str | None]:
+    def _write_results(self) -> tuple[Summary | None, str | None]:
         """The results from the log: their summary, or why there are none."""
         notes = tuple(f"live: {event['what']} ({event['count']} times)" for event in self._events.plain())
         summary, problem = write_results(self._folder, notes)
@@ -163,8 +163,8 @@ class LiveSession:
         )
 
     def _report(
-        self, state: str, receiver: Receiver, statistics: RunStatistics, **more: Any
-    ) -> dict[str, Any]:
+        self, state: str, receiver: Receiver, statistics: RunStatistics, **more: object
+    ) -> dict[str, object]:
         """The contents of live.json."""
         stream = self.setup.stream
         return {

@@ -14,7 +14,7 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.live.filter import LiveFilter, LiveInputs, live_inputs
 from mbkf.pipelines.live.labels import live_body
 from mbkf.pipelines.reconstruct import ReconstructSettings
-from mbkf.pipelines.trial.followers import follower
+from mbkf.pipelines.trial.filters import tracking_filter
 from mbkf.stream.receiving.alignment import Note
 from mbkf.stream.run.frame_maker import FrameMaker
 from mbkf.stream.run.point_names import PointNames
@@ -83,7 +83,7 @@ def prepare(
     wanted = stream.marker_names or live_body(subject).names
     with single_threaded():
         live = live_inputs(wanted, stream.rate_hz, stream.plates, subject, settings)
-        chosen = follower(settings.filter, live.inputs)
+        chosen = tracking_filter(settings.filter, live.inputs)
     return LiveSetup(
         stream,
         live,

@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from mbkf.errors import InvalidInput
 from mbkf.io.subject import Subject, write_subject
@@ -60,7 +59,7 @@ class ScaledPerson:
 
     subject: Subject
     source: ResumedSource
-    report: dict[str, Any]
+    report: dict[str, object]
 
 
 class StandingStart:
@@ -143,10 +142,10 @@ class StandingStart:
             with single_threaded(), low_latency():
                 found = self._look(stop, patience_s, report)
         except InvalidInput as error:
-            report.write(self._report("nobody scaled", ended_by=str(error)), last=True)
+            report.write(self._report("no subject scaled", ended_by=str(error)), last=True)
             raise
         if found is None:
-            report.write(self._report("nobody scaled", ended_by="it was stopped"), last=True)
+            report.write(self._report("no subject scaled", ended_by="it was stopped"), last=True)
         return found
 
     def _look(
@@ -263,10 +262,10 @@ class StandingStart:
             self._progress(None)
         self._prompting.waiting("no frames come from the stream" if silent else self._stance.hindrance)
 
-    def _counts(self) -> dict[str, Any]:
+    def _counts(self) -> dict[str, object]:
         return {"attempts": self._attempts, "frames_in": self._frames_in}
 
-    def _report(self, state: str, **more: Any) -> dict[str, Any]:
+    def _report(self, state: str, **more: object) -> dict[str, object]:
         return {
             "state": state,
             "source": self._source_name,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from array import array
-from typing import Any
 
 from mbkf.stream.receiving.alignment import ReadyFrame
 from mbkf.stream.run.report import latency_summary
@@ -43,7 +42,7 @@ class RunStatistics:
         count = RECENT_FRAMES if recent else 0
         return latency_summary(self._latencies_s[-count:], self._at_start_s[-count:])
 
-    def rates(self, nominal_hz: float) -> dict[str, Any]:
+    def rates(self, nominal_hz: float) -> dict[str, object]:
         """Measured and nominal frame rate, and the number of starts."""
         first, latest = self.first, self.latest
         rate = None

@@ -25,7 +25,7 @@ NAVIGATION = (
 
 
 def report_page(
-    reconstruction: Reconstruction, summary: Mapping[str, Any], labels: Mapping[str, Any] | None = None
+    reconstruction: Reconstruction, summary: Mapping[str, object], labels: Mapping[str, object] | None = None
 ) -> str:
     """The report.
 
@@ -54,9 +54,9 @@ def report_page(
 
 def write_report(
     reconstruction: Reconstruction,
-    summary: Mapping[str, Any],
+    summary: Mapping[str, object],
     path: str | Path,
-    labels: Mapping[str, Any] | None = None,
+    labels: Mapping[str, object] | None = None,
 ) -> None:
     """Writes :func:`report_page`, whole or not at all.
 
@@ -74,7 +74,7 @@ def write_report(
         partial.write_text(text, encoding="utf-8")
 
 
-def read_labels(path: str | Path) -> dict[str, Any]:
+def read_labels(path: str | Path) -> dict[str, object]:
     """The JSON that ``mbkf label`` wrote beside a labelled capture.
 
     Raises:
@@ -90,7 +90,7 @@ def read_labels(path: str | Path) -> dict[str, Any]:
     return found
 
 
-def labels_of(folder: str | Path, trial: str) -> dict[str, Any] | None:
+def labels_of(folder: str | Path, trial: str) -> dict[str, object] | None:
     """The JSON that ``mbkf label`` wrote for a trial: TRIAL.json in a result's folder or beside it, or None."""
     place = Path(folder)
     for path in (place / f"{trial}.json", place.absolute().parent / f"{trial}.json"):
@@ -115,11 +115,11 @@ def _heading(r: Reconstruction) -> str:
     return f"<h1>{escape(r.trial)}</h1><p class='facts'>{' · '.join(escape(fact) for fact in facts)}</p>"
 
 
-def _settings(r: Reconstruction, summary: Mapping[str, Any]) -> str:
+def _settings(r: Reconstruction, summary: Mapping[str, object]) -> str:
     speed = summary.get("realtime_factor")
     seconds = summary.get("step_seconds_median")
     run = [("filter", r.filter), ("smoothed", "yes" if r.smoothed else "no"), ("version", r.version)]
-    if speed and seconds:
+    if speed and isinstance(speed, int | float) and isinstance(seconds, int | float):
         run.append(
             ("computing time", f"{1e3 * seconds:.2f} ms a frame (median), {speed:.1f} times real time")
         )

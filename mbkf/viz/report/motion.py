@@ -161,8 +161,8 @@ def _facing(r: Reconstruction) -> Array:
     forward = feet_in_motion(r).forward
     known = np.flatnonzero(~np.isnan(forward).any(axis=1))
     frames = np.arange(r.frames)
-    held = np.column_stack([np.interp(frames, known, forward[known, axis]) for axis in range(2)])
-    x, y = gaussian_filter1d(held, FACING_S * r.rate_hz, axis=0, mode="nearest").T
+    filled = np.column_stack([np.interp(frames, known, forward[known, axis]) for axis in range(2)])
+    x, y = gaussian_filter1d(filled, FACING_S * r.rate_hz, axis=0, mode="nearest").T
     n = np.maximum(np.hypot(x, y), 1e-9)
     axes = np.zeros((r.frames, 3, 3))
     axes[:, 0, 0], axes[:, 0, 1] = x / n, y / n
@@ -179,7 +179,7 @@ def _cells(
     segments = {entry.main: entry.distal for entry in known_joints}
     for joint in joints:
         entries = [e for e in known_joints if e.name in (joint, f"{joint}_r")]
-        if not entries or _held(r, segments[entries[0].main]):
+        if not entries or _is_unobserved(r, segments[entries[0].main]):
             continue
         row = []
         for angle in entries[0].angles:
@@ -194,8 +194,8 @@ def _cells(
     return rows
 
 
-def _held(r: Reconstruction, segment: str) -> bool:
-    return any(name.startswith(f"{segment}_") for name in r.held_dofs)
+def _is_unobserved(r: Reconstruction, segment: str) -> bool:
+    return any(name.startswith(f"{segment}_") for name in r.unobserved_dofs)
 
 
 def _charts(rows: list[list[Cell]], draw: Callable[[Cell], str], broad: bool) -> str:
@@ -265,9 +265,9 @@ def _some(count: int) -> str:
 
 
 def _unobserved(r: Reconstruction) -> str:
-    if not r.held_dofs:
+    if not r.unobserved_dofs:
         return ""
-    segments = sorted({name.rpartition("_")[0].replace("_", " ") for name in r.held_dofs})
+    segments = sorted({name.rpartition("_")[0].replace("_", " ") for name in r.unobserved_dofs})
     return paragraph(f"Not shown, because no marker observes them: {', '.join(segments)}.")
 
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from html import escape
-from typing import Any
 
 import numpy as np
 
-from mbkf.conventions import GRAVITY_M_S2, Array
+from mbkf.conventions import GRAVITY_M_S2, Array, JsonTable
 from mbkf.io.results import Reconstruction
 from mbkf.viz.markup import grid, key, paragraph, section, table
 from mbkf.viz.report.marker_chart import CLASSES, LABELS, longest_gap_s, marker_chart, states
@@ -42,7 +40,7 @@ class Verdict:
     remark: str
 
 
-def quality_section(r: Reconstruction, summary: Mapping[str, Any], labels: Mapping[str, Any] | None) -> str:
+def quality_section(r: Reconstruction, summary: JsonTable, labels: JsonTable | None) -> str:
     """The section.
 
     Args:
@@ -66,7 +64,7 @@ def quality_section(r: Reconstruction, summary: Mapping[str, Any], labels: Mappi
     )
 
 
-def verdicts(r: Reconstruction, summary: Mapping[str, Any]) -> list[Verdict]:
+def verdicts(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
     """The main quality measures, each with its verdict."""
     gap = float(longest_gap_s(r).max(initial=0.0))
     missing = summary.get("missing_fraction") or 0.0
@@ -85,7 +83,7 @@ def verdicts(r: Reconstruction, summary: Mapping[str, Any]) -> list[Verdict]:
     ]  # fmt: skip
 
 
-def _markers(summary: Mapping[str, Any]) -> Verdict:
+def _markers(summary: JsonTable) -> Verdict:
     rms, largest = summary.get("marker_rms_mm"), summary.get("marker_max_mm")
     if rms is None or largest is None:
         return Verdict("Marker error", "–", NONE, "no marker was tracked")
@@ -94,7 +92,7 @@ def _markers(summary: Mapping[str, Any]) -> Verdict:
     return Verdict("Marker error", f"{rms:.1f} mm", GOOD if good else CARE, remark)
 
 
-def _residuals(r: Reconstruction, summary: Mapping[str, Any]) -> list[Verdict]:
+def _residuals(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
     force, moment = summary.get("residual_force_rms_n"), summary.get("residual_moment_rms_nm")
     if force is None or moment is None:
         remark = "needs frames in which plates measure every contact"
@@ -147,7 +145,7 @@ def _flags(r: Reconstruction) -> str:
     return f'<h3>Remarks</h3><ul class="flags{many}">{items}</ul>'
 
 
-def _truth(summary: Mapping[str, Any]) -> str:
+def _truth(summary: JsonTable) -> str:
     truth = summary.get("truth")
     if not truth:
         return ""
@@ -189,7 +187,7 @@ def _norm_where(vectors: Array, r: Reconstruction) -> Array:
     return np.where(r.valid, np.linalg.norm(vectors, axis=1), np.nan)
 
 
-def _labelling(labels: Mapping[str, Any] | None) -> str:
+def _labelling(labels: JsonTable | None) -> str:
     if labels is None:
         return ""
     text = (

@@ -8,7 +8,6 @@ mass.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -39,7 +38,7 @@ def segment_shapes(model: Body) -> dict[str, tuple[Shape, ...]]:
     return {name: _shapes(model, name) for name in model.joints}
 
 
-def as_plain(shapes: dict[str, tuple[Shape, ...]]) -> list[dict[str, Any]]:
+def as_plain(shapes: dict[str, tuple[Shape, ...]]) -> list[dict[str, object]]:
     """The shapes as JSON can hold them, tenths of a millimetre kept."""
     return [
         {

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from typing import Any
 
 import numpy as np
 
@@ -197,6 +196,6 @@ GROUPS = ("Angles", "Torques", "Ground reactions", "Residuals at the pelvis", "S
 """Headings of the list of quantities, in order."""
 
 
-def as_plain(found: list[Quantity]) -> list[dict[str, Any]]:
+def as_plain(found: list[Quantity]) -> list[dict[str, object]]:
     """Quantities as JSON can hold them."""
     return [asdict(quantity) for quantity in found]

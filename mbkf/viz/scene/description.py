@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from scipy.spatial.transform import Rotation
 
@@ -23,7 +21,7 @@ def scene_description(
     plate_corners_m: Array,
     layout: Layout,
     streamed: bool,
-) -> dict[str, Any]:
+) -> dict[str, object]:
     """The page's first message, as JSON can hold it.
 
     Args:

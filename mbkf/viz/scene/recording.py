@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import zlib
-from typing import Any
 
 import numpy as np
 
@@ -22,7 +21,7 @@ MISSING = 65535
 """Stands for NaN in packed rows."""
 
 
-def recording(r: Reconstruction) -> dict[str, Any]:
+def recording(r: Reconstruction) -> dict[str, object]:
     """Data for a page that plays a reconstruction: ``scene`` and packed ``rows``.
 
     Raises:
@@ -32,7 +31,7 @@ def recording(r: Reconstruction) -> dict[str, Any]:
     return {"scene": scene, "rows": pack(rows, resolution)}
 
 
-def recorded_scene(r: Reconstruction) -> tuple[dict[str, Any], Array, Array]:
+def recorded_scene(r: Reconstruction) -> tuple[dict[str, object], Array, Array]:
     """The parts of :func:`recording`.
 
     Returns:
@@ -78,7 +77,7 @@ def _rows(r: Reconstruction, model: HumanModel, layout: Layout, shown: slice) ->
     return rows
 
 
-def pack(rows: Array, resolution: Array | float = 0.0) -> dict[str, Any]:
+def pack(rows: Array, resolution: Array | float = 0.0) -> dict[str, object]:
     """Rows (T, W) as JSON can hold them: whole steps, differences in time, deflated.
 
     Args:

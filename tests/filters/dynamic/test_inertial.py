@@ -10,7 +10,7 @@ from mbkf.filters.fixed_lag import SmoothingSettings
 from mbkf.filters.tracking import track
 from mbkf.imu.placement import typical_mounts
 from mbkf.imu.virtual import ImuErrors, virtual_imus
-from mbkf.pipelines.trial.followers import follower
+from mbkf.pipelines.trial.filters import tracking_filter
 from mbkf.sensors.inertial_sensor import InertialSensor
 from tests.followed import FRAMES, inputs, made, recording, without
 
@@ -54,7 +54,7 @@ def followed(imus=None, lost=LOST, smoothing=None):
     read = without(recording(), lost)
     if imus is not None:
         read = replace(read, imus=np.where(imus, measured, np.nan))
-    return track(follower("dynamic", known), read, smoothing=smoothing)
+    return track(tracking_filter("dynamic", known), read, smoothing=smoothing)
 
 
 def test_they_carry_the_body_through_a_loss_of_all_markers():

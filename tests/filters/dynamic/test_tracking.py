@@ -9,7 +9,7 @@ from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.dynamic.tracking import ROUNDS
 from mbkf.sensors.contact.records import Contact
 from tests.dynamics import settings_with
-from tests.followed import FRAMES, SETTLED, WHOLE, estimates, made, made_follower, recording, torques, tracked
+from tests.followed import FRAMES, SETTLED, WHOLE, estimates, made, made_filter, recording, torques, tracked
 from tests.motions import worst
 
 RIGHT, LEFT = 0, 1
@@ -26,21 +26,21 @@ def residuals_n(found):
 
 @pytest.mark.slow
 def test_a_start_agrees_with_the_plates():
-    follower, found = estimates("dynamic")
+    tracking, found = estimates("dynamic")
     first = found[0]
     off = first.wrench - recording().plates[0]
     assert worst(off[:, :3]) < 15.0
     assert first.contact == (Contact.MEASURED, Contact.MEASURED)
-    root = follower.kalman.balance.root(first.q, first.v, first.a, first.wrench.ravel())
+    root = tracking.kalman.balance.root(first.q, first.v, first.a, first.wrench.ravel())
     assert worst(root.residual) < 5.0
 
 
 def test_torques_come_with_the_spread_of_the_whole_state():
     """T P Tᵀ with T the derivative of the torques, here by finite differences along the state."""
-    follower, found = estimates("dynamic")
+    tracking, found = estimates("dynamic")
     state: DynamicState = found[5].inner.state
     model, nv = made().model, made().model.nv
-    balance = follower.kalman.balance
+    balance = tracking.kalman.balance
 
     def tau(x):
         q = model.integrate(state.q, x[:nv])
@@ -49,23 +49,23 @@ def test_torques_come_with_the_spread_of_the_whole_state():
 
     h = 1e-6
     T = np.array([(tau(h * e) - tau(-h * e)) / (2 * h) for e in np.eye(len(state.P))]).T
-    expected = np.sqrt(np.einsum("ij,jk,ik->i", T, follower.errors(found[5]).covariance(), T))
-    np.testing.assert_allclose(follower.spread(found[5]).torque, expected, rtol=1e-5)
+    expected = np.sqrt(np.einsum("ij,jk,ik->i", T, tracking.errors(found[5]).covariance(), T))
+    np.testing.assert_allclose(tracking.spread(found[5]).torque, expected, rtol=1e-5)
 
 
 def test_wrenches_and_motion_come_with_the_states_spread():
-    follower, found = estimates("dynamic")
+    tracking, found = estimates("dynamic")
     P, nv = found[5].inner.state.P, made().model.nv
-    np.testing.assert_allclose(follower.wrench_sd(found[5]).ravel() ** 2, np.diag(P)[3 * nv :], rtol=1e-12)
-    stated = follower.errors(found[5]).covariance()
-    np.testing.assert_array_equal(follower.covariance(found[5]), stated[: 2 * nv, : 2 * nv])
+    np.testing.assert_allclose(tracking.wrench_sd(found[5]).ravel() ** 2, np.diag(P)[3 * nv :], rtol=1e-12)
+    stated = tracking.errors(found[5]).covariance()
+    np.testing.assert_array_equal(tracking.covariance(found[5]), stated[: 2 * nv, : 2 * nv])
 
 
 def test_where_only_white_noise_is_expected_the_spread_is_the_filters():
-    follower = made_follower("dynamic")
-    follower.kalman.settings = settings_with(innovation_share=0.0)
+    tracking = made_filter("dynamic")
+    tracking.kalman.settings = settings_with(innovation_share=0.0)
     estimate = estimates("dynamic")[1][5]
-    np.testing.assert_array_equal(follower.errors(estimate).covariance(), estimate.inner.state.P)
+    np.testing.assert_array_equal(tracking.errors(estimate).covariance(), estimate.inner.state.P)
 
 
 def test_reactions_and_torques_follow_the_truth():
@@ -86,15 +86,15 @@ def test_smoothing_keeps_newtons_law():
 
 
 def test_smoothing_moves_wrenches_and_shrinks_their_spread_where_a_plate_is_withheld():
-    follower = made_follower("dynamic", plates=made().plates[:1])
+    tracking = made_filter("dynamic", plates=made().plates[:1])
     read = replace(recording(), plates=recording().plates[:, :1])
-    found = [follower.start(read, 0, None)]
+    found = [tracking.start(read, 0, None)]
     for t in range(1, 40):
-        found.append(follower.step(found[-1], read, t))
-    smoothed = follower.smooth(found, read, 0, 30)
+        found.append(tracking.step(found[-1], read, t))
+    smoothed = tracking.smooth(found, read, 0, 30)
     middle = slice(15, 30)
     before, after = (
-        np.array([follower.wrench_sd(one)[LEFT, 2] for one in run[middle]]) for run in (found, smoothed)
+        np.array([tracking.wrench_sd(one)[LEFT, 2] for one in run[middle]]) for run in (found, smoothed)
     )
     assert (after < before).all()
     true = truth("foot_wrench")[:40, LEFT, 2]
@@ -109,8 +109,8 @@ def test_smoothing_moves_wrenches_and_shrinks_their_spread_where_a_plate_is_with
 @pytest.mark.parametrize("t", [0, 30])
 def test_smoothing_keeps_decisions(t):
     """What was refused and what the feet stood on is the filter's word."""
-    follower, found = estimates("dynamic")
-    smoothed = follower.smooth(found, recording(), 0, len(found))
+    tracking, found = estimates("dynamic")
+    smoothed = tracking.smooth(found, recording(), 0, len(found))
     assert smoothed[t].contact == found[t].contact
     np.testing.assert_array_equal(smoothed[t].refused, found[t].refused)
     assert smoothed[t].started == found[t].started

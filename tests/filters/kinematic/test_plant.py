@@ -43,7 +43,7 @@ def test_transition_is_the_derivative_of_the_prediction(rng):
 
 
 def test_transition_of_resting_and_of_straight_moving_dofs_is_the_textbook_one(rng):
-    """Φ = [[1, Δt], [0, 1]] per dof (eq. 3.1), exact on translations and hinges whatever the speed."""
+    """Φ = [[1, Δt], [0, 1]] per dof (thesis eq. 3.1), exact on translations and hinges whatever the speed."""
     model = reference_model()
     plant, nv = WhiteAccelerationPlant(model, DT, model.acceleration_sd), model.nv
     textbook = np.block([[np.eye(nv), DT * np.eye(nv)], [np.zeros((nv, nv)), np.eye(nv)]])
@@ -57,7 +57,7 @@ def test_transition_of_resting_and_of_straight_moving_dofs_is_the_textbook_one(r
 
 
 def test_noise_is_gamma_gamma_transposed(rng):
-    """Q = Γ σ² Γᵀ with Γ = [Δt²/2, Δt] per dof and nothing between dofs (eqs. 3.2, 3.3)."""
+    """Q = Γ σ² Γᵀ with Γ = [Δt²/2, Δt] per dof and nothing between dofs (thesis eqs. 3.2, 3.3)."""
     model = reference_model()
     sd, nv = rng.uniform(1, 300, model.nv), model.nv
     state = KinematicState(moderate_pose(model, rng), np.zeros(nv), np.zeros((2 * nv, 2 * nv)))

@@ -5,14 +5,14 @@ import pytest
 
 from mbkf.filters.kinematic.tracking import SETTLING_S, WARM_UP_S, warm_start
 from tests.dynamics import DT
-from tests.followed import FRAMES, WHOLE, estimates, made, made_follower, recording, tracked, without
+from tests.followed import FRAMES, WHOLE, estimates, made, made_filter, recording, tracked, without
 from tests.motions import worst
 
 SETTLED = round(SETTLING_S / DT)
 
 
 def test_a_warm_start_knows_velocities_and_a_few_accelerations():
-    kalman = made_follower("kinematic").kalman
+    kalman = made_filter("kinematic").kalman
     found = warm_start(kalman, recording(), 0, None)
     cold = kalman.start(recording().markers_m[0])
     truth, nv = made().motion.v[FRAMES.start], made().model.nv
@@ -26,8 +26,8 @@ def test_a_warm_start_knows_velocities_and_a_few_accelerations():
 
 @pytest.mark.parametrize("left", [1, 2, round(WARM_UP_S / DT) - 1])
 def test_a_warm_start_near_the_end_makes_do_with_what_is_left(left):
-    follower, t = made_follower("kinematic"), len(FRAMES) - left
-    found = follower.start(recording(), t, None)
+    tracking, t = made_filter("kinematic"), len(FRAMES) - left
+    found = tracking.start(recording(), t, None)
     assert found.started
     assert np.isfinite(np.r_[found.q, found.v, found.a]).all()
     if left == 1:
@@ -37,7 +37,7 @@ def test_a_warm_start_near_the_end_makes_do_with_what_is_left(left):
 
 def test_a_warm_start_without_markers_ahead_starts_at_rest():
     last = round(WARM_UP_S / DT)
-    found = made_follower("kinematic").start(without(recording(), slice(last, None)), 0, None)
+    found = made_filter("kinematic").start(without(recording(), slice(last, None)), 0, None)
     np.testing.assert_array_equal(found.v, 0.0)
 
 
@@ -48,7 +48,7 @@ def test_accelerations_are_differences_once_it_has_settled():
 
 
 def test_while_it_settles_they_are_those_of_the_backward_run():
-    ahead = warm_start(made_follower("kinematic").kalman, recording(), 0, None).accelerations
+    ahead = warm_start(made_filter("kinematic").kalman, recording(), 0, None).accelerations
     np.testing.assert_array_equal(tracked("kinematic").a[:SETTLED], ahead)
 
 
@@ -77,16 +77,16 @@ def dense_smoother(plant, found):
 
 
 def test_the_smoother_is_the_dense_one():
-    follower, found = estimates("kinematic")
+    tracking, found = estimates("kinematic")
     found = found[:12]
-    smoothed = follower.smooth(found, recording(), 0, len(found))
-    steps, covariances = dense_smoother(follower.kalman.plant, found)
+    smoothed = tracking.smooth(found, recording(), 0, len(found))
+    steps, covariances = dense_smoother(tracking.kalman.plant, found)
     model, nv = made().model, made().model.nv
     for one, before, step, P in zip(smoothed, found, steps, covariances, strict=True):
         sd = np.sqrt(np.diag(P))
         moved = np.r_[model.difference(before.q, one.q), one.v - before.v]
         assert worst((moved - step) / sd) < 1e-6
-        assert worst((follower.covariance(one) - P) / np.outer(sd, sd)) < 1e-6
+        assert worst((tracking.covariance(one) - P) / np.outer(sd, sd)) < 1e-6
     assert worst(steps[0][nv:]) > 0.01
 
 

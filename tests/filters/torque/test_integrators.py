@@ -74,7 +74,7 @@ def test_constant_acceleration_is_exact(name):
 
 
 def test_euler_is_the_printed_one():
-    """Eq. 3.32: positions move with the old velocity."""
+    """Thesis eq. 3.32: positions move with the old velocity."""
     now, u = Motion(np.array([1.0, -2.0]), np.array([0.5, 3.0])), np.array([4.0, -1.0])
     end = integrator("FE")(Cart(), now, u, 0.2)
     np.testing.assert_allclose(end.q, now.q + 0.2 * now.v, rtol=1e-15)

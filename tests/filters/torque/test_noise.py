@@ -14,11 +14,11 @@ from tests.motions import assert_near, moderate_pose, random_model, worst
 DT = 0.01
 
 
-def made(settings, seed=1, held=()):
+def made(settings, seed=1, fixed=()):
     rng = np.random.default_rng(seed)
     model = random_model(rng)
     mask = np.zeros(model.nv, dtype=bool)
-    mask[list(held)] = True
+    mask[list(fixed)] = True
     body = HumanDynamics(model, mask, settings.wrench_frame, settings.force_state)
     q, v = moderate_pose(model, rng), rng.normal(size=model.nv)
     a = np.where(body.kinematic, 0.0, rng.normal(size=model.nv))
@@ -63,7 +63,7 @@ def test_consistent_noise_leaves_accelerations_and_loads_their_own(force_state):
 
 
 def test_independent_noise_is_the_table_scaled_by_mass():
-    """Thesis Table 4.3 and eq. 4.18."""
+    """Thesis Table 4.3 and thesis eq. 4.18."""
     body, state, noise = made(preset("FD", literal=True))
     nv, model, scale = body.nv, body.model, body.model.mass_kg / 100.0
     density = noise(state)
@@ -89,9 +89,9 @@ def test_noise_per_frame_is_what_a_frame_adds():
     assert_near(np.diag(per_frame(state))[-12:] * DT, forces, 1e-9)
 
 
-def test_held_dofs_receive_none():
-    held = (9, 10)
-    body, state, noise = made(TorqueSettings(), held=held)
+def test_fixed_dofs_receive_none():
+    fixed = (9, 10)
+    body, state, noise = made(TorqueSettings(), fixed=fixed)
     by_u = body.linearise(state.q, state.v, state.u).by_u
     caused = by_u @ noise(state)[2 * body.nv :, 2 * body.nv :] @ by_u.T
-    assert not caused[list(held)].any()
+    assert not caused[list(fixed)].any()

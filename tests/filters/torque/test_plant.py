@@ -96,7 +96,7 @@ def test_exact_propagation_is_the_derivative_of_a_step():
 
 
 def test_simplified_sensitivity_keeps_only_what_forces_do():
-    """Eq. 4.15; the turning of the tangent space is kinematics and stays."""
+    """Thesis eq. 4.15; the turning of the tangent space is kinematics and stays."""
     body, now, u = loaded_body("torque")
     nv, slope = body.nv, body.linearise(now.q, now.v, u)
     F = plant_of(body, complete=False).sensitivity(now.v, slope)

@@ -13,15 +13,15 @@ from tests.dynamics import trial
 from tests.forced_bodies import torque_plant
 from tests.motions import assert_near
 
-FRAME, HELD = 100, (40, 41)
+FRAME, FIXED = 100, (40, 41)
 
 
 @pytest.fixture(scope="module")
 def scene():
     m = trial("squat")
-    held = np.zeros(m.model.nv, dtype=bool)
-    held[list(HELD)] = True
-    body, motion = HumanDynamics(m.model, held), m.motion
+    fixed = np.zeros(m.model.nv, dtype=bool)
+    fixed[list(FIXED)] = True
+    body, motion = HumanDynamics(m.model, fixed), m.motion
     a = np.where(body.kinematic, 0.0, motion.a[FRAME])
     u = body.forces(motion.q[FRAME], motion.v[FRAME], a, motion.foot_wrench[FRAME])
     P = 1e-6 * np.eye(2 * body.nv + body.nu)
@@ -49,10 +49,10 @@ def test_spreads_are_those_of_small_errors(scene):
         reported(body, wrenches, plant.retract(state, 1e-3 * rng.normal(size=len(state.P)), state.P))
         for _ in range(300)
     ]
-    free = body.torque_dofs[~body.held[body.torque_dofs]]
+    free = body.torque_dofs[~body.fixed[body.torque_dofs]]
     spread = np.std([one.tau for one in drawn], axis=0)
     np.testing.assert_allclose(spread[free], found.tau_sd[free], rtol=0.2)
     np.testing.assert_allclose(
         np.std([one.foot_wrench for one in drawn], axis=0), found.foot_wrench_sd, rtol=0.2
     )
-    assert np.isnan(found.tau_sd[list(HELD)]).all()
+    assert np.isnan(found.tau_sd[list(FIXED)]).all()

@@ -10,10 +10,10 @@ from tests.followed import estimates, inputs, made
 
 
 def test_markers_are_expected_where_the_body_goes():
-    follower, found = estimates("kinematic")
+    tracking, found = estimates("kinematic")
     sensor = inputs().sensor
     for before, now in pairwise(found[20:]):
-        expected = steady_motion(before, follower.covariance(before), sensor, DT)
+        expected = steady_motion(before, tracking.covariance(before), sensor, DT)
         off = expected.markers.positions_m - sensor.positions(now.q)
         assert np.abs(off).max() < 0.02
         np.testing.assert_array_equal(expected.markers.positions_m, sensor.positions(expected.q))
@@ -21,10 +21,10 @@ def test_markers_are_expected_where_the_body_goes():
 
 def test_covariance_is_the_kinematic_plants_own():
     """Up to the retraction's curvature, which one step hardly has."""
-    follower, found = estimates("kinematic")
-    ours = steady_motion(found[30], follower.covariance(found[30]), inputs().sensor, DT).markers.covariance
+    tracking, found = estimates("kinematic")
+    ours = steady_motion(found[30], tracking.covariance(found[30]), inputs().sensor, DT).markers.covariance
     nv = made().model.nv
-    theirs = follower.kalman.plant.predict(found[30].inner.state).P[:nv, :nv]
+    theirs = tracking.kalman.plant.predict(found[30].inner.state).P[:nv, :nv]
     assert np.allclose(ours, theirs, atol=2e-2 * np.abs(theirs).max())
     assert np.allclose(ours, ours.T)
     assert np.linalg.eigvalsh(ours).min() > 0.0

@@ -13,7 +13,7 @@ from tests.followed import (
     estimates,
     inputs,
     made,
-    made_follower,
+    made_filter,
     recording,
     torques,
     tracked,
@@ -40,10 +40,10 @@ def test_a_start_agrees_with_the_plates_and_newton():
 
 
 def test_torques_are_states_with_their_spread():
-    follower, found = estimates("torque")
+    tracking, found = estimates("torque")
     for one in (found[0], found[5]):
-        np.testing.assert_array_equal(follower.spread(one).torque, one.inner.state.tau_sd)
-        np.testing.assert_array_equal(follower.wrench_sd(one), one.inner.state.foot_wrench_sd)
+        np.testing.assert_array_equal(tracking.spread(one).torque, one.inner.state.tau_sd)
+        np.testing.assert_array_equal(tracking.wrench_sd(one), one.inner.state.foot_wrench_sd)
         np.testing.assert_array_equal(one.wrench, one.inner.state.foot_wrench)
 
 
@@ -66,49 +66,49 @@ def test_its_torques_are_inverse_dynamics_of_its_own_motion():
 
 def test_smoothed_estimates_obey_newton_too():
     found = tracked("torque", WHOLE)
-    follower, before = estimates("torque")
-    smoothed = follower.smooth(before, recording(), 0, len(before))
+    tracking, before = estimates("torque")
+    smoothed = tracking.smooth(before, recording(), 0, len(before))
     known = np.isfinite(found.torque_sd[1])
     for t in (0, 20, 59):
         assert np.abs(torques(found)[t][known] - smoothed[t].inner.state.tau[known]).max() < 1e-5
 
 
 def test_a_foot_without_a_plate_is_inferred():
-    follower = made_follower("torque", plates=made().plates[:1])
+    tracking = made_filter("torque", plates=made().plates[:1])
     read = replace(recording(), plates=recording().plates[:, :1])
-    found = [follower.start(read, 0, None)]
+    found = [tracking.start(read, 0, None)]
     for t in range(1, 40):
-        found.append(follower.step(found[-1], read, t))
+        found.append(tracking.step(found[-1], read, t))
     assert found[20].contact == (Contact.MEASURED, Contact.UNMEASURED)
     vertical = np.array([one.wrench[LEFT, 2] for one in found]) - truth("foot_wrench")[:40, LEFT, 2]
-    sd = np.array([follower.wrench_sd(one)[LEFT, 2] for one in found])
+    sd = np.array([tracking.wrench_sd(one)[LEFT, 2] for one in found])
     assert rms(vertical[20:]) < 80.0
     assert (sd[20:] > 10.0).all()
-    assert follower.innovation(found[20])[1] == 3 * 36 + 6
+    assert tracking.innovation(found[20])[1] == 3 * 36 + 6
 
 
 def test_a_loss_of_markers_leaves_the_plates():
-    follower, found = estimates("torque")
+    tracking, found = estimates("torque")
     blind = replace(recording(), markers_m=np.full_like(recording().markers_m, np.nan))
-    step = follower.step(found[20], blind, 21)
+    step = tracking.step(found[20], blind, 21)
     assert not step.tracked
-    assert follower.innovation(step)[1] == 12
+    assert tracking.innovation(step)[1] == 12
     assert step.contact == found[21].contact
 
 
 def test_what_cannot_be_computed_is_untracked():
     """The state stays, contact is still decided, and a smoother passes over the frame."""
-    follower, found = estimates("torque")
+    tracking, found = estimates("torque")
     record = found[20].inner
     filtered = replace(record.state.filtered, P=-1e3 * np.eye(166))
     broken = found[20]._replace(inner=replace(record, state=replace(record.state, filtered=filtered)))
-    step = follower.step(broken, recording(), 21)
+    step = tracking.step(broken, recording(), 21)
     assert not step.tracked and not step.started
     assert step.q is broken.inner.state.q
     assert step.contact == found[21].contact
     assert not step.refused.any()
-    assert np.isnan(follower.innovation(step)[0]) and follower.innovation(step)[1] == 0
-    smoothed = follower.smooth(
+    assert np.isnan(tracking.innovation(step)[0]) and tracking.innovation(step)[1] == 0
+    smoothed = tracking.smooth(
         [found[20], step._replace(inner=replace(step.inner, state=record.state))], recording(), 20, 2
     )
     np.testing.assert_allclose(smoothed[0].q, found[20].q, rtol=0, atol=1e-12)
@@ -116,14 +116,14 @@ def test_what_cannot_be_computed_is_untracked():
 
 @pytest.mark.parametrize("keep", [1, 5])
 def test_smoothing_a_few_frames(keep):
-    follower, found = estimates("torque")
-    smoothed = follower.smooth(found[:keep], recording(), 0, keep)
+    tracking, found = estimates("torque")
+    smoothed = tracking.smooth(found[:keep], recording(), 0, keep)
     np.testing.assert_allclose(smoothed[-1].q, found[keep - 1].q, rtol=0, atol=1e-12)
     assert len(smoothed) == keep
 
 
 def test_it_starts_as_the_kinematic_filter_does():
-    kinematic = made_follower("kinematic", kinematic=inputs().kinematic).start(recording(), 0, None)
+    kinematic = made_filter("kinematic", kinematic=inputs().kinematic).start(recording(), 0, None)
     _, found = estimates("torque")
     moved = made().model.difference(kinematic.q, found[0].q)
     assert worst(moved / tracked("torque").position_sd[0]) < 1.0

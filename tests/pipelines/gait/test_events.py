@@ -74,7 +74,7 @@ def test_motion_fills_in_where_the_kinematic_filter_has_no_plate():
     whole, r = foot_events(walk()), walk()
     force = r.foot_wrench.copy()
     force[:, 0] = 0.0
-    without = foot_events(replace(r, filter="kinematic", footing=None, foot_wrench=force))
+    without = foot_events(replace(r, filter="kinematic", foot_contact=None, foot_wrench=force))
     inside = [t for t in whole[0].strikes_s if 0.1 < t < r.times_s[-1] - 0.1]
     assert inside
     for t in inside:

@@ -22,7 +22,7 @@ from mbkf.pipelines.live.log import (
 from mbkf.pipelines.live.results import live_results
 from mbkf.pipelines.reconstruct import ReconstructSettings, subject_markers
 from mbkf.pipelines.scale import scale
-from mbkf.pipelines.trial.followers import FILTERS, follower
+from mbkf.pipelines.trial.filters import FILTERS, tracking_filter
 from mbkf.pipelines.trial.inputs import trial_inputs
 from tests.captures import MASS_KG, made_capture
 
@@ -50,8 +50,8 @@ def test_steps_are_those_of_a_whole_trial(name):
     positions[:2] = np.nan
     positions[20:45] = np.nan
     inputs, recording = recorded(positions)
-    steps, _ = steps_of(LiveFilter(follower(name, inputs)), recording)
-    expected = {t: estimate for t, estimate, _ in followed(follower(name, inputs), recording)}
+    steps, _ = steps_of(LiveFilter(tracking_filter(name, inputs)), recording)
+    expected = {t: estimate for t, estimate, _ in followed(tracking_filter(name, inputs), recording)}
     assert [step.number for step in steps] == list(range(70))
     assert [step.number for step in steps if step.estimate is not None] == sorted(expected)
     assert sum(estimate.started for estimate in expected.values()) == 2
@@ -65,7 +65,7 @@ def test_steps_are_those_of_a_whole_trial(name):
 
 def test_only_a_start_makes_frames_wait():
     inputs, recording = recorded()
-    live = LiveFilter(follower("dynamic", inputs))
+    live = LiveFilter(tracking_filter("dynamic", inputs))
     steps, due = steps_of(live, recording)
     ahead = warm_up_frames(0.01)
     assert due == [0] * ahead + [ahead + 1] + [1] * (69 - ahead)
@@ -75,7 +75,7 @@ def test_only_a_start_makes_frames_wait():
 
 def test_what_the_filter_cannot_digest_makes_it_start_anew(monkeypatch):
     inputs, recording = recorded()
-    chosen = follower("kinematic", inputs)
+    chosen = tracking_filter("kinematic", inputs)
     step, left = chosen.step, [3]
 
     def failing(before, recording, t, prediction):
@@ -94,8 +94,8 @@ def test_what_the_filter_cannot_digest_makes_it_start_anew(monkeypatch):
 def test_what_was_expected_is_what_the_step_goes_on_from(name, monkeypatch):
     """Asked what it expects before each frame, the filter predicts no second time and finds the very same."""
     inputs, recording = recorded()
-    plain, _ = steps_of(LiveFilter(follower(name, inputs)), recording)
-    chosen = follower(name, inputs)
+    plain, _ = steps_of(LiveFilter(tracking_filter(name, inputs)), recording)
+    chosen = tracking_filter(name, inputs)
     asked, calls = LiveFilter(chosen), []
     predict = chosen.kalman.plant.predict
     monkeypatch.setattr(chosen.kalman.plant, "predict", lambda *a: calls.append(1) or predict(*a))
@@ -112,7 +112,7 @@ def test_what_was_expected_is_what_the_step_goes_on_from(name, monkeypatch):
 
 def test_after_a_cut_nothing_is_known():
     inputs, recording = recorded()
-    live = LiveFilter(follower("kinematic", inputs))
+    live = LiveFilter(tracking_filter("kinematic", inputs))
     for t in range(40):
         live.push(t, recording.frame(t))
     assert live.latest is not None
@@ -129,7 +129,7 @@ def test_columns_lead_to_the_subjects_markers():
     assert tuple(names[k] for k in live.columns) == live.names
     assert set(live.names) == {marker.name for marker in SUBJECT.markers}
     whole, _ = recorded()
-    np.testing.assert_array_equal(live.inputs.held, whole.held)
+    np.testing.assert_array_equal(live.inputs.unobservable, whole.unobservable)
     with pytest.raises(NotObservable):
         live_inputs(("a", "b"), 100.0, (), SUBJECT, SETTINGS)
 
@@ -138,7 +138,7 @@ def test_columns_lead_to_the_subjects_markers():
 def log(tmp_path):
     """A log of frames 3 to 60, two of them missing, and what made its rows."""
     live = live_inputs(CAPTURE.markers.names, 100.0, CAPTURE.plates, SUBJECT, SETTINGS)
-    chosen = follower("dynamic", live.inputs)
+    chosen = tracking_filter("dynamic", live.inputs)
     rows = FrameRecorder(chosen, len(live.names))
     plates = tuple(
         replace(p, force_n=p.force_n[:0], moment_nm=p.moment_nm[:0], centre_of_pressure_m=p.force_n[:0])

@@ -25,8 +25,8 @@ def walk():
 def streamed(points_m, rate_hz, subject):
     """The body, (T, M, 3) names given while a filter follows, and the frames in which they were searched."""
     body = live_body(subject)
-    follower = live_body(subject).follower(1.0 / rate_hz)
-    labels, live = LiveLabels(body, follower.dt_s, patient=True), LiveFilter(follower)
+    tracking = live_body(subject).tracking_filter(1.0 / rate_hz)
+    labels, live = LiveLabels(body, tracking.dt_s, patient=True), LiveFilter(tracking)
     named, plates = [], np.zeros((0, 6))
     with single_threaded():
         for number, frame in enumerate(points_m):

@@ -31,9 +31,9 @@ def test_markers_keep_the_order_of_the_trial():
 def test_a_marker_that_is_hardly_seen_shows_no_dof():
     markers, plates, subject = shown(walker().trial.markers.names)
     complete, _ = trial_inputs(markers, plates, subject, ReconstructSettings())
-    assert complete.held.sum() < complete.held.size
+    assert complete.unobservable.sum() < complete.unobservable.size
     positions = np.full_like(markers.positions_m, np.nan)
     positions[0] = markers.positions_m[0]
     assert MIN_PRESENT * markers.frames > 1.0
     hidden, _ = trial_inputs(replace(markers, positions_m=positions), plates, subject, ReconstructSettings())
-    assert hidden.held.all()
+    assert hidden.unobservable.all()

@@ -123,9 +123,9 @@ def test_what_goes_out_of_sight_is_learned_once_from_what_was_seen():
     arms = set(arm_dofs(made.model))
     for step in steps:
         assert set(decided(step)) <= arms & set(step.decisions.notes.unobserved)
-    followers = prior_of(made.kalman()).followers
+    dependents = prior_of(made.kalman()).dependents
     found = kept(steps[-1]).learned
-    assert {j for j, own in enumerate(followers) if arms & set(own)} == set(found)
+    assert {j for j, own in enumerate(dependents) if arms & set(own)} == set(found)
     assert all(found[j] is kept(steps[0]).learned[j] for j in found)
     noted = kept(steps[-1]).noted[-round(HIDDEN_S * NOTED_HZ) :]
     assert not any(one.observed[list(arms)].any() for one in noted)
@@ -144,7 +144,7 @@ def test_a_prediction_begins_a_frame_after_its_joint_has_gone():
 def test_what_comes_back_is_forgotten_and_what_was_seen_elsewhere_is_learned_by_itself():
     """The second joint was out of sight in the first half of the notes."""
     block, rng = prior_of(dynamic_filter(MODEL)), np.random.default_rng(0)
-    first, second = block.followers[:2]
+    first, second = block.dependents[:2]
     noted = []
     for time in range(10):
         seen = np.ones(MODEL.nv, dtype=bool)
@@ -191,10 +191,10 @@ def test_features_know_how_the_pelvis_leans():
 def test_trunk_and_legs_lead_and_what_no_marker_moves_does_not_follow():
     unobservable = np.zeros(MODEL.nv, dtype=bool)
     unobservable[MODEL.joint("head").v] = True
-    followers = np.concatenate(CoordinationPrior(MODEL, DT, unobservable).followers)
+    dependents = np.concatenate(CoordinationPrior(MODEL, DT, unobservable).dependents)
     leading = np.concatenate([np.arange(MODEL.joint(s).v.start, MODEL.joint(s).v.stop) for s in LEADING])
-    assert not set(followers) & set(leading)
-    assert set(range(6, MODEL.nv)) - set(leading) - set(followers) == set(np.flatnonzero(unobservable))
+    assert not set(dependents) & set(leading)
+    assert set(range(6, MODEL.nv)) - set(leading) - set(dependents) == set(np.flatnonzero(unobservable))
 
 
 def test_a_body_without_joints_that_follow_is_served():
@@ -203,5 +203,5 @@ def test_a_body_without_joints_that_follow_is_served():
     for segment in ("pelvis", *LEADING):
         unobservable[MODEL.joint(segment).v] = False
     block = CoordinationPrior(MODEL, DT, unobservable)
-    assert block.followers == []
+    assert block.dependents == []
     assert not learned(block, block.begin())

@@ -140,7 +140,7 @@ def test_plates_that_never_speak(tmp_path, capture, subject):
     found = read_reconstruction(tmp_path)
     assert found.tracked.all()
     assert not found.valid.any()
-    assert (found.footing == -1).any()
+    assert (found.foot_contact == -1).any()
 
 
 def test_plates_that_fall_silent_are_told_of(tmp_path, capture, subject):

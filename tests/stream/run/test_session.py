@@ -12,7 +12,7 @@ from mbkf.io.results_folder import read_reconstruction
 from mbkf.pipelines.live.filter import live_inputs
 from mbkf.pipelines.live.results import live_results
 from mbkf.pipelines.reconstruct import ReconstructSettings
-from mbkf.pipelines.trial.followers import follower
+from mbkf.pipelines.trial.filters import tracking_filter
 from mbkf.stream.receiving.alignment import ReadyFrame
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.stream.run.events import MOST, EventLog
@@ -114,7 +114,7 @@ def test_the_rate_is_that_of_the_last_second(capture, subject):
     maker = FrameMaker(live, stream.rate_hz)
     for arrival_s in (0.0, 5.0, 5.5, 6.0):
         maker.arrived(arrival_s)
-    rows = FrameRecorder(follower("dynamic", live.inputs), len(live.names))
+    rows = FrameRecorder(tracking_filter("dynamic", live.inputs), len(live.names))
     unseen = np.full((len(live.names), 3), np.nan)
     ready = ReadyFrame(7, 6.0, unseen, np.zeros((0, 3)), np.zeros((2, 6)))
     shown = maker.frame(ready, rows.row(7, unseen, None, 0.0), 0.001, 3)

@@ -143,7 +143,7 @@ def test_who_never_stands_still_is_told_what_moved(tmp_path, visit):
     with pytest.raises(InvalidInput, match=r"before a person was scaled: marker \w+ moved \d+ mm"):
         begin(tmp_path, ScriptedSource(*frames_of(moving)))
     report = report_of(tmp_path)
-    assert report["state"] == "nobody scaled"
+    assert report["state"] == "no subject scaled"
     assert report["scaling"]["frames_in"] == 80
     assert not (tmp_path / SUBJECT_FILE).exists()
 
@@ -225,7 +225,7 @@ def test_it_can_be_stopped_at_any_time(tmp_path, visit, monkeypatch, scaling):
     forever.set()
     assert found is None
     report = report_of(tmp_path)
-    assert (report["state"], report["ended_by"]) == ("nobody scaled", "it was stopped")
+    assert (report["state"], report["ended_by"]) == ("no subject scaled", "it was stopped")
     assert report["scaling"]["attempts"] == int(scaling)
 
 

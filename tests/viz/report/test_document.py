@@ -67,7 +67,7 @@ def test_numbers_that_are_not_known_do_not_appear_as_nan():
     nothing = np.full_like(r.residual_force_n, np.nan)
     bare = replace(
         r, filter="kinematic", moments=unknown, moments_sd=unknown, angles_sd=unknown, foot_wrench_sd=None,
-        footing=None, foot_wrench=0.0 * r.foot_wrench, residual_force_n=nothing, residual_moment_nm=nothing,
+        foot_contact=None, foot_wrench=0.0 * r.foot_wrench, residual_force_n=nothing, residual_moment_nm=nothing,
         plate_corners_m=None, valid=np.zeros(r.frames, bool),
     )  # fmt: skip
     for page in (report(bare), report(broken_walk())):

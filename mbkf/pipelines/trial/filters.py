@@ -36,7 +36,7 @@ class FilterInputs:
         noise_m: (M,) marker noise.
         plates: The plates.
         dt_s: Time between frames.
-        held: (nv,) dofs that no marker of the trial moves with.
+        unobservable: (nv,) dofs that no marker of the trial moves with.
         kinematic, dynamic, torque: Settings of each filter.
         inertial: Inertial sensors on the body, None where there are none.
     """
@@ -45,7 +45,7 @@ class FilterInputs:
     noise_m: Array
     plates: tuple[PlateReadings, ...]
     dt_s: float
-    held: BoolArray
+    unobservable: BoolArray
     kinematic: KinematicSettings
     dynamic: DynamicSettings
     torque: TorqueSettings
@@ -64,7 +64,7 @@ def _dynamic(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
     known = inputs.sensor, inputs.noise_m
     if blocks is None:
         blocks = standard(inputs)
-    kalman = DynamicFilter(*known, inputs.dt_s, inputs.held, inputs.dynamic, blocks)
+    kalman = DynamicFilter(*known, inputs.dt_s, inputs.unobservable, inputs.dynamic, blocks)
     return DynamicTracking(kalman, _starter(inputs))
 
 
@@ -72,7 +72,7 @@ def standard(inputs: FilterInputs) -> list[AnyBlock]:
     """The dynamic filter's standard blocks."""
     detector = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
     known = inputs.sensor, inputs.noise_m
-    return dynamic_blocks(*known, detector, inputs.dt_s, inputs.held, inputs.dynamic, inputs.inertial)
+    return dynamic_blocks(*known, detector, inputs.dt_s, inputs.unobservable, inputs.dynamic, inputs.inertial)
 
 
 def _torque(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
@@ -82,12 +82,12 @@ def _torque(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
         )
     detector = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
     known = inputs.sensor, inputs.noise_m
-    kalman = TorqueFilter.standard(*known, detector, inputs.dt_s, inputs.held, inputs.torque)
+    kalman = TorqueFilter.standard(*known, detector, inputs.dt_s, inputs.unobservable, inputs.torque)
     return TorqueTracking(kalman, _starter(inputs))
 
 
 def _starter(inputs: FilterInputs) -> KinematicFilter:
-    return KinematicFilter(inputs.sensor, inputs.noise_m, inputs.dt_s, inputs.held, inputs.kinematic)
+    return KinematicFilter(inputs.sensor, inputs.noise_m, inputs.dt_s, inputs.unobservable, inputs.kinematic)
 
 
 _MAKERS: dict[str, Callable[[FilterInputs, Blocks], TrackingFilter]] = {
@@ -100,7 +100,7 @@ FILTERS = tuple(_MAKERS)
 """Names of the filters."""
 
 
-def follower(name: str, inputs: FilterInputs, blocks: Blocks = None) -> TrackingFilter:
+def tracking_filter(name: str, inputs: FilterInputs, blocks: Blocks = None) -> TrackingFilter:
     """The filter of that name.
 
     Args:
