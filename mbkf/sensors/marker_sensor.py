@@ -117,7 +117,7 @@ class MarkerInformation:
             innovation_m: (M, 3) measured minus predicted, NaN where missing.
             trusted: (M,) markers that count; none of them missing.
         """
-        count = int(np.count_nonzero(trusted))
+        count = trusted.tobytes().count(1)
         y = innovation_m if count == len(trusted) else np.where(trusted[:, None], innovation_m, 0.0)
         forces = y * self._weight
         matrix = self._masses.mass_matrix(q, trusted)
