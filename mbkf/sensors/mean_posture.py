@@ -13,8 +13,6 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
-from mbkf.model.human import HumanModel
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 
 

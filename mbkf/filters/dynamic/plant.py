@@ -19,9 +19,8 @@ import numpy as np
 from scipy.linalg import expm
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.model.body import Body
 from mbkf.filters.filter import Plant
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.sensors.block import Notes
 from mbkf.sensors.layout import WRENCH, ExtraState, Layout
 

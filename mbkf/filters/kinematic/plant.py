@@ -11,9 +11,8 @@ import numpy as np
 from scipy.linalg import blas
 
 from mbkf.conventions import Array
-from mbkf.model.body import Body
 from mbkf.filters.filter import Plant
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.sensors.block import Notes
 from mbkf.sensors.layout import Layout
 

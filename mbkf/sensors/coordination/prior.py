@@ -17,8 +17,6 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
-from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
-from mbkf.model.human import HumanModel
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 from mbkf.sensors.coordination.regression import Coordination, learn
 from mbkf.sensors.layout import Layout
