@@ -159,4 +159,10 @@ class Body(Protocol):
         """
 
     def segment_jacobian(self, q: Array, segment: str, point_m: Array) -> Array:
-        """(6, nv) velocity of a segment's world point (3,), linear and angular, by the tangent velocity."""
+        """(6, nv) linear and angular velocity of a point of a segment by the tangent velocity, world axes.
+
+        Args:
+            q: (nq,) configuration.
+            segment: The segment.
+            point_m: (3,) the point, world.
+        """
