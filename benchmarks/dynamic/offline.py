@@ -20,7 +20,6 @@ from mbkf.errors import NotObservable
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
-from mbkf.model.newton_euler import FEET
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.reconstruct import subject_markers
 from mbkf.sensors.contact.offline import assign_feet
@@ -159,7 +158,7 @@ def generalised_forces(model: HumanModel, q: Array, v: Array, a: Array, foot_wre
         foot_wrench: (T, 2, 6) wrenches on the feet about the world's origin, N and N m.
     """
     tau = np.empty_like(v)
-    supports = [model.supports[model.joint(segment).joint_id] for segment in FEET]
+    supports = [model.supports[model.joint(segment).joint_id] for segment in model.roles.feet]
     for t in range(len(q)):
         tau[t] = model.inverse_dynamics(q[t], v[t], a[t])
         jacobian = model.placements_and_jacobian(q[t])[2]

@@ -9,14 +9,13 @@ from pathlib import Path
 import numpy as np
 
 import mbkf
-from mbkf.pipelines.synth import synthesise
 
 body = mbkf.load_body(Path(__file__).parent / "bodies" / "legs.toml")
 print(f"{body.name}: {len(body.segments)} segments, feet {body.roles.feet}")
 for joint in body.clinical_joints:
     print(f"  {joint.name}: {', '.join(angle.name for angle in joint.angles)}")
 
-_, recorded = synthesise("squat", seconds=1.5, seed=5)
+_, recorded = mbkf.synthesise("squat", seconds=1.5, seed=5)
 subject = mbkf.scale(recorded.static, body=body)
 print(f"{len(subject.markers)} markers on the legs; the subject carries the body '{subject.body}'")
 

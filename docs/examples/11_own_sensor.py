@@ -1,6 +1,6 @@
 """A sensor of one's own: a pressure insole that stands in for a force plate, without touching the package.
 
-z = [f_z, c_x, c_y] per foot: vertical force and centre of pressure on the sole, in world axes. About the centre of
+z = [f_z, c_x, c_y, c_z] per foot: vertical force and centre of pressure, in world axes. About the centre of
 pressure the horizontal moment vanishes, so that each reading is linear in the foot's wrench w = (f, n):
 
     f_z = w_3 + r,   0 = n_x − (c_y f_z − c_z f_y) + r,   0 = n_y − (c_z f_x − c_x f_z) + r

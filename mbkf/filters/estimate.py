@@ -10,8 +10,8 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.spread import Spread
+from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
-from mbkf.model.human import HumanModel
 from mbkf.sensors.block import NO_READINGS, Frame
 from mbkf.sensors.marker_prediction import MarkerPrediction
 
@@ -102,7 +102,7 @@ class Prediction(NamedTuple):
 class TrackingFilter(Protocol):
     """A filter as trials and streams drive it."""
 
-    model: HumanModel
+    model: Body
     clinical: ClinicalAngles
     dt_s: float
     restart_after_s: float

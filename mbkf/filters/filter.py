@@ -137,7 +137,8 @@ class Step(NamedTuple, Generic[StateT]):
     @property
     def refused(self) -> BoolArray:
         """(M,) markers seen but outside their gate."""
-        return self.decisions.notes.seen & ~self.decisions.notes.trusted
+        notes = self.decisions.notes
+        return notes.seen & ~notes.trusted if notes.trusted is not notes.seen else np.zeros_like(notes.seen)
 
     @property
     def nis_readings(self) -> int:

@@ -8,7 +8,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.filters.tracking import Track
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.model.newton_euler import NewtonEuler
 
 
@@ -27,7 +27,7 @@ class InverseDynamics:
     residual_moment_nm: Array
 
 
-def residual_in_world(model: HumanModel, q: Array, tau: Array) -> tuple[Array, Array]:
+def residual_in_world(model: Body, q: Array, tau: Array) -> tuple[Array, Array]:
     """Force (3,) and moment (3,) of the pelvis residual in world axes: the pelvis's own axes turn with it.
 
     Args:
@@ -40,7 +40,7 @@ def residual_in_world(model: HumanModel, q: Array, tau: Array) -> tuple[Array, A
     return R @ tau[root][:3], R @ tau[root][3:]
 
 
-def inverse_dynamics(model: HumanModel, track: Track, foot_wrench: Array) -> InverseDynamics:
+def inverse_dynamics(model: Body, track: Track, foot_wrench: Array) -> InverseDynamics:
     """Generalised forces and residual of every followed frame.
 
     Args:

@@ -12,8 +12,8 @@ from functools import cached_property
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
-from mbkf.model.human import HumanModel
 
 
 class SpreadReader:
@@ -24,7 +24,7 @@ class SpreadReader:
         clinical: Its clinical coordinates, A of them.
     """
 
-    def __init__(self, model: HumanModel) -> None:
+    def __init__(self, model: Body) -> None:
         self.model, self.clinical = model, ClinicalAngles(model)
         self._feet = [model.joint(segment).joint_id for segment in model.roles.feet]
 

@@ -10,7 +10,7 @@ from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.imu.frames import exponential, matrix_quaternion, multiply
 from mbkf.io.imu_mount import ImuMount
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 
 
 def _strapped(out: tuple[float, float, float]) -> Array:
@@ -36,7 +36,7 @@ EIGHT = tuple(_PLACES)
 
 
 def typical_mounts(
-    model: HumanModel,
+    model: Body,
     segments: tuple[str, ...] = EIGHT,
     seed: int | None = None,
     turn_sd_rad: float = 0.15,
@@ -73,7 +73,7 @@ def typical_mounts(
     return tuple(mounts)
 
 
-def usual_place(model: HumanModel, segment: str) -> Array:
+def usual_place(model: Body, segment: str) -> Array:
     """(3,) where a sensor usually sits on a segment, m; the middle of its mass where there is no custom."""
     description = model.description.segment(segment)
     place = np.array(_PLACES[segment][0]) if segment in _PLACES else description.com_m

@@ -12,7 +12,7 @@ from mbkf.errors import InvalidInput
 from mbkf.imu.frames import matrix_quaternion
 from mbkf.io.imu import ImuReadings
 from mbkf.io.imu_mount import ImuMount
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.sensors.inertial_sensor import InertialSensor
 
 FIELD_UT = (24.0, 0.0, -39.0)
@@ -56,7 +56,7 @@ class ImuErrors:
 
 
 def virtual_imus(
-    model: HumanModel,
+    model: Body,
     times_s: Array,
     q: Array,
     v: Array,

@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
+import pinocchio as pin
+
 from mbkf.conventions import Array
 from mbkf.model.description import BodyDescription, Roles, Segment
 
@@ -48,7 +50,8 @@ class Body(Protocol):
     * ``acceleration_sd``, ``movement_sd`` (nv,): typical acceleration of each dof, and its standard deviation over a
       movement, m/s² or rad/s²;
     * ``limits`` (nv, 2): least and greatest rotation from neutral, rad; ±inf where there is no limit;
-    * ``supports`` (joints, nv): True where a dof moves a joint's segment.
+    * ``supports`` (joints, nv): True where a dof moves a joint's segment;
+    * ``pin_model``: its Pinocchio model, for the equations that take it directly.
     """
 
     @property
@@ -58,6 +61,14 @@ class Body(Protocol):
     @property
     def roles(self) -> Roles:
         """What its segments are to the algorithms."""
+
+    @property
+    def pin_model(self) -> pin.Model:
+        """Its Pinocchio model."""
+
+    @property
+    def scale(self) -> Array:
+        """(K,) independent scale factors of the reference body."""
 
     @property
     def mass_kg(self) -> float:
@@ -145,4 +156,16 @@ class Body(Protocol):
             q: (nq,) configuration.
             v: (nv,) velocity in the tangent space.
             a: (nv,) acceleration.
+        """
+
+    def segment_jacobian(self, q: Array, segment: str, point_m: Array) -> Array:
+        """World Jacobian of a point fixed to a segment.
+
+        Args:
+            q: (nq,) configuration.
+            segment: Name of the segment.
+            point_m: (3,) the point in the world, m.
+
+        Returns:
+            (6, nv) rows linear, then angular, in world axes.
         """

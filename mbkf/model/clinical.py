@@ -10,8 +10,8 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.errors import ShapeError
+from mbkf.model.body import Body
 from mbkf.model.clinical_table import Angle, ClinicalJoint
-from mbkf.model.human import HumanModel
 from mbkf.numerics.cardan import (
     cardan_angles,
     follow,
@@ -24,7 +24,7 @@ from mbkf.numerics.cardan import (
 AXES = {"x": 0, "y": 1, "z": 2}
 
 
-def dof_names(model: HumanModel) -> tuple[str, ...]:
+def dof_names(model: Body) -> tuple[str, ...]:
     """Names of the nv tangent dofs: ``<segment>_<axis>`` turns about it, ``pelvis_t<axis>`` moves along it.
 
     Free and spherical joints: axes of the segment's own frame. Others: the axes they turn about, in turn.
@@ -50,7 +50,7 @@ class ClinicalAngles:
         rotational: (A,) True for angles, False for the pelvis's translations.
     """
 
-    def __init__(self, model: HumanModel) -> None:
+    def __init__(self, model: Body) -> None:
         self.model = model
         self.joints: tuple[ClinicalJoint, ...] = model.description.clinical_joints
         self.names: tuple[str, ...] = tuple(c.name for joint in self.joints for c in joint.coordinates)

@@ -17,8 +17,8 @@ import scipy.linalg
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import UnknownName
+from mbkf.model.body import Body
 from mbkf.model.forced_body import LinearAcceleration
-from mbkf.model.human import HumanModel
 
 WRENCH_FRAMES = ("ankle", "foot", "thesis")
 """Where a wrench state lives; the moment is in the foot's axes in each.
@@ -52,7 +52,7 @@ class JointForces:
 
 
 class HumanDynamics:
-    """A body of :class:`HumanModel` moved by u = [for residual and joint torques (50), right (6) and left wrench (6)].
+    """A body of :class:`Body` moved by u = [for residual and joint torques (50), right (6) and left wrench (6)].
 
     Attributes:
         model: The body.
@@ -66,7 +66,7 @@ class HumanDynamics:
 
     def __init__(
         self,
-        model: HumanModel,
+        model: Body,
         fixed: BoolArray | None = None,
         wrench_frame: str = "ankle",
         force_state: str = "inertial",

@@ -17,8 +17,8 @@ import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.io.subject import SubjectMarker
+from mbkf.model.body import Body
 from mbkf.model.description import Segment
-from mbkf.model.human import HumanModel
 from mbkf.model.skeleton import joint_origin
 
 _CAPSULE_RADIUS_M = 0.025
@@ -26,7 +26,7 @@ _SITE_RADIUS_M = 0.007
 _LEAST_LENGTH_M = 1e-3
 
 
-def to_mjcf(model: HumanModel, markers: Sequence[SubjectMarker] = ()) -> str:
+def to_mjcf(model: Body, markers: Sequence[SubjectMarker] = ()) -> str:
     """A body as the text of an MJCF file.
 
     Args:
@@ -83,7 +83,7 @@ def _add_joints(body: ET.Element, segment: Segment) -> None:
         ET.SubElement(body, "joint", name=f"{segment.name}_{axis}", type="hinge", axis=directions[axis])
 
 
-def _add_capsules(body: ET.Element, model: HumanModel, segment: str) -> None:
+def _add_capsules(body: ET.Element, model: Body, segment: str) -> None:
     """Capsules from the segment's origin to the joints it carries, or to twice its centre of mass."""
     ends = [joint_origin(model, s.name) for s in model.description.segments if s.parent == segment]
     ends = ends or [2.0 * model.pin_model.inertias[model.joint(segment).joint_id].lever]

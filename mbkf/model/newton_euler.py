@@ -15,10 +15,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
-from mbkf.model.human import HumanModel
-
-FEET = ("right_foot", "left_foot")
-"""Feet of the bodies that come with mbkf; a body's own are ``model.roles.feet``."""
+from mbkf.model.body import Body
 
 ROOT = 6
 
@@ -75,7 +72,7 @@ class JointTorques:
 class NewtonEuler:
     """Newton–Euler equations of a body with its two feet's wrenches."""
 
-    def __init__(self, model: HumanModel) -> None:
+    def __init__(self, model: Body) -> None:
         self.model = model
         self._pin, self._data = model.pin_model, model.pin_model.createData()
         ids = [model.joint(segment).joint_id for segment in model.roles.feet]
@@ -145,7 +142,7 @@ class NewtonEuler:
         return pin.computeRNEADerivatives(self._pin, self._data, q, v, a)
 
 
-def _moved_by(model: HumanModel, chain: NDArray[np.intp]) -> Array:
+def _moved_by(model: Body, chain: NDArray[np.intp]) -> Array:
     """(n, n) 1 where the axis of a chain's dof (row) turns with a dof (column): the same joint's or one before it."""
     joint_of = np.empty(model.nv, dtype=int)
     for joint in range(1, model.pin_model.njoints):

@@ -11,7 +11,7 @@ import numpy as np
 import pinocchio as pin
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 
 
 class PointMasses:
@@ -24,7 +24,7 @@ class PointMasses:
         masses: (M,) of any unit.
     """
 
-    def __init__(self, model: HumanModel, joint_ids: Array, local_m: Array, masses: Array) -> None:
+    def __init__(self, model: Body, joint_ids: Array, local_m: Array, masses: Array) -> None:
         self.joint_ids = joint_ids
         self._model = pin.Model(model.pin_model)
         for joint in range(self._model.njoints):

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 
 
-def joint_origin(model: HumanModel, segment: str) -> Array:
+def joint_origin(model: Body, segment: str) -> Array:
     """(3,) a segment's proximal joint in its parent's frame, m; zero for the root.
 
     Raises:

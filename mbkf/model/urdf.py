@@ -18,9 +18,9 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.io.subject import SubjectMarker
+from mbkf.model.body import Body
 from mbkf.model.clinical import AXES, ClinicalAngles
 from mbkf.model.clinical_table import Angle
-from mbkf.model.human import HumanModel
 from mbkf.model.skeleton import joint_origin
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ MARKER_PREFIX = "marker_"
 """Link names of markers: this prefix and the marker's name."""
 
 
-def to_urdf(model: HumanModel, markers: Sequence[SubjectMarker] = ()) -> str:
+def to_urdf(model: Body, markers: Sequence[SubjectMarker] = ()) -> str:
     """A body as the text of a URDF file.
 
     Args:
@@ -74,7 +74,7 @@ def to_urdf(model: HumanModel, markers: Sequence[SubjectMarker] = ()) -> str:
     return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
 
 
-def _link(model: HumanModel, segment: str) -> yourdfpy.Link:
+def _link(model: Body, segment: str) -> yourdfpy.Link:
     import yourdfpy
 
     inertia = model.pin_model.inertias[model.joint(segment).joint_id]

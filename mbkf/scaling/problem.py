@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray, read_only
+from mbkf.model.body import Body
 from mbkf.model.description import BodyDescription
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import ProtocolMarker
@@ -230,7 +231,7 @@ class ScalingProblem:
             by_shared.reshape(size, by_shared.shape[2]),
         )
 
-    def _origin_derivatives(self, model: HumanModel, rotations: Array) -> Array:
+    def _origin_derivatives(self, model: Body, rotations: Array) -> Array:
         """(J, 3, K) derivative of every joint's world origin by the scale factors, along the chain."""
         derivatives = np.zeros((len(rotations), 3, len(self.body.scale_factors)))
         for segment in self.body.segments:

@@ -79,11 +79,11 @@ def gated(
         gate: Largest squared Mahalanobis distance (3 readings).
         radius_m: Distance below which no marker is refused.
     """
-    squared = np.einsum("ij,ij->i", innovation_m, innovation_m)
+    squared = np.vecdot(innovation_m, innovation_m)
     near = squared <= radius_m**2
     seen = squared == squared  # noqa: PLR0124, a missing marker's is NaN
-    if np.count_nonzero(near) == np.count_nonzero(seen):
-        return Gated(seen, near, None)
+    if near.tobytes() == seen.tobytes():
+        return Gated(seen, seen, None)
     lost = bool(2 * np.count_nonzero(squared > TRACK_LOSS_M**2) > np.count_nonzero(seen))
     far = seen & ~near
     distance = _distance(innovation_m[far], reading.only(far).jacobian, covariance, noise_m[far])

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.states import AcceleratedState
@@ -79,7 +79,7 @@ class InertialSensors(Block[AcceleratedState, None, Array | None, None]):
         return jacobian.reshape(len(short), -1)[there] * weight[:, None], short[there] * weight
 
 
-def observed_dofs(model: HumanModel, segments: Sequence[str]) -> BoolArray:
+def observed_dofs(model: Body, segments: Sequence[str]) -> BoolArray:
     """(nv,) dofs of the joints that carry these segments; joints between two of them are observed in sum only."""
     observed = np.zeros(model.nv, dtype=bool)
     for segment in segments:

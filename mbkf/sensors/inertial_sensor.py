@@ -15,7 +15,7 @@ import pinocchio as pin
 
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.io.imu_mount import ImuMount
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.numerics.rotations import skew
 
@@ -47,7 +47,7 @@ class InertialSensor:
         UnknownName: A sensor sits on a segment that the body does not have.
     """
 
-    def __init__(self, model: HumanModel, mounts: Sequence[ImuMount]) -> None:
+    def __init__(self, model: Body, mounts: Sequence[ImuMount]) -> None:
         self.model, self.mounts = model, tuple(mounts)
         self._data = model.pin_model.createData()
         self._joints = [model.joint(mount.segment).joint_id for mount in mounts]

@@ -10,7 +10,7 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.errors import ShapeError
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.model.point_masses import PointMasses
 from mbkf.numerics.kalman import Information, information
 
@@ -73,7 +73,7 @@ class MarkerSensor:
         joint_ids: (M,) Pinocchio joints that carry them.
     """
 
-    def __init__(self, model: HumanModel, segments: Sequence[str], local_m: Array) -> None:
+    def __init__(self, model: Body, segments: Sequence[str], local_m: Array) -> None:
         self.model = model
         self.segments = tuple(segments)
         self.local_m = read_only(local_m)
@@ -117,7 +117,7 @@ class MarkerInformation:
             innovation_m: (M, 3) measured minus predicted, NaN where missing.
             trusted: (M,) markers that count; none of them missing.
         """
-        count = int(np.count_nonzero(trusted))
+        count = trusted.tobytes().count(1)
         y = innovation_m if count == len(trusted) else np.where(trusted[:, None], innovation_m, 0.0)
         forces = y * self._weight
         matrix = self._masses.mass_matrix(q, trusted)

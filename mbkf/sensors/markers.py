@@ -151,7 +151,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         seen, trusted, displaced, lost = gated(innovation, at.prepared, P, noise, s.gate, s.gate_radius_m)
         notes.seen, notes.trusted = seen, trusted
         notes.unmarked = notes.unobserved = self._observed.unmarked(trusted)
-        notes.observed = bool(np.count_nonzero(trusted) >= s.min_markers)
+        notes.observed = trusted.tobytes().count(1) >= s.min_markers
         notes.lost = lost and self._track_loss
         moved = NO_DOFS
         if displaced is not None and self._inflate:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 
 
@@ -42,7 +42,7 @@ class MeanPosture(Block[State, None, MeanPostureDecision, "Array | None"]):
     prior = True
 
     def __init__(
-        self, model: HumanModel, dt_s: float, settings: MeanPostureSettings = MeanPostureSettings()
+        self, model: Body, dt_s: float, settings: MeanPostureSettings = MeanPostureSettings()
     ) -> None:
         """Makes the block.
 

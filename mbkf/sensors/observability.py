@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.errors import ShapeError
+from mbkf.model.body import Body
 from mbkf.model.clinical import dof_names
-from mbkf.model.human import HumanModel
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 RANK_TOLERANCE = 1e-6
@@ -109,7 +109,7 @@ def kinematic_plant(nv: int) -> Array:
     return plant
 
 
-def generic_postures(model: HumanModel, bent: int = BENT_POSTURES) -> Array:
+def generic_postures(model: Body, bent: int = BENT_POSTURES) -> Array:
     """(1 + bent, nq) postures: standing straight, then every dof bent by about 20° in fixed random ways.
 
     Bent postures show what markers determine in general; the straight one shows what they lose by symmetry.
@@ -120,7 +120,7 @@ def generic_postures(model: HumanModel, bent: int = BENT_POSTURES) -> Array:
     return np.array([neutral, *(model.integrate(neutral, bend) for bend in bends)])
 
 
-def analyse(model: HumanModel, segments: Sequence[str], local_m: Array, noise_m: Array) -> Observability:
+def analyse(model: Body, segments: Sequence[str], local_m: Array, noise_m: Array) -> Observability:
     """Observability of a body by M markers in the postures of :func:`generic_postures`.
 
     Args:

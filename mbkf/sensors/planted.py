@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Planted
@@ -44,7 +44,7 @@ class PlantedFeet(Block[State, None, tuple[Planted, ...], None]):
 
     def __init__(
         self,
-        model: HumanModel,
+        model: Body,
         detector: ContactDetector,
         settings: PlantedSettings = PlantedSettings(),
     ) -> None:
@@ -83,7 +83,7 @@ class PlantedFeet(Block[State, None, tuple[Planted, ...], None]):
 
 
 def standing_still(
-    model: HumanModel, q: Array, v: Array, planted: Planted, speed_sd: float, turn_sd: float
+    model: Body, q: Array, v: Array, planted: Planted, speed_sd: float, turn_sd: float
 ) -> tuple[Array, Array]:
     """Whitened rows (k, nv) on the velocity and their innovations (k,): three, and three more for what lies flat.
 

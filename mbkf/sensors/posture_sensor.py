@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class PostureSensor:
         sd: (n,) spread of each, rad.
     """
 
-    def __init__(self, model: HumanModel) -> None:
+    def __init__(self, model: Body) -> None:
         self.model = model
         self.dofs = np.flatnonzero(model.posture_sd > 0)
         self.sd = model.posture_sd[self.dofs]

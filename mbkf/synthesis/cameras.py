@@ -6,13 +6,13 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.io.subject import Subject
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 
 OCCLUSION_FRAMES = 20
 GHOST_SECONDS = (0.2, 1.0)
 
 
-def true_markers(model: HumanModel, subject: Subject, q: Array) -> Array:
+def true_markers(model: Body, subject: Subject, q: Array) -> Array:
     """(T, M, 3) exact positions of the subject's markers, m.
 
     Args:

@@ -10,8 +10,8 @@ from mbkf.errors import InvalidInput
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject
 from mbkf.io.truth import Truth
+from mbkf.model.body import Body
 from mbkf.model.clinical import dof_names
-from mbkf.model.human import HumanModel
 from mbkf.synthesis import cameras, plates
 from mbkf.synthesis.motion import TrueMotion, synthesise_motion
 from mbkf.synthesis.person import body_of
@@ -119,7 +119,7 @@ def synthesise_capture(
 
 
 def _record(
-    model: HumanModel,
+    model: Body,
     subject: Subject,
     motion: TrueMotion,
     settings: CaptureSettings,

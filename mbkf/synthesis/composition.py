@@ -8,7 +8,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import NotConverged
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.numerics.threads import single_threaded
 from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.balance import HorizontalPath
@@ -64,7 +64,7 @@ class Composition:
 
 
 @single_threaded()
-def compose(model: HumanModel, plan: MotionPlan) -> Composition:
+def compose(model: Body, plan: MotionPlan) -> Composition:
     """Solves balance and flight for a plan.
 
     Raises:

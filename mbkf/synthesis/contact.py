@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 
 FRICTION = 0.8
 """Coefficient of friction of a shoe on a dry laboratory floor; horizontal force stays below this times vertical."""
@@ -38,7 +38,7 @@ class SoleOutline:
         )
 
 
-def sole_outline(model: HumanModel, side: str) -> SoleOutline:
+def sole_outline(model: Body, side: str) -> SoleOutline:
     """The scaled sole of side "r" or "l"."""
     sole = model.description.sole
     name = "right_foot" if side == "r" else "left_foot"

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import SIDES, Array
 from mbkf.errors import InvalidInput
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.dual_numbers import Dual
 
@@ -64,7 +64,7 @@ class InverseKinematics:
         offset: (3,) joint in the parent's frame by segment, m.
     """
 
-    def __init__(self, model: HumanModel) -> None:
+    def __init__(self, model: Body) -> None:
         self.model = model
         self.mass: dict[str, float] = {}
         self.com: dict[str, Array] = {}

@@ -6,7 +6,7 @@ import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, SIDES, Array
 from mbkf.errors import InvalidInput
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.contact import Load, LoadPlan, sole_outline
 from mbkf.synthesis.curves import path, ripple
@@ -44,7 +44,7 @@ SWING_DEG = {
 """Change of the joint angles (x, y, z) in the crouch, and with the arms swung up."""
 
 
-def jump_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
+def jump_plan(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
     """One jump of about 0.14 m, standing before and after.
 
     Args:
@@ -132,7 +132,7 @@ def _pelvis(
     return tuple(before), tuple(after)
 
 
-def _feet(model: HumanModel, half_width: float, toe_out: float, off: float, down: float) -> FeetPlan:
+def _feet(model: Body, half_width: float, toe_out: float, off: float, down: float) -> FeetPlan:
     """Feet that turn over the balls of the feet before take-off and after touch-down, and lift in between."""
     pitch = path(
         [
@@ -174,7 +174,7 @@ def _rise(part: Dual) -> Dual:
 
 
 def _load(
-    model: HumanModel, feet: FeetPlan, flight: Flight, begin: float, absorbed: float, rng: np.random.Generator
+    model: Body, feet: FeetPlan, flight: Flight, begin: float, absorbed: float, rng: np.random.Generator
 ) -> LoadPlan:
     """Pressure under the middle of the feet, moving under the toes while the heels are up."""
     size = float(model.scale.mean())

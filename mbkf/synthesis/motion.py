@@ -8,7 +8,7 @@ import numpy as np
 
 from mbkf.conventions import SIDES, Array, read_only
 from mbkf.errors import InvalidInput, NotConverged
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.synthesis.composition import Composition, compose
 from mbkf.synthesis.contact import FRICTION, sole_outline, split
 from mbkf.synthesis.inverse_kinematics import SIDE_NAMES
@@ -60,7 +60,7 @@ class TrueMotion:
 
 
 def synthesise_motion(
-    model: HumanModel, motion: str, seconds: float, rate_hz: float = 100.0, seed: int = 0
+    model: Body, motion: str, seconds: float, rate_hz: float = 100.0, seed: int = 0
 ) -> TrueMotion:
     """Makes a motion of a body, a different one for every seed.
 
@@ -110,7 +110,7 @@ def synthesise_motion(
     )
 
 
-def _dynamics(model: HumanModel, composition: Composition, times: Array, every: int) -> tuple[Array, ...]:
+def _dynamics(model: Body, composition: Composition, times: Array, every: int) -> tuple[Array, ...]:
     """q, v, a, centres and torques at every n-th time, foot wrenches at all."""
     q, v, a = composition.coordinates(times)
     load = composition.plan.load(times)
@@ -133,13 +133,13 @@ def _dynamics(model: HumanModel, composition: Composition, times: Array, every: 
     return q, v, a, wrenches, centres, tau
 
 
-def _strain(model: HumanModel, tau: Array) -> str:
+def _strain(model: Body, tau: Array) -> str:
     """The joint that would have to be stronger than people are, as a sentence, "" if none."""
     joint = overloaded(model, tau)
     return f"{joint} would have to be stronger than people are" if joint else ""
 
 
-def _fault(model: HumanModel, q: Array, fine: Array, wrenches: Array, centres: Array) -> str:
+def _fault(model: Body, q: Array, fine: Array, wrenches: Array, centres: Array) -> str:
     """The broken law of contact as a sentence, "" if none: the ground pushes, under the soles, within friction."""
     for foot, side in enumerate(SIDES):
         name = SIDE_NAMES[side]

@@ -21,10 +21,10 @@ from mbkf.errors import InvalidInput, UnknownName
 if TYPE_CHECKING:
     import numpy as np
 
-    from mbkf.model.human import HumanModel
+    from mbkf.model.body import Body
     from mbkf.synthesis.plan import MotionPlan
 
-    Planner = Callable[[HumanModel, float, np.random.Generator], MotionPlan]
+    Planner = Callable[[Body, float, np.random.Generator], MotionPlan]
 
 
 @dataclass(frozen=True)
@@ -91,28 +91,28 @@ def motion_names(*, static: bool = False) -> tuple[str, ...]:
 
 
 @register_motion("squat", seconds=5.0, stream=1)
-def _squat(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
+def _squat(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
     from mbkf.synthesis.squat import squat_plan
 
     return squat_plan(model, seconds, rng)
 
 
 @register_motion("walk", seconds=4.0, stream=3)
-def _walk(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
+def _walk(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
     from mbkf.synthesis.walk import walk_plan
 
     return walk_plan(model, seconds, rng)
 
 
 @register_motion("jump", seconds=3.0, stream=0)
-def _jump(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
+def _jump(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
     from mbkf.synthesis.jump import jump_plan
 
     return jump_plan(model, seconds, rng)
 
 
 @register_motion("stand", seconds=1.5, stream=2, trial=False)
-def _stand(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
+def _stand(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
     from mbkf.synthesis.stand import stand_plan
 
     return stand_plan(model, seconds, rng)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.synthesis.curves import Curve, added, path, ripple, scaled
 from mbkf.synthesis.plan import MotionPlan, lively, resting
 from mbkf.synthesis.standing import planted, posture, standing_load
@@ -31,7 +31,7 @@ BOTTOM_DEG = {
 """Change of the joint angles (x, y, z) from standing to the bottom of the squat."""
 
 
-def squat_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
+def squat_plan(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
     """Repeated squats, one about every 2.4 s, to a knee flexion of about 100°.
 
     Args:

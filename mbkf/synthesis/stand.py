@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.synthesis.curves import Curve, added, ripple
 from mbkf.synthesis.plan import JOINTS, MotionPlan
 from mbkf.synthesis.standing import planted, standing_load
@@ -13,7 +13,7 @@ DEVIATION_DEG = 2.5
 """How far a joint of a person asked to stand straight is from straight (1 sd)."""
 
 
-def stand_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
+def stand_plan(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
     """Standing with the feet 0.2 m apart and nearly parallel.
 
     Args:

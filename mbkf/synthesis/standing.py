@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from mbkf.conventions import SIDES, Array
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.synthesis.contact import Load, LoadPlan, sole_outline
 from mbkf.synthesis.curves import Curve, added, ripple, scaled
 from mbkf.synthesis.dual_numbers import Dual
@@ -23,7 +23,7 @@ def constant(times: Array, value: float) -> Dual:
     return Dual.constant(np.full(len(times), value))
 
 
-def planted(model: HumanModel, half_width_m: float, toe_out_deg: float, rng: np.random.Generator) -> FeetPlan:
+def planted(model: Body, half_width_m: float, toe_out_deg: float, rng: np.random.Generator) -> FeetPlan:
     """Both feet flat and still, ankles at x = 0 and y = ∓ half the width; the toes lift a little.
 
     Args:

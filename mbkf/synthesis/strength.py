@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 
 PEAK_NM_PER_KG: dict[str, tuple[tuple[float, float], ...]] = {
     "torso": ((2.5, 2.5), (4.0, 2.5), (1.8, 1.8)),
@@ -28,7 +28,7 @@ are carried by ligaments. The rest are safe upper bounds of our own choice.
 """
 
 
-def overloaded(model: HumanModel, tau: Array) -> str:
+def overloaded(model: Body, tau: Array) -> str:
     """The first joint whose torque a person could not produce, "" if there is none.
 
     Args:

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from mbkf.conventions import SIDES, Array
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.contact import Load, LoadPlan, sole_outline
 from mbkf.synthesis.curves import Curve, path, ripple, spline
@@ -52,7 +52,7 @@ class Step:
     yaw: float
 
 
-def walk_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> MotionPlan:
+def walk_plan(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
     """Walking along +x at about 1.2 m/s, in the middle of its course at half time.
 
     Args:
@@ -91,9 +91,7 @@ def walk_plan(model: HumanModel, seconds: float, rng: np.random.Generator) -> Mo
     )
 
 
-def _steps(
-    model: HumanModel, seconds: float, step_s: float, length: float, rng: np.random.Generator
-) -> list[Step]:
+def _steps(model: Body, seconds: float, step_s: float, length: float, rng: np.random.Generator) -> list[Step]:
     half_width = 0.055 * float(model.scale.mean()) * rng.uniform(0.85, 1.15)
     yaw = np.deg2rad(rng.uniform(4, 9))
     count = int(np.ceil(seconds / step_s)) + 2 * MARGIN_STEPS
@@ -118,7 +116,7 @@ def _middle(steps: list[Step], k: int, stride_s: float) -> float:
 class _Foot:
     """One foot over all its steps: on the heel, flat, on the toes, in the air."""
 
-    def __init__(self, model: HumanModel, side: int, steps: list[Step], stride_s: float) -> None:
+    def __init__(self, model: Body, side: int, steps: list[Step], stride_s: float) -> None:
         name = SIDE_NAMES[SIDES[side]]
         outline = sole_outline(model, SIDES[side])
         toes = InverseKinematics(model).offset[f"{name}_toes"]
@@ -216,7 +214,7 @@ def constant_rotation(yaw: float) -> Array:
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
-def _load(model: HumanModel, steps: list[Step], feet: dict[str, _Foot], stride_s: float) -> LoadPlan:
+def _load(model: Body, steps: list[Step], feet: dict[str, _Foot], stride_s: float) -> LoadPlan:
     """Pressure from heel to toes under each foot, handed from foot to foot in double support."""
     size = float(model.scale.mean())
     share_knots: list[tuple] = []

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from mbkf.model.newton_euler import FEET
 from mbkf.sensors.contact.soles import sole_locals
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.planted import Planted, standing_still
@@ -20,7 +19,7 @@ def test_rows_are_the_velocity_of_the_point(foot):
     point, h = SOLES.positions(Q)[3 * foot], 1e-6
     moved = [SOLES.positions(MODEL.integrate(Q, s * h * V))[3 * foot] for s in (-1, 1)]
     velocity = (moved[1] - moved[0]) / (2 * h)
-    rows, short = standing_still(MODEL, Q, V, Planted(FEET[foot], point, flat=False), 0.5, 1.0)
+    rows, short = standing_still(MODEL, Q, V, Planted(MODEL.roles.feet[foot], point, flat=False), 0.5, 1.0)
     np.testing.assert_allclose(0.5 * rows @ V, velocity, atol=1e-7)
     np.testing.assert_allclose(short, -rows @ V, atol=1e-12)
 
@@ -29,7 +28,7 @@ def test_rows_are_the_velocity_of_the_point(foot):
 def test_a_flat_foot_does_not_turn_either(foot):
     """All six rows vanish on motions that leave the foot where it is, and on none that turns it."""
     point = SOLES.positions(Q)[3 * foot]
-    rows, _ = standing_still(MODEL, Q, V, Planted(FEET[foot], point, flat=True), 0.5, 1.0)
+    rows, _ = standing_still(MODEL, Q, V, Planted(MODEL.roles.feet[foot], point, flat=True), 0.5, 1.0)
     assert rows.shape == (6, MODEL.nv) and np.linalg.matrix_rank(rows) == 6
     still = V - np.linalg.pinv(rows) @ (rows @ V)
     h = 1e-6
@@ -38,6 +37,6 @@ def test_a_flat_foot_does_not_turn_either(foot):
 
 
 def test_smaller_spreads_weigh_more():
-    planted = Planted(FEET[0], SOLES.positions(Q)[0], flat=True)
+    planted = Planted(MODEL.roles.feet[0], SOLES.positions(Q)[0], flat=True)
     coarse, fine = (standing_still(MODEL, Q, V, planted, sd, sd)[0] for sd in (1.0, 0.1))
     np.testing.assert_allclose(fine, 10 * coarse)

@@ -20,7 +20,7 @@ from scipy.linalg import expm
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.filter import Plant
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.sensors.block import Notes
 from mbkf.sensors.layout import WRENCH, ExtraState, Layout
 
@@ -83,7 +83,7 @@ class SingerPlant(Plant[DynamicState]):
 
     def __init__(
         self,
-        model: HumanModel,
+        model: Body,
         dt_s: float,
         unobservable: BoolArray,
         settings: SingerSettings = SingerSettings(),

@@ -12,7 +12,7 @@ from scipy.linalg import blas
 
 from mbkf.conventions import Array
 from mbkf.filters.filter import Plant
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.sensors.block import Notes
 from mbkf.sensors.layout import Layout
 
@@ -52,7 +52,7 @@ class WhiteAccelerationPlant(Plant[KinematicState]):
         position_noise, cross_noise, velocity_noise: (nv,) diagonals of the three blocks of the noise covariance.
     """
 
-    def __init__(self, model: HumanModel, dt_s: float, acceleration_sd: Array) -> None:
+    def __init__(self, model: Body, dt_s: float, acceleration_sd: Array) -> None:
         self.model, self.dt_s = model, dt_s
         self.layout = Layout.of(model.nv, q=model.nv, v=model.nv)
         self.acceleration_sd = acceleration_sd

@@ -23,7 +23,7 @@ from mbkf.imu.placement import usual_place
 from mbkf.imu.segments import segment_of
 from mbkf.io.imu import ImuReadings, on_regular_grid
 from mbkf.io.imu_mount import ImuMount
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.pipelines.trial.filters import FilterInputs, tracking_filter
 from mbkf.sensors.inertial_sensor import InertialSensor
@@ -104,7 +104,7 @@ def frame_readings(readings: Sequence[ImuReadings], times_s: Array) -> Array:
 
 
 def calibrated(
-    model: HumanModel, motion: Track, measured: Array, imus: ImuOnBody
+    model: Body, motion: Track, measured: Array, imus: ImuOnBody
 ) -> tuple[tuple[ImuMount, ...], Array]:
     """Mounts, and biases of the gyroscopes (S, 3), of sensors on a body whose motion is known.
 
@@ -136,7 +136,7 @@ def calibrated(
     return tuple(mounts), np.array(biases)
 
 
-def _segment_readings(model: HumanModel, segment: str, motion: Track, frames: NDArray[np.intp]) -> Array:
+def _segment_readings(model: Body, segment: str, motion: Track, frames: NDArray[np.intp]) -> Array:
     """(T, 4, 6) in segment axes: at the segment's origin, then 1 m along each axis."""
     straight = np.array([0.0, 0.0, 0.0, 1.0])
     points = [np.zeros(3), *np.eye(3)]

@@ -8,8 +8,8 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.tracking import Track
+from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
-from mbkf.model.human import HumanModel
 
 BLOCK = 1000
 """Frames treated at once."""
@@ -29,7 +29,7 @@ class ClinicalMotion:
     singular: BoolArray
 
 
-def clinical_motion(model: HumanModel, track: Track, tau: Array, tau_sd: Array) -> ClinicalMotion:
+def clinical_motion(model: Body, track: Track, tau: Array, tau_sd: Array) -> ClinicalMotion:
     """Coordinates θ, rates E v, moments Bᵀτ, and their spreads by the same linear maps.
 
     Args:

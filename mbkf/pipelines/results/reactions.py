@@ -10,7 +10,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.filters.inverse_dynamics import inverse_dynamics
 from mbkf.filters.tracking import Track
 from mbkf.io.records import PlateReadings
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.sensors.contact.offline import FootLoads, assign_feet
 from mbkf.sensors.contact.plates import pressure_and_free_moment, surface_height
 from mbkf.sensors.contact.records import Contact
@@ -50,7 +50,7 @@ class Reactions:
 
 
 def reactions(
-    model: HumanModel, track: Track, times_s: Array, rate_hz: float, plates: tuple[PlateReadings, ...]
+    model: Body, track: Track, times_s: Array, rate_hz: float, plates: tuple[PlateReadings, ...]
 ) -> Reactions:
     """Reactions of a tracked trial.
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.io.records import PlateReadings
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.sensors.contact.plates import PlateAreas, least_load, pressed_at, surface_height
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, Planted, Pressed
 from mbkf.sensors.contact.soles import Sole, distance_to_sole, nearer_foot, share_along, sole_locals
@@ -36,7 +36,7 @@ class ContactDetector:
         surfaces_m: Height of each plate's surface.
     """
 
-    def __init__(self, model: HumanModel, plates: Sequence[PlateReadings], dt_s: float) -> None:
+    def __init__(self, model: Body, plates: Sequence[PlateReadings], dt_s: float) -> None:
         """Makes a detector.
 
         Args:

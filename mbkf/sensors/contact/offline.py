@@ -12,7 +12,7 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.io.records import PlateReadings
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.numerics.windows import dilated, majority, second_derivative
 from mbkf.sensors.contact.plates import centres_of_pressure, free_moment, plate_wrenches, surface_height
 from mbkf.sensors.contact.soles import distances_to_soles, nearer_foot, sole_points
@@ -54,7 +54,7 @@ class FootLoads:
 
 
 def assign_feet(
-    model: HumanModel, q: Array, times_s: Array, rate_hz: float, plates: tuple[PlateReadings, ...]
+    model: Body, q: Array, times_s: Array, rate_hz: float, plates: tuple[PlateReadings, ...]
 ) -> FootLoads:
     """Assigns plate readings to feet by the distance of the centre of pressure from each sole.
 
@@ -169,7 +169,7 @@ def _falling(height_m: Array, rate_hz: float) -> BoolArray:
 
 
 def _validity(
-    model: HumanModel,
+    model: Body,
     touching: BoolArray,
     flight: BoolArray,
     foot: Array,

@@ -8,7 +8,7 @@ from math import hypot, nan
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.sensors.contact.thresholds import KEEP_M, REACH_M
 from mbkf.sensors.marker_sensor import MarkerSensor
 
@@ -16,7 +16,7 @@ Sole = Sequence[Sequence[float]]
 """World positions of heel, ball and toe end of one sole, m."""
 
 
-def sole_locals(model: HumanModel) -> tuple[tuple[str, ...], Array]:
+def sole_locals(model: Body) -> tuple[tuple[str, ...], Array]:
     """Heel, ball and toe end of right and left sole: their segments (6) and places (6, 3) in those, m."""
     segments, places = [], []
     for sole in model.roles.soles:
@@ -27,7 +27,7 @@ def sole_locals(model: HumanModel) -> tuple[tuple[str, ...], Array]:
     return tuple(segments), np.array(places)
 
 
-def sole_points(model: HumanModel, q: Array) -> Array:
+def sole_points(model: Body, q: Array) -> Array:
     """(T, 2, 3, 3) world positions of heel, ball and toe end of right and left sole; NaN where q (T, nq) is NaN."""
     sensor = MarkerSensor(model, *sole_locals(model))
     points = np.full((len(q), 2, 3, 3), np.nan)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.sensors.contact.plates import PlateAreas
 from mbkf.sensors.contact.records import Contact, ContactMemory, Pressed
 from mbkf.sensors.contact.soles import Sole, distance_to_sole
@@ -46,7 +46,7 @@ class Elsewhere(NamedTuple):
 class UnmeasuredFeet:
     """Finds feet that carry weight where no plate reads."""
 
-    def __init__(self, model: HumanModel, areas: PlateAreas, floor_m: float, dt_s: float) -> None:
+    def __init__(self, model: Body, areas: PlateAreas, floor_m: float, dt_s: float) -> None:
         """Makes the detector.
 
         Args:

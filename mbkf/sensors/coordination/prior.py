@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 from mbkf.sensors.coordination.regression import Coordination, learn
 from mbkf.sensors.layout import Layout
@@ -109,7 +109,7 @@ class CoordinationPrior(Block[State, Mapping[int, Coordination], CoordinationDec
 
     def __init__(
         self,
-        model: HumanModel,
+        model: Body,
         dt_s: float,
         unobservable: BoolArray,
         settings: CoordinationSettings = CoordinationSettings(),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.stream.libraries import lsl
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.stream.results.sending import SendingThread
@@ -16,7 +16,7 @@ RESULTS_TYPE = "Biomechanics"
 class LslResults:
     """A :class:`mbkf.stream.results.frame.FrameSink`; a stamp is the time of sending less the frame's latency."""
 
-    def __init__(self, model: HumanModel, name: str, rate_hz: float) -> None:
+    def __init__(self, model: Body, name: str, rate_hz: float) -> None:
         """Opens the stream.
 
         Args:

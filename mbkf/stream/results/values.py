@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import SIDES, Array
+from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
-from mbkf.model.human import HumanModel
 from mbkf.stream.results.frame import LiveFrame
 
 _LOAD = ("fx", "fy", "fz", "mx", "my", "mz")
@@ -23,7 +23,7 @@ class ResultValues:
         units: Their units.
     """
 
-    def __init__(self, model: HumanModel) -> None:
+    def __init__(self, model: Body) -> None:
         self._clinical = ClinicalAngles(model)
         self._before: Array | None = None
         angles = self._clinical.names

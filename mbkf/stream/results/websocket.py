@@ -17,7 +17,7 @@ from websockets.sync.server import ServerConnection, serve
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.stream.loopback import LOOPBACK, is_loopback
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.stream.results.sending import SendingThread
@@ -50,7 +50,7 @@ class WebSocketResults:
         url: Where to listen, with the token where one is needed.
     """
 
-    def __init__(self, model: HumanModel, address: str, port: int, token: str | None = None) -> None:
+    def __init__(self, model: Body, address: str, port: int, token: str | None = None) -> None:
         """Listens for clients.
 
         Args:

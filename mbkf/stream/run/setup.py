@@ -9,7 +9,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.record import FrameRecorder
 from mbkf.io.subject import Subject
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.live.filter import LiveFilter, LiveInputs, live_inputs
 from mbkf.pipelines.live.labels import live_body
@@ -47,7 +47,7 @@ class LiveSetup:
         return self.live.names
 
     @property
-    def model(self) -> HumanModel:
+    def model(self) -> Body:
         """The scaled body."""
         return self.live.inputs.sensor.model
 

@@ -7,7 +7,7 @@ import json
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.stream.loopback import LOOPBACK
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.viz.live.rows import DisplayRows
@@ -42,7 +42,7 @@ class LivePage:
 
     def __init__(
         self,
-        model: HumanModel,
+        model: Body,
         marker_names: tuple[str, ...],
         plate_corners_m: Array | None = None,
         *,

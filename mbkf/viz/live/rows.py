@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
-from mbkf.model.human import HumanModel
 from mbkf.sensors.contact.plates import pressure_and_free_moment
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.viz.scene.channels import Layout, marker_states
@@ -27,7 +27,7 @@ class DisplayRows:
         layout: Of the rows.
     """
 
-    def __init__(self, model: HumanModel, markers: int, surface_m: float = 0.0) -> None:
+    def __init__(self, model: Body, markers: int, surface_m: float = 0.0) -> None:
         """Rows of a body.
 
         Args:

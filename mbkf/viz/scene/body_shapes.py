@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 
 PLAIN_RADII_M = (0.045, 0.035)
 """Radii of a limb of the reference body whose shape the body file does not give."""
@@ -33,7 +33,7 @@ class Shape:
     numbers: Array
 
 
-def segment_shapes(model: HumanModel) -> dict[str, tuple[Shape, ...]]:
+def segment_shapes(model: Body) -> dict[str, tuple[Shape, ...]]:
     """Shapes of every segment of a person, m, by segment name in the model's order."""
     return {name: _shapes(model, name) for name in model.joints}
 
@@ -49,7 +49,7 @@ def as_plain(shapes: dict[str, tuple[Shape, ...]]) -> list[dict[str, object]]:
     ]
 
 
-def _shapes(model: HumanModel, name: str) -> tuple[Shape, ...]:
+def _shapes(model: Body, name: str) -> tuple[Shape, ...]:
     side = -1.0 if name.startswith("left_") else 1.0
     shape = model.description.shapes.get(name)
     if shape is None:
@@ -65,7 +65,7 @@ def _shapes(model: HumanModel, name: str) -> tuple[Shape, ...]:
     return (_sole(model, name, shape.kind == "toes"),)
 
 
-def _plain_limbs(model: HumanModel, name: str) -> tuple[Shape, ...]:
+def _plain_limbs(model: Body, name: str) -> tuple[Shape, ...]:
     """A limb to every joint the segment carries, or to twice its centre of mass."""
     segments = model.description.segments
     ends = [segment.origin_m for segment in segments if segment.parent == name]
@@ -73,27 +73,27 @@ def _plain_limbs(model: HumanModel, name: str) -> tuple[Shape, ...]:
     return tuple(_limb(model, name, end, PLAIN_RADII_M) for end in ends)
 
 
-def _breadth(model: HumanModel, name: str) -> float:
+def _breadth(model: Body, name: str) -> float:
     segment = model.description.segment(name)
     k_m = model.mass_kg / model.description.reference_mass_kg
     return float(np.sqrt(k_m / model.scale[segment.length_index]))
 
 
-def _scale(model: HumanModel, name: str) -> Array:
+def _scale(model: Body, name: str) -> Array:
     return model.axis_scale(model.description.segment(name))
 
 
-def _limb(model: HumanModel, name: str, end_m: Array, radii: tuple[float, float]) -> Shape:
+def _limb(model: Body, name: str, end_m: Array, radii: tuple[float, float]) -> Shape:
     to = _scale(model, name) * end_m
     return Shape("limb", np.concatenate([np.zeros(3), to, _breadth(model, name) * np.array(radii)]))
 
 
-def _ellipsoid(model: HumanModel, name: str, centre: Array, radii: Array, side: float) -> Shape:
+def _ellipsoid(model: Body, name: str, centre: Array, radii: Array, side: float) -> Shape:
     k = _scale(model, name)
     return Shape("ellipsoid", np.concatenate([k * centre * [1.0, side, 1.0], k * radii]))
 
 
-def _sole(model: HumanModel, name: str, toes: bool) -> Shape:
+def _sole(model: Body, name: str, toes: bool) -> Shape:
     """Foot or toes: the sole's outline from heel to ball or from ball to tip, and the instep above it."""
     roles = model.roles
     foot = (roles.toes if toes else roles.feet).index(name)

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import GRAVITY_M_S2, Array
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.viz.scene.body_shapes import as_plain as plain_shapes
 from mbkf.viz.scene.body_shapes import segment_shapes
 from mbkf.viz.scene.channels import STATUS, Layout, quantities
@@ -15,7 +15,7 @@ from mbkf.viz.scene.channels import as_plain as plain_quantities
 
 def scene_description(
     title: str,
-    model: HumanModel,
+    model: Body,
     marker_names: tuple[str, ...],
     coordinate_names: tuple[str, ...],
     plate_corners_m: Array,
@@ -49,7 +49,7 @@ def scene_description(
     }
 
 
-def segment_poses(model: HumanModel, q: Array) -> Array:
+def segment_poses(model: Body, q: Array) -> Array:
     """(T, S, 7) world position m and quaternion (x, y, z, w) of every segment; NaN where q (T, nq) is NaN.
 
     Successive quaternions of a segment lie in one hemisphere, so that they can be interpolated and pack well.
