@@ -84,7 +84,9 @@ def correct(covariance: Array, readings: Information) -> Correction:
 
 
 def informed_whole(covariance: Array, matrix: Array, rows: Array) -> Array:
-    """(N, N) posterior covariance from all readings as one information matrix, made exactly symmetric: slower, for any prior covariance.
+    """(N, N) posterior covariance from all readings as one information matrix, made exactly symmetric.
+
+    Slower than the other updates, and for any prior covariance.
 
     Args:
         covariance: (N, N) prior covariance P, symmetric up to rounding.

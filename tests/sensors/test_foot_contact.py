@@ -30,7 +30,7 @@ def load(contacts, seed=0):
 
 def filled(loaded, w, lifted=()):
     at = OperatingPoint(SimpleNamespace(w=w), None)
-    rows, values, first, plates = BLOCK.linearise(at, FootDecision(loaded, lifted))
+    rows, values, first, plates, _ = BLOCK.linearise(at, FootDecision(loaded, lifted))
     assert rows.shape == (12, 12) and first == FIRST
     return rows, values, plates
 
