@@ -76,12 +76,12 @@ def summed(blocks: Sequence[AnyBlock], said: Sequence[Statement], layout: Layout
         layout: Slices of the tangent state.
     """
     known: list[Information] = []
-    believed: list[Information] = []
+    priors: list[Information] = []
     parts: list[Sequence[Rows]] = []
     for block, one in zip(blocks, said, strict=True):
         kind = type(one)
         if kind is Information:
-            (believed if block.prior else known).append(one)  # type: ignore[arg-type]
+            (priors if block.prior else known).append(one)  # type: ignore[arg-type]
             parts.append(())
         elif one is None:
             parts.append(())
@@ -89,8 +89,8 @@ def summed(blocks: Sequence[AnyBlock], said: Sequence[Statement], layout: Layout
             parts.append((one,) if kind is Rows else one)  # type: ignore[arg-type]
     instruments = _sum(known, layout.nv)
     matrix, vector = instruments.matrix, instruments.vector
-    if believed:
-        prior = _sum(believed, layout.nv)
+    if priors:
+        prior = _sum(priors, layout.nv)
         matrix, vector = _added(matrix, vector, prior)
     rows, values, added = _stacked(parts, layout.size)
     return Readings(instruments, matrix, vector, rows, values, parts, added)

@@ -159,10 +159,13 @@ class Body(Protocol):
         """
 
     def segment_jacobian(self, q: Array, segment: str, point_m: Array) -> Array:
-        """(6, nv) linear and angular velocity of a point of a segment by the tangent velocity, world axes.
+        """World Jacobian of a point fixed to a segment.
 
         Args:
             q: (nq,) configuration.
-            segment: The segment.
-            point_m: (3,) the point, world.
+            segment: Name of the segment.
+            point_m: (3,) the point in the world, m.
+
+        Returns:
+            (6, nv) rows linear, then angular, in world axes.
         """
