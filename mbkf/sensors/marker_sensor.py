@@ -14,6 +14,9 @@ from mbkf.model.body import Body
 from mbkf.model.point_masses import PointMasses
 from mbkf.numerics.kalman import Information, information
 
+_NEXT, _AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])
+"""Components y, z, x and z, x, y of a vector."""
+
 
 @dataclass(frozen=True)
 class MarkerReading:
@@ -53,13 +56,11 @@ class MarkerReading:
 
     def pull(self, forces: Array) -> Array:
         """(nv,) Σ Hᵀ f of forces (M, 3) at the markers, without the Jacobian H."""
-        x, y, z = self.positions_m.T
-        fx, fy, fz = forces.T
-        wrench = np.empty((6, len(x)))
-        wrench[:3] = forces.T
-        np.subtract(y * fz, z * fy, out=wrench[3])
-        np.subtract(z * fx, x * fz, out=wrench[4])
-        np.subtract(x * fy, y * fx, out=wrench[5])
+        p, f, wrench = self.positions_m.T, forces.T, np.empty((6, len(forces)))
+        wrench[:3], moment = f, wrench[3:]
+        # p × f, all components at once.
+        np.multiply(p.take(_NEXT, 0), f.take(_AFTER, 0), out=moment)
+        moment -= p.take(_AFTER, 0) * f.take(_NEXT, 0)
         return np.einsum("ik,ik->k", self._spatial, wrench @ self._moves)
 
 

@@ -21,6 +21,7 @@ from scipy.linalg import expm
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.filter import Plant
 from mbkf.model.body import Body
+from mbkf.numerics.diagonals import block_diagonals
 from mbkf.sensors.block import Notes
 from mbkf.sensors.layout import WRENCH, ExtraState, Layout
 
@@ -110,9 +111,6 @@ class SingerPlant(Plant[DynamicState]):
         self._quiet = (s.quiet_share * self.acceleration_sd) ** 2
         self._busiest = self.acceleration_sd * np.where(np.arange(nv) < 3, *s.busy_shares)
         self._walk = self.layout.walk_variance(dt_s)
-        # Where in P the diagonals of the nine blocks of q, v and a lie.
-        row, column, dof = np.ogrid[:3, :3, :nv]
-        self._diagonals = (row * nv + dof) * self.layout.size + column * nv + dof
 
     def begin(self) -> Array | None:
         """No motion was seen yet."""
@@ -162,7 +160,8 @@ class SingerPlant(Plant[DynamicState]):
         A, B = self.model.integration_derivatives(state.q, step)
         sd = self.acceleration_sd if noise is None else noise
         P = self._carried(A, B, state.P if state.P.flags.c_contiguous else state.P.T)
-        P.reshape(-1)[self._diagonals] += self.covariance[:, :, None] * (sd * sd)
+        diagonals = block_diagonals(P, 3, self.model.nv)
+        diagonals += self.covariance[:, :, None] * (sd * sd)
         if len(self._walk):
             P.reshape(-1)[:: len(P) + 1][-len(self._walk) :] += self._walk
         q = self.model.integrate(state.q, step)

@@ -13,6 +13,7 @@ from scipy.linalg import blas
 from mbkf.conventions import Array
 from mbkf.filters.filter import Plant
 from mbkf.model.body import Body
+from mbkf.numerics.diagonals import block_diagonals
 from mbkf.sensors.block import Notes
 from mbkf.sensors.layout import Layout
 
@@ -60,6 +61,8 @@ class WhiteAccelerationPlant(Plant[KinematicState]):
         self.position_noise = variance * dt_s**4 / 4.0
         self.cross_noise = variance * dt_s**3 / 2.0
         self.velocity_noise = variance * dt_s**2
+        blocks = [[self.position_noise, self.cross_noise], [self.cross_noise, self.velocity_noise]]
+        self._noise = np.array(blocks)
 
     def begin(self) -> None:
         """The noise is constant."""
@@ -104,14 +107,6 @@ class WhiteAccelerationPlant(Plant[KinematicState]):
         half = blas.dgemm(0.5, rows, carried.T)
         np.add(half, half.T, out=P[:nv, :nv])
         P[nv:, nv:] = state.P.T[nv:, nv:]  # symmetric, and so copied row by row
-        self._add_noise(P)
+        diagonals = block_diagonals(P, 2, nv)
+        diagonals += self._noise
         return KinematicState(self.model.integrate(state.q, step), state.v, P.T)
-
-    def _add_noise(self, P: Array) -> None:
-        """Adds Q along the diagonals of P's four blocks."""
-        nv, every = self.model.nv, P.ravel()
-        stride, half = 2 * nv + 1, 2 * nv * nv
-        every[:half:stride] += self.position_noise
-        every[nv:half:stride] += self.cross_noise
-        every[half:-nv:stride] += self.cross_noise
-        every[half + nv :: stride] += self.velocity_noise
