@@ -34,7 +34,7 @@ def streamed(points_m: Array, truth: MarkerTrajectories, subject: Subject) -> La
     named: list[Array] = []
     with single_threaded():
         for number, frame in enumerate(points_m):
-            for markers in labels.push(frame, live.expect()):
+            for markers in labels.push(frame, live.predict()):
                 steps = live.push(len(named), Frame(markers, np.zeros((0, 6))))
                 named.append(markers)
                 last = steps[-1] if steps else None

@@ -55,7 +55,7 @@ class LiveFilter:
         self._filter = filter
         self._ahead = warm_up_frames(filter.dt_s)
         self._waiting: deque[tuple[int, Frame]] = deque()
-        self._expecting_s = 0.0
+        self._predicting_s = 0.0
 
     @property
     def latest(self) -> Posterior | None:
@@ -64,8 +64,8 @@ class LiveFilter:
             return None
         return self.loop.estimate
 
-    def expect(self) -> Prediction | None:
-        """What the filter expects of the frame pushed next; None while that cannot be answered at once.
+    def predict(self) -> Prediction | None:
+        """What the filter predicts of the frame pushed next; None while that cannot be answered at once.
 
         Asked before that frame is there, it takes prediction and linearisation off the time the frame waits.
         """
@@ -77,7 +77,7 @@ class LiveFilter:
                 found = self.loop.predict()
         except NUMERICAL:  # the step raises it again
             return None
-        self._expecting_s += time.perf_counter() - begin
+        self._predicting_s += time.perf_counter() - begin
         return found
 
     def push(self, number: int, frame: Frame) -> list[LiveStep]:
@@ -112,7 +112,7 @@ class LiveFilter:
         return steps
 
     def _step(self, awaited: bool) -> LiveStep:
-        begin, self._expecting_s = time.perf_counter() - self._expecting_s, 0.0
+        begin, self._predicting_s = time.perf_counter() - self._predicting_s, 0.0
         number = self._waiting[0][0]
         waiting = list(self._waiting) if self.loop.must_start else [self._waiting[0]]
         recording = Recording.of([frame for _, frame in waiting], self._filter.dt_s)

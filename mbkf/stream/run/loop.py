@@ -81,7 +81,7 @@ class FilterLoop:
             if frame is not None:
                 self._take(frame)
                 self._allow_for_start()
-                self._setup.filter.expect()
+                self._setup.filter.predict()
                 first, latest = statistics.first, statistics.latest
             elif self._receiver.ended:
                 return "the source ended"
@@ -135,7 +135,7 @@ class FilterLoop:
             assert frame.markers_m is not None
             self._feed(frame, frame.markers_m)
             return
-        due = labels.push(frame, self._setup.filter.expect())
+        due = labels.push(frame, self._setup.filter.predict())
         for one, markers in due:
             self._feed(one, markers)
         latest = self._setup.filter.latest

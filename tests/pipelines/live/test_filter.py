@@ -101,9 +101,9 @@ def test_what_was_expected_is_what_the_step_goes_on_from(name, monkeypatch):
     monkeypatch.setattr(chosen.kalman.plant, "predict", lambda *a: calls.append(1) or predict(*a))
     found = []
     for t in range(len(recording)):
-        expected, before = asked.expect(), len(calls)
+        expected, before = asked.predict(), len(calls)
         assert (expected is None) == (asked.latest is None)
-        assert asked.expect() is expected
+        assert asked.predict() is expected
         found += asked.push(t, recording.frame(t))
         assert expected is None or len(calls) == before
     for one, other in zip(found, plain, strict=False):

@@ -30,7 +30,7 @@ def streamed(points_m, rate_hz, subject):
     named, plates = [], np.zeros((0, 6))
     with single_threaded():
         for number, frame in enumerate(points_m):
-            for markers in labels.push(frame, live.expect()):
+            for markers in labels.push(frame, live.predict()):
                 steps = live.push(len(named), Frame(markers, plates))
                 named.append(markers)
             if named and steps and steps[-1].number == number and steps[-1].estimate is not None:
