@@ -78,9 +78,6 @@ def test_frames_that_wait_are_answered_at_the_end():
 class Barometer(mbkf.Block):
     """A reading of the pelvis's height, with a bias of its own in the state."""
 
-    def __init__(self):
-        self.q = self.bias = 0
-
     def states(self):
         return [mbkf.ExtraState("barometer", np.zeros(1), np.ones(1), np.zeros(1))]
 
@@ -98,18 +95,10 @@ class Barometer(mbkf.Block):
                 0.5 - at.state.q[3] ** 2 - at.state.q[4] ** 2,
             ]
         )
-        away = (decision - at.state.q[2] - at.state.extra[self.index][0]) / 0.01
-        return [Joined.rows(up, self.bias, away)]
-
-
-class Joined:
-    """One row over two places of the state."""
-
-    @staticmethod
-    def rows(up, bias, away):
-        row = np.zeros((1, bias + 1))
-        row[0, :3], row[0, bias] = up / 0.01, 1.0 / 0.01
-        return mbkf.Rows(row, np.array([away]), readings=1)
+        away = decision - at.state.q[2] - at.state.extra[self.index]
+        row = np.zeros((1, self.bias + 1))
+        row[0, :3], row[0, self.bias] = up, 1.0
+        return mbkf.Rows(row / 0.01, away / 0.01, readings=1)
 
 
 def test_a_block_of_ones_own_may_bring_a_state():
@@ -126,9 +115,12 @@ def test_a_block_of_ones_own_may_bring_a_state():
 
 def test_offline_takes_blocks_and_readings_too():
     person, trial, _ = squat()
-    heights = np.full(trial.markers.frames, 1.0)
-    result = mbkf.reconstruct(trial, person, blocks=[Barometer()], readings={"height": heights})
-    assert np.isfinite(result.q).all()
+    plain = mbkf.reconstruct(trial, person)
+    heights = {"height": plain.q[:, 2] + 0.3}
+    result = mbkf.reconstruct(trial, person, blocks=[Barometer()], readings=heights)
+    counted = result.nis_readings - plain.nis_readings
+    assert counted[0] == 0 and (counted[1:] == 1).all()  # a start counts no reading
+    assert np.abs(result.q[:, 2] - plain.q[:, 2]).max() < 0.005
 
 
 def test_wrong_arrays_and_filters_are_refused():
