@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from benchmarks.double_pendulum.bands import OPEN, Band, Findings
 from benchmarks.double_pendulum.thesis import ANNEX, STUDY
+from benchmarks.thesis_report.contents import OPEN, Band, Findings
 from mbkf.conventions import Array
 from mbkf.filters.torque.plant import Scheme, TorquePlant
 from mbkf.model.double_pendulum import DoublePendulum, PendulumShape

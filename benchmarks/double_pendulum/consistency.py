@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from benchmarks.double_pendulum.bands import Band, Findings, Sheet
 from benchmarks.double_pendulum.laboratory import Laboratory
 from benchmarks.double_pendulum.thesis import STUDY
 from benchmarks.double_pendulum.torque import START_VARIANCE, PendulumFilter, PendulumSettings
+from benchmarks.thesis_report.contents import Band, Findings, Sheet
 from mbkf.conventions import Array
 from mbkf.filters.torque.integrators import Motion, runge_kutta
 from mbkf.filters.torque.plant import Scheme

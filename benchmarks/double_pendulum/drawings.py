@@ -5,9 +5,7 @@ Black is the truth, blue FCDI, orange FD, as in the thesis. Single trials are th
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -20,6 +18,18 @@ from benchmarks.double_pendulum.studies import HIGH_RESIDUAL, WRONG, with_model
 from benchmarks.double_pendulum.sweeps import Sweep, Sweeps
 from benchmarks.double_pendulum.thesis import FCDI, FD, FDMC, KINEMATIC_ACCELERATION, STUDY, STUDY_RECIPE
 from benchmarks.double_pendulum.trials import Estimate, Method, Recipe, Trial
+from benchmarks.thesis_report.figures import (
+    BLUE,
+    GREEN,
+    ORANGE,
+    SHADE,
+    TRUTH,
+    Drawing,
+    axes,
+    labelled,
+    legend,
+    lowered,
+)
 from mbkf.conventions import Array
 from mbkf.synthesis.cameras import skin_artefact
 from mbkf.synthesis.pendulum import RATE_HZ, PendulumNoise
@@ -27,26 +37,9 @@ from mbkf.synthesis.pendulum import RATE_HZ, PendulumNoise
 SEED = 0
 GAPS_S = ((0.85, 1.15), (1.85, 2.15))
 
-TRUTH, BLUE, ORANGE, GREEN, GREY = "#111111", "#1f6fb4", "#e06c10", "#2a9150", "#9aa0a6"
 COLOURS = {"FCDI": BLUE, "FD": ORANGE, "FDMC": GREEN}
 
 _BANDS = {"NEES": (STATE_DOF, 11.33, 12.69), "NIS": (READING_DOF, 10.36, 11.66)}
-
-
-@dataclass(frozen=True)
-class Drawing:
-    """A figure with its ``number`` in the thesis ("own" for one of ours), ``title`` and what to see in it."""
-
-    number: str
-    title: str
-    figure: Figure
-    note: str = ""
-
-    @property
-    def file(self) -> str:
-        """Name of its file."""
-        stem = self.number if self.number != "own" else f"own_{self.title.split()[0].lower()}"
-        return f"figure_{stem.replace('.', '_')}.svg"
 
 
 def drawings(sweeps: Sweeps, consistency: dict[str, list[Consistency]]) -> Iterator[Drawing]:
@@ -59,38 +52,6 @@ def drawings(sweeps: Sweeps, consistency: dict[str, list[Consistency]]) -> Itera
     yield _consistency_drawing(consistency)
 
 
-def axes(rows: int = 1, columns: int = 1, height: float = 2.6) -> tuple[Figure, list[Axes]]:
-    """An empty figure in the style of all figures here.
-
-    Args:
-        rows: Rows of axes.
-        columns: Columns of axes.
-        height: Height of a row, inches.
-    """
-    figure = Figure(figsize=(7.2, height * rows), layout="constrained")
-    made = [figure.add_subplot(rows, columns, k + 1) for k in range(rows * columns)]
-    for one in made:
-        one.spines[["top", "right"]].set_visible(False)
-        one.grid(color="#e4e6e8", linewidth=0.7)
-        one.tick_params(labelsize=8)
-    return figure, made
-
-
-def _labelled(one: Axes, x: str, y: str) -> None:
-    one.set_xlabel(_low(x), fontsize=9)
-    one.set_ylabel(_low(y), fontsize=9)
-
-
-def _low(text: str) -> str:
-    """Text with its indices set low, as in τ_1; θ' stands for a rate."""
-    dotted = re.sub(r"(\w)'(_\w)?", lambda found: rf"$\dot{{{found[1]}}}{found[2] or ''}$", text)
-    return re.sub(r"(?<![\w$}])(\w)_(\w)\b", r"$\1_\2$", dotted)
-
-
-def _legend(one: Axes, columns: int = 4) -> None:
-    one.legend(fontsize=8, frameon=False, ncols=columns, loc="lower right", bbox_to_anchor=(1.0, 1.0))
-
-
 # What moves, and what is read.
 
 
@@ -101,25 +62,25 @@ def _motion_drawings(trial: Trial) -> Iterator[Drawing]:
     above.plot(t, 1e3 * noise.camera_m * rng.normal(size=len(t)), color=BLUE, lw=0.8)
     slid = skin_artefact((len(t), 1), RATE_HZ, noise.artefact_m, noise.cutoff_hz, rng)
     below.plot(t, 1e3 * slid, color=ORANGE)
-    _labelled(above, "", "cameras (mm)")
-    _labelled(below, "time (s)", "skin (mm)")
+    labelled(above, "", "cameras (mm)")
+    labelled(below, "time (s)", "skin (mm)")
     yield Drawing("3.7", "Noise of the virtual markers: cameras above, skin below", figure)
 
     for number, values, quantity in (("3.8", motion.q, "angle (rad)"), ("3.9", motion.v, "velocity (rad/s)")):
         figure, (one,) = axes()
         dot = "'" if number == "3.9" else ""
         for column, style in ((2, "-"), (3, "--")):
-            one.plot(t, values[:, column], style, color=TRUTH, label=_low(f"θ{dot}_{column - 1}"))
-        _labelled(one, "time (s)", quantity)
-        _legend(one)
+            one.plot(t, values[:, column], style, color=TRUTH, label=lowered(f"θ{dot}_{column - 1}"))
+        labelled(one, "time (s)", quantity)
+        legend(one)
         title = "Angles" if number == "3.8" else "Velocities"
         yield Drawing(number, f"{title} of θ_1 and θ_2 of the motion `sin`", figure)
 
     figure, (one,) = axes()
     for column, name, colour in ((4, "x", BLUE), (5, "y", ORANGE)):
         one.plot(t, trial.read.markers_m[:, column], color=colour, label=f"{name} of marker 3")
-    _labelled(one, "time (s)", "position (m)")
-    _legend(one)
+    labelled(one, "time (s)", "position (m)")
+    legend(one)
     yield Drawing("3.10", "Marker 3 as the cameras see it, artefact included", figure)
 
     figure, four = axes(2, 2, height=2.1)
@@ -127,7 +88,7 @@ def _motion_drawings(trial: Trial) -> Iterator[Drawing]:
         four, (1, 2, 3, 0), ("F_x (N)", "F_y (N)", "T_2 (N m)", "τ_1 (N m)"), strict=True
     ):
         one.plot(t, motion.efforts[:, column], color=TRUTH)
-        _labelled(one, "time (s)", name)
+        labelled(one, "time (s)", name)
     yield Drawing("3.11", "Efforts of the motion: F_x, F_y, T_2 and τ_1", figure)
 
 
@@ -166,8 +127,8 @@ def _curves(family: dict[str, Sweep], label: str, columns: Sequence[tuple[str, s
             one.set_xticks(sweep.values, [f"{value:g}" for value in sweep.values], fontsize=8)
             one.set_xticks([], minor=True)
         _cropped(one, np.concatenate([sweep.quantiles(key, 0.5)[0] for sweep in family.values()]))
-        _labelled(one, label, unit)
-        _legend(one)
+        labelled(one, label, unit)
+        legend(one)
     return figure
 
 
@@ -205,8 +166,8 @@ def _study_drawings(trial: Trial) -> Iterator[Drawing]:
     figure, (angle, speed) = axes(2, height=2.3)
     for one, name, unit in ((angle, "q", "θ_1 (rad)"), (speed, "v", "θ'_1 (rad/s)")):
         _draw(one, lost, both, name, 2)
-        _labelled(one, "time (s)", unit)
-    _legend(angle)
+        labelled(one, "time (s)", unit)
+    legend(angle)
     note = (
         "Grey: both markers of bar 1 are lost. Two gaps are drawn; the study's ratios are of the first one."
     )
@@ -224,8 +185,8 @@ def _against(
     figure, made = axes(2, 2, height=2.1)
     for one, (unit, column) in zip(made, columns, strict=True):
         _draw(one, trial, found, name, column)
-        _labelled(one, "time (s)", unit)
-    _legend(made[1])
+        labelled(one, "time (s)", unit)
+    legend(made[1])
     return figure
 
 
@@ -234,8 +195,8 @@ def _torques(trial: Trial, found: dict[str, Estimate]) -> Figure:
     _draw(one, trial, found, "efforts", 0)
     truth = trial.motion.efforts[:, 0]
     one.set_ylim(1.6 * truth.min(), 1.6 * truth.max())
-    _labelled(one, "time (s)", "τ_1 (N m)")
-    _legend(one)
+    labelled(one, "time (s)", "τ_1 (N m)")
+    legend(one)
     return figure
 
 
@@ -243,7 +204,7 @@ def _draw(one: Axes, trial: Trial, found: dict[str, Estimate], name: str, column
     t = trial.motion.times_s
     edges = np.diff(np.concatenate([[0], trial.hidden.astype(int), [0]]))
     for begin, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
-        one.axvspan(t[begin], t[end - 1], color="#dfe2e5", lw=0)
+        one.axvspan(t[begin], t[end - 1], color=SHADE, lw=0)
     for label, estimate in found.items():
         one.plot(t, getattr(estimate, name)[:, column], color=COLOURS[label], lw=1.1, label=label)
     one.plot(t, getattr(trial.motion, name)[:, column], color=TRUTH, lw=1.0, label="truth")
@@ -256,12 +217,12 @@ def _consistency_drawing(consistency: dict[str, list[Consistency]]) -> Drawing:
     figure, made = axes(2, height=2.3)
     t = np.arange(1, FRAMES + 1) / RATE_HZ
     for one, (key, (dof, low, high)) in zip(made, _BANDS.items(), strict=True):
-        one.axhspan(low, high, color="#dfe2e5", lw=0)
+        one.axhspan(low, high, color=SHADE, lw=0)
         for (name, trials), colour in zip(consistency.items(), (TRUTH, ORANGE, GREEN), strict=False):
             values = np.mean([getattr(trial, key.lower()) for trial in trials], axis=0)
             one.plot(t, np.where(np.isfinite(values), values, np.nan), color=colour, lw=1.1, label=name)
         one.set_ylim(0.5 * dof, 2.5 * dof)
-        _labelled(one, "time (s)", f"mean {key}")
-    _legend(made[0])
+        labelled(one, "time (s)", f"mean {key}")
+    legend(made[0])
     note = "Grey: 95 % band of a mean over 200 trials. Without exact steps the filter grows sure of wrong numbers."
     return Drawing("own", "Consistency at matched low noise", figure, note)

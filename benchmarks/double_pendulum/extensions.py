@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from benchmarks.double_pendulum.acceleration import AccelerationMethod, AccelerationSettings
-from benchmarks.double_pendulum.bands import OPEN, Band, Findings, Row, Sheet
 from benchmarks.double_pendulum.kinematic import KinematicMethod
 from benchmarks.double_pendulum.laboratory import Laboratory, Pair
 from benchmarks.double_pendulum.studies import NO_ARTEFACT, WRONG, with_model
@@ -26,6 +25,7 @@ from benchmarks.double_pendulum.thesis import (
 )
 from benchmarks.double_pendulum.torque import Artefact
 from benchmarks.double_pendulum.trials import Method, Recipe, Scores
+from benchmarks.thesis_report.contents import OPEN, Band, Findings, Row, Sheet
 from mbkf.conventions import Array
 from mbkf.model.double_pendulum import PendulumShape
 from mbkf.synthesis.pendulum import PendulumNoise

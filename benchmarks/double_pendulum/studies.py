@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from benchmarks.double_pendulum.bands import OPEN, Band, Claim, Findings, Row, Sheet, judged
 from benchmarks.double_pendulum.kinematic import KinematicMethod
 from benchmarks.double_pendulum.laboratory import Laboratory, Pair
 from benchmarks.double_pendulum.thesis import (
@@ -20,6 +19,7 @@ from benchmarks.double_pendulum.thesis import (
 )
 from benchmarks.double_pendulum.torque import TorqueMethod
 from benchmarks.double_pendulum.trials import Method, Recipe, Scores
+from benchmarks.thesis_report.contents import OPEN, Band, Claim, Findings, Row, Sheet, judged
 from mbkf.model.double_pendulum import PendulumShape
 from mbkf.synthesis.pendulum import PendulumNoise
 

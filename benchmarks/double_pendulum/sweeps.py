@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from benchmarks.double_pendulum.bands import Band, Claim, Findings, Sheet, judged
 from benchmarks.double_pendulum.kinematic import KinematicMethod
 from benchmarks.double_pendulum.laboratory import FEW_SEEDS, Laboratory, Pair
 from benchmarks.double_pendulum.thesis import FD, STUDY, STUDY_RECIPE
 from benchmarks.double_pendulum.torque import SENSORS, STANDARD_SENSORS, TorqueMethod
 from benchmarks.double_pendulum.trials import Method, Recipe, Scores
+from benchmarks.thesis_report.contents import Band, Claim, Findings, Sheet, judged
 from mbkf.conventions import Array
 
 EFFORT_NOISES = (100.0, 200.0, 300.0, 500.0, 800.0, 1300.0, 2000.0, 5000.0)

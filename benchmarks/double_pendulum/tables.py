@@ -6,7 +6,6 @@ from time import perf_counter
 
 import numpy as np
 
-from benchmarks.double_pendulum.bands import OPEN, Band, Claim, Findings, Row, Sheet, judged
 from benchmarks.double_pendulum.laboratory import FEW_SEEDS, Laboratory, Pair
 from benchmarks.double_pendulum.thesis import (
     ANNEX,
@@ -18,6 +17,7 @@ from benchmarks.double_pendulum.thesis import (
 )
 from benchmarks.double_pendulum.torque import PendulumSettings, TorqueMethod
 from benchmarks.double_pendulum.trials import Recipe, Scores
+from benchmarks.thesis_report.contents import OPEN, Band, Claim, Findings, Row, Sheet, judged
 from mbkf.conventions import Array
 from mbkf.filters.torque.plant import Scheme
 from mbkf.numerics.threads import single_threaded

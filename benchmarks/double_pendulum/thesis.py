@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from benchmarks.double_pendulum.bands import Row, Sheet
 from benchmarks.double_pendulum.kinematic import KinematicMethod
 from benchmarks.double_pendulum.torque import PendulumSettings, TorqueMethod
 from benchmarks.double_pendulum.trials import Recipe
+from benchmarks.thesis_report.contents import Row, Sheet
 from mbkf.filters.torque.plant import Scheme
 from mbkf.filters.torque.settings import SCHEMES
 from mbkf.model.double_pendulum import PendulumShape

@@ -14,7 +14,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from benchmarks.checks import Check
-from benchmarks.double_pendulum.drawings import BLUE, GREEN, ORANGE, TRUTH, axes
 from benchmarks.inertial.stride_measured import Compared
 from benchmarks.inertial.stride_study import (
     ALIGNED,
@@ -33,6 +32,7 @@ from benchmarks.inertial.stride_study import (
     settings_of,
     window_truth,
 )
+from benchmarks.thesis_report.figures import BLUE, GREEN, ORANGE, TRUTH, axes
 from mbkf.imu.key_points import KeyPointSettings
 from mbkf.synthesis.cubic_steps import CASES, RATE_HZ, cubic_steps
 

@@ -1,16 +1,11 @@
 """How the pendulum's estimates are measured and shown: delays, gaps, bands, sweeps, tables, the page."""
 
-import csv
-import re
-
 import numpy as np
 import pytest
 
-from benchmarks.double_pendulum.bands import OPEN, Band, Claim, Sheet, judged
-from benchmarks.double_pendulum.drawings import Drawing, axes, drawings
+from benchmarks.double_pendulum.drawings import drawings
 from benchmarks.double_pendulum.kinematic import KinematicMethod
 from benchmarks.double_pendulum.laboratory import Laboratory, Pair
-from benchmarks.double_pendulum.page import Report
 from benchmarks.double_pendulum.sweeps import Sweep, sweep_findings
 from benchmarks.double_pendulum.thesis import FCDI, STUDY, STUDY_RECIPE
 from benchmarks.double_pendulum.trials import Estimate, Recipe, Scores, delay, rms, score
@@ -98,50 +93,6 @@ def test_a_u_is_not_an_asymptote():
     found = sweep_findings(sweeps())
     assert all(band.kept for band in found.bands)
     assert [claim.verdict for claim in found.claims[:2]] == ["does not hold", "does not hold"]
-
-
-@pytest.mark.parametrize(
-    ("value", "low", "high", "kept", "interval", "checks"),
-    [
-        (1.0, 0.5, 2.0, True, "0.5 … 2", 2),
-        (3.0, -OPEN, 2.0, False, "≤ 2", 1),
-        (3.0, 2.0, OPEN, True, "≥ 2", 1),
-        (np.nan, 0.0, 1.0, False, "0 … 1", 2),
-    ],
-)
-def test_bands_become_one_check_per_end(value, low, high, kept, interval, checks):
-    band = Band("row", "name", value, low, high)
-    found = band.checks(quick=False)
-    assert (band.kept, band.interval, len(found)) == (kept, interval, checks)
-    assert all(check.passed for check in found) == kept
-    assert not any(check.bounded for check in band.checks(quick=True))
-    assert all(check.bounded for check in Band("r", "n", value, low, high, "", False).checks(quick=True))
-
-
-def test_verdicts():
-    assert [judged(True), judged(False, True), judged(False)] == ["holds", "partly", "does not hold"]
-
-
-def test_the_page_stands_alone(tmp_path):
-    figure, (one,) = axes()
-    one.plot([0.0, 1.0], [1.0, 0.0])
-    sheet = Sheet(
-        "t", "Title <1>", ("row", "x", "x ±", "x, thesis"), (("a", 1.25, 0.5, 2.0), ("b", np.inf, 0.1, 3.0))
-    )
-    claims = [Claim("3.3", "τ_1 & more", "5 < 6", "partly")]
-    bands = [Band("row", "kept", 1.0, 0.0, 2.0), Band("row", "broken", 3.0, 0.0, 2.0)]
-    Report(7, False, bands, claims, [sheet], [Drawing("3.7", "Noise", figure)]).write(tmp_path)
-    text = (tmp_path / "index.html").read_text()
-    assert "1 of 2" in text
-    assert "FAIL" in text
-    assert "Title &lt;1&gt;" in text
-    assert "τ<sub>1</sub> &amp; more" in text
-    assert "1.250 ± 0.5" in text
-    assert not re.search(r"(src|href)=.https?:", text)
-    assert "data:image/svg+xml;base64," in text
-    rows = list(csv.reader((tmp_path / "t.csv").read_text().splitlines()))
-    assert rows[1] == ["a", "1.25", "0.5", "2"]
-    assert (tmp_path / "figure_3_7.svg").read_bytes().startswith(b"<?xml")
 
 
 def test_figures_of_the_thesis_are_all_drawn():

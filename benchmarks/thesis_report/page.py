@@ -13,8 +13,8 @@ from pathlib import Path
 
 from matplotlib import rc_context
 
-from benchmarks.double_pendulum.bands import Band, Claim, Sheet
-from benchmarks.double_pendulum.drawings import Drawing
+from benchmarks.thesis_report.contents import Band, Claim, Sheet
+from benchmarks.thesis_report.figures import Drawing
 
 _STYLE = """
 :root { --ink: #1b1f23; --soft: #5b636b; --line: #dfe2e5; --good: #1a7f45; --bad: #b3261e; --half: #9a6700; }
@@ -41,16 +41,41 @@ _MARKS = {"holds": "good", "partly": "half", "does not hold": "bad"}
 
 
 @dataclass(frozen=True)
+class Texts:
+    """Words of a page.
+
+    Attributes:
+        title: Its heading.
+        introduction: What was run and compared, in a few sentences.
+        trials: Number and kind of the trials, for the head of the page: ("100", "seeds per number").
+        command: The command that makes the page.
+        bands: What the bounded numbers are.
+        claims: Heading of the thesis's statements.
+        figures: Key to the colours of the figures.
+        remark: A further sentence on how the numbers came about.
+    """
+
+    title: str
+    introduction: str
+    trials: tuple[str, str]
+    command: str
+    bands: str
+    claims: str
+    figures: str
+    remark: str = ""
+
+
+@dataclass(frozen=True)
 class Report:
     """Contents of the page.
 
     Attributes:
-        seeds: Trials per number.
-        quick: Whether only a few seeds were run.
+        texts: Its words.
+        quick: Whether only a few trials were run.
         bands, claims, sheets, drawings: The contents.
     """
 
-    seeds: int
+    texts: Texts
     quick: bool
     bands: Sequence[Band]
     claims: Sequence[Claim]
@@ -67,21 +92,20 @@ class Report:
         (folder / "index.html").write_text(self._html(pictures), encoding="utf-8")
 
     def _html(self, pictures: Iterable[tuple[Drawing, bytes]]) -> str:
+        texts = self.texts
         parts = [
             "<!doctype html><html lang='en'><head><meta charset='utf-8'>",
             "<meta name='viewport' content='width=device-width, initial-scale=1'>",
-            "<title>Double pendulum: thesis and measurement</title>",
+            f"<title>{escape(texts.title)}</title>",
             f"<style>{_STYLE}</style></head><body>",
             self._head(),
-            "<h2 id='bands'>Bands</h2><p class='soft'>Intervals that a correct implementation keeps, from the thesis's "
-            "tables and from theory.</p>",
+            f"<h2 id='bands'>Bands</h2><p class='soft'>{_rich(texts.bands)}</p>",
             _band_table(self.bands, self.quick),
-            "<h2 id='claims'>The thesis's statements, and the measurements over the seeds</h2>",
+            f"<h2 id='claims'>{escape(texts.claims)}</h2>",
             _claim_table(self.claims),
             "<h2 id='tables'>Tables</h2>",
             *(_sheet(sheet) for sheet in self.sheets),
-            "<h2 id='figures'>Figures</h2><p class='soft'>Truth black, FCDI blue, FD orange, FDMC green. Over "
-            "covariances: median of the seeds, shaded from the 10th to the 90th percentile.</p><div class='figures'>",
+            f"<h2 id='figures'>Figures</h2><p class='soft'>{_rich(texts.figures)}</p><div class='figures'>",
             *(_picture(drawing, svg) for drawing, svg in pictures),
             "</div></body></html>\n",
         ]
@@ -91,18 +115,16 @@ class Report:
         decided = [band for band in self.bands if not (self.quick and band.needs_all_seeds)]
         kept = sum(band.kept for band in decided)
         verdicts = [claim.verdict for claim in self.claims]
-        look = " This was a quick look: too few seeds to judge the statistical rows." if self.quick else ""
+        look = " This was a quick look: too few trials to judge the statistical rows." if self.quick else ""
+        number, kind = self.texts.trials
         return (
-            "<h1>Double pendulum: thesis and measurement</h1>"
-            "<p>Two bars on a force plate, followed by the thesis's dynamic filter (FD, and its light form FDMC), by a "
-            "kinematic filter with inverse dynamics (FCDI), and by mbkf's filter in acceleration coordinates. All run "
-            "through the human model's own plants, integrators and updates; only the body differs.</p>"
+            f"<h1>{escape(self.texts.title)}</h1><p>{_rich(self.texts.introduction)}</p>"
             f"<div class='sum'><div><b>{kept} of {len(decided)}</b>bands kept</div>"
             f"<div><b>{verdicts.count('holds')} of {len(verdicts)}</b>claims of the thesis hold, "
             f"{verdicts.count('partly')} partly</div>"
-            f"<div><b>{self.seeds}</b>seeds per number</div></div>"
+            f"<div><b>{escape(number)}</b>{escape(kind)}</div></div>"
             f"<p class='soft'>Seeds are 0, 1, 2, …: the same command gives the same numbers.{look} "
-            "<code>python -m benchmarks double_pendulum</code></p>"
+            f"{_rich(self.texts.remark)} <code>{escape(self.texts.command)}</code></p>"
             "<nav><a href='#bands'>Bands</a><a href='#claims'>Claims</a><a href='#tables'>Tables</a>"
             "<a href='#figures'>Figures</a></nav>"
         )

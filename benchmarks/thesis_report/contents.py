@@ -96,7 +96,7 @@ def _plain(cell: str | float) -> str:
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement of the thesis, and its measurement over a hundred seeds.
+    """A statement of the thesis, and its measurement.
 
     Attributes:
         source: Where it stands.
