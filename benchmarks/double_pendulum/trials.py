@@ -7,8 +7,8 @@ from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
+from benchmarks.thesis_report.delay import delay
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.double_pendulum import PendulumShape
 from mbkf.synthesis.pendulum import (
@@ -18,10 +18,6 @@ from mbkf.synthesis.pendulum import (
     pendulum_motion,
     readings,
 )
-
-LARGEST_DELAY_S, _DELAY_STEPS = 0.15, 61
-SETTLING_S = 0.2
-"""Delays are measured from here on, when the knowledge of the start is used up."""
 
 AFTER_GAP_S = 0.3
 """What counts as after a gap: as long again as the gap itself."""
@@ -173,24 +169,3 @@ def rms(error: Array) -> Array:
     if not np.isfinite(error).all():
         return np.asarray(np.inf)
     return np.asarray(np.sqrt(np.mean(error**2)))
-
-
-def delay(times_s: Array, truth: Array, found: Array) -> float:
-    """Time by which ``found`` (T, k) lags behind ``truth``: the shift that leaves the least squared difference, s.
-
-    Args:
-        times_s: (T,) times of the frames, s.
-        truth: (T, k) true curves.
-        found: (T, k) estimated curves.
-    """
-    if not np.isfinite(found).all():
-        return np.inf
-    curve = CubicSpline(times_s, truth)
-    frames = (times_s >= SETTLING_S + LARGEST_DELAY_S) & (times_s <= times_s[-1] - LARGEST_DELAY_S)
-    shifts = np.linspace(-LARGEST_DELAY_S, LARGEST_DELAY_S, _DELAY_STEPS)
-    at = times_s[frames]
-    misfit = np.array([np.sum((found[frames] - curve(at - shift)) ** 2) for shift in shifts])
-    best = int(np.clip(np.argmin(misfit), 1, len(shifts) - 2))
-    low, here, high = misfit[best - 1 : best + 2]
-    bend = low - 2.0 * here + high
-    return float(shifts[best] + 0.5 * (shifts[1] - shifts[0]) * (low - high) / bend)

@@ -24,16 +24,18 @@ def synthesise(
     seed: int = 0,
     rate_hz: float = 100.0,
     settings: CaptureSettings | None = None,
+    subject: Subject | None = None,
     progress: StageCallback | None = None,
 ) -> tuple[Subject, SyntheticCapture]:
-    """A random subject performing a motion, and the capture of it.
+    """A subject performing a motion, and the capture of it.
 
     Args:
         motion: Name of a registered motion, see :mod:`mbkf.synthesis.motions`.
         seconds: Duration; the motion's usual one when None.
-        seed: Chooses subject, motion and noise.
+        seed: Chooses motion and noise, and the subject where none is given.
         rate_hz: Camera rate.
         settings: Errors of the instruments.
+        subject: Who moves; a random person when None.
         progress: Called with the stage, items done and items in all.
 
     Raises:
@@ -42,7 +44,7 @@ def synthesise(
         NotConverged: This person cannot perform the motion; another seed can.
     """
     report = progress or (lambda *_: None)
-    subject = synthesise_subject(seed)
+    subject = subject or synthesise_subject(seed)
     report("Moving", 0, 2)
     duration = registered_motion(motion).seconds if seconds is None else seconds
     true_motion = synthesise_motion(body_of(subject), motion, duration, rate_hz, seed)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import read_only
+from mbkf.errors import InvalidInput
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.body_file import load_body
 from mbkf.model.human import HumanModel
@@ -25,20 +26,35 @@ SESSION_SD_M = 0.0005
 """The markers stay in place from trial to trial; only the skin moves."""
 
 
-def synthesise_subject(seed: int = 0, protocol: str = "reference36", body: str = "human18") -> Subject:
+def synthesise_subject(
+    seed: int = 0,
+    protocol: str = "reference36",
+    body: str = "human18",
+    *,
+    height_m: float | None = None,
+    mass_kg: float | None = None,
+) -> Subject:
     """A person with exactly known factors, mass and marker positions, a different one for every seed.
 
     Args:
         seed: Chooses the person.
         protocol: Name of the marker protocol.
         body: Name of the body.
+        height_m: Height, m; a random one in :data:`STATURE_RANGE` when None.
+        mass_kg: Mass, kg; by a random index in :data:`BODY_MASS_INDEX` when None.
 
     Raises:
         UnknownName: The body or the protocol is unknown.
+        InvalidInput: Height or mass is not positive.
     """
+    for name, value in (("height_m", height_m), ("mass_kg", mass_kg)):
+        if value is not None and not (np.isfinite(value) and value > 0.0):
+            raise InvalidInput(f"{name} must be positive, got {value}")
     rng = np.random.default_rng([seed, 1])
     description = load_body(body)
     stature = rng.uniform(*STATURE_RANGE)
+    if height_m is not None:
+        stature = height_m / description.reference_height_m
     shared: dict[str, float] = {}
     factors = {}
     for name in description.scale_factors:
@@ -49,6 +65,8 @@ def synthesise_subject(seed: int = 0, protocol: str = "reference36", body: str =
         factors[name] = float(stature * (1 + np.clip(own, -LIMIT, LIMIT)))
     height = description.reference_height_m * stature
     mass = rng.uniform(*BODY_MASS_INDEX) * height**2
+    if mass_kg is not None:
+        mass = mass_kg
     model = HumanModel.scaled(factors, mass, body)
     markers = []
     for marker in load_protocol(protocol).markers:

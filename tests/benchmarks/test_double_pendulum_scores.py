@@ -8,8 +8,9 @@ from benchmarks.double_pendulum.kinematic import KinematicMethod
 from benchmarks.double_pendulum.laboratory import Laboratory, Pair
 from benchmarks.double_pendulum.sweeps import Sweep, sweep_findings
 from benchmarks.double_pendulum.thesis import FCDI, STUDY, STUDY_RECIPE
-from benchmarks.double_pendulum.trials import Estimate, Recipe, Scores, delay, rms, score
+from benchmarks.double_pendulum.trials import Estimate, Recipe, Scores, rms, score
 from benchmarks.dynamic.methods import in_turn
+from benchmarks.thesis_report.delay import delay
 
 
 @pytest.mark.parametrize("lag_s", [-0.013, 0.0, 0.0042, 0.061])

@@ -5,6 +5,7 @@ import pytest
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.subject import read_subject
 from mbkf.pipelines.synth import FILES, synthesise, write_folder
+from mbkf.synthesis.person import synthesise_subject
 
 pytestmark = pytest.mark.slow
 
@@ -19,6 +20,13 @@ def test_folder_is_complete_and_the_subject_exact(tmp_path):
     assert back.scale_factors == subject.scale_factors
     assert back.mass_kg == subject.mass_kg
     assert told[-1][1] == told[-1][2]
+
+
+def test_a_given_subject_moves():
+    person = synthesise_subject(4, height_m=1.62, mass_kg=55.0)
+    subject, capture = synthesise("squat", seconds=1.2, seed=2, subject=person)
+    assert subject is person
+    assert capture.trial.subject_mass_kg == 55.0
 
 
 def test_unknown_motion_is_refused():

@@ -10,7 +10,7 @@ from mbkf.io.c3d import read_c3d
 from mbkf.io.c3d_write import write_c3d
 from mbkf.synthesis import cameras, plates
 from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
-from mbkf.synthesis.person import LIMIT, STATURE_RANGE, synthesise_subject
+from mbkf.synthesis.person import LIMIT, STATURE_RANGE, body_of, synthesise_subject
 
 pytestmark = pytest.mark.slow
 
@@ -126,6 +126,18 @@ def test_seeds_repeat_and_differ(person, motions):
     )
     assert np.array_equal(first, again, equal_nan=True)
     assert not np.array_equal(first, other, equal_nan=True)
+
+
+def test_height_and_mass_can_be_given():
+    tall, small = (
+        synthesise_subject(3, height_m=height, mass_kg=mass) for height, mass in ((1.86, 85.0), (1.55, 49.75))
+    )
+    assert (tall.height_m, tall.mass_kg) == (pytest.approx(1.86), 85.0)
+    assert body_of(small).mass_kg == pytest.approx(49.75)
+    for name, factor in tall.scale_factors.items():
+        assert small.scale_factors[name] / factor == pytest.approx(1.55 / 1.86)
+    with pytest.raises(InvalidInput, match="mass_kg"):
+        synthesise_subject(mass_kg=-1.0)
 
 
 def test_people_differ_plausibly():
