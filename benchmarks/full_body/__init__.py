@@ -1,1 +1,56 @@
-"""The thesis's full-body studies (its chapter 4.2 and Table 4.4): every claim beside its measurement, on one page."""
+"""The thesis's full-body studies (its chapter 4.2 and Table 4.4): every claim beside its measurement, on one page.
+
+Synthetic trials of eight persons with exact truth, and the public captures; the kinematic filter with inverse dynamics
+(FCDI), the thesis's FDMC and mbkf's dynamic filter, causal and smoothed, with one set of settings for all of them.
+"""
+
+from __future__ import annotations
+
+from benchmarks.checks import Check, Context
+from benchmarks.dynamic.methods import in_parallel
+from benchmarks.full_body.accuracy import accuracy_findings, lost_by_fdmc, trial_count
+from benchmarks.full_body.claims import survey_claims
+from benchmarks.full_body.drawings import survey_drawings, thesis_drawings
+from benchmarks.full_body.filters import FCDI
+from benchmarks.full_body.real import real_findings, real_scores
+from benchmarks.full_body.survey import SEEDS, Survey, keys, survey
+from benchmarks.full_body.trials import JUMP, SQUAT
+from benchmarks.thesis_report.page import Report, Texts
+
+QUICK_CAPTURES = ("rajagopal walk",)
+QUICK_MOVEMENTS = (SQUAT, JUMP)
+
+
+def run(context: Context) -> list[Check]:
+    """All studies and the page; with ``quick`` one person's squat and jump and one capture."""
+    data, quick = context.require_data(), context.quick
+    with in_parallel() as mapper:
+        found = survey(mapper, keys(1, 1, QUICK_MOVEMENTS) if quick else keys(seeds=SEEDS))
+        real = real_scores(data, mapper, QUICK_CAPTURES) if quick else real_scores(data, mapper)
+        drawings = list(thesis_drawings(mapper, QUICK_MOVEMENTS) if quick else thesis_drawings(mapper))
+    parts = [accuracy_findings(found), real_findings(real)]
+    bands = [band for part in parts for band in part.bands]
+    claims = [*([] if quick else survey_claims(found)), *(claim for part in parts for claim in part.claims)]
+    sheets = [sheet for part in parts for sheet in part.sheets]
+    pictures = [*drawings, *survey_drawings(found, real)]
+    Report(_texts(found), quick, bands, claims, sheets, pictures).write(context.out)
+    return [*(check for band in bands for check in band.checks(quick)), *lost_by_fdmc(found)]
+
+
+def _texts(found: Survey) -> Texts:
+    return Texts(
+        title="Full body: thesis and measurement",
+        introduction="Walking, a general movement (reach, one-foot stands, turn, step up), squats, squats with the "
+        "knee markers lost, and jumps of eight synthetic persons with exact truth, and public captures, followed by the "
+        "kinematic filter with inverse dynamics (FCDI), by the thesis's dynamic filter for the whole body (FDMC), and "
+        "by mbkf's dynamic filter. FDMC runs in three forms: as printed, with the covariances of the thesis's Table "
+        "4.3 as densities; per frame, with the same read as what one frame adds, which behaves as the thesis "
+        "describes; and ours, with mbkf's noise and force states.",
+        trials=(str(trial_count(found, FCDI)), "synthetic trials per filter"),
+        command="python -m benchmarks full_body",
+        bands="What mbkf's filters have to keep.",
+        claims="The thesis's statements on whole bodies, and what was measured",
+        figures="Truth black, FCDI blue, FDMC per frame violet, FDMC ours green, dynamic orange.",
+        remark="The synthetic persons are the filters' own body, so errors of the body itself are left out, but for "
+        "the study with a wrong mass.",
+    )

@@ -1,0 +1,145 @@
+"""Every filter on every trial of the study, and what they score by filter and movement."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from benchmarks.dynamic.methods import Mapper
+from benchmarks.full_body.filters import CAUSAL, FCDI, FDMC_PER_FRAME, SMOOTHED
+from benchmarks.full_body.persons import PERSONS
+from benchmarks.full_body.scores import Scores, score
+from benchmarks.full_body.trials import LOST, MOVEMENTS, SQUAT, SYNTHESISED, Trial, make_trials
+from mbkf.conventions import Array
+
+SEEDS = 4
+
+FIRST_SEED_ONLY = (FDMC_PER_FRAME, *SMOOTHED)
+"""Filters that run on the first seed of every person only: their numbers need fewer trials."""
+
+Key = tuple[str, int, int]
+"""Movement, person and seed."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Scores of one filter on one trial."""
+
+    movement: str
+    person: int
+    seed: int
+    filter: str
+    scores: Scores
+
+
+def measure(key: Key) -> list[Outcome]:
+    """All filters on the trials of a movement, a person and a seed."""
+    movement, person, seed = key
+    return [outcome for trial in make_trials(movement, person, seed) for outcome in filtered(trial)]
+
+
+def filtered(trial: Trial) -> list[Outcome]:
+    """All filters on a trial; FCDI's run also tells what the plates measured under each foot."""
+    measured = CAUSAL[FCDI].run(trial.capture, trial.subject)
+    every = {**CAUSAL, **SMOOTHED}
+    found = []
+    for name, method in every.items():
+        if trial.seed and name in FIRST_SEED_ONLY:
+            continue
+        with np.errstate(all="ignore"):
+            run = measured if name == FCDI else method.run(trial.capture, trial.subject)
+            scores = score(trial, run, measured.foot_wrench)
+        found.append(Outcome(trial.movement, trial.person, trial.seed, name, scores))
+    return found
+
+
+@dataclass(frozen=True)
+class Survey:
+    """All outcomes."""
+
+    outcomes: Sequence[Outcome]
+
+    def of(self, filter_name: str, movement: str | None = None) -> list[Outcome]:
+        """The outcomes of a filter, of one movement or of all."""
+        return [
+            one for one in self.outcomes if one.filter == filter_name and movement in (None, one.movement)
+        ]
+
+    def divergences(self, filter_name: str, movement: str | None = None) -> int:
+        """How many trials a filter lost."""
+        return sum(one.scores.diverged for one in self.of(filter_name, movement))
+
+    def values(self, filter_name: str, movement: str, number: str) -> Array:
+        """(n,) one number over the trials that the filter did not lose.
+
+        Args:
+            filter_name: Name of the filter.
+            movement: One of the movements.
+            number: A field of :class:`benchmarks.full_body.scores.Scores`.
+        """
+        return np.array(
+            [getattr(one.scores, number) for one in self.of(filter_name, movement) if not one.scores.diverged]
+        )
+
+    def pooled(self, filter_name: str, movement: str, number: str) -> float:
+        """RMS of errors over trials, mean of delays and of innovations; NaN where every trial was lost.
+
+        Args:
+            filter_name: Name of the filter.
+            movement: One of the movements.
+            number: A field of :class:`benchmarks.full_body.scores.Scores`.
+        """
+        values = self.values(filter_name, movement, number)
+        if not values.size:
+            return np.nan
+        if number.endswith("_ms") or number in ("nis", "knee_deg", "flexion_deg"):
+            return float(values.mean())
+        return float(np.sqrt(np.mean(values**2)))
+
+    def ratio(self, filter_name: str, others: Sequence[str], movement: str, number: str) -> float:
+        """A filter's pooled number over the least of others', all over the trials that none of them lost.
+
+        Args:
+            filter_name: Name of the filter.
+            others: Names of those it is compared with.
+            movement: One of the movements.
+            number: A field of :class:`benchmarks.full_body.scores.Scores`.
+        """
+        names = (filter_name, *others)
+        runs = [{(o.person, o.seed): o.scores for o in self.of(name, movement)} for name in names]
+        common = set.intersection(*(set(run) for run in runs))
+        kept = [key for key in sorted(common) if not any(run[key].diverged for run in runs)]
+        own, *rest = (
+            replace(self, outcomes=[Outcome(movement, *key, name, run[key]) for key in kept]).pooled(
+                name, movement, number
+            )
+            for name, run in zip(names, runs, strict=True)
+        )
+        return own / min(rest)
+
+
+def keys(persons: int = len(PERSONS), seeds: int = SEEDS, movements: Sequence[str] = MOVEMENTS) -> list[Key]:
+    """What has to be measured, the longest first so that two workers end together.
+
+    Args:
+        persons: How many persons, from the first on.
+        seeds: How many seeds each.
+        movements: The movements; the squat with lost markers comes with the squat.
+    """
+    made = [movement for movement in movements if movement != LOST]
+    by_length = sorted(made, key=lambda name: -SYNTHESISED[name][1] * (2.0 if name == SQUAT else 1.0))
+    return [(name, person, seed) for name in by_length for person in range(persons) for seed in range(seeds)]
+
+
+def survey(mapper: Mapper, wanted: Sequence[Key]) -> Survey:
+    """Measures all trials.
+
+    Args:
+        mapper: Runs a function on many items, in turn or on several processes.
+        wanted: Movements, persons and seeds.
+    """
+    found = mapper(partial(measure), wanted)
+    return Survey([outcome for part in found for outcome in part])
