@@ -1,6 +1,7 @@
 """Where the centre of mass must move so that the ground's pressure lies where it is wanted.
 
-With h the height of the centre of mass c, F_z = m (g + ḧ) and L its angular momentum, the point of zero moment is
+With h the height of the centre of mass c over the surface, F_z = m (g + ḧ) and L its angular momentum, the point of
+zero moment is
 x = c_x − (h m c̈_x + L̇_y) / F_z and y = c_y − (h m c̈_y − L̇_x) / F_z. Given x and y, h and L̇, this is a linear
 equation for the curve c, solved by least squares on quintic splines, one per spell on the ground.
 """
@@ -88,7 +89,7 @@ class HorizontalPath:
         Args:
             times: (T,) s.
             target: (T, 2) wanted point of zero moment, m.
-            height: (T,) height of the centre of mass, m.
+            height: (T,) height of the centre of mass over the surface, m; its second derivative is over the floor.
             turning: (T, 2) L̇_y / m and −L̇_x / m, m²/s².
         """
         rows, wanted = [], []

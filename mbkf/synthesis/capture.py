@@ -135,6 +135,7 @@ def _record(
     names = tuple(marker.name for marker in subject.markers)
     stored = plates.readings(
         motion.plate_wrench,
+        motion.plate_surface_m,
         motion.plate_rate_hz,
         settings.force_sd_n,
         settings.moment_sd_nm,

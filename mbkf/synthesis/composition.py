@@ -85,7 +85,9 @@ def compose(model: Body, plan: MotionPlan) -> Composition:
     turning = np.zeros((len(times), 2))
     start: Dual | None = None
     for k in range(LIFTS + ROUNDS):
-        result.horizontal.solve(times, load.total_pressure, plan.height(times) + result.lift_m, turning)
+        height = plan.height(times) + result.lift_m
+        over = Dual(height.value - load.mean_surface, height.first, height.second)
+        result.horizontal.solve(times, load.zero_moment(height.value), over, turning)
         pose = result.pose(times, start)
         start = pose.origins["pelvis"]
         result.lift_m += _lift(result, pose, times)

@@ -53,13 +53,15 @@ class Load:
 
     Attributes:
         share: (T,) part of the load on the right foot, 0…1.
-        pressure: (T, 2, 2) wanted centre of pressure of right and left foot on the floor, m.
+        pressure: (T, 2, 2) wanted centre of pressure of right and left foot on its surface, m.
         grounded: (T,) whether anything is on the ground.
+        surface_m: (T, 2) height of the surface under right and left foot, m; the floor when None.
     """
 
     share: Array
     pressure: Array
     grounded: np.ndarray
+    surface_m: Array | None = None
 
     @property
     def shares(self) -> Array:
@@ -69,9 +71,41 @@ class Load:
         return np.column_stack([right, 1 - right])
 
     @property
+    def surfaces(self) -> Array:
+        """(T, 2) height of the surface under right and left foot, m."""
+        return np.zeros((len(self.share), 2)) if self.surface_m is None else self.surface_m
+
+    @property
+    def mean_surface(self) -> Array:
+        """(T,) height of the surfaces, weighted with the shares, m."""
+        return np.asarray((self.shares * self.surfaces).sum(axis=1))
+
+    @property
     def total_pressure(self) -> Array:
-        """(T, 2) wanted point of zero moment of both feet together, m."""
+        """(T, 2) mean of the wanted centres of pressure, weighted with the shares, m."""
         return np.einsum("tf,tfi->ti", self.shares, self.pressure)
+
+    def between(self, height: Array) -> Array:
+        """(T,) how far the mean pressure lies beyond the point of zero moment, as part of the way left to right foot.
+
+        The feet's forces point from their centres of pressure at the centre of mass; on surfaces of different heights
+        the forces that this adds between the feet have a moment.
+
+        Args:
+            height: (T,) height of the centre of mass, m.
+        """
+        shares, surfaces = self.shares, self.surfaces
+        step = surfaces[:, 1] - surfaces[:, 0]
+        return np.asarray(shares[:, 0] * shares[:, 1] * step / (height - self.mean_surface))
+
+    def zero_moment(self, height: Array) -> Array:
+        """(T, 2) point of zero moment, at the mean height of the surfaces, that gives the wanted pressure, m.
+
+        Args:
+            height: (T,) height of the centre of mass, m.
+        """
+        apart = self.pressure[:, 0] - self.pressure[:, 1]
+        return self.total_pressure - self.between(height)[:, None] * apart
 
 
 LoadPlan = Callable[[Array], Load]
@@ -82,7 +116,7 @@ def split(wrench: Array, load: Load, height: Array) -> tuple[Array, Array]:
     """Divides the ground's wrench between the feet.
 
     Each foot's force points from its centre of pressure roughly at the centre of mass, so that in walking the
-    front foot brakes and the rear one pushes; the forces that this adds lie on the line between the feet and cancel.
+    front foot brakes and the rear one pushes; the forces that this adds cancel.
 
     Args:
         wrench: (T, 6) total force N and moment N m about the world origin.
@@ -98,16 +132,21 @@ def split(wrench: Array, load: Load, height: Array) -> tuple[Array, Array]:
     wrenches, centres = np.zeros((frames, 2, 6)), np.full((frames, 2, 3), np.nan)
     on = load.grounded
     force, moment = wrench[on, :3], wrench[on, 3:]
-    zero_moment = np.stack([-moment[:, 1], moment[:, 0]], axis=-1) / force[:, 2:]
-    missed = zero_moment - load.total_pressure[on]
-    twist = moment[:, 2] - (zero_moment[:, 0] * force[:, 1] - zero_moment[:, 1] * force[:, 0])
-    shares = load.shares[on]
+    shares, surfaces, pressure = load.shares[on], load.surfaces[on], load.pressure[on]
+    mean_surface, between = load.mean_surface[on], load.between(height)[on, None]
+    over = height[on] - mean_surface
+    lever = np.stack([-moment[:, 1], moment[:, 0]], axis=-1) + mean_surface[:, None] * force[:, :2]
+    zero_moment = lever / force[:, 2:]
+    own = shares / (shares**2).sum(axis=1)[:, None]
+    apart, unequal = pressure[:, 0] - pressure[:, 1], own[:, :1] - own[:, 1:]
+    missed = (zero_moment + between * apart - load.total_pressure[on]) / (1 - between * unequal)
+    mean = zero_moment + between * (apart + unequal * missed)
+    twist = moment[:, 2] - (mean[:, 0] * force[:, 1] - mean[:, 1] * force[:, 0])
     for foot in range(2):
         share = shares[:, foot]
-        own = share / (shares**2).sum(axis=1)
-        at = np.column_stack([load.pressure[on, foot] + own[:, None] * missed, np.zeros(on.sum())])
+        at = np.column_stack([pressure[:, foot] + own[:, foot, None] * missed, surfaces[:, foot]])
         part = share[:, None] * force
-        part[:, :2] += (share * force[:, 2] / height[on])[:, None] * (zero_moment - at[:, :2])
+        part[:, :2] += (share * force[:, 2] / over)[:, None] * (mean - at[:, :2])
         turned = np.cross(at, part)
         turned[:, 2] += share * twist
         wrenches[on, foot] = np.hstack([part, turned])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -35,9 +35,10 @@ class TrueMotion:
         tau: (T, nv) generalised forces of the joints; the six of the pelvis are 0.
         foot_wrench: (T, 2, 6) force N and moment N m about the world origin, world axes, of the ground on the
             right, then the left foot (with its toes), applied to the foot segment.
-        centre_of_pressure: (T, 2, 3) on the floor, m; NaN for a foot without load.
+        centre_of_pressure: (T, 2, 3) on the surface under the foot, m; NaN for a foot without load.
         plate_rate_hz: Sample rate of ``plate_wrench``, a multiple of ``rate_hz``.
         plate_wrench: (S, 2, 6) the same wrenches at that rate.
+        plate_surface_m: (S, 2) height of the surface under right and left foot at that rate, m.
         flight_s: Take-off and touch-down times of a jump, or None.
     """
 
@@ -52,11 +53,14 @@ class TrueMotion:
     centre_of_pressure: Array
     plate_rate_hz: float
     plate_wrench: Array
+    plate_surface_m: Array
     flight_s: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
-        for name in ("times_s", "q", "v", "a", "tau", "foot_wrench", "centre_of_pressure", "plate_wrench"):
-            object.__setattr__(self, name, read_only(getattr(self, name)))
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if isinstance(value, np.ndarray):
+                object.__setattr__(self, field.name, read_only(value))
 
 
 def synthesise_motion(
@@ -106,6 +110,7 @@ def synthesise_motion(
         centres,
         rate_hz * every,
         wrenches,
+        plan.load(fine).surfaces,
         None if flight is None else (flight.take_off_s, flight.touch_down_s),
     )
 

@@ -111,6 +111,41 @@ def _jump(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
     return jump_plan(model, seconds, rng)
 
 
+@register_motion("turn", seconds=4.5, stream=4)
+def _turn(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    from mbkf.synthesis.turn import turn_plan
+
+    return turn_plan(model, seconds, rng)
+
+
+@register_motion("one_foot", seconds=5.5, stream=5)
+def _one_foot(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    from mbkf.synthesis.one_foot import one_foot_plan
+
+    return one_foot_plan(model, seconds, rng)
+
+
+@register_motion("reach", seconds=5.5, stream=6)
+def _reach(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    from mbkf.synthesis.reach import reach_plan
+
+    return reach_plan(model, seconds, rng)
+
+
+@register_motion("step_up", seconds=4.0, stream=7)
+def _step_up(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    from mbkf.synthesis.step_up import step_up_plan
+
+    return step_up_plan(model, seconds, rng)
+
+
+@register_motion("general", seconds=10.0, stream=8)
+def _general(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    from mbkf.synthesis.general import general_plan
+
+    return general_plan(model, seconds, rng)
+
+
 @register_motion("stand", seconds=1.5, stream=2, trial=False)
 def _stand(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
     from mbkf.synthesis.stand import stand_plan

@@ -21,30 +21,63 @@ SAME_PLACE_M = 0.25
 
 @dataclass(frozen=True)
 class Placement:
-    """One foot on one spot: side 0 right, 1 left; the (start, end) samples of its spells; its (2,) middle, m."""
+    """One foot on one spot.
+
+    Attributes:
+        side: 0 right, 1 left.
+        spells: (start, end) samples of the times it stands there.
+        middle: (2,) middle of the pressure's path, m; of several spells, the mean of theirs.
+        low, high: (2,) least and greatest coordinates of the centre of pressure, m.
+        surface_m: Height of the surface.
+    """
 
     side: int
     spells: tuple[tuple[int, int], ...]
     middle: Array
+    low: Array
+    high: Array
+    surface_m: float = 0.0
+
+    def joined(self, later: Placement) -> Placement:
+        """This placement and a later spell on the same spot."""
+        return Placement(
+            self.side,
+            (*self.spells, *later.spells),
+            0.5 * (self.middle + later.middle),
+            np.minimum(self.low, later.low),
+            np.maximum(self.high, later.high),
+            self.surface_m,
+        )
 
 
-def placements(wrench: Array) -> list[Placement]:
-    """Where feet stand, from (S, 2, 6) true foot wrenches about the world origin; in order of time."""
+def placements(wrench: Array, surface_m: Array) -> list[Placement]:
+    """Where feet stand, in order of time.
+
+    Args:
+        wrench: (S, 2, 6) true foot wrenches about the world origin.
+        surface_m: (S, 2) heights of the surfaces under the feet.
+    """
     found: list[Placement] = []
     for side in range(len(SIDES)):
         own: list[Placement] = []
         for start, end in spells(wrench[:, side, 2] > 0):
             force, moment = wrench[start:end, side, :3], wrench[start:end, side, 3:]
-            pressure = np.column_stack([-moment[:, 1], moment[:, 0]]) / force[:, 2:]
-            middle = 0.5 * (pressure.min(axis=0) + pressure.max(axis=0))
-            same = [k for k, p in enumerate(own) if np.linalg.norm(p.middle - middle) < SAME_PLACE_M]
+            height = surface_m[start:end, side, None]
+            lever = np.column_stack([-moment[:, 1], moment[:, 0]]) + height * force[:, :2]
+            pressure = lever / force[:, 2:]
+            low, high = pressure.min(axis=0), pressure.max(axis=0)
+            new = Placement(side, ((start, end),), 0.5 * (low + high), low, high, float(height[0, 0]))
+            same = [k for k, p in enumerate(own) if _same_spot(p, new)]
             if same:
-                k = same[0]
-                own[k] = Placement(side, (*own[k].spells, (start, end)), 0.5 * (own[k].middle + middle))
+                own[same[0]] = own[same[0]].joined(new)
             else:
-                own.append(Placement(side, ((start, end),), middle))
+                own.append(new)
         found += own
     return sorted(found, key=lambda p: p.spells[0])
+
+
+def _same_spot(a: Placement, b: Placement) -> bool:
+    return bool(a.surface_m == b.surface_m and np.linalg.norm(a.middle - b.middle) < SAME_PLACE_M)
 
 
 def spells(on: np.ndarray) -> list[tuple[int, int]]:
@@ -55,24 +88,45 @@ def spells(on: np.ndarray) -> list[tuple[int, int]]:
 
 def outlines(placed: list[Placement]) -> list[Array]:
     """(4, 3) corners of one plate per placement, not overlapping: from above, x and −y to the quadrants."""
-    corners = []
-    for p in placed:
-        low, high = p.middle - np.array(SIZE_M) / 2, p.middle + np.array(SIZE_M) / 2
-        for other in placed:
-            if other.side != p.side and abs(other.middle[0] - p.middle[0]) < SIZE_M[0]:
-                between = 0.5 * (other.middle[1] + p.middle[1])
-                if p.middle[1] > between:
-                    low[1], high[1] = between + GAP_M / 2, between + GAP_M / 2 + SIZE_M[1]
-                else:
-                    low[1], high[1] = between - GAP_M / 2 - SIZE_M[1], between - GAP_M / 2
-        corners.append(
-            np.array([[high[0], low[1], 0], [low[0], low[1], 0], [low[0], high[1], 0], [high[0], high[1], 0]])
-        )
-    return corners
+    areas = [_area(p, placed) for p in placed]
+    for k, (own, p) in enumerate(zip(areas, placed, strict=True)):
+        for other, q in zip(areas[:k], placed[:k], strict=True):
+            if (np.minimum(own[1], other[1]) > np.maximum(own[0], other[0])).all():
+                _separate(own, p, other, q)
+    return [
+        np.array([[x, y, p.surface_m] for x, y in ((high[0], low[1]), low, (low[0], high[1]), high)])
+        for (low, high), p in zip(areas, placed, strict=True)
+    ]
+
+
+def _area(p: Placement, placed: list[Placement]) -> Array:
+    """(2, 2) least and greatest x and y of a plate of the usual size, beside those of the other foot."""
+    size = np.array(SIZE_M)
+    low, high = p.middle - size / 2, p.middle + size / 2
+    for other in placed:
+        if other.side == p.side or (np.abs(other.middle - p.middle) >= size).any():
+            continue
+        between = 0.5 * (other.middle[1] + p.middle[1])
+        if p.low[1] > between > other.high[1]:
+            low[1], high[1] = between + GAP_M / 2, between + GAP_M / 2 + size[1]
+        elif p.high[1] < between < other.low[1]:
+            low[1], high[1] = between - GAP_M / 2 - size[1], between - GAP_M / 2
+    return np.array([np.minimum(low, p.low), np.maximum(high, p.high)])
+
+
+def _separate(own: Array, p: Placement, other: Array, q: Placement) -> None:
+    """Cuts two overlapping areas back to a line between their pressures' paths, where those are farthest apart."""
+    after, before = p.low - q.high, q.low - p.high
+    axis = int(np.argmax(np.maximum(after, before)))
+    (first, a), (second, b) = ((other, q), (own, p)) if after[axis] > before[axis] else ((own, p), (other, q))
+    between = 0.5 * (a.high[axis] + b.low[axis])
+    first[1, axis] = min(first[1, axis], between - GAP_M / 2)
+    second[0, axis] = max(second[0, axis], between + GAP_M / 2)
 
 
 def readings(
     wrench: Array,
+    surface_m: Array,
     rate_hz: float,
     force_sd_n: float,
     moment_sd_nm: float,
@@ -85,13 +139,14 @@ def readings(
 
     Args:
         wrench: (S, 2, 6) true foot wrenches about the world origin.
+        surface_m: (S, 2) heights of the surfaces under the feet.
         rate_hz: Their sample rate.
         force_sd_n: White noise per force channel.
         moment_sd_nm: White noise per moment channel.
         offset_n: Range of the vertical offset.
         rng: Source of noise and offsets.
     """
-    placed = placements(wrench)[:MOST_PLATES]
+    placed = placements(wrench, surface_m)[:MOST_PLATES]
     found = []
     for number, (place, corners) in enumerate(zip(placed, outlines(placed), strict=True), start=1):
         origin = corners.mean(axis=0)

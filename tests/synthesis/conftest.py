@@ -7,7 +7,28 @@ from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.motions import motion_names
 from mbkf.synthesis.person import body_of, synthesise_subject
 
-SECONDS = {"squat": 3.0, "walk": 2.5, "jump": 2.5}
+SECONDS = {
+    "squat": 3.0,
+    "walk": 2.5,
+    "jump": 2.5,
+    "turn": 3.8,
+    "one_foot": 4.5,
+    "reach": 3.5,
+    "step_up": 3.2,
+    "general": 10.0,
+}
+
+
+class Made(dict):
+    """Motions by name, each made when it is first asked for."""
+
+    def __init__(self, body):
+        super().__init__()
+        self.body = body
+
+    def __missing__(self, name):
+        self[name] = synthesise_motion(self.body, name, SECONDS[name], seed=5)
+        return self[name]
 
 
 @pytest.fixture(scope="session")
@@ -22,7 +43,7 @@ def body(person):
 
 @pytest.fixture(scope="session")
 def motions(body):
-    return {name: synthesise_motion(body, name, SECONDS[name], seed=5) for name in motion_names()}
+    return Made(body)
 
 
 @pytest.fixture(scope="session", params=motion_names())

@@ -21,8 +21,9 @@ def registry(monkeypatch):
 
 
 def test_built_in_motions_are_named_and_those_of_static_captures_only_on_request():
-    assert motion_names() == ("squat", "walk", "jump")
-    assert motion_names(static=True) == ("squat", "walk", "jump", "stand")
+    trials = ("squat", "walk", "jump", "turn", "one_foot", "reach", "step_up", "general")
+    assert motion_names() == trials
+    assert motion_names(static=True) == (*trials, "stand")
 
 
 @pytest.mark.parametrize("name", motion_names(static=True))
