@@ -41,8 +41,8 @@ def _texts(found: Survey) -> Texts:
     return Texts(
         title="Full body: thesis and measurement",
         introduction="Walking, a general movement (reach, one-foot stands, turn, step up), squats, squats with the "
-        "knee markers lost, and jumps of eight synthetic persons with exact truth, and public captures, followed by the "
-        "kinematic filter with inverse dynamics (FCDI), by the thesis's dynamic filter for the whole body (FDMC), and "
+        "knee markers lost, and jumps of eight synthetic persons with exact truth, and public captures, followed by "
+        "the kinematic filter with inverse dynamics (FCDI), by the thesis's dynamic filter for the whole body (FDMC), and "
         "by mbkf's dynamic filter. FDMC runs in three forms: as printed, with the covariances of the thesis's Table "
         "4.3 as densities; per frame, with the same read as what one frame adds, which behaves as the thesis "
         "describes; and ours, with mbkf's noise and force states.",

@@ -1,8 +1,8 @@
 """The filters that the full-body studies compare, by the names and colours that they have on the page.
 
 FCDI is the kinematic filter with inverse dynamics behind it. FDMC runs in three forms: as the thesis prints it, with
-the covariances of its Table 4.3 read as densities (thesis eq. 2.47); the same with them read as what one frame adds; and
-with the noise and force states of mbkf, which keep it stable. Every filter keeps its settings for all persons and
+the covariances of its Table 4.3 read as densities (thesis eq. 2.47); the same with them read as what one frame adds;
+and with the noise and force states of mbkf, which keep it stable. Every filter keeps its settings for all persons and
 movements.
 """
 

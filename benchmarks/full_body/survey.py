@@ -9,16 +9,19 @@ from functools import partial
 import numpy as np
 
 from benchmarks.dynamic.methods import Mapper
-from benchmarks.full_body.filters import CAUSAL, FCDI, FDMC_PER_FRAME, SMOOTHED
+from benchmarks.full_body.filters import CAUSAL, DYNAMIC, FCDI, FDMC, FDMC_PER_FRAME, SMOOTHED
 from benchmarks.full_body.persons import PERSONS
 from benchmarks.full_body.scores import Scores, score
-from benchmarks.full_body.trials import LOST, MOVEMENTS, SQUAT, SYNTHESISED, Trial, make_trials
+from benchmarks.full_body.trials import LOST, MOVEMENTS, SQUAT, SYNTHESISED, VARIANTS, Trial, make_trials
 from mbkf.conventions import Array
 
 SEEDS = 4
 
 FIRST_SEED_ONLY = (FDMC_PER_FRAME, *SMOOTHED)
 """Filters that run on the first seed of every person only: their numbers need fewer trials."""
+
+OF_VARIANTS = (FCDI, FDMC_PER_FRAME, FDMC, DYNAMIC)
+"""Filters that run on the variants of the general movement."""
 
 Key = tuple[str, int, int]
 """Movement, person and seed."""
@@ -47,7 +50,9 @@ def filtered(trial: Trial) -> list[Outcome]:
     every = {**CAUSAL, **SMOOTHED}
     found = []
     for name, method in every.items():
-        if trial.seed and name in FIRST_SEED_ONLY:
+        if (trial.seed and name in FIRST_SEED_ONLY) or (
+            trial.movement in VARIANTS and name not in OF_VARIANTS
+        ):
             continue
         with np.errstate(all="ignore"):
             run = measured if name == FCDI else method.run(trial.capture, trial.subject)

@@ -22,21 +22,21 @@ WALK, GENERAL, SQUAT, LOST, JUMP = "walk", "general movement", "squat", "squat, 
 MOVEMENTS = (WALK, GENERAL, SQUAT, LOST, JUMP)
 """The five movements of the study."""
 
-BESIDE, HEAVY = "general, last step beside the plates", "general, mass 5 % too large"
+BESIDE, HEAVY = "general, a step beside the plates", "general, mass 5 % too large"
 VARIANTS = (BESIDE, HEAVY)
 """The general movement of each person's first seed once more, with a plate taken away, and with a wrong mass."""
 
 MASS_FACTOR = 1.05
 
-SYNTHESISED = {WALK: ("walk", 3.0), GENERAL: ("general", 8.0), SQUAT: ("squat", 4.0), JUMP: ("jump", 3.0)}
+SYNTHESISED = {WALK: ("walk", 3.0), GENERAL: ("general", 10.0), SQUAT: ("squat", 4.0), JUMP: ("jump", 3.0)}
 """Registered motion and duration in s; the squat with lost markers is the same trial once more."""
 
 KNEE_MARKERS = ("RTHI", "RKNE", "RTUB")
 """Lost in the squat. Without these three the thigh and the shank can turn about the line from hip to ankle unseen."""
 
 LOST_FRAMES = 100
-FIRST_LOAD_N = 50.0
-"""Load from which a plate counts as stepped on."""
+LOAD_N = 50.0
+"""Load from which a plate counts as stood on."""
 
 ATTEMPTS, NEXT_SEED = 5, 1000
 """A person who cannot perform the motion of a seed is given that of another one."""
@@ -83,7 +83,7 @@ def make_trials(movement: str, person: int, seed: int) -> list[Trial]:
         shown = without_markers(capture, trial.stretch)
         return [trial, replace(trial, movement=LOST, capture=shown, subject=corrected(given, shown))]
     if movement == GENERAL and not seed:
-        beside = replace(capture, plates=without_last_step(capture.plates))
+        beside = replace(capture, plates=without_a_step(capture.plates))
         heavy = replace(trial.subject, mass_kg=MASS_FACTOR * given.mass_kg)
         return [
             trial,
@@ -137,12 +137,14 @@ def without_markers(capture: Capture, gap: BoolArray) -> Capture:
     return replace(capture, markers=replace(markers, positions_m=positions))
 
 
-def without_last_step(plates: tuple[PlateReadings, ...]) -> tuple[PlateReadings, ...]:
-    """The plates without the one that is stepped on last.
+def without_a_step(plates: tuple[PlateReadings, ...]) -> tuple[PlateReadings, ...]:
+    """The plates without the one that carries most of those stepped on in the course of the trial.
 
     Args:
         plates: The plates, without offset.
     """
-    first = [int(np.argmax(plate.force_n[:, 2] > FIRST_LOAD_N)) for plate in plates]
-    last = int(np.argmax(first))
-    return tuple(plate for k, plate in enumerate(plates) if k != last)
+    vertical = [plate.force_n[:, 2] for plate in plates]
+    stepped = [force[0] < LOAD_N for force in vertical]
+    impulse = [float(force.sum()) if later else 0.0 for force, later in zip(vertical, stepped, strict=True)]
+    taken = int(np.argmax(impulse))
+    return tuple(plate for k, plate in enumerate(plates) if k != taken)
