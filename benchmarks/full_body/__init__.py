@@ -13,6 +13,12 @@ from benchmarks.full_body.claims import survey_claims
 from benchmarks.full_body.drawings import survey_drawings, thesis_drawings
 from benchmarks.full_body.filters import FCDI
 from benchmarks.full_body.real import real_findings, real_scores
+from benchmarks.full_body.single_markers import (
+    measure_single_markers,
+    single_marker_drawing,
+    single_marker_findings,
+)
+from benchmarks.full_body.speed import measure_speed, speed_drawing, speed_findings
 from benchmarks.full_body.survey import SEEDS, Survey, keys, survey
 from benchmarks.full_body.trials import JUMP, SQUAT
 from benchmarks.thesis_report.page import Report, Texts
@@ -24,15 +30,27 @@ QUICK_MOVEMENTS = (SQUAT, JUMP)
 def run(context: Context) -> list[Check]:
     """All studies and the page; with ``quick`` one person's squat and jump and one capture."""
     data, quick = context.require_data(), context.quick
+    speed = measure_speed(quick)
     with in_parallel() as mapper:
         found = survey(mapper, keys(1, 1, QUICK_MOVEMENTS) if quick else keys(seeds=SEEDS))
         real = real_scores(data, mapper, QUICK_CAPTURES) if quick else real_scores(data, mapper)
+        sliding = measure_single_markers(mapper, quick=quick)
         drawings = list(thesis_drawings(mapper, QUICK_MOVEMENTS) if quick else thesis_drawings(mapper))
-    parts = [accuracy_findings(found), real_findings(real)]
+    parts = [
+        accuracy_findings(found),
+        real_findings(real),
+        single_marker_findings(sliding),
+        speed_findings(speed),
+    ]
     bands = [band for part in parts for band in part.bands]
     claims = [*([] if quick else survey_claims(found)), *(claim for part in parts for claim in part.claims)]
     sheets = [sheet for part in parts for sheet in part.sheets]
-    pictures = [*drawings, *survey_drawings(found, real)]
+    pictures = [
+        *drawings,
+        *survey_drawings(found, real),
+        single_marker_drawing(sliding),
+        speed_drawing(speed),
+    ]
     Report(_texts(found), quick, bands, claims, sheets, pictures).write(context.out)
     return [*(check for band in bands for check in band.checks(quick)), *lost_by_fdmc(found)]
 
@@ -42,10 +60,10 @@ def _texts(found: Survey) -> Texts:
         title="Full body: thesis and measurement",
         introduction="Walking, a general movement (reach, one-foot stands, turn, step up), squats, squats with the "
         "knee markers lost, and jumps of eight synthetic persons with exact truth, and public captures, followed by "
-        "the kinematic filter with inverse dynamics (FCDI), by the thesis's dynamic filter for the whole body (FDMC), and "
-        "by mbkf's dynamic filter. FDMC runs in three forms: as printed, with the covariances of the thesis's Table "
-        "4.3 as densities; per frame, with the same read as what one frame adds, which behaves as the thesis "
-        "describes; and ours, with mbkf's noise and force states.",
+        "the kinematic filter with inverse dynamics (FCDI), by the thesis's dynamic filter for the whole body "
+        "(FDMC), and by mbkf's dynamic filter. FDMC runs in three forms: as printed, with the covariances of the "
+        "thesis's Table 4.3 as densities; per frame, with the same read as what one frame adds, which behaves as the "
+        "thesis describes; and ours, with mbkf's noise and force states.",
         trials=(str(trial_count(found, FCDI)), "synthetic trials per filter"),
         command="python -m benchmarks full_body",
         bands="What mbkf's filters have to keep.",

@@ -103,11 +103,11 @@ class Report:
             _band_table(self.bands, self.quick),
             f"<h2 id='claims'>{escape(texts.claims)}</h2>",
             _claim_table(self.claims),
-            "<h2 id='tables'>Tables</h2>",
-            *(_sheet(sheet) for sheet in self.sheets),
             f"<h2 id='figures'>Figures</h2><p class='soft'>{_rich(texts.figures)}</p><div class='figures'>",
             *(_picture(drawing, svg) for drawing, svg in pictures),
-            "</div></body></html>\n",
+            "</div><h2 id='tables'>Tables</h2>",
+            *(_sheet(sheet) for sheet in self.sheets),
+            "</body></html>\n",
         ]
         return "\n".join(parts)
 
@@ -125,8 +125,8 @@ class Report:
             f"<div><b>{escape(number)}</b>{escape(kind)}</div></div>"
             f"<p class='soft'>Seeds are 0, 1, 2, …: the same command gives the same numbers.{look} "
             f"{_rich(self.texts.remark)} <code>{escape(self.texts.command)}</code></p>"
-            "<nav><a href='#bands'>Bands</a><a href='#claims'>Claims</a><a href='#tables'>Tables</a>"
-            "<a href='#figures'>Figures</a></nav>"
+            "<nav><a href='#bands'>Bands</a><a href='#claims'>Claims</a><a href='#figures'>Figures</a>"
+            "<a href='#tables'>Tables</a></nav>"
         )
 
 
@@ -160,7 +160,7 @@ def _claim_table(claims: Sequence[Claim]) -> str:
 
 
 def _sheet(sheet: Sheet) -> str:
-    """Columns "x" and "x ±" become one, and the thesis's are set apart."""
+    """Columns "x" and "x ±" become one, the thesis's are set apart, and a group's name stands in its first row."""
     heads: list[str] = []
     kinds: list[str] = []
     bodies: list[list[str]] = []
@@ -173,6 +173,8 @@ def _sheet(sheet: Sheet) -> str:
         kinds.append("" if worded else "t n" if "thesis" in name else "n")
         bodies.append(_texts(cells))
     head = "".join(f"<th class='{kind}'>{_rich(name)}</th>" for name, kind in zip(heads, kinds, strict=True))
+    if len(bodies) > 2 and kinds[:2] == ["", ""]:
+        bodies[0] = ["" if k and cell == bodies[0][k - 1] else cell for k, cell in enumerate(bodies[0])]
     rows = (
         "".join(f"<td class='{kind}'>{_rich(cell)}</td>" for cell, kind in zip(row, kinds, strict=True))
         for row in zip(*bodies, strict=True)
@@ -187,9 +189,14 @@ def _texts(cells: Sequence[str | float]) -> list[str]:
     """Numbers of a column with the same decimals, four digits for the largest; plainly where they differ widely."""
     sizes = [abs(cell) for cell in cells if not isinstance(cell, str) and math.isfinite(cell) and cell != 0.0]
     if not sizes or max(sizes) > 500.0 * min(sizes):
-        return [cell if isinstance(cell, str) else f"{cell:.4g}" for cell in cells]
+        return [cell if isinstance(cell, str) else _number(f"{cell:.4g}") for cell in cells]
     decimals = min(max(3 - math.floor(math.log10(max(sizes))), 0), 5)
-    return [cell if isinstance(cell, str) else f"{cell:.{decimals}f}" for cell in cells]
+    return [cell if isinstance(cell, str) else _number(f"{cell:.{decimals}f}") for cell in cells]
+
+
+def _number(text: str) -> str:
+    """A dash where there is no number."""
+    return "–" if text == "nan" else text.replace("-", "−", 1) if text.startswith("-") else text
 
 
 def _svg(drawing: Drawing) -> bytes:
