@@ -1,0 +1,48 @@
+"""Outcomes pooled by filter and movement: lost trials do not count, ratios are over the trials that both followed."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks.full_body.filters import DYNAMIC, FCDI, FDMC, FDMC_PER_FRAME, FDMC_PRINTED
+from benchmarks.full_body.survey import Survey, keys
+from benchmarks.full_body.trials import GENERAL, JUMP, LOST, MOVEMENTS, SQUAT, WALK
+from tests.benchmarks.full_body.conftest import made_survey
+
+
+def test_errors_are_pooled_as_rms_and_delays_as_means():
+    found = made_survey({})
+    values = np.array([1.0, 1.1, 2.0, 2.1])
+    assert found.pooled(FCDI, WALK, "torque_nm") == pytest.approx(np.sqrt(np.mean(values**2)))
+    assert found.pooled(FCDI, WALK, "torque_delay_ms") == pytest.approx(values.mean())
+    assert np.isnan(Survey([]).pooled(FCDI, WALK, "torque_nm"))
+
+
+def test_lost_trials_are_counted_and_left_out():
+    found = made_survey({FDMC_PRINTED: 9.0})
+    assert found.divergences(FDMC_PRINTED, JUMP) == 2
+    assert found.divergences(FCDI) == 0
+    assert found.pooled(FDMC_PRINTED, JUMP, "torque_nm") == pytest.approx(9.0 * np.sqrt((1 + 1.21) / 2))
+
+
+def test_a_ratio_is_over_the_trials_that_nobody_lost():
+    found = made_survey({DYNAMIC: 0.5, FDMC: 9.0, FDMC_PER_FRAME: 2.0})
+    assert found.ratio(DYNAMIC, [FCDI], JUMP, "torque_nm") == pytest.approx(0.5)
+    assert found.ratio(DYNAMIC, [FCDI, FDMC_PER_FRAME], JUMP, "torque_nm") == pytest.approx(0.5)
+    assert found.ratio(FDMC, [FCDI], JUMP, "torque_nm") == pytest.approx(9.0)
+    fewer = Survey([one for one in found.outcomes if one.filter != DYNAMIC or one.seed == 0])
+    changed = [
+        replace(one, scores=replace(one.scores, torque_nm=100.0)) if one.filter == FCDI and one.seed else one
+        for one in fewer.outcomes
+    ]
+    assert Survey(changed).ratio(DYNAMIC, [FCDI], JUMP, "torque_nm") == pytest.approx(0.5)
+
+
+def test_the_whole_study_has_160_trials_of_every_filter():
+    wanted = keys()
+    assert len(wanted) == len(set(wanted)) == 8 * 4 * 4
+    assert {movement for movement, _, _ in wanted} == set(MOVEMENTS) - {LOST}
+    squats = sum(movement == SQUAT for movement, _, _ in wanted)
+    assert len(wanted) + squats == 160
+    assert wanted[0][0] == GENERAL
