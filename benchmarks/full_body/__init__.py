@@ -19,12 +19,9 @@ from benchmarks.full_body.single_markers import (
     single_marker_findings,
 )
 from benchmarks.full_body.speed import measure_speed, speed_drawing, speed_findings
-from benchmarks.full_body.survey import SEEDS, Survey, keys, survey
-from benchmarks.full_body.trials import JUMP, SQUAT
+from benchmarks.full_body.survey import Survey, keys, survey
+from benchmarks.full_body.trials import JUMP
 from benchmarks.thesis_report.page import Report, Texts
-
-QUICK_CAPTURES = ("rajagopal walk",)
-QUICK_MOVEMENTS = (SQUAT, JUMP)
 
 
 def run(context: Context) -> list[Check]:
@@ -32,10 +29,10 @@ def run(context: Context) -> list[Check]:
     data, quick = context.require_data(), context.quick
     speed = measure_speed(quick)
     with in_parallel() as mapper:
-        found = survey(mapper, keys(1, 1, QUICK_MOVEMENTS) if quick else keys(seeds=SEEDS))
-        real = real_scores(data, mapper, QUICK_CAPTURES) if quick else real_scores(data, mapper)
+        found = survey(mapper, keys(quick=quick))
+        real = real_scores(data, mapper, quick=quick)
         sliding = measure_single_markers(mapper, quick=quick)
-        drawings = list(thesis_drawings(mapper, QUICK_MOVEMENTS) if quick else thesis_drawings(mapper))
+        drawings = list(thesis_drawings(mapper, (JUMP,)) if quick else thesis_drawings(mapper))
     parts = [
         accuracy_findings(found),
         real_findings(real),

@@ -6,7 +6,7 @@ trials. The public captures with plates are walks and runs; of squats, jumps and
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.dynamic.captures import SOURCES, load
-from benchmarks.dynamic.methods import Mapper
+from benchmarks.dynamic.methods import Mapper, Method
 from benchmarks.full_body.filters import CAUSAL, DYNAMIC, FCDI, SMOOTHED
 from benchmarks.full_body.scores import (
     SETTLING_S,
@@ -32,6 +32,8 @@ from benchmarks.thesis_report.delay import delay
 from mbkf.io.results import Reconstruction
 from mbkf.pipelines.results.summary import ROOT_DOFS
 from mbkf.synthesis.person import body_of
+
+QUICK_CAPTURES = ("rajagopal walk",)
 
 LOST_MM = 50.0
 """A filter whose body is this far from the markers (RMS), or nowhere, has lost the trial."""
@@ -72,19 +74,22 @@ class RealScores:
         return not (self.marker_mm <= LOST_MM and np.isfinite(self.angle_from_fcdi_deg))
 
 
-def measure_capture(name: str, data: Path) -> list[RealScores]:
-    """All filters on a capture.
+EVERY: Mapping[str, Method] = {**CAUSAL, **SMOOTHED}
+QUICK: Mapping[str, Method] = {name: EVERY[name] for name in (FCDI, DYNAMIC, REFERENCE)}
+"""The least that gives every number."""
+
+
+def measure_capture(name: str, data: Path, methods: Mapping[str, Method] = EVERY) -> list[RealScores]:
+    """Several filters on a capture.
 
     Args:
         name: Name in :data:`benchmarks.dynamic.captures.SOURCES`.
         data: Folder of the reference captures.
+        methods: The filters by name, FCDI and the smoothed dynamic filter among them.
     """
     person = load(name, data)
     with np.errstate(all="ignore"):
-        runs = {
-            label: method.run(person.capture, person.subject)
-            for label, method in {**CAUSAL, **SMOOTHED}.items()
-        }
+        runs = {label: method.run(person.capture, person.subject) for label, method in methods.items()}
         return [_scored(name, label, run, runs[FCDI], runs[REFERENCE]) for label, run in runs.items()]
 
 
@@ -117,15 +122,17 @@ def _scored(
     )
 
 
-def real_scores(data: Path, mapper: Mapper, names: Sequence[str] = tuple(SOURCES)) -> list[RealScores]:
-    """All filters on all captures.
+def real_scores(data: Path, mapper: Mapper, *, quick: bool) -> list[RealScores]:
+    """All filters on all captures; a few filters on one capture when quick.
 
     Args:
         data: Folder of the reference captures.
         mapper: Runs a function on many items, in turn or on several processes.
-        names: Names of the captures.
+        quick: Whether to do a shorter run.
     """
-    return [one for part in mapper(partial(measure_capture, data=data), names) for one in part]
+    names, methods = (QUICK_CAPTURES, QUICK) if quick else (tuple(SOURCES), EVERY)
+    found = mapper(partial(measure_capture, data=data, methods=methods), names)
+    return [one for part in found for one in part]
 
 
 def real_findings(scores: Sequence[RealScores]) -> Findings:

@@ -121,7 +121,13 @@ def score(trial: Trial, found: Reconstruction, measured_wrench: Array) -> Scores
 
 
 def posture_error(model: Body, truth_q: Array, found_q: Array) -> Array:
-    """(T, nv) tangent vectors from estimated to true configurations (T, nq); NaN where an estimate is none."""
+    """(T, nv) tangent vectors from estimated to true configurations; NaN where an estimate is none.
+
+    Args:
+        model: The body.
+        truth_q: (T, nq) true configurations.
+        found_q: (T, nq) estimated ones.
+    """
     error = np.full((len(found_q), model.nv), np.nan)
     for t in np.flatnonzero(np.isfinite(found_q).all(axis=1)):
         error[t] = model.difference(found_q[t], truth_q[t])

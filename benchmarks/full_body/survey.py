@@ -12,10 +12,21 @@ from benchmarks.dynamic.methods import Mapper
 from benchmarks.full_body.filters import CAUSAL, DYNAMIC, FCDI, FDMC, FDMC_PER_FRAME, SMOOTHED
 from benchmarks.full_body.persons import PERSONS
 from benchmarks.full_body.scores import Scores, score
-from benchmarks.full_body.trials import LOST, MOVEMENTS, SQUAT, SYNTHESISED, VARIANTS, Trial, make_trials
+from benchmarks.full_body.trials import (
+    JUMP,
+    LOST,
+    MOVEMENTS,
+    SQUAT,
+    SYNTHESISED,
+    VARIANTS,
+    Trial,
+    make_trials,
+)
 from mbkf.conventions import Array
 
 SEEDS = 4
+QUICK_SEED = 1
+"""Not the first, so that fewer filters run."""
 
 FIRST_SEED_ONLY = (FDMC_PER_FRAME, *SMOOTHED)
 """Filters that run on the first seed of every person only: their numbers need fewer trials."""
@@ -126,17 +137,17 @@ class Survey:
         return own / min(rest)
 
 
-def keys(persons: int = len(PERSONS), seeds: int = SEEDS, movements: Sequence[str] = MOVEMENTS) -> list[Key]:
-    """What has to be measured, the longest first so that two workers end together.
+def keys(*, quick: bool = False) -> list[Key]:
+    """What has to be measured, the longest first so that two workers end together; two trials when quick.
 
-    Args:
-        persons: How many persons, from the first on.
-        seeds: How many seeds each.
-        movements: The movements; the squat with lost markers comes with the squat.
+    The squat with lost markers comes with the squat.
     """
-    made = [movement for movement in movements if movement != LOST]
-    by_length = sorted(made, key=lambda name: -SYNTHESISED[name][1] * (2.0 if name == SQUAT else 1.0))
-    return [(name, person, seed) for name in by_length for person in range(persons) for seed in range(seeds)]
+    if quick:
+        return [(movement, 0, QUICK_SEED) for movement in (SQUAT, JUMP)]
+    made = sorted(
+        set(MOVEMENTS) - {LOST}, key=lambda name: -SYNTHESISED[name][1] * (2.0 if name == SQUAT else 1.0)
+    )
+    return [(name, person, seed) for name in made for person in range(len(PERSONS)) for seed in range(SEEDS)]
 
 
 def survey(mapper: Mapper, wanted: Sequence[Key]) -> Survey:
