@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.sensors.marker_sensor import MarkerSensor
@@ -40,7 +41,7 @@ class _Gap:
 
     first: int
     end: int
-    sights: Array
+    sights: NDArray[np.int64]
 
 
 def filled(
@@ -73,7 +74,7 @@ def _expected(sensor: MarkerSensor, offset: Array, dt_s: float, both_sides: bool
     for joint in np.unique(sensor.joint_ids):
         members = np.flatnonzero(sensor.joint_ids == joint)
         own = offset[:, members]
-        seen: BoolArray = ~np.isnan(own).any(axis=2)
+        seen = np.asarray(~np.isnan(own).any(axis=2))
         shared = shared_covariance(sensor.local_m[members])
         for k, marker in enumerate(members):
             for gap in _gaps(seen[:, k], both_sides):
@@ -127,7 +128,9 @@ def _in_gap(k: int, gap: _Gap, offset: Array, seen: BoolArray, shared: Array, dt
     return expected
 
 
-def _from_sights(sighted: Array, at: Array, frames: Array, dt_s: float) -> tuple[Array, Array]:
+def _from_sights(
+    sighted: Array, at: NDArray[np.int64], frames: NDArray[np.int64], dt_s: float
+) -> tuple[Array, Array]:
     """(L, 3) mean and (L,) standard deviation of the process at some frames, given what was sighted at others.
 
     Args:
@@ -136,8 +139,10 @@ def _from_sights(sighted: Array, at: Array, frames: Array, dt_s: float) -> tuple
         frames: (L,) the frames wanted.
         dt_s: Time between frames.
     """
-    between = correlation(dt_s * (at[:, None] - at)) + SIGHT_VARIANCE * np.eye(len(at))
-    towards = correlation(dt_s * (at[:, None] - frames))
+    at_s: Array = dt_s * at.astype(float)
+    frames_s: Array = dt_s * frames.astype(float)
+    between = correlation(at_s[:, None] - at_s) + SIGHT_VARIANCE * np.eye(len(at))
+    towards = correlation(at_s[:, None] - frames_s)
     weights = np.linalg.solve(between, towards)
     variance = 1.0 - np.einsum("kl,kl->l", towards, weights)
     return weights.T @ sighted, np.sqrt(variance)
