@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from benchmarks.dynamic.losses import CAPTURES
 from benchmarks.full_body.filters import COLOURS, DYNAMIC, FCDI
@@ -54,7 +55,12 @@ def occlusion_drawings(points: Sequence[Point]) -> Iterator[Drawing]:
             labelled(one, _horizontal(by_gap), "hidden markers (mm)")
             one.set_title(name, fontsize=9, loc="left")
             one.set_yscale("log")
-        all_axes[0].legend(fontsize=7, frameon=False)
+            one.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            one.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+            one.yaxis.set_minor_formatter(NullFormatter())
+        figure.legend(
+            *all_axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=8
+        )
         for spare in all_axes[len(names) :]:
             spare.remove()
         yield Drawing("own", title, figure, note)
