@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.checks import Check, information
-from benchmarks.dynamic.captures import load
+from benchmarks.dynamic.captures import Person, load
 from benchmarks.dynamic.methods import SCALES, Mapper, Method, best_on_all, corrected, pooled, rows_or_failure
 from benchmarks.dynamic.synthetic import FCDI, SWEEP_SEEDS, Case, differences
 from benchmarks.references import rms
@@ -25,7 +25,7 @@ from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
 from mbkf.pipelines.reconstruct import subject_markers
 from mbkf.pipelines.results.summary import ROOT_DOFS
-from mbkf.synthesis.cameras import occlusions
+from mbkf.synthesis.cameras import OCCLUSION_FRAMES, occlusions
 from mbkf.synthesis.capture import CaptureSettings
 
 FRACTIONS = (0.10, 0.27)
@@ -84,25 +84,37 @@ def occlude(key: tuple[str, float, int], data: Path) -> Occluded:
         data: Folder of the reference captures.
     """
     name, fraction, seed = key
-    person = load(name, data, correct=False)
+    return occluded(load(name, data, correct=False), fraction, seed)
+
+
+def occluded(person: Person, fraction: float, seed: int, length: int = OCCLUSION_FRAMES) -> Occluded:
+    """Hides random streaks of a person's capture.
+
+    Args:
+        person: Capture, and subject whose markers are not corrected yet.
+        fraction: Fraction of the marker-frames to hide.
+        seed: Random seed.
+        length: Frames of a streak.
+    """
     markers = subject_markers(person.capture.markers, person.subject)
-    hidden = streaks(markers.present, fraction, seed)
+    hidden = streaks(markers.present, fraction, seed, length)
     positions = np.where(hidden[:, :, None], np.nan, markers.positions_m)
     shown = replace(person.capture, markers=replace(markers, positions_m=positions))
     return Occluded(corrected(person.subject, shown), shown, markers.positions_m, hidden)
 
 
-def streaks(present: BoolArray, fraction: float, seed: int) -> BoolArray:
-    """(T, M) samples to hide: streaks of 20 frames over a fraction of all marker-frames, where there is one.
+def streaks(present: BoolArray, fraction: float, seed: int, length: int = OCCLUSION_FRAMES) -> BoolArray:
+    """(T, M) samples to hide: streaks of some frames over a fraction of all marker-frames, where there is one.
 
     Args:
         present: (T, M) samples that are measured.
         fraction: Fraction of the marker-frames to hide.
         seed: Random seed.
+        length: Frames of a streak.
     """
     frames, markers = present.shape
     rng = np.random.default_rng([seed, round(1000 * fraction)])
-    return np.asarray(occlusions(frames, markers, fraction, rng) & present)
+    return np.asarray(occlusions(frames, markers, fraction, rng, length) & present)
 
 
 def occlusion_errors(case: Occluded, method: Method) -> OcclusionErrors:

@@ -1,18 +1,47 @@
-"""Where a marker is while no camera sees it: on the body, and as far off it as its skin was when last seen.
+"""Where a marker is while no camera sees it: on the body, and as far off it as its skin is expected to be.
 
-Skin slides slowly, so a marker's offset from the rigid body outlives a short gap. In its segment's axes it is taken
-for a Gauss–Markov process: its best estimate fades after the last sight, and bridges a gap where both ends are known.
+A marker's offset from the rigid body, in its segment's axes, is a smooth random process: skin slides slowly, so that
+the offset and its rate just before a gap, and just after it where both sides are known, tell much of what lies between.
+It is also partly common to the markers of a segment (they ride on the same flesh, and a wrong pose displaces all of
+them as one), so that those seen in the gap tell more. Both are one Gaussian process, and its mean is the estimate.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+
 import numpy as np
+from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.sensors.marker_sensor import MarkerSensor
 
-SKIN_MEMORY_S = 0.3
-"""How long skin stays where it slid: the swing of a step."""
+SKIN_MEMORY_S = 0.2
+"""Length of the process's correlation (Matérn, 3/2)."""
+
+SIGHTS = 10
+"""Sights before a gap, and after it, that count."""
+
+SIGHT_VARIANCE = 0.01
+"""Variance of a sight, over that of the offset: cameras are that much more exact than skin."""
+
+TURN_RAD_M = 10.0
+"""What a segment's markers have in common: they shift as much as each slides alone, and turn by this angle per metre
+that each slides alone (the same shift again at 0.1 m from their middle)."""
+
+
+STRANGE_M = 0.05
+"""A marker this far from where its own sights expect it is not the skin's doing, and tells nothing of the others."""
+
+
+@dataclass(frozen=True)
+class _Gap:
+    """Frames [first, end) in which a marker is not seen, and the frames (k,) of the sights that tell about it."""
+
+    first: int
+    end: int
+    sights: NDArray[np.int64]
 
 
 def filled(
@@ -35,43 +64,105 @@ def filled(
         axes[t] = rotations[sensor.joint_ids]
         on_body[t] = origins[sensor.joint_ids] + np.einsum("mij,mj->mi", axes[t], sensor.local_m)
     offset = np.einsum("tmji,tmj->tmi", axes, shown_m - on_body)
-    with_skin = on_body.copy()
-    for m in range(markers):
-        bridged = _bridged(offset[:, m], dt_s, both_sides)
-        with_skin[:, m] += np.einsum("tij,tj->ti", axes[:, m], bridged)
+    with_skin = on_body + np.einsum("tmij,tmj->tmi", axes, _expected(sensor, offset, dt_s, both_sides))
     return on_body, with_skin
 
 
-def _bridged(offset: Array, dt_s: float, both_sides: bool) -> Array:
-    """(T, 3) expected offset of one marker, zero where it is seen or was never seen."""
-    frames = np.arange(len(offset))
-    seen: BoolArray = ~np.isnan(offset[:, 0])
+def _expected(sensor: MarkerSensor, offset: Array, dt_s: float, both_sides: bool) -> Array:
+    """(T, M, 3) expected offsets in gaps, zero where a marker is seen or was never seen."""
     expected = np.zeros_like(offset)
-    if not seen.any():
-        return expected
-    before = np.maximum.accumulate(np.where(seen, frames, -1))
-    after = np.minimum.accumulate(np.where(seen, frames, len(frames))[::-1])[::-1]
-    since = np.where(before >= 0, (frames - before) * dt_s, np.inf)
-    until = np.where(after < len(frames), (after - frames) * dt_s, np.inf)
-    if not both_sides:
-        until = np.full(len(frames), np.inf)
-    first, second = _bridge_weights(since / SKIN_MEMORY_S, until / SKIN_MEMORY_S)
-    last = offset[np.maximum(before, 0)]
-    following = offset[np.minimum(after, len(frames) - 1)]
-    gap = ~seen
-    expected[gap] = (first[:, None] * np.nan_to_num(last) + second[:, None] * np.nan_to_num(following))[gap]
+    for joint in np.unique(sensor.joint_ids):
+        members = np.flatnonzero(sensor.joint_ids == joint)
+        own = offset[:, members]
+        seen = np.asarray(~np.isnan(own).any(axis=2))
+        shared = shared_covariance(sensor.local_m[members])
+        for k, marker in enumerate(members):
+            for gap in _gaps(seen[:, k], both_sides):
+                expected[gap.first : gap.end, marker] = _in_gap(k, gap, own, seen, shared, dt_s)
     return expected
 
 
-def _bridge_weights(since: Array, until: Array) -> tuple[Array, Array]:
-    """Weights of both ends in the mean of an Ornstein–Uhlenbeck bridge; times in units of its memory.
+def _gaps(seen: BoolArray, both_sides: bool) -> Iterator[_Gap]:
+    """Gaps of one marker that have a sight to tell of them."""
+    edges = np.diff(np.r_[0, ~seen, 0].astype(int))
+    known = np.flatnonzero(seen)
+    for first, end in zip(np.flatnonzero(edges > 0), np.flatnonzero(edges < 0), strict=True):
+        before = known[known < first][-SIGHTS:]
+        after = known[known >= end][:SIGHTS] if both_sides else known[:0]
+        if len(before) + len(after):
+            yield _Gap(int(first), int(end), np.r_[before, after])
 
-    sinh(until) / sinh(since + until) and the like, written with decaying exponentials only; an end at infinity has
-    no weight and leaves e^(−t) to the other.
+
+def _in_gap(k: int, gap: _Gap, offset: Array, seen: BoolArray, shared: Array, dt_s: float) -> Array:
+    """(L, 3) expected offsets of marker k of a segment in its gap.
+
+    Its sights around the gap come first. The segment's other markers are expected from theirs at the same frames, as
+    if they were hidden as well; by what they differ from that is shared out.
+
+    Args:
+        k: The marker among the segment's n.
+        gap: Its gap of L frames, with its sights.
+        offset: (T, n, 3) offsets, NaN where not seen.
+        seen: (T, n) whether a marker is seen.
+        shared: (n, 3, n, 3) covariance of the offsets of a frame.
+        dt_s: Time between frames.
     """
-    fade_since, fade_until = np.exp(-since), np.exp(-until)
-    whole = -np.expm1(-2.0 * (since + until))
-    whole = np.where(whole > 0.0, whole, 1.0)
-    first = fade_since * (1.0 - fade_until**2) / whole
-    second = fade_until * (1.0 - fade_since**2) / whole
-    return first, second
+    frames = np.arange(gap.first, gap.end)
+    expected, spread = _from_sights(offset[gap.sights, k], gap.sights, frames, dt_s)
+    surprise = np.zeros((len(frames), len(shared), 3))
+    tells = np.zeros((len(frames), len(shared)), dtype=bool)
+    for j in range(len(shared)):
+        at = gap.sights[seen[gap.sights, j]]
+        if len(at) and seen[frames, j].any():
+            mean, sd = _from_sights(offset[at, j], at, frames, dt_s)
+            difference = offset[frames, j] - mean
+            tells[:, j] = np.linalg.norm(difference, axis=1) < STRANGE_M
+            surprise[:, j] = difference / sd[:, None]
+    for pattern in np.unique(tells, axis=0):
+        if pattern.any():
+            rows = (tells == pattern).all(axis=1)
+            among = shared[pattern][:, :, pattern].reshape(3 * pattern.sum(), -1)
+            passed_on = np.linalg.solve(among, shared[pattern][:, :, k].reshape(-1, 3))
+            known = surprise[np.ix_(rows, pattern)].reshape(rows.sum(), -1)
+            expected[rows] += spread[rows, None] * (known @ passed_on)
+    return expected
+
+
+def _from_sights(
+    sighted: Array, at: NDArray[np.int64], frames: NDArray[np.int64], dt_s: float
+) -> tuple[Array, Array]:
+    """(L, 3) mean and (L,) standard deviation of the process at some frames, given what was sighted at others.
+
+    Args:
+        sighted: (k, 3) offsets.
+        at: (k,) their frames.
+        frames: (L,) the frames wanted.
+        dt_s: Time between frames.
+    """
+    at_s: Array = dt_s * at.astype(float)
+    frames_s: Array = dt_s * frames.astype(float)
+    between = correlation(at_s[:, None] - at_s) + SIGHT_VARIANCE * np.eye(len(at))
+    towards = correlation(at_s[:, None] - frames_s)
+    weights = np.linalg.solve(between, towards)
+    variance = 1.0 - np.einsum("kl,kl->l", towards, weights)
+    return weights.T @ sighted, np.sqrt(variance)
+
+
+def correlation(apart_s: Array) -> Array:
+    """Correlation of an offset with itself some time later (Matérn, 3/2): smooth, and fading with the distance."""
+    steps = np.sqrt(3.0) * np.abs(apart_s) / SKIN_MEMORY_S
+    return np.asarray((1.0 + steps) * np.exp(-steps))
+
+
+def shared_covariance(places_m: Array) -> Array:
+    """(n, 3, n, 3) covariance of the offsets of a segment's markers, over the variance of what each slides alone.
+
+    Args:
+        places_m: (n, 3) the markers in the segment's axes.
+    """
+    count = len(places_m)
+    arms = places_m - places_m.mean(axis=0)
+    turned = TURN_RAD_M * np.array([np.cross(axis, arms).ravel() for axis in np.eye(3)])
+    shifted = np.tile(np.eye(3), count)
+    covariance = np.eye(3 * count) + shifted.T @ shifted + turned.T @ turned
+    return np.asarray(covariance.reshape(count, 3, count, 3))

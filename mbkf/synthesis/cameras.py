@@ -53,17 +53,20 @@ def skin_artefact(
     return sd_m / np.linalg.norm(impulse) * noise
 
 
-def occlusions(frames: int, markers: int, fraction: float, rng: np.random.Generator) -> np.ndarray:
-    """(T, M) where markers are hidden: streaks of 20 frames until the fraction is reached.
+def occlusions(
+    frames: int, markers: int, fraction: float, rng: np.random.Generator, streak: int = OCCLUSION_FRAMES
+) -> np.ndarray:
+    """(T, M) where markers are hidden: streaks of some frames until the fraction is reached.
 
     Args:
         frames: Number of frames T.
         markers: Number of markers M.
         fraction: Part of the samples that is hidden, 0…1.
         rng: Source of the streaks.
+        streak: Frames of a streak.
     """
     hidden = np.zeros((frames, markers), dtype=bool)
-    streak = min(OCCLUSION_FRAMES, frames)
+    streak = min(streak, frames)
     while hidden.sum() < round(fraction * hidden.size):
         first, marker = rng.integers(1 - streak, frames), rng.integers(markers)
         hidden[max(first, 0) : first + streak, marker] = True
