@@ -97,12 +97,14 @@ class DynamicTracking(TrackingFilter):
         return P
 
     def errors(self, estimate: Posterior) -> ErrorCovariance:
-        """Those of the whole state; what the filter itself states where only white noise is expected."""
+        """Those of the whole state; what the filter itself states where it expects white noise or models the skin."""
         step = _record(estimate)
         s, P, notes = self.kalman.settings, step.state.P, step.decisions.notes
+        # Readings may tell of velocities and of further states, too; markers whose skin has a memory do.
+        information = step.readings.matrix[: self.model.nv, : self.model.nv]
         share = s.markers.innovation_share
-        if share <= 0.0:
-            return ErrorCovariance(P, step.readings.matrix, NO_DOFS, 0.0, 1.0, 0.0)
+        if share <= 0.0 or s.markers.skin_memory_s > 0.0:
+            return ErrorCovariance(P, information, NO_DOFS, 0.0, 1.0, 0.0)
         known = ~self.kalman.unobservable
         known[notes.unmarked] = False
         seen = np.flatnonzero(known)
@@ -110,9 +112,7 @@ class DynamicTracking(TrackingFilter):
         readings = 3 * int(np.count_nonzero(notes.trusted))
         over = max(readings - len(seen), readings // 4)
         skin = share * readings / max(over, 1)
-        return ErrorCovariance(
-            P, step.readings.matrix, seen, skin, s.errors.new_share, s.errors.skin_rate_rad_s
-        )
+        return ErrorCovariance(P, information, seen, skin, s.errors.new_share, s.errors.skin_rate_rad_s)
 
     def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) from the state's covariance."""

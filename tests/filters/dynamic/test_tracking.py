@@ -114,3 +114,19 @@ def test_smoothing_keeps_decisions(t):
     assert smoothed[t].contact == found[t].contact
     np.testing.assert_array_equal(smoothed[t].refused, found[t].refused)
     assert smoothed[t].started == found[t].started
+
+
+@pytest.mark.slow
+def test_markers_on_skin_with_a_memory_leave_the_spreads_their_places():
+    """Such markers read velocities, too, so that their information is that of more than a posture."""
+    one = made_filter("dynamic", dynamic=settings_with(skin_memory_s=0.3))
+    found = [one.start(recording(), 0, None)]
+    for t in range(1, 6):
+        found.append(one.step(found[-1], recording(), t))
+    P, nv = found[-1].inner.state.P, made().model.nv
+    np.testing.assert_allclose(one.covariance(found[-1]), P[: 2 * nv, : 2 * nv], rtol=1e-12)
+    spread = one.spread(found[-1])
+    assert np.isfinite(spread.torque[6:]).all()
+    assert (spread.torque[6:] > 0).all()
+    smoothed = one.smooth(found, recording(), 0, len(found))
+    assert worst(smoothed[0].q - found[0].q) < 0.2
