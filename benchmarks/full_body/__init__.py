@@ -12,6 +12,8 @@ from benchmarks.full_body.accuracy import accuracy_findings, lost_by_fdmc, trial
 from benchmarks.full_body.claims import survey_claims
 from benchmarks.full_body.drawings import survey_drawings, thesis_drawings
 from benchmarks.full_body.filters import FCDI
+from benchmarks.full_body.occlusion import measured, occlusion_findings
+from benchmarks.full_body.occlusion_drawings import occlusion_drawings
 from benchmarks.full_body.real import real_findings, real_scores
 from benchmarks.full_body.single_markers import (
     measure_single_markers,
@@ -31,10 +33,12 @@ def run(context: Context) -> list[Check]:
     with in_parallel() as mapper:
         found = survey(mapper, keys(quick=quick))
         real = real_scores(data, mapper, quick=quick)
+        hidden = measured(data, mapper, quick=quick)
         sliding = measure_single_markers(mapper, quick=quick)
         drawings = list(thesis_drawings(mapper, (JUMP,)) if quick else thesis_drawings(mapper))
     parts = [
         accuracy_findings(found),
+        occlusion_findings(hidden),
         real_findings(real),
         single_marker_findings(sliding),
         speed_findings(speed),
@@ -45,6 +49,7 @@ def run(context: Context) -> list[Check]:
     pictures = [
         *drawings,
         *survey_drawings(found, real),
+        *occlusion_drawings(hidden),
         single_marker_drawing(sliding),
         speed_drawing(speed),
     ]

@@ -275,12 +275,16 @@ def occlusion_findings(points: Sequence[Point]) -> Findings:
         "overlap to longer gaps. A spline needs both ends of a gap: at the trial's ends nothing is filled, and the "
         "kinematic filter's marker counts. Only the filters without 'smoothed', and 'past only', see no later frame."
     )
+    by_share, by_gap = over_share(points), over_gap(points)
     sheets = [
-        Sheet(
-            "occlusion_share", f"Share hidden, in streaks of {GAP_S:g} s", *_table(over_share(points)), note
-        ),
-        Sheet("occlusion_gap", f"Gap length, {100 * SHARE:.0f} % hidden", *_table(over_gap(points)), note),
         _ratios(points),
+        Sheet("occlusion_share", f"Share hidden, in streaks of {GAP_S:g} s", *_errors(by_share), note),
+        Sheet("occlusion_gap", f"Gap length, {100 * SHARE:.0f} % hidden", *_errors(by_gap), note),
+        Sheet(
+            "occlusion_truth",
+            "Hidden markers on synthetic walks, against the truth",
+            *_truth([*by_share, *by_gap]),
+        ),
     ]
     return Findings(bands, sheets)
 
@@ -299,23 +303,38 @@ def over_gap(points: Iterable[Point]) -> list[Point]:
     )
 
 
-def _table(points: Sequence[Point]) -> tuple[tuple[str, ...], tuple[Row, ...]]:
-    judged = (*METHODS, *(name + AFTER for name in (*OFFLINE, RIGID_PAST)))
-    heads = {
-        "true_mm": "body's markers to the truth (mm)",
-        "angle_deg": "joint angles (°)",
-        "cover": "cover of 95 %",
-    }
+def _errors(points: Sequence[Point]) -> tuple[tuple[str, ...], tuple[Row, ...]]:
+    """Columns and rows of the hidden markers' errors."""
+    columns = ("capture", "hidden (%)", "gap (s)", "hidings", *(f"{name} (mm)" for name in ESTIMATES))
+    rows: list[Row] = [
+        (
+            p.capture,
+            100 * p.condition.share,
+            p.condition.gap_s,
+            p.seeds,
+            *(p.scores[name].hidden_mm for name in ESTIMATES),
+        )
+        for p in points
+    ]
+    return columns, tuple(rows)
+
+
+def _truth(points: Iterable[Point]) -> tuple[tuple[str, ...], tuple[Row, ...]]:
+    """Columns and rows of what the truth tells: a row per condition and method."""
     columns = (
-        "capture", "hidden (%)", "gap (s)", "hidings", *(f"{name} (mm)" for name in ESTIMATES),
-        *(f"{name}: {head}" for head in heads.values() for name in judged),
-    )  # fmt: skip
+        "hidden (%), gap (s)",
+        "method",
+        "body's markers to the truth (mm)",
+        "joint angles (°)",
+        "cover of 95 %",
+    )
+    judged = (*METHODS, *(name + AFTER for name in (*OFFLINE, RIGID_PAST)))
     rows: list[Row] = []
-    for p in points:
-        errors = [p.scores[name].hidden_mm for name in ESTIMATES]
-        known = [getattr(p.scores[name], key) for key in heads for name in judged]
-        cells = ("" if np.isnan(value) else value for value in known)
-        rows.append((p.capture, 100 * p.condition.share, p.condition.gap_s, p.seeds, *errors, *cells))
+    for p in {p.condition: p for p in points if p.capture == SYNTHETIC}.values():
+        condition = f"{100 * p.condition.share:.0f} %, {p.condition.gap_s:g} s"
+        for name in judged:
+            one = p.scores[name]
+            rows.append((condition, name, one.true_mm, one.angle_deg, one.cover))
     return columns, tuple(rows)
 
 
