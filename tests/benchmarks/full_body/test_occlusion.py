@@ -15,6 +15,8 @@ from benchmarks.full_body.occlusion import (
     FILLED,
     GAP_S,
     GAPS_S,
+    METHODS,
+    OFFLINE,
     RIGID_PAST,
     SHARE,
     SHARES,
@@ -123,9 +125,10 @@ def test_bounds_stand_on_real_walks_at_both_shares_only():
     assert len(found.bands) == 2 * len(CAPTURES) * len(FRACTIONS)
     assert [band.kept for band in found.bands[:2]] == [False, True]
     assert all(band.needs_all_seeds for band in found.bands)
-    share, gap, ratios = found.sheets
-    assert [len(sheet.rows) for sheet in found.sheets] == [4 * len(SHARES), 4 * 2, len(everywhere)]
-    assert all(len(row) == len(sheet.columns) for sheet in (share, gap, ratios) for row in sheet.rows)
+    judged = len(METHODS) + len(OFFLINE) + 1
+    rows = [len(everywhere), 4 * len(SHARES), 4 * 2, judged * (len(SHARES) + 1)]
+    assert [len(sheet.rows) for sheet in found.sheets] == rows
+    assert all(len(row) == len(sheet.columns) for sheet in found.sheets for row in sheet.rows)
 
 
 def test_figures_have_a_curve_for_every_capture():
