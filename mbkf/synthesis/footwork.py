@@ -21,6 +21,9 @@ HEEL_OFF_S = 0.24
 CLOSE_S = 0.02
 """Between two swings closer than this the load goes from foot to foot without a stop."""
 
+ALONE = 1.5
+"""How much more the pressure sways under one foot than under two, as part of the latter."""
+
 PEAK, LATE = 0.45, 0.12
 """When a stepping foot is highest, and when it begins to move forward, as parts of its swing."""
 
@@ -122,8 +125,10 @@ class Footwork:
         share = share + both * self.sway(times).value
         for nudge in self.nudges:
             share = share + nudge[0](times).value
-        poses = self.poses(times)
-        pressure = np.stack([self._pressure(side, times, poses[SIDES[side]]) for side in range(2)], axis=1)
+        poses, sway = self.poses(times), 1.0 + ALONE * (1.0 - both)
+        pressure = np.stack(
+            [self._pressure(side, times, poses[SIDES[side]], sway) for side in range(2)], axis=1
+        )
         surfaces = np.stack([self._surface(side, times) for side in range(2)], axis=1)
         return Load(share, pressure, np.ones(len(times), dtype=bool), surfaces)
 
@@ -205,7 +210,7 @@ class Footwork:
 
         return ankle
 
-    def _pressure(self, side: int, times: Array, foot: FootPose) -> Array:
+    def _pressure(self, side: int, times: Array, foot: FootPose, sway: Array) -> Array:
         """(T, 2) wanted centre of pressure under a foot: its middle, and its ball before it leaves the ground."""
         ball = InverseKinematics(self.model).offset[f"{SIDE_NAMES[SIDES[side]]}_toes"][0]
         middle, toe = 0.05 * self.size, ball + 0.012 * self.size
@@ -217,8 +222,9 @@ class Footwork:
                 (swing.lift_s, toe),
                 (0.5 * (swing.lift_s + swing.land_s), middle),
             ]
-        forward = added(path([*knots, (knots[-1][0] + 1.0, middle)]), self.forth[side])(times).value
-        left = self.across[side](times).value
+        forward = path([*knots, (knots[-1][0] + 1.0, middle)])(times).value
+        forward = forward + sway * self.forth[side](times).value
+        left = sway * self.across[side](times).value
         for nudge in self.nudges:
             forward, left = forward + nudge[1](times).value, left + nudge[2](times).value
         return pressed(foot, forward, left)
