@@ -18,8 +18,18 @@ from mbkf.synthesis.standing import pressed
 HEEL_OFF_S = 0.24
 """How long before it leaves the ground a foot begins to turn over its ball."""
 
+BEFORE_S = -1.0
+"""A time before every motion."""
+
 CLOSE_S = 0.02
 """Between two swings closer than this the load goes from foot to foot without a stop."""
+
+ALONE = 1.5
+"""How much more the pressure sways under one foot than under two, as part of the latter."""
+
+LIGHT, LIGHT_S = 0.08, 0.08
+"""Part of the load that a foot still bears so long before it leaves the ground, and bears again so long after it came
+down; it does not linger with almost none."""
 
 PEAK, LATE = 0.45, 0.12
 """When a stepping foot is highest, and when it begins to move forward, as parts of its swing."""
@@ -87,7 +97,8 @@ class Footwork:
 
     def __post_init__(self) -> None:
         self.size = float(self.model.scale.mean())
-        rng = self.rng
+        rng, offset = self.rng, InverseKinematics(self.model).offset
+        self.balls = [offset[f"{SIDE_NAMES[side]}_toes"] * [1.0, 0.0, 1.0] for side in SIDES]
         self.toes = [
             ripple(
                 np.deg2rad(rng.uniform(0.5, 1.5)), rng.uniform(0.3, 0.6), rng.uniform(0, 6.28), np.deg2rad(-2)
@@ -122,8 +133,10 @@ class Footwork:
         share = share + both * self.sway(times).value
         for nudge in self.nudges:
             share = share + nudge[0](times).value
-        poses = self.poses(times)
-        pressure = np.stack([self._pressure(side, times, poses[SIDES[side]]) for side in range(2)], axis=1)
+        poses, sway = self.poses(times), 1.0 + ALONE * (1.0 - both)
+        pressure = np.stack(
+            [self._pressure(side, times, poses[SIDES[side]], sway) for side in range(2)], axis=1
+        )
         surfaces = np.stack([self._surface(side, times) for side in range(2)], axis=1)
         return Load(share, pressure, np.ones(len(times), dtype=bool), surfaces)
 
@@ -140,19 +153,25 @@ class Footwork:
 
     def _share(self) -> Curve:
         """Part of the load on the right foot: half in quiet standing, handed over before and after each swing."""
-        knots: list[tuple[float, float]] = []
+        knots: list[tuple[float, ...]] = []
         loaded_s = -np.inf
         for swing in self.swings:
             unloads_s, alone = swing.lift_s - swing.unload_s, float(swing.side)
             if unloads_s > loaded_s + CLOSE_S:
                 knots += [(loaded_s, 0.5)] if knots else []
                 knots.append((unloads_s, 0.5))
+            inward = 1.0 - 2.0 * alone
+            light, rate = alone + inward * LIGHT, 1.5 * inward * LIGHT / LIGHT_S
+            if swing.lift_s - knots[-1][0] > 3 * LIGHT_S:
+                knots.append((swing.lift_s - LIGHT_S, light, -rate))
             knots += [(swing.lift_s, alone), (swing.land_s, alone)]
+            if swing.reload_s > 3 * LIGHT_S:
+                knots.append((swing.land_s + LIGHT_S, light, rate))
             loaded_s = swing.land_s + swing.reload_s
         return path([*knots, (loaded_s, 0.5)]) if knots else ripple(0.0, 1.0, 0.0, 0.5)
 
     def _pitch(self, side: int) -> Curve:
-        knots = [(-1.0, 0.0)]
+        knots = [(BEFORE_S, 0.0)]
         for _, swing in self._own(side):
             knots += [(swing.lift_s - HEEL_OFF_S, 0.0), (swing.lift_s, np.deg2rad(swing.heel_deg))]
             if swing.held:
@@ -161,8 +180,7 @@ class Footwork:
         return path([*knots, (knots[-1][0] + 1.0, 0.0)])
 
     def _pose(self, side: int, times: Array) -> FootPose:
-        name, outline = SIDE_NAMES[SIDES[side]], sole_outline(self.model, SIDES[side])
-        ball = InverseKinematics(self.model).offset[f"{name}_toes"] * [1.0, 0.0, 1.0]
+        outline, ball = sole_outline(self.model, SIDES[side]), self.balls[side]
         pitch = self._pitch(side)(times)
         rolled = dual_numbers.rotation(1, pitch).apply(-ball) + ball
 
@@ -173,7 +191,7 @@ class Footwork:
             return Dual(*(x @ heading.T for x in over.orders)) + base
 
         ankle = standing(self.first[side], rolled)
-        yaw_knots = [(-1.0, self.first[side].yaw)]
+        yaw_knots = [(BEFORE_S, self.first[side].yaw)]
         for spot, swing in self._own(side):
             lifted = _turned(np.deg2rad(swing.heel_deg), -ball) + ball
             still = Dual.constant(lifted[None])
@@ -205,11 +223,10 @@ class Footwork:
 
         return ankle
 
-    def _pressure(self, side: int, times: Array, foot: FootPose) -> Array:
+    def _pressure(self, side: int, times: Array, foot: FootPose, sway: Array) -> Array:
         """(T, 2) wanted centre of pressure under a foot: its middle, and its ball before it leaves the ground."""
-        ball = InverseKinematics(self.model).offset[f"{SIDE_NAMES[SIDES[side]]}_toes"][0]
-        middle, toe = 0.05 * self.size, ball + 0.012 * self.size
-        knots = [(-1.0, middle)]
+        middle, toe = 0.05 * self.size, self.balls[side][0] + 0.012 * self.size
+        knots = [(BEFORE_S, middle)]
         for _, swing in self._own(side):
             knots += [
                 (swing.lift_s - 2.0 * HEEL_OFF_S, middle),
@@ -217,8 +234,9 @@ class Footwork:
                 (swing.lift_s, toe),
                 (0.5 * (swing.lift_s + swing.land_s), middle),
             ]
-        forward = added(path([*knots, (knots[-1][0] + 1.0, middle)]), self.forth[side])(times).value
-        left = self.across[side](times).value
+        forward = path([*knots, (knots[-1][0] + 1.0, middle)])(times).value
+        forward = forward + sway * self.forth[side](times).value
+        left = sway * self.across[side](times).value
         for nudge in self.nudges:
             forward, left = forward + nudge[1](times).value, left + nudge[2](times).value
         return pressed(foot, forward, left)

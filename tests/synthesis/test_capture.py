@@ -56,13 +56,14 @@ def test_raw_points_are_the_trial_s_in_another_order_with_ghosts(capture):
     assert not np.array_equal(raw[10, :30], labelled[10, :30])
 
 
-def test_plates_read_the_feet_s_wrenches(person, motions):
+@pytest.mark.parametrize("name", ["walk", "turn", "general"])
+def test_plates_read_the_feet_s_wrenches(person, motions, name):
     exact = CaptureSettings(force_sd_n=0.0, moment_sd_nm=0.0, offset_n=(0.0, 0.0))
-    made = synthesise_capture(person, motions["walk"], exact, seed=2)
+    made = synthesise_capture(person, motions[name], exact, seed=2)
     force = sum(plate.force_n for plate in made.trial.plates)
     moment = sum(plate.moment_nm + np.cross(plate.origin_m, plate.force_n) for plate in made.trial.plates)
     assert len(made.trial.plates) >= 4
-    assert np.abs(np.hstack([force, moment]) - motions["walk"].plate_wrench.sum(axis=1)).max() < 1e-9
+    assert np.abs(np.hstack([force, moment]) - motions[name].plate_wrench.sum(axis=1)).max() < 1e-9
     for plate in made.trial.plates:
         pressed = plate.centre_of_pressure_m[~np.isnan(plate.centre_of_pressure_m[:, 0])]
         low, high = plate.corners_m.min(axis=0), plate.corners_m.max(axis=0)
@@ -70,8 +71,8 @@ def test_plates_read_the_feet_s_wrenches(person, motions):
 
 
 def test_plates_do_not_overlap(capture, person, motions):
-    walked = synthesise_capture(person, motions["walk"], seed=2).trial.plates
-    for recorded in (capture.trial.plates, capture.static.plates, walked):
+    moved = [synthesise_capture(person, motions[name], seed=2) for name in ("walk", "turn", "general")]
+    for recorded in (capture.trial.plates, capture.static.plates, *(made.trial.plates for made in moved)):
         corners = [(p.corners_m.min(axis=0)[:2], p.corners_m.max(axis=0)[:2]) for p in recorded]
         for k, (low, high) in enumerate(corners):
             for other_low, other_high in corners[:k]:

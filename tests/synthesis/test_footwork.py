@@ -42,6 +42,12 @@ def test_a_lifted_foot_carries_exactly_nothing(feet):
     assert abs(shares[-1, 0] - 0.5) < 0.05
 
 
+def test_a_foot_does_not_linger_with_almost_no_load(feet):
+    times = np.linspace(0, SECONDS, 6001)
+    shares = feet.load(times).shares
+    assert ((shares > 0) & (shares < 0.02)).any(axis=1).mean() * SECONDS < 6 * 0.06
+
+
 def test_poses_are_smooth_and_carry_their_exact_rates(feet):
     times, h = np.linspace(0.001, SECONDS - 0.001, 2999), 1e-5
     late, early, now = (feet.poses(times + d) for d in (h, -h, 0.0))

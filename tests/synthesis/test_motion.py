@@ -26,7 +26,7 @@ def momentum(body, motion):
 
 
 def slopes(values, step, rate_hz):
-    return (values[2 * step :: step] - values[: -2 * step : step]) * rate_hz / (2 * step)
+    return (values[2 * step :] - values[: -2 * step]) * rate_hz / (2 * step)
 
 
 def test_newton_and_euler_hold_at_every_frame(body, motion):
@@ -40,13 +40,14 @@ def test_newton_and_euler_hold_at_every_frame(body, motion):
 
 
 def test_acceleration_is_the_derivative_of_velocity_to_second_order(motion):
-    errors = [
-        np.abs(slopes(motion.v, step, motion.rate_hz) - motion.a[step:-step:step]) for step in (4, 2, 1)
-    ]
-    typical = [np.median(error[error > 0]) for error in errors]
-    assert typical[0] / typical[1] == pytest.approx(4.0, rel=0.3)
-    assert typical[1] / typical[2] == pytest.approx(4.0, rel=0.3)
-    assert typical[2] < 0.02
+    far, mid, near = (
+        np.abs(slopes(motion.v, step, motion.rate_hz) - motion.a[step:-step]) for step in (4, 2, 1)
+    )
+    for coarse, fine in ((far, mid[2:-2]), (mid, near[1:-1])):
+        told = fine > 1e-9
+        assert told.mean() > 0.5
+        assert np.median(coarse[told] / fine[told]) == pytest.approx(4.0, rel=0.03)
+    assert np.median(near) < 0.02
 
 
 def test_velocity_is_the_derivative_of_configuration_to_second_order(body, motion):
@@ -96,6 +97,62 @@ def test_people_are_strong_enough(body, motion):
 
 def test_every_joint_moves(body, motion):
     assert (np.ptp(motion.v, axis=0) > 0).all()
+
+
+def test_the_whole_body_turns_and_looks_ahead(body, motions):
+    motion = motions["turn"]
+    yaw = {name: np.unwrap([heading(body, q, name) for q in motion.q]) for name in ("pelvis", "head")}
+    for name in ("pelvis", "right_foot", "left_foot"):
+        turned = np.unwrap([heading(body, q, name) for q in motion.q[[0, len(motion.q) // 2, -1]]])
+        assert 85 < abs(np.rad2deg(turned[-1] - turned[0])) < 125
+    ahead = np.sign(yaw["pelvis"][-1] - yaw["pelvis"][0]) * (yaw["head"] - yaw["pelvis"])
+    assert ahead[len(ahead) // 4 : -len(ahead) // 4].mean() > ahead[-20:].mean() + 0.05
+
+
+def heading(body, q, segment):
+    """Where a segment faces, rad."""
+    rotation = body.placements(q)[0][body.joint(segment).joint_id]
+    return np.arctan2(rotation[1, 0], rotation[0, 0])
+
+
+def test_each_foot_carries_the_body_alone_with_the_other_one_raised(body, motions):
+    motion = motions["one_foot"]
+    for foot, side in enumerate(("left", "right")):
+        alone = motion.foot_wrench[:, foot, 2] == 0
+        assert 1.1 < alone.sum() / motion.rate_hz < 1.8
+        joint = body.joint(f"{('right', 'left')[foot]}_foot").joint_id
+        height = [body.placements(q)[1][joint, 2] for q in motion.q]
+        assert 0.1 < max(height) - height[0] < 0.28
+        assert np.ptp(motion.centre_of_pressure[alone, 1 - foot], axis=0)[:2].min() > 0.002, side
+
+
+def test_the_pressure_lies_on_the_step_after_stepping_up(body, motions):
+    motion = motions["step_up"]
+    heights = motion.centre_of_pressure[:, :, 2]
+    assert not heights[0].any()
+    assert 0.15 <= heights[-1, 0] <= 0.20
+    assert heights[-1, 0] == heights[-1, 1]
+    assert (heights[~np.isnan(heights)] >= 0).all()
+    rise = body.centre_of_mass(motion.q[-1])[2] - body.centre_of_mass(motion.q[0])[2]
+    assert rise == pytest.approx(heights[-1, 0], abs=0.03)
+
+
+def test_reaching_moves_load_and_pressure_but_not_the_feet(motions):
+    motion = motions["reach"]
+    assert (motion.foot_wrench[:, :, 2] > 0).all()
+    assert np.ptp(motion.centre_of_pressure, axis=0).max() > 0.01
+
+
+def test_a_general_movement_has_every_kind_of_support(motions):
+    loaded, heights = (
+        motions["general"].foot_wrench[:, :, 2] > 0,
+        motions["general"].centre_of_pressure[:, :, 2],
+    )
+    for kind in ([True, True], [True, False], [False, True]):
+        assert (loaded == kind).all(axis=1).mean() > 0.1
+    assert (np.nan_to_num(heights) > 0).any(axis=1).mean() > 0.1
+    both = loaded.all(axis=1)
+    assert (np.abs(heights[both, 0] - heights[both, 1]) > 0.1).any()
 
 
 def test_flight_is_free_fall_with_constant_angular_momentum(body, motions):
