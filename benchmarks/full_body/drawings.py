@@ -20,9 +20,10 @@ from benchmarks.full_body.real import RealScores
 from benchmarks.full_body.survey import Survey
 from benchmarks.full_body.trials import BESIDE, GENERAL, JUMP, LOST, MOVEMENTS, SQUAT, Trial, make_trials
 from benchmarks.thesis_report.figures import SHADE, TRUTH, Drawing, axes, labelled, legend
-from mbkf.conventions import Array, BoolArray
+from mbkf.conventions import SIDES, Array, BoolArray
 from mbkf.io.results import Reconstruction
 from mbkf.model.clinical import ClinicalAngles
+from mbkf.synthesis.inverse_kinematics import SIDE_NAMES
 from mbkf.synthesis.person import body_of
 
 DRAWN = (FCDI, FDMC_PER_FRAME, DYNAMIC)
@@ -100,8 +101,22 @@ def _general(followed: Followed, beside: Followed) -> Iterator[Drawing]:
     )
     figure = _moments(followed, "l", CHAIN)
     yield Drawing("4.6", "General movement: sagittal torques of the left leg", figure)
-    note = "Grey: a foot stands beside the plates, as its last step's plate was taken away."
+    note = "Grey: frames in which a loaded foot stands on no plate; the one it stepped on was taken away."
     yield Drawing("4.7", "General movement: residual force", _residual(beside), note)
+    yield Drawing("own", "General movement: vertical reactions", _reactions(beside), note)
+
+
+def _reactions(followed: Followed) -> Figure:
+    figure, made = axes(len(SIDES), height=1.9)
+    truth = followed.trial.truth
+    for foot, (one, side) in enumerate(zip(made, SIDES, strict=True)):
+        _shaded(one, truth.times_s, ~followed.runs[FCDI].valid)
+        for name, run in followed.runs.items():
+            one.plot(run.times_s, run.foot_wrench[:, foot, 2], color=COLOURS[name], lw=0.9, label=name)
+        one.plot(truth.times_s, truth.foot_wrench[:, foot, 2], color=TRUTH, lw=1.0, label="truth")
+        labelled(one, "time (s)" if one is made[-1] else "", f"{SIDE_NAMES[side]} foot (N)")
+    legend(made[0])
+    return figure
 
 
 def _squat(followed: Followed, lost: Followed) -> Iterator[Drawing]:
