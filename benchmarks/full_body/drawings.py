@@ -62,13 +62,22 @@ def follow(key: tuple[str, int]) -> dict[str, Followed]:
 
 
 def _followed(trial: Trial) -> Followed:
+    with np.errstate(all="ignore"):
+        return with_truth(trial, {name: CAUSAL[name].run(trial.capture, trial.subject) for name in DRAWN})
+
+
+def with_truth(trial: Trial, runs: dict[str, Reconstruction]) -> Followed:
+    """A trial's reconstructions beside its true clinical curves.
+
+    Args:
+        trial: The trial.
+        runs: Its reconstructions by filter.
+    """
     model, truth = body_of(trial.subject), trial.truth
     clinical = ClinicalAngles(model)
     angles = clinical.angles(truth.q)
     rates = np.einsum("tan,tn->ta", clinical.rate_matrices(truth.q, angles), truth.v)
     moments = clinical.moments(truth.q, truth.tau, angles)
-    with np.errstate(all="ignore"):
-        runs = {name: CAUSAL[name].run(trial.capture, trial.subject) for name in DRAWN}
     return Followed(trial, clinical.names, angles, rates, moments, runs)
 
 
@@ -86,7 +95,7 @@ def thesis_drawings(mapper: Mapper, movements: Sequence[str] = (GENERAL, SQUAT, 
     if GENERAL in made:
         yield from _general(made[GENERAL], made[BESIDE])
     if SQUAT in made:
-        yield from _squat(made[SQUAT], made[LOST])
+        yield from squat_drawings(made[SQUAT], made[LOST])
     if JUMP in made:
         who = PERSONS[OF_JUMP].label
         figure = _moments(made[JUMP], "r", CHAIN[2:])
@@ -119,7 +128,8 @@ def _reactions(followed: Followed) -> Figure:
     return figure
 
 
-def _squat(followed: Followed, lost: Followed) -> Iterator[Drawing]:
+def squat_drawings(followed: Followed, lost: Followed) -> Iterator[Drawing]:
+    """Figures of a squat and of its twin with lost knee markers."""
     who = PERSONS[OF_SQUAT].label
     knee = (("knee_angle", "flexion"),)
     yield Drawing("4.9", f"Squat: angle of the right knee ({who})", _angles(followed, knee))

@@ -56,7 +56,7 @@ def test_raw_points_are_the_trial_s_in_another_order_with_ghosts(capture):
     assert not np.array_equal(raw[10, :30], labelled[10, :30])
 
 
-@pytest.mark.parametrize("name", ["walk", "turn", "general"])
+@pytest.mark.parametrize("name", ["walk", "turn", "step_up"])
 def test_plates_read_the_feet_s_wrenches(person, motions, name):
     exact = CaptureSettings(force_sd_n=0.0, moment_sd_nm=0.0, offset_n=(0.0, 0.0))
     made = synthesise_capture(person, motions[name], exact, seed=2)

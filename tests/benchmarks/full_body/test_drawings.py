@@ -1,11 +1,13 @@
 """The study's figures are drawn from its numbers."""
 
-import numpy as np
-import pytest
+from dataclasses import replace
 
-from benchmarks.full_body.drawings import survey_drawings, thesis_drawings
+import numpy as np
+
+from benchmarks.full_body.drawings import squat_drawings, survey_drawings, with_truth
+from benchmarks.full_body.filters import FCDI
 from benchmarks.full_body.real import RealScores, real_findings
-from benchmarks.full_body.trials import JUMP
+from benchmarks.full_body.trials import LOST
 from tests.benchmarks.full_body.conftest import made_survey
 
 REAL = [
@@ -32,12 +34,14 @@ def test_a_lost_capture_shows_no_numbers():
     assert sheet.rows[-1][-1] == 90.0
 
 
-@pytest.mark.slow
-def test_the_jump_s_figure_holds_truth_and_filters():
-    from benchmarks.dynamic.methods import in_turn
-
-    drawn = list(thesis_drawings(in_turn, (JUMP,)))
-    assert [one.number for one in drawn] == ["4.15"]
-    labels = [line.get_label() for line in drawn[0].figure.axes[0].lines]
-    assert labels[-1] == "truth"
-    assert len(labels) == 4
+def test_a_trial_s_figures_hold_truth_and_filters(short_squat):
+    trial, run = short_squat
+    lost = replace(trial, movement=LOST)
+    drawn = list(squat_drawings(*(with_truth(one, {FCDI: run}) for one in (trial, lost))))
+    assert [one.number for one in drawn] == ["4.9", "4.10", "4.11", "4.12", "4.13", "4.14"]
+    lines = drawn[0].figure.axes[0].lines
+    assert [line.get_label() for line in lines] == [FCDI, "truth"]
+    np.testing.assert_array_equal(lines[0].get_xdata(), run.times_s)
+    assert np.ptp(lines[1].get_ydata()) > 30.0
+    assert not drawn[2].figure.axes[0].patches
+    assert len(drawn[5].figure.axes[0].patches) == 1

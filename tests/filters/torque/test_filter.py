@@ -213,8 +213,8 @@ def test_contact_is_decided_where_the_state_before_leads(model, motions):
     run.filter.step(state, run.memories[-1], run.frame(2))
     stayed = run.filter.stayed(state, run.memories[-1], run.frame(2))
     for q, v, a in asked:
-        np.testing.assert_array_equal(q, model.integrate(last.q, last.v / RATE_HZ))
-        np.testing.assert_array_equal(v, last.v + last.a / RATE_HZ)
+        np.testing.assert_allclose(q, model.integrate(last.q, last.v / RATE_HZ), rtol=1e-12, atol=1e-15)
+        np.testing.assert_allclose(v, last.v + last.a / RATE_HZ, rtol=1e-12, atol=1e-15)
         np.testing.assert_array_equal(a, last.a)
     assert len(asked) == 2
     assert stayed.state is state
