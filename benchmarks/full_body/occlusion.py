@@ -48,8 +48,10 @@ GAP_S, SHARE = 0.2, 0.10
 """Gap length of the curves over the share, and share of the curves over gap length."""
 
 SYNTHETIC = "synthetic walk"
-SEEDS, FEW_SEEDS = 4, 2
+SEEDS, FEW_SEEDS = 4, 1
 """Random seeds where there is a bound on real walks, and elsewhere."""
+
+SYNTHETIC_SEEDS = 2
 
 CAUSAL_RATIO, SMOOTHED_RATIO = 1.0, 0.7
 WITHIN_SD, NOMINAL = 1.96, 0.95
@@ -143,7 +145,7 @@ def measured(data: Path, mapper: Mapper, *, quick: bool) -> tuple[Point, ...]:
     if not quick:
         trials += [
             Trial(person, truth, one, seed)
-            for seed, (person, truth) in enumerate(mapper(_synthetic, range(FEW_SEEDS)))
+            for seed, (person, truth) in enumerate(mapper(_synthetic, range(SYNTHETIC_SEEDS)))
             for one in conditions
         ]
     groups: dict[tuple[str, Condition], list[Scores]] = {}

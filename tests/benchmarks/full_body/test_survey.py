@@ -1,13 +1,14 @@
 """Outcomes pooled by filter and movement: lost trials do not count, ratios are over the trials that both followed."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from benchmarks.full_body.filters import DYNAMIC, FCDI, FDMC, FDMC_PER_FRAME, FDMC_PRINTED
-from benchmarks.full_body.survey import Survey, keys
-from benchmarks.full_body.trials import GENERAL, JUMP, LOST, MOVEMENTS, SQUAT, WALK
+from benchmarks.full_body.survey import Survey, keys, runs
+from benchmarks.full_body.trials import BESIDE, GENERAL, JUMP, LOST, MOVEMENTS, SQUAT, WALK
 from tests.benchmarks.full_body.conftest import made_survey
 
 
@@ -46,3 +47,17 @@ def test_the_whole_study_has_160_trials_of_every_filter():
     squats = sum(movement == SQUAT for movement, _, _ in wanted)
     assert len(wanted) + squats == 160
     assert wanted[0][0] == GENERAL
+
+
+def test_fdmc_as_printed_and_the_bounded_filters_run_on_every_trial():
+    def count(name):
+        return sum(
+            runs(name, SimpleNamespace(movement=movement, person=person, seed=seed))
+            for movement, person, seed in keys()
+        )
+
+    assert [count(name) for name in (FCDI, FDMC_PRINTED, DYNAMIC)] == [128] * 3
+    assert (count(FDMC), count(FDMC_PER_FRAME), count(f"{DYNAMIC}, smoothed")) == (64, 32, 16)
+    beside = SimpleNamespace(movement=BESIDE, person=1, seed=0)
+    assert runs(FDMC_PER_FRAME, beside)
+    assert not runs(FDMC_PRINTED, beside)
