@@ -168,8 +168,8 @@ def divergence_sheet(found: Survey) -> Sheet:
         rows.append((name, *cells, f"{lost_trials(found, name)} of {trial_count(found, name)}"))
     note = (
         f"Lost: RMS error of the angles above {DIVERGED_DEG:g}°, or numbers that are not finite. One set of "
-        "covariances for all persons and movements. Filters that lose nothing ran on fewer seeds, smoothed ones on every "
-        "second person."
+        "covariances for all persons and movements. Filters that lose nothing ran on fewer seeds, smoothed ones on "
+        "every second person."
     )
     return Sheet("divergences", "Lost trials", ("filter", *MOVEMENTS, "in all"), tuple(rows), note)
 
