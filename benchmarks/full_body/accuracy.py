@@ -193,12 +193,19 @@ def _sheet(
         note: Remarks for the reader.
     """
     rows: list[Row] = [
-        (movement, filter_name, *(found.pooled(filter_name, movement, number) for number, _ in numbers))
+        (
+            movement,
+            filter_name,
+            str(len(found.of(filter_name, movement)) - found.divergences(filter_name, movement)),
+            *(found.pooled(filter_name, movement, number) for number, _ in numbers),
+        )
         for movement in movements
         for filter_name in ALL
         if found.of(filter_name, movement)
     ]
-    return Sheet(name, title, ("movement", "filter", *(head for _, head in numbers)), tuple(rows), note)
+    return Sheet(
+        name, title, ("movement", "filter", "trials", *(head for _, head in numbers)), tuple(rows), note
+    )
 
 
 def persons_sheet(found: Survey) -> Sheet:

@@ -227,23 +227,26 @@ def survey_drawings(found: Survey, real: Sequence[RealScores]) -> Iterator[Drawi
         found: The synthetic trials.
         real: The real captures.
     """
-    names = (FCDI, FDMC_PER_FRAME, FDMC, DYNAMIC)
+    names = [name for name in (FCDI, FDMC_PER_FRAME, FDMC, DYNAMIC) if found.of(name)]
     numbers = (
         ("angle_deg", "angles (°)"),
         ("velocity_rad_s", "velocities (rad/s)"),
         ("torque_nm", "torques (N m)"),
     )
-    yield Drawing("own", "Errors by movement", _bars(found, numbers, names), "RMS, causal filters.")
+    yield Drawing(
+        "own", "Errors by movement", _bars(found, numbers, names), "RMS over common trials, causal filters."
+    )
     delays = (("velocity_delay_ms", "velocity delay (ms)"), ("torque_delay_ms", "torque delay (ms)"))
-    yield Drawing("own", "Delay of the legs' curves", _bars(found, delays, names), "Mean over trials.")
+    yield Drawing("own", "Delay of the legs' curves", _bars(found, delays, names), "Mean over common trials.")
     yield Drawing("own", "Residual force on real captures", _real_bars(real, names), "RMS after correction.")
 
 
 def _bars(found: Survey, numbers: Sequence[tuple[str, str]], names: Sequence[str]) -> Figure:
     movements = [movement for movement in MOVEMENTS if found.of(FCDI, movement)]
+    same = {movement: found.common(names, movement) for movement in movements}
     figure, made = axes(len(numbers), height=2.0)
     for one, (number, head) in zip(made, numbers, strict=True):
-        groups = [[found.pooled(name, movement, number) for movement in movements] for name in names]
+        groups = [[same[movement].pooled(name, movement, number) for movement in movements] for name in names]
         _grouped(one, groups, names, [_broken(movement) for movement in movements])
         labelled(one, "", head)
     legend(made[0])

@@ -17,9 +17,9 @@ from mbkf.filters.torque.settings import TorqueSettings, preset
 
 FCDI, FDMC_PRINTED, FDMC_PER_FRAME, FDMC, DYNAMIC = (
     "FCDI",
-    "FDMC, as printed",
-    "FDMC, per frame",
-    "FDMC, ours",
+    "FDMC as printed",
+    "FDMC per frame",
+    "FDMC ours",
     "dynamic",
 )
 PER_FRAME = "#8e5ea2"

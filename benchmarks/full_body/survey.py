@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -124,8 +124,22 @@ class Survey:
             return float(values.mean())
         return float(np.sqrt(np.mean(values**2)))
 
+    def common(self, names: Sequence[str], movement: str) -> Survey:
+        """The outcomes of some filters on the trials of a movement that all of them ran and none of them lost.
+
+        Args:
+            names: Names of the filters.
+            movement: One of the movements.
+        """
+        followed = [
+            {(o.person, o.seed) for o in self.of(name, movement) if not o.scores.diverged} for name in names
+        ]
+        kept = set.intersection(*followed)
+        chosen = [o for name in names for o in self.of(name, movement) if (o.person, o.seed) in kept]
+        return Survey(chosen)
+
     def ratio(self, filter_name: str, others: Sequence[str], movement: str, number: str) -> float:
-        """A filter's pooled number over the least of others', all over the trials that none of them lost.
+        """A filter's pooled number over the least of others', all over their common trials.
 
         Args:
             filter_name: Name of the filter.
@@ -133,17 +147,10 @@ class Survey:
             movement: One of the movements.
             number: A field of :class:`benchmarks.full_body.scores.Scores`.
         """
-        names = (filter_name, *others)
-        runs = [{(o.person, o.seed): o.scores for o in self.of(name, movement)} for name in names]
-        common = set.intersection(*(set(run) for run in runs))
-        kept = [key for key in sorted(common) if not any(run[key].diverged for run in runs)]
-        own, *rest = (
-            replace(self, outcomes=[Outcome(movement, *key, name, run[key]) for key in kept]).pooled(
-                name, movement, number
-            )
-            for name, run in zip(names, runs, strict=True)
+        same = self.common((filter_name, *others), movement)
+        return same.pooled(filter_name, movement, number) / min(
+            same.pooled(name, movement, number) for name in others
         )
-        return own / min(rest)
 
 
 def keys(*, quick: bool = False) -> list[Key]:

@@ -88,7 +88,7 @@ def test_a_lost_trial_breaks_the_bound():
     counted = {
         check.name: check.value for check in lost_by_fdmc(with_number(found, FDMC, "angle_deg", 100.0))
     }
-    assert counted["divergences of FDMC, ours, of 20 trials"] == 20.0
+    assert counted["divergences of FDMC ours, of 20 trials"] == 20.0
 
 
 def test_tables_have_a_row_per_movement_and_filter():

@@ -27,9 +27,9 @@ def test_bars_show_the_pooled_numbers():
 
 
 def test_a_lost_capture_shows_no_numbers():
-    gone = RealScores("a walk", "FDMC, as printed", np.inf, np.inf, np.inf, np.inf, np.inf, 1.0, 2.0, 0.1, 90)
+    gone = RealScores("a walk", "FDMC as printed", np.inf, np.inf, np.inf, np.inf, np.inf, 1.0, 2.0, 0.1, 90)
     sheet = real_findings([*REAL, gone]).sheets[0]
-    assert sheet.rows[-1][1] == "FDMC, as printed (lost the trial)"
+    assert sheet.rows[-1][1] == "FDMC as printed (lost the trial)"
     assert np.isnan(sheet.rows[-1][2])
     assert sheet.rows[-1][-1] == 90.0
 
