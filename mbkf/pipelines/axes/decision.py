@@ -41,8 +41,9 @@ HANDED, SAME_SIGN = 0.3, 0.9
 """Mean triple product of forward, left and up, and the share of frames of its sign, from which the body is taken to be
 right-handed or mirrored. Twenty-five measured captures have means of 0.72 to 1.00 and shares of 0.98 to 1."""
 
-EXPLAINED = 0.6
-"""Share of the markers' spread that a body has to explain (measured captures: 0.78 to 0.98); else it is not in them."""
+EXPLAINED, SCATTER = 0.7, 0.45
+"""Share of the markers' spread that a body has to explain (measured captures: 0.78 to 0.98), and the scatter of lengths
+within segments that it may have (0.05 to 0.32; names in a wrong order 0.64 and more): else the names are others'."""
 
 POSSIBLE_M, PLAUSIBLE_M = (0.65, 2.6), (1.0, 2.2)
 """Heights of a person beyond which a unit is refused, and between which another is proposed."""
@@ -139,7 +140,7 @@ def find_axes(capture: Capture, places: MarkerPlaces, *, with_plates: bool = Tru
     if capture.axes_source is AxesSource.GIVEN:
         return AxesFinding(Verdict.GIVEN, same)
     body = body_attitude(capture.markers, places)
-    if body is None or np.median(body.explained) < EXPLAINED:
+    if body is None or np.median(body.explained) < EXPLAINED or body.scatter > SCATTER:
         return AxesFinding(Verdict.UNKNOWN, same)
     impossible = _impossible_size(capture, body, places)
     if impossible:
@@ -236,7 +237,7 @@ def _impossible_size(capture: Capture, body: BodyAttitude, places: MarkerPlaces)
         if PLAUSIBLE_M[0] <= other <= PLAUSIBLE_M[1]:
             hint = f"in {unit} it is {other:.2f} m: give --unit {unit}"
             break
-    return f"read in {used}, the body is {height:.3g} m tall, which no person is; {hint}"
+    return f"read in {used}, the body is {height:.4g} m tall, which no person is; {hint}"
 
 
 def _evidence(body: BodyAttitude, axis: str, mirrored: bool, old: Array) -> str:

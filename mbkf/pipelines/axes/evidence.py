@@ -61,6 +61,7 @@ class BodyAttitude:
             NaN where depth or breadth is not seen.
         feet: (N, 2, 3) unit directions from heel to toe of right and left foot, NaN where not seen.
         size: Lengths within segments over those of the reference body, NaN where none is seen.
+        scatter: Interquartile range of these ratios over their median: small where the names are right.
         explained: (N,) share of the markers' spread that the reference places explain.
     """
 
@@ -69,6 +70,7 @@ class BodyAttitude:
     handedness: Array
     feet: Array
     size: float
+    scatter: float
     explained: Array
 
 
@@ -84,6 +86,9 @@ def marker_places(
         names: Names in the capture.
         known: Markers of the protocol or the subject by the capture's names.
         body: Their reference body.
+
+    Raises:
+        UnknownName: The body has no segment that a marker is on.
     """
     origins = {"world": np.zeros(3)}
     for segment in body.segments:
@@ -97,7 +102,7 @@ def marker_places(
         if marker is not None:
             columns.append(column)
             segments.append(marker.segment)
-            places.append(origins[marker.segment] + marker.position_m)
+            places.append(origins[body.segment(marker.segment).name] + marker.position_m)
     feet, toes = body.roles.feet, body.roles.toes or body.roles.feet
     return MarkerPlaces(
         np.array(columns, dtype=np.intp),
@@ -112,8 +117,8 @@ def _shipped(names: tuple[str, ...], body: BodyDescription) -> dict[str, Protoco
     """Markers of the shipped protocols of this body by these names; none where protocols differ on the segment."""
     found: dict[str, ProtocolMarker] = {}
     disputed = set()
-    for protocol in (load_protocol(name) for name in protocol_names()):
-        if not names or (protocol.body.name, protocol.body.text) != (body.name, body.text):
+    for protocol in (load_protocol(name) for name in protocol_names() if names):
+        if (protocol.body.name, protocol.body.text) != (body.name, body.text):
             continue
         for name, marker in protocol.match(names).items():
             if found.setdefault(name, marker).segment != marker.segment:
@@ -152,9 +157,8 @@ def body_attitude(markers: MarkerTrajectories, places: MarkerPlaces) -> BodyAtti
     if not found:
         return None
     up, stretch, handedness, explained, directions = (np.array(one) for one in zip(*found, strict=True))
-    return BodyAttitude(
-        up, stretch, handedness, directions, _size(positions[frames], places, segments), explained
-    )
+    low, size, high = _sizes(positions[frames], places, segments)
+    return BodyAttitude(up, stretch, handedness, directions, size, (high - low) / size, explained)
 
 
 def _frame(
@@ -196,11 +200,14 @@ def _foot(points: Array, neutral: Array, own: BoolArray) -> Array:
     return np.asarray(direction / length) if length else np.full(3, np.nan)
 
 
-def _size(positions: Array, places: MarkerPlaces, segments: NDArray[np.str_]) -> float:
-    """Median of measured over reference distances between markers of the same segment."""
+def _sizes(positions: Array, places: MarkerPlaces, segments: NDArray[np.str_]) -> tuple[float, float, float]:
+    """Quartiles of measured over reference distances between markers of the same segment, NaN where there are none."""
     first, second = np.triu_indices(len(segments), 1)
     reference = np.linalg.norm(places.neutral_m[first] - places.neutral_m[second], axis=1)
     told = (segments[first] == segments[second]) & (reference >= LEAST_PAIR_M)
     measured = np.linalg.norm(positions[:, first[told]] - positions[:, second[told]], axis=2)
     ratios = (measured / reference[told])[~np.isnan(measured)]
-    return float(np.median(ratios)) if ratios.size else float("nan")
+    if not ratios.size:
+        return np.nan, np.nan, np.nan
+    low, middle, high = np.percentile(ratios, [25, 50, 75])
+    return float(low), float(middle), float(high)

@@ -183,6 +183,12 @@ def test_bodies_of_no_persons_size_are_refused(factor, proposed):
         assert f"--unit {proposed}" in refused.note
 
 
+def test_markers_with_names_of_others_tell_nothing():
+    capture = misread(made_capture(10, plates=()), MIRROR)
+    wrong = replace(capture.markers, positions_m=capture.markers.positions_m[:, ::-1])
+    assert found(replace(capture, markers=wrong)).verdict is Verdict.UNKNOWN
+
+
 def test_a_capture_that_does_not_tell_takes_the_axes_of_another():
     read = misread(made_capture(10, plates=()), MIRROR)
     few = replace(read, markers=read.markers.select(read.markers.names[:4]))

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mbkf.errors import UnknownName
 from mbkf.io.records import MarkerTrajectories
 from mbkf.model.body_file import load_body
 from mbkf.model.protocol import load_protocol
@@ -57,6 +58,12 @@ def test_legs_alone_tell_all_of_it():
 def test_size_is_that_of_the_markers_distances():
     found = seen(0.6 * np.eye(3))
     assert found.size == pytest.approx(0.6, abs=0.01)
+    assert found.scatter < 0.1
+
+
+def test_names_in_a_wrong_order_scatter():
+    swapped = replace(MARKERS, positions_m=MARKERS.positions_m[:, ::-1])
+    assert seen(np.eye(3), swapped).scatter > 0.5
 
 
 def test_what_is_not_seen_is_not_told():
@@ -78,6 +85,13 @@ def test_frames_without_markers_are_left_out():
     found = body_attitude(replace(MARKERS, positions_m=positions), places(MARKERS))
     assert found is not None
     assert len(found.up) == 3
+
+
+def test_a_segment_that_the_body_does_not_have_is_refused():
+    body = load_body("human18")
+    tail = replace(PROTOCOL.markers[0], segment="tail")
+    with pytest.raises(UnknownName, match="segment 'tail'"):
+        marker_places([tail.name], {tail.name: tail}, body)
 
 
 def test_names_of_any_shipped_protocol_have_a_place():
