@@ -27,15 +27,15 @@ UPRIGHT_COSINE = np.cos(np.deg2rad(30.0))
 """A body stands upright along an axis that its height makes less than this angle with."""
 
 ALWAYS, EVER = 0.95, 0.05
-"""Shares of frames: upright all the time, and at times. A person who stands along an axis in all frames of a capture,
-with legs straight and feet across it, was not lying; one who does so at times may rise from the floor."""
+"""Shares of frames: upright all the time, and at times. Who stands along an axis in all frames of a capture, with legs
+straight and feet across it, was not lying; who does so at times may rise from the floor."""
 
 STRAIGHT = 0.6
 """Height over that of the reference body of the same size, above which a body is not folded."""
 
 STANDING = 0.5
-"""Share of the frames in which at least one foot lies across the axis, from which the person stands on it: 1 of a walk,
-0.93 of a run, none of a person who lies with the feet stretched."""
+"""Share of the frames upright along an axis in which a foot lies across it, from which a person stands along it: 1 of a
+walk, 0.93 of a run; 0.2 to 0.35 of two persons who lie with their toes on the floor."""
 
 HANDED, SAME_SIGN = 0.3, 0.9
 """Mean triple product of forward, left and up, and the share of frames of its sign, from which the body is taken to be
@@ -182,20 +182,26 @@ class _Up:
 
 
 def _up(capture: Capture, body: BodyAttitude) -> _Up:
-    axis = nearest_axis(body.up.mean(axis=0))
+    """Which axis points up: the one that the body is along, or, where it lies at times, the one it stands along."""
+    main = nearest_axis(body.up.mean(axis=0))
+    standing = [a for a in _AXES if _along(body, a) >= EVER and _on_feet(body, a) >= STANDING]
+    axis = main
+    if main == "z" and standing and "z" not in standing:
+        axis = standing[0]
     if axis == "z":
         return _Up("z")
     stored = _stored(axis, axes_matrix(capture.axes))
     share = f"in {100 * _along(body, axis):.0f} % of frames the body extends along {stored} of the file"
     if capture.axes_source is AxesSource.UP_GIVEN:
         return _Up("z", f"{share}; up is {capture.up_axis}, as given")
-    if _stands_along(body, axis):
+    if axis == main and _stands_along(body, axis):
         return _Up(axis)
-    stated = capture.axes_source in (AxesSource.PLATES, AxesSource.SCREEN, AxesSource.MADE)
-    if stated or _along(body, "z") >= EVER:
-        return _Up("z", f"{share}, but does not stand on its feet in it; up is taken as {capture.up_axis}")
+    if capture.axes_source in (AxesSource.PLATES, AxesSource.SCREEN, AxesSource.MADE):
+        return _Up("z", f"{share}; up is {capture.up_axis}, as the file says")
+    if standing == ["z"]:
+        return _Up("z", f"{share}, but stands on its feet along {capture.up_axis} only, which is taken as up")
     hint = f"which axis points up? give --up (--up={capture.up_axis} where the person lies)"
-    return _Up("z", f"{share} and never along {capture.up_axis}, which was taken as up; {hint}", refused=True)
+    return _Up("z", f"{share} and does not stand along {capture.up_axis}, taken as up; {hint}", refused=True)
 
 
 def _stored(axis: str, matrix: Array) -> str:
@@ -209,12 +215,17 @@ def _along(body: BodyAttitude, axis: str) -> float:
 
 
 def _stands_along(body: BodyAttitude, axis: str) -> bool:
-    """Whether the body stands on its feet along a world axis, beyond doubt."""
-    if _along(body, axis) < ALWAYS or not np.median(body.stretch) >= STRAIGHT * body.size:
-        return False
-    rise = np.abs(body.feet @ _AXES[axis])
+    """Whether the body stands on its feet along a world axis all the time, with straight legs."""
+    straight = bool(np.median(body.stretch) >= STRAIGHT * body.size)
+    return straight and _along(body, axis) >= ALWAYS and _on_feet(body, axis) >= STANDING
+
+
+def _on_feet(body: BodyAttitude, axis: str) -> float:
+    """Share of the frames upright along a world axis in which a foot lies across it; 0 where no foot is seen."""
+    along = body.up @ _AXES[axis] > UPRIGHT_COSINE
+    rise = np.abs(body.feet[along] @ _AXES[axis])
     seen = ~np.isnan(rise).all(axis=1)
-    return bool(seen.any() and (np.nanmin(rise[seen], axis=1) < FLAT_SINE).mean() >= STANDING)
+    return float((np.nanmin(rise[seen], axis=1) < FLAT_SINE).mean()) if seen.any() else 0.0
 
 
 def _mirrored(body: BodyAttitude) -> bool | None:

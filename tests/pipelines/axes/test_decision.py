@@ -18,6 +18,7 @@ from mbkf.pipelines.axes.plates import pushed_away
 from tests.captures import LEGS, made_capture, only
 
 PROTOCOL = load_protocol("reference36")
+SAME = np.eye(3)
 MIRROR = np.diag([1.0, -1.0, 1.0])
 ON_ITS_BACK = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
 """Up becomes −x, forward becomes up."""
@@ -155,20 +156,30 @@ def test_a_person_who_lies_is_not_put_on_the_feet():
     assert "--up" in refused.note
     stated = found(replace(lying, axes_source=AxesSource.PLATES))
     assert stated.verdict is Verdict.KEPT
-    assert "up is taken as z" in stated.note
+    assert "as the file says" in stated.note
+
+
+def rising(turn: np.ndarray = SAME, stretched_rad: float = 1.0) -> Capture:
+    """A person who lies in sixteen frames of twenty, then stands, in axes misread by a turn."""
+    standing = made_capture(20, plates=())
+    positions = moved_foot(standing, stretched_rad).markers.positions_m @ ON_ITS_BACK.T
+    positions[16:] = standing.markers.positions_m[16:]
+    return misread(replace(standing, markers=replace(standing.markers, positions_m=positions)), turn)
 
 
 def test_a_person_who_gets_up_is_left_as_read():
-    capture = made_capture(20, plates=())
-    positions = capture.markers.positions_m.copy()
-    positions[:16] = positions[:16] @ ON_ITS_BACK.T
-    kept = found(
-        replace(
-            capture, markers=replace(capture.markers, positions_m=positions), axes_source=AxesSource.DEFAULT
-        )
-    )
+    kept = found(rising())
     assert kept.verdict is Verdict.KEPT
+    assert "stands on its feet along z only" in kept.note
     np.testing.assert_array_equal(kept.turn, np.eye(3))
+
+
+def test_a_person_who_gets_up_along_the_floor_is_refused():
+    """Misread so that lying looks upright: where the feet stand, the body is along another axis."""
+    refused = found(rising(ON_ITS_BACK.T))
+    assert refused.verdict is Verdict.REFUSED
+    assert "20 % of frames" in refused.note
+    assert found(rising(stretched_rad=0.0)).verdict is Verdict.REFUSED, "lying with the feet at right angles"
 
 
 @pytest.mark.parametrize(("factor", "proposed"), [(10.0, "mm"), (0.1, None), (100.0, None)])
