@@ -137,11 +137,26 @@ def _tally(stored: Stored, data: Path) -> Tally:
             continue
         finally:
             tally.seconds = max(tally.seconds, time.perf_counter() - start)
-        whole = axes_matrix(found.axes) @ usual.T @ misread
-        upright = whole[2, 2] == 1.0 and np.linalg.det(whole) > 0.0
-        tally.right += upright
-        tally.wrong += not upright
+        right = is_right(found, capture, axes_matrix(found.axes) @ usual.T @ misread)
+        tally.right += right
+        tally.wrong += not right
     return tally
+
+
+def is_right(found: Capture, true: Capture, whole: Array) -> bool:
+    """Whether a capture is the true one but for its heading: markers, forces and where they act.
+
+    Args:
+        found: The capture as it came out.
+        true: The capture in its true axes.
+        whole: (3, 3) what turns the true one into it, by the axes that it tells.
+    """
+    if whole[2, 2] != 1.0 or np.linalg.det(whole) < 0.0:
+        return False
+    pairs = [(found.markers.positions_m, true.markers.positions_m)]
+    for one, other in zip(found.plates, true.plates, strict=True):
+        pairs += [(one.force_n, other.force_n), (one.centre_of_pressure_m, other.centre_of_pressure_m)]
+    return all(np.allclose(one, other @ whole.T, atol=1e-6, equal_nan=True) for one, other in pairs)
 
 
 def _places(capture: Capture) -> MarkerPlaces:

@@ -71,6 +71,19 @@ def turned_plate(plate: PlateReadings, turn: Array) -> PlateReadings:
     return moved if np.allclose(wrench_turn[2], _UP) else _pressed_anew(_tared_anew(moved))
 
 
+def recentred(plate: PlateReadings) -> PlateReadings:
+    """A plate without corners with its moments about the mean centre of pressure, as its reader gives them.
+
+    Where the reader took another axis for the vertical, it could not find that point.
+    """
+    pressed = plate.centre_of_pressure_m[~np.isnan(plate.centre_of_pressure_m).any(axis=1)]
+    if plate.corners_m is not None or not len(pressed):
+        return plate
+    origin = pressed.mean(axis=0)
+    moment = plate.moment_nm + np.cross(plate.origin_m - origin, plate.force_n)
+    return replace(plate, origin_m=origin, moment_nm=moment)
+
+
 def plate_normal(corners_m: Array) -> Array:
     """(3,) unit normal of a plate's surface, the way that the order of its corners (4, 3) makes it face."""
     normal = np.cross(corners_m[0] - corners_m[2], corners_m[3] - corners_m[1])
@@ -90,15 +103,10 @@ def _tared_anew(plate: PlateReadings) -> PlateReadings:
 
 
 def _pressed_anew(plate: PlateReadings) -> PlateReadings:
-    """The plate with its centre of pressure found for the new vertical; without corners, moments about its mean."""
+    """The plate with its centre of pressure found for the new vertical, in the surface or at its origin's height."""
     normal = _UP
     if plate.corners_m is not None:
         normal = plate_normal(plate.corners_m)
         normal = normal if normal[2] >= 0.0 else -normal
     pressure = centre_of_pressure(plate.force_n, plate.moment_nm, plate.origin_m, normal, plate.threshold_n)
-    loaded = ~np.isnan(pressure).any(axis=1)
-    if plate.corners_m is not None or not loaded.any():
-        return replace(plate, centre_of_pressure_m=pressure)
-    origin = pressure[loaded].mean(axis=0)
-    moment = plate.moment_nm + np.cross(plate.origin_m - origin, plate.force_n)
-    return replace(plate, centre_of_pressure_m=pressure, origin_m=origin, moment_nm=moment)
+    return replace(plate, centre_of_pressure_m=pressure)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from mbkf.errors import ShapeError
 from mbkf.io.records import AxesSource, PlateReadings
-from mbkf.io.turning import plate_normal, turned, turned_plate
+from mbkf.io.turning import plate_normal, recentred, turned, turned_plate
 from tests.captures import made_capture
 
 
@@ -70,10 +70,10 @@ def test_a_wrench_does_the_same_work_in_the_mirror(turn):
     before = pressed_plate(False)
     after = turned_plate(before, turn)
     det = np.linalg.det(turn)
-    # moments about the same point before and after: that of the first plate's origin
-    moment = after.moment_nm + np.cross(after.origin_m - turn @ before.origin_m, after.force_n)
     power = before.force_n @ velocity + before.moment_nm @ turning
-    np.testing.assert_allclose(after.force_n @ (turn @ velocity) + moment @ (det * turn @ turning), power)
+    np.testing.assert_allclose(
+        after.force_n @ (turn @ velocity) + after.moment_nm @ (det * turn @ turning), power
+    )
 
 
 @settings(max_examples=48, deadline=None)
@@ -88,8 +88,8 @@ def test_there_and_back_is_the_same(turn, corners):
     for one, other in zip(capture.plates, back.plates, strict=True):
         np.testing.assert_allclose(other.force_n, one.force_n, atol=1e-9)
         np.testing.assert_allclose(other.centre_of_pressure_m, one.centre_of_pressure_m, atol=1e-12)
-        lever = other.origin_m - one.origin_m
-        np.testing.assert_allclose(other.moment_nm + np.cross(lever, other.force_n), one.moment_nm, atol=1e-9)
+        np.testing.assert_array_equal(other.origin_m, one.origin_m)
+        np.testing.assert_allclose(other.moment_nm, one.moment_nm, atol=1e-9)
 
 
 def test_a_plate_with_corners_reads_in_its_own_axes():
@@ -108,6 +108,16 @@ def test_a_plate_mirrored_along_the_floor_faces_down():
     np.testing.assert_allclose(plate_normal(after.corners_m), [0.0, 0.0, -1.0])
     assert (after.force_n[:, 2] < 0.0).all()
     np.testing.assert_allclose(after.force_n[:, 1], pressed_plate(True).force_n[:, 1] * -1.0)
+
+
+def test_moments_are_about_the_mean_centre_of_pressure():
+    before = pressed_plate(False)
+    after = recentred(before)
+    np.testing.assert_allclose(after.origin_m, before.centre_of_pressure_m.mean(axis=0))
+    np.testing.assert_allclose(free_moment(after), free_moment(before), atol=1e-9)
+    assert recentred(pressed_plate(True)).origin_m.tolist() == pressed_plate(True).origin_m.tolist()
+    unloaded = replace(before, centre_of_pressure_m=np.full((50, 3), np.nan))
+    assert recentred(unloaded) is unloaded
 
 
 def test_offsets_of_a_misread_vertical_are_put_back():

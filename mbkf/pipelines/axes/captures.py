@@ -11,11 +11,10 @@ from mbkf.errors import InvalidInput
 from mbkf.io.axes import axes_matrix
 from mbkf.io.records import AxesSource, Capture
 from mbkf.io.subject import Subject, match_names
-from mbkf.io.turning import turned
 from mbkf.model.body_file import load_body
 from mbkf.model.human import reference_body
 from mbkf.model.protocol import Protocol
-from mbkf.pipelines.axes.decision import AxesFinding, Verdict, applied, find_axes, right_axes
+from mbkf.pipelines.axes.decision import AxesFinding, Verdict, applied, find_axes, put_right, right_axes
 from mbkf.pipelines.axes.evidence import marker_places
 
 REPORT_KEY = "axes"
@@ -105,6 +104,6 @@ def turned_like_subject(capture: Capture, subject: Subject) -> Capture:
             note = (
                 f"axes {one['used']} as in the subject's static trial; --axes={capture.axes} keeps the file's"
             )
-            made = turned(capture, np.asarray(turn), AxesSource.BODY)
+            made = put_right(capture, np.asarray(turn))
             return replace(made, notes=(*made.notes, note))
     return capture

@@ -19,7 +19,7 @@ from mbkf.io.axes import (
     rotation_to_world,
 )
 from mbkf.io.records import AxesSource, Capture
-from mbkf.io.turning import turned
+from mbkf.io.turning import recentred, turned
 from mbkf.pipelines.axes.evidence import FLAT_SINE, BodyAttitude, MarkerPlaces, body_attitude
 from mbkf.pipelines.axes.plates import contradiction, pushed_away
 
@@ -124,8 +124,19 @@ def right_axes(
 def applied(capture: Capture, finding: AxesFinding) -> Capture:
     """The capture with what was found about it: turned, and with the note; itself where there is neither."""
     if finding.verdict is Verdict.PUT_RIGHT:
-        capture = turned(capture, finding.turn, AxesSource.BODY)
+        capture = put_right(capture, finding.turn)
     return replace(capture, notes=(*capture.notes, finding.note)) if finding.note else capture
+
+
+def put_right(capture: Capture, turn: Array) -> Capture:
+    """A capture turned into the axes of the body in it.
+
+    Args:
+        capture: The capture.
+        turn: (3, 3) signed permutation.
+    """
+    found = turned(capture, turn, AxesSource.BODY)
+    return replace(found, plates=tuple(recentred(plate) for plate in found.plates))
 
 
 def find_axes(capture: Capture, places: MarkerPlaces, *, with_plates: bool = True) -> AxesFinding:

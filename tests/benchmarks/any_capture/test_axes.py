@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from benchmarks.any_capture import axes
-from benchmarks.any_capture.axes import CAPTURES, as_stored, axes_rows
+from benchmarks.any_capture.axes import CAPTURES, as_stored, axes_rows, is_right
 from mbkf.errors import InvalidInput
+from mbkf.io.records import AxesSource
+from mbkf.io.turning import turned
+from tests.captures import made_capture
 
 
 def test_nine_ways_are_six_rotations_and_three_mirror_images():
@@ -24,6 +27,18 @@ def test_nine_ways_are_six_rotations_and_three_mirror_images():
 def test_two_c3d_and_three_trc_captures_are_judged():
     suffixes = sorted(one.trial.rsplit(".", 1)[1] for one in CAPTURES)
     assert suffixes == ["c3d", "c3d", "trc", "trc", "trc"]
+
+
+def test_right_are_markers_and_forces_upright_in_any_heading():
+    capture = made_capture(5)
+    quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    assert is_right(capture, capture, np.eye(3))
+    assert is_right(turned(capture, quarter, AxesSource.BODY), capture, quarter)
+    assert not is_right(turned(capture, quarter, AxesSource.BODY), capture, np.eye(3))
+    for wrong in (np.diag([1.0, -1.0, 1.0]), np.diag([1.0, -1.0, -1.0])):
+        assert not is_right(turned(capture, wrong, AxesSource.BODY), capture, wrong)
+    pulled = replace(capture, plates=tuple(replace(p, force_n=-p.force_n) for p in capture.plates))
+    assert not is_right(pulled, capture, np.eye(3))
 
 
 def by_name(rows):
