@@ -70,8 +70,8 @@ class AxesSummary:
     Attributes:
         read: Axes of the file that were taken as forward, left and up.
         source: Where that is known from.
-        verdict: What was found: "right", "put right", "kept", "refused", "unknown" (too few markers whose names are
-            known) or "given".
+        verdict: What was found: "right", "put right", "kept", "unclear" (somebody lies), "refused", "unknown" (too few
+            markers whose names are known) or "given".
         used: Axes that the other commands would use.
         note: One line about it, "" where there is nothing to tell.
     """

@@ -7,14 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from mbkf.errors import InvalidInput
 from mbkf.io.axes import axes_matrix
 from mbkf.io.records import AxesSource, Capture
 from mbkf.io.subject import Subject, match_names
 from mbkf.model.body_file import load_body
 from mbkf.model.human import reference_body
 from mbkf.model.protocol import Protocol
-from mbkf.pipelines.axes.decision import AxesFinding, Verdict, applied, find_axes, put_right, right_axes
+from mbkf.pipelines.axes.decision import AxesFinding, applied, find_axes, may_follow, put_right, right_axes
 from mbkf.pipelines.axes.evidence import marker_places
 
 REPORT_KEY = "axes"
@@ -50,12 +49,9 @@ def checked_for_subject(capture: Capture, subject: Subject) -> Capture:
         InvalidInput: The axes or the unit of the trial cannot be right, and it is not clear what they are.
     """
     found = find_axes_for_subject(capture, subject)
-    if found.verdict is Verdict.REFUSED:
-        raise InvalidInput(f"{capture.path or 'capture'}: {found.note}")
-    if found.verdict in (Verdict.UNKNOWN, Verdict.KEPT):
-        alike = turned_like_subject(capture, subject)
-        if alike is not capture:
-            return alike
+    alike = turned_like_subject(capture, subject)
+    if alike is not capture and may_follow(found, axes_matrix(alike.axes) @ axes_matrix(capture.axes).T):
+        return alike
     return applied(capture, found)
 
 

@@ -39,7 +39,7 @@ walk, 0.93 of a run; 0.2 to 0.35 of two persons who lie with their toes on the f
 
 HANDED, SAME_SIGN = 0.3, 0.9
 """Mean triple product of forward, left and up, and the share of frames of its sign, from which the body is taken to be
-right-handed or mirrored. Twenty-five measured captures have means of 0.72 to 1.00 and shares of 0.98 to 1."""
+right-handed or mirrored. Twenty-five measured captures have means of 0.63 (legs alone) to 1 and shares of 0.98 to 1."""
 
 EXPLAINED, SCATTER = 0.7, 0.45
 """Share of the markers' spread that a body has to explain (measured captures: 0.78 to 0.98), and the scatter of lengths
@@ -61,6 +61,8 @@ class Verdict(StrEnum):
     """They were not, and it is clear what they are."""
     KEPT = "kept"
     """They may not be; they are kept, for the reason that the note gives."""
+    UNCLEAR = "unclear"
+    """Somebody lies who never stands, and the file does not say which axis points up."""
     REFUSED = "refused"
     """Body and plates, or body and file, contradict each other."""
     UNKNOWN = "unknown"
@@ -90,7 +92,7 @@ def right_axes(
     """Captures of one person with their axes checked, and put right where that is needed.
 
     A capture that does not tell its axes takes those of the others that were read alike: a laboratory's static and
-    moving trials have the same.
+    moving trials have the same. What it does tell, where its feet stand, is not overruled.
 
     Args:
         captures: The captures.
@@ -106,23 +108,38 @@ def right_axes(
     found = [
         find_axes(one, place, with_plates=with_plates) for one, place in zip(captures, places, strict=True)
     ]
-    known = {
-        (one.axes, one.axes_source): finding
-        for one, finding in zip(captures, found, strict=True)
-        if finding.verdict in (Verdict.RIGHT, Verdict.PUT_RIGHT)
-    }
+    known: dict[tuple[str, AxesSource], list[AxesFinding]] = {}
+    for one, finding in zip(captures, found, strict=True):
+        if finding.verdict in (Verdict.RIGHT, Verdict.PUT_RIGHT):
+            known.setdefault((one.axes, one.axes_source), []).append(finding)
     result = []
     for one, own in zip(captures, found, strict=True):
-        unsure = own.verdict in (Verdict.UNKNOWN, Verdict.KEPT)
-        finding = known.get((one.axes, one.axes_source), own) if unsure else own
-        if finding.verdict is Verdict.REFUSED:
-            raise InvalidInput(f"{one.path or 'capture'}: {finding.note}")
-        result.append(applied(one, finding))
+        others = known.get((one.axes, one.axes_source), [])
+        agreed = bool(others) and all(np.array_equal(other.turn, others[0].turn) for other in others)
+        result.append(applied(one, others[0] if agreed and may_follow(own, others[0].turn) else own))
     return result
 
 
+def may_follow(finding: AxesFinding, turn: Array) -> bool:
+    """Whether a capture about which this was found may be turned as another of the same person was.
+
+    Args:
+        finding: What was found about it.
+        turn: (3, 3) what the other was turned by.
+    """
+    if finding.verdict is Verdict.KEPT:  # its up is known, its handedness is not
+        return bool(turn[2, 2] == 1.0)
+    return finding.verdict in (Verdict.UNKNOWN, Verdict.UNCLEAR)
+
+
 def applied(capture: Capture, finding: AxesFinding) -> Capture:
-    """The capture with what was found about it: turned, and with the note; itself where there is neither."""
+    """The capture with what was found about it: turned, and with the note; itself where there is neither.
+
+    Raises:
+        InvalidInput: Its axes or its unit cannot be right, and it is not clear what they are.
+    """
+    if finding.verdict in (Verdict.REFUSED, Verdict.UNCLEAR):
+        raise InvalidInput(f"{capture.path or 'capture'}: {finding.note}")
     if finding.verdict is Verdict.PUT_RIGHT:
         capture = put_right(capture, finding.turn)
     return replace(capture, notes=(*capture.notes, finding.note)) if finding.note else capture
@@ -156,13 +173,12 @@ def find_axes(capture: Capture, places: MarkerPlaces, *, with_plates: bool = Tru
     impossible = _impossible_size(capture, body, places)
     if impossible:
         return AxesFinding(Verdict.REFUSED, same, impossible)
-    old, remarks = axes_matrix(capture.axes), []
-    up = _up(capture, body)
-    mirrored = _mirrored(body)
+    old, up, mirrored = axes_matrix(capture.axes), _up(capture, body), _mirrored(body)
+    if up.unclear:
+        return AxesFinding(Verdict.UNCLEAR, same, up.remark)
+    remarks = [up.remark] if up.remark else []
     if mirrored is None:
         remarks.append("the markers do not show whether they are mirrored")
-    if up.refused:
-        return AxesFinding(Verdict.REFUSED, same, up.remark)
     new = old if up.axis == "z" else rotation_to_world(_stored(up.axis, old))
     if mirrored:
         new = new * np.array([[1.0], [-1.0], [1.0]])
@@ -173,7 +189,6 @@ def find_axes(capture: Capture, places: MarkerPlaces, *, with_plates: bool = Tru
         if against:
             hint = "look at the axes of both (--up, --axes)"
             return AxesFinding(Verdict.REFUSED, same, f"the body stands upright, but {against}; {hint}")
-        remarks = [up.remark, *remarks] if up.remark else remarks
         return AxesFinding(Verdict.KEPT if remarks else Verdict.RIGHT, same, "; ".join(remarks))
     against = contradiction(capture, turn, places)
     if against:
@@ -185,11 +200,11 @@ def find_axes(capture: Capture, places: MarkerPlaces, *, with_plates: bool = Tru
 
 @dataclass(frozen=True)
 class _Up:
-    """World axis that points up in truth; what is to be told about it; whether that forbids to go on."""
+    """World axis that points up in truth; what is to be told about it; whether it is not clear after all."""
 
     axis: str
     remark: str = ""
-    refused: bool = False
+    unclear: bool = False
 
 
 def _up(capture: Capture, body: BodyAttitude) -> _Up:
@@ -212,7 +227,7 @@ def _up(capture: Capture, body: BodyAttitude) -> _Up:
     if standing == ["z"]:
         return _Up("z", f"{share}, but stands on its feet along {capture.up_axis} only, which is taken as up")
     hint = f"which axis points up? give --up (--up={capture.up_axis} where the person lies)"
-    return _Up("z", f"{share} and does not stand along {capture.up_axis}, taken as up; {hint}", refused=True)
+    return _Up("z", f"{share} and does not stand along {capture.up_axis}, taken as up; {hint}", unclear=True)
 
 
 def _stored(axis: str, matrix: Array) -> str:

@@ -151,9 +151,13 @@ def test_plates_that_push_elsewhere_than_the_body_stands_are_refused():
 
 def test_a_person_who_lies_is_not_put_on_the_feet():
     lying = misread(moved_foot(made_capture(10, plates=())), ON_ITS_BACK)
-    refused = found(lying)
-    assert refused.verdict is Verdict.REFUSED
-    assert "--up" in refused.note
+    unclear = found(lying)
+    assert unclear.verdict is Verdict.UNCLEAR
+    with pytest.raises(InvalidInput, match="--up"):
+        right_axes([lying], [places(lying)])
+    standing = made_capture(10, plates=(), axes_source=AxesSource.DEFAULT)
+    both = right_axes([standing, lying], [places(standing), places(lying)])
+    assert both[1] is lying, "the static trial tells which axis points up"
     stated = found(replace(lying, axes_source=AxesSource.PLATES))
     assert stated.verdict is Verdict.KEPT
     assert "as the file says" in stated.note
@@ -176,10 +180,19 @@ def test_a_person_who_gets_up_is_left_as_read():
 
 def test_a_person_who_gets_up_along_the_floor_is_refused():
     """Misread so that lying looks upright: where the feet stand, the body is along another axis."""
-    refused = found(rising(ON_ITS_BACK.T))
-    assert refused.verdict is Verdict.REFUSED
-    assert "20 % of frames" in refused.note
-    assert found(rising(stretched_rad=0.0)).verdict is Verdict.REFUSED, "lying with the feet at right angles"
+    unclear = found(rising(ON_ITS_BACK.T))
+    assert unclear.verdict is Verdict.UNCLEAR
+    assert "20 % of frames" in unclear.note
+    assert found(rising(stretched_rad=0.0)).verdict is Verdict.UNCLEAR, "lying with the feet at right angles"
+
+
+def test_a_person_known_to_stand_is_not_laid_down_by_another_capture():
+    """The handedness that one trial lacks is taken from the other, the up that it has is not."""
+    standing = made_capture(10, plates=(), axes_source=AxesSource.DEFAULT)
+    flat = replace(places(standing), neutral_m=places(standing).neutral_m * [0.0, 1.0, 1.0])
+    for other, axes in ((misread(standing, MIRROR), "x,-y,z"), (misread(standing, ON_ITS_BACK), "x,y,z")):
+        both = right_axes([other, standing], [places(other), flat])
+        assert both[1].axes == axes
 
 
 @pytest.mark.parametrize(("factor", "proposed"), [(10.0, "mm"), (0.1, None), (100.0, None)])
@@ -206,6 +219,9 @@ def test_a_capture_that_does_not_tell_takes_the_axes_of_another():
     assert found(few).verdict is Verdict.UNKNOWN
     both = right_axes([read, few], [places(read), places(few)])
     assert [one.axes for one in both] == ["x,-y,z", "x,-y,z"]
+    right = made_capture(10, plates=(), axes_source=AxesSource.DEFAULT)
+    torn = right_axes([read, right, few], [places(one) for one in (read, right, few)])
+    assert torn[2] is few, "the others do not agree"
     (alone,) = right_axes([few], [places(few)])
     assert alone is few
 
