@@ -1,0 +1,11 @@
+"""Any laboratory's capture: what mbkf makes of captures that no protocol or file of it was made for."""
+
+from __future__ import annotations
+
+from benchmarks.any_capture.axes import axes_rows
+from benchmarks.checks import Check, Context
+
+
+def run(context: Context) -> list[Check]:
+    """All rows of the table."""
+    return axes_rows(context.require_data())
