@@ -9,7 +9,7 @@ A reader of one's own joins the built-in ones by a decorator::
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
@@ -28,6 +28,8 @@ class CaptureOptions:
         cop_threshold_n: Vertical force in N below which no centre of pressure is given.
         tare: Whether the offset of unloaded plates is removed.
         plates: Whether the file's own force plates are read.
+        trial_end_s: Time of the last frame of the markers, for a file of ground reactions; None where not known.
+        notes: Receives the remarks of a reader of ground reactions.
     """
 
     up: str | None = None
@@ -35,6 +37,8 @@ class CaptureOptions:
     cop_threshold_n: float = DEFAULT_COP_THRESHOLD_N
     tare: bool = True
     plates: bool = True
+    trial_end_s: float | None = None
+    notes: list[str] = field(default_factory=list, compare=False)
 
 
 Read = Callable[[Path, CaptureOptions], Capture]
@@ -132,10 +136,11 @@ def read_capture(
     """Read a capture, and its ground reactions where they stand in a file of their own.
 
     Args:
-        path: File of a registered format, by default C3D or TRC.
-        forces: File of ground reactions (MOT or STO); it then replaces the plates of a C3D file. Its y is up, or
-            ``up`` where the markers are a TRC file. It keeps its own times.
-        up: Axis of the file that points up; by default the one that a C3D file states, y for a TRC file.
+        path: File of a registered format: C3D, TRC, Motive's CSV or Qualisys's TSV.
+        forces: File of ground reactions (MOT, STO, .forces, TSV or CSV); it then replaces the plates of the file.
+            Its up is the axis that carries the weight, or ``up`` where the markers are no C3D file. It keeps its
+            own times.
+        up: Axis of the file that points up; by default the one that the file states or its format has.
         unit: Length unit of the markers; by default the one that the file states.
         cop_threshold_n: Vertical force in N below which no centre of pressure is given.
         tare: Whether the offset an unloaded plate shows is removed.
@@ -155,9 +160,14 @@ def read_capture(
     if forces is None:
         return capture
     forces = Path(forces)
-    plates = FORCES.format_of(forces).read(forces, replace(options, up=up if kind.forces_share_up else None))
-    notes = [*capture.notes, f"ground reactions from {forces.name}"]
     markers = capture.markers
+    options = replace(
+        options,
+        up=up if kind.forces_share_up else None,
+        trial_end_s=float(markers.times_s[-1]) if markers.frames else None,
+    )
+    plates = FORCES.format_of(forces).read(forces, options)
+    notes = [*capture.notes, f"ground reactions from {forces.name}", *options.notes]
     end_s = markers.start_time_s + markers.frames / markers.rate_hz
     for plate in plates:
         if plate.times_s[-1] < markers.start_time_s or plate.start_time_s > end_s:
@@ -223,10 +233,75 @@ def _read_trc(path: Path, options: CaptureOptions) -> Capture:
     return read_trc(path, up=options.up or "y", unit=options.unit)
 
 
+@register_reader(".csv", title="CSV of Motive", forces_share_up=True)
+def _read_motive(path: Path, options: CaptureOptions) -> Capture:
+    from mbkf.io.motive import read_motive
+
+    return read_motive(path, up=options.up, unit=options.unit)
+
+
+@register_reader(".tsv", title="TSV of Qualisys", brings_plates=True, forces_share_up=True)
+def _read_qualisys(path: Path, options: CaptureOptions) -> Capture:
+    from mbkf.io.qualisys import read_qualisys
+
+    return read_qualisys(
+        path,
+        up=options.up,
+        unit=options.unit,
+        cop_threshold_n=options.cop_threshold_n,
+        tare=options.tare,
+        plates=options.plates,
+    )
+
+
 @register_force_reader(".mot", ".sto", title="OpenSim storage")
 def _read_forces_mot(path: Path, options: CaptureOptions) -> tuple[PlateReadings, ...]:
     from mbkf.io.forces import read_forces_mot
 
     return read_forces_mot(
-        path, up=options.up or "y", cop_threshold_n=options.cop_threshold_n, tare=options.tare
+        path,
+        up=options.up,
+        cop_threshold_n=options.cop_threshold_n,
+        tare=options.tare,
+        until_s=options.trial_end_s,
+        notes=options.notes,
+    )
+
+
+@register_force_reader(".forces", title="Cortex forces")
+def _read_forces_cortex(path: Path, options: CaptureOptions) -> tuple[PlateReadings, ...]:
+    from mbkf.io.cortex import read_forces_cortex
+
+    return read_forces_cortex(
+        path,
+        up=options.up,
+        cop_threshold_n=options.cop_threshold_n,
+        tare=options.tare,
+        notes=options.notes,
+    )
+
+
+@register_force_reader(".tsv", title="TSV of a Qualisys plate")
+def _read_forces_qualisys(path: Path, options: CaptureOptions) -> tuple[PlateReadings, ...]:
+    from mbkf.io.qualisys import read_forces_qualisys
+
+    return read_forces_qualisys(
+        path,
+        up=options.up,
+        cop_threshold_n=options.cop_threshold_n,
+        tare=options.tare,
+        notes=options.notes,
+    )
+
+
+@register_force_reader(".csv", ".txt", title="table with named columns")
+def _read_forces_csv(path: Path, options: CaptureOptions) -> tuple[PlateReadings, ...]:
+    from mbkf.io.force_csv import read_forces_csv
+
+    return read_forces_csv(
+        path,
+        up=options.up,
+        cop_threshold_n=options.cop_threshold_n,
+        tare=options.tare,
+        notes=options.notes,
     )
