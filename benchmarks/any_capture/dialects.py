@@ -133,7 +133,13 @@ def write_mot(true: TrueCapture, path: Path, naming: str, promised_rows: int | N
 
 
 def write_cortex(true: TrueCapture, path: Path, up: str) -> None:
-    """A ``.forces`` file of Cortex: mm, N and N mm, the free moment as MZ whatever axis is up."""
+    """A ``.forces`` file of Cortex: mm, N and N mm, the free moment as MZ whatever axis is up.
+
+    Args:
+        true: The truth.
+        path: The file.
+        up: Axis of the file that points up.
+    """
     turn = rotation_to_world(up)
     count = len(true.plates)
     columns = [np.arange(1.0, len(true.times_s) + 1.0)[:, None]]

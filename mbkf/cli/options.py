@@ -5,11 +5,14 @@ from __future__ import annotations
 import argparse
 import math
 
-from mbkf.io.capture import CAPTURES
+from mbkf.io.capture import CAPTURES, FORCES
 from mbkf.io.readers import either
 
 CAPTURE_FILES = either(CAPTURES.suffixes)
 """Suffixes of the captures that can be read, as help texts have them."""
+
+FORCE_FILES = either(FORCES.suffixes)
+"""Suffixes of the files of ground reactions that can be read."""
 
 
 def add_axes_options(parser: argparse.ArgumentParser) -> None:

@@ -28,7 +28,7 @@ class CaptureOptions:
         cop_threshold_n: Vertical force in N below which no centre of pressure is given.
         tare: Whether the offset of unloaded plates is removed.
         plates: Whether the file's own force plates are read.
-        trial_end_s: Time of the last frame of the markers, for a file of ground reactions; None where not known.
+        trial_end_s: Time that ground reactions have to reach to last as long as the trial, None where not known.
         notes: Receives the remarks of a reader of ground reactions.
     """
 
@@ -164,7 +164,7 @@ def read_capture(
     options = replace(
         options,
         up=up if kind.forces_share_up else None,
-        trial_end_s=float(markers.times_s[-1]) if markers.frames else None,
+        trial_end_s=markers.start_time_s + (markers.frames - 2) / markers.rate_hz,  # but for the last frame
     )
     plates = FORCES.format_of(forces).read(forces, options)
     notes = [*capture.notes, f"ground reactions from {forces.name}", *options.notes]

@@ -173,9 +173,9 @@ def _one_set(
         if group is not force and _count(group) == 0:
             continue
         if group.count(None) > most_missing:
-            raise FileFormatError(
-                where, f"column {_absent(group, names)} of set '{label}' is missing; add it"
-            )
+            there = ", ".join(names[index] for index in group if index is not None)
+            reason = f"column {_absent(group, names)} of set '{label}' is missing beside {there}"
+            raise FileFormatError(where, f"{reason}; add it, or call columns like ground_force_r_vx")
     x, y, z = (int(index) for index in force if index is not None)
     return ForceSet(label, (x, y, z), tuple(point), tuple(moment))
 

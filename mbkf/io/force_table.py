@@ -91,7 +91,7 @@ def plates_of_table(
         UnknownName: No column follows a known naming.
     """
     columns = [_columns(table, one, up, notes) for one in force_sets(table.names, table.path)]
-    sign = reaction_sign([one.force[:, 2] for one in columns], notes)
+    sign = reaction_sign([one.force for one in columns], notes)
     metres = _metres(table, columns, threshold_n, notes)
     readings = []
     for one in columns:
@@ -120,7 +120,7 @@ def vertical_axis(forces: Sequence[Array]) -> str | None:
     Args:
         forces: (S, 3) forces in N of each set, in the axes of their file.
     """
-    mean = np.sum([np.nan_to_num(force).mean(axis=0) for force in forces], axis=0)
+    mean = _mean_force(forces)
     size = float(np.linalg.norm(mean))
     axis = int(np.argmax(np.abs(mean)))
     if not size >= _LEAST_WEIGHT_N or abs(mean[axis]) < _VERTICAL_SHARE * size:
@@ -128,18 +128,23 @@ def vertical_axis(forces: Sequence[Array]) -> str | None:
     return "xyz"[axis]
 
 
-def reaction_sign(vertical: Sequence[Array], notes: list[str]) -> float:
+def reaction_sign(forces: Sequence[Array], notes: list[str]) -> float:
     """1 where forces are those on the body, −1 where they are those on the plate.
 
     Args:
-        vertical: (S,) vertical force in N of each set.
+        forces: (S, 3) force in N of each set, world axes.
         notes: Receives that they were turned.
     """
-    mean = sum(float(np.nan_to_num(values).mean()) for values in vertical)
-    if mean > -_LEAST_WEIGHT_N:
+    mean = _mean_force(forces)
+    if mean[2] > -_LEAST_WEIGHT_N or -mean[2] < _VERTICAL_SHARE * np.linalg.norm(mean):
         return 1.0
     notes.append("the file holds the forces on the plates; turned into those on the body")
     return -1.0
+
+
+def _mean_force(forces: Sequence[Array]) -> Array:
+    """(3,) sum over the sets of their mean force in N."""
+    return np.asarray(np.sum([np.nan_to_num(force).mean(axis=0) for force in forces], axis=0))
 
 
 def up_of_table(table: ForceTable, given: str | None, default: str, notes: list[str]) -> str:

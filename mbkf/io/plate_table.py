@@ -21,6 +21,7 @@ from mbkf.io.records import PlateReadings
 from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare, require_finite
 
 _AGREEMENT_M = 0.01
+_SAME_M = 0.001
 _LEAST_SIDE_M = 0.02
 _LEAST_OFFSET_N = 0.5
 
@@ -54,8 +55,16 @@ class PlateTable:
 
 @dataclass(frozen=True)
 class _Reading:
-    """One way to read a plate: (S, 3) force and moment about the centre in laboratory axes, and its error in m."""
+    """One way to read a plate.
 
+    Attributes:
+        local: Whether the vectors were taken as in plate axes.
+        force_n: (S, 3) force in laboratory axes.
+        moment_nm: (S, 3) moment about the plate's centre in laboratory axes.
+        error_m: How far it leaves the stated centres of pressure and the plate, infinite where nobody stood on it.
+    """
+
+    local: bool
     force_n: Array
     moment_nm: Array
     error_m: float
@@ -77,10 +86,11 @@ def plates_with_corners(
         FileFormatError: A plate has no usable corners.
         InvalidInput: A force or moment is not a number.
     """
+    if not tables:
+        return ()
     rotation = rotation_to_world(up)
     read = [_best(table, threshold_n, notes) for table in tables]
-    vertical = [one.force_n @ rotation[2] for one in read]
-    sign = reaction_sign(vertical, notes)
+    sign = reaction_sign([one.force_n @ rotation.T for one in read], notes)
     return tuple(
         _readings(table, sign * np.hstack([one.force_n, one.moment_nm]), rotation, threshold_n, tare, notes)
         for table, one in zip(tables, read, strict=True)
@@ -122,6 +132,10 @@ def _best(table: PlateTable, threshold_n: float, notes: list[str]) -> _Reading:
         for about_centre in ((True,) if local else (True, False))
     ]
     best = min(ways, key=lambda way: way.error_m)
+    other = min((way.error_m for way in ways if way.local != best.local), default=np.inf)
+    if np.isfinite(other) and other < best.error_m + _SAME_M:
+        reason = "nothing tells whether its vectors are in plate or laboratory axes; export it with its DESCRIPTION"
+        raise FileFormatError(table.path, f"plate '{table.name}': {reason}")
     if best.error_m > _AGREEMENT_M and np.isfinite(best.error_m):
         notes.append(
             f"plate '{table.name}': moments and centres of pressure disagree by {1e3 * best.error_m:.0f} mm"
@@ -149,15 +163,19 @@ def _read(table: PlateTable, local: bool, about_centre: bool, factor: float, thr
     if table.pressure_m is not None:
         pressed &= np.isfinite(table.pressure_m).all(axis=1)
     if not pressed.any():
-        return _Reading(force, moment, np.inf)
+        return _Reading(local, force, moment, np.inf)
     found = centre + np.cross(normal, moment[pressed]) / (force[pressed] @ normal)[:, None]
-    if table.pressure_m is None:  # all that is known of it: it lies on the plate
-        half = np.abs((table.corners_m - centre) @ axes[:, :2]).max(axis=0)
-        off = np.maximum(np.abs((found - centre) @ axes[:, :2]) - half, 0.0)
-    else:
-        stated = table.pressure_m[pressed] @ turn + (centre if local else 0.0)
-        off = (stated - found) @ axes[:, :2]
-    return _Reading(force, moment, float(np.sqrt((off**2).sum(axis=1).mean())))
+    half = np.abs((table.corners_m - centre) @ axes[:, :2]).max(axis=0)
+    outside = np.maximum(np.abs((found - centre) @ axes[:, :2]) - half, 0.0)
+    off = np.zeros_like(outside)
+    if table.pressure_m is not None:
+        off = (table.pressure_m[pressed] @ turn + (centre if local else 0.0) - found) @ axes[:, :2]
+    return _Reading(local, force, moment, _rms(off) + _rms(outside))
+
+
+def _rms(vectors: Array) -> float:
+    """RMS of the norms of (S, 2) vectors."""
+    return float(np.sqrt((vectors**2).sum(axis=1).mean()))
 
 
 def _readings(

@@ -33,10 +33,10 @@ def test_suffix_chooses_the_reader(tmp_path):
         assert capture.plates == ()
 
 
-@pytest.mark.parametrize("name", ["a.mot", "a.csv", "noend"])
+@pytest.mark.parametrize("name", ["a.mot", "a.xlsx", "noend"])
 def test_other_files_are_refused_with_what_can_be_read(tmp_path, name):
     (tmp_path / name).write_text("")
-    with pytest.raises(FileFormatError, match=r"\.c3d or \.trc"):
+    with pytest.raises(FileFormatError, match=r"\.c3d, \.trc, \.csv or \.tsv"):
         read_capture(tmp_path / name)
 
 
