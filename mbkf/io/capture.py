@@ -14,8 +14,8 @@ from pathlib import Path
 
 from mbkf.errors import FileFormatError
 from mbkf.io.readers import FileFormat, FormatRegistry, either
-from mbkf.io.records import Capture, PlateReadings
-from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
+from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
+from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N, offset_remarks
 
 
 @dataclass(frozen=True)
@@ -168,13 +168,28 @@ def read_capture(
     )
     plates = FORCES.format_of(forces).read(forces, options)
     notes = [*capture.notes, f"ground reactions from {forces.name}", *options.notes]
-    end_s = markers.start_time_s + markers.frames / markers.rate_hz
-    for plate in plates:
-        if plate.times_s[-1] < markers.start_time_s or plate.start_time_s > end_s:
-            notes.append(f"ground reactions of '{plate.name}' lie outside the time of the markers")
-        if plate.offset[2]:
-            notes.append(f"set '{plate.name}': offset of {plate.offset[2]:+.1f} N vertical force removed")
+    notes += [*_coverage(plates, markers), *offset_remarks(plates)]
     return replace(capture, plates=plates, notes=tuple(notes))
+
+
+def _coverage(plates: tuple[PlateReadings, ...], markers: MarkerTrajectories) -> list[str]:
+    """Remarks on ground reactions that leave out the trial or a part of it."""
+    slack_s = 1.5 / markers.rate_hz
+    first_s, last_s = markers.start_time_s, markers.start_time_s + (markers.frames - 1) / markers.rate_hz
+    notes: list[str] = []
+    parts: dict[tuple[float, float], list[str]] = {}
+    for plate in plates:
+        start_s, end_s = plate.start_time_s, float(plate.times_s[-1])
+        if end_s < first_s or start_s > last_s + slack_s:
+            notes.append(f"ground reactions of '{plate.name}' lie outside the time of the markers")
+        elif start_s > first_s + slack_s or end_s < last_s - slack_s:
+            parts.setdefault((round(start_s, 3), round(end_s, 3)), []).append(plate.name)
+    for (start_s, end_s), names in parts.items():
+        notes.append(
+            f"ground reactions of {', '.join(names)} last from {start_s:g} to {end_s:g} s, the markers from "
+            f"{first_s:.4g} to {last_s:.4g} s"
+        )
+    return notes
 
 
 def write_capture(capture: Capture, path: str | Path) -> None:

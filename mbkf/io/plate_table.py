@@ -23,7 +23,6 @@ from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare, require_f
 _AGREEMENT_M = 0.01
 _SAME_M = 0.001
 _LEAST_SIDE_M = 0.02
-_LEAST_OFFSET_N = 0.5
 
 
 @dataclass(frozen=True)
@@ -80,7 +79,7 @@ def plates_with_corners(
         up: Axis of the laboratory that points up.
         threshold_n: Vertical force in N below which no centre of pressure is given.
         tare: Whether the offset of an unloaded plate is removed.
-        notes: Receives what was completed and removed.
+        notes: Receives what was completed.
 
     Raises:
         FileFormatError: A plate has no usable corners.
@@ -92,7 +91,7 @@ def plates_with_corners(
     read = [_best(table, threshold_n, notes) for table in tables]
     sign = reaction_sign([one.force_n @ rotation.T for one in read], notes)
     return tuple(
-        _readings(table, sign * np.hstack([one.force_n, one.moment_nm]), rotation, threshold_n, tare, notes)
+        _readings(table, sign * np.hstack([one.force_n, one.moment_nm]), rotation, threshold_n, tare)
         for table, one in zip(tables, read, strict=True)
     )
 
@@ -161,7 +160,9 @@ def _read(table: PlateTable, local: bool, about_centre: bool, factor: float, thr
         moment = moment - np.cross(centre, force)
     pressed = np.abs(force @ normal) >= threshold_n
     if table.pressure_m is not None:
-        pressed &= np.isfinite(table.pressure_m).all(axis=1)
+        pressed &= np.isfinite(table.pressure_m).all(axis=1) & table.pressure_m.any(
+            axis=1
+        )  # exact 0: none stated
     if not pressed.any():
         return _Reading(local, force, moment, np.inf)
     found = centre + np.cross(normal, moment[pressed]) / (force[pressed] @ normal)[:, None]
@@ -179,7 +180,7 @@ def _rms(vectors: Array) -> float:
 
 
 def _readings(
-    table: PlateTable, wrench: Array, rotation: Array, threshold_n: float, tare: bool, notes: list[str]
+    table: PlateTable, wrench: Array, rotation: Array, threshold_n: float, tare: bool
 ) -> PlateReadings:
     """Readings in world axes; ``wrench`` is (S, 6) about the centre in laboratory axes."""
     wrench = np.hstack([wrench[:, :3] @ rotation.T, wrench[:, 3:] @ rotation.T])
@@ -190,8 +191,6 @@ def _readings(
     if tare:
         found = find_tare(wrench, table.rate_hz)
         wrench, offset = remove_tare(wrench, found), found.offset
-        if abs(offset[2]) >= _LEAST_OFFSET_N:
-            notes.append(f"plate '{table.name}': offset of {offset[2]:+.1f} N vertical force removed")
     return PlateReadings(
         name=table.name,
         rate_hz=table.rate_hz,

@@ -26,7 +26,7 @@ from mbkf.io.labels import unique_labels, without_subject
 from mbkf.io.plate_table import PlateTable, check_corners, faced_axis, plates_with_corners
 from mbkf.io.records import Capture, CaptureEvent, MarkerTrajectories, PlateReadings
 from mbkf.io.text import TextFile, compare_count, compare_rate, number, numbers, read_text
-from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
+from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N, offset_remarks
 
 _KEY = re.compile(r"[A-Z][A-Z0-9_]+")
 _PLATE_FILE = re.compile(r"(?P<trial>.*)_f_(?P<plate>\d+)", re.IGNORECASE)
@@ -126,10 +126,12 @@ def read_qualisys(
         notes += check_body_size(positions, used_unit, str(path))
     if beside:
         notes.append(f"ground reactions from {', '.join(one.name for one in beside)}")
+    readings = plates_with_corners(tables, up=axis, threshold_n=cop_threshold_n, tare=tare, notes=notes)
+    notes += offset_remarks(readings)
     return Capture(
         str(path),
         MarkerTrajectories(tuple(names), positions, rate_hz, start_s),
-        plates_with_corners(tables, up=axis, threshold_n=cop_threshold_n, tare=tare, notes=notes),
+        readings,
         events=_events(table),
         up_axis=axis,
         length_unit=used_unit,
@@ -152,7 +154,7 @@ def read_forces_qualisys(
         up: Axis of the laboratory that points up; by default the one the plates face.
         cop_threshold_n: Vertical force in N below which no centre of pressure is given.
         tare: Whether the offset an unloaded plate shows is removed.
-        notes: Receives what was completed and removed, and which files were read.
+        notes: Receives what was completed, and which files were read.
 
     Returns:
         The plates, named by the numbers of their files, about the centres of their surfaces.

@@ -69,6 +69,32 @@ def test_forces_keep_their_times_and_a_mismatch_is_remarked(tmp_path):
     assert any("outside the time of the markers" in note for note in capture.notes)
 
 
+@pytest.mark.parametrize(("start_s", "told"), [(0.0, False), (0.01, False), (0.2, True), (-0.2, True)])
+def test_forces_that_leave_out_a_part_of_the_trial_are_told(tmp_path, start_s, told):
+    forces = forces_file(tmp_path / "a.mot", start_s=start_s)
+    notes = read_capture(trc_file(tmp_path / "a.trc"), forces=forces).notes
+    assert any(f"ground reactions of r last from {start_s:g} to" in note for note in notes) == told
+
+
+def test_a_wrong_count_of_rows_is_told_where_forces_last_as_long_as_the_markers(tmp_path):
+    trc, forces = trc_file(tmp_path / "a.trc"), forces_file(tmp_path / "a.mot")
+    text = forces.read_text()
+    forces.write_text(text.replace("nRows=500", "nRows=900"))
+    assert "a.mot promises 900 rows and has 500" in read_capture(trc, forces=forces).notes
+    forces.write_text("\n".join(text.splitlines()[:300]) + "\n")
+    with pytest.raises(FileFormatError, match=r"500 rows promised, 291 present, and they end at 0\.290 s"):
+        read_capture(trc, forces=forces)
+
+
+def test_offsets_are_told_once(tmp_path):
+    path = forces_file(tmp_path / "a.mot")
+    path.write_text(path.read_text().replace("\t0\t0\t0\t", "\t0\t-15\t0\t"))
+    notes = read_capture(trc_file(tmp_path / "a.trc"), forces=path).notes
+    assert [note for note in notes if "offset" in note] == [
+        "set 'r': offset of -15.0 N vertical force removed"
+    ]
+
+
 def test_options_reach_the_readers(tmp_path):
     path, forces = trc_file(tmp_path / "a.trc"), forces_file(tmp_path / "a.mot")
     capture = read_capture(path, forces=forces, up="z", unit="cm", cop_threshold_n=700.0, tare=False)
