@@ -29,6 +29,7 @@ class CaptureOptions:
         tare: Whether the offset of unloaded plates is removed.
         plates: Whether the file's own force plates are read.
         trial_end_s: Time that ground reactions have to reach to last as long as the trial, None where not known.
+        shared_up: Axis with which markers were read that share their axes with the ground reactions; None otherwise.
         notes: Receives the remarks of a reader of ground reactions.
     """
 
@@ -38,6 +39,7 @@ class CaptureOptions:
     tare: bool = True
     plates: bool = True
     trial_end_s: float | None = None
+    shared_up: str | None = None
     notes: list[str] = field(default_factory=list, compare=False)
 
 
@@ -138,8 +140,8 @@ def read_capture(
     Args:
         path: File of a registered format: C3D, TRC, Motive's CSV or Qualisys's TSV.
         forces: File of ground reactions (MOT, STO, .forces, TSV or CSV); it then replaces the plates of the file.
-            Its up is the axis that carries the weight, or ``up`` where the markers are no C3D file. It keeps its
-            own times.
+            Its up is that of the markers where these are no C3D file, else the axis that carries the weight; a plate
+            with corners faces up. It keeps its own times.
         up: Axis of the file that points up; by default the one that the file states or its format has.
         unit: Length unit of the markers; by default the one that the file states.
         cop_threshold_n: Vertical force in N below which no centre of pressure is given.
@@ -157,14 +159,18 @@ def read_capture(
     kind = CAPTURES.format_of(path)
     options = CaptureOptions(up, unit, cop_threshold_n, tare, plates=forces is None)
     capture = kind.read(path, options)
-    if forces is None:
-        return capture
-    forces = Path(forces)
-    markers = capture.markers
+    return capture if forces is None else _with_forces(capture, Path(forces), kind, options)
+
+
+def _with_forces(capture: Capture, forces: Path, kind: CaptureFormat, options: CaptureOptions) -> Capture:
+    """The capture with ground reactions of a file of their own."""
+    markers, share = capture.markers, kind.forces_share_up
     options = replace(
         options,
-        up=up if kind.forces_share_up else None,
+        up=options.up if share else None,
+        shared_up=capture.up_axis if share else None,
         trial_end_s=markers.start_time_s + (markers.frames - 2) / markers.rate_hz,  # but for the last frame
+        notes=[],
     )
     plates = FORCES.format_of(forces).read(forces, options)
     notes = [*capture.notes, f"ground reactions from {forces.name}", *options.notes]
@@ -275,7 +281,7 @@ def _read_forces_mot(path: Path, options: CaptureOptions) -> tuple[PlateReadings
 
     return read_forces_mot(
         path,
-        up=options.up,
+        up=options.up or options.shared_up,
         cop_threshold_n=options.cop_threshold_n,
         tare=options.tare,
         until_s=options.trial_end_s,
@@ -289,7 +295,7 @@ def _read_forces_cortex(path: Path, options: CaptureOptions) -> tuple[PlateReadi
 
     return read_forces_cortex(
         path,
-        up=options.up,
+        up=options.up or options.shared_up,
         cop_threshold_n=options.cop_threshold_n,
         tare=options.tare,
         notes=options.notes,
@@ -316,6 +322,7 @@ def _read_forces_csv(path: Path, options: CaptureOptions) -> tuple[PlateReadings
     return read_forces_csv(
         path,
         up=options.up,
+        shared_up=options.shared_up,
         cop_threshold_n=options.cop_threshold_n,
         tare=options.tare,
         notes=options.notes,

@@ -58,6 +58,7 @@ def read_forces_csv(
     path: str | Path,
     *,
     up: str | None = None,
+    shared_up: str | None = None,
     cop_threshold_n: float = DEFAULT_COP_THRESHOLD_N,
     tare: bool = False,
     notes: list[str] | None = None,
@@ -66,7 +67,9 @@ def read_forces_csv(
 
     Args:
         path: The file; of files that hold one numbered plate each, those of the others beside it are read too.
-        up: Axis of the file that points up; by default the one that carries the weight, y where none does.
+        up: Axis of the file that points up; by default the one that plates with corners face, else that of
+            ``shared_up``, else the one that carries the weight, y where none does.
+        shared_up: Axis with which markers were read that share their axes with the table.
         cop_threshold_n: Vertical force in N below which no centre of pressure is given.
         tare: Whether an offset of an unloaded plate is removed.
         notes: Receives what was completed, and which files were read.
@@ -95,7 +98,7 @@ def read_forces_csv(
         if corners is not None and len(sets) == 1 and all(index is None for index in sets[0].point):
             cornered.append(_plate(table, sets[0], corners, match["plate"] if match else sets[0].name))
             continue
-        axis = up_of_table(table, up, "y", remarks)
+        axis = up_of_table(table, up or shared_up, "y", remarks)
         found = plates_of_table(table, up=axis, threshold_n=cop_threshold_n, tare=tare, notes=remarks)
         if match and len(found) == 1:
             found = (replace(found[0], name=match["plate"]),)
@@ -190,6 +193,7 @@ def _table(file: TextFile, titled: _Titled) -> ForceTable:
         metres,
         newton_metres,
         at_point=False,
+        on_body=False,
     )
 
 

@@ -4,7 +4,8 @@ A table states, per set, the force and its point of application. What it does no
 told in a remark:
 
 - **Up**: the mean force of a person is weight, so it points along the vertical.
-- **Sign**: a plate pushes. Forces that pull down are those on the plate, and are turned.
+- **Sign**: a plate pushes. Forces that pull down, in a file that does not state whose they are, are those on the
+  plate, and are turned.
 - **Moment**: a torque at the centre of pressure is vertical; a moment about another point o is
   M = (p − o) × F + T with the point of application p, which determines o.
 - **Units**: the free torque of a foot is a few centimetres times its force, and a point lies in a laboratory.
@@ -13,13 +14,13 @@ told in a remark:
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
-from mbkf.io.axes import finite, rotation_to_world
+from mbkf.io.axes import finite, rotation_to_world, up_axis
 from mbkf.io.force_names import ForceSet, force_sets
 from mbkf.io.records import PlateReadings
 from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare, require_finite
@@ -48,6 +49,7 @@ class ForceTable:
         metres: Metres per unit of the points; None where the file does not state the unit.
         newton_metres: N m per unit of the moments; None where the file does not state it.
         at_point: Whether moments are stated to act at the point of application, as OpenSim has them.
+        on_body: Whether forces are stated to be those on the body; else they may be those on the plate.
     """
 
     path: str
@@ -58,6 +60,7 @@ class ForceTable:
     metres: float | None = 1.0
     newton_metres: float | None = 1.0
     at_point: bool = True
+    on_body: bool = True
 
 
 @dataclass(frozen=True)
@@ -77,10 +80,12 @@ def plates_of_table(
 
     With p the point of application, F the force and T the torque there, the moment about the set's origin o is
     T + (p − o) × F. The origin is the mean point of application while loaded, or the one that the moments have.
+    Where weight shows that another axis is vertical, all this is done with that one; the vectors keep to ``up``, so
+    that they stay in the axes of markers that were read with it.
 
     Args:
         table: The table.
-        up: Axis of the file that points up.
+        up: Axis of the file that is taken as up.
         threshold_n: Vertical force in N below which no centre of pressure is given.
         tare: Whether an offset of the unloaded set is removed, if it is 2 N or more.
         notes: Receives what was completed.
@@ -90,8 +95,10 @@ def plates_of_table(
         InvalidInput: A force, point or torque is not a number.
         UnknownName: No column follows a known naming.
     """
-    columns = [_columns(table, one, up, notes) for one in force_sets(table.names, table.path)]
-    sign = reaction_sign([one.force for one in columns], notes)
+    sets, up = force_sets(table.names, table.path), up_axis(up)
+    stands = _standing(table, sets, up)
+    columns = [_columns(table, one, stands, notes) for one in sets]
+    sign = 1.0 if table.on_body else reaction_sign([one.force for one in columns], notes)
     metres = _metres(table, columns, threshold_n, notes)
     readings = []
     for one in columns:
@@ -111,11 +118,11 @@ def plates_of_table(
         readings.append(
             _readings(table, one.name, np.hstack([force, about]), point, origin, threshold_n, tare)
         )
-    return tuple(readings)
+    return into_axes(readings, stands, up, notes)
 
 
 def vertical_axis(forces: Sequence[Array]) -> str | None:
-    """The axis that carries the weight, "x", "y" or "z"; None where no axis clearly does.
+    """The axis along which the forces point on the whole, "y" or "-z" for instance; None where no axis clearly does.
 
     Args:
         forces: (S, 3) forces in N of each set, in the axes of their file.
@@ -125,7 +132,7 @@ def vertical_axis(forces: Sequence[Array]) -> str | None:
     axis = int(np.argmax(np.abs(mean)))
     if not size >= _LEAST_WEIGHT_N or abs(mean[axis]) < _VERTICAL_SHARE * size:
         return None
-    return "xyz"[axis]
+    return ("-" if mean[axis] < 0.0 else "") + "xyz"[axis]
 
 
 def reaction_sign(forces: Sequence[Array], notes: list[str]) -> float:
@@ -147,6 +154,47 @@ def _mean_force(forces: Sequence[Array]) -> Array:
     return np.asarray(np.sum([np.nan_to_num(force).mean(axis=0) for force in forces], axis=0))
 
 
+def into_axes(
+    plates: Sequence[PlateReadings], stands: str, up: str, notes: list[str]
+) -> tuple[PlateReadings, ...]:
+    """Plates that were read with one axis up as if another had been.
+
+    Args:
+        plates: Readings in world axes.
+        stands: Axis of the file that was up.
+        up: Axis that is to be up.
+        notes: Receives that the two differ.
+    """
+    if stands == up:
+        return tuple(plates)
+    notes.append(
+        f"the ground reactions point along {stands} of their file, which was read with {up} up; give --up"
+    )
+    turn = rotation_to_world(up) @ rotation_to_world(stands).T
+    return tuple(
+        replace(
+            plate,
+            origin_m=turn @ plate.origin_m,
+            force_n=plate.force_n @ turn.T,
+            moment_nm=plate.moment_nm @ turn.T,
+            centre_of_pressure_m=plate.centre_of_pressure_m @ turn.T,
+            corners_m=None if plate.corners_m is None else plate.corners_m @ turn.T,
+            offset=np.concatenate([turn @ plate.offset[:3], turn @ plate.offset[3:]]),
+        )
+        for plate in plates
+    )
+
+
+def _standing(table: ForceTable, sets: Sequence[ForceSet], up: str) -> str:
+    """The axis of the file on which people stand: ``up``, unless weight points along another."""
+    found = vertical_axis([table.values[:, list(one.force)] for one in sets])
+    if found is None:
+        return up
+    if table.on_body:
+        return found
+    return up if found[-1] == up[-1] else found[-1]
+
+
 def up_of_table(table: ForceTable, given: str | None, default: str, notes: list[str]) -> str:
     """The axis of a table that points up: the one given, else the one that carries the weight, else the default.
 
@@ -164,6 +212,8 @@ def up_of_table(table: ForceTable, given: str | None, default: str, notes: list[
         return given
     forces = [table.values[:, list(one.force)] for one in force_sets(table.names, table.path)]
     found = vertical_axis(forces)
+    if found is not None and not table.on_body:
+        found = found[-1]
     if found is None or found == default:
         return default
     notes.append(

@@ -14,9 +14,9 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
-from mbkf.io.axes import rotation_to_world
+from mbkf.io.axes import rotation_to_world, up_axis
 from mbkf.io.c3d_plates import plate_axes
-from mbkf.io.force_table import reaction_sign
+from mbkf.io.force_table import into_axes, reaction_sign
 from mbkf.io.records import PlateReadings
 from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare, require_finite
 
@@ -87,13 +87,15 @@ def plates_with_corners(
     """
     if not tables:
         return ()
-    rotation = rotation_to_world(up)
     read = [_best(table, threshold_n, notes) for table in tables]
+    stands, up = faced_axis(tables[0]), up_axis(up)
+    rotation = rotation_to_world(stands)
     sign = reaction_sign([one.force_n @ rotation.T for one in read], notes)
-    return tuple(
+    readings = [
         _readings(table, sign * np.hstack([one.force_n, one.moment_nm]), rotation, threshold_n, tare)
         for table, one in zip(tables, read, strict=True)
-    )
+    ]
+    return into_axes(readings, stands, up, notes)
 
 
 def faced_axis(table: PlateTable) -> str:

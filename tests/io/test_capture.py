@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.errors import FileFormatError
+from mbkf.io.axes import rotation_to_world
 from mbkf.io.capture import read_capture
 from mbkf.io.forces import write_forces_mot
 from mbkf.io.records import MarkerTrajectories, PlateReadings
@@ -52,6 +53,23 @@ def test_forces_join_markers_in_the_same_world(tmp_path):
     np.testing.assert_allclose(plate.force_n[200], [10.0, 20.0, 600.0])
     np.testing.assert_allclose(plate.centre_of_pressure_m[200], [0.3, -0.4, 0.0])
     assert any("ground reactions from a.mot" in note for note in capture.notes)
+
+
+def test_forces_keep_to_the_axes_of_markers_that_share_them(tmp_path):
+    """A TRC file and forces of one laboratory, both with z up, read with TRC's usual y."""
+    positions = standing_points(50) / 1e3
+    turn = rotation_to_world("y")
+    write_trc(MarkerTrajectories(tuple("abcdefgh"), positions @ turn.T, 100.0), tmp_path / "z.trc")
+    plate = read_capture(trc_file(tmp_path / "a.trc"), forces=forces_file(tmp_path / "a.mot")).plates[0]
+    turned = [values @ turn.T for values in (plate.force_n, plate.moment_nm, plate.centre_of_pressure_m)]
+    stored = PlateReadings("r", 1000.0, 0.0, turn @ plate.origin_m, *turned, 20.0)
+    write_forces_mot([stored], tmp_path / "z.mot")
+    right, usual = (read_capture(tmp_path / "z.trc", forces=tmp_path / "z.mot", up=up) for up in ("z", None))
+    np.testing.assert_allclose(right.markers.positions_m, positions, atol=1e-6)
+    np.testing.assert_allclose(right.plates[0].force_n, plate.force_n, atol=1e-9)
+    np.testing.assert_allclose(usual.markers.positions_m, positions @ turn.T, atol=1e-6)
+    np.testing.assert_allclose(usual.plates[0].force_n, plate.force_n @ turn.T, atol=1e-9)
+    assert any("point along z of their file, which was read with y up" in note for note in usual.notes)
 
 
 def test_forces_replace_unusable_plates_of_a_c3d_file(tmp_path):

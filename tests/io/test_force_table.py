@@ -39,8 +39,23 @@ def read(one: ForceTable, up="z", notes=None):
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_axes_and_signs(up, sign):
     notes = []
-    check_plates(TRUE, read(table(up, sign), up, notes))
-    assert bool(notes) == (sign < 0.0)
+    check_plates(TRUE, read(table(up, sign, on_body=False), up, notes))
+    assert notes == ["the file holds the forces on the plates; turned into those on the body"] * (sign < 0.0)
+
+
+@pytest.mark.parametrize("stored", WORLD_AXES)
+@pytest.mark.parametrize("read_with", WORLD_AXES)
+def test_vectors_keep_to_the_axes_they_are_read_with(stored, read_with):
+    """Whatever is taken as up, the file's vectors are those of the truth; only weight decides what they mean."""
+    notes = []
+    one = table(stored, length=1e3, moment=1e3, metres=None, newton_metres=None, at_point=False)
+    plates = read(one, read_with, notes)
+    turn = rotation_to_world(read_with) @ rotation_to_world(stored).T
+    for truth, plate in zip(TRUE.plates, plates, strict=True):
+        about_origin = plate.moment_nm + np.cross(plate.origin_m, plate.force_n)
+        np.testing.assert_allclose(plate.force_n, truth.force_n @ turn.T, atol=1e-6)
+        np.testing.assert_allclose(about_origin, truth.wrench[:, 3:] @ turn.T, atol=1e-6)
+    assert any("point along" in note for note in notes) == (stored != read_with)
 
 
 @pytest.mark.parametrize("about", [None, [0.0, 0.0, 0.0], [0.35, 0.2, -0.04], [3.0, -1.0, 0.1]])
@@ -105,5 +120,7 @@ def test_weight_tells_the_axis():
         assert up_of_table(table(axis), None, "y", notes) == axis
         assert bool(notes) == (axis != "y")
     assert up_of_table(table("x"), "z", "y", []) == "z"
+    assert up_of_table(table("-z"), None, "y", []) == "-z"
+    assert up_of_table(table("z", -1.0, on_body=False), None, "y", []) == "z"
     assert vertical_axis([np.zeros((5, 3))]) is None
     assert vertical_axis([np.tile([300.0, 0.0, 300.0], (5, 1))]) is None

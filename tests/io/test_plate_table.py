@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.io.axes import rotation_to_world
 from mbkf.io.c3d_plates import plate_axes
 from mbkf.io.plate_table import PlateTable, check_corners, faced_axis, plates_with_corners
 from tests.io.true_capture import RATE_HZ, check_plates, made_plate, made_truth
@@ -98,6 +99,21 @@ def test_an_offset_is_removed_on_request():
 def test_the_axis_that_a_plate_faces(up, turn):
     plate = table(TRUE.plates[0])
     assert faced_axis(replace(plate, corners_m=plate.corners_m @ turn.T)) == up
+
+
+def test_vectors_keep_to_the_axes_they_are_read_with():
+    notes = []
+    plates = read([table(plate, sign=-1.0) for plate in TRUE.plates], up="y", notes=notes)
+    turn = rotation_to_world("y")
+    for truth, plate in zip(TRUE.plates, plates, strict=True):
+        about_origin = plate.moment_nm + np.cross(plate.origin_m, plate.force_n)
+        np.testing.assert_allclose(
+            np.hstack([plate.force_n, about_origin]),
+            np.hstack([truth.force_n @ turn.T, truth.wrench[:, 3:] @ turn.T]),
+            atol=1e-6,
+        )
+        np.testing.assert_allclose(plate.corners_m, truth.corners_m @ turn.T)
+    assert any("point along z of their file, which was read with y up" in note for note in notes)
 
 
 def test_bad_plates_are_refused():
