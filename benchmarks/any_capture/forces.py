@@ -89,7 +89,7 @@ def readings(true: TrueCapture, folder: Path) -> Iterator[tuple[str, Capture | N
         dialects.write_qualisys(true, path, in_plate_axes=local, with_times=with_times)
         yield f"Qualisys TSV, {axes} axes, {times} times", _read(path, None)
     dialects.write_devices_table(true, folder / "devices.csv")
-    yield "TRC and CSV of all plates", _read(trc, folder / "devices.csv")
+    yield "TRC and CSV of all plates", _read(folder / "z.trc", folder / "devices.csv", up="z")
 
 
 def _read(trial: Path, forces: Path | None, up: str | None = None) -> Capture | None:
