@@ -1,7 +1,8 @@
-"""Any laboratory's capture: one truth written as different laboratories store it, and read back."""
+"""Any laboratory's capture: what mbkf makes of captures that no protocol or file of it was made for."""
 
 from __future__ import annotations
 
+from benchmarks.any_capture.axes import axes_rows
 from benchmarks.any_capture.forces import forces_rows
 from benchmarks.checks import Check, Context
 
@@ -9,5 +10,6 @@ from benchmarks.checks import Check, Context
 def run(context: Context) -> list[Check]:
     """Rows of all parts."""
     return [
+        *axes_rows(context.require_data()),
         *forces_rows(context),
     ]

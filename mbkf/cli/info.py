@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from mbkf.pipelines.info import CaptureSummary, MarkerSummary
+    from mbkf.pipelines.info import AxesSummary, CaptureSummary, MarkerSummary
 
 _MOST_WITH_GAPS = 30
 _PIPED_WIDTH = 110
@@ -42,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
     """Read the capture and print its summary.
 
     Args:
-        args: ``file``, ``forces``, ``up``, ``unit`` and ``json``.
+        args: ``file``, ``forces``, ``up``, ``axes``, ``unit`` and ``json``.
 
     Returns:
         0.
@@ -50,10 +50,11 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         MbkfError: The capture cannot be read.
     """
+    from mbkf.cli.options import axes_options
     from mbkf.io.capture import read_capture
     from mbkf.pipelines.info import describe
 
-    summary = describe(read_capture(args.file, forces=args.forces, up=args.up, unit=args.unit))
+    summary = describe(read_capture(args.file, forces=args.forces, **axes_options(args)))
     if args.json:
         print(json.dumps(asdict(summary), indent=2, ensure_ascii=False, allow_nan=False))
         return 0
@@ -104,6 +105,7 @@ def _overview(summary: CaptureSummary) -> Table:
     frames = f"{summary.frames} at {summary.rate_hz:g} Hz, {summary.duration_s:.2f} s"
     table.add_row("frames", f"{frames}, from {summary.start_time_s:.3f} s")
     table.add_row("axes, unit", f"{summary.up_axis} up, {summary.length_unit}")
+    table.add_row("axes checked", escape(_axes(summary.axes)))
     missing = f"{100 * summary.missing_fraction:.2f} % of samples missing"
     table.add_row("markers", f"{summary.labelled} labelled, {summary.unlabelled} unlabelled; {missing}")
     if summary.extent_m is not None:
@@ -129,6 +131,11 @@ def _channels(summary: CaptureSummary) -> str:
     rates = sorted({channel.rate_hz for channel in summary.channels})
     names = ", ".join(f"{c.name} ({c.unit})" if c.unit else c.name for c in summary.channels)
     return f"{len(summary.channels)} at {', '.join(f'{rate:g}' for rate in rates)} Hz: {names}"
+
+
+def _axes(axes: AxesSummary) -> str:
+    told = f"{axes.read} (forward, left, up; {axes.source}): {axes.verdict}"
+    return f"{told}; {axes.note}" if axes.note else told
 
 
 def _gaps(gaps: list[MarkerSummary], total: int) -> Table:

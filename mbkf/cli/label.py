@@ -65,20 +65,23 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         MbkfError: An input is unusable.
     """
+    from mbkf.cli.options import axes_options
     from mbkf.cli.progress import stages
     from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
     from mbkf.io.subject import write_subject
+    from mbkf.pipelines.axes.captures import turned_like_subject
     from mbkf.pipelines.labelling.files import write_labels
     from mbkf.pipelines.labelling.score import score
 
     out = _checked(Path(args.out), Path(args.raw))
     check_folder(out.parent)
     _check_person(args)
-    raw = read_capture(args.raw, up=args.up, unit=args.unit)
-    truth = None if args.truth is None else read_capture(args.truth, up=args.up, unit=args.unit)
+    raw = read_capture(args.raw, **axes_options(args))
+    truth = None if args.truth is None else read_capture(args.truth, **axes_options(args))
     with stages() as report:
-        found, subject = _label(args, raw, report)
+        found, subject, raw = _label(args, raw, report)
+    truth = None if truth is None else turned_like_subject(truth, subject)
     compared = None if truth is None else score(found.markers, truth.markers, subject)
     if args.subject is None:
         write_subject(subject, out.with_suffix(".toml"))
@@ -93,10 +96,14 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _label(args: argparse.Namespace, raw: Capture, report: StageCallback) -> tuple[Labelling, Subject]:
-    """The labels, and the person that they were found with."""
+def _label(
+    args: argparse.Namespace, raw: Capture, report: StageCallback
+) -> tuple[Labelling, Subject, Capture]:
+    """The labels, the person that they were found with, and the capture in the axes of that person's."""
+    from mbkf.cli.options import axes_options
     from mbkf.io.capture import read_capture
     from mbkf.io.subject import read_subject
+    from mbkf.pipelines.axes.captures import turned_like_subject
     from mbkf.pipelines.label import label
     from mbkf.pipelines.label_unscaled import label_unscaled
     from mbkf.pipelines.scale import scale
@@ -105,11 +112,12 @@ def _label(args: argparse.Namespace, raw: Capture, report: StageCallback) -> tup
     if args.subject is not None:
         subject = read_subject(args.subject)
     elif args.static is not None:
-        static = read_capture(args.static, up=args.up, unit=args.unit)
+        static = read_capture(args.static, **axes_options(args))
         subject = scale(static, protocol=args.protocol, progress=report, **person)
     else:
-        return label_unscaled(raw, args.protocol, progress=report, **person)
-    return label(raw, subject, progress=report), subject
+        return *label_unscaled(raw, args.protocol, progress=report, **person), raw
+    raw = turned_like_subject(raw, subject)
+    return label(raw, subject, progress=report), subject, raw
 
 
 def _check_person(args: argparse.Namespace) -> None:

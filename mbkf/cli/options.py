@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from typing import TypedDict
 
 from mbkf.io.capture import CAPTURES, FORCES
 from mbkf.io.readers import either
@@ -15,12 +16,31 @@ FORCE_FILES = either(FORCES.suffixes)
 """Suffixes of the files of ground reactions that can be read."""
 
 
+class AxesOptions(TypedDict):
+    """How files are read: the values of ``--up``, ``--axes`` and ``--unit``, None where not given."""
+
+    up: str | None
+    axes: str | None
+    unit: str | None
+
+
+def axes_options(args: argparse.Namespace) -> AxesOptions:
+    """What :func:`add_axes_options` was given, as arguments of a reader."""
+    return {"up": args.up, "axes": args.axes, "unit": args.unit}
+
+
 def add_axes_options(parser: argparse.ArgumentParser) -> None:
-    """``--up`` and ``--unit``, for files that do not say, or say it wrongly."""
+    """``--up``, ``--axes`` and ``--unit``, for files that do not say, or say it wrongly."""
     parser.add_argument(
         "--up",
         metavar="AXIS",
         help="axis of the files that points up: x, y, z, or downwards --up=-x, --up=-y, --up=-z",
+    )
+    parser.add_argument(
+        "--axes",
+        metavar="X,Y,Z",
+        help="axes of the files that point forward, left and up, for example x,-z,y (OpenSim); x,z,y mirrors such a "
+        "file; they hold whatever the body looks like (--axes=-x,... where the first has a sign)",
     )
     parser.add_argument("--unit", metavar="UNIT", help="length unit of the markers: mm, cm or m")
 

@@ -85,6 +85,7 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         MbkfError: An input is unusable.
     """
+    from mbkf.cli.options import axes_options
     from mbkf.cli.progress import stages
     from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
@@ -97,7 +98,7 @@ def run(args: argparse.Namespace) -> int:
 
     hide = tuple(parse_hide(text) for text in args.hide)
     subject = read_subject(args.subject)
-    capture = read_capture(args.trial, forces=args.forces, up=args.up, unit=args.unit)
+    capture = read_capture(args.trial, forces=args.forces, **axes_options(args))
     truth = truth_beside(args.trial)
     folder, imus = check_folder(args.out), _imus(args)
     settings = ReconstructSettings(

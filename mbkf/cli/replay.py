@@ -75,7 +75,7 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         MbkfError: An input is unusable, or a library is missing.
     """
-    from mbkf.cli.options import check_positive, check_share
+    from mbkf.cli.options import axes_options, check_positive, check_share
     from mbkf.cli.progress import stages
     from mbkf.cli.stopping import stopped_by_signal
     from mbkf.io.capture import read_capture
@@ -86,7 +86,7 @@ def run(args: argparse.Namespace) -> int:
     for name, value in (("--jitter", args.jitter), ("--wait", args.wait)):
         check_positive(name, value, or_zero=True)
     check_share("--loss", args.loss)
-    capture = read_capture(args.trial, forces=args.forces, up=args.up, unit=args.unit)
+    capture = read_capture(args.trial, forces=args.forces, **axes_options(args))
     stream = played(capture, args.unlabelled)
     settings = ReplaySettings(args.speed, args.jitter / 1000.0, args.loss, args.wait)
     player = _player(args, stream)

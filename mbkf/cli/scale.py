@@ -51,6 +51,7 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         MbkfError: An input is unusable.
     """
+    from mbkf.cli.options import axes_options
     from mbkf.cli.progress import stages
     from mbkf.errors import FileFormatError, InvalidInput
     from mbkf.io.atomic import check_folder
@@ -64,8 +65,8 @@ def run(args: argparse.Namespace) -> int:
     if out.is_dir():
         raise FileFormatError(out, "is a folder; name a file for --out")
     check_folder(out.parent)
-    static = None if args.static is None else read_capture(args.static, up=args.up, unit=args.unit)
-    trials = [read_capture(path, up=args.up, unit=args.unit) for path in args.trial]
+    static = None if args.static is None else read_capture(args.static, **axes_options(args))
+    trials = [read_capture(path, **axes_options(args)) for path in args.trial]
     with stages() as report:
         subject = scale(
             static,
@@ -107,6 +108,8 @@ def _print(report: dict[str, Any], protocol: str, out: str) -> None:
     if left_out:
         names = ", ".join(list(left_out)[:10]) + (" …" if len(left_out) > 10 else "")
         console.print(f"{len(left_out)} points of the captures left out: {names}")
+    for told in report.get("axes", ()):
+        console.print(f"note: {told['capture']}: {told['note']}", soft_wrap=True)
     if not report["converged"]:
         console.print("the fit did not settle; look at the markers above")
     console.print(

@@ -85,6 +85,7 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         MbkfError: An input is unusable.
     """
+    from mbkf.cli.options import axes_options
     from mbkf.cli.progress import stages
     from mbkf.errors import InvalidInput
     from mbkf.io.atomic import check_folder
@@ -110,7 +111,7 @@ def run(args: argparse.Namespace) -> int:
     )
     subject = read_subject(args.subject)
     captures = [
-        read_capture(trial, forces=file, up=args.up, unit=args.unit)
+        read_capture(trial, forces=file, **axes_options(args))
         for trial, file in zip(args.trials, forces, strict=True)
     ]
     with stages() as report:

@@ -66,6 +66,44 @@ def rotation_to_world(up: str) -> Array:
     return np.array(WORLD_AXES[up_axis(up)], dtype=np.float64)
 
 
+def axes_matrix(axes: str) -> Array:
+    """Matrix A with ``p_world = A @ p_file`` of three stored axes, ``"x,-z,y"`` for OpenSim's.
+
+    Args:
+        axes: Stored axes that point forward, left and up, each ``x``, ``y`` or ``z`` with a sign or without.
+
+    Returns:
+        (3, 3) signed permutation; its determinant is −1 where the file is mirrored.
+
+    Raises:
+        InvalidInput: These are not three different axes.
+    """
+    words = [word.strip().lower().removeprefix("+") for word in axes.split(",")]
+    if len(words) != 3 or any(word not in WORLD_AXES for word in words) or len({w[-1] for w in words}) != 3:
+        raise InvalidInput(
+            f"axes '{axes}': name the stored axes that point forward, left and up, for example x,-z,y"
+        )
+    matrix = np.zeros((3, 3))
+    for row, word in zip(matrix, words, strict=True):
+        row["xyz".index(word[-1])] = -1.0 if word.startswith("-") else 1.0
+    return matrix
+
+
+def axes_text(matrix: Array) -> str:
+    """The text that :func:`axes_matrix` reads.
+
+    Args:
+        matrix: (3, 3) signed permutation.
+    """
+    return ",".join(nearest_axis(row) for row in matrix)
+
+
+def nearest_axis(direction: Array) -> str:
+    """Name of the axis that a direction (3,) is nearest to, ``"-y"`` for (0.1, −0.9, 0.2)."""
+    axis = int(np.argmax(np.abs(direction)))
+    return ("-" if direction[axis] < 0.0 else "") + "xyz"[axis]
+
+
 def length_unit(name: str) -> str:
     """The canonical short name of a length unit, ``"mm"`` for ``"Millimeters"``.
 

@@ -8,14 +8,22 @@ from pathlib import Path
 import numpy as np
 
 from mbkf.errors import FileFormatError, UnknownName
-from mbkf.io.axes import WORLD_AXES, check_body_size, length_unit, up_axis
+from mbkf.io.axes import (
+    WORLD_AXES,
+    axes_text,
+    check_body_size,
+    length_unit,
+    nearest_axis,
+    rotation_to_world,
+    up_axis,
+)
 from mbkf.io.c3d_analog import analog_channels, events, plate_readings, raw_plates
 from mbkf.io.c3d_layout import LAST_FRAME_OF_HEADER, C3dLayout, check_frames, check_layout
 from mbkf.io.c3d_parameters import C3dContent, C3dParameters
 from mbkf.io.c3d_plates import RawPlate, plate_axes
 from mbkf.io.c3d_points import read_points
 from mbkf.io.c3d_write import write_c3d
-from mbkf.io.records import Capture
+from mbkf.io.records import AxesSource, Capture
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
 
 __all__ = ["read_c3d", "write_c3d"]
@@ -63,7 +71,9 @@ def read_c3d(
     notes: list[str] = []
     used_unit = _length_unit(path, parameters, unit, notes)
     raw = raw_plates(path, content, parameters, used_unit, notes) if plates else []
-    used_up = up_axis(up) if up is not None else _up_axis(parameters, raw, notes)
+    used_up, source = (
+        (up_axis(up), AxesSource.UP_GIVEN) if up is not None else _up_axis(parameters, raw, notes)
+    )
     markers, derived = read_points(content, parameters, used_up, used_unit, rate_hz, start_s, notes)
     if unit is None:
         notes += check_body_size(markers.positions_m, used_unit, str(path))
@@ -82,6 +92,8 @@ def read_c3d(
         length_unit=used_unit,
         notes=tuple(notes),
         subject_mass_kg=_mass_kg(parameters),
+        axes=axes_text(rotation_to_world(used_up)),
+        axes_source=source,
     )
 
 
@@ -138,26 +150,21 @@ def _length_unit(path: Path, parameters: C3dParameters, given: str | None, notes
         raise FileFormatError(path, reason) from error
 
 
-def _up_axis(parameters: C3dParameters, plates: list[RawPlate], notes: list[str]) -> str:
-    """The axis that points up, from the plates' surfaces, else from the screen axes, else z."""
+def _up_axis(parameters: C3dParameters, plates: list[RawPlate], notes: list[str]) -> tuple[str, AxesSource]:
+    """The axis that points up, from the plates' surfaces, else from the screen axes, else z; and which it was."""
     screen = parameters.text("POINT", "Y_SCREEN").lower().removeprefix("+")
-    from_plates = {_nearest_axis(-plate_axes(plate.corners)[:, 2]) for plate in plates}
+    from_plates = {nearest_axis(-plate_axes(plate.corners)[:, 2]) for plate in plates}
     if len(from_plates) == 1:
         axis = from_plates.pop()
         if screen in WORLD_AXES and screen != axis:
             notes.append(f"force plates face {axis}, POINT:Y_SCREEN is {screen}; taken as up: {axis}")
-        return axis
+        return axis, AxesSource.PLATES
     if from_plates:
         notes.append(f"force plates face different axes ({', '.join(sorted(from_plates))})")
     if screen in WORLD_AXES:
-        return screen
+        return screen, AxesSource.SCREEN
     notes.append("neither plates nor POINT:Y_SCREEN state which axis points up; taken as z (--up changes it)")
-    return "z"
-
-
-def _nearest_axis(direction: np.ndarray) -> str:
-    axis = int(np.argmax(np.abs(direction)))
-    return ("-" if direction[axis] < 0.0 else "") + "xyz"[axis]
+    return "z", AxesSource.DEFAULT
 
 
 def _mass_kg(parameters: C3dParameters) -> float | None:

@@ -12,9 +12,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from mbkf.errors import FileFormatError
+from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.io.axes import axes_matrix, axes_text, nearest_axis, rotation_to_world, up_axis
 from mbkf.io.readers import FileFormat, FormatRegistry, either
-from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
+from mbkf.io.records import AxesSource, Capture, MarkerTrajectories, PlateReadings
+from mbkf.io.turning import turned
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N, offset_remarks
 
 
@@ -134,6 +136,7 @@ def read_capture(
     unit: str | None = None,
     cop_threshold_n: float = DEFAULT_COP_THRESHOLD_N,
     tare: bool = True,
+    axes: str | None = None,
 ) -> Capture:
     """Read a capture, and its ground reactions where they stand in a file of their own.
 
@@ -146,20 +149,43 @@ def read_capture(
         unit: Length unit of the markers; by default the one that the file states.
         cop_threshold_n: Vertical force in N below which no centre of pressure is given.
         tare: Whether the offset an unloaded plate shows is removed.
+        axes: Axes of the file that point forward, left and up, as ``"x,-z,y"``, instead of ``up``; a left-handed
+            choice mirrors the file. They hold, whatever the body of the person looks like in them.
 
     Returns:
         The capture in SI units and world axes.
 
     Raises:
         FileFormatError: A file is missing, of an unknown kind, or broken.
-        InvalidInput: A force is not a number, or the length unit cannot be right.
+        InvalidInput: A force is not a number, the length unit cannot be right, ``axes`` are none, or contradict
+            ``up``.
         UnknownName: Unknown axis, unit, or naming of force columns.
     """
     path = Path(path)
     kind = CAPTURES.format_of(path)
+    matrix = None if axes is None else axes_matrix(axes)
+    if matrix is not None:
+        vertical = nearest_axis(matrix[2])
+        if up is not None and up_axis(up) != vertical:
+            raise InvalidInput(
+                f"up axis '{up}' contradicts axes '{axes}', in which {vertical} points up; give one"
+            )
+        up = vertical
     options = CaptureOptions(up, unit, cop_threshold_n, tare, plates=forces is None)
-    capture = kind.read(path, options)
-    return capture if forces is None else _with_forces(capture, Path(forces), kind, options)
+    capture = _declared(kind.read(path, options), up)
+    if forces is not None:
+        capture = _with_forces(capture, Path(forces), kind, options)
+    if matrix is None:
+        return capture
+    return turned(capture, matrix @ axes_matrix(capture.axes).T, AxesSource.GIVEN)
+
+
+def _declared(capture: Capture, up: str | None) -> Capture:
+    """The capture of a reader of one's own, which need not tell axes, with those that its ``up_axis`` means."""
+    if capture.axes_source is not AxesSource.MADE:
+        return capture
+    source = AxesSource.DEFAULT if up is None else AxesSource.UP_GIVEN
+    return replace(capture, axes=axes_text(rotation_to_world(capture.up_axis)), axes_source=source)
 
 
 def _with_forces(capture: Capture, forces: Path, kind: CaptureFormat, options: CaptureOptions) -> Capture:
@@ -251,7 +277,7 @@ def _write_trc(capture: Capture, path: Path) -> None:
 def _read_trc(path: Path, options: CaptureOptions) -> Capture:
     from mbkf.io.trc import read_trc
 
-    return read_trc(path, up=options.up or "y", unit=options.unit)
+    return read_trc(path, up=options.up, unit=options.unit)
 
 
 @register_reader(".csv", title="CSV of Motive", forces_share_up=True)

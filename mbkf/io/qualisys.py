@@ -20,11 +20,20 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
-from mbkf.io.axes import METRES_PER_UNIT, check_body_size, finite, length_unit, positions_to_world, up_axis
+from mbkf.io.axes import (
+    METRES_PER_UNIT,
+    axes_text,
+    check_body_size,
+    finite,
+    length_unit,
+    positions_to_world,
+    rotation_to_world,
+    up_axis,
+)
 from mbkf.io.force_names import force_sets
 from mbkf.io.labels import unique_labels, without_subject
 from mbkf.io.plate_table import PlateTable, check_corners, faced_axis, plates_with_corners
-from mbkf.io.records import Capture, CaptureEvent, MarkerTrajectories, PlateReadings
+from mbkf.io.records import AxesSource, Capture, CaptureEvent, MarkerTrajectories, PlateReadings
 from mbkf.io.text import TextFile, compare_count, compare_rate, number, numbers, read_text
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N, offset_remarks
 
@@ -120,6 +129,7 @@ def read_qualisys(
     beside = plate_files(Path(path)) if plates else ()
     tables = [_plate(one, notes) for one in beside]
     axis = _up(up, tables, notes)
+    source = AxesSource.PLATES if tables else AxesSource.DEFAULT
     used_unit = length_unit(unit or "mm")
     positions = positions_to_world(values, finite(values), axis, used_unit)
     if unit is None:
@@ -136,6 +146,8 @@ def read_qualisys(
         up_axis=axis,
         length_unit=used_unit,
         notes=tuple(notes),
+        axes=axes_text(rotation_to_world(axis)),
+        axes_source=source if up is None else AxesSource.UP_GIVEN,
     )
 
 

@@ -3,11 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from enum import StrEnum
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.errors import ShapeError, UnknownName
+
+
+class AxesSource(StrEnum):
+    """Where it is known from which axes of a file point forward, left and up."""
+
+    PLATES = "plates"
+    """The surfaces of the file's force plates face up."""
+    SCREEN = "screen"
+    """POINT:Y_SCREEN, the axis that the laboratory's screen shows as up."""
+    DEFAULT = "default"
+    """The file does not say: the format's usual axes."""
+    UP_GIVEN = "up given"
+    """The caller named the axis that points up."""
+    GIVEN = "given"
+    """The caller named all three axes; nothing is changed."""
+    BODY = "body"
+    """The markers of the person contradicted the file, which was put right."""
+    MADE = "made"
+    """Made in memory, in world axes."""
 
 
 @dataclass(frozen=True)
@@ -157,6 +177,8 @@ class Capture:
         length_unit: Unit of the file's marker coordinates ("mm", "m", "cm").
         notes: Remarks of the reader (empty unit, malformed header, offsets removed …).
         subject_mass_kg: Body mass stated in the file, or None.
+        axes: Axes of the file that became x (forward), y (left) and z (up), as ``"x,-z,y"``.
+        axes_source: Where that is known from.
     """
 
     path: str
@@ -169,3 +191,5 @@ class Capture:
     length_unit: str = "m"
     notes: tuple[str, ...] = ()
     subject_mass_kg: float | None = None
+    axes: str = "x,y,z"
+    axes_source: AxesSource = AxesSource.MADE

@@ -81,6 +81,8 @@ class Reconstruction:
         covariance: (T, 2nv, 2nv) of (q, v) in the tangent space; only kept on request and never written.
         plate_corners_m: (P, 4, 3) world corners of the capture's plates, NaN where their file has no geometry; None
             without plates.
+        file_axes: Axes of the capture's file that became x, y and z, as ``"x,-z,y"``.
+        file_axes_source: Where that is known from (:class:`mbkf.io.records.AxesSource`), "" in older files.
     """
 
     trial: str
@@ -130,6 +132,8 @@ class Reconstruction:
     foot_contact: Array | None = None
     covariance: Array | None = field(default=None, repr=False)
     plate_corners_m: Array | None = None
+    file_axes: str = "x,y,z"
+    file_axes_source: str = ""
 
     def __post_init__(self) -> None:
         for name in ("dof_names", "coordinate_names", "marker_names", "unobserved_dofs", "warnings"):

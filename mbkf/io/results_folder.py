@@ -20,6 +20,21 @@ SUMMARY_FILE = "summary.json"
 MOTION_FILE = "motion.h5"
 
 
+class AxesTold(TypedDict):
+    """How a capture's axes were taken.
+
+    Attributes:
+        up, forward: Axes of the file that point up and forward.
+        mirrored: Whether the file is left-handed, so that it was mirrored.
+        source: Where that is known from: "plates", "screen", "default", "up given", "given", "body" or "made".
+    """
+
+    up: str
+    forward: str
+    mirrored: bool
+    source: str
+
+
 class Summary(TypedDict):
     """The contents of summary.json: the key numbers of a reconstruction; None where a number does not apply.
 
@@ -42,6 +57,7 @@ class Summary(TypedDict):
         step_seconds_median, step_seconds_p99: Computing time of a frame.
         realtime_factor: Duration over computing time.
         truth: Errors against a synthetic subject's known motion.
+        axes: Axes of the capture's file.
         warnings: Remarks for the reader.
         settings: Settings of the run, as plain data.
     """
@@ -74,6 +90,7 @@ class Summary(TypedDict):
     step_seconds_p99: float | None
     realtime_factor: float | None
     truth: dict[str, float | None] | None
+    axes: AxesTold
     warnings: list[str]
     settings: dict[str, object]
 

@@ -62,6 +62,8 @@ def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
         )
         for name in _TEXTS:
             file.attrs[name] = getattr(reconstruction, name)
+        file.attrs["file_axes"] = reconstruction.file_axes
+        file.attrs["file_axes_source"] = reconstruction.file_axes_source
         file.attrs["smoothed"] = reconstruction.smoothed
         file.attrs["rate_hz"] = reconstruction.rate_hz
         file.attrs["settings"] = json.dumps(reconstruction.settings, default=_plain)
@@ -97,6 +99,8 @@ def read_h5(path: str | Path) -> Reconstruction:
             if file.attrs["format_version"] > FORMAT_VERSION:
                 raise FileFormatError(source, "written by a newer mbkf; upgrade to read it")
             values: dict[str, Any] = {name: str(file.attrs[name]) for name in _TEXTS}
+            values["file_axes"] = str(file.attrs.get("file_axes", "x,y,z"))
+            values["file_axes_source"] = str(file.attrs.get("file_axes_source", ""))
             values["smoothed"] = bool(file.attrs["smoothed"])
             values["rate_hz"] = float(file.attrs["rate_hz"])
             values["settings"] = json.loads(file.attrs["settings"])

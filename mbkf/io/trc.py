@@ -13,6 +13,7 @@ from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.atomic import replacing
 from mbkf.io.axes import (
     METRES_PER_UNIT,
+    axes_text,
     check_body_size,
     finite,
     length_unit,
@@ -21,7 +22,7 @@ from mbkf.io.axes import (
     up_axis,
 )
 from mbkf.io.labels import unique_labels
-from mbkf.io.records import Capture, MarkerTrajectories
+from mbkf.io.records import AxesSource, Capture, MarkerTrajectories
 from mbkf.io.text import TextFile, compare_count, compare_rate, number, numbers, read_text
 
 _TITLES = (
@@ -52,7 +53,7 @@ class TrcHeader:
     shifted: bool
 
 
-def read_trc(path: str | Path, *, up: str = "y", unit: str | None = None) -> Capture:
+def read_trc(path: str | Path, *, up: str | None = None, unit: str | None = None) -> Capture:
     """Read a TRC file.
 
     Blank cells, NaN and exact zeros are missing samples. The header's fields are found by their order, since
@@ -61,7 +62,7 @@ def read_trc(path: str | Path, *, up: str = "y", unit: str | None = None) -> Cap
 
     Args:
         path: The file.
-        up: Axis of the file that points up; TRC files do not state it, OpenSim has y.
+        up: Axis of the file that points up; TRC files do not state it, by default it is OpenSim's y.
         unit: Length unit; by default the one in the header.
 
     Returns:
@@ -72,7 +73,8 @@ def read_trc(path: str | Path, *, up: str = "y", unit: str | None = None) -> Cap
         InvalidInput: The markers cannot be in that unit.
         UnknownName: Unknown axis or unit.
     """
-    path, up = Path(path), up_axis(up)
+    source = AxesSource.DEFAULT if up is None else AxesSource.UP_GIVEN
+    path, up = Path(path), up_axis("y" if up is None else up)
     file = _file(path)
     header = _header(path, file.lines)
     cells = _rows(file)
@@ -98,7 +100,15 @@ def read_trc(path: str | Path, *, up: str = "y", unit: str | None = None) -> Cap
     if unit is None:
         notes += check_body_size(positions, used_unit, str(path))
     markers = MarkerTrajectories(labels, positions, header.rate_hz, float(times[0]))
-    return Capture(str(path), markers, up_axis=up, length_unit=used_unit, notes=tuple(notes))
+    return Capture(
+        str(path),
+        markers,
+        up_axis=up,
+        length_unit=used_unit,
+        notes=tuple(notes),
+        axes=axes_text(rotation_to_world(up)),
+        axes_source=source,
+    )
 
 
 def write_trc(markers: MarkerTrajectories, path: str | Path) -> None:

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import BoolArray
+from mbkf.io.axes import axes_matrix, axes_text
 from mbkf.io.records import Capture, CaptureEvent, PlateReadings
+from mbkf.pipelines.axes.captures import find_axes_by_names
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,26 @@ class ChannelSummary:
 
 
 @dataclass(frozen=True)
+class AxesSummary:
+    """How a capture's axes were read, and what the body in it says.
+
+    Attributes:
+        read: Axes of the file that were taken as forward, left and up.
+        source: Where that is known from.
+        verdict: What was found: "right", "put right", "kept", "refused", "unknown" (too few markers whose names are
+            known) or "given".
+        used: Axes that the other commands would use.
+        note: One line about it, "" where there is nothing to tell.
+    """
+
+    read: str
+    source: str
+    verdict: str
+    used: str
+    note: str
+
+
+@dataclass(frozen=True)
 class CaptureSummary:
     """What a capture holds.
 
@@ -84,6 +106,7 @@ class CaptureSummary:
         channels: Each analog channel.
         events: Labelled instants.
         notes: What the reader noticed.
+        axes: How the axes were read, and what the body says.
     """
 
     path: str
@@ -104,6 +127,7 @@ class CaptureSummary:
     channels: tuple[ChannelSummary, ...]
     events: tuple[CaptureEvent, ...]
     notes: tuple[str, ...]
+    axes: AxesSummary
 
 
 def describe(capture: Capture) -> CaptureSummary:
@@ -142,6 +166,18 @@ def describe(capture: Capture) -> CaptureSummary:
         channels=tuple(ChannelSummary(c.name, c.unit, c.rate_hz) for c in capture.analog),
         events=capture.events,
         notes=capture.notes,
+        axes=_axes(capture),
+    )
+
+
+def _axes(capture: Capture) -> AxesSummary:
+    found = find_axes_by_names(capture)
+    return AxesSummary(
+        read=capture.axes,
+        source=capture.axes_source.value,
+        verdict=found.verdict.value,
+        used=axes_text(found.turn @ axes_matrix(capture.axes)),
+        note=found.note,
     )
 
 

@@ -21,6 +21,7 @@ from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject, match_names
 from mbkf.model.clinical import dof_names
 from mbkf.numerics.threads import single_threaded
+from mbkf.pipelines.axes.captures import checked_for_subject
 from mbkf.pipelines.imu.on_body import ImuOnBody, with_imus
 from mbkf.pipelines.results.clinical import clinical_motion
 from mbkf.pipelines.results.reactions import reactions
@@ -101,6 +102,7 @@ def reconstruct(
         progress: Called with the stage, items done and items in all.
 
     Raises:
+        InvalidInput: The axes or the unit of the capture cannot be right, and it is not clear what they are.
         NotObservable: Too few of the subject's markers to track the body.
         NotConverged: The markers do not fit the subject's body.
         UnknownName: A hidden marker, a withheld plate or the filter does not exist.
@@ -109,6 +111,7 @@ def reconstruct(
     if settings.filter not in FILTERS:
         raise UnknownName("filter", settings.filter, FILTERS)
     with single_threaded():
+        capture = checked_for_subject(capture, subject)
         measured = subject_markers(capture.markers, subject)
         hidden = _hidden(measured, settings.hide)
         shown = replace(measured, positions_m=np.where(hidden[:, :, None], np.nan, measured.positions_m))
@@ -247,6 +250,8 @@ def assemble(
         foot_contact=result.contact,
         covariance=result.covariance,
         plate_corners_m=_corners(capture),
+        file_axes=capture.axes,
+        file_axes_source=capture.axes_source.value,
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from mbkf.conventions import StageCallback
@@ -13,6 +14,7 @@ from mbkf.model.body_file import load_body
 from mbkf.model.description import BodyDescription
 from mbkf.model.protocol import Protocol, detect_protocol, load_protocol
 from mbkf.numerics.threads import single_threaded
+from mbkf.pipelines.axes.captures import REPORT_KEY, checked_for_protocol, told_axes
 from mbkf.scaling.fit import scale_subject
 from mbkf.scaling.problem import ScalingSettings
 
@@ -42,7 +44,8 @@ def scale(
         progress: Called with the stage, items done and items in all.
 
     Raises:
-        InvalidInput: No trial, no mass, a mass or height that cannot be, or a protocol placed on another body.
+        InvalidInput: No trial, no mass, a mass or height that cannot be, a protocol placed on another body, or axes or
+            a unit that cannot be right.
         UnknownName: No protocol knows the markers, it names unknown segments, or there is no such body.
         FileFormatError: The body's or the protocol's file is missing or damaged.
         NotObservable: Too few markers of the protocol.
@@ -67,13 +70,17 @@ def scale(
             "read it with load_protocol(name, body)"
         )
     report = None if progress is None else lambda done, total: progress("Scaling", done, total)
+    checked = checked_for_protocol(captures, protocol)
+    standing = [] if static is None else checked[:1]
     with single_threaded():
-        return scale_subject(
-            [] if static is None else [static.markers],
-            [trial.markers for trial in trials],
+        subject = scale_subject(
+            [one.markers for one in standing],
+            [one.markers for one in checked[len(standing) :]],
             protocol,
             mass_kg=mass_kg,
             height_m=height_m,
             settings=settings,
             progress=report,
         )
+    told = told_axes(captures, checked)
+    return replace(subject, report={**subject.report, REPORT_KEY: told}) if told else subject

@@ -31,6 +31,7 @@ from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
 from mbkf.numerics.line_search import maximise
 from mbkf.numerics.threads import single_threaded
+from mbkf.pipelines.axes.captures import checked_for_subject
 from mbkf.pipelines.reconstruct import ReconstructSettings
 from mbkf.pipelines.tuning.parameters import PARAMETERS, TuningParameter, parameter_names
 from mbkf.pipelines.tuning.result import FLAT_FACTOR, Tuned, TunedParameter
@@ -73,7 +74,7 @@ def tune(
 
     Raises:
         UnknownName: The filter or a parameter does not exist.
-        InvalidInput: A trial is too short, or none is left to learn from.
+        InvalidInput: A trial is too short, none is left to learn from, or the axes of one cannot be right.
         NotObservable: The markers do not determine the body.
         NotConverged: The markers do not fit the subject's body.
     """
@@ -82,6 +83,7 @@ def tune(
     names = parameter_names(settings.filter, settings.parameters)
     report = progress or (lambda *_: None)
     with single_threaded():
+        captures = [checked_for_subject(capture, subject) for capture in captures]
         learn, held_out = split_trials(
             captures, subject, settings.filter, settings.reconstruct, settings.hold_out
         )

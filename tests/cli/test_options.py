@@ -4,15 +4,16 @@ import argparse
 
 import pytest
 
-from mbkf.cli.options import add_axes_options, check_positive, check_share
+from mbkf.cli.options import add_axes_options, axes_options, check_positive, check_share
 from mbkf.errors import InvalidInput
 
 
 def test_axes_and_unit_are_left_open():
     parser = argparse.ArgumentParser()
     add_axes_options(parser)
-    assert vars(parser.parse_args([])) == {"up": None, "unit": None}
-    assert vars(parser.parse_args(["--up=-y", "--unit", "mm"])) == {"up": "-y", "unit": "mm"}
+    assert vars(parser.parse_args([])) == {"up": None, "axes": None, "unit": None}
+    given = parser.parse_args(["--up=-y", "--unit", "mm", "--axes", "x,-z,y"])
+    assert axes_options(given) == vars(given) == {"up": "-y", "axes": "x,-z,y", "unit": "mm"}
 
 
 @pytest.mark.parametrize("value", [-1.0, float("nan"), float("inf"), 0.0])

@@ -24,7 +24,7 @@ KEYS = {
     "residual_force_rms_n", "residual_moment_rms_nm", "valid_frames", "plate_force_change_rms_n",
     "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "nis_per_dof",
     "step_seconds_median", "step_seconds_p99", "realtime_factor", "hidden_marker_rms_mm",
-    "hidden_marker_max_mm", "truth", "warnings", "settings",
+    "hidden_marker_max_mm", "truth", "axes", "warnings", "settings",
 }  # fmt: skip
 """Keys of summary.json, as the contract of the command line names them."""
 

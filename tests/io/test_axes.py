@@ -6,9 +6,12 @@ import pytest
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.io.axes import (
     WORLD_AXES,
+    axes_matrix,
+    axes_text,
     body_extent_m,
     check_body_size,
     length_unit,
+    nearest_axis,
     positions_to_world,
     rotation_to_world,
     up_axis,
@@ -75,3 +78,26 @@ def test_size_of_nothing_is_unknown_and_accepted():
     assert np.isnan(body_extent_m(np.full((3, 8, 3), np.nan)))
     assert np.isnan(body_extent_m(np.zeros((0, 8, 3))))
     assert check_body_size(np.full((3, 8, 3), np.nan), "m", "file") == ()
+
+
+@pytest.mark.parametrize("up", WORLD_AXES)
+def test_three_axes_are_written_as_they_are_read(up):
+    R = rotation_to_world(up)
+    np.testing.assert_array_equal(axes_matrix(axes_text(R)), R)
+    assert axes_text(R).split(",")[2] == up
+
+
+def test_left_handed_axes_mirror():
+    np.testing.assert_array_equal(axes_matrix(" X, +z ,y") @ [1.0, 2.0, 3.0], [1.0, 3.0, 2.0])
+    assert np.linalg.det(axes_matrix("x,z,y")) == pytest.approx(-1.0)
+    assert np.linalg.det(axes_matrix("x,-z,y")) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("axes", ["x,y", "x,y,y", "x,y,-x", "x,y,w", "", "x,y,z,x"])
+def test_what_is_no_three_axes_is_refused(axes):
+    with pytest.raises(InvalidInput, match="forward, left and up"):
+        axes_matrix(axes)
+
+
+def test_the_nearest_axis_has_the_sign_of_the_direction():
+    assert nearest_axis(np.array([0.1, -0.9, 0.2])) == "-y"

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from mbkf.errors import FileFormatError
+from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.axes import rotation_to_world
 from mbkf.io.capture import read_capture
 from mbkf.io.forces import write_forces_mot
-from mbkf.io.records import MarkerTrajectories, PlateReadings
+from mbkf.io.records import AxesSource, MarkerTrajectories, PlateReadings
 from mbkf.io.trc import write_trc
 from tests.io.c3d_builder import Plate, build_c3d, standing_points
 
@@ -119,3 +119,29 @@ def test_options_reach_the_readers(tmp_path):
     assert (capture.up_axis, capture.length_unit) == ("z", "cm")
     np.testing.assert_allclose(capture.plates[0].force_n[200], [10.0, 600.0, -20.0])
     assert np.isnan(capture.plates[0].centre_of_pressure_m).all()
+
+
+def test_given_axes_hold_for_markers_and_forces(tmp_path):
+    """OpenSim's z flipped: markers and centres of pressure mirror y, vertical forces stay."""
+    trc, mot = trc_file(tmp_path / "a.trc"), forces_file(tmp_path / "a.mot")
+    plain, mirrored = (read_capture(trc, forces=mot, axes=axes) for axes in ("x,-z,y", "x,z,y"))
+    flip = np.diag([1.0, -1.0, 1.0])
+    np.testing.assert_array_equal(mirrored.markers.positions_m, plain.markers.positions_m @ flip)
+    np.testing.assert_allclose(mirrored.plates[0].force_n, plain.plates[0].force_n @ flip)
+    np.testing.assert_allclose(
+        mirrored.plates[0].centre_of_pressure_m, plain.plates[0].centre_of_pressure_m @ flip
+    )
+    assert (mirrored.axes, mirrored.axes_source) == ("x,z,y", AxesSource.GIVEN)
+    by_default = read_capture(trc, forces=mot)
+    np.testing.assert_array_equal(plain.plates[0].moment_nm, by_default.plates[0].moment_nm)
+    assert (by_default.axes, by_default.axes_source) == ("x,-z,y", AxesSource.DEFAULT)
+    assert read_capture(trc, up="z").axes_source is AxesSource.UP_GIVEN
+
+
+def test_axes_and_up_may_not_contradict_each_other(tmp_path):
+    with pytest.raises(InvalidInput, match="give one"):
+        read_capture(trc_file(tmp_path / "a.trc"), up="z", axes="x,-z,y")
+
+
+def test_a_c3d_tells_where_its_up_is_from(tmp_path):
+    assert read_capture(build_c3d(tmp_path / "a.c3d", standing_points(50))).axes_source in AxesSource

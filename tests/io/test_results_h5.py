@@ -14,7 +14,7 @@ from tests.io.reconstructions import made_up, made_up_whole
 
 @pytest.mark.parametrize("frames", [0, 1, 40])
 def test_a_round_trip_keeps_everything_but_the_covariance(tmp_path, frames):
-    r = made_up_whole(frames)
+    r = made_up_whole(frames, file_axes="x,z,y", file_axes_source="body")
     write_h5(r, tmp_path / "motion.h5")
     back = read_h5(tmp_path / "motion.h5")
     assert back.covariance is None
@@ -39,6 +39,14 @@ def test_what_a_filter_does_not_estimate_is_not_written_and_comes_back_as_none(t
             assert getattr(back, name) is None
         assert "footing" not in file
         assert back.foot_contact is None
+
+
+def test_older_files_have_no_axes(tmp_path):
+    write_h5(made_up(file_axes="x,z,y"), tmp_path / "motion.h5")
+    with h5py.File(tmp_path / "motion.h5", "a") as file:
+        del file.attrs["file_axes"], file.attrs["file_axes_source"]
+    back = read_h5(tmp_path / "motion.h5")
+    assert (back.file_axes, back.file_axes_source) == ("x,y,z", "")
 
 
 def test_every_quantity_carries_its_unit(tmp_path):

@@ -1,17 +1,22 @@
 """The summary counts what was put in."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mbkf.io.records import (
     AnalogChannel,
+    AxesSource,
     Capture,
     CaptureEvent,
     DerivedPoint,
     MarkerTrajectories,
     PlateReadings,
 )
-from mbkf.pipelines.info import count_pieces, describe
+from mbkf.io.turning import turned
+from mbkf.pipelines.info import AxesSummary, count_pieces, describe
+from tests.captures import made_capture
 
 
 @pytest.mark.parametrize(
@@ -66,3 +71,13 @@ def test_a_capture_in_which_nothing_was_seen():
     assert (summary.extent_m, summary.missing_fraction, summary.markers[0].pieces) == (None, 1.0, 0)
     empty = describe(Capture("", MarkerTrajectories((), np.zeros((0, 0, 3)), 50.0)))
     assert (empty.frames, empty.duration_s, empty.missing_fraction) == (0, 0.0, 0.0)
+
+
+def test_axes_are_told_with_what_the_body_says():
+    right = made_capture(10, plates=(), axes_source=AxesSource.DEFAULT)
+    assert describe(right).axes == AxesSummary("x,y,z", "default", "right", "x,y,z", "")
+    mirrored = replace(turned(right, np.diag([1.0, -1.0, 1.0]), AxesSource.DEFAULT), axes="x,y,z")
+    found = describe(mirrored).axes
+    assert (found.verdict, found.read, found.used) == ("put right", "x,y,z", "x,-y,z")
+    assert "right markers lay left" in found.note
+    assert describe(capture()).axes.verdict == "unknown"

@@ -6,8 +6,9 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
+from mbkf.io.axes import axes_matrix
 from mbkf.io.results import Reconstruction
-from mbkf.io.results_folder import Summary
+from mbkf.io.results_folder import AxesTold, Summary
 from mbkf.io.truth import Truth
 from mbkf.model.human import HumanModel, reference_body
 
@@ -67,9 +68,22 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "step_seconds_p99": _quantile(r.step_seconds, 99),
         "realtime_factor": r.frames / float(r.rate_hz) / computing if computing > 0 else None,
         "truth": None if truth is None else compare_with_truth(r, truth),
+        "axes": axes_told(r.file_axes, r.file_axes_source),
         "warnings": list(r.warnings),
         "settings": dict(r.settings),
     }
+
+
+def axes_told(axes: str, source: str) -> AxesTold:
+    """A capture's axes as summaries have them.
+
+    Args:
+        axes: Axes of the file that became x, y and z.
+        source: Where that is known from.
+    """
+    forward, _, up = axes.split(",")
+    mirrored = bool(np.linalg.det(axes_matrix(axes)) < 0.0)
+    return {"up": up, "forward": forward, "mirrored": mirrored, "source": source}
 
 
 def _marker_errors(r: Reconstruction) -> tuple[Array, Array]:

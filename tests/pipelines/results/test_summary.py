@@ -19,7 +19,7 @@ KEYS = {
     "residual_force_rms_n", "residual_moment_rms_nm", "valid_frames", "plate_force_change_rms_n",
     "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "nis_per_dof",
     "step_seconds_median", "step_seconds_p99", "realtime_factor", "hidden_marker_rms_mm",
-    "hidden_marker_max_mm", "truth", "warnings", "settings",
+    "hidden_marker_max_mm", "truth", "axes", "warnings", "settings",
 }  # fmt: skip
 
 
@@ -179,3 +179,14 @@ def test_the_truth_of_another_capture_or_body_is_refused(body):
         compare_with_truth(r, truth_of(r, model, times_s=r.times_s[:0]))
     with pytest.raises(InvalidInput, match="3 dofs"):
         compare_with_truth(r, truth_of(r, model, v=np.zeros((5, 3))))
+
+
+def test_axes_are_told_by_their_names():
+    told = summarise(made_up(file_axes="x,z,y", file_axes_source="body"))["axes"]
+    assert told == {"up": "y", "forward": "x", "mirrored": True, "source": "body"}
+    assert summarise(made_up(file_axes="-z,x,-y", file_axes_source="default"))["axes"] == {
+        "up": "-y",
+        "forward": "-z",
+        "mirrored": False,
+        "source": "default",
+    }

@@ -2,10 +2,11 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from mbkf.pipelines.results.summary import summarise
-from mbkf.viz.report.quality import CARE, GOOD, NONE, quality_section, verdicts
+from mbkf.viz.report.quality import BAD, CARE, GOOD, NONE, quality_section, verdicts
 from tests.recordings import broken_walk, walk
 
 
@@ -22,7 +23,9 @@ def test_a_good_result_is_called_good():
 @pytest.mark.parametrize(
     ("changes", "title", "kind"),
     [
-        ({"marker_rms_mm": 21.0}, "Marker error", CARE),
+        ({"marker_rms_mm": 14.0}, "Marker error", GOOD),
+        ({"marker_rms_mm": 16.0}, "Marker error", CARE),
+        ({"marker_rms_mm": 38.0}, "Marker error", BAD),
         ({"marker_max_mm": 41.0}, "Marker error", CARE),
         ({"marker_rms_mm": None}, "Marker error", NONE),
         ({"nis_per_dof": 1.7}, "Innovation (NIS)", CARE),
@@ -45,6 +48,32 @@ def test_one_large_residual_is_noticed():
     unseen[50] = False
     found = judged(replace(r, residual_force_n=force, residual_moment_nm=moment, valid=unseen))
     assert found["Residual force"].kind == GOOD, "only frames with every contact measured are judged"
+
+
+def test_a_body_that_does_not_fit_has_no_green_tick():
+    found = judged(walk(), marker_rms_mm=38.0)
+    assert GOOD not in {v.kind for v in found.values()}
+    assert "tells nothing" in found["Residual force"].remark
+    page = quality_section(walk(), {**summarise(walk()), "marker_rms_mm": 38.0}, None)
+    assert "✓" not in page
+    assert 'class="tile bad"' in page
+
+
+@pytest.mark.parametrize(("lost", "kind"), [(0, GOOD), (2, CARE), (20, BAD)])
+def test_untracked_frames_turn_the_tick(lost, kind):
+    r = walk()
+    tracked = np.arange(r.frames) >= lost
+    found = {v.title: v for v in verdicts(replace(r, tracked=tracked), summarise(r))}
+    assert found["Frames tracked"].kind == kind
+    assert (found["Marker error"].kind == GOOD) == (kind != BAD)
+
+
+@pytest.mark.parametrize(("ignored", "kind"), [(1, CARE), (60, BAD)])
+def test_ignored_markers_are_shown_where_there_are_any(ignored, kind):
+    names = {f"X{i}": "not in the protocol" for i in range(ignored)}
+    assert judged(walk(), markers_ignored=names)["Markers ignored"].kind == kind
+    assert "Markers ignored" not in judged(walk(), markers_ignored={})
+    assert "Markers ignored" not in judged(walk())
 
 
 def test_losses_are_told():

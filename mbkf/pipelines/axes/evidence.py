@@ -1,0 +1,213 @@
+"""What the markers of a person tell about axes: where the body's up is, whether it is mirrored, how large it is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.io.records import MarkerTrajectories
+from mbkf.io.subject import SubjectMarker
+from mbkf.model.description import BodyDescription
+from mbkf.model.protocol import ProtocolMarker, load_protocol, protocol_names
+
+FRAMES = 60
+"""Frames, spread over the capture, that are looked at; a person's attitude changes slowly."""
+
+FEWEST_MARKERS = 6
+"""Markers with a known place that a frame needs."""
+
+LEAST_SPREAD_M = np.array([0.05, 0.15, 0.3])
+"""Root of the summed squares by which the markers' reference places have to spread in depth, breadth and height, so
+that the direction can be told."""
+
+LEAST_PAIR_M = 0.1
+"""Two markers of a segment nearer to each other than this tell little about the body's size."""
+
+FLAT_SINE = 0.45
+"""A foot whose direction leaves the floor by less than this sine stands, or nearly: 27°."""
+
+
+@dataclass(frozen=True)
+class MarkerPlaces:
+    """Trajectories whose place on the body is known.
+
+    Attributes:
+        columns: (K,) their columns in the capture.
+        segments: (K,) the segments that carry them.
+        neutral_m: (K, 3) where they are on the reference body that stands, facing x, m.
+        feet: Segments of right and of left foot.
+        height_m: Height of the reference body, m.
+    """
+
+    columns: NDArray[np.intp]
+    segments: tuple[str, ...]
+    neutral_m: Array
+    feet: tuple[frozenset[str], frozenset[str]]
+    height_m: float
+
+
+@dataclass(frozen=True)
+class BodyAttitude:
+    """The body in the frames that were looked at, in the capture's world axes.
+
+    Attributes:
+        up: (N, 3) unit directions from the feet towards the head.
+        stretch: (N,) height over which the body extends along them, over that of the reference body standing.
+        handedness: (N,) triple product of forward, left and up as unit vectors: 1 for a person, −1 for a mirror image;
+            NaN where depth or breadth is not seen.
+        feet: (N, 2, 3) unit directions from heel to toe of right and left foot, NaN where not seen.
+        size: Lengths within segments over those of the reference body, NaN where none is seen.
+        scatter: Interquartile range of these ratios over their median: small where the names are right.
+        explained: (N,) share of the markers' spread that the reference places explain.
+    """
+
+    up: Array
+    stretch: Array
+    handedness: Array
+    feet: Array
+    size: float
+    scatter: float
+    explained: Array
+
+
+def marker_places(
+    names: Iterable[str], known: dict[str, ProtocolMarker] | dict[str, SubjectMarker], body: BodyDescription
+) -> MarkerPlaces:
+    """Places of a capture's markers on the reference body.
+
+    Names that the protocol or subject does not know are looked up in the shipped protocols of the same body: which side
+    and which part of the body R.PSIS is on is known, whoever's protocol it belongs to.
+
+    Args:
+        names: Names in the capture.
+        known: Markers of the protocol or the subject by the capture's names.
+        body: Their reference body.
+
+    Raises:
+        UnknownName: The body has no segment that a marker is on.
+    """
+    origins = {"world": np.zeros(3)}
+    for segment in body.segments:
+        origins[segment.name] = origins[segment.parent] + segment.origin_m
+    origins = {name: origin - origins[body.roles.root] for name, origin in origins.items()}
+    present = tuple(names)
+    others = _shipped(tuple(name for name in present if name not in known), body)
+    columns, segments, places = [], [], []
+    for column, name in enumerate(present):
+        marker = known.get(name) or others.get(name)
+        if marker is not None:
+            columns.append(column)
+            segments.append(marker.segment)
+            places.append(origins[body.segment(marker.segment).name] + marker.position_m)
+    feet, toes = body.roles.feet, body.roles.toes or body.roles.feet
+    return MarkerPlaces(
+        np.array(columns, dtype=np.intp),
+        tuple(segments),
+        np.array(places).reshape(-1, 3),
+        (frozenset({feet[0], toes[0]}), frozenset({feet[1], toes[1]})),
+        body.reference_height_m,
+    )
+
+
+def _shipped(names: tuple[str, ...], body: BodyDescription) -> dict[str, ProtocolMarker]:
+    """Markers of the shipped protocols of this body by these names; none where protocols differ on the segment."""
+    found: dict[str, ProtocolMarker] = {}
+    disputed = set()
+    for protocol in (load_protocol(name) for name in protocol_names() if names):
+        if (protocol.body.name, protocol.body.text) != (body.name, body.text):
+            continue
+        for name, marker in protocol.match(names).items():
+            if found.setdefault(name, marker).segment != marker.segment:
+                disputed.add(name)
+    return {name: marker for name, marker in found.items() if name not in disputed}
+
+
+def body_attitude(markers: MarkerTrajectories, places: MarkerPlaces) -> BodyAttitude | None:
+    """How the body stands in a capture, right-handed or mirrored.
+
+    In a frame, positions p of the markers are regressed on their places in the neutral posture, p ≈ f d + l y + u z:
+    y and z about the mean of all markers, the depth d about the mean of each segment's, since limbs swing forwards and
+    backwards as a whole, but a foot's toe and a pelvis's front stay in front. f, l and u point forward, left and up,
+    whatever the posture, as long as the body is not folded.
+
+    Args:
+        markers: The capture's markers.
+        places: Their places on the body.
+
+    Returns:
+        The attitude in the frames in which the markers suffice; None where they do in none.
+    """
+    positions = markers.positions_m[:, places.columns]
+    enough = np.flatnonzero((~np.isnan(positions).any(axis=2)).sum(axis=1) >= FEWEST_MARKERS)
+    if not len(enough):
+        return None
+    frames = enough[np.unique(np.linspace(0, len(enough) - 1, FRAMES).astype(int))]
+    segments = np.array(places.segments)
+    feet = [np.isin(segments, list(foot)) for foot in places.feet]
+    found = []
+    for points in positions[frames]:
+        seen = ~np.isnan(points).any(axis=1)
+        frame = _frame(points[seen], places.neutral_m[seen], segments[seen])
+        if frame is not None:
+            found.append((*frame, [_foot(points, places.neutral_m, foot & seen) for foot in feet]))
+    if not found:
+        return None
+    up, stretch, handedness, explained, directions = (np.array(one) for one in zip(*found, strict=True))
+    low, size, high = _sizes(positions[frames], places, segments)
+    return BodyAttitude(up, stretch, handedness, directions, size, (high - low) / size, explained)
+
+
+def _frame(
+    points: Array, neutral: Array, segments: NDArray[np.str_]
+) -> tuple[Array, float, float, float] | None:
+    """Up, stretch, handedness and explained share of a frame's markers; None where they do not show up."""
+    design = np.column_stack([_depth(neutral, segments), (neutral - neutral.mean(axis=0))[:, 1:]])
+    told = np.linalg.norm(design, axis=0) >= LEAST_SPREAD_M
+    if not told[2]:
+        return None
+    centred = points - points.mean(axis=0)
+    slopes, *_ = np.linalg.lstsq(design[:, told], centred, rcond=None)
+    lengths = np.linalg.norm(slopes, axis=1)
+    if not (lengths > 0.0).all():
+        return None
+    units = slopes / lengths[:, None]
+    handedness = float(np.linalg.det(units)) if told.all() else np.nan
+    spread = (centred**2).sum()
+    explained = 1.0 - ((centred - design[:, told] @ slopes) ** 2).sum() / spread if spread else 0.0
+    return units[-1], float(lengths[-1]), handedness, float(explained)
+
+
+def _depth(neutral: Array, segments: NDArray[np.str_]) -> Array:
+    """(K,) how far each marker is in front of the mean of its segment's."""
+    depth = np.zeros(len(neutral))
+    for segment in set(segments):
+        own = segments == segment
+        depth[own] = neutral[own, 0] - neutral[own, 0].mean()
+    return depth
+
+
+def _foot(points: Array, neutral: Array, own: BoolArray) -> Array:
+    """(3,) unit direction from heel to toe, NaN where the foot's markers do not show it."""
+    ahead = neutral[own, 0] - neutral[own, 0].mean() if own.any() else np.zeros(0)
+    if np.linalg.norm(ahead) < LEAST_SPREAD_M[0]:
+        return np.full(3, np.nan)
+    direction = ahead @ points[own]
+    length = np.linalg.norm(direction)
+    return np.asarray(direction / length) if length else np.full(3, np.nan)
+
+
+def _sizes(positions: Array, places: MarkerPlaces, segments: NDArray[np.str_]) -> tuple[float, float, float]:
+    """Quartiles of measured over reference distances between markers of the same segment, NaN where there are none."""
+    first, second = np.triu_indices(len(segments), 1)
+    reference = np.linalg.norm(places.neutral_m[first] - places.neutral_m[second], axis=1)
+    told = (segments[first] == segments[second]) & (reference >= LEAST_PAIR_M)
+    measured = np.linalg.norm(positions[:, first[told]] - positions[:, second[told]], axis=2)
+    ratios = (measured / reference[told])[~np.isnan(measured)]
+    if not ratios.size:
+        return np.nan, np.nan, np.nan
+    low, middle, high = np.percentile(ratios, [25, 50, 75])
+    return float(low), float(middle), float(high)
