@@ -4,6 +4,9 @@ Four lines name the content, the plates, the rate and the samples; a line of nam
 Z1 MZ1 FX2 …), then a row per sample. Forces are those on the body in the laboratory's axes. MZ is the free moment
 about the vertical, whichever axis of the laboratory that is. Lengths are those of the calibration, mostly mm, and the
 moment is N times that length.
+
+Source: files of the Laboratory of Biomechanics and Motor Control and its notebook read_mac_ascii_files
+(github.com/BMClab/BMC).
 """
 
 from __future__ import annotations

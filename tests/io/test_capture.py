@@ -2,14 +2,18 @@
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
-from mbkf.errors import FileFormatError, InvalidInput
+from benchmarks.any_capture.forces import readings
+from mbkf.errors import FileFormatError, InvalidInput, MbkfError
 from mbkf.io.axes import rotation_to_world
 from mbkf.io.capture import read_capture
 from mbkf.io.forces import write_forces_mot
 from mbkf.io.records import AxesSource, MarkerTrajectories, PlateReadings
 from mbkf.io.trc import write_trc
 from tests.io.c3d_builder import Plate, build_c3d, standing_points
+from tests.io.true_capture import made_truth
 
 
 def forces_file(path, start_s=0.0):
@@ -145,3 +149,52 @@ def test_axes_and_up_may_not_contradict_each_other(tmp_path):
 
 def test_a_c3d_tells_where_its_up_is_from(tmp_path):
     assert read_capture(build_c3d(tmp_path / "a.c3d", standing_points(50))).axes_source in AxesSource
+
+
+DAMAGED = {
+    "walk.trc": None,
+    "grf0.mot": "walk.trc",
+    "y.forces": "walk.trc",
+    "take.csv": None,
+    "walk_force plate 1.csv": "take.csv",
+    "devices.csv": "z.trc",
+    "plate_with.tsv": None,
+    "plate_with_f_2.tsv": "plate_with.tsv",
+    "laboratory_without_f_1.tsv": "walk.trc",
+}
+"""Files of one true capture in every format, and the markers that forces belong to."""
+
+
+@pytest.fixture(scope="module")
+def every_dialect(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("dialects")
+    for _ in readings(made_truth(), folder):
+        pass
+    return folder
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(name=st.sampled_from(sorted(DAMAGED)), share=st.floats(0.0, 1.0), data=st.data())
+def test_a_damaged_file_is_read_or_gives_one_clear_line(every_dialect, name, share, data):
+    path = every_dialect / name
+    whole = path.read_bytes()
+    at = int(share * (len(whole) - 1))
+    change = data.draw(st.sampled_from(["cut", "letter", "tab", "line"]))
+    parts = {
+        "cut": whole[:at],
+        "letter": whole[:at] + b"x" + whole[at + 1 :],
+        "tab": whole[:at] + b"\t," + whole[at:],
+        "line": whole[:at].rpartition(b"\n")[0] + whole[at:].partition(b"\n")[2],
+    }
+    path.write_bytes(parts[change])
+    try:
+        markers = DAMAGED[name]
+        if markers is None:
+            read_capture(path)
+        else:
+            read_capture(every_dialect / markers, forces=path, up="z" if markers == "z.trc" else None)
+    except MbkfError as error:
+        assert "\n" not in str(error)
+        assert name.partition(".")[0] in str(error)
+    finally:
+        path.write_bytes(whole)
