@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from benchmarks.any_capture.axes import axes_rows
+from benchmarks.any_capture.forces import forces_rows
 from benchmarks.checks import Check, Context
 
 
 def run(context: Context) -> list[Check]:
-    """All rows of the table."""
-    return axes_rows(context.require_data())
+    """Rows of all parts."""
+    return [
+        *axes_rows(context.require_data()),
+        *forces_rows(context),
+    ]

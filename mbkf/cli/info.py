@@ -20,7 +20,7 @@ _PIPED_WIDTH = 110
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Add the parser of this command."""
-    from mbkf.cli.options import CAPTURE_FILES, add_axes_options
+    from mbkf.cli.options import CAPTURE_FILES, FORCE_FILES, add_axes_options
 
     parser = subparsers.add_parser(
         "info",
@@ -30,7 +30,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         epilog="example:\n  mbkf info walk.c3d\n  mbkf info walk.trc --forces walk_grf.mot --json",
     )
     parser.add_argument("file", metavar="FILE", help=f"capture ({CAPTURE_FILES})")
-    parser.add_argument("--forces", metavar="FILE.mot", help="ground reactions that belong to the capture")
+    parser.add_argument(
+        "--forces", metavar="FILE", help=f"ground reactions that belong to the capture ({FORCE_FILES})"
+    )
     add_axes_options(parser)
     parser.add_argument("--json", action="store_true", help="print everything as JSON")
     parser.set_defaults(func=run, run=run)

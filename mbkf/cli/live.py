@@ -89,7 +89,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     stream.add_argument("--port", type=int, default=1510, metavar="N", help="NatNet: command port")
     stream.add_argument("--multicast", metavar="ADDRESS", help="NatNet: multicast group (default: unicast)")
     stream.add_argument("--up", metavar="AXIS", help="NatNet and files: axis that points up (NatNet: y)")
-    stream.add_argument("--forces", metavar="FILE.mot", help="file: ground reactions beside it")
+    stream.add_argument(
+        "--forces", metavar="FILE", help="file: ground reactions beside it, as for reconstruct"
+    )
     stream.add_argument("--unit", metavar="UNIT", help="file: length unit of the markers")
     stream.add_argument("--unlabelled", action="store_true", help="file: ignore its names")
     stream.add_argument(

@@ -6,11 +6,14 @@ import argparse
 import math
 from typing import TypedDict
 
-from mbkf.io.capture import CAPTURES
+from mbkf.io.capture import CAPTURES, FORCES
 from mbkf.io.readers import either
 
 CAPTURE_FILES = either(CAPTURES.suffixes)
 """Suffixes of the captures that can be read, as help texts have them."""
+
+FORCE_FILES = either(FORCES.suffixes)
+"""Suffixes of the files of ground reactions that can be read."""
 
 
 class AxesOptions(TypedDict):

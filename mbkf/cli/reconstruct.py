@@ -25,7 +25,7 @@ writes summary.json, motion.h5, angles.mot, torques.sto, reactions.mot and marke
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
-    from mbkf.cli.options import CAPTURE_FILES, add_axes_options
+    from mbkf.cli.options import CAPTURE_FILES, FORCE_FILES, add_axes_options
 
     parser = subparsers.add_parser(
         "reconstruct",
@@ -35,7 +35,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("trial", metavar="TRIAL", help=f"capture ({CAPTURE_FILES})")
     parser.add_argument("--subject", required=True, metavar="SUBJECT.toml", help="written by 'mbkf scale'")
-    parser.add_argument("--forces", metavar="FILE.mot", help="ground reactions; a C3D brings its own plates")
+    parser.add_argument(
+        "--forces", metavar="FILE", help=f"ground reactions ({FORCE_FILES}); a C3D brings its own plates"
+    )
     parser.add_argument(
         "--filter",
         choices=("kinematic", "torque", "dynamic"),

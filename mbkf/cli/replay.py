@@ -21,7 +21,7 @@ Playing starts when a receiver connects, e.g. 'mbkf live --from lsl --subject su
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
-    from mbkf.cli.options import CAPTURE_FILES, add_axes_options
+    from mbkf.cli.options import CAPTURE_FILES, FORCE_FILES, add_axes_options
 
     parser = subparsers.add_parser(
         "replay",
@@ -30,7 +30,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         epilog=_EPILOG,
     )
     parser.add_argument("trial", metavar="TRIAL", help=f"capture ({CAPTURE_FILES})")
-    parser.add_argument("--forces", metavar="FILE.mot", help="ground reactions; a C3D brings its own plates")
+    parser.add_argument(
+        "--forces", metavar="FILE", help=f"ground reactions ({FORCE_FILES}); a C3D brings its own plates"
+    )
     parser.add_argument("--to", required=True, choices=("lsl", "natnet"), help="what to play it as")
     parser.add_argument("--speed", type=float, default=1.0, metavar="X", help="times real time (default: 1)")
     parser.add_argument(

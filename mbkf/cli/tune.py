@@ -55,7 +55,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument("--subject", required=True, metavar="SUBJECT.toml", help="written by 'mbkf scale'")
     parser.add_argument(
         "--forces",
-        metavar="FILE.mot",
+        metavar="FILE",
         nargs="+",
         default=[],
         help="ground reactions of the trials that are no C3D, in their order",

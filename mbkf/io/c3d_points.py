@@ -8,6 +8,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.io.axes import finite, positions_to_world
 from mbkf.io.c3d_parameters import C3dContent, C3dParameters
 from mbkf.io.derived import UNIT_PARAMETERS, classify, group_kinds
+from mbkf.io.labels import unique_labels, without_subject
 from mbkf.io.records import DerivedPoint, MarkerTrajectories
 
 
@@ -73,28 +74,7 @@ def point_labels(parameters: C3dParameters, count: int, notes: list[str]) -> lis
         notes.append(f"{count - len(labels)} of {count} points have no label; named by their number")
     labels += [""] * (count - len(labels))
     labels = [label or f"*{i}" for i, label in enumerate(labels)]
-    subjects = {label.partition(":")[0] for label in labels if ":" in label}
-    if len(subjects) == 1:
-        prefix = f"{subjects.pop()}:"
-        labels = [label.removeprefix(prefix) or label for label in labels]
-    return _unique(labels, notes)
-
-
-def _unique(labels: list[str], notes: list[str]) -> list[str]:
-    taken = set(labels)
-    seen: set[str] = set()
-    result, renamed = [], []
-    for label in labels:
-        name, number = label, 2
-        while name in seen or (name != label and name in taken):
-            name, number = f"{label}_{number}", number + 1
-        if name != label:
-            renamed.append(f"{label} → {name}")
-        seen.add(name)
-        result.append(name)
-    if renamed:
-        notes.append(f"labels that occur more than once were renamed: {', '.join(renamed[:6])}")
-    return result
+    return unique_labels(without_subject(labels), notes)
 
 
 def _present(content: C3dContent, points: Array) -> BoolArray:

@@ -9,15 +9,15 @@ A reader of one's own joins the built-in ones by a decorator::
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.axes import axes_matrix, axes_text, nearest_axis, rotation_to_world, up_axis
 from mbkf.io.readers import FileFormat, FormatRegistry, either
-from mbkf.io.records import AxesSource, Capture, PlateReadings
+from mbkf.io.records import AxesSource, Capture, MarkerTrajectories, PlateReadings
 from mbkf.io.turning import turned
-from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
+from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N, offset_remarks
 
 
 @dataclass(frozen=True)
@@ -30,6 +30,9 @@ class CaptureOptions:
         cop_threshold_n: Vertical force in N below which no centre of pressure is given.
         tare: Whether the offset of unloaded plates is removed.
         plates: Whether the file's own force plates are read.
+        trial_end_s: Time that ground reactions have to reach to last as long as the trial, None where not known.
+        shared_up: Axis with which markers were read that share their axes with the ground reactions; None otherwise.
+        notes: Receives the remarks of a reader of ground reactions.
     """
 
     up: str | None = None
@@ -37,6 +40,9 @@ class CaptureOptions:
     cop_threshold_n: float = DEFAULT_COP_THRESHOLD_N
     tare: bool = True
     plates: bool = True
+    trial_end_s: float | None = None
+    shared_up: str | None = None
+    notes: list[str] = field(default_factory=list, compare=False)
 
 
 Read = Callable[[Path, CaptureOptions], Capture]
@@ -135,10 +141,11 @@ def read_capture(
     """Read a capture, and its ground reactions where they stand in a file of their own.
 
     Args:
-        path: File of a registered format, by default C3D or TRC.
-        forces: File of ground reactions (MOT or STO); it then replaces the plates of a C3D file. Its y is up, or
-            ``up`` where the markers are a TRC file. It keeps its own times.
-        up: Axis of the file that points up; by default the one that a C3D file states, y for a TRC file.
+        path: File of a registered format: C3D, TRC, Motive's CSV or Qualisys's TSV.
+        forces: File of ground reactions (MOT, STO, .forces, TSV or CSV); it then replaces the plates of the file.
+            Its up is that of the markers where these are no C3D file, else the axis that carries the weight; a plate
+            with corners faces up. It keeps its own times.
+        up: Axis of the file that points up; by default the one that the file states or its format has.
         unit: Length unit of the markers; by default the one that the file states.
         cop_threshold_n: Vertical force in N below which no centre of pressure is given.
         tare: Whether the offset an unloaded plate shows is removed.
@@ -183,18 +190,38 @@ def _declared(capture: Capture, up: str | None) -> Capture:
 
 def _with_forces(capture: Capture, forces: Path, kind: CaptureFormat, options: CaptureOptions) -> Capture:
     """The capture with ground reactions of a file of their own."""
-    plates = FORCES.format_of(forces).read(
-        forces, replace(options, up=options.up if kind.forces_share_up else None)
+    markers, share = capture.markers, kind.forces_share_up
+    options = replace(
+        options,
+        up=options.up if share else None,
+        shared_up=capture.up_axis if share else None,
+        trial_end_s=markers.start_time_s + (markers.frames - 2) / markers.rate_hz,  # but for the last frame
+        notes=[],
     )
-    notes = [*capture.notes, f"ground reactions from {forces.name}"]
-    markers = capture.markers
-    end_s = markers.start_time_s + markers.frames / markers.rate_hz
-    for plate in plates:
-        if plate.times_s[-1] < markers.start_time_s or plate.start_time_s > end_s:
-            notes.append(f"ground reactions of '{plate.name}' lie outside the time of the markers")
-        if plate.offset[2]:
-            notes.append(f"set '{plate.name}': offset of {plate.offset[2]:+.1f} N vertical force removed")
+    plates = FORCES.format_of(forces).read(forces, options)
+    notes = [*capture.notes, f"ground reactions from {forces.name}", *options.notes]
+    notes += [*_coverage(plates, markers), *offset_remarks(plates)]
     return replace(capture, plates=plates, notes=tuple(notes))
+
+
+def _coverage(plates: tuple[PlateReadings, ...], markers: MarkerTrajectories) -> list[str]:
+    """Remarks on ground reactions that leave out the trial or a part of it."""
+    slack_s = 1.5 / markers.rate_hz
+    first_s, last_s = markers.start_time_s, markers.start_time_s + (markers.frames - 1) / markers.rate_hz
+    notes: list[str] = []
+    parts: dict[tuple[float, float], list[str]] = {}
+    for plate in plates:
+        start_s, end_s = plate.start_time_s, float(plate.times_s[-1])
+        if end_s < first_s or start_s > last_s + slack_s:
+            notes.append(f"ground reactions of '{plate.name}' lie outside the time of the markers")
+        elif start_s > first_s + slack_s or end_s < last_s - slack_s:
+            parts.setdefault((round(start_s, 3), round(end_s, 3)), []).append(plate.name)
+    for (start_s, end_s), names in parts.items():
+        notes.append(
+            f"ground reactions of {', '.join(names)} last from {start_s:g} to {end_s:g} s, the markers from "
+            f"{first_s:.4g} to {last_s:.4g} s"
+        )
+    return notes
 
 
 def write_capture(capture: Capture, path: str | Path) -> None:
@@ -253,10 +280,76 @@ def _read_trc(path: Path, options: CaptureOptions) -> Capture:
     return read_trc(path, up=options.up, unit=options.unit)
 
 
+@register_reader(".csv", title="CSV of Motive", forces_share_up=True)
+def _read_motive(path: Path, options: CaptureOptions) -> Capture:
+    from mbkf.io.motive import read_motive
+
+    return read_motive(path, up=options.up, unit=options.unit)
+
+
+@register_reader(".tsv", title="TSV of Qualisys", brings_plates=True, forces_share_up=True)
+def _read_qualisys(path: Path, options: CaptureOptions) -> Capture:
+    from mbkf.io.qualisys import read_qualisys
+
+    return read_qualisys(
+        path,
+        up=options.up,
+        unit=options.unit,
+        cop_threshold_n=options.cop_threshold_n,
+        tare=options.tare,
+        plates=options.plates,
+    )
+
+
 @register_force_reader(".mot", ".sto", title="OpenSim storage")
 def _read_forces_mot(path: Path, options: CaptureOptions) -> tuple[PlateReadings, ...]:
     from mbkf.io.forces import read_forces_mot
 
     return read_forces_mot(
-        path, up=options.up or "y", cop_threshold_n=options.cop_threshold_n, tare=options.tare
+        path,
+        up=options.up or options.shared_up,
+        cop_threshold_n=options.cop_threshold_n,
+        tare=options.tare,
+        until_s=options.trial_end_s,
+        notes=options.notes,
+    )
+
+
+@register_force_reader(".forces", title="Cortex forces")
+def _read_forces_cortex(path: Path, options: CaptureOptions) -> tuple[PlateReadings, ...]:
+    from mbkf.io.cortex import read_forces_cortex
+
+    return read_forces_cortex(
+        path,
+        up=options.up or options.shared_up,
+        cop_threshold_n=options.cop_threshold_n,
+        tare=options.tare,
+        notes=options.notes,
+    )
+
+
+@register_force_reader(".tsv", title="TSV of a Qualisys plate")
+def _read_forces_qualisys(path: Path, options: CaptureOptions) -> tuple[PlateReadings, ...]:
+    from mbkf.io.qualisys import read_forces_qualisys
+
+    return read_forces_qualisys(
+        path,
+        up=options.up,
+        cop_threshold_n=options.cop_threshold_n,
+        tare=options.tare,
+        notes=options.notes,
+    )
+
+
+@register_force_reader(".csv", ".txt", title="table with named columns")
+def _read_forces_csv(path: Path, options: CaptureOptions) -> tuple[PlateReadings, ...]:
+    from mbkf.io.force_csv import read_forces_csv
+
+    return read_forces_csv(
+        path,
+        up=options.up,
+        shared_up=options.shared_up,
+        cop_threshold_n=options.cop_threshold_n,
+        tare=options.tare,
+        notes=options.notes,
     )

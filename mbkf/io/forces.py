@@ -1,46 +1,35 @@
-"""Ground reactions as OpenSim stores them: force, point of application and free torque per plate or foot.
+"""Ground reactions as OpenSim stores them: force, point of application and torque there per plate or foot.
 
-The columns of one set are called after their plate or foot in one of these ways, with x, y, z each::
-
-    ground_force_vx, ground_force_px, ground_torque_x              one set without a name
-    1_ground_force_vx …, R_ground_force_vx …                        the name before
-    ground_force_r_vx …, ground_torque_r_x                          the name within
-    ground_force4_vx …, ground_torque4_x                            a number attached
+:mod:`mbkf.io.force_names` tells how columns may be called.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.errors import FileFormatError, InvalidInput, UnknownName
+from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.axes import finite, rotation_to_world
+from mbkf.io.force_table import ForceTable, plates_of_table, up_of_table
 from mbkf.io.records import PlateReadings
-from mbkf.io.storage import Table, read_storage, write_storage
-from mbkf.io.wrench import (
-    DEFAULT_COP_THRESHOLD_N,
-    centre_of_pressure,
-    find_tare,
-    remove_tare,
-    require_finite,
-)
+from mbkf.io.storage import Table, promised_rows, read_storage, write_storage
+from mbkf.io.text import even_rate, number
+from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
 
-UNNAMED_SET = "0"
-"""Name of the set whose columns carry none; ``1_ground_force_vx`` is then the next."""
-
-_FORCE_COLUMN = re.compile(r"(?P<before>.*?)_?ground_force_?(?P<within>\w*?)_?(?P<kind>[vp])x")
 _AXES = "xyz"
-_EVEN_TOLERANCE = 0.5
-_LEAST_OFFSET_N = 2.0
-_UP = np.array([0.0, 0.0, 1.0])
 
 
 def read_forces_mot(
-    path: str | Path, *, up: str = "y", cop_threshold_n: float = DEFAULT_COP_THRESHOLD_N, tare: bool = False
+    path: str | Path,
+    *,
+    up: str | None = "y",
+    cop_threshold_n: float = DEFAULT_COP_THRESHOLD_N,
+    tare: bool = False,
+    until_s: float | None = None,
+    notes: list[str] | None = None,
 ) -> tuple[PlateReadings, ...]:
     """Read ground reactions from a MOT (or STO) file.
 
@@ -49,53 +38,30 @@ def read_forces_mot(
 
     Args:
         path: The file, in m, N and N m.
-        up: Axis of the file that points up; OpenSim has y.
+        up: Axis of the file that points up; OpenSim has y. None for the one that carries the weight.
         cop_threshold_n: Vertical force in N below which no centre of pressure is given.
         tare: Whether an offset of the unloaded set is removed, if it is 2 N or more; most exports have none,
             and the remainder of a low-pass filter is not one.
+        until_s: End of the trial in s. A file with fewer rows than it promises is whole if it lasts until then,
+            or to the end of the range in its own header.
+        notes: Receives what was completed, and a wrong count of rows.
 
     Returns:
         One set of readings per plate or foot, in the order of the columns.
 
     Raises:
-        FileFormatError: The file is missing or no table, columns of a set are missing, or the times are not
-            evenly spaced.
+        FileFormatError: The file is missing, no table or cut short, columns of a set are missing, or the times
+            are not evenly spaced.
         InvalidInput: A force, point or torque is not a number.
         UnknownName: No column follows a known naming; lists what was found.
     """
-    table = read_storage(path)
-    sets = _sets(path, table)
-    rate_hz = _rate(Path(path), table.times_s)
-    start_s = float(table.times_s[0])
-    rotation = rotation_to_world(up)
-    readings = []
-    for name, columns_of_set in sets.items():
-        force, point, torque = (_vectors(table, columns) @ rotation.T for columns in columns_of_set)
-        loaded = force[:, 2] >= cop_threshold_n
-        point[~loaded & ~finite(point)] = 0.0  # no force, so no point of application
-        require_finite(np.hstack([force, point]), torque, rate_hz, start_s, f"{path}, set '{name}'")
-        origin = point[loaded].mean(axis=0) if loaded.any() else np.zeros(3)
-        wrench = np.hstack([force, torque + np.cross(point - origin, force)])
-        pressure = np.where(loaded[:, None], point, np.nan)
-        offset = np.zeros(6)
-        found = find_tare(wrench, rate_hz) if tare else None
-        if found is not None and abs(found.offset[2]) >= _LEAST_OFFSET_N:
-            wrench, offset = remove_tare(wrench, found), found.offset
-            pressure = centre_of_pressure(wrench[:, :3], wrench[:, 3:], origin, _UP, cop_threshold_n)
-        readings.append(
-            PlateReadings(
-                name=name,
-                rate_hz=rate_hz,
-                start_time_s=start_s,
-                origin_m=origin,
-                force_n=wrench[:, :3],
-                moment_nm=wrench[:, 3:],
-                centre_of_pressure_m=pressure,
-                threshold_n=cop_threshold_n,
-                offset=offset,
-            )
-        )
-    return tuple(readings)
+    remarks = notes if notes is not None else []
+    table = read_storage(path, check_rows=False)
+    rate_hz = even_rate(Path(path), table.times_s)
+    _check_rows(Path(path), table, rate_hz, until_s, remarks)
+    forces = ForceTable(str(path), table.names, table.columns, rate_hz, float(table.times_s[0]))
+    axis = up_of_table(forces, up, "y", remarks)
+    return plates_of_table(forces, up=axis, threshold_n=cop_threshold_n, tare=tare, notes=remarks)
 
 
 def write_forces_mot(plates: Sequence[PlateReadings], path: str | Path) -> None:
@@ -133,45 +99,17 @@ def write_forces_mot(plates: Sequence[PlateReadings], path: str | Path) -> None:
     write_storage(Table(tuple(names), times, np.hstack(columns), False, title, header), path)
 
 
-def _sets(path: str | Path, table: Table) -> dict[str, tuple[list[str], list[str], list[str]]]:
-    """Name of each set → its force, point and torque columns."""
-    known = {name.lower(): name for name in table.names}
-    sets = {}
-    for column in table.names:
-        match = _FORCE_COLUMN.fullmatch(column.lower())
-        if match is None or match["kind"] != "v":
-            continue
-        stem = column[: -len("vx")]
-        torque = re.sub("ground_force", "ground_torque", stem, flags=re.IGNORECASE)
-        wanted = [[f"{prefix}{axis}" for axis in _AXES] for prefix in (f"{stem}v", f"{stem}p", torque)]
-        missing = [name for group in wanted for name in group if name.lower() not in known]
-        if missing:
-            raise FileFormatError(path, f"column {missing[0]} of the set of {column} is missing; add it")
-        force, point, moment = ([known[name.lower()] for name in group] for group in wanted)
-        label = match["before"] or match["within"] or UNNAMED_SET
-        sets[label.lower()] = (force, point, moment)
-    if not sets:
-        raise UnknownName(
-            "ground reaction columns",
-            ", ".join(table.names[:6]),
-            ("ground_force_r_vx", "1_ground_force_vx", "ground_force1_vx"),
-            str(path),
-        )
-    return sets
-
-
-def _vectors(table: Table, columns: list[str]) -> Array:
-    """(T, 3) values of three columns."""
-    return np.column_stack([table.column(name) for name in columns])
-
-
-def _rate(path: Path, times: Array) -> float:
-    """Sample rate of evenly spaced times (rounded ones count as even)."""
-    if len(times) < 2 or times[-1] <= times[0]:
-        raise FileFormatError(path, "the time column does not increase; export the file again")
-    rate_hz = (len(times) - 1) / (times[-1] - times[0])
-    off = np.abs((times - times[0]) * rate_hz - np.arange(len(times)))
-    if off.max() > _EVEN_TOLERANCE:
-        worst = times[int(np.argmax(off))]
-        raise FileFormatError(path, f"times are not evenly spaced near {worst:.4f} s; resample them first")
-    return round(rate_hz, 6)
+def _check_rows(path: Path, table: Table, rate_hz: float, until_s: float | None, notes: list[str]) -> None:
+    """Compares the rows with those promised; fewer are enough where they last as long as they should."""
+    promised, found = promised_rows(table), len(table.times_s)
+    if promised is None or promised == found:
+        return
+    ends = [until_s] if until_s is not None else []
+    stated = [number(word) for word in table.header.get("range", "").split()]
+    ends += [end for end in stated[1:2] if end is not None]
+    lasting = any(table.times_s[-1] + 1.5 / rate_hz >= end for end in ends)
+    if promised > found and not lasting:
+        reason = f"cut short: {promised} rows promised, {found} present"
+        until = f", and they end at {table.times_s[-1]:.3f} s" if ends else ""
+        raise FileFormatError(path, f"{reason}{until}; copy or export it again")
+    notes.append(f"{path.name} promises {promised} rows and has {found}")

@@ -57,11 +57,12 @@ class Table:
         return self.columns[:, self.names.index(name)]
 
 
-def read_storage(path: str | Path) -> Table:
+def read_storage(path: str | Path, *, check_rows: bool = True) -> Table:
     """Read a MOT or STO file of any of the header dialects OpenSim has had.
 
     Args:
         path: The file.
+        check_rows: Whether fewer rows than the header promises are refused.
 
     Returns:
         The table; degrees stay degrees (see ``in_degrees``).
@@ -85,12 +86,19 @@ def read_storage(path: str | Path) -> Table:
     if not names or names[0].lower() != "time":
         raise FileFormatError(path, "the first column is not 'time'", start + 1)
     rows = _rows(path, lines, start + 1, len(names))
-    promised = header.get("nrows", header.get("datarows", ""))
-    if promised.isdigit() and int(promised) > len(rows):
+    degrees = header.get("indegrees", "no").lower() in {"yes", "true", "1"}
+    table = Table(tuple(names[1:]), rows[:, 0], rows[:, 1:], degrees, title, header)
+    promised = promised_rows(table)
+    if check_rows and promised is not None and promised > len(rows):
         reason = f"cut short: {promised} rows promised, {len(rows)} present; copy or export it again"
         raise FileFormatError(path, reason)
-    degrees = header.get("indegrees", "no").lower() in {"yes", "true", "1"}
-    return Table(tuple(names[1:]), rows[:, 0], rows[:, 1:], degrees, title, header)
+    return table
+
+
+def promised_rows(table: Table) -> int | None:
+    """Rows that a table's header promises, or None where it states no number."""
+    text = table.header.get("nrows", table.header.get("datarows", "")).strip()
+    return int(text) if text.isdigit() else None
 
 
 def write_storage(table: Table, path: str | Path) -> None:

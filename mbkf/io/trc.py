@@ -21,15 +21,17 @@ from mbkf.io.axes import (
     rotation_to_world,
     up_axis,
 )
+from mbkf.io.labels import unique_labels
 from mbkf.io.records import AxesSource, Capture, MarkerTrajectories
+from mbkf.io.text import TextFile, compare_count, compare_rate, number, numbers, read_text
 
 _TITLES = (
     "DataRate", "CameraRate", "NumFrames", "NumMarkers", "Units", "OrigDataRate", "OrigDataStartFrame",
     "OrigNumFrames",
 )  # fmt: skip
 _HEADER_LINES = 5
-_RATE_TOLERANCE = 0.005
 _COLUMNS_BEFORE_MARKERS = 2
+_MOST_NAMED = 6
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,8 @@ def read_trc(path: str | Path, *, up: str | None = None, unit: str | None = None
     """Read a TRC file.
 
     Blank cells, NaN and exact zeros are missing samples. The header's fields are found by their order, since
-    some programs put extra tabs between them.
+    some programs put extra tabs between them. Counts that disagree with the rows, points beyond the names, names
+    that occur twice and another order of axes are told.
 
     Args:
         path: The file.
@@ -72,26 +75,31 @@ def read_trc(path: str | Path, *, up: str | None = None, unit: str | None = None
     """
     source = AxesSource.DEFAULT if up is None else AxesSource.UP_GIVEN
     path, up = Path(path), up_axis("y" if up is None else up)
-    lines = _lines(path)
-    header = _header(path, lines)
-    names = _names(lines[3])
+    file = _file(path)
+    header = _header(path, file.lines)
+    cells = _rows(file)
+    names = _names(file.lines[3], cells.points)
+    if not any(names):
+        raise FileFormatError(path, "no marker is named", 4)
+    if cells.longest > 3 * len([name for name in names if name]) and cells.longest % 3:
+        width = cells.longest + _COLUMNS_BEFORE_MARKERS
+        raise FileFormatError(path, f"{width} columns; each point needs 3 beside frame and time")
     notes = []
     if header.shifted:
         notes.append("header line 3 is shifted against its titles; its fields were read in order")
-    if header.markers is not None and header.markers != len(names):
-        notes.append(f"the header counts {header.markers} markers, {len(names)} are named")
-    times, values = _rows(path, lines, len(names))
-    if header.frames is not None and header.frames != len(times):
-        if header.frames > len(times):
-            reason = f"cut short: the header promises {header.frames} frames, {len(times)} are there"
-            raise FileFormatError(path, f"{reason}; copy or export it again")
-        notes.append(f"the header counts {header.frames} frames, {len(times)} are there")
-    notes += _compare_rate(header.rate_hz, times)
+    named = sum(bool(name) for name in names)
+    if header.markers is not None and header.markers != named:
+        notes.append(f"the header counts {header.markers} markers, {named} are named")
+    labels = _labels(names, notes)
+    times = cells.times_s
+    values = cells.of(len(names))[:, :, _order_of_axes(file.lines[4], len(names), notes)]
+    notes += compare_count(file, header.frames, len(times), "frames")
+    notes += compare_rate(header.rate_hz, times)
     used_unit = _unit(path, header.unit, unit, notes)
     positions = positions_to_world(values, finite(values), up, used_unit)
     if unit is None:
         notes += check_body_size(positions, used_unit, str(path))
-    markers = MarkerTrajectories(names, positions, header.rate_hz, float(times[0]))
+    markers = MarkerTrajectories(labels, positions, header.rate_hz, float(times[0]))
     return Capture(
         str(path),
         markers,
@@ -127,83 +135,117 @@ def write_trc(markers: MarkerTrajectories, path: str | Path) -> None:
             file.write(f"{number}\t{time_s:.8f}\t{cells}\n")
 
 
-def _lines(path: Path) -> list[str]:
-    if not path.is_file():
-        raise FileFormatError(path, "no such file; name a TRC file")
-    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
-    if not lines or "pathfiletype" not in lines[0].lower():
+def _file(path: Path) -> TextFile:
+    file = read_text(path, "a TRC file")
+    if not file.lines or "pathfiletype" not in file.lines[0].lower():
         raise FileFormatError(path, "not a TRC file (it does not begin with PathFileType)", 1)
-    if len(lines) <= _HEADER_LINES:
-        raise FileFormatError(path, "cut short: no frames after the header; export it again", len(lines))
-    return lines
+    if len(file.lines) <= _HEADER_LINES:
+        raise FileFormatError(path, "cut short: no frames after the header; export it again", len(file.lines))
+    return file
 
 
 def _header(path: Path, lines: list[str]) -> TrcHeader:
     """Numbers in their order (DataRate, CameraRate, NumFrames, NumMarkers …) and the one word among them."""
     words = lines[2].split()
-    numbers = [number for word in words if (number := _number(word)) is not None]
-    unit = next((word for word in words if _number(word) is None), "")
-    if not numbers or not (math.isfinite(numbers[0]) and numbers[0] > 0.0):
+    values = [value for word in words if (value := number(word)) is not None]
+    unit = next((word for word in words if number(word) is None), "")
+    if not values or not values[0] > 0.0:
         raise FileFormatError(path, "the header gives no DataRate; write it first in this line", 3)
-    counts = [int(number) if number >= 0 and number == int(number) else None for number in numbers[2:4]]
+    counts = [int(value) if value >= 0 and value == int(value) else None for value in values[2:4]]
     counts += [None] * (2 - len(counts))
     titles = [title.strip().lower() for title in lines[1].split("\t")]
     cells = [cell.strip() for cell in lines[2].split("\t")]
     column = titles.index("units") if "units" in titles else -1
     shifted = bool(unit) and (not 0 <= column < len(cells) or cells[column] != unit)
-    return TrcHeader(numbers[0], counts[0], counts[1], unit, shifted)
+    return TrcHeader(values[0], counts[0], counts[1], unit, shifted)
 
 
-def _number(word: str) -> float | None:
-    try:
-        number = float(word)
-    except ValueError:
-        return None
-    return number if math.isfinite(number) else None
+@dataclass(frozen=True)
+class _Rows:
+    """Frames of a file: (T,) times in s and T lists of coordinates, without blank cells at their ends."""
+
+    path: Path
+    times_s: Array
+    rows: list[list[float]]
+
+    @property
+    def longest(self) -> int:
+        """Coordinates in the longest row."""
+        return max(len(row) for row in self.rows)
+
+    @property
+    def points(self) -> int:
+        """Points that the longest row holds."""
+        return -(-self.longest // 3)
+
+    def of(self, count: int) -> Array:
+        """(T, count, 3) coordinates, NaN where a cell is blank."""
+        table = np.full((len(self.rows), 3 * count), np.nan)
+        for cells, row in zip(table, self.rows, strict=True):
+            cells[: len(row)] = row
+        return table.reshape(len(table), count, 3)
 
 
-def _names(line: str) -> tuple[str, ...]:
-    """Marker names: the cells after Frame# and Time, with any number of tabs between them."""
-    cells = line.split("\t") if "\t" in line else line.split()
-    return tuple(cell.strip() for cell in cells if cell.strip())[_COLUMNS_BEFORE_MARKERS:]
-
-
-def _rows(path: Path, lines: list[str], count: int) -> tuple[Array, Array]:
-    """(T,) times in s and (T, M, 3) coordinates, NaN where a cell is blank."""
-    if not count:
-        raise FileFormatError(path, "no marker is named", 4)
-    width = _COLUMNS_BEFORE_MARKERS + 3 * count
-    table = []
-    for number, line in enumerate(lines[_HEADER_LINES:], start=_HEADER_LINES + 1):
-        if not line.strip():
+def _rows(file: TextFile) -> _Rows:
+    times, table, widths = [], [], []
+    for line, text in enumerate(file.lines[_HEADER_LINES:], start=_HEADER_LINES + 1):
+        if not text.strip():
             continue
-        cells = line.split("\t") if "\t" in line else line.split()
-        if any(cell.strip() for cell in cells[width:]):
-            raise FileFormatError(path, f"{len(cells)} columns, but {count} markers need {width}", number)
-        try:
-            row = [float(cell) if cell.strip() else math.nan for cell in cells[:width]]
-        except ValueError as error:
-            raise FileFormatError(path, f"not a number ({error}); correct or blank it", number) from error
+        cells = text.split("\t") if "\t" in text else text.split()
+        widths.append(len(cells))
+        row = numbers("\t".join(cells).rstrip().split("\t"), file.path, line)
         if len(row) < _COLUMNS_BEFORE_MARKERS or math.isnan(row[1]):
-            raise FileFormatError(path, "the row has no time; export the file again", number)
-        table.append(row + [math.nan] * (width - len(row)))
+            raise FileFormatError(file.path, "the row has no time; export the file again", line)
+        times.append(row[1])
+        table.append(row[_COLUMNS_BEFORE_MARKERS:])
     if not table:
-        raise FileFormatError(path, "no frames after the header; export it again", len(lines))
-    rows = np.array(table, dtype=np.float64)
-    return rows[:, 1], rows[:, _COLUMNS_BEFORE_MARKERS:].reshape(len(rows), count, 3)
+        raise FileFormatError(file.path, "no frames after the header; export it again", len(file.lines))
+    if not file.whole and widths[-1] < widths[0]:
+        raise FileFormatError(file.path, "cut short within a row; copy or export it again", len(file.lines))
+    return _Rows(file.path, np.array(times), table)
 
 
-def _compare_rate(rate_hz: float, times: Array) -> list[str]:
-    """A remark where header and Time column disagree."""
-    span = times[-1] - times[0]
-    if len(times) < 2:
-        return []
-    if span <= 0.0:
-        return ["the Time column does not increase; times follow from the header's rate"]
-    from_times = (len(times) - 1) / span
-    if abs(from_times - rate_hz) > _RATE_TOLERANCE * rate_hz:
-        return [f"the header states {rate_hz:g} Hz, the Time column {from_times:.6g} Hz; the header is used"]
-    return []
+def _names(line: str, points: int) -> list[str]:
+    """Marker names in the order of the columns, "" for points without a name.
+
+    Where every name stands over the first column of a point, its place counts; some programs put any number of
+    tabs between names, which then follow one another.
+
+    Args:
+        line: Fourth line of the file.
+        points: Points that the rows hold.
+    """
+    cells = [cell.strip() for cell in (line.split("\t") if "\t" in line else line.split())]
+    places = [i - _COLUMNS_BEFORE_MARKERS for i, cell in enumerate(cells) if cell][_COLUMNS_BEFORE_MARKERS:]
+    names = [cell for cell in cells if cell][_COLUMNS_BEFORE_MARKERS:]
+    in_place = all(place % 3 == 0 for place in places) and (not places or places[-1] // 3 < max(points, 1))
+    if in_place and len(places) > 1:
+        placed = [""] * (places[-1] // 3 + 1)
+        for place, name in zip(places, names, strict=True):
+            placed[place // 3] = name
+        names = placed
+    return names + [""] * (points - len(names))
+
+
+def _labels(names: list[str], notes: list[str]) -> tuple[str, ...]:
+    """Names that occur once each; points without one are called by their number, as in C3D files."""
+    unnamed = [f"*{i}" for i, name in enumerate(names) if not name]
+    if unnamed:
+        listed = ", ".join(unnamed[:_MOST_NAMED])
+        notes.append(f"{len(unnamed)} points have columns and no name; called by their number: {listed}")
+    return tuple(unique_labels([name or f"*{i}" for i, name in enumerate(names)], notes))
+
+
+def _order_of_axes(line: str, count: int, notes: list[str]) -> list[int]:
+    """Which column of each point is its x, y and z, by the fifth line (X1 Y1 Z1 …) where that is whole."""
+    letters = [cell.strip()[0].upper() for cell in line.split() if cell.strip()[0].upper() in "XYZ"]
+    triples = {"".join(letters[i : i + 3]) for i in range(0, len(letters), 3)}
+    if len(letters) < 3 * count or len(triples) != 1 or sorted(triple := triples.pop()) != ["X", "Y", "Z"]:
+        return [0, 1, 2]
+    order = [triple.index(axis) for axis in "XYZ"]
+    if order != [0, 1, 2]:
+        notes.append(f"the columns of each marker are ordered {', '.join(triple)}; read by their titles")
+    return order
 
 
 def _unit(path: Path, stated: str, given: str | None, notes: list[str]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.axes import finite
+from mbkf.io.records import PlateReadings
 
 DEFAULT_COP_THRESHOLD_N = 20.0
 """Vertical force below which a centre of pressure is mostly noise, in N."""
@@ -133,6 +135,15 @@ def remove_tare(wrench: Array, tare: Tare) -> Array:
     """
     zeroed = (wrench == 0.0).all(axis=1)
     return np.where(zeroed[:, None], 0.0, wrench - tare.offset)
+
+
+def offset_remarks(plates: Sequence[PlateReadings]) -> list[str]:
+    """Which offsets were removed from plates or sets."""
+    return [
+        f"set '{plate.name}': offset of {plate.offset[2]:+.1f} N vertical force removed"
+        for plate in plates
+        if plate.offset[2]
+    ]
 
 
 def half_sample_mode(values: Array) -> float:

@@ -44,9 +44,26 @@ def test_not_a_trc(tmp_path, everywhere):
 
 
 def test_other_kinds_of_file(tmp_path, everywhere):
-    path = tmp_path / "a.csv"
+    path = tmp_path / "a.xlsx"
     path.write_text("a,b\n1,2\n")
-    everywhere(path, path, "'.csv' files cannot be read", ".c3d or .trc")
+    everywhere(path, path, "'.xlsx' files cannot be read", ".c3d, .trc, .csv or .tsv")
+
+
+@pytest.mark.parametrize(("suffix", "kind"), [("csv", "export of Motive"), ("tsv", "TSV file of Qualisys")])
+def test_tables_that_are_no_captures(suffix, kind, tmp_path, everywhere):
+    path = tmp_path / f"a.{suffix}"
+    path.write_text("a,b\n1,2\n")
+    everywhere(path, path, "line 1", f"not a{'n' if suffix == 'csv' else ''} {kind}")
+
+
+@pytest.mark.parametrize("suffix", ["forces", "tsv", "csv", "txt"])
+def test_tables_that_are_no_forces(suffix, person, tmp_path, refused, refuse_reconstruct):
+    path = tmp_path / f"a.{suffix}"
+    for content in ("", "a,b\n1,2\n"):
+        path.write_text(content)
+        refuse_reconstruct([person.trial_trc, "--forces", path], f"a.{suffix}")
+    refused(["info", person.trial_trc, "--forces", path], f"a.{suffix}")
+    refused(["info", person.trial_trc, "--forces", tmp_path / f"none.{suffix}"], "no such file")
 
 
 @pytest.mark.parametrize("share", [0.001, 0.1, 0.5, 0.99])
@@ -60,8 +77,8 @@ def test_truncated_c3d(share, person, tmp_path, everywhere):
 def test_truncated_trc(person, tmp_path, everywhere):
     lines = person.trial_trc.read_text().splitlines(keepends=True)
     path = tmp_path / "cut.trc"
-    path.write_text("".join(lines[:40]))
-    everywhere(path, path, "cut short", "60 frames", "copy or export it again")
+    path.write_text("".join(lines[:40]).rstrip()[:-30])
+    everywhere(path, path, "cut short", "copy or export it again")
 
 
 def test_no_markers_of_the_protocol(person, tmp_path, refuse_scale, refuse_reconstruct):

@@ -98,10 +98,13 @@ def test_an_unloaded_plate_needs_no_point_of_application(tmp_path):
 
 
 def test_unknown_and_incomplete_naming_is_refused(tmp_path):
-    table = Table(("Fx", "Fy"), np.arange(3.0), np.zeros((3, 2)))
-    write_storage(table, tmp_path / "a.mot")
-    with pytest.raises(UnknownName, match=r"Fx, Fy.*ground_force_r_vx"):
-        read_forces_mot(tmp_path / "a.mot")
+    for names, error, reason in (
+        (("a", "b"), UnknownName, r"a, b.*ground_force_r_vx"),
+        (("Fx", "Fy"), FileFormatError, r"column Fz of set '0' is missing"),
+    ):
+        write_storage(Table(names, np.arange(3.0), np.zeros((3, 2))), tmp_path / "a.mot")
+        with pytest.raises(error, match=reason):
+            read_forces_mot(tmp_path / "a.mot")
     whole = read_storage(save(tmp_path / "b.mot", {"r": columns()}))
     write_storage(Table(whole.names[:-1], whole.times_s, whole.columns[:, :-1]), tmp_path / "c.mot")
     with pytest.raises(FileFormatError, match="ground_torque_r_z"):
@@ -117,6 +120,43 @@ def test_uneven_times_are_refused_and_rounded_ones_accepted(tmp_path):
         write_storage(Table(whole.names, times, whole.columns), tmp_path / "c.mot")
         with pytest.raises(FileFormatError, match=r"evenly|increase"):
             read_forces_mot(tmp_path / "c.mot")
+
+
+def promising(path, rows: int, header: str = ""):
+    """A file of 1000 rows from 0 to 1.998 s that promises others."""
+    text = save(path, {"r": columns()}, start_s=0.0).read_text()
+    path.write_text(text.replace("nRows=1000", f"nRows={rows}").replace("endheader", f"{header}endheader"))
+    return path
+
+
+@pytest.mark.parametrize(("until_s", "header"), [(1.998, ""), (1.2, ""), (None, "range 0 1.998\n")])
+def test_a_wrong_count_is_told_where_the_rows_last_as_long_as_the_trial(tmp_path, until_s, header):
+    notes = []
+    path = promising(tmp_path / "a.mot", 5000, header)
+    (plate,) = read_forces_mot(path, until_s=until_s, notes=notes)
+    assert len(plate.force_n) == SAMPLES
+    assert notes == ["a.mot promises 5000 rows and has 1000"]
+
+
+@pytest.mark.parametrize(("until_s", "header"), [(None, ""), (3.0, ""), (None, "range 0 9.998\n")])
+def test_rows_that_end_too_early_are_refused(tmp_path, until_s, header):
+    path = promising(tmp_path / "a.mot", 5000, header)
+    with pytest.raises(FileFormatError, match="cut short: 5000 rows promised, 1000 present"):
+        read_forces_mot(path, until_s=until_s)
+
+
+def test_more_rows_than_promised_are_told(tmp_path):
+    notes = []
+    read_forces_mot(promising(tmp_path / "a.mot", 7), notes=notes)
+    assert notes == ["a.mot promises 7 rows and has 1000"]
+
+
+def test_weight_tells_which_axis_is_up_where_nobody_does(tmp_path):
+    path = save(tmp_path / "a.mot", {"r": [values @ TO_FILE.T for values in columns()]})
+    notes = []
+    (plate,) = read_forces_mot(path, up=None, notes=notes)
+    np.testing.assert_allclose(plate.force_n[LOADED], np.tile(FORCE_N, (400, 1)))
+    assert any("weight along z" in note for note in notes)
 
 
 def readings(name: str, seed: int) -> PlateReadings:

@@ -124,18 +124,65 @@ def test_disagreements_are_remarked(tmp_path):
         ("", "not a TRC"),
         ("time\tx\n1\t2\n", "line 1.*not a TRC"),
         (text(rows=[]), "cut short|no frames"),
-        (text(rows=ROWS[:2]), "cut short: the header promises 3 frames, 2"),
+        (text(rows=ROWS[:1]).rstrip(), "cut short: the header promises 3 frames, 1"),
+        (text().rstrip()[:-10], "line 9.*cut short within a row"),
         (text("\t\t\tmm"), "line 3.*DataRate"),
         (text("0\t0\t3\t2\tmm"), "line 3.*DataRate"),
         (text(names="Frame#\tTime"), "line 4.*no marker"),
         (text(rows=[*ROWS[:2], "3\t0.04\tx\t1\t1\t1\t1\t1"]), "line 9.*not a number"),
-        (text(rows=[ROWS[0] + "\t5\t5\t5", *ROWS[1:]]), "line 7.*11 columns, but 2 markers need 8"),
+        (text(rows=[ROWS[0] + "\t5\t5", *ROWS[1:]]), "10 columns; each point needs 3"),
         (text(rows=[*ROWS[:2], "3\t\t1\t1\t1\t1\t1\t1"]), "line 9.*no time"),
     ],
 )
 def test_broken_files_are_refused_with_the_line(tmp_path, content, reason):
     with pytest.raises(FileFormatError, match=reason):
         read(tmp_path, content)
+
+
+@pytest.mark.parametrize("frames", [2, 300])
+def test_a_wrong_count_of_frames_is_told_where_the_last_row_is_whole(tmp_path, frames):
+    capture = read(tmp_path, text(TIDY.replace("\t3\t", f"\t{frames}\t", 1)))
+    check_values(capture)
+    assert f"the header counts {frames} frames, 3 are there" in capture.notes
+
+
+def test_points_beyond_the_names_are_read_and_called_by_their_number(tmp_path):
+    capture = read(tmp_path, text(rows=[row + "\t7\t8\t9\t\t\t" for row in ROWS]))
+    assert capture.markers.names == ("Head", "L.Toe Tip", "*2")
+    np.testing.assert_allclose(capture.markers.positions_m[:, 2], np.tile([0.007, -0.009, 0.008], (3, 1)))
+    assert "1 points have columns and no name; called by their number: *2" in capture.notes
+
+
+def test_a_point_without_a_name_between_named_ones_keeps_its_columns(tmp_path):
+    names = "Frame#\tTime\tHead\t\t\t\t\t\tL.Toe Tip\t\t"
+    rows = ["1\t0.00\t100\t1500\t-50\t7\t8\t9\t120\t20\t60"]
+    capture = read(tmp_path, text(names=names, rows=rows))
+    assert capture.markers.names == ("Head", "*1", "L.Toe Tip")
+    np.testing.assert_allclose(capture.markers.positions_m[0, 2], [0.12, -0.06, 0.02])
+
+
+def test_names_that_occur_twice_are_renamed_and_told(tmp_path):
+    capture = read(tmp_path, text(names="Frame#\tTime\tHead\t\t\tHead\t\t"))
+    assert capture.markers.names == ("Head", "Head_2")
+    assert any("Head → Head_2" in note for note in capture.notes)
+
+
+def test_axes_in_another_order_are_read_by_their_titles(tmp_path):
+    mixed = text().replace("X1\tY1\tZ1\tX2\tY2\tZ2", "Z1\tX1\tY1\tZ2\tX2\tY2")
+    capture = read(tmp_path, mixed)
+    # file z, x, y = 100, 1500, −50, so x = 1500, y = −50, z = 100; world x, −z, y
+    np.testing.assert_allclose(capture.markers.positions_m[0, 0], [1.5, -0.1, -0.05])
+    assert any("ordered Z, X, Y" in note for note in capture.notes)
+
+
+@quick
+@given(order=st.permutations(range(4)))
+def test_the_order_of_markers_does_not_matter(tmp_path, order):
+    values = np.arange(24.0).reshape(2, 4, 3) / 10.0 + 0.1
+    markers = MarkerTrajectories(tuple("ABCD"), values, 100.0)
+    write_trc(markers.select(tuple("ABCD"[i] for i in order)), tmp_path / "a.trc")
+    back = read_trc(tmp_path / "a.trc", unit="mm").markers.select(markers.names)
+    np.testing.assert_allclose(back.positions_m, values, atol=1e-9)
 
 
 def test_missing_file(tmp_path):

@@ -6,7 +6,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbkf.errors import InvalidInput
-from mbkf.io.wrench import centre_of_pressure, find_tare, half_sample_mode, remove_tare, require_finite
+from mbkf.io.records import PlateReadings
+from mbkf.io.wrench import (
+    centre_of_pressure,
+    find_tare,
+    half_sample_mode,
+    offset_remarks,
+    remove_tare,
+    require_finite,
+)
 
 RATE_HZ = 1000.0
 coordinate = st.floats(-0.5, 0.5)
@@ -98,3 +106,12 @@ def test_readings_that_are_no_numbers_are_located():
     force[50, 0] = np.inf
     with pytest.raises(InvalidInput, match=r"plate 1: 2 of 100 samples .* first at 2\.300 s"):
         require_finite(force, moment, 100.0, 2.0, "plate 1")
+
+
+def test_offsets_that_were_removed_are_told():
+    zero = np.zeros((3, 3))
+    plates = [
+        PlateReadings(name, 100.0, 0.0, np.zeros(3), zero, zero, zero, 20.0, offset=offset)
+        for name, offset in (("1", np.zeros(6)), ("2", np.array([0.0, 0.0, -12.34, 0.0, 0.0, 0.0])))
+    ]
+    assert offset_remarks(plates) == ["set '2': offset of -12.3 N vertical force removed"]

@@ -1,0 +1,98 @@
+"""Ground reactions in Cortex's ``.forces`` files: per plate force, point of application and free moment.
+
+Four lines name the content, the plates, the rate and the samples; a line of names follows (#Sample FX1 FY1 FZ1 X1 Y1
+Z1 MZ1 FX2 …), then a row per sample. Forces are those on the body in the laboratory's axes. MZ is the free moment
+about the vertical, whichever axis of the laboratory that is. Lengths are those of the calibration, mostly mm, and the
+moment is N times that length.
+
+Source: files of the Laboratory of Biomechanics and Motor Control and its notebook read_mac_ascii_files
+(github.com/BMClab/BMC).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from mbkf.errors import FileFormatError
+from mbkf.io.force_table import ForceTable, plates_of_table, up_of_table
+from mbkf.io.records import PlateReadings
+from mbkf.io.text import TextFile, compare_count, number, numbers, read_text
+from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
+
+_MOST_HEADER_LINES = 20
+
+
+def read_forces_cortex(
+    path: str | Path,
+    *,
+    up: str | None = None,
+    cop_threshold_n: float = DEFAULT_COP_THRESHOLD_N,
+    tare: bool = False,
+    notes: list[str] | None = None,
+) -> tuple[PlateReadings, ...]:
+    """Read ground reactions from a ``.forces`` file.
+
+    Args:
+        path: The file.
+        up: Axis of the file that points up; by default the one that carries the weight; y, as in
+            the TRC files beside it, where none does.
+        cop_threshold_n: Vertical force in N below which no centre of pressure is given.
+        tare: Whether an offset of an unloaded plate is removed, if it is 2 N or more.
+        notes: Receives what was completed, and a wrong count of samples.
+
+    Returns:
+        One set of readings per plate; sample 1 is at 0 s.
+
+    Raises:
+        FileFormatError: The file is missing, not of that kind, cut short, or columns of a plate are missing.
+        InvalidInput: A force, point or moment is not a number.
+    """
+    remarks = notes if notes is not None else []
+    file = read_text(Path(path), "a .forces file")
+    header, start = _header(file)
+    names = file.lines[start].lstrip("#").split()
+    rows = []
+    for line, text in enumerate(file.lines[start + 1 :], start=start + 2):
+        cells = text.split()
+        if not cells:
+            continue
+        if len(cells) != len(names):
+            reason = f"{len(cells)} values for {len(names)} columns; export the file again"
+            raise FileFormatError(file.path, reason, line)
+        rows.append(numbers(cells, file.path, line))
+    if not rows:
+        raise FileFormatError(file.path, "cut short: no samples after the names", start + 1)
+    remarks += compare_count(file, _count(header, "numberofsamples"), len(rows), "samples")
+    rate_hz = number(header.get("samplerate", ""))
+    if rate_hz is None or not rate_hz > 0.0:
+        raise FileFormatError(file.path, "the header gives no SampleRate; write SampleRate=… into it")
+    values = np.array(rows)
+    table = ForceTable(
+        str(path), tuple(names[1:]), values[:, 1:], rate_hz, (values[0, 0] - 1.0) / rate_hz, None, None, False
+    )
+    axis = up_of_table(table, up, "y", remarks)
+    plates = plates_of_table(table, up=axis, threshold_n=cop_threshold_n, tare=tare, notes=remarks)
+    promised = _count(header, "numberofforceplates")
+    if promised is not None and promised != len(plates):
+        remarks.append(f"the header counts {promised} force plates, {len(plates)} have columns")
+    return plates
+
+
+def _header(file: TextFile) -> tuple[dict[str, str], int]:
+    """Entries by their lower-case name, and the index of the line of names."""
+    header: dict[str, str] = {}
+    if not file.lines or "force data" not in file.lines[0].lower():
+        raise FileFormatError(file.path, "not a .forces file (it does not begin with [Force Data])", 1)
+    for index, text in enumerate(file.lines[:_MOST_HEADER_LINES]):
+        if text.lstrip().lower().startswith("#sample"):
+            return header, index
+        name, _, value = text.partition("=")
+        header[name.strip().lower()] = value.strip()
+    raise FileFormatError(file.path, "no line of column names (#Sample FX1 …); export it again")
+
+
+def _count(header: dict[str, str], name: str) -> int | None:
+    value = number(header.get(name, ""))
+    return None if value is None else int(value)

@@ -1,0 +1,337 @@
+"""Ground reactions of a table of named columns: units, moments and axes completed where the numbers decide them.
+
+A table states, per set, the force and its point of application. What it does not state follows from mechanics or is
+told in a remark:
+
+- **Up**: the mean force of a person is weight, so it points along the vertical.
+- **Sign**: a plate pushes. Forces that pull down, in a file that does not state whose they are, are those on the
+  plate, and are turned.
+- **Moment**: a torque at the centre of pressure is vertical; a moment about another point o is
+  M = (p − o) × F + T with the point of application p, which determines o.
+- **Units**: the free torque of a foot is a few centimetres times its force, and a point lies in a laboratory.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.errors import FileFormatError
+from mbkf.io.axes import finite, rotation_to_world, up_axis
+from mbkf.io.force_names import ForceSet, force_sets
+from mbkf.io.records import PlateReadings
+from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare, require_finite
+
+_LEAST_OFFSET_N = 2.0
+_UP = np.array([0.0, 0.0, 1.0])
+_LEAST_WEIGHT_N = 10.0
+_VERTICAL_SHARE = 0.9
+_LABORATORY_M = 50.0
+_LARGEST_TILT_M = 0.02
+"""Horizontal torque over force that a torque at the centre of pressure may show, RMS."""
+_LARGEST_FREE_M = 0.2
+"""Vertical torque over force of one foot, RMS; feet reach 0.02 to 0.05."""
+
+
+@dataclass(frozen=True)
+class ForceTable:
+    """A table of ground reactions in the axes of its file.
+
+    Attributes:
+        path: The file.
+        names: C column names.
+        values: (S, C) values; forces in N.
+        rate_hz: Sample rate in Hz.
+        start_time_s: Time of the first sample in s.
+        metres: Metres per unit of the points; None where the file does not state the unit.
+        newton_metres: N m per unit of the moments; None where the file does not state it.
+        at_point: Whether moments are stated to act at the point of application, as OpenSim has them.
+        on_body: Whether forces are stated to be those on the body; else they may be those on the plate.
+    """
+
+    path: str
+    names: tuple[str, ...]
+    values: Array
+    rate_hz: float
+    start_time_s: float
+    metres: float | None = 1.0
+    newton_metres: float | None = 1.0
+    at_point: bool = True
+    on_body: bool = True
+
+
+@dataclass(frozen=True)
+class _Columns:
+    """(S, 3) force, point and moment of a set in world axes."""
+
+    name: str
+    force: Array
+    point: Array
+    moment: Array
+
+
+def plates_of_table(
+    table: ForceTable, *, up: str, threshold_n: float, tare: bool, notes: list[str]
+) -> tuple[PlateReadings, ...]:
+    """Ground reactions of a table, in SI units and world axes.
+
+    With p the point of application, F the force and T the torque there, the moment about the set's origin o is
+    T + (p − o) × F. The origin is the mean point of application while loaded, or the one that the moments have.
+    Where weight shows that another axis is vertical, all this is done with that one; the vectors keep to ``up``, so
+    that they stay in the axes of markers that were read with it.
+
+    Args:
+        table: The table.
+        up: Axis of the file that is taken as up.
+        threshold_n: Vertical force in N below which no centre of pressure is given.
+        tare: Whether an offset of the unloaded set is removed, if it is 2 N or more.
+        notes: Receives what was completed.
+
+    Raises:
+        FileFormatError: Columns of a set, or where its force acts, are missing.
+        InvalidInput: A force, point or torque is not a number.
+        UnknownName: No column follows a known naming.
+    """
+    sets, up = force_sets(table.names, table.path), up_axis(up)
+    stands = _standing(table, sets, up)
+    columns = [_columns(table, one, stands, notes) for one in sets]
+    sign = 1.0 if table.on_body else reaction_sign([one.force for one in columns], notes)
+    metres = _metres(table, columns, threshold_n, notes)
+    readings = []
+    for one in columns:
+        force, moment, point = sign * one.force, sign * one.moment, metres * one.point
+        loaded = force[:, 2] >= threshold_n
+        point[~loaded & ~finite(point)] = 0.0  # no force, so no point of application
+        where = f"{table.path}, set '{one.name}'"
+        require_finite(np.hstack([force, point]), moment, table.rate_hz, table.start_time_s, where)
+        factor, origin = _moment_reference(table, force[loaded], point[loaded], moment[loaded], where)
+        about = factor * moment
+        if origin is None:
+            origin = point[loaded].mean(axis=0) if loaded.any() else np.zeros(3)
+            about = about + np.cross(point - origin, force)
+        elif not table.at_point:
+            place = ", ".join(f"{value:.3f}" for value in origin)
+            notes.append(f"set '{one.name}': moments refer to ({place}) m, as its centres of pressure show")
+        readings.append(
+            _readings(table, one.name, np.hstack([force, about]), point, origin, threshold_n, tare)
+        )
+    return into_axes(readings, stands, up, notes)
+
+
+def vertical_axis(forces: Sequence[Array]) -> str | None:
+    """The axis along which the forces point on the whole, "y" or "-z" for instance; None where no axis clearly does.
+
+    Args:
+        forces: (S, 3) forces in N of each set, in the axes of their file.
+    """
+    mean = _mean_force(forces)
+    size = float(np.linalg.norm(mean))
+    axis = int(np.argmax(np.abs(mean)))
+    if not size >= _LEAST_WEIGHT_N or abs(mean[axis]) < _VERTICAL_SHARE * size:
+        return None
+    return ("-" if mean[axis] < 0.0 else "") + "xyz"[axis]
+
+
+def reaction_sign(forces: Sequence[Array], notes: list[str]) -> float:
+    """1 where forces are those on the body, −1 where they are those on the plate.
+
+    Args:
+        forces: (S, 3) force in N of each set, world axes.
+        notes: Receives that they were turned.
+    """
+    mean = _mean_force(forces)
+    if mean[2] > -_LEAST_WEIGHT_N or -mean[2] < _VERTICAL_SHARE * np.linalg.norm(mean):
+        return 1.0
+    notes.append("the file holds the forces on the plates; turned into those on the body")
+    return -1.0
+
+
+def _mean_force(forces: Sequence[Array]) -> Array:
+    """(3,) sum over the sets of their mean force in N."""
+    return np.asarray(np.sum([np.nan_to_num(force).mean(axis=0) for force in forces], axis=0))
+
+
+def into_axes(
+    plates: Sequence[PlateReadings], stands: str, up: str, notes: list[str]
+) -> tuple[PlateReadings, ...]:
+    """Plates that were read with one axis up as if another had been.
+
+    Args:
+        plates: Readings in world axes.
+        stands: Axis of the file that was up.
+        up: Axis that is to be up.
+        notes: Receives that the two differ.
+    """
+    if stands == up:
+        return tuple(plates)
+    notes.append(
+        f"the ground reactions point along {stands} of their file, which was read with {up} up; give --up"
+    )
+    turn = rotation_to_world(up) @ rotation_to_world(stands).T
+    return tuple(
+        replace(
+            plate,
+            origin_m=turn @ plate.origin_m,
+            force_n=plate.force_n @ turn.T,
+            moment_nm=plate.moment_nm @ turn.T,
+            centre_of_pressure_m=plate.centre_of_pressure_m @ turn.T,
+            corners_m=None if plate.corners_m is None else plate.corners_m @ turn.T,
+            offset=np.concatenate([turn @ plate.offset[:3], turn @ plate.offset[3:]]),
+        )
+        for plate in plates
+    )
+
+
+def _standing(table: ForceTable, sets: Sequence[ForceSet], up: str) -> str:
+    """The axis of the file on which people stand: ``up``, unless weight points along another."""
+    found = vertical_axis([table.values[:, list(one.force)] for one in sets])
+    if found is None:
+        return up
+    if table.on_body:
+        return found
+    return up if found[-1] == up[-1] else found[-1]
+
+
+def up_of_table(table: ForceTable, given: str | None, default: str, notes: list[str]) -> str:
+    """The axis of a table that points up: the one given, else the one that carries the weight, else the default.
+
+    Args:
+        table: The table.
+        given: Axis that the caller knows, or None.
+        default: Axis that such files usually have.
+        notes: Receives that weight decided against the default.
+
+    Raises:
+        FileFormatError: A column of a set is missing.
+        UnknownName: No column follows a known naming.
+    """
+    if given is not None:
+        return given
+    forces = [table.values[:, list(one.force)] for one in force_sets(table.names, table.path)]
+    found = vertical_axis(forces)
+    if found is not None and not table.on_body:
+        found = found[-1]
+    if found is None or found == default:
+        return default
+    notes.append(
+        f"the ground reactions carry weight along {found}; taken as up in their file (--up changes it)"
+    )
+    return found
+
+
+def _columns(table: ForceTable, one: ForceSet, up: str, notes: list[str]) -> _Columns:
+    """A set's vectors in world axes; what has no column is completed."""
+    rotation = rotation_to_world(up)
+    vertical = int(np.argmax(np.abs(rotation[2])))
+
+    def vectors(indices: Sequence[int | None]) -> Array:
+        zero = np.zeros(len(table.values))
+        return np.column_stack([zero if index is None else table.values[:, index] for index in indices])
+
+    point, moment = one.point, one.moment
+    if all(index is None for index in point):
+        reason = f"set '{one.name}' has no point of application; export the centre of pressure too"
+        raise FileFormatError(table.path, reason)
+    if None in point:
+        if point[vertical] is not None:
+            reason = f"set '{one.name}' lacks the {'xyz'[point.index(None)]} of its point of application"
+            raise FileFormatError(table.path, f"{reason}, and {up} is up; export it, or give the right --up")
+        notes.append(f"set '{one.name}' gives no height of the point of application; taken as 0")
+    given = [index for index in moment if index is not None]
+    if not given:
+        notes.append(f"set '{one.name}' has no torque; the free moment is taken as 0")
+    elif len(given) == 1:  # the free moment, whatever its axis is called
+        moment = tuple(given[0] if axis == vertical else None for axis in range(3))
+    force, point_vectors, moment_vectors = (vectors(group) for group in (one.force, point, moment))
+    if len(given) == 1:  # it is about the vertical that points up
+        moment_vectors = np.abs(rotation[2]) * moment_vectors * np.sign(rotation[2, vertical])
+    return _Columns(one.name, *(values @ rotation.T for values in (force, point_vectors, moment_vectors)))
+
+
+def _metres(table: ForceTable, columns: Sequence[_Columns], threshold_n: float, notes: list[str]) -> float:
+    """Metres per unit of the points."""
+    if table.metres is not None:
+        return table.metres
+    loaded = [one.point[np.abs(one.force[:, 2]) >= threshold_n] for one in columns]
+    farthest = max((float(np.abs(np.nan_to_num(one)).max()) for one in loaded if len(one)), default=0.0)
+    if farthest <= _LABORATORY_M:
+        return 1.0
+    notes.append(f"points of application reach {farthest:.0f} without a unit; taken as mm")
+    return 1e-3
+
+
+def _moment_reference(
+    table: ForceTable, force: Array, point: Array, moment: Array, where: str
+) -> tuple[float, Array | None]:
+    """N m per unit of the moments, and the point they refer to; None for the point of application.
+
+    Args:
+        table: The table.
+        force: (S, 3) forces while loaded, N.
+        point: (S, 3) points of application, m.
+        moment: (S, 3) moments in the table's unit.
+        where: The set, for the message.
+    """
+    factors = (1.0, 1e-3) if table.newton_metres is None else (table.newton_metres,)
+    if table.at_point or len(force) == 0 or not moment.any():
+        return factors[0], None
+    size = float(np.sqrt((force**2).sum(axis=1).mean()))
+
+    def lever(torque: Array) -> tuple[float, float]:
+        rms = np.sqrt((torque**2).mean(axis=0)) / size
+        return float(np.hypot(rms[0], rms[1])), float(rms[2])
+
+    for factor in factors:
+        origin = _origin(force, point, factor * moment)
+        ways: list[tuple[tuple[float, float], Array | None]] = [(lever(factor * moment), None)]
+        if np.abs(origin).max() <= _LABORATORY_M:
+            ways.append((lever(factor * moment - np.cross(point - origin, force)), origin))
+        possible = [way for way in ways if way[0][0] <= _LARGEST_TILT_M and way[0][1] <= _LARGEST_FREE_M]
+        if possible:
+            return factor, min(possible, key=lambda way: way[0][0])[1]
+    raise FileFormatError(
+        table.path,
+        f"{where.rpartition(', ')[2]}: moments do not agree with the points of application; export it again",
+    )
+
+
+def _origin(force: Array, point: Array, moment: Array) -> Array:
+    """(3,) point about which the moments are those of the forces at their points, but for a vertical torque."""
+    fx, fy, fz = force.T
+    zero = np.zeros_like(fx)
+    # o × F = p × F + T − M, of which the horizontal components are free of the vertical torque T
+    rows = np.vstack([np.column_stack([zero, fz, -fy]), np.column_stack([-fz, zero, fx])])
+    right = np.cross(point, force) - moment
+    return np.asarray(np.linalg.lstsq(rows, np.concatenate([right[:, 0], right[:, 1]]), rcond=None)[0])
+
+
+def _readings(
+    table: ForceTable,
+    name: str,
+    wrench: Array,
+    point: Array,
+    origin: Array,
+    threshold_n: float,
+    tare: bool,
+) -> PlateReadings:
+    """Readings of a set; ``wrench`` is (S, 6) about ``origin``, ``point`` (S, 3) where the force acts."""
+    pressure = np.where((wrench[:, 2] >= threshold_n)[:, None], point, np.nan)
+    offset = np.zeros(6)
+    found = find_tare(wrench, table.rate_hz) if tare else None
+    if found is not None and abs(found.offset[2]) >= _LEAST_OFFSET_N:
+        wrench, offset = remove_tare(wrench, found), found.offset
+        pressure = centre_of_pressure(wrench[:, :3], wrench[:, 3:], origin, _UP, threshold_n)
+    return PlateReadings(
+        name=name,
+        rate_hz=table.rate_hz,
+        start_time_s=table.start_time_s,
+        origin_m=origin,
+        force_n=wrench[:, :3],
+        moment_nm=wrench[:, 3:],
+        centre_of_pressure_m=pressure,
+        threshold_n=threshold_n,
+        offset=offset,
+    )

@@ -1,0 +1,207 @@
+"""Readings of a force plate whose corners are known: force and moment in plate or laboratory axes, on body or plate.
+
+Exports differ in the axes of the vectors, in the point the moments refer to and in their unit. A file that states a
+centre of pressure c decides what it does not state: about a point o of the surface, o + n × M / (n · F) is c, with the
+normal n, force F and moment M. A file without it has to state its axes, and moments whose c lies on the plate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.errors import FileFormatError
+from mbkf.io.axes import rotation_to_world, up_axis
+from mbkf.io.c3d_plates import plate_axes
+from mbkf.io.force_table import into_axes, reaction_sign
+from mbkf.io.records import PlateReadings
+from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare, require_finite
+
+_AGREEMENT_M = 0.01
+_SAME_M = 0.001
+_LEAST_SIDE_M = 0.02
+
+
+@dataclass(frozen=True)
+class PlateTable:
+    """One plate's rows in the axes of its file.
+
+    Attributes:
+        path: The file.
+        name: Name of the plate.
+        corners_m: (4, 3) corners in the quadrants (+x +y), (−x +y), (−x −y), (+x −y) of the plate, laboratory axes.
+        force_n: (S, 3) forces.
+        moment: (S, 3) moments.
+        pressure_m: (S, 3) centres of pressure, or None where the file has none.
+        rate_hz: Sample rate.
+        start_time_s: Time of the first sample.
+        in_plate_axes: Whether the vectors are in the plate's axes (z down); None where the file does not say so.
+    """
+
+    path: str
+    name: str
+    corners_m: Array
+    force_n: Array
+    moment: Array
+    pressure_m: Array | None
+    rate_hz: float
+    start_time_s: float
+    in_plate_axes: bool | None
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """One way to read a plate.
+
+    Attributes:
+        local: Whether the vectors were taken as in plate axes.
+        force_n: (S, 3) force in laboratory axes.
+        moment_nm: (S, 3) moment about the plate's centre in laboratory axes.
+        error_m: How far it leaves the stated centres of pressure and the plate, infinite where nobody stood on it.
+    """
+
+    local: bool
+    force_n: Array
+    moment_nm: Array
+    error_m: float
+
+
+def plates_with_corners(
+    tables: Sequence[PlateTable], *, up: str, threshold_n: float, tare: bool, notes: list[str]
+) -> tuple[PlateReadings, ...]:
+    """Readings of plates in SI units and world axes, about the centres of their surfaces.
+
+    Args:
+        tables: The plates of one trial.
+        up: Axis of the laboratory that points up.
+        threshold_n: Vertical force in N below which no centre of pressure is given.
+        tare: Whether the offset of an unloaded plate is removed.
+        notes: Receives what was completed.
+
+    Raises:
+        FileFormatError: A plate has no usable corners.
+        InvalidInput: A force or moment is not a number.
+    """
+    if not tables:
+        return ()
+    read = [_best(table, threshold_n, notes) for table in tables]
+    stands, up = faced_axis(tables[0]), up_axis(up)
+    rotation = rotation_to_world(stands)
+    sign = reaction_sign([one.force_n @ rotation.T for one in read], notes)
+    readings = [
+        _readings(table, sign * np.hstack([one.force_n, one.moment_nm]), rotation, threshold_n, tare)
+        for table, one in zip(tables, read, strict=True)
+    ]
+    return into_axes(readings, stands, up, notes)
+
+
+def faced_axis(table: PlateTable) -> str:
+    """The axis of the laboratory that a plate's surface faces, "z" or "-y" for instance."""
+    normal = -plate_axes(table.corners_m.T)[:, 2]
+    axis = int(np.argmax(np.abs(normal)))
+    return ("-" if normal[axis] < 0.0 else "") + "xyz"[axis]
+
+
+def check_corners(table: PlateTable) -> None:
+    """Refuses a plate whose corners enclose no area.
+
+    Raises:
+        FileFormatError: They do not.
+    """
+    sides = np.diff(table.corners_m[[0, 1, 2, 3, 0]], axis=0)
+    area = float(np.linalg.norm(np.cross(sides[0], sides[1]))) if np.isfinite(sides).all() else 0.0
+    if area < _LEAST_SIDE_M**2:
+        raise FileFormatError(table.path, f"plate '{table.name}' has no usable corners; export them too")
+
+
+def _best(table: PlateTable, threshold_n: float, notes: list[str]) -> _Reading:
+    """The reading of a plate whose moments give the centres of pressure that the file states."""
+    check_corners(table)
+    where = f"{table.path}, plate '{table.name}'"
+    require_finite(table.force_n, table.moment, table.rate_hz, table.start_time_s, where)
+    if table.in_plate_axes is None and table.pressure_m is None:
+        reason = "neither axes nor a centre of pressure are stated; export the centre of pressure too"
+        raise FileFormatError(table.path, f"plate '{table.name}': {reason}")
+    frames = (True, False) if table.in_plate_axes is None else (table.in_plate_axes,)
+    ways = [
+        _read(table, local, about_centre, factor, threshold_n)
+        for factor in (1.0, 1e-3)
+        for local in frames
+        for about_centre in ((True,) if local else (True, False))
+    ]
+    best = min(ways, key=lambda way: way.error_m)
+    other = min((way.error_m for way in ways if way.local != best.local), default=np.inf)
+    if np.isfinite(other) and other < best.error_m + _SAME_M:
+        reason = "nothing tells whether its vectors are in plate or laboratory axes; export it with its DESCRIPTION"
+        raise FileFormatError(table.path, f"plate '{table.name}': {reason}")
+    if best.error_m > _AGREEMENT_M and np.isfinite(best.error_m):
+        notes.append(
+            f"plate '{table.name}': moments and centres of pressure disagree by {1e3 * best.error_m:.0f} mm"
+        )
+    return best if np.isfinite(best.error_m) else ways[0]
+
+
+def _read(table: PlateTable, local: bool, about_centre: bool, factor: float, threshold_n: float) -> _Reading:
+    """A plate read one way.
+
+    Args:
+        table: The plate.
+        local: Whether the vectors are in the plate's axes.
+        about_centre: Whether moments refer to the plate's centre; else to the laboratory's origin.
+        factor: N m per unit of the moments.
+        threshold_n: Force normal to the plate from which on its centre of pressure counts.
+    """
+    axes = plate_axes(table.corners_m.T)
+    centre, normal = table.corners_m.mean(axis=0), axes[:, 2]
+    turn = axes.T if local else np.eye(3)
+    force, moment = table.force_n @ turn, factor * table.moment @ turn
+    if not about_centre:
+        moment = moment - np.cross(centre, force)
+    pressed = np.abs(force @ normal) >= threshold_n
+    if table.pressure_m is not None:
+        pressed &= np.isfinite(table.pressure_m).all(axis=1) & table.pressure_m.any(
+            axis=1
+        )  # exact 0: none stated
+    if not pressed.any():
+        return _Reading(local, force, moment, np.inf)
+    found = centre + np.cross(normal, moment[pressed]) / (force[pressed] @ normal)[:, None]
+    half = np.abs((table.corners_m - centre) @ axes[:, :2]).max(axis=0)
+    outside = np.maximum(np.abs((found - centre) @ axes[:, :2]) - half, 0.0)
+    off = np.zeros_like(outside)
+    if table.pressure_m is not None:
+        off = (table.pressure_m[pressed] @ turn + (centre if local else 0.0) - found) @ axes[:, :2]
+    return _Reading(local, force, moment, _rms(off) + _rms(outside))
+
+
+def _rms(vectors: Array) -> float:
+    """RMS of the norms of (S, 2) vectors."""
+    return float(np.sqrt((vectors**2).sum(axis=1).mean()))
+
+
+def _readings(
+    table: PlateTable, wrench: Array, rotation: Array, threshold_n: float, tare: bool
+) -> PlateReadings:
+    """Readings in world axes; ``wrench`` is (S, 6) about the centre in laboratory axes."""
+    wrench = np.hstack([wrench[:, :3] @ rotation.T, wrench[:, 3:] @ rotation.T])
+    corners = table.corners_m @ rotation.T
+    centre, normal = corners.mean(axis=0), rotation @ plate_axes(table.corners_m.T)[:, 2]
+    normal = normal if normal[2] > 0.0 else -normal
+    offset = np.zeros(6)
+    if tare:
+        found = find_tare(wrench, table.rate_hz)
+        wrench, offset = remove_tare(wrench, found), found.offset
+    return PlateReadings(
+        name=table.name,
+        rate_hz=table.rate_hz,
+        start_time_s=table.start_time_s,
+        origin_m=centre,
+        force_n=wrench[:, :3],
+        moment_nm=wrench[:, 3:],
+        centre_of_pressure_m=centre_of_pressure(wrench[:, :3], wrench[:, 3:], centre, normal, threshold_n),
+        threshold_n=threshold_n,
+        corners_m=corners,
+        offset=offset,
+    )

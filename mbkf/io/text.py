@@ -1,0 +1,124 @@
+"""What readers of text files share: lines, numbers in cells, and counts and rates that disagree with the rows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.errors import FileFormatError
+
+RATE_TOLERANCE = 0.005
+_EVEN_TOLERANCE = 0.5
+
+
+@dataclass(frozen=True)
+class TextFile:
+    """Lines of a text file.
+
+    Attributes:
+        path: The file.
+        lines: Its lines without line ends.
+        whole: Whether the last line is ended, as a program leaves it and a copy that broke off does not.
+    """
+
+    path: Path
+    lines: list[str]
+    whole: bool
+
+
+def read_text(path: Path, kind: str) -> TextFile:
+    """Lines of a file.
+
+    Args:
+        path: The file.
+        kind: What it should be, with its article, for the message: "a TRC file".
+
+    Raises:
+        FileFormatError: There is no such file.
+    """
+    if not path.is_file():
+        raise FileFormatError(path, f"no such file; name {kind}")
+    text = path.read_text(encoding="utf-8-sig", errors="replace")
+    return TextFile(path, text.splitlines(), text.endswith(("\n", "\r")))
+
+
+def numbers(cells: Sequence[str], path: Path, line: int) -> list[float]:
+    """Cells as numbers, NaN where one is blank.
+
+    Args:
+        cells: The cells.
+        path: The file, for messages.
+        line: Number of the line, from 1.
+
+    Raises:
+        FileFormatError: A cell is not a number; names the line.
+    """
+    try:
+        return [float(cell) if cell.strip() else math.nan for cell in cells]
+    except ValueError as error:
+        raise FileFormatError(path, f"not a number ({error}); correct or blank it", line) from error
+
+
+def number(word: str) -> float | None:
+    """A finite number, or None where the word is none."""
+    try:
+        value = float(word)
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
+
+
+def compare_count(file: TextFile, promised: int | None, found: int, noun: str) -> list[str]:
+    """A remark where a header counts other rows than there are.
+
+    A file that broke off does not end with a whole line; one that does had a wrong count from the start.
+
+    Args:
+        file: The file.
+        promised: Count of the header; None where it states none.
+        found: Rows that are there.
+        noun: What a row is, in the plural.
+
+    Raises:
+        FileFormatError: Rows are missing and the last line is not whole.
+    """
+    if promised is None or promised == found:
+        return []
+    if promised > found and not file.whole:
+        reason = f"cut short: the header promises {promised} {noun}, {found} are there"
+        raise FileFormatError(file.path, f"{reason}; copy or export it again")
+    return [f"the header counts {promised} {noun}, {found} are there"]
+
+
+def compare_rate(rate_hz: float, times_s: Array) -> list[str]:
+    """A remark where a header's rate in Hz and the (T,) times disagree."""
+    if len(times_s) < 2:
+        return []
+    span_s = times_s[-1] - times_s[0]
+    if not span_s > 0.0:
+        return ["the Time column does not increase; times follow from the header's rate"]
+    from_times = (len(times_s) - 1) / span_s
+    if abs(from_times - rate_hz) > RATE_TOLERANCE * rate_hz:
+        return [f"the header states {rate_hz:g} Hz, the Time column {from_times:.6g} Hz; the header is used"]
+    return []
+
+
+def even_rate(path: Path, times_s: Array) -> float:
+    """Sample rate in Hz of (T,) evenly spaced times; rounded ones count as even.
+
+    Raises:
+        FileFormatError: The times do not increase, or are not even.
+    """
+    if len(times_s) < 2 or not times_s[-1] > times_s[0]:
+        raise FileFormatError(path, "the time column does not increase; export the file again")
+    rate_hz = float((len(times_s) - 1) / (times_s[-1] - times_s[0]))
+    off = np.abs((times_s - times_s[0]) * rate_hz - np.arange(len(times_s)))
+    if not off.max() <= _EVEN_TOLERANCE:
+        worst = times_s[int(np.argmax(off))]
+        raise FileFormatError(path, f"times are not evenly spaced near {worst:.4f} s; resample them first")
+    return round(rate_hz, 6)

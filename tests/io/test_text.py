@@ -1,0 +1,56 @@
+"""What all readers of text files share."""
+
+import numpy as np
+import pytest
+
+from mbkf.errors import FileFormatError
+from mbkf.io.text import TextFile, compare_count, compare_rate, even_rate, number, numbers, read_text
+
+
+@pytest.mark.parametrize(("content", "whole"), [("a\nb\n", True), ("a\r\nb\r\n", True), ("a\nb", False)])
+def test_lines_and_whether_the_last_is_whole(tmp_path, content, whole):
+    path = tmp_path / "a.txt"
+    path.write_bytes(b"\xef\xbb\xbf" + content.encode())
+    file = read_text(path, "a text")
+    assert (file.lines, file.whole) == (["a", "b"], whole)
+
+
+def test_a_missing_file_is_named(tmp_path):
+    with pytest.raises(FileFormatError, match="no such file; name a TRC file"):
+        read_text(tmp_path / "none", "a TRC file")
+
+
+def test_numbers(tmp_path):
+    np.testing.assert_array_equal(
+        numbers(["1", " ", "-2e3", "nan"], tmp_path, 7), [1.0, np.nan, -2000.0, np.nan]
+    )
+    with pytest.raises(FileFormatError, match="line 7: not a number"):
+        numbers(["1", "x"], tmp_path, 7)
+    assert [number(word) for word in ("3", "x", "", "inf")] == [3.0, None, None, None]
+
+
+def test_counts_are_compared(tmp_path):
+    whole, broken = (TextFile(tmp_path, [], ended) for ended in (True, False))
+    assert compare_count(whole, None, 3, "rows") == compare_count(whole, 3, 3, "rows") == []
+    assert compare_count(whole, 5, 3, "rows") == ["the header counts 5 rows, 3 are there"]
+    assert compare_count(broken, 2, 3, "rows") == ["the header counts 2 rows, 3 are there"]
+    with pytest.raises(FileFormatError, match="cut short: the header promises 5 rows, 3 are there"):
+        compare_count(broken, 5, 3, "rows")
+
+
+def test_rates_are_compared():
+    times = np.arange(5) / 50.0
+    assert compare_rate(50.0, times) == compare_rate(50.0, times[:1]) == []
+    assert "60 Hz" in compare_rate(60.0, times)[0]
+    assert "does not increase" in compare_rate(50.0, 0.0 * times)[0]
+
+
+def test_even_times(tmp_path):
+    assert even_rate(tmp_path, np.round(np.arange(100) / 600.0, 4)) == pytest.approx(600.0, abs=0.5)
+    for times, reason in (
+        (np.zeros(4), "increase"),
+        (np.array([0.0, 1.0, 5.0]), "evenly"),
+        (np.ones(1), "increase"),
+    ):
+        with pytest.raises(FileFormatError, match=reason):
+            even_rate(tmp_path, times)
