@@ -234,3 +234,10 @@ def test_reference_captures(real_data, name, markers, rate_hz, frames, start_s, 
     assert capture.length_unit == ("m" if "synthetic" in name else "mm")
     assert bool(capture.notes) == shifted
     assert 1.5 < np.nanmax(found.positions_m[:, :, 2]) < 1.9
+
+
+def test_a_reference_capture_whose_header_counts_from_the_start_of_the_recording(real_data):
+    """Frames 1163 to 1300 of a recording, which its header counts as 1300."""
+    capture = read_trc(real_data / "biobuddy_functional" / "static.trc", up="z")
+    assert (capture.markers.frames, len(capture.markers.names)) == (138, 49)
+    assert capture.notes == ("the header counts 1300 frames, 138 are there",)
