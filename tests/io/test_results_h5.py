@@ -41,6 +41,14 @@ def test_what_a_filter_does_not_estimate_is_not_written_and_comes_back_as_none(t
         assert back.foot_contact is None
 
 
+def test_a_file_without_a_direction_is_told_in_the_laboratory(tmp_path):
+    """Files of earlier versions."""
+    write_h5(made_up(direction="heading"), tmp_path / "motion.h5")
+    with h5py.File(tmp_path / "motion.h5", "a") as file:
+        del file.attrs["direction"]
+    assert read_h5(tmp_path / "motion.h5").direction == "laboratory"
+
+
 def test_every_quantity_carries_its_unit(tmp_path):
     write_h5(made_up_whole(), tmp_path / "motion.h5")
     assert set(UNITS) | set(DTYPES) | {"nis", "covariance"} == set(ARRAYS)

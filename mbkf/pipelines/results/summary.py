@@ -10,6 +10,7 @@ from mbkf.io.results import Reconstruction
 from mbkf.io.results_folder import Summary
 from mbkf.io.truth import Truth
 from mbkf.model.human import HumanModel, reference_body
+from mbkf.pipelines.results.progression import kind_of
 
 SETTLING_S = 0.5
 """Innovations within this time after the start are left out, while the filter settles."""
@@ -44,6 +45,8 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "filter": r.filter,
         "smoothed": bool(r.smoothed),
         "version": r.version,
+        "direction": r.direction,
+        "progression": _progression(r),
         "mass_kg": float(r.subject.mass_kg),
         "frames": r.frames,
         "rate_hz": float(r.rate_hz),
@@ -69,6 +72,17 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "truth": None if truth is None else compare_with_truth(r, truth),
         "warnings": list(r.warnings),
         "settings": dict(r.settings),
+    }
+
+
+def _progression(r: Reconstruction) -> dict[str, str | float]:
+    """Kind of the frame of the pelvis's angles, its mean heading in −180…180°, and how far it turns in all."""
+    heading = np.zeros(1) if r.heading_rad is None or not r.frames else r.heading_rad
+    mean = np.arctan2(np.sin(heading).mean(), np.cos(heading).mean())
+    return {
+        "kind": kind_of(r.direction, heading),
+        "heading_deg": float(np.rad2deg(mean)),
+        "turned_deg": float(np.rad2deg(heading[-1] - heading[0])),
     }
 
 

@@ -37,6 +37,7 @@ FILES = {
     "summary.json",
     "motion.h5",
     "angles.mot",
+    "angles_lab.mot",
     "torques.sto",
     "reactions.mot",
     "markers.trc",
