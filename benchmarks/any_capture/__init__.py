@@ -1,0 +1,13 @@
+"""Any laboratory's capture: what mbkf makes of captures that no protocol or file of it was made for."""
+
+from __future__ import annotations
+
+from benchmarks.any_capture.direction import direction_rows
+from benchmarks.checks import Check, Context
+
+
+def run(context: Context) -> list[Check]:
+    """Rows of all parts."""
+    return [
+        *direction_rows(context.require_data()),
+    ]
