@@ -46,7 +46,7 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "smoothed": bool(r.smoothed),
         "version": r.version,
         "direction": r.direction,
-        "progression": _progression(r),
+        "progression": progression_summary(r),
         "mass_kg": float(r.subject.mass_kg),
         "frames": r.frames,
         "rate_hz": float(r.rate_hz),
@@ -75,7 +75,7 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
     }
 
 
-def _progression(r: Reconstruction) -> dict[str, str | float]:
+def progression_summary(r: Reconstruction) -> dict[str, str | float]:
     """Kind of the frame of the pelvis's angles, its mean heading in −180…180°, and how far it turns in all."""
     heading = np.zeros(1) if r.heading_rad is None or not r.frames else r.heading_rad
     mean = np.arctan2(np.sin(heading).mean(), np.cos(heading).mean())
