@@ -11,15 +11,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
 from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.numerics.windows import local_lines
 from mbkf.sensors.contact.soles import sole_points
 
-SMOOTHING_S = 0.5
-"""Width of the window over which path and heading are smoothed (standard deviation): about half a stride, so that the
-sway of the pelvis from step to step is no turn of the path."""
+SMOOTHING_S, SMOOTHING_HEIGHTS = 0.5, 0.5
+"""Least width of the window over which path and heading are smoothed (standard deviation), and the way that a person
+goes in it at least, in heights of the standing pelvis: about half a stride, at slow gait too, so that the sway of the
+pelvis from step to step is no turn of the path."""
+
+TURNING_WINDOW = 0.5
+"""Share of that window with which the heading of a turn is smoothed: over the whole one, a sharp bend would be cut."""
 
 STILL_M_S, MOVING_M_S = 0.15, 0.3
 """Up to the first smoothed speed the pelvis stays, from the second one on it travels; very slow gait has 0.4 m/s."""
@@ -103,42 +107,81 @@ def progression_of(model: Body, q: Array, times_s: Array) -> Progression:
     pelvis = quaternion_matrices(q[:, place.stop : place.stop + 4])[:, :, 0]
     neutral = model.neutral()
     height_m = float(neutral[place][2] - sole_points(model, neutral[None])[..., 2].min())
-    return frame_of(
-        q[:, place][:, :2], (pelvis + feet.mean(axis=1))[:, :2], times_s, TRAVEL_HEIGHTS * height_m
-    )
+    return frame_of(q[:, place][:, :2], (pelvis + feet.mean(axis=1))[:, :2], times_s, height_m)
 
 
-def frame_of(path_m: Array, facing: Array, times_s: Array, travel_m: float) -> Progression:
+def frame_of(path_m: Array, facing: Array, times_s: Array, height_m: float) -> Progression:
     """The frame of progression of a path.
 
     Args:
         path_m: (T, 2) horizontal positions of the pelvis, m; NaN where not known.
         facing: (T, 2) horizontal vectors along pelvis and feet; short ones count less.
         times_s: (T,) times, s.
-        travel_m: Distance from where it began beyond which a person travels, m.
+        height_m: Height of the pelvis in standing, m.
     """
     known = np.asarray(np.isfinite(np.hstack([path_m, facing])).all(axis=1))
     if not known.any():
         return _constant(HEADING, 0.0, len(known))
     dt_s = float(np.median(np.diff(times_s))) if len(times_s) > 1 else SMOOTHING_S
-    origin_m = path_m[known][0]
-    place, velocity = (each[known] for each in local_lines(path_m - origin_m, known, dt_s, SMOOTHING_S))
-    faced = _unit(local_lines(facing, known, dt_s, SMOOTHING_S)[0][known])
-    speed, along = np.linalg.norm(velocity, axis=1), _unit(velocity)
-    moving = speed > MOVING_M_S
-    travels = bool(moving.any()) and float(np.linalg.norm(place, axis=1).max()) > travel_m
-    if travels and _between(along[moving], faced[moving]).mean() < ASTRAY_RAD:
-        share = np.clip((speed - STILL_M_S) / (MOVING_M_S - STILL_M_S), 0.0, 1.0)[:, None]
-        ahead, direction, most, counted = share * along + (1.0 - share) * faced, PATH, BEND_RAD, moving
-        mean = _velocity(path_m[known][moving] - origin_m, times_s[known][moving])
+    way = _Way(path_m - path_m[known][0], facing, known, dt_s)
+    width_s = way.width_s(SMOOTHING_HEIGHTS * height_m)
+    place, velocity = way.path(width_s)
+    moving = np.linalg.norm(velocity, axis=1) > MOVING_M_S
+    travels = bool(moving.any()) and float(np.linalg.norm(place, axis=1).max()) > TRAVEL_HEIGHTS * height_m
+    on_path = travels and _between(velocity[moving], way.faced(width_s)[moving]).mean() < ASTRAY_RAD
+    if on_path:
+        direction, most, counted = PATH, BEND_RAD, moving
+        mean = _velocity(way.path_m[known][moving], times_s[known][moving])
     else:
-        ahead, direction, most, counted = faced, HEADING, SPIN_RAD, np.ones(len(faced), dtype=bool)
+        direction, most, counted = HEADING, SPIN_RAD, np.ones(len(place), dtype=bool)
         mean = facing[known].mean(axis=0)
-    angle = np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0]))
-    if np.ptp(angle[counted]) > most:
+    if np.ptp(_angle(way.ahead(width_s, on_path))[counted]) > most:
+        angle = _angle(way.ahead(TURNING_WINDOW * width_s, on_path))
         heading = np.interp(times_s, times_s[known], angle)
         return Progression(direction, heading, np.gradient(heading, times_s))
     return _constant(direction, float(np.arctan2(mean[1], mean[0])), len(known))
+
+
+@dataclass(frozen=True)
+class _Way:
+    """Path and heading of a person; what it gives has the n frames in which both are known.
+
+    Attributes:
+        path_m: (T, 2) horizontal positions of the pelvis.
+        facing: (T, 2) horizontal vectors along pelvis and feet.
+        known: (T,) where both are known.
+        dt_s: Time between frames.
+    """
+
+    path_m: Array
+    facing: Array
+    known: BoolArray
+    dt_s: float
+
+    def path(self, width_s: float) -> tuple[Array, Array]:
+        """(n, 2) positions and velocities, smoothed over a window."""
+        place, velocity = local_lines(self.path_m, self.known, self.dt_s, width_s)
+        return place[self.known], velocity[self.known]
+
+    def faced(self, width_s: float) -> Array:
+        """(n, 2) unit vectors along pelvis and feet, smoothed over a window."""
+        return _unit(local_lines(self.facing, self.known, self.dt_s, width_s)[0][self.known])
+
+    def ahead(self, width_s: float, on_path: bool) -> Array:
+        """(n, 2) along the path where the pelvis travels, if it is to count, else along pelvis and feet."""
+        faced = self.faced(width_s)
+        if not on_path:
+            return faced
+        velocity = self.path(width_s)[1]
+        speed = np.linalg.norm(velocity, axis=1, keepdims=True)
+        share = np.clip((speed - STILL_M_S) / (MOVING_M_S - STILL_M_S), 0.0, 1.0)
+        return share * _unit(velocity) + (1.0 - share) * faced
+
+    def width_s(self, way_m: float) -> float:
+        """Width of the window: the usual one, or as long as it takes to go a way at the person's usual speed."""
+        speed = np.linalg.norm(self.path(SMOOTHING_S)[1], axis=1)
+        moving = speed > MOVING_M_S
+        return max(SMOOTHING_S, way_m / float(np.median(speed[moving]))) if moving.any() else SMOOTHING_S
 
 
 def _constant(direction: str, heading_rad: float, frames: int) -> Progression:
@@ -154,6 +197,11 @@ def _between(first: Array, second: Array) -> Array:
 def _velocity(positions_m: Array, times_s: Array) -> Array:
     """(2,) direction of the straight line in time that fits positions (T, 2) best; its length has no meaning."""
     return np.asarray((times_s - times_s.mean()) @ (positions_m - positions_m.mean(axis=0)))
+
+
+def _angle(vectors: Array) -> Array:
+    """(T,) angles of horizontal vectors (T, 2) from the x axis, without jumps, rad."""
+    return np.asarray(np.unwrap(np.arctan2(vectors[:, 1], vectors[:, 0])))
 
 
 def _unit(vectors: Array) -> Array:

@@ -8,6 +8,7 @@ import pytest
 from benchmarks.any_capture.direction import (
     SIGNS,
     against,
+    bent,
     in_marker_plane,
     largest_change,
     plug_in_gait_pelvis,
@@ -53,6 +54,19 @@ def test_in_a_plane_along_the_bodys_axes_the_angles_are_its_own():
         replace(r, subject=replace(subject, markers=tilted), heading_rad=np.zeros(r.frames))
     )
     assert np.mean(found[:, 0] - lower[:, 0]) == pytest.approx(np.arctan2(0.03, 0.18), abs=0.01)
+
+
+def test_a_bent_walk_keeps_its_speed_and_turns_by_a_quarter():
+    r = walk()
+    along = replace(r, heading_rad=np.zeros(r.frames))
+    q = bent(along)
+    np.testing.assert_array_equal(q[:, 7:], r.q[:, 7:])
+    np.testing.assert_array_equal(q[:, 2], r.q[:, 2])
+    steps = np.linalg.norm(np.diff(q[:, :2], axis=0), axis=1)
+    np.testing.assert_allclose(steps, np.linalg.norm(np.diff(r.q[:, :2], axis=0), axis=1), rtol=0.1)
+    first, last = q[10, :2] - q[0, :2], q[-1, :2] - q[-11, :2]
+    turned_by = np.arctan2(first[0] * last[1] - first[1] * last[0], first @ last)
+    assert turned_by == pytest.approx(np.pi / 2, abs=0.25)
 
 
 def test_the_change_counts_angles_without_whole_turns():

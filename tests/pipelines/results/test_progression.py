@@ -17,7 +17,7 @@ from mbkf.pipelines.results.progression import (
 from tests.recordings import walker
 
 TIMES = np.arange(400) / 100.0
-TRAVEL_M = 0.9
+HEIGHT_M = 0.9
 LEFT = np.array([0.0, 1.0])
 
 
@@ -69,7 +69,7 @@ KINDS = {
 
 @pytest.mark.parametrize("name", MOTIONS)
 def test_what_the_frame_follows(name):
-    found = frame_of(*MOTIONS[name], TIMES, TRAVEL_M)
+    found = frame_of(*MOTIONS[name], TIMES, HEIGHT_M)
     assert (found.direction, kind_of(found.direction, found.heading_rad)) == KINDS[name]
     assert found.heading_rad.shape == found.turning_rad_s.shape == TIMES.shape
 
@@ -79,16 +79,18 @@ def test_what_the_frame_follows(name):
     [("straight", 0.3), ("stands", 0.6), ("backwards", 0.3 + np.pi), ("sideways", 0.3 - np.pi / 2)],
 )
 def test_a_steady_heading_is_that_of_the_path_or_the_body(name, heading):
-    found = frame_of(*MOTIONS[name], TIMES, TRAVEL_M)
+    found = frame_of(*MOTIONS[name], TIMES, HEIGHT_M)
     assert apart(found.heading_rad, heading) < np.deg2rad(1.5)
     assert not found.turning_rad_s.any()
 
 
 def test_round_a_bend_the_heading_is_the_tangent_and_its_rate_the_slope():
-    found = frame_of(*MOTIONS["bend"], TIMES, TRAVEL_M)
+    found = frame_of(*MOTIONS["bend"], TIMES, HEIGHT_M)
     inside = slice(100, 300)
-    assert apart(found.heading_rad[inside], BEND[inside]) < np.deg2rad(12.0), "smoothed over half a stride"
-    assert apart(found.heading_rad[[60, -60]], BEND[[60, -60]]) < np.deg2rad(4.0)
+    assert apart(found.heading_rad[inside], BEND[inside]) < np.deg2rad(8.0), (
+        "smoothed over a quarter of a stride"
+    )
+    assert apart(found.heading_rad, BEND) < np.deg2rad(8.0), "at the ends, too"
     slope = np.diff(found.heading_rad) / 0.01
     np.testing.assert_allclose(0.5 * (slope[1:] + slope[:-1]), found.turning_rad_s[1:-1], atol=1e-9)
 
@@ -97,16 +99,28 @@ def test_round_a_bend_the_heading_is_the_tangent_and_its_rate_the_slope():
 @given(st.sampled_from(sorted(MOTIONS)), st.floats(-7.0, 7.0), st.floats(-5.0, 5.0))
 def test_a_turned_path_has_its_heading_turned_along(name, angle, away_m):
     path, facing = MOTIONS[name]
-    one = frame_of(path, facing, TIMES, TRAVEL_M)
-    other = frame_of(turned(path, angle) + away_m * LEFT, turned(facing, angle), TIMES, TRAVEL_M)
+    one = frame_of(path, facing, TIMES, HEIGHT_M)
+    other = frame_of(turned(path, angle) + away_m * LEFT, turned(facing, angle), TIMES, HEIGHT_M)
     assert other.direction == one.direction
     assert apart(other.heading_rad, one.heading_rad + angle) < 1e-9
     np.testing.assert_allclose(other.turning_rad_s, one.turning_rad_s, rtol=0, atol=1e-7)
 
 
+@pytest.mark.parametrize(
+    "speed_m_s, stride_hz, sway_m", [(0.35, 0.35, 0.06), (0.5, 0.5, 0.06), (1.2, 0.9, 0.04)]
+)
+@pytest.mark.parametrize("phase", [0.0, 1.6, 3.1])
+def test_the_sway_of_slow_gait_is_no_turn(speed_m_s, stride_hz, sway_m, phase):
+    times = np.arange(700) / 100.0
+    path = np.stack([speed_m_s * times, sway_m * np.sin(2 * np.pi * stride_hz * times + phase)], axis=1)
+    found = frame_of(path, np.tile([2.0, 0.0], (700, 1)), times, HEIGHT_M)
+    assert kind_of(found.direction, found.heading_rad) == "straight path"
+    assert apart(found.heading_rad, 0.0) < np.deg2rad(4.0)
+
+
 def test_on_a_treadmill_the_body_tells():
     path = walk_along(0.3) - 1.2 * TIMES[:, None] * along(np.array(0.3))
-    found = frame_of(path, facing_along(0.3), TIMES, TRAVEL_M)
+    found = frame_of(path, facing_along(0.3), TIMES, HEIGHT_M)
     assert found.direction == HEADING
     assert apart(found.heading_rad, 0.3) < np.deg2rad(1.5)
 
@@ -114,14 +128,14 @@ def test_on_a_treadmill_the_body_tells():
 def test_a_lunge_is_no_walk():
     reach = 0.25 * (1.0 - np.cos(2 * np.pi * TIMES / 2.0))
     path = reach[:, None] * along(np.array(1.0))
-    assert frame_of(path, facing_along(1.0), TIMES, TRAVEL_M).direction == HEADING
+    assert frame_of(path, facing_along(1.0), TIMES, HEIGHT_M).direction == HEADING
 
 
 def test_who_stops_keeps_a_heading():
     """The path of somebody who stands still has no direction; the body's takes its place."""
     walks = np.where(TIMES < 2.0, 1.2, 0.0)
     path = np.cumsum(walks[:, None] * along(BEND), axis=0) * 0.01
-    found = frame_of(path, facing_along(2.0 * BEND), TIMES, TRAVEL_M)
+    found = frame_of(path, facing_along(2.0 * BEND), TIMES, HEIGHT_M)
     assert np.isfinite(found.heading_rad).all()
     assert np.abs(np.diff(found.heading_rad)).max() < np.deg2rad(3.0)
 
@@ -129,18 +143,18 @@ def test_who_stops_keeps_a_heading():
 def test_frames_without_the_body_are_bridged():
     path, facing = (np.array(values) for values in MOTIONS["bend"])
     path[150:170], facing[390:] = np.nan, np.nan
-    found = frame_of(path, facing, TIMES, TRAVEL_M)
-    whole = frame_of(*MOTIONS["bend"], TIMES, TRAVEL_M)
-    assert apart(found.heading_rad, whole.heading_rad) < np.deg2rad(3.0)
+    found = frame_of(path, facing, TIMES, HEIGHT_M)
+    whole = frame_of(*MOTIONS["bend"], TIMES, HEIGHT_M)
+    assert apart(found.heading_rad, whole.heading_rad) < np.deg2rad(6.0), "the sway where less is known"
 
 
 @pytest.mark.parametrize("frames", [0, 1, 2])
 def test_short_and_empty_trials(frames):
     path, facing = (values[:frames] for values in MOTIONS["straight"])
-    found = frame_of(path, facing, TIMES[:frames], TRAVEL_M)
+    found = frame_of(path, facing, TIMES[:frames], HEIGHT_M)
     assert found.direction == HEADING
     assert len(found.heading_rad) == frames and np.isfinite(found.heading_rad).all()
-    nothing = frame_of(np.full((5, 2), np.nan), np.full((5, 2), np.nan), TIMES[:5], TRAVEL_M)
+    nothing = frame_of(np.full((5, 2), np.nan), np.full((5, 2), np.nan), TIMES[:5], HEIGHT_M)
     assert (nothing.direction, nothing.heading_rad.tolist()) == (HEADING, [0.0] * 5)
 
 
