@@ -25,8 +25,9 @@ pelvis from step to step is no turn of the path."""
 TURNING_WINDOW = 0.5
 """Share of that window with which the heading of a turn is smoothed: over the whole one, a sharp bend would be cut."""
 
-STILL_M_S, MOVING_M_S = 0.15, 0.3
-"""Up to the first smoothed speed the pelvis stays, from the second one on it travels; very slow gait has 0.4 m/s."""
+MOVING_M_S, MOVING_SHARE = 0.1, 0.25
+"""The pelvis travels in frames in which its smoothed speed is above the first, and above this share of its largest one
+in the trial; slow gait of patients has 0.25 m/s. Below half of that it stays."""
 
 TRAVEL_HEIGHTS = 1.0
 """A person travels who gets further away than so many heights of the standing pelvis: two steps are more; a lunge or
@@ -126,7 +127,7 @@ def frame_of(path_m: Array, facing: Array, times_s: Array, height_m: float) -> P
     way = _Way(path_m - path_m[known][0], facing, known, dt_s)
     width_s = way.width_s(SMOOTHING_HEIGHTS * height_m)
     place, velocity = way.path(width_s)
-    moving = np.linalg.norm(velocity, axis=1) > MOVING_M_S
+    moving = _moving(velocity)
     travels = bool(moving.any()) and float(np.linalg.norm(place, axis=1).max()) > TRAVEL_HEIGHTS * height_m
     on_path = travels and _between(velocity[moving], way.faced(width_s)[moving]).mean() < ASTRAY_RAD
     if on_path:
@@ -135,6 +136,7 @@ def frame_of(path_m: Array, facing: Array, times_s: Array, height_m: float) -> P
     else:
         direction, most, counted = HEADING, SPIN_RAD, np.ones(len(place), dtype=bool)
         mean = facing[known].mean(axis=0)
+    width_s = width_s if on_path else SMOOTHING_S
     if np.ptp(_angle(way.ahead(width_s, on_path))[counted]) > most:
         angle = _angle(way.ahead(TURNING_WINDOW * width_s, on_path))
         heading = np.interp(times_s, times_s[known], angle)
@@ -174,18 +176,30 @@ class _Way:
             return faced
         velocity = self.path(width_s)[1]
         speed = np.linalg.norm(velocity, axis=1, keepdims=True)
-        share = np.clip((speed - STILL_M_S) / (MOVING_M_S - STILL_M_S), 0.0, 1.0)
+        share = np.clip(2.0 * speed / _least_speed(speed) - 1.0, 0.0, 1.0)
         return share * _unit(velocity) + (1.0 - share) * faced
 
     def width_s(self, way_m: float) -> float:
         """Width of the window: the usual one, or as long as it takes to go a way at the person's usual speed."""
-        speed = np.linalg.norm(self.path(SMOOTHING_S)[1], axis=1)
-        moving = speed > MOVING_M_S
-        return max(SMOOTHING_S, way_m / float(np.median(speed[moving]))) if moving.any() else SMOOTHING_S
+        velocity = self.path(SMOOTHING_S)[1]
+        moving = velocity[_moving(velocity)]
+        usual = np.median(np.linalg.norm(moving, axis=1)) if len(moving) else np.inf
+        return max(SMOOTHING_S, way_m / float(usual))
 
 
 def _constant(direction: str, heading_rad: float, frames: int) -> Progression:
     return Progression(direction, np.full(frames, heading_rad), np.zeros(frames))
+
+
+def _least_speed(speed: Array) -> float:
+    """Speed from which the pelvis travels, m/s, where it has these smoothed speeds."""
+    return max(MOVING_M_S, MOVING_SHARE * float(speed.max()))
+
+
+def _moving(velocity: Array) -> BoolArray:
+    """(T,) frames in which the pelvis travels, at these smoothed velocities (T, 2)."""
+    speed = np.linalg.norm(velocity, axis=1)
+    return np.asarray(speed > _least_speed(speed))
 
 
 def _between(first: Array, second: Array) -> Array:

@@ -107,7 +107,8 @@ def test_a_turned_path_has_its_heading_turned_along(name, angle, away_m):
 
 
 @pytest.mark.parametrize(
-    "speed_m_s, stride_hz, sway_m", [(0.35, 0.35, 0.06), (0.5, 0.5, 0.06), (1.2, 0.9, 0.04)]
+    "speed_m_s, stride_hz, sway_m",
+    [(0.25, 0.35, 0.04), (0.35, 0.35, 0.06), (0.5, 0.5, 0.06), (1.2, 0.9, 0.04)],
 )
 @pytest.mark.parametrize("phase", [0.0, 1.6, 3.1])
 def test_the_sway_of_slow_gait_is_no_turn(speed_m_s, stride_hz, sway_m, phase):
