@@ -39,12 +39,12 @@ ASTRAY_RAD = float(np.deg2rad(45.0))
 BEND_RAD = float(np.deg2rad(30.0))
 """A path whose direction varies by more is a turn; what is left of the sway is a few degrees."""
 
-SPIN_RAD = float(np.deg2rad(90.0))
-"""Pelvis and feet that turn by more on the spot have no mean heading worth the name."""
+SPIN_RAD = float(np.deg2rad(60.0))
+"""Pelvis and feet that turn by more on the spot have no mean heading worth the name; a swing of the pelvis over
+standing feet counts half."""
 
 PATH, HEADING, LABORATORY = "progression", "heading", "laboratory"
 """What a frame follows: the path of the pelvis, the heading of pelvis and feet, or the laboratory's x axis."""
-
 
 PELVIS_FRAMES = ("progression", "lab")
 """Frames that can be asked for."""

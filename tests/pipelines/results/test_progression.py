@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mbkf.model.clinical import ClinicalAngles
 from mbkf.pipelines.results.progression import (
     HEADING,
     LABORATORY,
@@ -14,6 +15,7 @@ from mbkf.pipelines.results.progression import (
     laboratory,
     progression_of,
 )
+from mbkf.synthesis.motion import synthesise_motion
 from tests.recordings import walker
 
 TIMES = np.arange(400) / 100.0
@@ -124,6 +126,18 @@ def test_on_a_treadmill_the_body_tells():
     found = frame_of(path, facing_along(0.3), TIMES, HEIGHT_M)
     assert found.direction == HEADING
     assert apart(found.heading_rad, 0.3) < np.deg2rad(1.5)
+
+
+@pytest.mark.parametrize("motion, kind", [("turn", "turning heading"), ("reach", "mean heading")])
+def test_small_steps_round_turn_and_reaching_does_not(motion, kind):
+    """A turn on the spot is the frame's, not the pelvis's rotation."""
+    model = walker()[1]
+    made = synthesise_motion(model, motion, 4.5, seed=3)
+    found = progression_of(model, made.q, made.times_s)
+    assert kind_of(found.direction, found.heading_rad) == kind
+    clinical = ClinicalAngles(model)
+    ranges = np.ptp(clinical.angles(clinical.against(found.heading_rad, made.q)), axis=0)
+    assert np.rad2deg(ranges[clinical.names.index("pelvis_rotation")]) < 20.0
 
 
 def test_a_lunge_is_no_walk():
