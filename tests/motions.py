@@ -164,6 +164,7 @@ def track_of(q, v, a, **known):
         "wrench": np.full((frames, 2, 6), np.nan),
         "wrench_sd": np.full((frames, 2, 6), np.nan),
         "contact": None,
+        "root_covariance": np.zeros((frames, 3, 3)),
         "foot_height_sd": np.zeros((frames, 2)),
         "refused": np.zeros((frames, 0), bool),
         "tracked": np.ones(frames, bool),

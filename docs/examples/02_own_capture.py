@@ -25,7 +25,7 @@ trial = mbkf.read_capture("lab/trial.c3d")
 print(f"{trial.markers.frames} frames at {trial.markers.rate_hz:g} Hz, {len(trial.plates)} plates")
 result = mbkf.reconstruct(trial, mbkf.read_subject("subject.toml"))
 
-# Write summary.json, motion.h5 and the four files OpenSim opens.
+# Write summary.json, motion.h5 and the files OpenSim opens.
 mbkf.write_reconstruction(result, mbkf.summarise(result), "result")
 written = sorted(path.name for path in Path("result").iterdir())
 print("written:", ", ".join(written))

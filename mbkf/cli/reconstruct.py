@@ -19,7 +19,7 @@ examples:
   mbkf reconstruct walk.c3d --subject subject.toml --imu imus.csv --imu-mounts imus.toml --out result
   mbkf reconstruct walk.c3d --subject subject.toml --hide RKNE,RTIB@1.2:1.5 --without-plate 2 --out result
 
-writes summary.json, motion.h5, angles.mot, torques.sto, reactions.mot and markers.trc to the folder
+writes summary.json, motion.h5, angles.mot, angles_lab.mot, torques.sto, reactions.mot and markers.trc to the folder
 """
 
 
@@ -74,6 +74,13 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         action="store_true",
         help="keep the subject's marker positions instead of correcting them on this trial",
     )
+    parser.add_argument(
+        "--pelvis",
+        choices=("progression", "lab"),
+        default="progression",
+        help="axes of the pelvis's angles: along the path of a walk or run, else the mean heading of pelvis and feet "
+        "(progression, the default), or the laboratory's",
+    )
     add_axes_options(parser)
     parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
     parser.set_defaults(run=run)
@@ -107,6 +114,7 @@ def run(args: argparse.Namespace) -> int:
         correct_markers=not args.keep_markers,
         hide=hide,
         without_plates=tuple(args.without_plate),
+        pelvis=args.pelvis,
         keep_covariance=truth is not None,
     )
     if args.preset is not None:
@@ -170,6 +178,10 @@ def print_summary(summary: Summary, folder: Path) -> None:
         ("frames", f"{summary['frames']} at {summary['rate_hz']:g} Hz"),
         ("markers", f"{summary['markers_used']}, {100 * (summary['missing_fraction'] or 0):.1f} % missing"),
         ("marker RMS / max", _pair(summary["marker_rms_mm"], summary["marker_max_mm"], "mm")),
+        (
+            "pelvis angles",
+            f"{summary['progression']['kind']}, {summary['progression']['heading_deg']:.0f}° from the x axis",
+        ),
         ("frames with all reactions measured", str(summary["valid_frames"])),
         (
             "residual at the pelvis",

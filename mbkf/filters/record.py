@@ -50,6 +50,7 @@ FIELDS = (
     Field("velocity_sd", "<f8", "nv"),
     Field("angle_sd", "<f8", "A"),
     Field("rate_sd", "<f8", "A"),
+    Field("root_covariance", "<f8", "3 3"),
     Field("torque_sd", "<f8", "nv"),
 )
 """The declaration.
@@ -61,6 +62,7 @@ but outside their gate. measured_m: markers, NaN where missing. latency_s, step_
 the computing time of the step. q, v, a: configuration, velocity, acceleration. wrench: of the ground on right and left
 foot, about the world's origin. The others are standard deviations: of the wrenches, of the height of the feet, of
 position and velocity in the tangent space, of the A clinical coordinates and their rates, of the generalised forces.
+root_covariance: of the root's orientation in its own axes, rad², for angles told in other axes than the world's.
 """
 
 MOTION = ("q", "v", "a", "wrench")
@@ -152,3 +154,4 @@ class FrameRecorder:
         """Standard deviations of clinical coordinates, their rates and the height of the feet."""
         for name in SPREAD_LATER:
             row[f"{name}_sd"] = getattr(spread, name)
+        row["root_covariance"] = spread.root_covariance

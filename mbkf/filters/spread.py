@@ -22,10 +22,12 @@ class SpreadReader:
     Attributes:
         model: The body.
         clinical: Its clinical coordinates, A of them.
+        root_turns: Where the root's rotation stands in the tangent space.
     """
 
     def __init__(self, model: Body) -> None:
         self.model, self.clinical = model, ClinicalAngles(model)
+        self.root_turns = slice(model.root.v.start + 3, model.root.v.stop)
         self._feet = [model.joint(segment).joint_id for segment in model.roles.feet]
 
     def torque(self, q: Array, step_covariance: Array, dt_s: float) -> Array:
@@ -95,6 +97,12 @@ class Spread:
     def rate(self) -> Array:
         """(A,) of their rates, from the velocities' own variances."""
         return root(self._rate_matrix**2 @ self.velocity_variance)
+
+    @property
+    def root_covariance(self) -> Array:
+        """(3, 3) covariance of the root's orientation in its own axes, rad²."""
+        turns = self.reader.root_turns
+        return self._position[turns, turns]
 
     @property
     def foot_height(self) -> Array:

@@ -20,6 +20,7 @@ SHAPES: dict[str, str] = {
     "residual_force_n": "T 3", "residual_moment_nm": "T 3", "tracked": "T", "valid": "T",
     "nis": "T", "nis_readings": "T", "step_seconds": "T", "plate_change": "T P 6",
     "foot_wrench_sd": "T 2 6", "foot_contact": "T 2", "covariance": "T 2nv 2nv", "plate_corners_m": "P 4 3",
+    "heading_rad": "T", "angles_lab": "T A",
 }  # fmt: skip
 """Dimensions of every array: T frames, nv dofs, A coordinates, M markers, P plates."""
 
@@ -83,6 +84,10 @@ class Reconstruction:
             without plates.
         file_axes: Axes of the capture's file that became x, y and z, as ``"x,-z,y"``.
         file_axes_source: Where that is known from (:class:`mbkf.io.records.AxesSource`), "" in older files.
+        direction: What the frame follows in which the root's angles are told: "progression" (its path), "heading" (of
+            pelvis and feet) or "laboratory". Positions and forces are in the laboratory's axes whatever it is.
+        heading_rad: (T,) angle of that frame's forward axis about the vertical from the laboratory's x; None is 0.
+        angles_lab: (T, A) ``angles`` with the root's in the laboratory's axes; None where they are so themselves.
     """
 
     trial: str
@@ -134,6 +139,9 @@ class Reconstruction:
     plate_corners_m: Array | None = None
     file_axes: str = "x,y,z"
     file_axes_source: str = ""
+    direction: str = "laboratory"
+    heading_rad: Array | None = None
+    angles_lab: Array | None = None
 
     def __post_init__(self) -> None:
         for name in ("dof_names", "coordinate_names", "marker_names", "unobserved_dofs", "warnings"):

@@ -1,4 +1,4 @@
-"""The folder ``mbkf reconstruct`` writes: summary.json, motion.h5 and OpenSim's four files, all or none."""
+"""The folder ``mbkf reconstruct`` writes: summary.json, motion.h5 and OpenSim's files, all or none."""
 
 from __future__ import annotations
 
@@ -42,6 +42,8 @@ class Summary(TypedDict):
         trial, protocol, filter: Names of capture, protocol and filter.
         smoothed: Whether later frames were used.
         version: Version of mbkf.
+        direction: What the frame of the pelvis's angles follows: "progression", "heading" or "laboratory".
+        progression: That frame's kind in words, its heading, and how far it turns.
         mass_kg: Mass of the subject.
         frames, rate_hz, duration_s: Size of the trial.
         markers_used: Number of markers.
@@ -67,6 +69,8 @@ class Summary(TypedDict):
     filter: str
     smoothed: bool
     version: str
+    direction: str
+    progression: dict[str, str | float]
     mass_kg: float
     frames: int
     rate_hz: float

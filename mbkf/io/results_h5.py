@@ -30,11 +30,11 @@ UNITS = {
     "measured_m": "m", "predicted_m": "m", "foot_wrench": "N, N m about the world's origin",
     "foot_cop_m": "m", "foot_free_moment_nm": "N m", "residual_force_n": "N", "residual_moment_nm": "N m",
     "step_seconds": "s", "plate_change": "N, N m", "foot_wrench_sd": "N, N m about the world's origin",
-    "plate_corners_m": "m",
+    "plate_corners_m": "m", "heading_rad": "rad", "angles_lab": _ANGLE,
 }  # fmt: skip
 """Unit of each array; the others (flags, counts, the innovation statistic) have none and carry "1"."""
 
-_TEXTS = ("trial", "protocol", "filter", "version")
+_TEXTS = ("trial", "protocol", "filter", "version", "direction", "file_axes", "file_axes_source")
 _NAME_LISTS = {
     "dof_names": "dof_names", "coordinate_names": "coordinate_names", "marker_names": "marker_names",
     "unobserved_dofs": "held_dofs", "warnings": "warnings",
@@ -62,8 +62,6 @@ def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
         )
         for name in _TEXTS:
             file.attrs[name] = getattr(reconstruction, name)
-        file.attrs["file_axes"] = reconstruction.file_axes
-        file.attrs["file_axes_source"] = reconstruction.file_axes_source
         file.attrs["smoothed"] = reconstruction.smoothed
         file.attrs["rate_hz"] = reconstruction.rate_hz
         file.attrs["settings"] = json.dumps(reconstruction.settings, default=_plain)
@@ -98,9 +96,8 @@ def read_h5(path: str | Path) -> Reconstruction:
                 raise FileFormatError(source, "not a reconstruction; make it with 'mbkf reconstruct'")
             if file.attrs["format_version"] > FORMAT_VERSION:
                 raise FileFormatError(source, "written by a newer mbkf; upgrade to read it")
-            values: dict[str, Any] = {name: str(file.attrs[name]) for name in _TEXTS}
-            values["file_axes"] = str(file.attrs.get("file_axes", "x,y,z"))
-            values["file_axes_source"] = str(file.attrs.get("file_axes_source", ""))
+            # Older files name neither direction nor axes: theirs are the defaults.
+            values: dict[str, Any] = {name: str(file.attrs[name]) for name in _TEXTS if name in file.attrs}
             values["smoothed"] = bool(file.attrs["smoothed"])
             values["rate_hz"] = float(file.attrs["rate_hz"])
             values["settings"] = json.loads(file.attrs["settings"])

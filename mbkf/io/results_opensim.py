@@ -1,13 +1,16 @@
-"""A reconstruction as the four files OpenSim opens: angles.mot, torques.sto, reactions.mot, markers.trc.
+"""A reconstruction as the files OpenSim opens: angles.mot, angles_lab.mot, torques.sto, reactions.mot, markers.trc.
 
-OpenSim's axes: x forward, y up, z right. Only the range from the first to the last tracked frame is written.
-OpenSim's reader of tables refuses NaN, so frames inside that range with a value missing are left out of the
-tables (the times show it; OpenSim interpolates), and columns that are never known are left out altogether;
-markers.trc keeps every frame.
+OpenSim's axes: x forward, y up, z right. In angles.mot the pelvis's angles are told in the frame of progression;
+together with reactions.mot or markers.trc OpenSim needs them in the laboratory's axes, as in angles_lab.mot.
+
+Only the range from the first to the last tracked frame is written. OpenSim's reader of tables refuses NaN, so frames
+inside that range with a value missing are left out of the tables (the times show it; OpenSim interpolates), and
+columns that are never known are left out altogether; markers.trc keeps every frame.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,12 +27,13 @@ TRANSLATIONS = ("pelvis_tx", "pelvis_ty", "pelvis_tz")
 
 
 def write_opensim(reconstruction: Reconstruction, folder: Path) -> None:
-    """Writes the four files into a folder that exists.
+    """Writes the files into a folder that exists.
 
     Raises:
         OSError: A file cannot be written.
     """
     write_storage(angles_table(reconstruction), folder / "angles.mot")
+    write_storage(angles_lab_table(reconstruction), folder / "angles_lab.mot")
     write_storage(torques_table(reconstruction), folder / "torques.sto")
     write_storage(reactions_table(reconstruction), folder / "reactions.mot")
     write_trc(reconstructed_markers(reconstruction), folder / "markers.trc")
@@ -38,9 +42,23 @@ def write_opensim(reconstruction: Reconstruction, folder: Path) -> None:
 def angles_table(reconstruction: Reconstruction) -> Table:
     """Clinical coordinates in degrees, the pelvis's translations in m."""
     r = reconstruction
+    turns = r.heading_rad is not None and r.frames and np.ptp(r.heading_rad) > 0.0
+    heading = 0.0 if r.heading_rad is None or not r.frames else float(np.rad2deg(r.heading_rad[0]))
+    where = "turning with it" if turns else f"{heading:.6g} degrees from the x axis"
+    return _angles(r, r.angles, f"{r.direction}, {where}")
+
+
+def angles_lab_table(reconstruction: Reconstruction) -> Table:
+    """The same with the pelvis's angles in the laboratory's axes, as OpenSim defines them."""
+    r = reconstruction
+    return _angles(r, r.angles if r.angles_lab is None else r.angles_lab, "laboratory")
+
+
+def _angles(r: Reconstruction, angles: Array, direction: str) -> Table:
     lengths = np.isin(r.coordinate_names, TRANSLATIONS)
-    values = np.where(lengths, r.angles, np.rad2deg(r.angles))
-    return _table(r, r.coordinate_names, values, "Coordinates", in_degrees=True)
+    values = np.where(lengths, angles, np.rad2deg(angles))
+    table = _table(r, r.coordinate_names, values, "Coordinates", in_degrees=True)
+    return replace(table, header={**table.header, "Direction": direction})
 
 
 def torques_table(reconstruction: Reconstruction) -> Table:

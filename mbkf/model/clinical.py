@@ -48,6 +48,8 @@ class ClinicalAngles:
         names: (A,) coordinate names, OpenSim's where it has them.
         units: (A,) "rad" or "m".
         rotational: (A,) True for angles, False for the pelvis's translations.
+        root_angles: (3,) columns of the root's angles; they are told against the world's axes.
+        root_turns: Where the root's rotation stands in the tangent space.
     """
 
     def __init__(self, model: Body) -> None:
@@ -100,6 +102,30 @@ class ClinicalAngles:
         self._root_v = np.arange(place.v.start, place.v.start + 3)
         self._root_q = slice(place.q.start, place.q.start + 3)
         self._root_quaternion = slice(place.q.start + 3, place.q.start + 7)
+        self._root_ball = int(np.flatnonzero(self._winds)[0])
+        self.root_angles = read_only([column[angle.name] for angle in root.angles], dtype=int)
+        self.root_turns = slice(place.v.start + 3, place.v.stop)
+
+    def against(self, heading_rad: Array, q: Array) -> Array:
+        """Configurations as seen from axes that are turned about the vertical; positions stay in the world's axes.
+
+        Only the root's orientation changes. Angles of the result are those against the turned axes; with them,
+        :meth:`rate_matrices` and :meth:`moments` of ``q`` itself belong to these angles.
+
+        Args:
+            heading_rad: (T,) angle by which the axes are turned, anticlockwise from above, rad.
+            q: (T, nq) configurations.
+        """
+        q = self._checked("q", q, self.model.nq).copy()
+        x, y, z, w = q[:, self._root_quaternion].T
+        sine, cosine = np.sin(-0.5 * heading_rad), np.cos(0.5 * heading_rad)
+        turned = (cosine * x - sine * y, cosine * y + sine * x, cosine * z + sine * w, cosine * w - sine * z)
+        q[:, self._root_quaternion] = np.column_stack(turned)
+        return q
+
+    def vertical(self, q: Array) -> Array:
+        """(T, 3) the world's vertical in the root's own axes, for configurations (T, nq)."""
+        return self._root_rotation(self._checked("q", q, self.model.nq))[:, 2]
 
     def angles(self, q: Array, start: Array | None = None) -> Array:
         """Coordinates of a motion, continuous in time (see :func:`mbkf.numerics.cardan.follow`).
@@ -156,10 +182,21 @@ class ClinicalAngles:
         """
         q, angles = self._with_angles(q, angles)
         E = np.zeros((len(q), len(self.names), self.model.nv))
-        blocks = self._ball_sign[:, :, None] * rate_map(self._cardan(angles), self._parity)
+        blocks = self._rate_blocks(angles)
         E[:, self._ball_column[:, :, None], self._ball_v[:, None, :]] = blocks
         E[:, self._dof_column, self._dof_v] = self._dof_sign
         E[:, self._root_columns[:, None], self._root_v] = self._root_axes @ self._root_rotation(q)
+        return E
+
+    def root_rate_matrices(self, angles: Array) -> Array:
+        """(T, 3, 3) the part of these matrices that takes the root's turning to the rates of its angles.
+
+        Args:
+            angles: (T, A) coordinates.
+        """
+        blocks = self._rate_blocks(self._checked("angles", angles, len(self.names)))[:, self._root_ball]
+        E = np.empty(blocks.shape)
+        E[:, :, self._order[self._root_ball]] = blocks
         return E
 
     def moments(self, q: Array, tau: Array, angles: Array | None = None) -> Array:
@@ -200,6 +237,10 @@ class ClinicalAngles:
         axis = np.concatenate([np.arange(joint.v.stop - joint.v.start) % 3 for joint in joints])
         by_axis = [self.moments(q, np.where(axis == one, tau_sd, 0.0), angles) for one in range(3)]
         return np.asarray(np.sqrt(np.square(by_axis).sum(axis=0)))
+
+    def _rate_blocks(self, angles: Array) -> Array:
+        """(T, n, 3, 3) rates of a ball's angles per angular velocity about the axes of its order."""
+        return np.asarray(self._ball_sign[:, :, None] * rate_map(self._cardan(angles), self._parity))
 
     def _cardan(self, angles: Array) -> Array:
         return self._ball_sign * angles[:, self._ball_column]

@@ -1,4 +1,4 @@
-"""Sliding windows over evenly spaced samples: curvature of a curve, majority and dilation of yes-or-no sequences.
+"""Sliding windows over evenly spaced samples: lines and curvature, majority and dilation of yes-or-no sequences.
 
 They agree with ``savgol_filter``, ``median_filter`` and ``binary_dilation`` of SciPy, whose packages take long to load.
 """
@@ -9,6 +9,9 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from mbkf.conventions import Array, BoolArray
+
+_LEAST_SPREAD = 0.2
+"""Samples nearer together than this share of a window (standard deviation) say nothing of a slope."""
 
 
 def second_derivative(samples: Array, window: int, dt: float) -> Array:
@@ -49,3 +52,38 @@ def dilated(mask: BoolArray, samples: int) -> BoolArray:
     """(T,) whether a mask (T,) is true anywhere within so many samples."""
     counts = np.cumsum(np.pad(mask, (samples + 1, samples)))
     return np.asarray(counts[2 * samples + 1 :] > counts[: len(mask)])
+
+
+def local_lines(samples: Array, known: BoolArray, dt: float, width: float) -> tuple[Array, Array]:
+    """Value and slope at each sample of the straight line that fits the known ones around it best.
+
+    The weights are Gaussian, so that what swings faster than the window is wide goes out of both. Where no other known
+    sample is near, the slope is 0 and the value the mean.
+
+    Args:
+        samples: (T, C) values of C series.
+        known: (T,) which of them to use.
+        dt: Time between samples.
+        width: Standard deviation of the weights, in the same unit.
+
+    Returns:
+        (T, C) values and (T, C) slopes; NaN where no sample is known within three widths.
+    """
+    half = max(1, round(3.0 * width / dt))
+    lag = np.arange(-half, half + 1) * dt
+    kernels = [np.exp(-0.5 * (lag / width) ** 2) * (-lag) ** power for power in range(3)]
+
+    def sums(series: Array, power: int) -> Array:
+        return np.convolve(series, kernels[power])[half : half + len(series)]
+
+    count, first, second = (sums(known.astype(float), power) for power in range(3))
+    shown = np.where(known[:, None], samples, 0.0)
+    total, moment = (np.column_stack([sums(series, power) for series in shown.T]) for power in range(2))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean, middle = total / count[:, None], first / count
+        variance = second / count - middle**2
+        slope = (moment / count[:, None] - middle[:, None] * mean) / variance[:, None]
+    slope = np.where((variance > (_LEAST_SPREAD * width) ** 2)[:, None], slope, 0.0)
+    value = mean - slope * middle[:, None]
+    around = (count > 0.0)[:, None]
+    return np.where(around, value, np.nan), np.where(around, slope, np.nan)

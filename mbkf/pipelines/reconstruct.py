@@ -24,6 +24,7 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.axes.captures import checked_for_subject
 from mbkf.pipelines.imu.on_body import ImuOnBody, with_imus
 from mbkf.pipelines.results.clinical import clinical_motion
+from mbkf.pipelines.results.progression import PELVIS_FRAMES, pelvis_frame
 from mbkf.pipelines.results.reactions import reactions
 from mbkf.pipelines.trial.filters import FILTERS, FilterInputs, standard, tracking_filter
 from mbkf.pipelines.trial.inputs import trial_inputs
@@ -60,6 +61,7 @@ class ReconstructSettings:
         correct_markers: Whether marker positions are corrected on the trial first (thesis 4.1.1).
         hide: Markers to hide.
         without_plates: Names of plates to withhold.
+        pelvis: The frame of the pelvis's angles: "progression", or "lab" for the laboratory's axes.
         keep_covariance: Whether full covariances are kept in memory.
     """
 
@@ -72,6 +74,7 @@ class ReconstructSettings:
     correct_markers: bool = True
     hide: tuple[Hidden, ...] = ()
     without_plates: tuple[str, ...] = ()
+    pelvis: str = "progression"
     keep_covariance: bool = False
 
 
@@ -105,11 +108,13 @@ def reconstruct(
         InvalidInput: The axes or the unit of the capture cannot be right, and it is not clear what they are.
         NotObservable: Too few of the subject's markers to track the body.
         NotConverged: The markers do not fit the subject's body.
-        UnknownName: A hidden marker, a withheld plate or the filter does not exist.
+        UnknownName: A hidden marker, a withheld plate, the filter or the frame of the pelvis does not exist.
     """
     settings = settings or ReconstructSettings()
     if settings.filter not in FILTERS:
         raise UnknownName("filter", settings.filter, FILTERS)
+    if settings.pelvis not in PELVIS_FRAMES:
+        raise UnknownName("frame of the pelvis", settings.pelvis, PELVIS_FRAMES)
     with single_threaded():
         capture = checked_for_subject(capture, subject)
         measured = subject_markers(capture.markers, subject)
@@ -194,12 +199,12 @@ def assemble(
         inputs: What the filter was built from, with the plates it read.
         result: The track.
     """
-    sensor, unobservable = inputs.sensor, inputs.unobservable
-    model = sensor.model
+    model, unobservable = inputs.sensor.model, inputs.unobservable
     ground = reactions(model, result, measured.times_s, measured.rate_hz, inputs.plates)
     tau = ground.tau
     tau_sd = np.where(np.isnan(tau), np.nan, result.torque_sd)
-    clinical = clinical_motion(model, result, tau, tau_sd)
+    frame = pelvis_frame(settings.pelvis, model, result.q, measured.times_s)
+    clinical = clinical_motion(model, result, tau, tau_sd, frame)
     located = (result.foot_height_sd <= FOOT_SD_M).all(axis=1)
     names = dof_names(model)
     return Reconstruction(
@@ -229,7 +234,7 @@ def assemble(
         singular=clinical.singular,
         marker_names=measured.names,
         measured_m=measured.positions_m,
-        predicted_m=_predicted(sensor, result, measured, hidden),
+        predicted_m=_predicted(inputs.sensor, result, measured, hidden),
         hidden=hidden,
         rejected=result.refused,
         foot_wrench=ground.wrench,
@@ -252,6 +257,9 @@ def assemble(
         plate_corners_m=_corners(capture),
         file_axes=capture.axes,
         file_axes_source=capture.axes_source.value,
+        direction=frame.direction,
+        heading_rad=frame.heading_rad,
+        angles_lab=clinical.angles_lab,
     )
 
 

@@ -16,10 +16,12 @@ from mbkf.pipelines.reconstruct import Hidden
 
 pytestmark = pytest.mark.slow
 
-FILES = {"summary.json", "motion.h5", "angles.mot", "torques.sto", "reactions.mot", "markers.trc"}
+OPENSIM = {"angles.mot", "angles_lab.mot", "torques.sto", "reactions.mot", "markers.trc"}
+FILES = {"summary.json", "motion.h5"} | OPENSIM
 
 KEYS = {
-    "trial", "protocol", "filter", "smoothed", "version", "mass_kg", "frames", "rate_hz", "duration_s",
+    "trial", "protocol", "filter", "smoothed", "version", "direction", "progression", "mass_kg",
+    "frames", "rate_hz", "duration_s",
     "markers_used", "missing_fraction", "marker_rms_mm", "marker_max_mm", "marker_rms_mm_by_name",
     "residual_force_rms_n", "residual_moment_rms_nm", "valid_frames", "plate_force_change_rms_n",
     "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "nis_per_dof",
@@ -62,6 +64,8 @@ def test_files_keys_and_numbers(person, reconstruct, capsys):
     assert summary["hidden_marker_rms_mm"] is None
     shown = capsys.readouterr().out
     assert "60 at 100 Hz" in shown
+    kind, heading = summary["progression"]["kind"], summary["progression"]["heading_deg"]
+    assert f"{kind}, {heading:.0f}° from the x axis" in shown
     assert shown.splitlines()[-1] == str(out)
 
 

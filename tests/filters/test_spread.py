@@ -47,6 +47,16 @@ def test_angles_by_finite_differences(case):
     np.testing.assert_allclose(spread.angle, np.sqrt(np.diag(J @ P @ J.T)), rtol=1e-7)
 
 
+def test_the_roots_orientation_is_its_own_part_of_the_covariance(case):
+    """The spread of the root's angles follows from it alone."""
+    _, state, _, spread = case
+    clinical = spread.reader.clinical
+    np.testing.assert_array_equal(spread.root_covariance, state.P[3:6, 3:6])
+    E = clinical.rate_matrix(state.q)[clinical.root_angles][:, clinical.root_turns]
+    expected = np.sqrt(np.diag(E @ spread.root_covariance @ E.T))
+    np.testing.assert_allclose(spread.angle[clinical.root_angles], expected, rtol=1e-10)
+
+
 def test_rates_of_independent_dofs(case):
     """Var θ̇ = Σ E² sd_v²."""
     model, state, _, spread = case

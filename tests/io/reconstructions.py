@@ -49,5 +49,8 @@ def made_up_whole(frames=12, **changes):
         "foot_contact": rng.integers(-1, 3, (frames, 2)),
         "covariance": np.zeros((frames, 12, 12)),
         "plate_corners_m": rng.normal(size=(2, 4, 3)),
+        "direction": "progression",
+        "heading_rad": rng.normal(size=frames),
+        "angles_lab": rng.normal(size=(frames, len(COORDINATES))),
     }
     return made_up(frames, **{**optional, **changes})

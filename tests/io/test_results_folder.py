@@ -14,7 +14,15 @@ from mbkf.io.results_folder import (
 )
 from tests.io.reconstructions import made_up
 
-FILES = ["angles.mot", "markers.trc", "motion.h5", "reactions.mot", "summary.json", "torques.sto"]
+FILES = [
+    "angles.mot",
+    "angles_lab.mot",
+    "markers.trc",
+    "motion.h5",
+    "reactions.mot",
+    "summary.json",
+    "torques.sto",
+]
 
 
 def test_six_files_are_written_and_read_back(tmp_path):

@@ -49,6 +49,14 @@ def test_older_files_have_no_axes(tmp_path):
     assert (back.file_axes, back.file_axes_source) == ("x,y,z", "")
 
 
+def test_a_file_without_a_direction_is_told_in_the_laboratory(tmp_path):
+    """Files of earlier versions."""
+    write_h5(made_up(direction="heading"), tmp_path / "motion.h5")
+    with h5py.File(tmp_path / "motion.h5", "a") as file:
+        del file.attrs["direction"]
+    assert read_h5(tmp_path / "motion.h5").direction == "laboratory"
+
+
 def test_every_quantity_carries_its_unit(tmp_path):
     write_h5(made_up_whole(), tmp_path / "motion.h5")
     assert set(UNITS) | set(DTYPES) | {"nis", "covariance"} == set(ARRAYS)

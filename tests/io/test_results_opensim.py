@@ -37,6 +37,21 @@ def test_angles_are_in_degrees_and_translations_in_metres():
     np.testing.assert_array_equal(table.column("pelvis_tx"), r.angle("pelvis_tx"))
 
 
+def test_angles_are_told_in_both_frames_and_say_which(tmp_path):
+    lab = np.array(made_up().angles)
+    lab[:, 0] += 0.7
+    r = made_up(direction="progression", heading_rad=np.full(12, 0.5), angles_lab=lab)
+    write_opensim(r, tmp_path)
+    own, theirs = (read_storage(tmp_path / name) for name in ("angles.mot", "angles_lab.mot"))
+    np.testing.assert_allclose(theirs.column("pelvis_tilt") - own.column("pelvis_tilt"), np.rad2deg(0.7))
+    np.testing.assert_array_equal(theirs.column("hip_flexion_r"), own.column("hip_flexion_r"))
+    np.testing.assert_allclose(own.column("pelvis_tilt"), np.rad2deg(r.angle("pelvis_tilt")))
+    assert own.header["direction"] == "progression, 28.6479 degrees from the x axis"
+    assert theirs.header["direction"] == "laboratory"
+    turning = made_up(direction="heading", heading_rad=np.linspace(0.0, 1.0, 12), angles_lab=lab)
+    assert angles_table(turning).header["Direction"] == "heading, turning with it"
+
+
 def test_torques_are_named_as_inverse_dynamics_names_them():
     table = torques_table(made_up())
     assert table.names == ("pelvis_tilt_moment", "pelvis_tx_force", "hip_flexion_r_moment")

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.ndimage import binary_dilation, median_filter
 from scipy.signal import savgol_filter
 
-from mbkf.numerics.windows import dilated, majority, second_derivative
+from mbkf.numerics.windows import dilated, local_lines, majority, second_derivative
 
 masks = st.lists(st.booleans(), min_size=1, max_size=60).map(lambda values: np.array(values, dtype=bool))
 
@@ -45,3 +45,42 @@ def test_dilation_is_scipys(mask, samples):
 
 def test_nothing_is_dilated_to_nothing():
     assert dilated(np.zeros(0, dtype=bool), 3).shape == (0,)
+
+
+@given(st.integers(3, 60), st.floats(0.05, 2.0), st.integers(0, 10_000))
+def test_a_line_with_gaps_is_its_own_local_line(frames, width, seed):
+    rng = np.random.default_rng(seed)
+    t, known = 0.05 * np.arange(frames), rng.random(frames) < 0.7
+    level, slope = rng.normal(size=2), rng.normal(size=2)
+    line = level + slope * t[:, None]
+    value, found = local_lines(np.where(known[:, None], line, np.nan), known, 0.05, width)
+    steady = np.isfinite(found).all(axis=1) & (found != 0.0).all(axis=1)
+    np.testing.assert_allclose(found[steady], np.tile(slope, (steady.sum(), 1)), rtol=0, atol=1e-9)
+    np.testing.assert_allclose(value[steady], line[steady], rtol=0, atol=1e-9)
+
+
+def test_the_local_line_is_the_weighted_fit():
+    """Against NumPy's polynomial fit, whose weights are the roots of ours."""
+    rng = np.random.default_rng(0)
+    t, samples, known = 0.01 * np.arange(80), rng.normal(size=(80, 1)), rng.random(80) < 0.6
+    value, slope = local_lines(samples, known, 0.01, 0.1)
+    for k in (0, 17, 40, 79):
+        near = known & (np.abs(t - t[k]) < 0.305)
+        weights = np.exp(-0.25 * ((t[near] - t[k]) / 0.1) ** 2)
+        fit = np.polyfit(t[near] - t[k], samples[near, 0], 1, w=weights)
+        np.testing.assert_allclose([slope[k, 0], value[k, 0]], fit, rtol=1e-8)
+
+
+def test_what_swings_faster_than_the_window_goes_out():
+    t = 0.01 * np.arange(600)
+    value, slope = local_lines((t + 0.05 * np.sin(2 * np.pi * t))[:, None], np.ones(600, bool), 0.01, 0.5)
+    inside = slice(150, -150)
+    np.testing.assert_allclose(slope[inside], 1.0, atol=0.01)
+    np.testing.assert_allclose(value[inside, 0], t[inside], atol=0.002)
+
+
+def test_a_lonely_sample_has_no_slope_and_far_from_any_there_is_nothing():
+    samples, known = np.full((100, 1), 3.0), np.arange(100) == 10
+    value, slope = local_lines(samples, known, 0.1, 0.5)
+    assert (value[10, 0], slope[10, 0]) == (3.0, 0.0)
+    assert np.isnan(value[60]).all() and np.isnan(slope[60]).all()

@@ -26,6 +26,7 @@ def test_the_capture_and_the_result_are_on_disk(demo: Demo) -> None:
         "summary.json",
         "motion.h5",
         "angles.mot",
+        "angles_lab.mot",
         "torques.sto",
         "reactions.mot",
         "markers.trc",

@@ -92,8 +92,23 @@ def test_angles_are_recovered(made):
     assert rms(rotations) < 0.4 * DEGREE
     clinical = ClinicalAngles(made.model)
     turning = clinical.rotational
-    assert rms((found.angles - clinical.angles(made.q))[:, turning]) < 0.4 * DEGREE
+    assert rms((found.angles_lab - clinical.angles(made.q))[:, turning]) < 0.4 * DEGREE
     assert np.abs(found.q[:, :3] - made.q[:, :3]).max() < 0.0005
+
+
+def test_the_pelvis_is_told_against_its_heading_or_the_laboratory_on_request(made, result):
+    """The frame changes the pelvis's angles and nothing else that is estimated."""
+    lab = kinematic(made.capture, made.subject, pelvis="lab")
+    clinical = ClinicalAngles(made.model)
+    assert (result.direction, lab.direction) == ("heading", "laboratory")
+    np.testing.assert_array_equal(lab.angles, lab.angles_lab)
+    np.testing.assert_array_equal(lab.angles, result.angles_lab)
+    assert not lab.heading_rad.any()
+    turned = clinical.angles(clinical.against(result.heading_rad, result.q))
+    np.testing.assert_array_equal(result.angles, turned)
+    np.testing.assert_array_equal(result.q, lab.q)
+    with pytest.raises(UnknownName, match="sideways"):
+        kinematic(made.capture, made.subject, pelvis="sideways")
 
 
 def test_correcting_exact_markers_costs_little(made, result):

@@ -36,7 +36,7 @@ def followed(blocks=None, settings=None, plates=None, readings=None):
 @pytest.mark.parametrize("name", ["kinematic", "dynamic"])
 def test_it_takes_the_steps_of_reconstruct(name):
     person, trial, _ = squat()
-    settings = ReconstructSettings(filter=name, correct_markers=False)
+    settings = ReconstructSettings(filter=name, correct_markers=False, pelvis="lab")
     result = mbkf.reconstruct(trial, person, settings=settings)
     _, found = followed(settings=settings)
     assert [one.number for one in found] == list(range(len(found)))

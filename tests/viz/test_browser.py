@@ -2,6 +2,7 @@
 
 import io
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -81,6 +82,19 @@ def test_a_recording_plays_from_a_file_without_any_request(opened, tmp_path):
         page.locator("#scrub").fill("105")
         assert page.evaluate("mbkf.view.segments.some((s) => s.visible)") is False, "the body is lost here"
         assert page.requested == [page.url]
+
+
+def test_a_recording_opens_on_the_first_tracked_frame(opened, tmp_path):
+    r = walk()
+    write_playback(replace(r, tracked=np.arange(r.frames) >= 37), tmp_path / "late.html")
+    with opened((tmp_path / "late.html").as_uri()) as page:
+        followed(page)
+        assert page.evaluate("mbkf.frame") == 37
+        assert page.text_content("#clock").startswith("0.37 s")
+        assert page.input_value("#scrub") == "37"
+        assert page.evaluate("mbkf.view.segments.some((s) => s.visible)") is True
+        page.locator("#scrub").fill("0")
+        assert page.evaluate("mbkf.frame") == 0, "the frames before are there"
 
 
 def test_the_live_page_moves_and_pauses_and_trains(opened, live):

@@ -20,7 +20,10 @@ OPPOSITE = (0.2, 0.8)
 """Shares of a cycle between which the other foot strikes; in hops and jumps it does not."""
 
 BELT_FROM_M_S = 0.15
-"""Standing feet that all move faster than this stand on a belt."""
+"""Standing feet that move back faster than this, under a pelvis that stays, stand on a belt."""
+
+STAYS_M_S, STAYS_SHARE = 0.3, 0.5
+"""A pelvis stays whose mean speed over all cycles is below the first, and below this share of the feet's."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +92,7 @@ def find_gait(r: Reconstruction) -> Gait | None:
     cycles = tuple(cycle for side in range(2) for cycle in cycles_of(events, side))
     if not cycles:
         return None
-    belt = _belt_velocity(feet, cycles)
+    belt = belt_velocity(feet, cycles)
     return Gait(events, cycles, _parameters(feet, cycles, belt), float(np.linalg.norm(belt)))
 
 
@@ -123,8 +126,15 @@ def over_cycle(times_s: Array, values: Array, cycle: Cycle) -> Array:
     return np.interp(at, times_s, values)
 
 
-def _belt_velocity(feet: FeetInMotion, cycles: tuple[Cycle, ...]) -> Array:
-    """(2,) horizontal velocity of what the feet stand on: the ball's in mid-stance, 0 unless it clearly moves."""
+def belt_velocity(feet: FeetInMotion, cycles: tuple[Cycle, ...]) -> Array:
+    """(2,) horizontal velocity of what the feet stand on: the ball's in mid-stance.
+
+    It is 0 unless the pelvis stays while the feet travel back: on a floor, feet of a sprint also move in mid-stance.
+
+    Args:
+        feet: Feet and pelvis.
+        cycles: At least one cycle.
+    """
     speeds = []
     velocity = np.gradient(feet.soles_m[:, :, 1, :2], feet.times_s, axis=0)
     for cycle in cycles:
@@ -133,8 +143,22 @@ def _belt_velocity(feet: FeetInMotion, cycles: tuple[Cycle, ...]) -> Array:
         speeds.append(velocity[middle, cycle.side])
     found = np.concatenate(speeds)
     found = found[~np.isnan(found).any(axis=1)]
-    belt = np.median(found, axis=0) if len(found) else np.zeros(2)
-    return belt if np.linalg.norm(belt) > BELT_FROM_M_S else np.zeros(2)
+    if not len(found):
+        return np.zeros(2)
+    belt = np.median(found, axis=0)
+    back = -float(belt @ np.nanmean(feet.forward, axis=0))
+    stays = _pelvis_speed(feet, cycles) < min(STAYS_M_S, STAYS_SHARE * back)
+    return belt if stays and back > BELT_FROM_M_S else np.zeros(2)
+
+
+def _pelvis_speed(feet: FeetInMotion, cycles: tuple[Cycle, ...]) -> float:
+    """Mean horizontal speed of the pelvis over all cycles, m/s; between frames in which the body is followed."""
+    first, last = min(cycle.start_s for cycle in cycles), max(cycle.end_s for cycle in cycles)
+    within = (feet.times_s >= first) & (feet.times_s <= last) & ~np.isnan(feet.pelvis_m).any(axis=1)
+    times, places = feet.times_s[within], feet.pelvis_m[within]
+    if len(times) < 2:
+        return 0.0
+    return float(np.linalg.norm(places[-1] - places[0]) / (times[-1] - times[0]))
 
 
 def _parameters(feet: FeetInMotion, cycles: tuple[Cycle, ...], belt: Array) -> tuple[GaitParameter, ...]:

@@ -11,6 +11,7 @@ from mbkf.io.results import Reconstruction
 from mbkf.io.results_folder import AxesTold, Summary
 from mbkf.io.truth import Truth
 from mbkf.model.human import HumanModel, reference_body
+from mbkf.pipelines.results.progression import kind_of
 
 SETTLING_S = 0.5
 """Innovations within this time after the start are left out, while the filter settles."""
@@ -45,6 +46,8 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "filter": r.filter,
         "smoothed": bool(r.smoothed),
         "version": r.version,
+        "direction": r.direction,
+        "progression": progression_summary(r),
         "mass_kg": float(r.subject.mass_kg),
         "frames": r.frames,
         "rate_hz": float(r.rate_hz),
@@ -84,6 +87,17 @@ def axes_told(axes: str, source: str) -> AxesTold:
     forward, _, up = axes.split(",")
     mirrored = bool(np.linalg.det(axes_matrix(axes)) < 0.0)
     return {"up": up, "forward": forward, "mirrored": mirrored, "source": source}
+
+
+def progression_summary(r: Reconstruction) -> dict[str, str | float]:
+    """Kind of the frame of the pelvis's angles, its mean heading in −180…180°, and how far it turns in all."""
+    heading = np.zeros(1) if r.heading_rad is None or not r.frames else r.heading_rad
+    mean = np.arctan2(np.sin(heading).mean(), np.cos(heading).mean())
+    return {
+        "kind": kind_of(r.direction, heading),
+        "heading_deg": float(np.rad2deg(mean)),
+        "turned_deg": float(np.rad2deg(heading[-1] - heading[0])),
+    }
 
 
 def _marker_errors(r: Reconstruction) -> tuple[Array, Array]:

@@ -44,7 +44,8 @@ class Recording {
 
 class Player {
   constructor(page, scene, recording) {
-    [this.recording, this.rate, this.frame, this.playing, this.speed] = [recording, scene.rate_hz, 0, false, 1];
+    [this.recording, this.rate, this.playing, this.speed] = [recording, scene.rate_hz, false, 1];
+    this.first = this.frame = this.position = scene.first_tracked;
     this.view = new BodyScene(page.pane, scene);
     page.legend(this.view);
     this.panel = new Panel(page.column, scene.quantities, (time) => this.seek(time));
@@ -60,7 +61,7 @@ class Player {
   controls(bar) {
     this.button = element("button", { className: "play", id: "play", title: "Play or pause (space)" });
     this.button.onclick = () => this.play(!this.playing);
-    this.slider = element("input", { type: "range", id: "scrub", min: 0, max: this.recording.frames - 1, value: 0, ariaLabel: "Time" });
+    this.slider = element("input", { type: "range", id: "scrub", min: 0, max: this.recording.frames - 1, value: this.frame, ariaLabel: "Time" });
     this.slider.oninput = () => this.go(Number(this.slider.value));
     this.clock = element("span", { className: "clock", id: "clock" });
     this.speeds = element("select", { id: "speed", ariaLabel: "Speed" }, ...[0.1, 0.25, 0.5, 1, 2, 4].map((s) =>
@@ -85,7 +86,7 @@ class Player {
     this.playing = on;
     this.button.textContent = on ? "❚❚ Pause" : "▶ Play";
     this.last = null;
-    if (on && this.frame >= this.recording.frames - 1) this.go(0);
+    if (on && this.frame >= this.recording.frames - 1) this.go(this.first);
   }
 
   seek(time) {
@@ -103,8 +104,8 @@ class Player {
     if (!this.playing) return;
     const passed = this.last === null ? 0 : Math.min(0.25, (now - this.last) / 1000);
     this.last = now;
-    this.position = (this.position ?? 0) + passed * this.speed * this.rate;
-    if (this.position >= this.recording.frames) this.position = 0;
+    this.position = this.position + passed * this.speed * this.rate;
+    if (this.position >= this.recording.frames) this.position = this.first;
     const frame = Math.floor(this.position);
     if (frame !== this.frame) {
       this.frame = frame;

@@ -12,6 +12,8 @@ from mbkf.errors import FileFormatError
 from mbkf.io.atomic import replacing
 from mbkf.io.results import Reconstruction
 from mbkf.pipelines.gait.cycles import find_gait
+from mbkf.pipelines.results.progression import LABORATORY
+from mbkf.pipelines.results.summary import progression_summary
 from mbkf.viz.markup import folded, paragraph, section, table
 from mbkf.viz.page import asset
 from mbkf.viz.report.gait import gait_section
@@ -139,8 +141,18 @@ def _settings(r: Reconstruction, summary: Mapping[str, object]) -> str:
                 "small",
             ),
         ),
-        paragraph("Angles follow the ISB recommendations; world axes: x forward, y left, z up."),
+        paragraph(
+            f"Angles follow the ISB recommendations; pelvis: {_pelvis_frame(r)}; world axes: x forward, y left, z up."
+        ),
     )
+
+
+def _pelvis_frame(r: Reconstruction) -> str:
+    """The axes in which the pelvis's angles are told, in words."""
+    frame = progression_summary(r)
+    if r.direction == LABORATORY:
+        return "the laboratory's axes"
+    return f"frame of progression ({frame['kind']}, {frame['heading_deg']:.0f}° from the x axis)"
 
 
 def _flat(value: Any, prefix: str = "") -> list[tuple[str, str]]:

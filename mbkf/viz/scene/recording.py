@@ -35,8 +35,9 @@ def recorded_scene(r: Reconstruction) -> tuple[dict[str, object], Array, Array]:
     """The parts of :func:`recording`.
 
     Returns:
-        The scene's description (see :func:`mbkf.viz.scene.description.scene_description`) with the rows' rate and
-        first time, the rows (T, width), and the resolution of each column (width,).
+        The scene's description (see :func:`mbkf.viz.scene.description.scene_description`) with the rows' rate,
+        first time and the first row that shows the body (0 without one), the rows (T, width), and the resolution of
+        each column (width,).
 
     Raises:
         InvalidInput: The result holds no frames.
@@ -52,7 +53,11 @@ def recorded_scene(r: Reconstruction) -> tuple[dict[str, object], Array, Array]:
     scene = scene_description(
         r.trial, model, r.marker_names, r.coordinate_names, corners, layout, streamed=False
     )
-    timing = {"rate_hz": r.rate_hz / stride, "start_s": float(r.times_s[0])}
+    timing = {
+        "rate_hz": r.rate_hz / stride,
+        "start_s": float(r.times_s[0]),
+        "first_tracked": int(np.argmax(r.tracked[shown])),
+    }
     return {**scene, **timing}, rows, layout.resolution()
 
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.pipelines.gait.cycles import cycles_of, find_gait, over_cycle
-from mbkf.pipelines.gait.events import FootEvents
+from mbkf.pipelines.gait.cycles import Cycle, belt_velocity, cycles_of, find_gait, over_cycle
+from mbkf.pipelines.gait.events import FeetInMotion, FootEvents
 from tests.dynamics import trial
 from tests.motions import assert_near
 from tests.recordings import walk, walker
@@ -81,6 +81,34 @@ def test_a_treadmill_is_noticed_and_changes_no_length():
     for name in ("Stride length", "Step length", "Step width", "Speed"):
         for a, b in zip(named(on_belt)[name], named(on_floor)[name], strict=True):
             assert_near(a, b, 0.05)
+
+
+def belt_of(pelvis_m_s, foot_m_s, heading=0.4):
+    """Speed of the belt found under a person whose pelvis and standing feet move forward at these speeds."""
+    times = np.arange(300) / 100.0
+    forward = np.array([np.cos(heading), np.sin(heading)])
+    pelvis = pelvis_m_s * times[:, None] * forward
+    soles = np.zeros((300, 2, 3, 3))
+    soles[..., :2] = (foot_m_s * times[:, None] * forward)[:, None, None]
+    feet = FeetInMotion(times, soles, np.tile(forward, (300, 1)), pelvis)
+    cycles = tuple(Cycle(side, 0.5, 1.1, 1.5, 1.0, 0.2) for side in range(2))
+    return np.linalg.norm(belt_velocity(feet, cycles))
+
+
+def test_a_belt_needs_a_pelvis_that_stays_and_feet_that_travel_back():
+    assert belt_of(0.0, -1.2) == pytest.approx(1.2)
+    assert belt_of(0.2, -3.0) == pytest.approx(3.0), "drifting on a treadmill"
+    assert belt_of(8.0, 0.6) == 0.0, "a sprint, whose short stances are cut at their ends"
+    assert belt_of(3.0, -0.5) == 0.0, "a run across the room with feet that slip"
+    assert belt_of(0.25, -0.4) == 0.0, "a slow walk with feet that slip"
+    assert belt_of(0.0, 0.5) == 0.0, "feet that travel forward"
+    assert belt_of(0.0, -0.1) == 0.0, "standing still"
+
+
+def test_an_unseen_body_moves_on_no_belt():
+    r = walk()
+    lost = replace(r, tracked=np.zeros(r.frames, bool))
+    assert find_gait(lost) is None or find_gait(lost).belt_m_s == 0.0
 
 
 def test_a_squat_is_no_gait():

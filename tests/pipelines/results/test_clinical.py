@@ -1,10 +1,13 @@
 """Clinical coordinates of a followed trial: means and spreads by the same linear maps."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.pipelines.results.clinical import clinical_motion
+from mbkf.pipelines.results.progression import Progression
 from tests.motions import random_model, smooth_motion, track_of
 
 FRAMES = 5
@@ -73,3 +76,97 @@ def test_long_trials_are_treated_in_blocks(case, monkeypatch):
     monkeypatch.setattr("mbkf.pipelines.results.clinical.BLOCK", 3)
     again = clinical_motion(model, track, tau, sd_tau)
     np.testing.assert_array_equal(again.rates, found.rates)
+
+
+def in_frame(case, frame):
+    model, track, tau, sd_tau, _ = case
+    return clinical_motion(model, track, tau, sd_tau, frame)
+
+
+def turned_track(model, track, angle_rad):
+    """The same motion in a laboratory whose axes are turned back about the vertical."""
+    q = ClinicalAngles(model).against(np.full(len(track.q), -angle_rad), track.q)
+    x, y = track.q[:, 0], track.q[:, 1]
+    q[:, 0] = np.cos(angle_rad) * x - np.sin(angle_rad) * y
+    q[:, 1] = np.sin(angle_rad) * x + np.cos(angle_rad) * y
+    return replace(track, q=q)
+
+
+@pytest.fixture(scope="module")
+def spread_case(case):
+    """The case with the covariance of the root's orientation and the velocities' deviations."""
+    model, track, tau, sd_tau, found = case
+    rng = np.random.default_rng(2)
+    A = 0.1 * rng.normal(size=(FRAMES, 3, 3))
+    velocity_sd = rng.uniform(0.1, 1.0, track.v.shape)
+    covariance = np.einsum("tij,tkj->tik", A, A)
+    return model, replace(track, root_covariance=covariance, velocity_sd=velocity_sd), tau, sd_tau, found
+
+
+STEADY = Progression("progression", np.full(FRAMES, 0.8), np.zeros(FRAMES))
+
+
+@pytest.mark.parametrize("angle", [0.5, np.pi / 2, np.pi, -2.0])
+def test_a_turned_capture_in_its_turned_frame_has_the_same_angles(spread_case, angle):
+    """Positions and their forces stay in the laboratory's axes; all else is the same."""
+    model, track, tau, sd_tau, _ = spread_case
+    clinical = ClinicalAngles(model)
+    first = in_frame(spread_case, STEADY)
+    turned = Progression("progression", STEADY.heading_rad + angle, STEADY.turning_rad_s)
+    second = clinical_motion(model, turned_track(model, track, angle), tau, sd_tau, turned)
+    for name in ("angles", "rates", "moments", "angles_sd", "rates_sd", "moments_sd"):
+        one, other = (getattr(found, name)[:, clinical.rotational] for found in (first, second))
+        if name == "angles":
+            one, other = np.exp(1j * one), np.exp(1j * other)
+        np.testing.assert_allclose(one, other, rtol=0, atol=1e-9, err_msg=name)
+
+
+def test_only_the_roots_angles_depend_on_the_frame(spread_case):
+    model, track, tau, sd_tau, _ = spread_case
+    clinical = ClinicalAngles(model)
+    others = np.setdiff1d(np.arange(len(clinical.names)), clinical.root_angles)
+    lab, steady = clinical_motion(model, track, tau, sd_tau), in_frame(spread_case, STEADY)
+    for name in ("angles", "rates", "moments", "angles_sd", "rates_sd", "moments_sd", "singular"):
+        np.testing.assert_array_equal(getattr(lab, name)[:, others], getattr(steady, name)[:, others])
+    np.testing.assert_array_equal(steady.angles_lab, lab.angles)
+    np.testing.assert_array_equal(lab.angles_lab, lab.angles)
+    assert np.abs(lab.angles - steady.angles)[KNOWN][:, clinical.root_angles].max() > 0.1
+
+
+def test_in_a_steady_frame_moments_do_the_power_of_the_torques(spread_case):
+    _, track, tau, _, _ = spread_case
+    found = in_frame(spread_case, STEADY)
+    for t in KNOWN:
+        assert found.moments[t] @ found.rates[t] == pytest.approx(tau[t] @ track.v[t], rel=1e-11)
+
+
+def test_in_a_turning_frame_rates_are_slopes_against_it_and_power_is_what_is_left(spread_case):
+    """m·θ̇ = τ·v − ψ̇ n, with n the root's moment about the vertical."""
+    model, track, tau, _, _ = spread_case
+    clinical, h, turning = ClinicalAngles(model), 1e-6, np.full(FRAMES, 0.7)
+    heading = 0.8 + 0.1 * np.arange(FRAMES)
+    found = in_frame(spread_case, Progression("progression", heading, turning))
+    for t in KNOWN:
+        ends = np.array([model.integrate(track.q[t], s * h * track.v[t]) for s in (-1, 1)])
+        seen = clinical.against(heading[t] + turning[t] * np.array([-h, h]), ends)
+        before, after = clinical.angles(seen)
+        np.testing.assert_allclose(found.rates[t], (after - before) / (2 * h), rtol=0, atol=2e-8)
+        about_vertical = tau[t, clinical.root_turns] @ clinical.vertical(track.q[[t]])[0]
+        power = tau[t] @ track.v[t] - turning[t] * about_vertical
+        assert found.moments[t] @ found.rates[t] == pytest.approx(power, rel=1e-10)
+
+
+def test_the_roots_spreads_follow_its_own_covariance(spread_case):
+    """Var θ = J P Jᵀ by finite differences of the root's angles in the frame, Var θ̇ = Σ E² sd²."""
+    model, track, _, _, _ = spread_case
+    clinical, h = ClinicalAngles(model), 1e-6
+    found = in_frame(spread_case, STEADY)
+    for t in KNOWN:
+        steps = h * np.eye(model.nv)[clinical.root_turns]
+        ends = np.array([[model.integrate(track.q[t], s * step) for s in (-1, 1)] for step in steps])
+        angles = [clinical.angles(clinical.against(np.full(2, 0.8), pair)) for pair in ends]
+        J = np.array([(after - before) / (2 * h) for before, after in angles]).T[clinical.root_angles]
+        variance = np.diag(J @ track.root_covariance[t] @ J.T)
+        np.testing.assert_allclose(found.angles_sd[t, clinical.root_angles] ** 2, variance, rtol=1e-6)
+        rate_variance = J**2 @ track.velocity_sd[t, clinical.root_turns] ** 2
+        np.testing.assert_allclose(found.rates_sd[t, clinical.root_angles] ** 2, rate_variance, rtol=1e-6)

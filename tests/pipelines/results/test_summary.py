@@ -14,7 +14,8 @@ from mbkf.pipelines.results.summary import compare_with_truth, summarise
 from tests.io.reconstructions import made_up
 
 KEYS = {
-    "trial", "protocol", "filter", "smoothed", "version", "mass_kg", "frames", "rate_hz", "duration_s",
+    "trial", "protocol", "filter", "smoothed", "version", "direction", "progression", "mass_kg",
+    "frames", "rate_hz", "duration_s",
     "markers_used", "missing_fraction", "marker_rms_mm", "marker_max_mm", "marker_rms_mm_by_name",
     "residual_force_rms_n", "residual_moment_rms_nm", "valid_frames", "plate_force_change_rms_n",
     "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "nis_per_dof",
@@ -33,6 +34,21 @@ def test_the_keys_are_those_of_the_contract_and_plain_data():
     assert summary["duration_s"] == pytest.approx(0.12)
     assert summary["realtime_factor"] == pytest.approx(10.0)
     assert summary["step_seconds_median"] == pytest.approx(1e-3)
+
+
+def test_the_frame_of_the_pelvis_is_told_with_its_mean_heading_and_how_far_it_turns():
+    """The mean of angles about ±180° is near ±180°, not near 0."""
+    assert summarise(made_up())["progression"] == {
+        "kind": "laboratory",
+        "heading_deg": 0.0,
+        "turned_deg": 0.0,
+    }
+    heading = np.deg2rad(np.linspace(170.0, 192.0, 12))
+    found = summarise(made_up(direction="progression", heading_rad=heading))
+    assert found["direction"] == "progression"
+    assert found["progression"]["kind"] == "turning path"
+    assert found["progression"]["heading_deg"] == pytest.approx(-179.0)
+    assert found["progression"]["turned_deg"] == pytest.approx(22.0)
 
 
 def test_an_empty_or_untracked_reconstruction_has_no_numbers_but_no_error():

@@ -45,6 +45,12 @@ def report(r, labels=None):
     return report_page(r, summarise(r), labels)
 
 
+def test_it_says_in_which_axes_the_pelvis_is_told():
+    assert "pelvis: the laboratory&#x27;s axes" in report(walk())
+    along = replace(walk(), direction="progression", heading_rad=np.full(walk().frames, np.pi / 2))
+    assert "frame of progression (straight path, 90° from the x axis)" in report(along)
+
+
 def test_sections_come_in_order_quality_first():
     text = report(broken_walk())
     outline = Outline(text)

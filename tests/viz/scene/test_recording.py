@@ -58,6 +58,17 @@ def test_what_travels_looks_the_same():
     assert scene["start_s"] == r.times_s[0]
 
 
+def test_it_opens_where_the_body_is_first_seen():
+    r = walk()
+    late = replace(r, tracked=np.arange(r.frames) >= 37)
+    assert recorded_scene(r)[0]["first_tracked"] == 0
+    assert recorded_scene(late)[0]["first_tracked"] == 37
+    quick = replace(late, rate_hz=4 * r.rate_hz, times_s=r.times_s / 4)
+    scene, rows, _ = recorded_scene(quick)
+    assert part(scene, rows, "status")[scene["first_tracked"], 1] == 40, "every fourth frame is shown"
+    assert recorded_scene(replace(r, tracked=np.zeros(r.frames, bool)))[0]["first_tracked"] == 0
+
+
 def test_infinite_numbers_are_missing():
     assert np.isnan(unpack(pack(np.array([[np.inf, 1.0], [2.0, -np.inf]])))).tolist() == [
         [True, False],
