@@ -201,12 +201,10 @@ def assemble(
     """
     model, unobservable = inputs.sensor.model, inputs.unobservable
     ground = reactions(model, result, measured.times_s, measured.rate_hz, inputs.plates)
-    tau = ground.tau
+    tau, names = ground.tau, dof_names(model)
     tau_sd = np.where(np.isnan(tau), np.nan, result.torque_sd)
     frame = pelvis_frame(settings.pelvis, model, result.q, measured.times_s)
     clinical = clinical_motion(model, result, tau, tau_sd, frame)
-    located = (result.foot_height_sd <= FOOT_SD_M).all(axis=1)
-    names = dof_names(model)
     return Reconstruction(
         trial=Path(capture.path).stem or "capture",
         protocol=subject.protocol,
@@ -243,7 +241,7 @@ def assemble(
         residual_force_n=ground.residual_force_n,
         residual_moment_nm=ground.residual_moment_nm,
         tracked=result.tracked,
-        valid=ground.valid & result.tracked & located,
+        valid=ground.valid & result.tracked & _located(result),
         unobserved_dofs=tuple(name for name, without in zip(names, unobservable, strict=True) if without),
         nis=result.nis,
         nis_readings=result.readings,
@@ -261,6 +259,11 @@ def assemble(
         heading_rad=frame.heading_rad,
         angles_lab=clinical.angles_lab,
     )
+
+
+def _located(result: Track) -> BoolArray:
+    """(T,) frames in which the height of both feet is known."""
+    return np.asarray((result.foot_height_sd <= FOOT_SD_M).all(axis=1))
 
 
 def _corners(capture: Capture) -> Array | None:
