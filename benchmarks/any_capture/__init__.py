@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from benchmarks.any_capture.axes import axes_rows
+from benchmarks.any_capture.coverage import coverage_rows
 from benchmarks.any_capture.direction import direction_rows
 from benchmarks.any_capture.forces import forces_rows
 from benchmarks.checks import Check, Context
@@ -13,5 +14,6 @@ def run(context: Context) -> list[Check]:
     return [
         *axes_rows(context.require_data()),
         *forces_rows(context),
+        *coverage_rows(),
         *direction_rows(context.require_data()),
     ]

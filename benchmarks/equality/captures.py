@@ -67,20 +67,26 @@ class Captured:
         return ("reconstruct", self.trial, *subject, *smooth, *self.options, *self.extra)
 
 
-def scaled(mass_kg: float, static: str | None = None, trial: str | None = None) -> tuple[str, ...]:
+def scaled(
+    mass_kg: float, static: str | None = None, trial: str | None = None, protocol: str | None = None
+) -> tuple[str, ...]:
     """The command that scales a person from a standing trial or, where there is none, from a moving one.
 
     Args:
         mass_kg: The person's mass.
         static: Standing trial below the data folder.
         trial: Moving trial below the data folder.
+        protocol: Marker protocol, where it knows too few of the markers to be taken unasked.
     """
     source = () if static is None else (f"{{data}}/{static}",)
     moving = () if trial is None else ("--trial", f"{{data}}/{trial}")
-    return ("scale", *source, *moving, "--mass", str(mass_kg), "--out", SUBJECT)
+    named = () if protocol is None else ("--protocol", protocol)
+    return ("scale", *source, *moving, *named, "--mass", str(mass_kg), "--out", SUBJECT)
 
 
-def with_static(name: str, trial: str, static: str, mass_kg: float, forces: str | None = None) -> Captured:
+def with_static(
+    name: str, trial: str, static: str, mass_kg: float, forces: str | None = None, protocol: str | None = None
+) -> Captured:
     """A capture whose person is scaled from a standing trial.
 
     Args:
@@ -89,12 +95,15 @@ def with_static(name: str, trial: str, static: str, mass_kg: float, forces: str 
         static: The standing trial, below the data folder.
         mass_kg: The person's mass.
         forces: Ground reactions in a file of their own, below the data folder.
+        protocol: Marker protocol, where it knows too few of the markers to be taken unasked.
     """
     options = () if forces is None else ("--forces", f"{{data}}/{forces}")
-    return Captured(name, f"{{data}}/{trial}", (scaled(mass_kg, static),), options)
+    return Captured(name, f"{{data}}/{trial}", (scaled(mass_kg, static, protocol=protocol),), options)
 
 
-def by_itself(name: str, trial: str, mass_kg: float, forces: str | None = None) -> Captured:
+def by_itself(
+    name: str, trial: str, mass_kg: float, forces: str | None = None, protocol: str | None = None
+) -> Captured:
     """A capture whose person is scaled from the same trial, because no standing trial exists.
 
     Args:
@@ -102,9 +111,10 @@ def by_itself(name: str, trial: str, mass_kg: float, forces: str | None = None) 
         trial: Its file below the data folder.
         mass_kg: The person's mass; where the data do not state it, any plausible one.
         forces: Ground reactions in a file of their own, below the data folder.
+        protocol: Marker protocol, where it knows too few of the markers to be taken unasked.
     """
     options = () if forces is None else ("--forces", f"{{data}}/{forces}")
-    return Captured(name, f"{{data}}/{trial}", (scaled(mass_kg, trial=trial),), options)
+    return Captured(name, f"{{data}}/{trial}", (scaled(mass_kg, trial=trial, protocol=protocol),), options)
 
 
 def synthetic(motion: str) -> Captured:
@@ -170,7 +180,7 @@ _REAL = (
     with_static(
         "bmc_run", "bmc_walk_run/run.trc", "bmc_walk_run/run_static.trc", 70.0, "bmc_walk_run/run_grf.mot"
     ),
-    by_itself("bmc_lower_walk1", "bmc_walk_run/lower_walk1.trc", 70.0),
+    by_itself("bmc_lower_walk1", "bmc_walk_run/lower_walk1.trc", 70.0, protocol="helen_hayes"),
     by_itself("cgm24_walk", "cgm24_lowerlimb_walk/CGM24_Walking01.c3d", 77.6),
     *(
         with_static(
@@ -187,7 +197,11 @@ _REAL = (
     ),
     *(
         with_static(
-            f"pose2sim_{kind}", f"{_POSE}/balancing_{kind}.trc", f"{_POSE}/static_{kind}.trc", mass_kg=69.0
+            f"pose2sim_{kind}",
+            f"{_POSE}/balancing_{kind}.trc",
+            f"{_POSE}/static_{kind}.trc",
+            mass_kg=69.0,
+            protocol="helen_hayes",
         )
         for kind in ("raw", "filt", "filt_LSTM")
     ),
@@ -204,13 +218,13 @@ _REAL = (
             ),
         ),
     ),
-    by_itself("c3d_Eb015pr", f"{_ENCODINGS}/Eb015pr.c3d", 70.0),
+    by_itself("c3d_Eb015pr", f"{_ENCODINGS}/Eb015pr.c3d", 70.0, protocol="opensim_fullbody2009"),
     *(
         # The same trial in other encodings: one filter says whether it is read alike.
         Captured(
             f"c3d_{name}",
             f"{{data}}/{_ENCODINGS}/{name}.c3d",
-            (scaled(70.0, trial=f"{_ENCODINGS}/{name}.c3d"),),
+            (scaled(70.0, trial=f"{_ENCODINGS}/{name}.c3d", protocol="opensim_fullbody2009"),),
             filters=("kinematic",),
             modes=("plain",),
         )

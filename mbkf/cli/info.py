@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from mbkf.pipelines.info import AxesSummary, CaptureSummary, MarkerSummary
+    from mbkf.pipelines.info import AxesSummary, CaptureSummary, MarkerSummary, ProtocolSummary
 
 _MOST_WITH_GAPS = 30
 _PIPED_WIDTH = 110
@@ -112,6 +112,7 @@ def _overview(summary: CaptureSummary) -> Table:
         low, high = ([f"{value:.2f}" for value in corner] for corner in summary.extent_m)
         spans = [f"{axis} {a} … {b}" for axis, a, b in zip("xyz", low, high, strict=True)]
         table.add_row("extent", ", ".join(spans) + " m (z up)")
+    table.add_row("protocol", escape(_protocol(summary.protocol)))
     table.add_row("derived", _counted(summary.derived.items()) or "none")
     table.add_row("plates", str(len(summary.plates)) if summary.plates else "none")
     table.add_row("analog", escape(_channels(summary)))
@@ -131,6 +132,17 @@ def _channels(summary: CaptureSummary) -> str:
     rates = sorted({channel.rate_hz for channel in summary.channels})
     names = ", ".join(f"{c.name} ({c.unit})" if c.unit else c.name for c in summary.channels)
     return f"{len(summary.channels)} at {', '.join(f'{rate:g}' for rate in rates)} Hz: {names}"
+
+
+def _protocol(protocol: ProtocolSummary | None) -> str:
+    from mbkf.pipelines.coverage import listed
+
+    if protocol is None:
+        return "none knows these markers; scaling needs --protocol"
+    told = f"{protocol.name}, knows {protocol.known} of {protocol.markers} markers ({100 * protocol.share:.0f} %)"
+    if protocol.ignored:
+        told += f"; ignored: {listed(protocol.ignored)}"
+    return told if protocol.accepted else f"{told}; too few, scaling needs --protocol"
 
 
 def _axes(axes: AxesSummary) -> str:

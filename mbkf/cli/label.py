@@ -101,6 +101,7 @@ def _label(
 ) -> tuple[Labelling, Subject, Capture]:
     """The labels, the person that they were found with, and the capture in the axes of that person's."""
     from mbkf.cli.options import axes_options
+    from mbkf.cli.scale import warn_of_markers
     from mbkf.io.capture import read_capture
     from mbkf.io.subject import read_subject
     from mbkf.pipelines.axes.captures import turned_like_subject
@@ -114,6 +115,7 @@ def _label(
     elif args.static is not None:
         static = read_capture(args.static, **axes_options(args))
         subject = scale(static, protocol=args.protocol, progress=report, **person)
+        warn_of_markers(subject)
     else:
         return *label_unscaled(raw, args.protocol, progress=report, **person), raw
     raw = turned_like_subject(raw, subject)

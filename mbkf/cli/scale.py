@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from mbkf.io.subject import Subject
 
 _EPILOG = """\
 examples:
@@ -79,7 +83,23 @@ def run(args: argparse.Namespace) -> int:
         )
     write_subject(subject, out)
     _print(subject.report, subject.protocol, str(out))
+    warn_of_markers(subject)
     return 0
+
+
+def warn_of_markers(subject: Subject) -> None:
+    """Warns of a protocol that knows too few of the markers that the person was scaled from."""
+    use = subject.report.get("marker_use")
+    if isinstance(use, dict) and use["warning"]:
+        print(f"warning: {use['warning']}", file=sys.stderr)
+
+
+def _use(use: dict[str, Any]) -> str:
+    """How much the protocol knows, and which markers are ignored."""
+    from mbkf.pipelines.coverage import listed
+
+    ignored = use["ignored"]
+    return f"{use['told']}; {len(ignored)} ignored" + (f": {listed(ignored)}" if ignored else "")
 
 
 def _print(report: dict[str, Any], protocol: str, out: str) -> None:
@@ -104,10 +124,7 @@ def _print(report: dict[str, Any], protocol: str, out: str) -> None:
         markers.add_row(name, entry["kind"], *("" if x is None else f"{x:.1f}" for x in numbers))
     console.print(factors)
     console.print(markers)
-    left_out = report["left_out"]
-    if left_out:
-        names = ", ".join(list(left_out)[:10]) + (" …" if len(left_out) > 10 else "")
-        console.print(f"{len(left_out)} points of the captures left out: {names}")
+    console.print(_use(report["marker_use"]), soft_wrap=True)
     for told in report.get("axes", ()):
         console.print(f"note: {told['capture']}: {told['note']}", soft_wrap=True)
     if not report["converged"]:

@@ -88,6 +88,8 @@ class Reconstruction:
             pelvis and feet) or "laboratory". Positions and forces are in the laboratory's axes whatever it is.
         heading_rad: (T,) angle of that frame's forward axis about the vertical from the laboratory's x; None is 0.
         angles_lab: (T, A) ``angles`` with the root's in the laboratory's axes; None where they are so themselves.
+        markers_ignored: Why a marker of the capture was not used, by its name there.
+        markers_explained: Share of the capture's named markers that the protocol knows, used or not, 0 to 1.
     """
 
     trial: str
@@ -142,6 +144,8 @@ class Reconstruction:
     direction: str = "laboratory"
     heading_rad: Array | None = None
     angles_lab: Array | None = None
+    markers_ignored: dict[str, str] = field(default_factory=dict)
+    markers_explained: float = 1.0
 
     def __post_init__(self) -> None:
         for name in ("dof_names", "coordinate_names", "marker_names", "unobserved_dofs", "warnings"):

@@ -47,6 +47,8 @@ class Summary(TypedDict):
         mass_kg: Mass of the subject.
         frames, rate_hz, duration_s: Size of the trial.
         markers_used: Number of markers.
+        markers_ignored: Why a marker of the capture was not used, by its name there.
+        markers_explained: Share of the capture's named markers that the protocol knows, used or not, 0 to 1.
         missing_fraction: Share of marker samples that the filter did not receive.
         marker_rms_mm, marker_max_mm: Distances of seen markers from the body.
         marker_rms_mm_by_name: The same by marker.
@@ -76,6 +78,8 @@ class Summary(TypedDict):
     rate_hz: float
     duration_s: float
     markers_used: int
+    markers_ignored: dict[str, str]
+    markers_explained: float
     missing_fraction: float | None
     marker_rms_mm: float | None
     marker_max_mm: float | None

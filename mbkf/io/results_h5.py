@@ -65,6 +65,8 @@ def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
         file.attrs["smoothed"] = reconstruction.smoothed
         file.attrs["rate_hz"] = reconstruction.rate_hz
         file.attrs["settings"] = json.dumps(reconstruction.settings, default=_plain)
+        file.attrs["markers_ignored"] = json.dumps(reconstruction.markers_ignored)
+        file.attrs["markers_explained"] = reconstruction.markers_explained
         file.attrs["subject"] = json.dumps(dataclasses.asdict(reconstruction.subject), default=_plain)
         for name, key in _NAME_LISTS.items():
             file.create_dataset(key, data=list(getattr(reconstruction, name)), dtype=h5py.string_dtype())
@@ -96,11 +98,13 @@ def read_h5(path: str | Path) -> Reconstruction:
                 raise FileFormatError(source, "not a reconstruction; make it with 'mbkf reconstruct'")
             if file.attrs["format_version"] > FORMAT_VERSION:
                 raise FileFormatError(source, "written by a newer mbkf; upgrade to read it")
-            # Older files name neither direction nor axes: theirs are the defaults.
+            # Older files name neither direction, axes nor ignored markers: theirs are the defaults.
             values: dict[str, Any] = {name: str(file.attrs[name]) for name in _TEXTS if name in file.attrs}
             values["smoothed"] = bool(file.attrs["smoothed"])
             values["rate_hz"] = float(file.attrs["rate_hz"])
             values["settings"] = json.loads(file.attrs["settings"])
+            values["markers_ignored"] = json.loads(file.attrs.get("markers_ignored", "{}"))
+            values["markers_explained"] = float(file.attrs.get("markers_explained", 1.0))
             values["subject"] = _subject(json.loads(file.attrs["subject"]))
             for name, key in _NAME_LISTS.items():
                 values[name] = tuple(file[key].asstr()[:])

@@ -9,9 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import BoolArray
+from mbkf.errors import UnknownName
 from mbkf.io.axes import axes_matrix, axes_text
 from mbkf.io.records import Capture, CaptureEvent, PlateReadings
+from mbkf.model.protocol import detect_protocol
 from mbkf.pipelines.axes.captures import find_axes_by_names
+from mbkf.pipelines.coverage import use_by_protocol
 
 
 @dataclass(frozen=True)
@@ -84,6 +87,27 @@ class AxesSummary:
 
 
 @dataclass(frozen=True)
+class ProtocolSummary:
+    """The shipped protocol that knows most of the names, and how much of the capture it explains.
+
+    Attributes:
+        name: Its name.
+        known: Number of markers that it knows, of those that have a name and were seen.
+        markers: Number of these.
+        share: The first over the second, 0 to 1.
+        accepted: Whether `mbkf scale` takes it unasked.
+        ignored: Why a marker is not used, by its name.
+    """
+
+    name: str
+    known: int
+    markers: int
+    share: float
+    accepted: bool
+    ignored: Mapping[str, str]
+
+
+@dataclass(frozen=True)
 class CaptureSummary:
     """What a capture holds.
 
@@ -107,6 +131,7 @@ class CaptureSummary:
         events: Labelled instants.
         notes: What the reader noticed.
         axes: How the axes were read, and what the body says.
+        protocol: The protocol that knows most of the names; None where none knows enough to be told.
     """
 
     path: str
@@ -128,6 +153,7 @@ class CaptureSummary:
     events: tuple[CaptureEvent, ...]
     notes: tuple[str, ...]
     axes: AxesSummary
+    protocol: ProtocolSummary | None
 
 
 def describe(capture: Capture) -> CaptureSummary:
@@ -167,7 +193,18 @@ def describe(capture: Capture) -> CaptureSummary:
         events=capture.events,
         notes=capture.notes,
         axes=_axes(capture),
+        protocol=_protocol(capture),
     )
+
+
+def _protocol(capture: Capture) -> ProtocolSummary | None:
+    try:
+        protocol = detect_protocol(capture.markers.names)
+    except UnknownName:
+        return None
+    use = use_by_protocol([capture.markers], protocol)
+    known = use.markers - len(use.unknown)
+    return ProtocolSummary(use.protocol, known, use.markers, use.share, use.accepted, dict(use.ignored))
 
 
 def _axes(capture: Capture) -> AxesSummary:

@@ -22,6 +22,7 @@ from mbkf.io.subject import Subject, match_names
 from mbkf.model.clinical import dof_names
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.axes.captures import checked_for_subject
+from mbkf.pipelines.coverage import use_by_subject
 from mbkf.pipelines.imu.on_body import ImuOnBody, with_imus
 from mbkf.pipelines.results.clinical import clinical_motion
 from mbkf.pipelines.results.progression import PELVIS_FRAMES, pelvis_frame
@@ -118,6 +119,9 @@ def reconstruct(
     with single_threaded():
         capture = checked_for_subject(capture, subject)
         measured = subject_markers(capture.markers, subject)
+        use = use_by_subject(capture.markers, subject)
+        if use.warning:
+            capture = replace(capture, notes=(*capture.notes, use.warning))
         hidden = _hidden(measured, settings.hide)
         shown = replace(measured, positions_m=np.where(hidden[:, :, None], np.nan, measured.positions_m))
         plates = _plates(capture, settings.without_plates)
@@ -140,7 +144,8 @@ def reconstruct(
             keep_covariance=settings.keep_covariance,
             progress=None if progress is None else lambda done, total: progress("Filtering", done, total),
         )
-        return assemble(capture, subject, settings, measured, hidden, inputs, result)
+        found = assemble(capture, subject, settings, measured, hidden, inputs, result)
+        return replace(found, markers_ignored=dict(use.ignored), markers_explained=use.share)
 
 
 def subject_markers(markers: MarkerTrajectories, subject: Subject) -> MarkerTrajectories:

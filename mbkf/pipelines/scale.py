@@ -15,6 +15,7 @@ from mbkf.model.description import BodyDescription
 from mbkf.model.protocol import Protocol, detect_protocol, load_protocol
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.axes.captures import REPORT_KEY, checked_for_protocol, told_axes
+from mbkf.pipelines.coverage import USE_KEY, require_coverage, use_by_protocol
 from mbkf.scaling.fit import scale_subject
 from mbkf.scaling.problem import ScalingSettings
 
@@ -44,8 +45,8 @@ def scale(
         progress: Called with the stage, items done and items in all.
 
     Raises:
-        InvalidInput: No trial, no mass, a mass or height that cannot be, a protocol placed on another body, or axes or
-            a unit that cannot be right.
+        InvalidInput: No trial, no mass, a mass or height that cannot be, a protocol placed on another body, axes or a
+            unit that cannot be right, or no protocol given and the nearest one knows too few of the markers.
         UnknownName: No protocol knows the markers, it names unknown segments, or there is no such body.
         FileFormatError: The body's or the protocol's file is missing or damaged.
         NotObservable: Too few markers of the protocol.
@@ -60,6 +61,7 @@ def scale(
         raise InvalidInput("the captures do not state the body mass; give --mass KG")
     if isinstance(body, str | Path):
         body = load_body(body)
+    found = protocol is None
     if protocol is None:
         protocol = detect_protocol(captures[0].markers.names, body)
     elif isinstance(protocol, str):
@@ -69,6 +71,9 @@ def scale(
             f"the protocol '{protocol.name}' is placed on the body '{protocol.body.name}', not on '{body.name}'; "
             "read it with load_protocol(name, body)"
         )
+    use = use_by_protocol([one.markers for one in captures], protocol)
+    if found:
+        require_coverage(use)
     report = None if progress is None else lambda done, total: progress("Scaling", done, total)
     checked = checked_for_protocol(captures, protocol)
     standing = [] if static is None else checked[:1]
@@ -83,4 +88,19 @@ def scale(
             progress=report,
         )
     told = told_axes(captures, checked)
-    return replace(subject, report={**subject.report, REPORT_KEY: told}) if told else subject
+    use = use.without(_rarely_seen(captures, protocol, subject))
+    extra = {USE_KEY: use.as_report(), **({REPORT_KEY: told} if told else {})}
+    return replace(subject, report={**subject.report, **extra})
+
+
+def _rarely_seen(captures: Sequence[Capture], protocol: Protocol, subject: Subject) -> dict[str, str]:
+    """The reason by each name of the captures whose marker scaling saw too rarely to place it."""
+    left_out = subject.report["left_out"]
+    assert isinstance(left_out, dict)
+    matches = [protocol.match(one.markers.names) for one in captures]
+    return {
+        name: left_out[marker.name]
+        for match in matches
+        for name, marker in match.items()
+        if marker.name in left_out
+    }

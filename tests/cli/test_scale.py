@@ -1,12 +1,15 @@
 """`mbkf scale` finds the body and the mass of a made person and writes one readable subject file."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mbkf.cli.main import main
+from mbkf.io.c3d_write import write_c3d
 from mbkf.io.subject import read_subject
 from mbkf.model.protocol import load_protocol
-from tests.captures import MASS_KG, snapshot
+from tests.captures import MASS_KG, made_capture, snapshot
 
 pytestmark = pytest.mark.slow
 
@@ -68,3 +71,21 @@ def test_trc_and_c3d_give_the_same_subject(person, tmp_path):
         assert scale("--trial", trial, "--mass", "75", "--out", tmp_path / name) == 0
     a, b = (read_subject(tmp_path / name) for name in ("c3d", "trc"))
     assert list(a.scale_factors.values()) == pytest.approx(list(b.scale_factors.values()), abs=1e-4)
+
+
+def test_ignored_markers_are_shown_and_few_known_ones_are_refused(tmp_path, capsys):
+    whole = made_capture(30, 0.0)
+    for kept, file in ((34, "most.c3d"), (12, "few.c3d")):
+        names = tuple(n if i < kept else f"X{i}" for i, n in enumerate(whole.markers.names))
+        write_c3d(replace(whole, markers=replace(whole.markers, names=names)), tmp_path / file)
+    out = tmp_path / "s.toml"
+    assert scale(tmp_path / "most.c3d", "--out", out) == 0
+    shown = capsys.readouterr()
+    assert "reference36 knows 34 of 36 markers (94 %); 2 ignored: X34, X35" in shown.out
+    assert "warning" not in shown.err
+    out.unlink()
+    assert scale(tmp_path / "few.c3d", "--out", out) == 2
+    assert "knows 12 of 36 markers (33 %)" in capsys.readouterr().err
+    assert not out.exists()
+    assert scale(tmp_path / "few.c3d", "--protocol", "reference36", "--out", out) == 0
+    assert "warning: protocol reference36 knows 12 of 36" in capsys.readouterr().err

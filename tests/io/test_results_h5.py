@@ -14,7 +14,13 @@ from tests.io.reconstructions import made_up, made_up_whole
 
 @pytest.mark.parametrize("frames", [0, 1, 40])
 def test_a_round_trip_keeps_everything_but_the_covariance(tmp_path, frames):
-    r = made_up_whole(frames, file_axes="x,z,y", file_axes_source="body")
+    r = made_up_whole(
+        frames,
+        file_axes="x,z,y",
+        file_axes_source="body",
+        markers_ignored={"X ü": "not known"},
+        markers_explained=0.9,
+    )
     write_h5(r, tmp_path / "motion.h5")
     back = read_h5(tmp_path / "motion.h5")
     assert back.covariance is None
@@ -47,6 +53,14 @@ def test_older_files_have_no_axes(tmp_path):
         del file.attrs["file_axes"], file.attrs["file_axes_source"]
     back = read_h5(tmp_path / "motion.h5")
     assert (back.file_axes, back.file_axes_source) == ("x,y,z", "")
+
+
+def test_older_files_tell_no_ignored_markers(tmp_path):
+    write_h5(made_up(markers_ignored={"X": "not known"}, markers_explained=0.5), tmp_path / "motion.h5")
+    with h5py.File(tmp_path / "motion.h5", "a") as file:
+        del file.attrs["markers_ignored"], file.attrs["markers_explained"]
+    back = read_h5(tmp_path / "motion.h5")
+    assert (back.markers_ignored, back.markers_explained) == ({}, 1.0)
 
 
 def test_a_file_without_a_direction_is_told_in_the_laboratory(tmp_path):

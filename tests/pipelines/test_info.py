@@ -73,6 +73,23 @@ def test_a_capture_in_which_nothing_was_seen():
     assert (empty.frames, empty.duration_s, empty.missing_fraction) == (0, 0.0, 0.0)
 
 
+def test_the_protocol_is_told_with_how_much_it_knows():
+    made = made_capture(4)
+    assert describe(capture()).protocol is None
+    whole = describe(made).protocol
+    assert (whole.name, whole.known, whole.markers, whole.share, whole.accepted) == (
+        "reference36",
+        36,
+        36,
+        1.0,
+        True,
+    )
+    names = tuple(name if i < 10 else f"X{i}" for i, name in enumerate(made.markers.names))
+    few = describe(replace(made, markers=replace(made.markers, names=names))).protocol
+    assert (few.known, few.markers, few.accepted) == (10, 36, False)
+    assert set(few.ignored) == set(names[10:])
+
+
 def test_axes_are_told_with_what_the_body_says():
     right = made_capture(10, plates=(), axes_source=AxesSource.DEFAULT)
     assert describe(right).axes == AxesSummary("x,y,z", "default", "right", "x,y,z", "")

@@ -287,3 +287,20 @@ def test_progress_names_its_stage(made):
         capture_of(made.names, made.positions[:10]), made.subject, progress=lambda *step: told.append(step)
     )
     assert told[-1] == ("Filtering", 10, 10)
+
+
+def test_ignored_markers_are_told_and_change_nothing(made):
+    short = made.positions[:10]
+    points = np.concatenate([short, np.ones((10, 2, 3))], axis=1)
+    plain = reconstruct(capture_of(made.names, short), made.subject)
+    found = reconstruct(capture_of((*made.names, "X", "*7"), points), made.subject)
+    assert_near(found.q, plain.q, 0.0)
+    assert (plain.markers_ignored, plain.markers_explained) == ({}, 1.0)
+    assert list(found.markers_ignored) == ["X"]
+    assert found.markers_explained == pytest.approx(1.0 - 1.0 / (len(made.names) + 1))
+    assert found.warnings == plain.warnings
+    many = len(made.names)
+    points = np.concatenate([short, np.ones((10, many, 3))], axis=1)
+    few = reconstruct(capture_of((*made.names, *(f"X{i}" for i in range(many))), points), made.subject)
+    assert any(f"knows {many} of {2 * many} markers (50 %)" in text for text in few.warnings)
+    assert len(few.warnings) == len(plain.warnings) + 1

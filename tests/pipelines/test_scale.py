@@ -1,10 +1,13 @@
 """From captures to a subject: what is taken from the captures when it is not said."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.model.protocol import load_protocol
+from mbkf.pipelines.coverage import USE_KEY
 from mbkf.pipelines.scale import scale
 from tests.motions import capture_of, marker_positions, moderate_pose, protocol_sensor, random_model
 
@@ -69,3 +72,42 @@ def test_progress_names_its_stage():
     told = []
     scale(made(2), mass_kg=70.0, progress=lambda *step: told.append(step))
     assert told[0][:2] == ("Scaling", 1)
+
+
+def renamed(capture, kept):
+    """The capture with other names for all but the first markers."""
+    names = tuple(n if i < kept else f"X{i}" for i, n in enumerate(capture.markers.names))
+    return replace(capture, markers=replace(capture.markers, names=names))
+
+
+def test_a_protocol_that_knows_few_markers_is_used_only_when_it_is_named():
+    few = renamed(made(4, standing=True), 17)
+    with pytest.raises(
+        InvalidInput, match=r"reference36 knows 17 of 36 markers \(47 %\), not X17, .*--protocol"
+    ):
+        scale(few, mass_kg=70.0)
+    use = scale(few, mass_kg=70.0, protocol="reference36").report[USE_KEY]
+    assert (use["used"], use["markers"], set(use["ignored"])) == (17, 36, {f"X{i}" for i in range(17, 36)})
+    assert "17 of 36" in use["warning"]
+
+
+def test_ignored_markers_change_no_number():
+    whole = made(4, standing=True)
+    names = (*whole.markers.names, "X", "*3")
+    places = np.concatenate([whole.markers.positions_m, np.ones((4, 2, 3))], axis=1)
+    more = replace(whole, markers=replace(whole.markers, names=names, positions_m=places))
+    plain, found = scale(whole, mass_kg=70.0), scale(more, mass_kg=70.0)
+    assert found.scale_factors == plain.scale_factors
+    assert list(found.report[USE_KEY]["ignored"]) == ["X"]
+    assert not found.report[USE_KEY]["warning"]
+    assert plain.report[USE_KEY]["share"] == 1.0
+
+
+def test_a_marker_that_is_hardly_seen_is_told():
+    seldom = made(30, standing=True)
+    places = seldom.markers.positions_m.copy()
+    places[1:, 0] = np.nan
+    seldom = replace(seldom, markers=replace(seldom.markers, positions_m=places))
+    use = scale(seldom, mass_kg=70.0).report[USE_KEY]
+    assert use["ignored"] == {seldom.markers.names[0]: "seen in 3 % of the frames"}
+    assert use["share"] == 1.0

@@ -53,6 +53,8 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "rate_hz": float(r.rate_hz),
         "duration_s": r.frames / float(r.rate_hz),
         "markers_used": len(r.marker_names),
+        "markers_ignored": dict(r.markers_ignored),
+        "markers_explained": r.markers_explained,
         "missing_fraction": float(missing.mean()) if missing.size else None,
         "marker_rms_mm": _rms(seen_mm),
         "marker_max_mm": _largest(seen_mm),

@@ -26,14 +26,17 @@ the height of the centre of mass."""
 TRACKED_PERCENT, BAD_TRACKED_PERCENT = 99.9, 95.0
 """Frames in which the body was followed: good above the first, bad below the second."""
 
-BAD_IGNORED_SHARE = 0.25
-"""Where more of a capture's markers than this were ignored, its marker set is not understood."""
+LEAST_EXPLAINED = 0.6
+"""Where the protocol knows a smaller share of the capture's markers, its marker set is not understood."""
 
 CENTRE_OF_MASS_SHARE = 0.55
 """Height of a standing person's centre of mass over body height."""
 
 NIS_RANGE = (0.4, 1.6)
 """Normalised innovation squared per reading: 1 where the stated noise is right."""
+
+MOST_NAMED = 8
+"""Ignored markers that are named, of each reason."""
 
 MANY = 6
 """More remarks than this are set in two columns."""
@@ -113,11 +116,15 @@ def _ignored(summary: JsonTable) -> list[Verdict]:
     ignored = summary.get("markers_ignored")
     if not ignored:
         return []
-    of_all = len(ignored) + (summary.get("markers_used") or 0)
-    kind = BAD if len(ignored) > BAD_IGNORED_SHARE * of_all else CARE
-    return [
-        Verdict("Markers ignored", str(len(ignored)), kind, f"of {of_all}: {', '.join(list(ignored)[:8])}")
-    ]
+    explained = summary.get("markers_explained", 1.0)
+    kind = BAD if explained < LEAST_EXPLAINED else CARE if explained < 1.0 else NONE
+    told = []
+    for reason in dict.fromkeys(ignored.values()):
+        names = [name for name in ignored if ignored[name] == reason]
+        more = " …" if len(names) > MOST_NAMED else ""
+        told.append(f"{', '.join(names[:MOST_NAMED])}{more} ({reason})")
+    remark = f"the protocol knows {100 * explained:.0f} % of the capture's; ignored: {'; '.join(told)}"
+    return [Verdict("Markers ignored", str(len(ignored)), kind, remark)]
 
 
 def _doubted(verdict: Verdict) -> Verdict:

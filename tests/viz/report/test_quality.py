@@ -68,10 +68,12 @@ def test_untracked_frames_turn_the_tick(lost, kind):
     assert (found["Marker error"].kind == GOOD) == (kind != BAD)
 
 
-@pytest.mark.parametrize(("ignored", "kind"), [(1, CARE), (60, BAD)])
-def test_ignored_markers_are_shown_where_there_are_any(ignored, kind):
-    names = {f"X{i}": "not in the protocol" for i in range(ignored)}
-    assert judged(walk(), markers_ignored=names)["Markers ignored"].kind == kind
+@pytest.mark.parametrize(("explained", "kind"), [(1.0, NONE), (0.97, CARE), (0.6, CARE), (0.59, BAD)])
+def test_ignored_markers_are_shown_where_there_are_any(explained, kind):
+    names = {"X": "not known", "Y": "computed", "Z": "not known"}
+    found = judged(walk(), markers_ignored=names, markers_explained=explained)["Markers ignored"]
+    assert (found.kind, found.value) == (kind, "3")
+    assert "X, Z (not known); Y (computed)" in found.remark
     assert "Markers ignored" not in judged(walk(), markers_ignored={})
     assert "Markers ignored" not in judged(walk())
 

@@ -1,0 +1,189 @@
+"""How much of a capture its marker protocol explains: which markers are used, which are ignored, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from mbkf.errors import InvalidInput
+from mbkf.io.records import MarkerTrajectories
+from mbkf.io.subject import Named, Subject, match_names
+from mbkf.model.protocol import Protocol, load_protocol, protocol_names
+
+LEAST_SHARE = 0.6
+"""A protocol that knows a smaller share of a capture's markers is probably not theirs, and never used in silence."""
+
+COMPLETE_SHARE = 0.9
+"""From this share of a protocol's markers on the segments that it reaches, the root among them, its set is complete:
+what else the person wears is worn besides it, as the clusters of the CGM 2 beside Plug-in Gait's markers."""
+
+LEAST_SHARE_COMPLETE = 0.5
+"""A complete set is taken unasked, with a warning, from this share of the markers on: others are not the most."""
+
+MOST_NAMED = 8
+"""Names that a line lists at most."""
+
+USE_KEY = "marker_use"
+"""Key of a subject's report under which the markers of its captures are told."""
+
+UNKNOWN = "the protocol does not know it"
+COMPUTED = "a computed point, read for scaling only"
+NO_SEGMENT = "the body lacks its segment"
+TWICE = "another name of a marker that is there under its own"
+
+
+@dataclass(frozen=True)
+class MarkerUse:
+    """What became of a capture's markers: of those that have a name of their own and were seen.
+
+    Attributes:
+        protocol: Name of the protocol.
+        used: Names in the capture that are followed or scaled from.
+        ignored: The reason by each other name.
+        complete: Whether the protocol's own set is there wherever it has any marker.
+    """
+
+    protocol: str
+    used: tuple[str, ...]
+    ignored: Mapping[str, str] = field(default_factory=dict)
+    complete: bool = False
+
+    @property
+    def markers(self) -> int:
+        """Number of markers that have a name and were seen."""
+        return len(self.used) + len(self.ignored)
+
+    @property
+    def unknown(self) -> tuple[str, ...]:
+        """Names that the protocol does not know."""
+        return tuple(name for name, reason in self.ignored.items() if reason == UNKNOWN)
+
+    @property
+    def share(self) -> float:
+        """Share of the markers that the protocol knows, used or not, 0 to 1; 1 where there are no markers."""
+        return 1.0 - len(self.unknown) / self.markers if self.markers else 1.0
+
+    @property
+    def accepted(self) -> bool:
+        """Whether it may be used without being asked for: it knows enough of the markers, or is there as a whole."""
+        return self.share >= (LEAST_SHARE_COMPLETE if self.complete else LEAST_SHARE)
+
+    @property
+    def told(self) -> str:
+        """How much the protocol knows, in words."""
+        known = self.markers - len(self.unknown)
+        return f"{self.protocol} knows {known} of {self.markers} markers ({100 * self.share:.0f} %)"
+
+    @property
+    def warning(self) -> str:
+        """A line about a protocol that knows too few of the markers, "" where it knows enough."""
+        if self.share >= LEAST_SHARE:
+            return ""
+        return f"protocol {self.told}; ignored are {listed(self.unknown)}"
+
+    def without(self, reasons: Mapping[str, str]) -> MarkerUse:
+        """The same with further markers that are not used after all.
+
+        Args:
+            reasons: The reason by name in the capture.
+        """
+        used = tuple(name for name in self.used if name not in reasons)
+        further = {name: reason for name, reason in reasons.items() if name in self.used}
+        return MarkerUse(self.protocol, used, {**self.ignored, **further}, self.complete)
+
+    def as_report(self) -> dict[str, object]:
+        """Plain data for a subject's report."""
+        return {
+            "markers": self.markers,
+            "used": len(self.used),
+            "share": round(self.share, 4),
+            "told": self.told,
+            "warning": self.warning,
+            "ignored": dict(self.ignored),
+        }
+
+
+def listed(names: Collection[str]) -> str:
+    """The first names of a list, and how many there are in all where it is longer."""
+    first = ", ".join(tuple(names)[:MOST_NAMED])
+    return f"{first} … ({len(names)} in all)" if len(names) > MOST_NAMED else first
+
+
+def use_by_protocol(captures: Sequence[MarkerTrajectories], protocol: Protocol) -> MarkerUse:
+    """What a protocol makes of the markers of a person's captures, each name counted once.
+
+    Args:
+        captures: Markers of the captures.
+        protocol: The protocol.
+    """
+    matches = [protocol.match(one.names) for one in captures]
+    names = dict.fromkeys(name for one in captures for name in _seen(one))
+    used = tuple(name for name in names if any(name in match for match in matches))
+    there = {match[name].name for match in matches for name in used if name in match}
+    reached = {marker.segment for marker in protocol.markers if marker.name in there}
+    own = [m for m in protocol.markers if m.kind != "computed" and m.segment in reached]
+    roots = {segment.name for segment in protocol.body.segments if segment.parent == "world"}
+    complete = roots <= reached and sum(m.name in there for m in own) >= COMPLETE_SHARE * len(own)
+    return MarkerUse(
+        protocol.name, used, _ignored(names, used, protocol.markers, protocol.name), bool(own) and complete
+    )
+
+
+def use_by_subject(markers: MarkerTrajectories, subject: Subject) -> MarkerUse:
+    """What a scaled person's markers are in a trial.
+
+    Args:
+        markers: The trial's.
+        subject: The person.
+    """
+    match = match_names(markers.names, subject.markers)
+    names = _seen(markers)
+    used = tuple(name for name in names if name in match)
+    return MarkerUse(subject.protocol, used, _ignored(names, used, subject.markers, subject.protocol))
+
+
+def require_coverage(use: MarkerUse) -> None:
+    """Refuses a protocol that was found by the names, knows few of them, and is not there as a complete set.
+
+    Raises:
+        InvalidInput: It is such a one.
+    """
+    if not use.accepted:
+        raise InvalidInput(
+            f"no protocol fits these markers: the nearest, {use.told}, not {listed(use.unknown)}; "
+            f"--protocol {use.protocol} takes it all the same, --protocol FILE.toml a marker set of your own"
+        )
+
+
+def _seen(markers: MarkerTrajectories) -> tuple[str, ...]:
+    """Names of the markers that have one of their own and are seen in any frame."""
+    return tuple(
+        name
+        for i, name in enumerate(markers.names)
+        if markers.present[:, i].any() and not name.startswith("*")
+    )
+
+
+def _ignored(
+    names: Iterable[str], used: Collection[str], own: Sequence[Named], protocol: str
+) -> dict[str, str]:
+    """The reason of every name that is not used.
+
+    Args:
+        names: Names in the capture.
+        used: Those that are used.
+        own: The markers that are looked for.
+        protocol: The protocol's name; a shipped one also tells markers that are not looked for on this body.
+    """
+    others = {name for marker in own for name in (marker.name, *marker.aliases)}
+    rest = [name for name in names if name not in used]
+    whole = load_protocol(protocol).match(rest) if protocol in protocol_names() else {}
+    reasons = {}
+    for name in rest:
+        if name in others:
+            reasons[name] = TWICE
+        elif name in whole:
+            reasons[name] = COMPUTED if whole[name].kind == "computed" else NO_SEGMENT
+        else:
+            reasons[name] = UNKNOWN
+    return reasons

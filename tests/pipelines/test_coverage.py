@@ -1,0 +1,136 @@
+"""Which markers of a capture are used: counts and reasons of made sets, and where a protocol is refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mbkf.errors import InvalidInput
+from mbkf.io.records import MarkerTrajectories
+from mbkf.io.subject import Subject, SubjectMarker
+from mbkf.model.body_file import load_body
+from mbkf.model.protocol import load_protocol
+from mbkf.pipelines.coverage import (
+    COMPUTED,
+    NO_SEGMENT,
+    TWICE,
+    UNKNOWN,
+    MarkerUse,
+    listed,
+    require_coverage,
+    use_by_protocol,
+    use_by_subject,
+)
+from tests.pipelines.test_own_body import FILE
+
+PLUG_IN_GAIT = load_protocol("plug_in_gait")
+LEGS = ("pelvis", "thigh", "shank", "foot")
+
+
+def markers(names, unseen=()):
+    positions = np.zeros((3, len(names), 3))
+    positions[:, [name in unseen for name in names]] = np.nan
+    return MarkerTrajectories(tuple(names), positions, 100.0)
+
+
+def names_of(protocol, words=("",)):
+    return [
+        m.name for m in protocol.markers if m.kind != "computed" and any(word in m.segment for word in words)
+    ]
+
+
+def strangers(count):
+    return [f"X{i}" for i in range(count)]
+
+
+def test_points_without_name_and_empty_columns_do_not_count():
+    names = [*names_of(PLUG_IN_GAIT), "X", "Y", "*40", "*41"]
+    use = use_by_protocol([markers(names, unseen=("Y", "LASI"))], PLUG_IN_GAIT)
+    assert use.ignored == {"X": UNKNOWN}
+    assert "LASI" not in use.used
+    assert use.markers == len(names) - 4
+    assert use.share == pytest.approx(1.0 - 1.0 / use.markers)
+
+
+def test_a_name_in_several_captures_counts_once():
+    static, trial = markers([*names_of(PLUG_IN_GAIT), "X"]), markers(["LASI", "X", "Y"])
+    use = use_by_protocol([static, trial], PLUG_IN_GAIT)
+    assert (use.markers, use.unknown) == (len(names_of(PLUG_IN_GAIT)) + 2, ("X", "Y"))
+
+
+@pytest.mark.parametrize(
+    ("known", "unknown", "accepted"),
+    [(6, 4, True), (59, 41, False), (7, 44, False), (0, 1, False), (0, 0, True)],
+)
+def test_the_bound_is_sixty_percent(known, unknown, accepted):
+    use = MarkerUse("p", tuple(f"K{i}" for i in range(known)), dict.fromkeys(strangers(unknown), UNKNOWN))
+    assert use.accepted == accepted
+    assert bool(use.warning) != accepted
+    if accepted:
+        require_coverage(use)
+    else:
+        with pytest.raises(InvalidInput, match=rf"p knows {known} of {known + unknown} .*X0.*--protocol p"):
+            require_coverage(use)
+
+
+def test_a_complete_set_beside_clusters_is_taken_with_a_warning():
+    legs = names_of(PLUG_IN_GAIT, LEGS)
+    use = use_by_protocol([markers([*legs, *strangers(len(legs) - 1)])], PLUG_IN_GAIT)
+    assert use.complete
+    assert use.accepted
+    assert "knows" in use.warning
+    more = use_by_protocol([markers([*legs, *strangers(len(legs) + 1)])], PLUG_IN_GAIT)
+    assert more.complete
+    assert not more.accepted
+
+
+def test_a_set_with_gaps_or_without_the_pelvis_is_not_complete():
+    legs = names_of(PLUG_IN_GAIT, LEGS)
+    gaps = [name for name in legs if name not in ("RTHI", "LTHI", "RTIB")]
+    assert not use_by_protocol([markers(gaps)], PLUG_IN_GAIT).complete
+    assert not use_by_protocol([markers(names_of(PLUG_IN_GAIT, LEGS[1:]))], PLUG_IN_GAIT).complete
+
+
+def test_markers_of_segments_that_the_body_lacks_are_explained():
+    protocol = load_protocol("reference36", load_body(FILE))
+    use = use_by_protocol([markers(names_of(load_protocol("reference36")))], protocol)
+    assert use.share == 1.0
+    assert set(use.ignored.values()) == {NO_SEGMENT}
+    assert len(use.used) + len(use.ignored) == 36
+
+
+def test_a_second_name_of_a_marker_is_told():
+    protocol = load_protocol("helen_hayes")
+    marker = next(m for m in protocol.markers if m.aliases)
+    use = use_by_protocol([markers([marker.aliases[0], marker.name])], protocol)
+    assert (use.used, use.ignored) == ((marker.name,), {marker.aliases[0]: TWICE})
+
+
+def test_a_trial_of_a_person_tells_computed_points_and_strangers():
+    protocol = load_protocol("rajagopal_run")
+    computed = next(m.name for m in protocol.markers if m.kind == "computed")
+    own = names_of(protocol)
+    person = Subject(
+        "human18",
+        70.0,
+        {},
+        tuple(SubjectMarker(n, "pelvis", np.zeros(3), 0.005, 0.005) for n in own),
+        protocol.name,
+    )
+    use = use_by_subject(markers([*own, computed, "X", "*9"]), person)
+    assert use.used == tuple(own)
+    assert use.ignored == {computed: COMPUTED, "X": UNKNOWN}
+    assert use.share == pytest.approx(1.0 - 1.0 / (len(own) + 2))
+    foreign = use_by_subject(markers([*own, computed]), replace(person, protocol="my own"))
+    assert foreign.ignored == {computed: UNKNOWN}
+
+
+def test_markers_that_are_not_used_after_all_stay_explained():
+    use = MarkerUse("p", ("A", "B"), {"X": UNKNOWN}).without({"A": "seen in 2 % of the frames", "C": "?"})
+    assert (use.used, dict(use.ignored)) == (("B",), {"X": UNKNOWN, "A": "seen in 2 % of the frames"})
+    assert use.share == pytest.approx(2 / 3)
+
+
+def test_long_lists_are_cut_with_their_length():
+    assert listed(["A", "B"]) == "A, B"
+    assert listed(strangers(9)).endswith("X7 … (9 in all)")
