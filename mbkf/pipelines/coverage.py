@@ -139,7 +139,16 @@ def use_by_subject(markers: MarkerTrajectories, subject: Subject) -> MarkerUse:
     match = match_names(markers.names, subject.markers)
     names = _seen(markers)
     used = tuple(name for name in names if name in match)
-    return MarkerUse(subject.protocol, used, _ignored(names, used, subject.markers, subject.protocol))
+    reasons = _ignored(names, used, subject.markers, subject.protocol)
+    reasons.update({name: COMPUTED for name in reasons if name in _computed(subject)})
+    return MarkerUse(subject.protocol, used, reasons)
+
+
+def _computed(subject: Subject) -> set[str]:
+    """Computed points that the person was scaled from, also those of a protocol that is not shipped."""
+    scaled = subject.report.get("markers")
+    entries = scaled.items() if isinstance(scaled, dict) else ()
+    return {name for name, entry in entries if entry["kind"] == "computed"}
 
 
 def require_coverage(use: MarkerUse) -> None:

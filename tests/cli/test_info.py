@@ -2,6 +2,7 @@
 
 import argparse
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from mbkf.io.c3d import write_c3d
 from mbkf.io.forces import write_forces_mot
 from mbkf.io.records import Capture, CaptureEvent, MarkerTrajectories, PlateReadings
 from mbkf.io.trc import write_trc
+from tests.captures import made_capture
 
 
 @pytest.fixture
@@ -47,6 +49,24 @@ def test_tables_name_what_there_is(folder, capsys):
     for text in ("walk.c3d", "20 at 100 Hz", "5 labelled, 3 unlabelled", "1.88 % of samples missing", "650 N",
                  "50 %", "[x]", "Foot Strike", "66 kg", "15.0 %", "z up, mm"):  # fmt: skip
         assert text in shown, text
+
+
+def test_the_protocol_stands_in_table_and_json(tmp_path, capsys):
+    whole = made_capture(5, 0.0)
+    for kept, told in (
+        (30, "knows 30 of 36 markers (83 %); ignored: X30, X31"),
+        (12, "scaling needs --protocol"),
+    ):
+        names = tuple(n if i < kept else f"X{i}" for i, n in enumerate(whole.markers.names))
+        path = tmp_path / f"{kept}.c3d"
+        write_c3d(replace(whole, markers=replace(whole.markers, names=names)), path)
+        assert run(path) == 0
+        assert told in " ".join(capsys.readouterr().out.split())
+        assert run(path, "--json") == 0
+        found = json.loads(capsys.readouterr().out)["protocol"]
+        assert (found["name"], found["known"], found["markers"]) == ("reference36", kept, 36)
+        assert found["accepted"] == (kept == 30)
+        assert set(found["ignored"]) == set(names[kept:])
 
 
 def test_json_holds_the_same(folder, capsys):

@@ -123,6 +123,9 @@ def test_a_trial_of_a_person_tells_computed_points_and_strangers():
     assert use.share == pytest.approx(1.0 - 1.0 / (len(own) + 2))
     foreign = use_by_subject(markers([*own, computed]), replace(person, protocol="my own"))
     assert foreign.ignored == {computed: UNKNOWN}
+    report = {"markers": {computed: {"kind": "computed"}, own[0]: {"kind": "technical"}}}
+    scaled = replace(person, protocol="my own", report=report)
+    assert use_by_subject(markers([*own, computed]), scaled).ignored == {computed: COMPUTED}
 
 
 def test_markers_that_are_not_used_after_all_stay_explained():
