@@ -168,6 +168,8 @@ def print_summary(summary: Summary, folder: Path) -> None:
     from rich.console import Console
     from rich.table import Table
 
+    from mbkf.pipelines.coverage import listed
+
     console = Console(highlight=False, markup=False)
     table = Table(
         title=f"{summary['trial']} ({summary['filter']} filter)", title_justify="left", show_header=False
@@ -196,6 +198,8 @@ def print_summary(summary: Summary, folder: Path) -> None:
             "" if summary["realtime_factor"] is None else f"{summary['realtime_factor']:.1f}",
         ),
     ]
+    if summary["markers_ignored"]:
+        rows.insert(2, ("markers ignored", listed(summary["markers_ignored"])))
     if summary["hidden_marker_rms_mm"] is not None:
         rows.append(
             (

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,10 +10,12 @@ import pytest
 from mbkf.cli.main import main
 from mbkf.cli.reconstruct import parse_hide
 from mbkf.io.c3d import read_c3d
+from mbkf.io.c3d_write import write_c3d
 from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.storage import read_storage
 from mbkf.io.trc import read_trc
 from mbkf.pipelines.reconstruct import Hidden
+from tests.captures import made_capture
 
 pytestmark = pytest.mark.slow
 
@@ -191,3 +194,13 @@ def test_kept_markers_are_those_of_the_subject(person, reconstruct):
 def test_hide_is_read():
     assert parse_hide("RASI, LASI@0.5:1e0") == Hidden(("RASI", "LASI"), 0.5, 1.0)
     assert math.isclose(parse_hide("A@-1:2").from_s, -1.0)
+
+
+def test_ignored_markers_stand_in_summary_and_table(reconstruct, tmp_path, capsys):
+    made = made_capture(20)
+    names = tuple(n if i < 30 else f"X{i}" for i, n in enumerate(made.markers.names))
+    write_c3d(replace(made, markers=replace(made.markers, names=names)), tmp_path / "mixed.c3d")
+    summary = json.loads((reconstruct(tmp_path / "mixed.c3d") / "summary.json").read_text())
+    assert list(summary["markers_ignored"]) == [f"X{i}" for i in range(30, 36)]
+    assert (summary["markers_used"], summary["markers_explained"]) == (30, pytest.approx(30 / 36))
+    assert "X30, X31, X32, X33, X34, X35" in " ".join(capsys.readouterr().out.split())
