@@ -122,7 +122,7 @@ def _reactions(followed: Followed) -> Figure:
         _shaded(one, truth.times_s, ~followed.runs[FCDI].valid)
         for name, run in followed.runs.items():
             one.plot(run.times_s, run.foot_wrench[:, foot, 2], color=COLOURS[name], lw=0.9, label=name)
-        one.plot(truth.times_s, truth.foot_wrench[:, foot, 2], color=TRUTH, lw=1.0, label="truth")
+        one.plot(truth.times_s, truth.foot_wrench[:, foot, 2], color=TRUTH, lw=2.0, label="truth", zorder=1)
         labelled(one, "time (s)" if one is made[-1] else "", f"{SIDE_NAMES[side]} foot (N)")
     legend(made[0])
     return figure
@@ -185,7 +185,7 @@ def _curves(one: Axes, followed: Followed, curve: str, coordinate: str, factor: 
         own = run.coordinate_names.index(coordinate)
         one.plot(times, factor * getattr(run, curve)[:, own], color=COLOURS[name], lw=0.9, label=name)
     true = factor * truth[:, column]
-    one.plot(times, true, color=TRUTH, lw=1.0, label="truth")
+    one.plot(times, true, color=TRUTH, lw=2.0, label="truth", zorder=1)
     spread = np.ptp(true)
     one.set_ylim(true.min() - 0.6 * spread, true.max() + 0.6 * spread)
 
