@@ -68,8 +68,8 @@ def _texts(found: Survey) -> Texts:
         "thesis describes; and ours, with mbkf's noise and force states.",
         trials=(str(trial_count(found, FCDI)), "synthetic trials per filter"),
         command="python -m benchmarks full_body",
-        bands="What mbkf's filters have to keep. Splines and rigid-body filling know where a marker is after its gap; the "
-        "dynamic filter, frame by frame, does not, and is compared with them all the same.",
+        bands="What mbkf's filters have to keep. Splines and rigid-body filling know where a marker is after its gap; "
+        "the dynamic filter, frame by frame, does not, and is compared with them all the same.",
         claims="The thesis's statements on whole bodies, and what was measured",
         figures="Truth black, FCDI blue, FDMC per frame violet, FDMC ours green, dynamic orange.",
         remark="The synthetic persons are the filters' own body, so errors of the body itself are left out, but for "

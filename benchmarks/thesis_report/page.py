@@ -106,7 +106,7 @@ class Report:
             f"<h2 id='figures'>Figures</h2><p class='soft'>{_rich(texts.figures)}</p><div class='figures'>",
             *(_picture(drawing, svg) for drawing, svg in pictures),
             "</div><h2 id='tables'>Tables</h2>",
-            *(_sheet(sheet) for sheet in self.sheets),
+            *(_sheet(sheet) for sheet in self.sheets if sheet.rows),
             "</body></html>\n",
         ]
         return "\n".join(parts)

@@ -43,14 +43,16 @@ def test_the_page_stands_alone(tmp_path):
     sheet = Sheet(
         "t", "Title <1>", ("row", "x", "x ±", "x, thesis"), (("a", 1.25, 0.5, 2.0), ("b", np.inf, 0.1, 3.0))
     )
+    empty = Sheet("e", "Not measured in a quick run", ("row", "x"), ())
     claims = [Claim("3.3", "τ_1 & more", "5 < 6", "partly")]
     bands = [Band("row", "kept", 1.0, 0.0, 2.0), Band("row", "broken", 3.0, 0.0, 2.0)]
-    Report(TEXTS, False, bands, claims, [sheet], [Drawing("3.7", "Noise", figure)]).write(tmp_path)
+    Report(TEXTS, False, bands, claims, [sheet, empty], [Drawing("3.7", "Noise", figure)]).write(tmp_path)
     text = (tmp_path / "index.html").read_text()
     assert "<h1>Study &lt;a&gt;</h1>" in text
     assert "1 of 2" in text
     assert "FAIL" in text
     assert "Title &lt;1&gt;" in text
+    assert "Not measured" not in text
     assert "τ<sub>1</sub> &amp; more" in text
     assert "1.250 ± 0.5" in text
     assert not re.search(r"(src|href)=.https?:", text)
