@@ -14,12 +14,13 @@ from the bend.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks.checks import Check, information
+from benchmarks.dynamic.captures import SOURCES
 from benchmarks.references import Curve, agreement, rms
 from mbkf.conventions import Array
 from mbkf.errors import UnknownName
@@ -52,20 +53,8 @@ SIGNS = {"pelvis_tilt": -1.0, "pelvis_list": 1.0, "pelvis_rotation": -1.0}
 PLUG_IN_GAIT_PELVIS = "LPelvisAngles"
 
 
-@dataclass(frozen=True)
-class Walk:
-    """A straight walk with its standing trial, below the data folder."""
-
-    name: str
-    static: str
-    trial: str
-    mass_kg: float
-
-
-WALKS = (
-    Walk("HC032A", "HC032A_Static_HC032A01.c3d", "HC032A_Straight_HC032A03.c3d", 60.3),
-    Walk("HC044A", "HC044A_Static_HC044A01.c3d", "HC044A_Straight_HC044A15.c3d", 39.4),
-)
+WALKS = ("biomechzoo HC032A", "biomechzoo HC044A")
+"""Straight walks with a standing trial, by their names among the dynamic benchmark's captures."""
 
 
 def direction_rows(data: Path) -> list[Check]:
@@ -74,24 +63,25 @@ def direction_rows(data: Path) -> list[Check]:
     Args:
         data: Folder of the public reference captures.
     """
-    return [row for walk in WALKS for row in _walk_rows(data / "biomechzoo_walk_turn", walk)]
+    return [row for name in WALKS for row in _walk_rows(name, data)]
 
 
-def _walk_rows(folder: Path, walk: Walk) -> Iterator[Check]:
-    static, trial = read_capture(folder / walk.static), read_capture(folder / walk.trial)
-    subject = scale(static, mass_kg=walk.mass_kg)
+def _walk_rows(name: str, data: Path) -> Iterator[Check]:
+    source = SOURCES[name]
+    static, trial = (read_capture(data / source.folder / str(file)) for file in (source.static, source.trial))
+    subject = scale(static, mass_kg=source.mass_kg)
     found = reconstruct(trial, subject)
     theirs = plug_in_gait_pelvis(trial)
     written = np.column_stack([sign * np.rad2deg(found.angle(name)) for name, sign in SIGNS.items()])
-    yield from against(f"{walk.name} as written", found.times_s, written, theirs)
+    yield from against(f"{name} as written", found.times_s, written, theirs)
     own = np.rad2deg(in_marker_plane(found))
-    yield from against(f"{walk.name} in Plug-in Gait's plane", found.times_s, own, theirs)
-    yield from _bent_rows(walk.name, found)
+    yield from against(f"{name} in Plug-in Gait's plane", found.times_s, own, theirs)
+    yield from _bent_rows(name, found)
     for angle in TURNS_DEG:
         again = turned(trial, angle)
-        yield _same(f"{walk.name} turned by {angle:g}°", found, again, subject)
-        anew = scale(turned(static, angle), mass_kg=walk.mass_kg)
-        yield _same(f"{walk.name} turned by {angle:g}° and scaled anew", found, again, anew)
+        yield _same(f"{name} turned by {angle:g}°", found, again, subject)
+        anew = scale(turned(static, angle), mass_kg=source.mass_kg)
+        yield _same(f"{name} turned by {angle:g}° and scaled anew", found, again, anew)
 
 
 def _same(name: str, found: Reconstruction, capture: Capture, subject: Subject) -> Check:

@@ -20,7 +20,7 @@ from benchmarks.full_body.single_markers import (
     single_marker_drawing,
     single_marker_findings,
 )
-from benchmarks.full_body.speed import measure_speed, speed_drawing, speed_findings
+from benchmarks.full_body.speed import measure_speed, real_time_factors, speed_drawing, speed_findings
 from benchmarks.full_body.survey import Survey, keys, survey
 from benchmarks.full_body.trials import JUMP
 from benchmarks.thesis_report.page import Report, Texts
@@ -54,7 +54,8 @@ def run(context: Context) -> list[Check]:
         speed_drawing(speed),
     ]
     Report(_texts(found), quick, bands, claims, sheets, pictures).write(context.out)
-    return [*(check for band in bands for check in band.checks(quick)), *lost_by_fdmc(found)]
+    kept = [check for band in bands for check in band.checks(quick)]
+    return [*kept, *lost_by_fdmc(found), *real_time_factors(speed)]
 
 
 def _texts(found: Survey) -> Texts:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -77,9 +77,6 @@ class Scores:
     def diverged(self) -> bool:
         """Whether the posture is lost."""
         return not self.angle_deg <= DIVERGED_DEG
-
-
-NUMBERS = tuple(item.name for item in fields(Scores))
 
 
 def score(trial: Trial, found: Reconstruction, measured_wrench: Array) -> Scores:

@@ -241,7 +241,7 @@ def single_marker_findings(found: Sensitivities) -> Findings:
             f"worst change of the knee's {word}, dynamic / FCDI",
             found.worst(DYNAMIC, quantity)[1] / found.worst(FCDI, quantity)[1],
             -OPEN,
-            MORE_SENSITIVE,
+            1.0,
         )
         for quantity, word in (("angle_deg", "angle"), ("torque_nm", "torque"))
     ]

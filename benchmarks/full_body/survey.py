@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -173,5 +172,5 @@ def survey(mapper: Mapper, wanted: Sequence[Key]) -> Survey:
         mapper: Runs a function on many items, in turn or on several processes.
         wanted: Movements, persons and seeds.
     """
-    found = mapper(partial(measure), wanted)
+    found = mapper(measure, wanted)
     return Survey([outcome for part in found for outcome in part])

@@ -95,16 +95,15 @@ def make_trials(movement: str, person: int, seed: int) -> list[Trial]:
 
 def _performed(movement: str, given: Subject, seed: int) -> tuple[Capture, Truth]:
     motion, seconds = SYNTHESISED[movement]
-    for attempt in range(ATTEMPTS):
-        own = seed + attempt * NEXT_SEED
+    for own in range(seed, seed + ATTEMPTS * NEXT_SEED, NEXT_SEED):
         try:
             _, made = synthesise(motion, seconds=seconds, seed=own, subject=given, settings=CaptureSettings())
         except NotConverged:
-            if attempt + 1 == ATTEMPTS:
-                raise
             continue
         return tared(made.trial), made.truth
-    raise AssertionError("the loop above returns or raises")
+    raise NotConverged(
+        f"{movement}: a person of {given.mass_kg:g} kg cannot perform it with {ATTEMPTS} seeds"
+    )
 
 
 def knee_bend(subject: Subject, q: Array) -> Array:

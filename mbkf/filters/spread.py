@@ -22,12 +22,10 @@ class SpreadReader:
     Attributes:
         model: The body.
         clinical: Its clinical coordinates, A of them.
-        root_turns: Where the root's rotation stands in the tangent space.
     """
 
     def __init__(self, model: Body) -> None:
         self.model, self.clinical = model, ClinicalAngles(model)
-        self.root_turns = slice(model.root.v.start + 3, model.root.v.stop)
         self._feet = [model.joint(segment).joint_id for segment in model.roles.feet]
 
     def torque(self, q: Array, step_covariance: Array, dt_s: float) -> Array:
@@ -101,7 +99,7 @@ class Spread:
     @property
     def root_covariance(self) -> Array:
         """(3, 3) covariance of the root's orientation in its own axes, rad²."""
-        turns = self.reader.root_turns
+        turns = self.reader.clinical.root_turns
         return self._position[turns, turns]
 
     @property

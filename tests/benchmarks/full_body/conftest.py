@@ -1,11 +1,15 @@
 """Made-up outcomes of the full-body study, and a short squat followed by the kinematic filter."""
 
+from dataclasses import fields
+
 import pytest
 
 from benchmarks.full_body.filters import CAUSAL, FCDI, SMOOTHED
-from benchmarks.full_body.scores import NUMBERS, Scores
+from benchmarks.full_body.scores import Scores
 from benchmarks.full_body.survey import Outcome, Survey
 from benchmarks.full_body.trials import MOVEMENTS, VARIANTS
+
+NUMBERS = tuple(item.name for item in fields(Scores))
 
 
 def scores(**numbers):
