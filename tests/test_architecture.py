@@ -21,7 +21,7 @@ LAYERS = (
     {"io"},
     {"model"},
     {"sensors"},
-    {"scaling", "labelling", "filters", "imu", "synthesis"},
+    {"scaling", "labelling", "marker_sets", "filters", "imu", "synthesis"},
     {"pipelines"},
     {"stream"},
     {"viz"},

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -39,6 +39,9 @@ class ProtocolMarker:
         noise_m: Measurement noise with skin movement, per coordinate (1 sd), m.
         aliases: Other names for the same marker.
         static_only: Whether it is usually taken off after the static trial.
+        landmark: Landmark of the body that it sits on, "" where the position alone is given.
+        probability: That it is on this segment; below 1 where it was inferred.
+        alternatives: Other segments that it may be on, each with its probability, likeliest first.
     """
 
     name: str
@@ -49,6 +52,9 @@ class ProtocolMarker:
     noise_m: float
     aliases: tuple[str, ...] = ()
     static_only: bool = False
+    landmark: str = ""
+    probability: float = 1.0
+    alternatives: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -60,12 +66,16 @@ class Protocol:
         title: The same for people.
         body: The reference body that the markers are placed on.
         markers: The markers in file order.
+        source: Where its definition comes from, "" where the file does not tell.
+        ignored: The reason by name of each point that is to be left out: no part of the body, or placed by nothing.
     """
 
     name: str
     title: str
     body: BodyDescription
     markers: tuple[ProtocolMarker, ...]
+    source: str = ""
+    ignored: Mapping[str, str] = field(default_factory=dict)
 
     def match(self, names: Iterable[str]) -> dict[str, ProtocolMarker]:
         """Which of the given capture names belong to which protocol marker (by name, then alias)."""
@@ -145,6 +155,7 @@ def _parse(path: Path, body: BodyDescription | None = None) -> Protocol:
         for entry in table["marker"]:
             markers += _markers(entry, body, own, path)
         name = table["name"]
+        ignored = {str(one["name"]): str(one.get("reason", "")) for one in table.get("ignored", [])}
     except OSError as error:
         raise FileFormatError(path, f"cannot be read ({error.strerror})") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, KeyError, TypeError, ValueError) as error:
@@ -153,7 +164,9 @@ def _parse(path: Path, body: BodyDescription | None = None) -> Protocol:
     for marker in names:
         if names.count(marker) > 1:
             raise FileFormatError(path, f"marker '{marker}' stands twice")
-    return Protocol(name, table.get("title", name), body, tuple(markers))
+    return Protocol(
+        name, table.get("title", name), body, tuple(markers), str(table.get("source", "")), ignored
+    )
 
 
 def _own_body(table: dict[str, Any], path: Path) -> BodyDescription:
@@ -188,6 +201,7 @@ def _markers(
         name=entry["mirror"],
         segment=other,
         position_m=read_only(one.position_m * [1.0, -1.0, 1.0]),
+        landmark=mirrored(one.landmark) if one.landmark else "",
         aliases=tuple(entry.get("mirror_aliases", ())),
     )
     return [one, mirror]
@@ -206,6 +220,8 @@ def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> Protoco
         "mirror",
         "mirror_aliases",
         "static_only",
+        "probability",
+        "alternatives",
     }
     for key in entry:
         if key not in known:
@@ -237,4 +253,7 @@ def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> Protoco
         noise_m=entry.get("noise_mm", 1e3 * DEFAULT_NOISE_M) / 1e3,
         aliases=tuple(entry.get("aliases", ())),
         static_only=entry.get("static_only", False),
+        landmark=entry.get("landmark", ""),
+        probability=float(entry.get("probability", 1.0)),
+        alternatives=tuple((str(other), float(odds)) for other, odds in entry.get("alternatives", [])),
     )
