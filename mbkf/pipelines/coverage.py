@@ -15,7 +15,7 @@ LEAST_SHARE = 0.6
 
 COMPLETE_SHARE = 0.9
 """From this share of a protocol's markers on the segments that it reaches, the root among them, its set is complete:
-what else the person wears is worn besides it, as the clusters of the CGM 2 beside Plug-in Gait's markers."""
+what else the person wears is worn besides it, as a laboratory's own clusters beside Plug-in Gait's markers."""
 
 LEAST_SHARE_COMPLETE = 0.5
 """A complete set is taken unasked, with a warning, from this share of the markers on: others are not the most."""
