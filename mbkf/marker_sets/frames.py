@@ -58,4 +58,6 @@ def _in_order(trial: MarkerTrajectories, names: Sequence[str]) -> Array:
 def _height(points_m: Array) -> float:
     """How tall and narrow a frame's points stand: legs together and arms at the side are told apart best."""
     z, across = points_m[:, 2], points_m[:, :2]
-    return float(np.nanmax(z) - np.nanmin(z) - 0.3 * (np.nanmax(across, axis=0) - np.nanmin(across, axis=0)).max())
+    return float(
+        np.nanmax(z) - np.nanmin(z) - 0.3 * (np.nanmax(across, axis=0) - np.nanmin(across, axis=0)).max()
+    )

@@ -17,6 +17,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.errors import NotObservable
@@ -30,6 +31,8 @@ from mbkf.marker_sets.posed_cloud import NO_BODY, ROOM_M3
 from mbkf.marker_sets.search import FoundBody, find_body
 from mbkf.model.description import BodyDescription
 from mbkf.model.human import HumanModel
+
+Indices = NDArray[np.intp]
 
 SURE = 0.9
 """From this probability on a marker's segment is not called doubtful."""
@@ -58,6 +61,7 @@ class InferredMarker:
         alternatives: Other segments with their probabilities, likeliest first, from 1 % on.
         landmark: Landmark that it sits on, "" where none is likely.
         position_m: (3,) its place on the reference body, in the segment's frame, m.
+        noise_m: Noise of a marker there, mostly movement of the skin, per coordinate, m.
     """
 
     name: str
@@ -66,6 +70,7 @@ class InferredMarker:
     alternatives: tuple[tuple[str, float], ...]
     landmark: str
     position_m: Array
+    noise_m: float
 
     @property
     def doubtful(self) -> bool:
@@ -208,7 +213,7 @@ class _Evidence:
         )
         return Inference(markers, self.found, seen.rms_m)
 
-    def odds(self, seen: Movement, best: Array) -> tuple[Array, Array]:
+    def odds(self, seen: Movement, best: Indices) -> tuple[Array, Array]:
         """(K, S + 1) probability of every segment, that of no body last, and (K, C) of every component."""
         index = self.places.segment_index
         variance = PLACE_SD_M**2 + self.places.sd_m**2
@@ -245,7 +250,7 @@ class _Evidence:
             (labels[s], round(float(odds[s]), 3)) for s in order[1:] if odds[s] >= 0.01 and labels[s]
         )
         if best == len(self.segments):
-            return InferredMarker(self.names[k], "", float(odds[best]), alternatives, "", np.zeros(3))
+            return InferredMarker(self.names[k], "", float(odds[best]), alternatives, "", np.zeros(3), 0.0)
         own = np.flatnonzero(self.places.segment_index == best)
         likeliest = own[components[own].argmax()]
         landmark = self.places.landmarks[likeliest]
@@ -253,5 +258,11 @@ class _Evidence:
             landmark = ""
         position = means_m[best] / self._sizes[own[0]]
         return InferredMarker(
-            self.names[k], labels[best], float(odds[best]), alternatives, landmark, position
+            self.names[k],
+            labels[best],
+            float(odds[best]),
+            alternatives,
+            landmark,
+            position,
+            float(self.places.noise_m[likeliest]),
         )

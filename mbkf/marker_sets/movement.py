@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.human import HumanModel
@@ -85,13 +86,15 @@ def movement(
     seen = ~np.isnan(places[..., 0]).any(axis=2)
     count = np.maximum(seen.sum(axis=0), 1)
     with np.errstate(invalid="ignore"):
-        mean = np.where(seen.any(axis=0)[:, None, None], np.nansum(places, axis=0) / count[:, None, None], np.nan)
+        mean = np.where(
+            seen.any(axis=0)[:, None, None], np.nansum(places, axis=0) / count[:, None, None], np.nan
+        )
     squared = np.nansum((places - mean) ** 2, axis=(0, 3)) / count[:, None]
     rms = float(np.sqrt(np.nanmean(np.concatenate(squares)))) if squares else np.nan
     return Movement(mean, LOOKS * squared, rms)
 
 
-def unrest_m(seen: Movement, best: Array, segments: int) -> Array:
+def unrest_m(seen: Movement, best: NDArray[np.intp], segments: int) -> Array:
     """(S,) how much the markers of a segment scatter in its own frame, per coordinate: median of those thought its own.
 
     Where it is large, the segment was posed badly, and movement tells little about who belongs to it.

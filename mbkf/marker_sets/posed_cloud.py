@@ -93,7 +93,9 @@ class CloudProblem:
         local = np.einsum("cak,k->ca", self._scale, factors) * self.places.position_m
         return MarkerSensor(model, self.places.segments, local)
 
-    def shares(self, positions_m: Array, width_m: float, points_m: Array | None = None) -> tuple[Array, float]:
+    def shares(
+        self, positions_m: Array, width_m: float, points_m: Array | None = None
+    ) -> tuple[Array, float]:
         """E-step: shares (N, C) of the points in components at positions (C, 3), and the log-likelihood.
 
         Args:

@@ -23,6 +23,9 @@ COARSE_M = (0.12, 0.12, 0.10, 0.10, 0.08, 0.08)
 FINE_M = (0.08, 0.07, 0.06, 0.05, 0.04, 0.035, 0.03, 0.03, 0.025, 0.025)
 """Widths of the fine fit of the best starts."""
 
+THINNEST_M = 0.2
+"""Least side of the box around the points."""
+
 KEPT_EACH, KEPT = 3, 9
 """So many rough fits of every equipment, and in all, are fitted finely."""
 
@@ -36,12 +39,15 @@ class FoundBody:
         equipment: The part of it that carries markers.
         worth: Logarithm of likelihood, priors and the equipment's share.
         rival: The same of the best body that faces another way, −inf where there is none.
+        evidence: How much likelier a point is on this body than anywhere in the box around the points: mean logarithm,
+            names aside.
     """
 
     body: PosedBody
     equipment: Equipment
     worth: float
     rival: float
+    evidence: float
 
 
 def find_body(
@@ -60,7 +66,8 @@ def find_body(
     """
     if len(points_m) < FEWEST_POINTS:
         raise NotObservable(
-            f"a frame shows {len(points_m)} points; fewer than {FEWEST_POINTS} do not show which part of a body they are on"
+            f"a frame shows {len(points_m)} points; fewer than {FEWEST_POINTS} do not show "
+            "which part of a body they are on"
         )
     rough: list[tuple[float, PosedBody, CloudProblem, Equipment]] = []
     for equipment in EQUIPMENTS:
@@ -88,7 +95,20 @@ def find_body(
         for body, _, other in ranked[1:]
         if _apart(problem, best.q, body.q) > math.pi / 4.0
     ]
-    return FoundBody(best, equipment, best.worth + math.log(equipment.share), max(others, default=-math.inf))
+    return FoundBody(
+        best,
+        equipment,
+        best.worth + math.log(equipment.share),
+        max(others, default=-math.inf),
+        _evidence(places, points_m, best, equipment),
+    )
+
+
+def _evidence(places: WornPlaces, points_m: Array, body: PosedBody, equipment: Equipment) -> float:
+    problem = CloudProblem(places, points_m, equipped_weight(places, equipment))
+    _, likelihood = problem.shares(problem.sized(body.factors).positions(body.q), FINE_M[-1])
+    box = float(np.prod(np.maximum(np.ptp(points_m, axis=0), THINNEST_M)))
+    return likelihood / len(points_m) + math.log(box)
 
 
 def weights(places: WornPlaces, equipment: Equipment, named: Array | None) -> Array:

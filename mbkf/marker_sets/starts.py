@@ -62,8 +62,8 @@ def starts(
 
 def _headings(facing: Array | None) -> Array:
     if facing is None:
-        return np.arange(HEADINGS) * (2.0 * np.pi / HEADINGS)
-    return np.arctan2(facing[1], facing[0]) + np.array([0.0])
+        return np.asarray(np.arange(HEADINGS) * (2.0 * np.pi / HEADINGS))
+    return np.array([np.arctan2(facing[1], facing[0])])
 
 
 def _arms(model: HumanModel, neutral: Array, away: float) -> Array:
