@@ -214,6 +214,14 @@ def test_plug_in_gait_with_medial_markers_is_not_taken_for_a_later_model():
     assert detect_protocol([side + name for side in "LR" for name in legs]).name == "plug_in_gait"
 
 
+@pytest.mark.parametrize("name", ["rehazenter52", "optitrack_biomech57", "plug_in_gait", "cgm24", "cast"])
+def test_of_sets_with_the_same_legs_the_complete_one_is_found(name):
+    """ior_gait, cast, rehazenter52 and biomech57 share names, as plug_in_gait and the CGMs: what is lacking tells."""
+    legs = ("pelvis", "thigh", "shank", "foot", "toes")
+    worn = [m.name for m in load_protocol(name).markers if m.segment.endswith(legs) and not m.static_only]
+    assert detect_protocol(worn).name == name
+
+
 @pytest.mark.parametrize("file", CAPTURES)
 def test_detection_on_real_captures(real_data, file):
     names = read_capture(real_data / file).markers.names
