@@ -24,7 +24,9 @@ SURE = 0.95
 SILENT = ("filler",)
 """Modifiers that tell nothing."""
 _LETTERS = "apdulmfbstic"
+_LEADING_LETTERS = "pda"
 _MOST_LETTERS = 2
+_MIDLINE_WITH_SIDE = 0.6
 _NUMBERED = frozenset(("number", "letter"))
 _SHORTEST_PAIR = 7
 _DIGITS = re.compile(r"\d+")
@@ -103,6 +105,8 @@ class Parse:
                 if other is not None:
                     places = other
                     break
+        if sided and group.middle and group.sided is None:
+            places = {place: _MIDLINE_WITH_SIDE * odds for place, odds in places.items()}
         return places, not self.modifiers.difference(SILENT)
 
 
@@ -168,7 +172,8 @@ class Spellings:
         if match := _DIGITS.match(text, at):
             rest = self._covers(text, match.end(), places, letters)
             result += [[(match.group(), _Piece("modifier", "number")), *tail] for tail in rest]
-        if places and letters < _MOST_LETTERS and text[at] in _LETTERS:
+        leading = at == 0 and text[at] in _LEADING_LETTERS
+        if (places or leading) and letters < _MOST_LETTERS and text[at] in _LETTERS:
             rest = self._covers(text, at + 1, places, letters + 1)
             result += [[(text[at], _Piece("letter")), *tail] for tail in rest]
         return result
