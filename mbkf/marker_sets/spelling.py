@@ -28,7 +28,7 @@ _LEADING_LETTERS = "pda"
 _MOST_LETTERS = 2
 _MIDLINE_WITH_SIDE = 0.6
 _NUMBERED = frozenset(("number", "letter"))
-_SHORTEST_PAIR = 7
+_SHORTEST_PAIR = 6
 _DIGITS = re.compile(r"\d+")
 
 

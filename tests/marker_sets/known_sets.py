@@ -327,7 +327,121 @@ HELD_OUT = {
         "pelvis": "#ASI #PSI",
     },
 }
-"""Public sets that were read before their spellings went into the dictionary."""
+"""Public sets that were read before their spellings went into the dictionary: 89 % of the names, 3.4 % of the sure
+readings on a wrong segment."""
+
+
+HELD_OUT_LATER = {
+    # walking in OpenSim (github, set_up_ik_tool)
+    "ik_study": {
+        "torso": "Sternum #Shoulder",
+        "pelvis": "#ASIS #PSIS",
+        "shank": "#Fibula #Shank #AnkleLateral #AnkleMedial",
+        "foot": "#MT5 #MT2 #Heel",
+        "thigh": "#KneeLateral #KneeMedial",
+    },
+    # MAP client, gias2: a second laboratory
+    "map_client_words": {
+        "pelvis": "#Asis #Psis",
+        "thigh": "#KneeLateral #KneeMedial #ThighSuperior #ThighInferior #ThighLateral",
+        "shank": "#AnkleLateral #AnkleMedial #ShankSuperior #ShankInferior #ShankLateral",
+        "torso": "#Shoulder",
+        "foot": "#Heel #MidfootLateral",
+    },
+    # BioBuddy, lower limbs after Maldonado et al. 2018
+    "biobuddy_legs": {
+        "head": "#FHD #BHD",
+        "torso": "C7 T10 CLAV STRN RBAK #SHO",
+        "upper_arm": "#ELB #HUM",
+        "forearm": "#WRA #WRB",
+        "hand": "#FIN",
+        "pelvis": "#ASI #PSI",
+        "thigh": "#THI #THID #KNE #KNM #TROC",
+        "shank": "#TIB #TIBP #TIBD #ANK #ANKM",
+        "foot": "#HEE #TOE #5MH",
+        "": "*51",
+    },
+    # running, Hamburg (github, markers_needed)
+    "hamburg": {
+        "pelvis": "#ASI #PSI",
+        "thigh": "#TRO #KNE #KNEM",
+        "shank": "#TIB #ANK #ANKM",
+        "foot": "#CALL #CALM #HEE #LMT5 #LMT1 #TOE",
+    },
+    # lifting, a digital twin: box, sensors and a plate beside the body
+    "lifting_twin": {
+        "upper_arm": "#ELBL #ELBM",
+        "forearm": "#WRL #WRM",
+        "thigh": "#KNE",
+        "shank": "#ANKL #ANKM",
+        "foot": "#TOE #HEE",
+        "pelvis": "#ASI #PSI",
+        "torso": "MChest",
+        "": "Box1 Box2 Box3 Box4 DL1 DL2 DL3 DH1 DH2 DH3",
+    },
+    "static_text": {
+        "pelvis": "#_ASIS V_Sacral",
+        "thigh": "#_Knee #_Knee_Med #_Thigh",
+        "shank": "#_Ankle #_Ankle_Med #_Shank",
+        "foot": "#_Heel #_Toe",
+    },
+    # a body in MATLAB after OpenSim
+    "matlab_body": {
+        "forearm": "#FAsuperior #WristMed #WristLat",
+        "thigh": "#ThighUpper #ThighFront #ThighRear #KneeLat #KneeMed",
+        "shank": "#ShankUpper #ShankFront #ShankRear #AnkleLat #AnkleMed",
+        "foot": "#Heel #ToeLat #MidToeLat #MidToeMed #MidfootSup #MidfootLat",
+        "toes": "#ToeTip",
+    },
+    # Waterloo, inertial sensors beside markers
+    "waterloo": {
+        "torso": "#_Shoulder",
+        "pelvis": "#_ASIS",
+        "thigh": "#_Knee_Med #_Knee_Lat",
+        "shank": "#_Ankle_Med #_Ankle_Lat",
+        "foot": "#_Toe #_Heel",
+    },
+    # names that a converter of captures looks for
+    "converter": {
+        "thigh": "#_FemCon_Med #_FemCon_Lat",
+        "shank": "#_MedMalleolus #_LatMalleolus",
+        "forearm": "#_WR_rad #_WR_uln",
+        "upper_arm": "#_EL_med #_EL_lat",
+        "foot": "#_1st_met #_5th_met #_calc",
+        "pelvis": "#_HJC_reg",
+    },
+    # markers on an SMPL body
+    "smpl_markers": {
+        "head": "head_top head_front head_back",
+        "torso": "sternum c7 t10 %_acromion",
+        "pelvis": "sacrum %_asis %_psis",
+        "upper_arm": "%_elbow_lat %_elbow_med",
+        "forearm": "%_wrist",
+        "thigh": "%_knee_lat %_knee_med",
+        "shank": "%_ankle_lat %_ankle_med",
+        "foot": "%_heel %_toe",
+    },
+    # Camargo et al., J. Biomech. 119 (2021) 110320
+    "camargo": {
+        "pelvis": "#_ASIS #_PSIS",
+        "thigh": "#_Thigh_Front #_Thigh_Rear #_Thigh_Upper #_Knee_Lat",
+        "shank": "#_Shank_Front #_Shank_Rear #_Shank_Upper #_Ankle_Lat",
+        "foot": "#_Heel #_Toe_Lat #_Toe_Med",
+        "toes": "#_Toe_Tip",
+    },
+    # opensim-core, FAIDC1_INITIAL_WALK01.trc: medial epicondyles of the knee
+    "sandbox_walk": {
+        "torso": "#SH C7",
+        "upper_arm": "#ELB",
+        "forearm": "#WR",
+        "pelvis": "#ASI SACR",
+        "thigh": "#THLP #THLD #THAP #THAD #LEPI #MEPI",
+        "shank": "#TIAP #TIAD #TILAT #LMAL #MMAL",
+        "foot": "#HEEL #MFS #MFL #P5MT #P1MT #TOE",
+    },
+}
+"""Public sets of a second round, read when the spellings of the first were in and their own were not: 95 % of the
+names, none of the 323 sure readings on a wrong segment."""
 
 
 def markers(groups: dict[str, str]) -> dict[str, str]:
