@@ -125,10 +125,10 @@ class Spellings:
     def __init__(self, groups: Iterable[Group], modifiers: Mapping[str, Iterable[str]]) -> None:
         """Takes the groups of places and, by modifier, the words for it."""
         self._words: dict[str, list[_Piece]] = {}
-        self._places: dict[str, Group] = {}
+        self.places: dict[str, Group] = {}
         for group in groups:
             for spelling in group.spellings:
-                self._places[spelling] = group
+                self.places[spelling] = group
                 self._words.setdefault(spelling, []).append(_Piece("place", spelling, group))
         for modifier, words in modifiers.items():
             for word in words:
@@ -147,8 +147,8 @@ class Spellings:
         return self._known[text]
 
     def _parse(self, text: str) -> Parse | None:
-        if text in self._places:
-            return Parse(self._places[text], text, frozenset(), 1.0)
+        if text in self.places:
+            return Parse(self.places[text], text, frozenset(), 1.0)
         best: tuple[float, Parse] | None = None
         for pieces in self._covers(text, 0, 0, 0):
             parse = _joined(pieces)
