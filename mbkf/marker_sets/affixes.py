@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 _FIRST = re.compile(r"([^\s_.|/-]+)[\s_.|/-]+(?=.)")
 _LAST = re.compile(r"(?<=.)[\s_.|/-]+([^\s_.|/-]+)$")
-_FEW, _SHARE, _ROUNDS = 5, 0.3, 4
+_FEW, _SHARE, _ROUNDS = 5, 0.1, 4
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Core:
 def without_affixes(names: Sequence[str], means: Callable[[str], bool]) -> list[Core]:
     """Names without the first and last words that stand on many of them and mean nothing.
 
-    What stands before a colon is always taken for a subject's name.
+    What stands before a colon is always taken for a subject's name, a number in front for that of a session.
 
     Args:
         names: Names of the markers of one capture.
@@ -43,7 +43,11 @@ def without_affixes(names: Sequence[str], means: Callable[[str], bool]) -> list[
     for pattern in (_FIRST, _LAST):
         for _ in range(_ROUNDS):
             words = [_word(pattern, one.core) for one in cores]
-            shared = {word for word in _shared(words, len(cores)) if not means(word)}
+            shared = {
+                word
+                for word in _shared(words, len(cores))
+                if not means(word) or (word.isdigit() and pattern is _FIRST)
+            }
             if not shared:
                 break
             cores = [

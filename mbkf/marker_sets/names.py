@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from mbkf.marker_sets.affixes import Core, without_affixes
@@ -36,7 +36,7 @@ BODY = "human18"
 
 _WITH_PARTNER, _WITHOUT_PARTNER = 6.0, 0.4
 _PARTNER_ELSEWHERE, _SIDE_POSSIBLE = 0.15, 0.3
-_UNCONVENTIONAL = 0.15
+_UNCONVENTIONAL, _CONVENTION = 0.15, 0.3
 _LEAST = 0.02
 _MOSTLY = 0.8
 _SPINE = {"c": 7, "t": 12, "l": 5, "s": 5}
@@ -133,7 +133,7 @@ class _Set:
         """The reading of each name."""
         return [self._reading(core) for core in self.cores]
 
-    def _ways(self, core: Core, styles: dict[str, float]) -> list[_Way]:
+    def _ways(self, core: Core, styles: Mapping[str, float]) -> list[_Way]:
         """Every way to read a name, likeliest first.
 
         Args:
@@ -141,13 +141,18 @@ class _Set:
             styles: Share of the set's names that tell their side in this style; empty where that is not known.
         """
         ways: list[_Way] = []
+        unreadable = (
+            False  # a marker of the other side exists, so that the letter is no part of the place's name
+        )
         guesses = side_guesses(self._text(core)) if self._virtual(core) else side_guesses(core.core)
         for guess in guesses:
             parse = self.dictionary.spellings.parse(guess.rest)
             partner = guess.partner in self.texts
-            if parse is None or (guess.style in NEEDS_PARTNER and not partner):
+            if guess.side and partner and parse is None:
+                unreadable = True
+            if parse is None or (not partner and not _believed(guess, styles)):
                 continue
-            if not guess.side and self._is_a_number(guess.rest):
+            if not guess.side and (unreadable or self._is_a_number(guess.rest)):
                 continue
             places, _ = parse.places(bool(guess.side), frozenset())
             weight = WEIGHTS[guess.style] * parse.quality * sum(places.values())
@@ -269,6 +274,11 @@ class _Set:
             for (segment, landmark), share in _on_body(place, side).items():
                 result[segment, landmark if landmarks else ""] += share * probability
         return result
+
+
+def _believed(guess: SideGuess, styles: Mapping[str, float]) -> bool:
+    """Whether a side is believed without the marker of the other side."""
+    return guess.style not in NEEDS_PARTNER or styles.get(guess.style, 0.0) > _CONVENTION
 
 
 def _side(way: _Way) -> str:

@@ -46,8 +46,8 @@ WEIGHTS = {
 }
 """How likely a name is to tell its side this way, before the other names of the set are looked at."""
 
-NEEDS_PARTNER = ("initial", "inner letter")
-"""Ways that are believed only where the set holds the marker of the other side."""
+NEEDS_PARTNER = ("initial", "inner letter", "last letter")
+"""Ways that are believed only where the set holds the marker of the other side, or tells many sides this way."""
 
 APART = ("word", "token", "inner token")
 """Ways in which the side stands by itself, so that its letter is hardly part of the place's name."""

@@ -24,9 +24,11 @@ SURE = 0.95
 SILENT = ("filler",)
 """Modifiers that tell nothing."""
 _LETTERS = "apdulmfbstic"
+_LEADING_LETTERS = "pda"
 _MOST_LETTERS = 2
+_MIDLINE_WITH_SIDE = 0.6
 _NUMBERED = frozenset(("number", "letter"))
-_SHORTEST_PAIR = 7
+_SHORTEST_PAIR = 6
 _DIGITS = re.compile(r"\d+")
 
 
@@ -103,6 +105,8 @@ class Parse:
                 if other is not None:
                     places = other
                     break
+        if sided and group.middle and group.sided is None:
+            places = {place: _MIDLINE_WITH_SIDE * odds for place, odds in places.items()}
         return places, not self.modifiers.difference(SILENT)
 
 
@@ -121,10 +125,10 @@ class Spellings:
     def __init__(self, groups: Iterable[Group], modifiers: Mapping[str, Iterable[str]]) -> None:
         """Takes the groups of places and, by modifier, the words for it."""
         self._words: dict[str, list[_Piece]] = {}
-        self._places: dict[str, Group] = {}
+        self.places: dict[str, Group] = {}
         for group in groups:
             for spelling in group.spellings:
-                self._places[spelling] = group
+                self.places[spelling] = group
                 self._words.setdefault(spelling, []).append(_Piece("place", spelling, group))
         for modifier, words in modifiers.items():
             for word in words:
@@ -143,8 +147,8 @@ class Spellings:
         return self._known[text]
 
     def _parse(self, text: str) -> Parse | None:
-        if text in self._places:
-            return Parse(self._places[text], text, frozenset(), 1.0)
+        if text in self.places:
+            return Parse(self.places[text], text, frozenset(), 1.0)
         best: tuple[float, Parse] | None = None
         for pieces in self._covers(text, 0, 0, 0):
             parse = _joined(pieces)
@@ -168,7 +172,8 @@ class Spellings:
         if match := _DIGITS.match(text, at):
             rest = self._covers(text, match.end(), places, letters)
             result += [[(match.group(), _Piece("modifier", "number")), *tail] for tail in rest]
-        if places and letters < _MOST_LETTERS and text[at] in _LETTERS:
+        leading = at == 0 and text[at] in _LEADING_LETTERS
+        if (places or leading) and letters < _MOST_LETTERS and text[at] in _LETTERS:
             rest = self._covers(text, at + 1, places, letters + 1)
             result += [[(text[at], _Piece("letter")), *tail] for tail in rest]
         return result
