@@ -83,7 +83,7 @@ def movement(
         away = points[:, None] - origins[joints]
         places[t] = np.einsum("sji,ksj->ksi", rotations[joints], away)
         squares.append(((sensor.positions(fit.q) - own) ** 2).sum(axis=1))
-    seen = ~np.isnan(places[..., 0]).any(axis=2)
+    seen = np.asarray(~np.isnan(places[..., 0]).any(axis=2))
     count = np.maximum(seen.sum(axis=0), 1)
     with np.errstate(invalid="ignore"):
         mean = np.where(
