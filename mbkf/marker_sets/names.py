@@ -40,6 +40,7 @@ _UNCONVENTIONAL, _CONVENTION = 0.15, 0.3
 _LEAST = 0.02
 _MOSTLY = 0.8
 _SPINE = {"c": 7, "t": 12, "l": 5, "s": 5}
+_AXES = ("o", "a", "l", "p")
 _NUMBERED = re.compile(r"([a-z])(\d+)")
 _SHORTEST_OBJECT = 3
 
@@ -199,6 +200,10 @@ class _Set:
         beyond = any(n.startswith("0") or int(n) > _SPINE[letter] for n in row)
         return beyond or (not others and {"1", "2", "3"} <= row)
 
+    def _is_axis(self, text: str) -> bool:
+        """Whether the point is of a segment's axes, stored as four points O, A, L and P: LTIO, LTIA, LTIL, LTIP."""
+        return text[-1:] in _AXES and all(text[:-1] + end in self.texts for end in _AXES)
+
     def _virtual(self, core: Core) -> bool:
         """Whether the name is that of another marker with a "v" for its virtual twin."""
         text = "".join(tokens_of(core.core))
@@ -236,6 +241,8 @@ class _Set:
         rests = {guess.rest for guess in side_guesses(core.core)}
         if tokens & dictionary.objects:
             return "object"
+        if self._is_axis("".join(tokens_of(core.core))):
+            return "computed"
         if (tokens | ({ways[0].guess.rest} if ways else rests)) & dictionary.computed:
             return "computed"
         if ways:
