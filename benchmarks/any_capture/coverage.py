@@ -1,8 +1,8 @@
 """Marker sets that no protocol was made for: a protocol that knows few of the markers is never used in silence.
 
 Ten mixed sets are made from one standing person, whose markers' places are true whatever their names are. Some names
-of one protocol stay, among names and points that it does not know. `scale` has to refuse the set or to warn of it
-where the protocol knows less than 60 % of the markers, and to tell every marker that it ignores.
+of one protocol stay, among names and points that it does not know. Where the protocol knows less than 60 % of the
+markers, `scale` has to infer the set and to say so, to warn, or to refuse; it has to tell every marker it ignores.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import detect_protocol, load_protocol
 from mbkf.pipelines.coverage import USE_KEY
-from mbkf.pipelines.scale import scale
+from mbkf.pipelines.scale import INFERRED_KEY, scale
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.marker_sensor import MarkerSensor
 
@@ -81,6 +81,7 @@ def coverage_rows() -> list[Check]:
         Check("coverage: sets above 60 % refused", sum(v.refused for v in verdicts if v not in low), 0, "<="),
         information("coverage: sets refused", sum(v.refused for v in verdicts)),
         information("coverage: sets used with a warning", sum(v.warned for v in verdicts)),
+        information("coverage: sets inferred", sum(v.inferred for v in verdicts)),
     ]
 
 
@@ -92,18 +93,20 @@ class Verdict:
         share: Share of the markers whose names the nearest protocol has.
         refused: Whether it refused the set.
         warned: Whether it scaled with a warning.
+        inferred: Whether it inferred a set of its own, and said so.
         untold: Markers that it neither used nor told as ignored.
     """
 
     share: float
-    refused: bool
-    warned: bool
-    untold: int
+    refused: bool = False
+    warned: bool = False
+    inferred: bool = False
+    untold: int = 0
 
     @property
     def silent(self) -> bool:
         """Whether too small a share was used without a word."""
-        return self.share < LEAST_SHARE and not self.refused and not self.warned
+        return self.share < LEAST_SHARE and not (self.refused or self.warned or self.inferred)
 
 
 def verdict(capture: Capture) -> Verdict:
@@ -118,10 +121,15 @@ def verdict(capture: Capture) -> Verdict:
     try:
         subject = scale(capture, mass_kg=MASS_KG)
     except MbkfError:
-        return Verdict(share, True, False, 0)
+        return Verdict(share, refused=True)
     use = subject.report[USE_KEY]
     assert isinstance(use, dict)
-    return Verdict(share, False, bool(use["warning"]), len(set(names) - known - set(use["ignored"])))
+    return Verdict(
+        share,
+        warned=bool(use["warning"]),
+        inferred=INFERRED_KEY in subject.report,
+        untold=len(names) - use["used"] - len(use["ignored"]),
+    )
 
 
 def mixed(one: MixedSet) -> Capture:

@@ -9,6 +9,7 @@ import pytest
 
 from mbkf.cli.main import main
 from mbkf.io.c3d_write import write_c3d
+from mbkf.io.records import MarkerTrajectories
 from mbkf.io.storage import read_storage, write_storage
 from mbkf.io.trc import write_trc
 from tests.captures import made_capture, made_markers, made_plates, only
@@ -85,7 +86,6 @@ def test_no_markers_of_the_protocol(person, tmp_path, refuse_scale, refuse_recon
     markers = made_markers(20)
     path = tmp_path / "strange.c3d"
     write_c3d(made_capture(20, markers=replace(markers, names=tuple(f"P{i}" for i in range(36)))), path)
-    refuse_scale([path, "--mass", "75"], "P0, P1", "--protocol")
     refuse_scale(
         [path, "--mass", "75", "--protocol", "reference36"],
         "0 markers",
@@ -94,6 +94,14 @@ def test_no_markers_of_the_protocol(person, tmp_path, refuse_scale, refuse_recon
         "--protocol",
     )
     refuse_reconstruct([path], "0 of the subject's markers", "reference36", "P0, P1")
+
+
+def test_points_that_are_no_person(tmp_path, refuse_scale):
+    scattered = np.random.default_rng(5).uniform([-0.4, -0.4, 0.0], [0.4, 0.4, 1.7], (36, 3))
+    path = tmp_path / "scattered.trc"
+    names = tuple(f"P{i}" for i in range(36))
+    write_trc(MarkerTrajectories(names, np.repeat(scattered[None], 5, axis=0), 100.0), path)
+    refuse_scale([path, "--up", "y", "--mass", "75"], "no person is found", "--protocol")
 
 
 def test_too_few_markers_to_follow_any_body(tmp_path, refuse_scale, refuse_reconstruct):

@@ -53,9 +53,9 @@ def test_tables_name_what_there_is(folder, capsys):
 
 def test_the_protocol_stands_in_table_and_json(tmp_path, capsys):
     whole = made_capture(5, 0.0)
-    for kept, told in (
-        (30, "knows 30 of 36 markers (83 %); ignored: X30, X31"),
-        (12, "scaling needs --protocol"),
+    for kept, told, name in (
+        (30, "knows 30 of 36 markers (83 %); ignored: X30, X31", "reference36"),
+        (12, "marker set inferred: 36 markers on", "inferred"),
     ):
         names = tuple(n if i < kept else f"X{i}" for i, n in enumerate(whole.markers.names))
         path = tmp_path / f"{kept}.c3d"
@@ -64,9 +64,9 @@ def test_the_protocol_stands_in_table_and_json(tmp_path, capsys):
         assert told in " ".join(capsys.readouterr().out.split())
         assert run(path, "--json") == 0
         found = json.loads(capsys.readouterr().out)["protocol"]
-        assert (found["name"], found["known"], found["markers"]) == ("reference36", kept, 36)
-        assert found["accepted"] == (kept == 30)
-        assert set(found["ignored"]) == set(names[kept:])
+        assert (found["name"], found["markers"], found["accepted"]) == (name, 36, True)
+        assert found["known"] == (36 if found["told"] else kept)
+        assert set(found["ignored"]) == (set() if found["told"] else set(names[kept:]))
 
 
 def test_json_holds_the_same(folder, capsys):

@@ -73,7 +73,7 @@ def test_trc_and_c3d_give_the_same_subject(person, tmp_path):
     assert list(a.scale_factors.values()) == pytest.approx(list(b.scale_factors.values()), abs=1e-4)
 
 
-def test_ignored_markers_are_shown_and_few_known_ones_are_refused(tmp_path, capsys):
+def test_ignored_markers_are_shown_and_few_known_ones_inferred(tmp_path, capsys):
     whole = made_capture(30, 0.0)
     for kept, file in ((34, "most.c3d"), (12, "few.c3d")):
         names = tuple(n if i < kept else f"X{i}" for i, n in enumerate(whole.markers.names))
@@ -84,8 +84,7 @@ def test_ignored_markers_are_shown_and_few_known_ones_are_refused(tmp_path, caps
     assert "reference36 knows 34 of 36 markers (94 %); 2 ignored: X34, X35" in shown.out
     assert "warning" not in shown.err
     out.unlink()
-    assert scale(tmp_path / "few.c3d", "--out", out) == 2
-    assert "knows 12 of 36 markers (33 %)" in capsys.readouterr().err
-    assert not out.exists()
+    assert scale(tmp_path / "few.c3d", "--out", out) == 0
+    assert "note: marker set inferred: 36 markers on" in capsys.readouterr().out
     assert scale(tmp_path / "few.c3d", "--protocol", "reference36", "--out", out) == 0
     assert "warning: protocol reference36 knows 12 of 36" in capsys.readouterr().err

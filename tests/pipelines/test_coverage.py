@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.errors import InvalidInput
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.body_file import load_body
@@ -15,16 +14,15 @@ from mbkf.pipelines.coverage import (
     NO_SEGMENT,
     TWICE,
     UNKNOWN,
+    USE_KEY,
     MarkerUse,
     listed,
-    require_coverage,
     use_by_protocol,
     use_by_subject,
 )
 from tests.pipelines.test_own_body import FILE
 
 PLUG_IN_GAIT = load_protocol("plug_in_gait")
-LEGS = ("pelvis", "thigh", "shank", "foot")
 
 
 def markers(names, unseen=()):
@@ -66,29 +64,15 @@ def test_the_bound_is_sixty_percent(known, unknown, accepted):
     use = MarkerUse("p", tuple(f"K{i}" for i in range(known)), dict.fromkeys(strangers(unknown), UNKNOWN))
     assert use.accepted == accepted
     assert bool(use.warning) != accepted
-    if accepted:
-        require_coverage(use)
-    else:
-        with pytest.raises(InvalidInput, match=rf"p knows {known} of {known + unknown} .*X0.*--protocol p"):
-            require_coverage(use)
+    if not accepted:
+        assert use.warning.startswith(f"protocol p knows {known} of {known + unknown} ")
 
 
-def test_a_complete_set_beside_clusters_is_taken_with_a_warning():
-    legs = names_of(PLUG_IN_GAIT, LEGS)
-    use = use_by_protocol([markers([*legs, *strangers(len(legs) - 1)])], PLUG_IN_GAIT)
-    assert use.complete
-    assert use.accepted
-    assert "knows" in use.warning
-    more = use_by_protocol([markers([*legs, *strangers(len(legs) + 1)])], PLUG_IN_GAIT)
-    assert more.complete
-    assert not more.accepted
-
-
-def test_a_set_with_gaps_or_without_the_pelvis_is_not_complete():
-    legs = names_of(PLUG_IN_GAIT, LEGS)
-    gaps = [name for name in legs if name not in ("RTHI", "LTHI", "RTIB")]
-    assert not use_by_protocol([markers(gaps)], PLUG_IN_GAIT).complete
-    assert not use_by_protocol([markers(names_of(PLUG_IN_GAIT, LEGS[1:]))], PLUG_IN_GAIT).complete
+def test_points_that_a_marker_set_leaves_out_keep_their_reason():
+    box = replace(PLUG_IN_GAIT, ignored={"BOX1": "no part of the body", "GONE": "no part of the body"})
+    use = use_by_protocol([markers([*names_of(PLUG_IN_GAIT), "BOX1", "X"])], box)
+    assert use.ignored == {"BOX1": "no part of the body", "X": UNKNOWN}
+    assert use.unknown == ("X",)
 
 
 def test_markers_of_segments_that_the_body_lacks_are_explained():
@@ -126,6 +110,12 @@ def test_a_trial_of_a_person_tells_computed_points_and_strangers():
     report = {"markers": {computed: {"kind": "computed"}, own[0]: {"kind": "technical"}}}
     scaled = replace(person, protocol="my own", report=report)
     assert use_by_subject(markers([*own, computed]), scaled).ignored == {computed: COMPUTED}
+    left_out = {USE_KEY: {"ignored": {"BOX": "no part of the body", "X": UNKNOWN}}}
+    inferred = replace(person, protocol="inferred", report=left_out)
+    assert use_by_subject(markers([*own, "BOX", "Y"]), inferred).ignored == {
+        "BOX": "no part of the body",
+        "Y": UNKNOWN,
+    }
 
 
 def test_markers_that_are_not_used_after_all_stay_explained():

@@ -86,7 +86,15 @@ def test_the_protocol_is_told_with_how_much_it_knows():
     )
     names = tuple(name if i < 10 else f"X{i}" for i, name in enumerate(made.markers.names))
     few = describe(replace(made, markers=replace(made.markers, names=names))).protocol
-    assert (few.known, few.markers, few.accepted) == (10, 36, False)
+    assert (few.name, few.known, few.accepted) == ("inferred", 36, True)
+    assert few.told.startswith("marker set inferred: 36 markers")
+
+
+def test_too_few_known_markers_without_a_person_are_told():
+    names = (*made_capture(1).markers.names[:10], *(f"X{i}" for i in range(26)))
+    nobody = MarkerTrajectories(names, np.zeros((3, 36, 3)), 100.0)
+    few = describe(Capture("", nobody)).protocol
+    assert (few.known, few.markers, few.accepted, few.told) == (10, 36, False, "")
     assert set(few.ignored) == set(names[10:])
 
 

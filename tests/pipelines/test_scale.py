@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.errors import InvalidInput, UnknownName
+from mbkf.errors import InvalidInput, NotObservable, UnknownName
 from mbkf.model.protocol import load_protocol
 from mbkf.pipelines.coverage import USE_KEY
-from mbkf.pipelines.scale import scale
+from mbkf.pipelines.scale import INFERRED_KEY, scale
 from tests.motions import capture_of, marker_positions, moderate_pose, protocol_sensor, random_model
 
 MODEL = random_model(np.random.default_rng(1), spread=0.05)
@@ -62,7 +62,7 @@ def test_without_a_mass_or_a_trial_nothing_is_scaled():
 
 def test_unknown_markers_and_protocols_are_refused():
     strangers = capture_of([f"m{i}" for i in range(10)], np.zeros((3, 10, 3)))
-    with pytest.raises(UnknownName, match="give --protocol"):
+    with pytest.raises(NotObservable, match=r"10 markers .*give --protocol"):
         scale(strangers, mass_kg=70.0)
     with pytest.raises(UnknownName, match="did you mean helen_hayes"):
         scale(made(2), mass_kg=70.0, protocol="helen_hays")
@@ -82,10 +82,9 @@ def renamed(capture, kept):
 
 def test_a_protocol_that_knows_few_markers_is_used_only_when_it_is_named():
     few = renamed(made(4, standing=True), 17)
-    with pytest.raises(
-        InvalidInput, match=r"reference36 knows 17 of 36 markers \(47 %\), not X17, .*--protocol"
-    ):
-        scale(few, mass_kg=70.0)
+    inferred = scale(few, mass_kg=70.0)
+    assert (inferred.protocol, inferred.report[USE_KEY]["used"]) == ("inferred", 36)
+    assert inferred.report[INFERRED_KEY]["told"].startswith("marker set inferred: 36 markers")
     use = scale(few, mass_kg=70.0, protocol="reference36").report[USE_KEY]
     assert (use["used"], use["markers"], set(use["ignored"])) == (17, 36, {f"X{i}" for i in range(17, 36)})
     assert "17 of 36" in use["warning"]

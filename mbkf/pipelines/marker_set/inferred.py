@@ -116,7 +116,7 @@ def infer_marker_set(
     if len(names) - len(ignored) < FEWEST_POINTS:
         raise NotObservable(
             f"the captures have {len(names) - len(ignored)} markers of a body ({listed(names) or 'none'}); "
-            f"fewer than {FEWEST_POINTS} do not show which part of it they are on"
+            f"fewer than {FEWEST_POINTS} do not show which part of it they are on; give --protocol"
         )
     with single_threaded():
         upright = upright_captures(captures, readings, reference)
