@@ -29,6 +29,7 @@ USE_KEY = "marker_use"
 UNKNOWN = "the protocol does not know it"
 COMPUTED = "a computed point, read for scaling only"
 NO_SEGMENT = "the body lacks its segment"
+LEFT_OUT = "the protocol leaves it out"
 TWICE = "another name of a marker that is there under its own"
 
 
@@ -124,9 +125,17 @@ def use_by_protocol(captures: Sequence[MarkerTrajectories], protocol: Protocol) 
     own = [m for m in protocol.markers if m.kind != "computed" and m.segment in reached]
     roots = {segment.name for segment in protocol.body.segments if segment.parent == "world"}
     complete = roots <= reached and sum(m.name in there for m in own) >= COMPLETE_SHARE * len(own)
-    return MarkerUse(
-        protocol.name, used, _ignored(names, used, protocol.markers, protocol.name), bool(own) and complete
-    )
+    left_out = {n: protocol.ignored[n] or LEFT_OUT for n in names if n in protocol.ignored and n not in used}
+    reasons = {**_ignored(names, used, protocol.markers, _cut_from(protocol)), **left_out}
+    return MarkerUse(protocol.name, used, reasons, bool(own) and complete)
+
+
+def _cut_from(protocol: Protocol) -> str:
+    """Name of the shipped protocol that this one is a part of, on another body; "" where it is no such part."""
+    if protocol.name not in protocol_names():
+        return ""
+    body = load_protocol(protocol.name).body
+    return "" if (body.name, body.text) == (protocol.body.name, protocol.body.text) else protocol.name
 
 
 def use_by_subject(markers: MarkerTrajectories, subject: Subject) -> MarkerUse:
