@@ -62,21 +62,23 @@ def marker_table(protocol: Protocol) -> Table:
     from mbkf.pipelines.protocol.editing import SURE
 
     table = Table(title=f"{protocol.title} ({protocol.name})", title_justify="left")
-    for heading in ("marker", "segment", "landmark", "kind", "x, y, z mm", "may move mm", "sure"):
-        table.add_column(heading, justify="right" if heading in ("x, y, z mm", "may move mm") else "left")
+    for heading in ("marker", "segment", "landmark", "kind", "x, y, z mm", "may move mm"):
+        table.add_column(heading, justify="right" if heading.endswith("mm") else "left")
+    in_doubt = any(marker.probability < SURE for marker in protocol.markers)
+    if in_doubt:
+        table.add_column("sure", no_wrap=True)
     order = {segment.name: k for k, segment in enumerate(protocol.body.segments)}
     for m in sorted(protocol.markers, key=lambda one: order[one.segment]):
-        place = ", ".join(f"{1e3 * x:.0f}" for x in m.position_m)
-        others = ", or ".join(f"{name.replace('_', ' ')} {100 * p:.0f} %" for name, p in m.alternatives)
-        doubt = "" if m.probability >= SURE else f"{100 * m.probability:.0f} %"
+        others = "".join(f", or {name.replace('_', ' ')} {100 * p:.0f} %" for name, p in m.alternatives)
+        sure = f"{100 * m.probability:.0f} %{others}" if m.probability < SURE else ""
         table.add_row(
             m.name,
             m.segment.replace("_", " "),
             m.landmark.replace("_", " "),
             m.kind,
-            place,
+            ", ".join(f"{1e3 * x:.0f}" for x in m.position_m),
             f"{1e3 * m.placement_sd_m:.0f}",
-            f"{doubt}, or {others}" if doubt and others else doubt,
+            *((sure,) if in_doubt else ()),
         )
     return table
 

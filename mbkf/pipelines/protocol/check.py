@@ -54,6 +54,11 @@ class MarkerFit:
         return self.share > FAR_SHARE and self.moved_mm > FAR_MM
 
     @property
+    def badness(self) -> float:
+        """How bad the fit is: 1 where a bound is reached."""
+        return max(self.share / FAR_SHARE, self.rms_mm / POOR_MARKER_MM)
+
+    @property
     def wrong(self) -> bool:
         """Whether it cannot be where the set says."""
         return self.far and (self.share > WRONG_SHARE or self.moved_mm > WRONG_MM)
@@ -68,7 +73,7 @@ class SetCheck:
         absent: Its own markers that the capture lacks, computed points aside.
         bare: Segments of its body that no known marker is on.
         rms_mm: RMS distance of the markers from the scaled person; None where none could be scaled.
-        markers: The fit of every marker, those furthest from their place first.
+        markers: The fit of every marker, the worst first.
         trouble: Why no person could be scaled, "" where one was.
         verdict: "ok", "doubtful" or "bad".
         reasons: Why it is not "ok", each with what to do.
@@ -121,7 +126,7 @@ def _fits(report: object, protocol: Protocol) -> list[MarkerFit]:
             found.append(
                 MarkerFit(name, own[name].segment, float(entry["rms_mm"]), moved, float(moved / allowed_mm))
             )
-    return sorted(found, key=lambda one: (-one.far, -one.rms_mm if not one.far else -one.moved_mm))
+    return sorted(found, key=lambda one: -one.badness)
 
 
 def _judged(use: MarkerUse, rms: float | None, fits: list[MarkerFit], trouble: str) -> tuple[str, list[str]]:

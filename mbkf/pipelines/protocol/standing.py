@@ -118,7 +118,13 @@ def stands_still(markers: MarkerTrajectories) -> bool:
 
 
 def in_reference(standing: Standing, segment: str, point_m: Array) -> Array:
-    """(3,) where a point (3,) of the capture is in a segment's frame on the reference body, m."""
+    """(3,) where a point of the capture is in a segment's frame on the reference body, m.
+
+    Args:
+        standing: The capture, with the body beside it.
+        segment: The segment.
+        point_m: (3,) the point, m.
+    """
     rotations, origins = standing.model.placements(standing.q)
     joint = standing.model.joint(segment).joint_id
     own = rotations[joint].T @ (point_m - origins[joint])
@@ -127,7 +133,13 @@ def in_reference(standing: Standing, segment: str, point_m: Array) -> Array:
 
 
 def in_world(standing: Standing, segment: str, position_m: Array) -> Array:
-    """(3,) where a place (3,) of the reference body's segment is on the body beside the capture, m."""
+    """(3,) where a place of the reference body's segment is on the body beside the capture, m.
+
+    Args:
+        standing: The capture, with the body beside it.
+        segment: The segment.
+        position_m: (3,) the place in the segment's frame on the reference body, m.
+    """
     rotations, origins = standing.model.placements(standing.q)
     joint = standing.model.joint(segment).joint_id
     own = standing.model.axis_scale(standing.model.description.segment(segment)) * position_m

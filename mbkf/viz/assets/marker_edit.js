@@ -63,30 +63,39 @@ class MarkerEdit extends MarkerSet {
   tell(text) { document.getElementById("trouble").textContent = text; }
 
   head() {
-    if (this.choices && this.chosen) return [this.card(this.chosen)];
+    if (this.choices && this.chosen) return this.card(this.chosen);
+    this.shown = null;
     const said = [element("p", { className: "note", textContent: "Choose a marker, on the body or below, to move it or leave it out." })];
     if (this.data.trouble) said.push(element("p", { className: "note bad", textContent: `The set does not fit this capture yet, so the body is laid beside it roughly: ${this.data.trouble}` }));
-    return said;
+    this.header.replaceChildren(...said);
   }
 
+  // The card of a marker. The list of segments stays the same element, so that a person can type in it.
   card(marker) {
-    const swatch = element("i", { className: "swatch" }), card = element("section", { id: "card" });
-    swatch.style.setProperty("--own", this.colour(marker));
-    card.append(element("h2", {}, swatch, marker.name));
-    card.append(element("p", { className: this.doubtful(marker) ? "doubtful" : "", textContent: this.told(marker) }));
-    const segments = element("select", { id: "segment" }, element("option", { value: "", textContent: marker.ignored === UNKNOWN ? "(not in the set)" : "(left out)" }));
-    for (const { name, title } of this.data.segments) segments.append(element("option", { value: name, textContent: title }));
-    segments.value = marker.segment;
-    segments.onchange = () => (segments.value ? this.move(marker, { segment: segments.value }) : this.leave(marker, REASONS[0][1]));
-    const landmarks = element("select", { id: "landmark" }, element("option", { value: "", textContent: "(where the capture shows it)" }));
-    for (const { name, mm } of this.near(marker)) {
-      landmarks.append(element("option", { value: name, textContent: `${name.replaceAll("_", " ")}, ${mm} mm away` }));
+    if (!this.shown || this.shown.marker !== marker) {
+      const [swatch, said, segments, landmarks] = [element("i", { className: "swatch" }), element("p"), element("select", { id: "segment" }), element("select", { id: "landmark" })];
+      segments.append(element("option", { value: "", textContent: "(left out)" }));
+      for (const { name, title } of this.data.segments) segments.append(element("option", { value: name, textContent: title }));
+      segments.onchange = () => (segments.value ? this.move(marker, { segment: segments.value }) : this.leave(marker, REASONS[0][1]));
+      landmarks.onchange = () => this.move(marker, landmarks.value ? { landmark: landmarks.value } : { segment: marker.segment });
+      const actions = element("div", { className: "actions" });
+      this.shown = { marker, swatch, said, segments, landmarks, actions };
+      this.header.replaceChildren(element("section", { id: "card" }, element("h2", {}, swatch, marker.name), said,
+        element("label", {}, "Segment", segments), element("label", {}, "Landmark", landmarks), actions));
     }
+    this.fill(this.shown);
+  }
+
+  fill({ marker, swatch, said, segments, landmarks, actions }) {
+    swatch.style.setProperty("--own", this.colour(marker));
+    said.textContent = this.told(marker);
+    said.className = this.doubtful(marker) ? "doubtful" : "";
+    segments.options[0].textContent = marker.ignored === UNKNOWN ? "(not in the set)" : "(left out)";
+    if (segments.value !== marker.segment) segments.value = marker.segment;
+    const near = this.near(marker).map(({ name, mm }) => element("option", { value: name, textContent: name.replaceAll("_", " ") + (mm === null ? "" : `, ${mm} mm away`) }));
+    landmarks.replaceChildren(element("option", { value: "", textContent: marker.seen ? "(where the capture shows it)" : "(where the set has it)" }), ...near);
     landmarks.value = marker.landmark;
-    landmarks.onchange = () => this.move(marker, landmarks.value ? { landmark: landmarks.value } : { segment: marker.segment });
-    if (!marker.segment && !marker.at) landmarks.disabled = true;
-    card.append(element("label", {}, "Segment", segments), element("label", {}, "Landmark", landmarks), this.actions(marker));
-    return card;
+    actions.replaceChildren(...this.actions(marker));
   }
 
   told(marker) {
@@ -98,17 +107,17 @@ class MarkerEdit extends MarkerSet {
   // Landmarks of the marker's segment, the nearest first.
   near(marker) {
     const from = marker.at || marker.place;
-    const away = ({ at }) => (from ? Math.round(1000 * Math.hypot(...at.map((x, k) => x - from[k]))) : 0);
+    const away = ({ at }) => (from ? Math.round(1000 * Math.hypot(...at.map((x, k) => x - from[k]))) : null);
     return this.landmarks.filter(({ segment }) => !marker.segment || segment === marker.segment)
       .map((one) => ({ ...one, mm: away(one) })).sort((a, b) => a.mm - b.mm);
   }
 
   actions(marker) {
-    const actions = element("div", { className: "actions" });
+    const actions = [];
     const add = (text, act) => {
       const button = element("button", { type: "button", textContent: text });
       button.onclick = act;
-      actions.append(button);
+      actions.push(button);
     };
     if (this.doubtful(marker)) add("It is right", () => this.confirm(marker));
     for (const [name, odds] of marker.alternatives) {
@@ -121,7 +130,12 @@ class MarkerEdit extends MarkerSet {
 
   move(marker, choice) {
     const landmark = choice.landmark ? this.landmarks.find(({ name }) => name === choice.landmark) : null;
-    if (!landmark && !marker.seen) return this.tell(`The capture does not show ${marker.name}: choose a landmark for it, or leave it out.`);
+    if (!landmark && !choice.segment) return this.refresh();
+    if (!landmark && !marker.seen) {
+      this.tell(`The capture does not show ${marker.name}: choose a landmark for it, or leave it out.`);
+      return this.refresh();
+    }
+    this.tell("");
     Object.assign(marker, {
       segment: landmark ? landmark.segment : choice.segment, landmark: landmark ? landmark.name : "", ignored: "",
       kind: landmark ? "anatomical" : "technical", place: landmark ? landmark.at : marker.at, probability: 1, alternatives: [],
@@ -155,9 +169,6 @@ class MarkerEdit extends MarkerSet {
   after() {
     this.unsaved = true;
     this.say("changed, not saved", "");
-    const held = document.activeElement ? document.activeElement.id : "";
     this.refresh();
-    const again = held && document.getElementById(held);
-    if (again) again.focus();
   }
 }

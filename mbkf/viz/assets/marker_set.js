@@ -9,6 +9,8 @@ class MarkerSet {
     this.colours = new Map(data.segments.map(({ name, colour }) => [name, colour]));
     this.titles = new Map(data.segments.map(({ name, title }) => [name, title]));
     this.column = document.getElementById("column");
+    [this.header, this.listing] = [element("div", { id: "head" }), element("div")];
+    this.column.append(this.header, this.listing);
     document.getElementById("trial").textContent = data.title;
     document.title = `${data.title} · mbkf`;
     this.view = new BodyScene(document.getElementById("scene"), data.scene);
@@ -103,8 +105,7 @@ class MarkerSet {
     if (doubts.length) count.push(`${doubts.length} in doubt`);
     document.getElementById("count").textContent = count.join(", ");
     const focus = document.activeElement && document.activeElement.dataset ? document.activeElement.dataset.item : undefined;
-    const parts = this.head();
-    if (unknown.length) parts.push(this.part(UNKNOWN, "#fff", unknown));
+    const parts = unknown.length ? [this.part(UNKNOWN, "#fff", unknown)] : [];
     for (const { name, title, colour } of this.data.segments) {
       const here = own.filter((marker) => marker.segment === name);
       if (here.length || !this.data.captured) parts.push(this.part(title, colour, here));
@@ -112,7 +113,8 @@ class MarkerSet {
     const out = this.markers.filter((marker) => marker.ignored && marker.ignored !== UNKNOWN);
     if (out.length) parts.push(this.part("left out", "#b8c2cc", out));
     parts.push(this.legend(doubts.length, computed, out.length, unknown.length));
-    this.column.replaceChildren(...parts);
+    this.head();
+    this.listing.replaceChildren(...parts);
     this.column.scrollTop = held;
     if (focus !== undefined) this.focusItem(focus);
   }
@@ -123,7 +125,7 @@ class MarkerSet {
   }
 
   head() {
-    return this.data.source ? [element("p", { className: "note", textContent: `From: ${this.data.source}` })] : [];
+    if (this.data.source) this.header.replaceChildren(element("p", { className: "note", textContent: `From: ${this.data.source}` }));
   }
 
   part(title, colour, markers) {
