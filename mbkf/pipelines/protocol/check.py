@@ -24,7 +24,7 @@ POOR_MARKER_MM = 40.0
 
 FAR_SHARE, FAR_MM = 2.7, 80.0
 """A marker that scaling moved by more than both, the first as a multiple of what the set allows for, is far from where
-the set says; right sets stay below 2.5. A standing trial shows this where its single posture fits anything."""
+the set says. A standing trial shows this where its single posture fits anything."""
 
 WRONG_SHARE, WRONG_MM = 4.0, 250.0
 """Beyond either, a marker that is far is not where the set says at all."""

@@ -21,7 +21,9 @@ class MarkerEdit extends MarkerSet {
     this.done = element("button", { type: "button", id: "done", textContent: "Done" });
     this.save.onclick = () => this.send({ do: "save", choices: Object.fromEntries(this.choices) });
     this.done.onclick = () => {
-      if (!this.unsaved || confirm("There are changes that are not saved. End all the same?")) this.send({ do: "done" });
+      if (this.unsaved && !confirm("There are changes that are not saved. End all the same?")) return;
+      this.ended = true; // the server may be gone before it answers
+      this.send({ do: "done" });
     };
     bar.append(this.state, this.save, this.done);
   }
@@ -30,7 +32,7 @@ class MarkerEdit extends MarkerSet {
     this.socket = new WebSocket(`ws://${location.host}/frames${location.search}`);
     this.socket.onmessage = ({ data }) => { if (data) this.take(JSON.parse(data)); };
     this.socket.onclose = () => {
-      if (!this.ended) this.say("not connected: is mbkf still running?", "bad");
+      this.say(this.ended ? "done; this page can be closed" : "not connected: is mbkf still running?", this.ended ? "good" : "bad");
       for (const button of [this.save, this.done]) button.disabled = true;
     };
   }
@@ -39,7 +41,7 @@ class MarkerEdit extends MarkerSet {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(word));
   }
 
-  take({ trouble, saved, done, markers }) {
+  take({ trouble, saved, markers }) {
     if (trouble) {
       this.tell(trouble);
       this.say("not saved", "bad");
@@ -48,10 +50,6 @@ class MarkerEdit extends MarkerSet {
       this.unsaved = false;
       this.tell("");
       this.say(`saved: ${markers} markers`, "good");
-    }
-    if (done) {
-      this.ended = true;
-      this.say("done; this page can be closed", "good");
     }
   }
 

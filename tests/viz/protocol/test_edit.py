@@ -132,6 +132,8 @@ def test_a_person_moves_a_marker_leaves_one_out_and_saves(opened, page_of, tmp_p
         assert dict(load_protocol(tmp_path / "mine.toml").ignored) == {"LFHD": "left out by hand"}
         shown.click("#done")
         assert page.done.wait(10)
+        page.close()
+        until(shown, "document.getElementById('state').textContent.startsWith('done')")
 
 
 @pytest.mark.slow
