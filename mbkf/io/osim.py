@@ -84,6 +84,7 @@ def read_osim(path: str | Path) -> OsimModel:
     """
     path = Path(path)
     root = read_loose_xml(path, _NEVER_NESTED)
+    _drop(root, "defaults")
     model = next(root.every("Model"), None)
     found = model or next(root.every("MarkerSet", "OpenSimDocument"), None)
     if found is None:
@@ -101,6 +102,15 @@ def read_osim(path: str | Path) -> OsimModel:
             path, f"holds no marker that can be read ({faults})" if faults else "holds no marker"
         )
     return OsimModel(found.name or path.stem, tuple(_joints(root)), tuple(markers.values()), damaged)
+
+
+def _drop(root: Element, tag: str) -> None:
+    """Takes away all elements of a name: defaults are patterns of markers and joints, not ones of the model."""
+    waiting = [root]
+    while waiting:
+        one = waiting.pop()
+        one.children = [child for child in one.children if child.tag != tag]
+        waiting.extend(one.children)
 
 
 def _read_marker(

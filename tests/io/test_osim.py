@@ -88,6 +88,14 @@ def test_markers_that_cannot_be_read_are_told(tmp_path):
     assert model.joints == ()
 
 
+def test_defaults_are_no_part_of_the_model(tmp_path):
+    text = osim_3(skeleton(), MARKERS[:1]).replace(
+        "<BodySet>", f"<defaults>{marker_set(MARKERS[1:], 3)}<Body name='x'/></defaults><BodySet>"
+    )
+    (tmp_path / "model.osim").write_text(text, encoding="utf-8")
+    assert [marker.name for marker in read_osim(tmp_path / "model.osim").markers] == ["R.ASIS"]
+
+
 @pytest.mark.parametrize(
     ("text", "reason"),
     [

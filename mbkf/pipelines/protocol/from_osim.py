@@ -22,7 +22,7 @@ from mbkf.io.osim import OsimMarker, OsimModel, read_osim
 from mbkf.model.body_file import load_body
 from mbkf.model.description import BodyDescription
 from mbkf.model.protocol import DEFAULT_PLACEMENT_SD_M, Protocol, ProtocolMarker
-from mbkf.pipelines.protocol.osim_bodies import poses_at_zero, segment_of
+from mbkf.pipelines.protocol.osim_bodies import head_origin, poses_at_zero, segment_of
 
 FIXED_SD_M, FREE_SD_M = 0.025, 0.050
 """How far a marker may sit from its imported place, per coordinate: where OpenSim holds it fixed, and where it is free.
@@ -131,7 +131,12 @@ class _Skeleton:
         self._body = body
         self._poses = poses_at_zero(model.joints)
         self._own = {joint.child for joint in model.joints}
-        self._has_head = any(segment_of(one)[0] == "head" for one in self._own)
+        heads = [m for m in model.markers if segment_of(m.body)[0] == "head" and m.body not in self._own]
+        self._has_head = bool(heads) or any(segment_of(one)[0] == "head" for one in self._own)
+        for marker in heads:  # bodies that nothing joins to the torso
+            pose = np.eye(4)
+            pose[1, 3] = head_origin(np.array([m.position_m[1] for m in heads if m.body == marker.body]))
+            self._poses[marker.body] = self._poses["torso"] @ pose
         self.moved: dict[str, str] = {}
         centres = {joint.child: joint.centre_m for joint in model.joints}
         self._centres: dict[str, Array] = {}

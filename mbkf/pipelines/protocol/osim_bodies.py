@@ -81,15 +81,30 @@ COMMON_JOINTS: tuple[OsimJoint, ...] = (
     *_both_sides("humerus", "ulna", 0.013144, -0.286273, -0.009595),
     *_both_sides("ulna", "radius", -0.006727, -0.013007, 0.026083),
     *_both_sides("radius", "hand", -0.008797, -0.235841, 0.01361),
-    _joint("torso", "head", 0.0, 0.3715, 0.0),
 )
 """OpenSim's common full-body skeleton, unscaled: for marker sets that come without a model, and joints a model lacks.
 
 Legs and trunk: gait2392 (S. L. Delp et al., IEEE Trans. Biomed. Eng. 37 (1990) 757-767), knees straight. Arms: S. R.
-Hamner, A. Seth, S. L. Delp, J. Biomech. 43 (2010) 2709-2716, also in the model of A. Rajagopal et al. 2016. Neither has
-a head: where one is named, it is taken to begin at the height of the shoulders, as the marker set of A. L. Clouthier et
-al., IEEE Access 2021 has it.
+Hamner, A. Seth, S. L. Delp, J. Biomech. 43 (2010) 2709-2716, also in the model of A. Rajagopal et al. 2016.
 """
+
+HEAD_ORIGINS_M = (0.0, 0.3715, 0.5435)
+"""Heights in the common torso at which models begin their head: with the torso (Pose2Sim), with the shoulders (the set
+of A. L. Clouthier et al. 2021), or with the skull."""
+
+MIDDLE_OF_HEAD_M = 0.61
+"""Height of the middle of the head in the common torso."""
+
+
+def head_origin(heights_m: Array) -> float:
+    """The height in the common torso at which a head begins that the file does not join to anything.
+
+    Args:
+        heights_m: (N,) heights of its markers in its own frame, m: of the known origins, the one that brings their
+            middle to the head is taken.
+    """
+    middle = float(np.median(heights_m))
+    return min(HEAD_ORIGINS_M, key=lambda origin: abs(origin + middle - MIDDLE_OF_HEAD_M))
 
 
 def poses_at_zero(joints: tuple[OsimJoint, ...]) -> dict[str, Array]:

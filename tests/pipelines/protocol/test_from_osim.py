@@ -113,6 +113,18 @@ def test_what_the_bodies_do_not_tell_is_told_by_the_place(imported):
     assert with_head.moved == {}
 
 
+@pytest.mark.parametrize(("origin", "version"), [(0.0, 4), (0.3715, 3), (0.5435, 4)])
+def test_a_head_that_nothing_joins_is_on_the_head(origin, version, imported):
+    """A marker set does not tell where its head begins; wherever that is, the markers land on the same places."""
+    heights = {"Front": 0.60, "Top": 0.68, "Chin": 0.50, "Side": 0.62}
+    markers = [(name, "head", (0.05, height - origin, 0.0), True) for name, height in heights.items()]
+    found = imported(marker_set([*markers, ("C7", "torso", (-0.08, 0.42, 0.0), True)], version))
+    for name, height in heights.items():
+        assert on(found, name).segment == "head"
+        assert on(found, name).position_m[2] == pytest.approx(0.244 + height - 0.3715 - 0.416, abs=0.02)
+    assert on(found, "C7").segment == "torso"
+
+
 def test_markers_on_unknown_bodies_are_ignored_and_none_on_a_known_one_refused(imported):
     found = imported(
         marker_set([("A", "pelvis", (0.0, 0.0, 0.1), True), ("B", "walker", (0.0, 0.0, 0.0), True)], 4)

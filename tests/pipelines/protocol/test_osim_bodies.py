@@ -5,7 +5,7 @@ import pytest
 
 from mbkf.io.osim import OsimJoint
 from mbkf.model.body_file import load_body
-from mbkf.pipelines.protocol.osim_bodies import COMMON_JOINTS, poses_at_zero, segment_of
+from mbkf.pipelines.protocol.osim_bodies import COMMON_JOINTS, head_origin, poses_at_zero, segment_of
 
 
 @pytest.mark.parametrize(
@@ -62,3 +62,17 @@ def test_a_model_s_joints_go_before_the_common_ones_and_loose_bodies_are_left_ou
     poses = poses_at_zero((mine, *loose))
     assert poses["femur_r"][:3, 3] == pytest.approx([1.0, 2.0, 3.0])
     assert not {"box", "a", "b"} & set(poses)
+
+
+@pytest.mark.parametrize(
+    ("heights", "origin"),
+    [
+        ((0.24, 0.23, 0.22), 0.3715),
+        ((0.54, 0.67), 0.0),
+        ((0.48, 0.54, 0.59, 0.56), 0.0),
+        ((0.06, 0.07, 0.14), 0.5435),
+    ],
+)
+def test_a_head_begins_where_its_markers_come_to_the_head(heights, origin):
+    """Heights of public sets: of Clouthier 2021, of Pose2Sim, and of a frame in the skull."""
+    assert head_origin(np.array(heights)) == origin
