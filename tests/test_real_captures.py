@@ -113,3 +113,19 @@ def test_other_captures_are_understood_without_a_word(name, markers, real_data):
 
     capture = read_capture(real_data / name)
     assert len(detect_protocol(capture.markers.names).match(capture.markers.names)) == markers
+
+
+@pytest.mark.parametrize(
+    ("trial", "static", "mass_kg", "bound_mm"),
+    [
+        ("cgm24_lowerlimb_walk/CGM24_Walking01.c3d", None, 77.6, 6.0),
+        ("rehazenter_walk/2014001_C1_01.c3d", "2014001_ST_static.c3d", 67.0, 6.0),
+        ("bmc_walk_run/lower_walk1.trc", None, 70.0, 6.0),
+        ("biobuddy_functional/functional_right_knee.c3d", None, 62.2, 6.0),
+        ("stoop_lift_box/stoop1_t169_f620f800.c3d", "neu_t169_f250f350.c3d", 81.7, 15.0),
+    ],
+)
+def test_published_marker_sets_are_found_and_followed(trial, static, mass_kg, bound_mm, real_data):
+    path = real_data / trial
+    found = followed(path, mass_kg, None if static is None else path.parent / static, filter="kinematic")
+    assert marker_rms_mm(found) <= bound_mm

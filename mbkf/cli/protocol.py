@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from mbkf.model.protocol import Protocol
 
-SUBCOMMANDS = ("list", "show", "import", "check", "edit")
+SUBCOMMANDS = ("list", "show", "guess", "import", "check", "edit")
 """Each is the module ``mbkf.cli.protocol_<name>``."""
 
 PIPED_WIDTH = 110
@@ -21,6 +21,7 @@ _EPILOG = """\
 examples:
   mbkf protocol list
   mbkf protocol show plug_in_gait
+  mbkf protocol guess static.c3d --trial walk.c3d --out my_markers.toml
   mbkf protocol import model.osim --out my_markers.toml
   mbkf protocol check my_markers.toml static.c3d
   mbkf protocol edit static.c3d --protocol my_markers.toml --out my_markers.toml
@@ -33,7 +34,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the group to the command line."""
     parser = subparsers.add_parser(
         "protocol",
-        help="marker sets: list, show, import, check, change",
+        help="marker sets: list, show, guess, import, check, change",
         description="Marker sets: which markers there are, on which segment, where.",
         epilog=_EPILOG,
     )

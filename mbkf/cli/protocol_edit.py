@@ -28,7 +28,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("capture", metavar="CAPTURE", help=f"standing trial ({CAPTURE_FILES})")
     parser.add_argument(
-        "--protocol", metavar="NAME|FILE", help="marker set to begin with; by default found from the names"
+        "--protocol",
+        metavar="NAME|FILE",
+        help="marker set to begin with; by default found from the names, or inferred",
     )
     parser.add_argument("--out", required=True, metavar="FILE.toml", help="file that saving writes")
     add_axes_options(parser)
@@ -51,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
     from mbkf.model.protocol_file import checked_name
-    from mbkf.pipelines.protocol.editing import starting_protocol
+    from mbkf.pipelines.protocol.editing import starting_set
     from mbkf.pipelines.protocol.standing import stand_beside
     from mbkf.viz.protocol.edit import EditPage
     from mbkf.viz.server import checked_port
@@ -59,8 +61,8 @@ def run(args: argparse.Namespace) -> int:
     out, port = checked_name(args.out), checked_port(args.port)
     check_folder(out.parent)
     capture = read_capture(args.capture, **axes_options(args))
-    protocol = starting_protocol(capture, args.protocol)
     with stages() as report:
+        protocol, capture = starting_set(capture, args.protocol)
         standing = stand_beside(capture, protocol, report)
     if standing.trouble:
         print(f"warning: the set does not fit this capture yet: {standing.trouble}", file=sys.stderr)

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import argparse
 import json
+from textwrap import shorten
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from mbkf.model.protocol import Protocol
+
+SOURCE_SHOWN = 30
+"""Characters of a source that the table shows."""
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -15,7 +19,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "list",
         help="the marker sets that come with mbkf",
-        description="The marker sets that come with mbkf.",
+        description="The marker sets that come with mbkf; --json tells their sources in full.",
         epilog="example:\n  mbkf protocol list",
     )
     parser.add_argument("--json", action="store_true", help="print everything as JSON")
@@ -35,9 +39,11 @@ def run(args: argparse.Namespace) -> int:
         return 0
     table = Table()
     for heading in ("name", "title", "markers", "body", "source"):
-        table.add_column(heading, justify="right" if heading == "markers" else "left", overflow="fold")
+        wide = max(len(str(row[heading])) for row in rows) if heading == "name" else None
+        table.add_column(heading, justify="right" if heading == "markers" else "left", min_width=wide)
     for row in rows:
-        table.add_row(*(str(value) for value in row.values()))
+        short = {**row, "source": shorten(str(row["source"]), SOURCE_SHOWN, placeholder=" …")}
+        table.add_row(*(str(value) for value in short.values()))
     wide_console().print(table)
     return 0
 

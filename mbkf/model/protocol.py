@@ -119,7 +119,8 @@ def _shipped_file(name: str) -> Path:
 def detect_protocol(names: Iterable[str], body: BodyDescription | None = None) -> Protocol:
     """The shipped protocol that explains most of the capture's marker names.
 
-    Ties go to the protocol with fewer markers that the capture lacks.
+    Ties go to the protocol with fewer markers that the capture lacks: first of those on the segments that it shows,
+    less those usually worn in a static trial only, then of all.
 
     Args:
         names: Names of the capture's markers.
@@ -129,13 +130,17 @@ def detect_protocol(names: Iterable[str], body: BodyDescription | None = None) -
         UnknownName: No protocol knows even six of the names.
     """
     present = tuple(names)
-    best, best_score = None, (0, 0)
+    best, best_score = None, (0, 0, 0)
     for candidate in protocol_names():
         protocol = load_protocol(candidate, body)
-        known = len(protocol.match(present))
-        tracked = sum(marker.kind != "computed" for marker in protocol.markers)
-        if (known, -tracked) > best_score:
-            best, best_score = protocol, (known, -tracked)
+        known = protocol.match(present).values()
+        shown = {marker.segment for marker in known}
+        worn = [marker for marker in protocol.markers if marker.kind != "computed"]
+        there = {marker.name for marker in known}
+        lacking = sum(m.segment in shown and m.name not in there and not m.static_only for m in worn)
+        score = (len(there), -lacking, -len(worn))
+        if score > best_score:
+            best, best_score = protocol, score
     if best is None or best_score[0] < 6:
         raise UnknownName(
             "marker set",

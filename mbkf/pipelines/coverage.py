@@ -5,20 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from mbkf.errors import InvalidInput
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Named, Subject, match_names
 from mbkf.model.protocol import Protocol, load_protocol, protocol_names
 
 LEAST_SHARE = 0.6
 """A protocol that knows a smaller share of a capture's markers is probably not theirs, and never used in silence."""
-
-COMPLETE_SHARE = 0.9
-"""From this share of a protocol's markers on the segments that it reaches, the root among them, its set is complete:
-what else the person wears is worn besides it, as the clusters of the CGM 2 beside Plug-in Gait's markers."""
-
-LEAST_SHARE_COMPLETE = 0.5
-"""A complete set is taken unasked, with a warning, from this share of the markers on: others are not the most."""
 
 MOST_NAMED = 8
 """Names that a line lists at most."""
@@ -41,13 +33,11 @@ class MarkerUse:
         protocol: Name of the protocol.
         used: Names in the capture that are followed or scaled from.
         ignored: The reason by each other name.
-        complete: Whether the protocol's own set is there wherever it has any marker.
     """
 
     protocol: str
     used: tuple[str, ...]
     ignored: Mapping[str, str] = field(default_factory=dict)
-    complete: bool = False
 
     @property
     def markers(self) -> int:
@@ -66,8 +56,8 @@ class MarkerUse:
 
     @property
     def accepted(self) -> bool:
-        """Whether it may be used without being asked for: it knows enough of the markers, or is there as a whole."""
-        return self.share >= (LEAST_SHARE_COMPLETE if self.complete else LEAST_SHARE)
+        """Whether it may be used without being asked for: it knows enough of the markers."""
+        return self.share >= LEAST_SHARE
 
     @property
     def told(self) -> str:
@@ -90,7 +80,7 @@ class MarkerUse:
         """
         used = tuple(name for name in self.used if name not in reasons)
         further = {name: reason for name, reason in reasons.items() if name in self.used}
-        return MarkerUse(self.protocol, used, {**self.ignored, **further}, self.complete)
+        return MarkerUse(self.protocol, used, {**self.ignored, **further})
 
     def as_report(self) -> dict[str, object]:
         """Plain data for a subject's report."""
@@ -120,14 +110,9 @@ def use_by_protocol(captures: Sequence[MarkerTrajectories], protocol: Protocol) 
     matches = [protocol.match(one.names) for one in captures]
     names = dict.fromkeys(name for one in captures for name in _seen(one))
     used = tuple(name for name in names if any(name in match for match in matches))
-    there = {match[name].name for match in matches for name in used if name in match}
-    reached = {marker.segment for marker in protocol.markers if marker.name in there}
-    own = [m for m in protocol.markers if m.kind != "computed" and m.segment in reached]
-    roots = {segment.name for segment in protocol.body.segments if segment.parent == "world"}
-    complete = roots <= reached and sum(m.name in there for m in own) >= COMPLETE_SHARE * len(own)
-    left_out = {n: protocol.ignored[n] or LEFT_OUT for n in names if n in protocol.ignored and n not in used}
-    reasons = {**_ignored(names, used, protocol.markers, _cut_from(protocol)), **left_out}
-    return MarkerUse(protocol.name, used, reasons, bool(own) and complete)
+    reasons = _ignored(names, used, protocol.markers, _cut_from(protocol))
+    left_out = {n: reason or LEFT_OUT for n, reason in protocol.ignored.items() if n in reasons}
+    return MarkerUse(protocol.name, used, {**reasons, **left_out})
 
 
 def _cut_from(protocol: Protocol) -> str:
@@ -150,7 +135,15 @@ def use_by_subject(markers: MarkerTrajectories, subject: Subject) -> MarkerUse:
     used = tuple(name for name in names if name in match)
     reasons = _ignored(names, used, subject.markers, subject.protocol)
     reasons.update({name: COMPUTED for name in reasons if name in _computed(subject)})
+    reasons.update({name: reason for name, reason in _left_out(subject).items() if name in reasons})
     return MarkerUse(subject.protocol, used, reasons)
+
+
+def _left_out(subject: Subject) -> dict[str, str]:
+    """What was left out of the person's marker set on purpose, with the reason."""
+    use = subject.report.get(USE_KEY)
+    ignored = use["ignored"] if isinstance(use, dict) else {}
+    return {name: reason for name, reason in ignored.items() if reason not in (UNKNOWN, NO_SEGMENT, TWICE)}
 
 
 def _computed(subject: Subject) -> set[str]:
@@ -158,19 +151,6 @@ def _computed(subject: Subject) -> set[str]:
     scaled = subject.report.get("markers")
     entries = scaled.items() if isinstance(scaled, dict) else ()
     return {name for name, entry in entries if entry["kind"] == "computed"}
-
-
-def require_coverage(use: MarkerUse) -> None:
-    """Refuses a protocol that was found by the names, knows few of them, and is not there as a complete set.
-
-    Raises:
-        InvalidInput: It is such a one.
-    """
-    if not use.accepted:
-        raise InvalidInput(
-            f"no protocol fits these markers: the nearest, {use.told}, not {listed(use.unknown)}; "
-            f"--protocol {use.protocol} takes it all the same, --protocol FILE.toml a marker set of your own"
-        )
 
 
 def _seen(markers: MarkerTrajectories) -> tuple[str, ...]:

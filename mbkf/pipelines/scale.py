@@ -2,22 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from mbkf.conventions import StageCallback
-from mbkf.errors import InvalidInput
+from mbkf.errors import InvalidInput, MbkfError, NotConverged, NotObservable
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
 from mbkf.model.body_file import load_body
 from mbkf.model.description import BodyDescription
-from mbkf.model.protocol import Protocol, detect_protocol, load_protocol
+from mbkf.model.protocol import Protocol, load_protocol
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.axes.captures import REPORT_KEY, checked_for_protocol, told_axes
-from mbkf.pipelines.coverage import USE_KEY, require_coverage, use_by_protocol
+from mbkf.pipelines.coverage import USE_KEY, use_by_protocol
+from mbkf.pipelines.marker_set.choice import ChosenSet, choose_marker_set, inferred_choice
 from mbkf.scaling.fit import scale_subject
 from mbkf.scaling.problem import ScalingSettings
+
+INFERRED_KEY = "inferred"
+"""Key of a subject's report under which an inferred marker set is told."""
+
+EXPECTED = 4.0
+"""Markers that fit worse (RMS) than so many times their noise may not be those that their names say."""
+
+BETTER = 0.7
+"""An inferred marker set takes a shipped one's place where its markers fit to so much of that one's RMS, or better."""
 
 
 def scale(
@@ -38,7 +50,8 @@ def scale(
         trials: Trials of any movement.
         mass_kg: Body mass; by default what the captures state.
         height_m: Body height, if known.
-        protocol: Protocol, its name or its file; by default the one the marker names belong to.
+        protocol: Protocol, its name or its file; by default the shipped one that the marker names belong to, else one
+            inferred from the captures.
         body: The reference body: its name, a file of your own, or what :func:`mbkf.load_body` read; by default the one
             the protocol was written for. Markers of segments it does not have are left out.
         settings: Weights of the priors.
@@ -46,10 +59,10 @@ def scale(
 
     Raises:
         InvalidInput: No trial, no mass, a mass or height that cannot be, a protocol placed on another body, axes or a
-            unit that cannot be right, or no protocol given and the nearest one knows too few of the markers.
-        UnknownName: No protocol knows the markers, it names unknown segments, or there is no such body.
+            unit that cannot be right.
+        UnknownName: There is no such protocol or body, or it names unknown segments.
         FileFormatError: The body's or the protocol's file is missing or damaged.
-        NotObservable: Too few markers of the protocol.
+        NotObservable: Too few markers of the protocol, or no person is found among markers that none knows.
         NotConverged: The markers do not fit a person.
     """
     captures = ([] if static is None else [static]) + list(trials)
@@ -61,9 +74,9 @@ def scale(
         raise InvalidInput("the captures do not state the body mass; give --mass KG")
     if isinstance(body, str | Path):
         body = load_body(body)
-    found = protocol is None
+    chosen = None
     if protocol is None:
-        protocol = detect_protocol(captures[0].markers.names, body)
+        chosen = choose_marker_set(static, trials, body)
     elif isinstance(protocol, str):
         protocol = load_protocol(protocol, body)
     elif body is not None and (protocol.body.name, protocol.body.text) != (body.name, body.text):
@@ -71,25 +84,80 @@ def scale(
             f"the protocol '{protocol.name}' is placed on the body '{protocol.body.name}', not on '{body.name}'; "
             "read it with load_protocol(name, body)"
         )
-    use = use_by_protocol([one.markers for one in captures], protocol)
-    if found:
-        require_coverage(use)
     report = None if progress is None else lambda done, total: progress("Scaling", done, total)
-    checked = checked_for_protocol(captures, protocol)
-    standing = [] if static is None else checked[:1]
+
+    def scaled(by: ChosenSet) -> Subject:
+        return _scaled(static is not None, captures, by, mass_kg, height_m, settings, report)
+
+    if chosen is None:
+        assert isinstance(protocol, Protocol)
+        return scaled(ChosenSet(protocol, tuple(captures)))
+    if chosen.inferred is not None:
+        return scaled(chosen)
+    return _better(scaled, chosen, lambda: inferred_choice(static, trials, body))
+
+
+def _better(
+    scaled: Callable[[ChosenSet], Subject], shipped: ChosenSet, inferred: Callable[[], ChosenSet]
+) -> Subject:
+    """The person scaled by a shipped protocol; by an inferred set where the protocol's names fit no body well."""
+    subject, refused = None, None
+    try:
+        subject = scaled(shipped)
+    except (NotConverged, NotObservable) as error:
+        refused = error
+    expected = EXPECTED * float(np.median([marker.noise_m for marker in shipped.protocol.markers]))
+    if subject is not None and _rms_m(subject) <= expected:
+        return subject
+    try:
+        other = scaled(inferred())
+    except MbkfError:
+        other = None
+    if other is not None and (subject is None or _rms_m(other) < BETTER * _rms_m(subject)):
+        return other
+    if subject is None:
+        assert refused is not None
+        raise refused
+    return subject
+
+
+def _rms_m(subject: Subject) -> float:
+    rms = subject.report["marker_rms_mm"]
+    assert isinstance(rms, float)
+    return rms / 1e3
+
+
+def _scaled(
+    standing: bool,
+    captures: Sequence[Capture],
+    chosen: ChosenSet,
+    mass_kg: float,
+    height_m: float | None,
+    settings: ScalingSettings | None,
+    progress: Callable[[int, int], None] | None,
+) -> Subject:
+    """The person scaled by a marker set, with what became of the markers in the report."""
+    protocol = chosen.protocol
+    use = use_by_protocol([one.markers for one in captures], protocol)
+    checked = checked_for_protocol(chosen.captures, protocol)
+    first = 1 if standing else 0
     with single_threaded():
         subject = scale_subject(
-            [one.markers for one in standing],
-            [one.markers for one in checked[len(standing) :]],
+            [one.markers for one in checked[:first]],
+            [one.markers for one in checked[first:]],
             protocol,
             mass_kg=mass_kg,
             height_m=height_m,
             settings=settings,
-            progress=report,
+            progress=progress,
         )
     told = told_axes(captures, checked)
     use = use.without(_rarely_seen(captures, protocol, subject))
-    extra = {USE_KEY: use.as_report(), **({REPORT_KEY: told} if told else {})}
+    extra: dict[str, object] = {USE_KEY: use.as_report()}
+    if told:
+        extra[REPORT_KEY] = told
+    if chosen.inferred is not None:
+        extra[INFERRED_KEY] = {"told": chosen.inferred.line, "doubtful": chosen.inferred.doubts}
     return replace(subject, report={**subject.report, **extra})
 
 

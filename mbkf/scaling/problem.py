@@ -219,7 +219,7 @@ class ScalingProblem:
         count = len(self.body.scale_factors)
         by_shared = np.zeros((len(seen), 3, count + 3 * len(self.markers)))
         axes = rotations[sensor.joint_ids[seen]] * whiten[:, :, None]
-        origins = self._origin_derivatives(sensor.model, rotations)
+        origins = origin_derivatives(sensor.model, rotations)
         by_shared[:, :, :count] = origins[sensor.joint_ids[seen]] * whiten[:, :, None]
         by_shared[:, :, :count] += axes @ (self.reference_m[seen, :, None] * self._segment_scale[seen])
         for column in range(3):
@@ -231,14 +231,21 @@ class ScalingProblem:
             by_shared.reshape(size, by_shared.shape[2]),
         )
 
-    def _origin_derivatives(self, model: Body, rotations: Array) -> Array:
-        """(J, 3, K) derivative of every joint's world origin by the scale factors, along the chain."""
-        derivatives = np.zeros((len(rotations), 3, len(self.body.scale_factors)))
-        for segment in self.body.segments:
-            if segment.parent == "world":
-                continue
-            parent = model.joint(segment.parent).joint_id
-            lever = segment.origin_m[:, None] * self.body.segment(segment.parent).scale_matrix
-            joint = model.joint(segment.name).joint_id
-            derivatives[joint] = derivatives[parent] + rotations[parent] @ lever
-        return derivatives
+
+def origin_derivatives(model: Body, rotations: Array) -> Array:
+    """(J, 3, K) derivative of every joint's world origin by the scale factors, along the chain.
+
+    Args:
+        model: The scaled body.
+        rotations: (J, 3, 3) world rotations of its joints.
+    """
+    body = model.description
+    derivatives = np.zeros((len(rotations), 3, len(body.scale_factors)))
+    for segment in body.segments:
+        if segment.parent == "world":
+            continue
+        parent = model.joint(segment.parent).joint_id
+        lever = segment.origin_m[:, None] * body.segment(segment.parent).scale_matrix
+        joint = model.joint(segment.name).joint_id
+        derivatives[joint] = derivatives[parent] + rotations[parent] @ lever
+    return derivatives

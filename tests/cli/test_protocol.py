@@ -11,7 +11,14 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from mbkf.cli import protocol_check, protocol_edit, protocol_import, protocol_list, protocol_show
+from mbkf.cli import (
+    protocol_check,
+    protocol_edit,
+    protocol_guess,
+    protocol_import,
+    protocol_list,
+    protocol_show,
+)
 from mbkf.cli.main import main
 from mbkf.cli.protocol import SUBCOMMANDS
 from mbkf.model.protocol import load_protocol, protocol_names
@@ -40,7 +47,7 @@ def call(capsys, *words):
 
 
 def test_every_command_of_the_group_is_a_module():
-    modules = (protocol_list, protocol_show, protocol_import, protocol_check, protocol_edit)
+    modules = (protocol_list, protocol_show, protocol_guess, protocol_import, protocol_check, protocol_edit)
     assert tuple(module.__name__.rpartition("_")[2] for module in modules) == SUBCOMMANDS
 
 
@@ -76,6 +83,23 @@ def test_show_tells_doubts_and_what_is_ignored(capsys, tmp_path, opened):
     for told in ("50 %, or head 40 %", "ignored: ghost: mirror", "source: a visit"):
         assert told in out
     assert opened == []
+
+
+def test_guess_writes_a_set_that_explains_the_capture(capsys, person, tmp_path):
+    words = ("guess", person.static, "--trial", person.trial, "--out", tmp_path / "mine.toml")
+    code, out = call(capsys, *words)
+    assert code == 0
+    assert "marker set inferred" in out
+    found = load_protocol(tmp_path / "mine.toml")
+    assert found.name == "mine"
+    truth = load_protocol("reference36").match([marker.name for marker in found.markers])
+    right = [m for m in found.markers if m.name in truth and truth[m.name].segment == m.segment]
+    assert len(right) > 30
+    assert call(capsys, "check", tmp_path / "mine.toml", person.static)[0] == 0
+
+
+def test_guess_needs_a_capture(tmp_path, refused):
+    refused(["protocol", "guess", "--out", tmp_path / "mine.toml"], "static trial")
 
 
 def test_import_writes_what_it_prints(capsys, tmp_path):

@@ -12,6 +12,7 @@ import pytest
 
 import mbkf
 from mbkf.cli.main import build_parser
+from mbkf.model.protocol import protocol_names
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -117,3 +118,13 @@ def test_every_paper_that_the_code_cites_stands_among_the_references():
 
 def test_the_citation_names_this_version():
     assert f"version: {mbkf.__version__}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+
+
+def test_the_page_on_marker_sets_lists_every_shipped_one():
+    page = (DOCS / "own_marker_set.md").read_text(encoding="utf-8")
+    rows = [
+        line.split("|")[1]
+        for line in page.partition("Each file names")[0].splitlines()
+        if line.startswith("| `")
+    ]
+    assert sorted(re.findall(r"`(\w+)`", " ".join(rows))) == list(protocol_names())

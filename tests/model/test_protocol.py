@@ -14,14 +14,27 @@ from mbkf.model.sides import mirrored
 LEGS = Path(__file__).resolve().parents[2] / "docs/examples/bodies/legs.toml"
 SHIPPED = (
     "autolabel62",
+    "biobuddy73",
+    "cast",
+    "cgm23",
+    "cgm24",
+    "cgm25",
+    "fukuchi2018",
     "gait2354",
+    "hbm47",
     "helen_hayes",
+    "ior_gait",
+    "opencap_lab",
     "opensim_fullbody2009",
+    "optitrack_biomech57",
+    "optitrack_core50",
     "oxford_biomechzoo",
     "plug_in_gait",
+    "qualisys_sports",
     "rajagopal_run",
     "rajagopal_walk",
     "reference36",
+    "rehazenter52",
 )
 
 CAPTURES = {
@@ -37,9 +50,16 @@ CAPTURES = {
     "gaitalytics_walk/overground_fullbody_4plates.c3d": "plug_in_gait",
     "opensim_gappy_walk/walking2.c3d": "opensim_fullbody2009",
     "autolabel_unlabelled_fullbody/PronetoRun01_labelled.c3d": "autolabel62",
+    "stoop_lift_box/neu_t169_f250f350.c3d": "plug_in_gait",
+    "cgm24_lowerlimb_walk/CGM24_Walking01.c3d": "cgm24",
+    "rehazenter_walk/2014001_C1_01.c3d": "rehazenter52",
+    "bmc_walk_run/lower_walk1.trc": "fukuchi2018",
+    "bmc_walk_run/run.trc": "rajagopal_run",
+    "biobuddy_functional/static.c3d": "biobuddy73",
+    "biobuddy_functional/functional_right_knee.c3d": "biobuddy73",
 }
-NOT_FOLLOWED = ("Ground", "Mid")
-"""Ends and beginnings of the points that no protocol takes over (projections and midpoints)."""
+NOT_FOLLOWED = ("Ground", "Mid", "v", "PELO")
+"""Ends and beginnings of the points that no protocol takes over (projections, midpoints and virtual points)."""
 
 NAME_LISTS = {
     "plug_in_gait": (
@@ -59,7 +79,59 @@ NAME_LISTS = {
         "R.ASIS L.ASIS V.Sacral R.Thigh.Upper R.Thigh.Front R.Thigh.Rear L.Thigh.Upper L.Thigh.Front "
         "R.Heel R.Midfoot.Sup R.Toe.Tip Sternum R.Acromium L.Acromium R.Wrist.Med Top.Head"
     ),
+    "cgm23": (
+        "LASI RASI LPSI RPSI LTHI LTHAP LTHAD LKNE LKNM LTIB LTIAP LTIAD LANK LMED LHEE LTOE "
+        "RTHI RTHAP RTHAD RKNE RKNM RTIB RTIAP RTIAD RANK RMED RHEE RTOE"
+    ),
+    "cgm24": (
+        "LASI RASI LPSI RPSI LTHI LTHAP LTHAD LKNE LKNM LTIB LTIAP LTIAD LANK LMED LHEE LTOE LFMH LSMH LVMH "
+        "RTHI RTHAP RTHAD RKNE RKNM RTIB RTIAP RTIAD RANK RMED RHEE RTOE RFMH RSMH RVMH "
+        "C7 T10 CLAV STRN LFHD LBHD RFHD RBHD LSHO LELB LWRA LWRB LFIN RSHO RELB RWRA RWRB RFIN"
+    ),
+    "cgm25": (
+        "LASI RASI LPSI RPSI LTHI LTHAP LTHAD LKNE LTIB LTIAP LTIAD LANK LHEE LTOE LFMH LVMH "
+        "RTHI RTHAP RTHAD RKNE RTIB RTIAP RTIAD RANK RHEE RTOE RFMH RVMH "
+        "T2 T10 CLAV STRN GLAB LMAS RMAS LSHO LELB LWRA LWRB LFIN RSHO RELB RWRA RWRB RFIN"
+    ),
+    "ior_gait": (
+        "RASIS LASIS RPSIS LPSIS RGT RLE RME RHF RTT RLM RMM RCA RFM RSM RVM LGT LLE LME LHF LTT LLM LMM LCA LFM "
+        "LSM LVM C7 T2 MAI IJ PX L1 L3 L5 RA LA"
+    ),
+    "cast": (
+        "RIAS LIAS RIPS LIPS RTH1 RTH2 RTH3 RTH4 RFLE RFME RSK1 RSK2 RSK3 RSK4 RFAL RTAM RFCC RFM1 RFM2 RFM5 "
+        "LTH1 LTH2 LTH3 LTH4 LFLE LFME LSK1 LSK2 LSK3 LSK4 LFAL LTAM LFCC LFM1 LFM2 LFM5"
+    ),
+    "hbm47": (
+        "LHEAD THEAD RHEAD FHEAD C7 T10 SACR NAVE XYPH STRN BBAC LSHO LDELT LLEE LMEE LFRM LMW LLW LFIN "
+        "RSHO RDELT RLEE RMEE RFRM RMW RLW RFIN LASIS RASIS LPSIS RPSIS LGTRO FLTHI LLEK LATI LLM LHEE LTOE LMT5 "
+        "RGTRO FRTHI RLEK RATI RLM RHEE RTOE RMT5"
+    ),
+    "optitrack_core50": (
+        "HeadTop HeadFront HeadSide BackTop Chest BackLeft BackRight WaistLFront WaistRFront WaistLBack "
+        "WaistRBack LShoulderTop LShoulderBack LUArmHigh LElbowOut LWristOut LWristIn LHandOut RShoulderTop "
+        "RShoulderBack RUArmHigh RElbowOut RWristOut RWristIn RHandOut LThigh LKneeOut LShin LAnkleOut LToeIn "
+        "LToeOut LToeTip LHeel RThigh RKneeOut RShin RAnkleOut RToeIn RToeOut RToeTip RHeel"
+    ),
+    "opencap_lab": (
+        "r.ASIS L.ASIS r.PSIS L.PSIS C7 R_Shoulder L_Shoulder R_Sternum L_Sternum r_knee r_mknee r_ankle r_mankle "
+        "r_toe r_5meta r_calc L_knee L_mknee L_ankle L_mankle L_toe L_5meta L_calc r_thigh1 r_thigh2 r_sh2 r_sh3 "
+        "R_elbow_lat R_elbow_med R_wrist_radius R_wrist_ulna R_HJC L_HJC"
+    ),
 }
+
+TWO_STYLES = {
+    "ior_gait": ("R_IAS R_FTC R_FLE L_FME R_FAX R_TTC CV7 SJN", "RIAS RGT RLE LFME RHF RTTC C7 IJ"),
+    "cast": ("R_IAS R_TH1 R_SK4 L_FLE", "RIAS RTH1 RSK4 LFLE"),
+    "qualisys_sports": (
+        "HeadL WaistLFront LThighFrontLow LKneeIn",
+        "Q_HeadL Q_WaistLFront Q_LThighFrontLow Q_LKneeIn",
+    ),
+    "opencap_lab": (
+        "r.ASIS r_knee R_elbow_lat L_Shoulder",
+        "r.ASIS_study r_knee_study r_lelbow_study L_shoulder_study",
+    ),
+}
+"""Names of some sets, and how another laboratory writes the same ones."""
 
 
 @pytest.fixture
@@ -83,6 +155,7 @@ def test_a_shipped_protocol_is_sound(name):
     segments = {segment.name for segment in protocol.body.segments}
     labels = [alias for marker in protocol.markers for alias in (marker.name, *marker.aliases)]
     assert protocol.name == name
+    assert len(protocol.source) >= 20, "where it comes from"
     assert len(labels) == len(set(labels)), "a name or alias stands twice"
     for marker in protocol.markers:
         assert marker.segment in segments
@@ -95,7 +168,7 @@ def test_a_shipped_protocol_is_sound(name):
 @pytest.mark.parametrize("name", SHIPPED)
 def test_markers_lie_on_the_side_their_name_says(name):
     for marker in load_protocol(name).markers:
-        side = {"R": "right_", "L": "left_"}.get(marker.name[0])
+        side = {"R": "right_", "L": "left_"}.get(marker.name[0].upper())
         if marker.segment.startswith(("right_", "left_")):
             assert marker.segment.startswith(side), marker.name
 
@@ -103,7 +176,7 @@ def test_markers_lie_on_the_side_their_name_says(name):
 @pytest.mark.parametrize("name", SHIPPED)
 def test_mirrored_markers_mirror(name):
     markers = {marker.name: marker for marker in load_protocol(name).markers}
-    partners = {name: "L" + name[1:] for name in markers if name[0] == "R"}
+    partners = {name: "L" + name[1:] for name in markers if name[0] in "Rr"}
     pairs = [(markers[name], markers[other]) for name, other in partners.items() if other in markers]
     asymmetric = 0
     for right, left in pairs:
@@ -126,6 +199,27 @@ def test_detection_by_names(name):
 def test_a_protocol_is_found_by_its_own_names(name):
     followed = [marker.name for marker in load_protocol(name).markers if marker.kind != "computed"]
     assert detect_protocol(followed).name == name
+
+
+@pytest.mark.parametrize("name", TWO_STYLES)
+def test_both_styles_of_writing_names_mean_the_same_markers(name):
+    one, other = (names.split() for names in TWO_STYLES[name])
+    protocol = load_protocol(name)
+    assert list(protocol.match(one).values()) == list(protocol.match(other).values())
+    assert len(protocol.match(one)) == len(one)
+
+
+def test_plug_in_gait_with_medial_markers_is_not_taken_for_a_later_model():
+    legs = ["ASI", "PSI", "THI", "KNE", "KNM", "TIB", "ANK", "MED", "HEE", "TOE"]
+    assert detect_protocol([side + name for side in "LR" for name in legs]).name == "plug_in_gait"
+
+
+@pytest.mark.parametrize("name", ["rehazenter52", "optitrack_biomech57", "plug_in_gait", "cgm24", "cast"])
+def test_of_sets_with_the_same_legs_the_complete_one_is_found(name):
+    """ior_gait, cast, rehazenter52 and biomech57 share names, as plug_in_gait and the CGMs: what is lacking tells."""
+    legs = ("pelvis", "thigh", "shank", "foot", "toes")
+    worn = [m.name for m in load_protocol(name).markers if m.segment.endswith(legs) and not m.static_only]
+    assert detect_protocol(worn).name == name
 
 
 @pytest.mark.parametrize("file", CAPTURES)
@@ -195,7 +289,8 @@ def test_markers_for_the_static_trial_only_say_so_on_both_sides():
     markers = {marker.name: marker for marker in load_protocol("oxford_biomechzoo").markers}
     off = {name for name, marker in markers.items() if marker.static_only}
     assert off == {f"{side}{part}" for side in "RL" for part in ("MMA", "PCA", "D1M", "TPF")}
-    assert not any(marker.static_only for marker in load_protocol("plug_in_gait").markers)
+    medial = {marker.name for marker in load_protocol("plug_in_gait").markers if marker.static_only}
+    assert medial == {"RKNM", "LKNM", "RMED", "LMED"}
 
 
 def test_a_protocol_is_placed_on_another_body():

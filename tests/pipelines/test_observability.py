@@ -6,6 +6,9 @@ from mbkf.errors import NotObservable, UnknownName
 from mbkf.model.protocol import load_protocol
 from mbkf.pipelines.observability import check_protocol
 
+HANDS, TOES = {"right_hand", "left_hand"}, {"right_toes", "left_toes"}
+ARMS = {"right_upper_arm", "right_forearm", "left_upper_arm", "left_forearm"}
+HEAD = {"neck", "head"}
 BLIND = {
     "reference36": set(),
     "plug_in_gait": {"right_hand", "left_hand", "right_toes", "left_toes"},
@@ -14,6 +17,19 @@ BLIND = {
     "rajagopal_walk": {"neck", "head", "right_hand", "left_hand"},
     "rajagopal_run": {"neck", "head", "right_hand", "left_hand"},
     "autolabel62": {"right_hand", "left_hand", "right_toes", "left_toes"},
+    "biobuddy73": set(),
+    "optitrack_core50": set(),
+    "cgm23": HANDS | TOES,
+    "cgm24": HANDS | TOES,
+    "cgm25": HANDS | TOES,
+    "hbm47": HANDS | TOES,
+    "qualisys_sports": HANDS | TOES,
+    "optitrack_biomech57": HANDS,
+    "opencap_lab": HANDS | HEAD,
+    "rehazenter52": TOES | HEAD,
+    "ior_gait": HANDS | HEAD | ARMS,
+    "cast": HANDS | HEAD | ARMS | TOES | {"torso"},
+    "fukuchi2018": HANDS | HEAD | ARMS | TOES | {"torso"},
     "helen_hayes": {"right_forearm", "left_forearm", "right_hand", "left_hand", "right_toes", "left_toes"},
     "opensim_fullbody2009": {
         *("right_upper_arm", "right_forearm", "right_hand", "right_toes"),

@@ -10,10 +10,13 @@ from mbkf.conventions import StageCallback
 from mbkf.errors import MbkfError
 from mbkf.io.records import Capture
 from mbkf.model.protocol import Protocol
-from mbkf.pipelines.coverage import COMPLETE_SHARE, LEAST_SHARE, MarkerUse, listed, use_by_protocol
+from mbkf.pipelines.coverage import LEAST_SHARE, MarkerUse, listed, use_by_protocol
 from mbkf.pipelines.protocol.standing import scale_nominally
 
 OK, DOUBTFUL, BAD = "ok", "doubtful", "bad"
+
+WHOLE_SHARE = 0.9
+"""A set that knows a smaller share of the capture's markers is not its whole set."""
 
 GOOD_RMS_MM, POOR_RMS_MM = 12.0, 25.0
 """Up to the first the markers fit as those of a right set do (2 to 12 mm in our captures); beyond the second they are
@@ -138,7 +141,7 @@ def _judged(use: MarkerUse, rms: float | None, fits: list[MarkerFit], trouble: s
         told = f"{use.told}, not {listed(use.unknown)}: add them, or leave them out with 'mbkf protocol edit'"
         if use.share < LEAST_SHARE:
             bad.append(told)
-        elif use.share < COMPLETE_SHARE:
+        elif use.share < WHOLE_SHARE:
             doubtful.append(told)
     if rms is not None and rms > GOOD_RMS_MM:
         told = f"markers fit to {rms:.0f} mm RMS, a right set to {GOOD_RMS_MM:.0f}: see which are worst"

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbkf.conventions import Array, read_only
-from mbkf.errors import InvalidInput, UnknownName
+from mbkf.errors import InvalidInput, NotObservable, UnknownName
 from mbkf.io.records import Capture
 from mbkf.model.body_file import load_body
 from mbkf.model.protocol import (
@@ -16,10 +16,10 @@ from mbkf.model.protocol import (
     DEFAULT_PLACEMENT_SD_M,
     Protocol,
     ProtocolMarker,
-    detect_protocol,
     load_protocol,
 )
-from mbkf.pipelines.protocol.standing import Standing, in_reference
+from mbkf.pipelines.marker_set.choice import choose_marker_set
+from mbkf.pipelines.protocol.standing import Standing, in_reference, stands_still
 
 SURE = 0.9
 """A marker is in doubt where its probability is below this."""
@@ -42,23 +42,28 @@ class Choice:
     ignored: str = ""
 
 
-def starting_protocol(capture: Capture, given: str | None) -> Protocol:
-    """The marker set to begin with: the given one, the shipped one that knows the names, or an empty one.
+def starting_set(capture: Capture, given: str | None) -> tuple[Protocol, Capture]:
+    """The marker set to begin with: the given one, the shipped one that knows the names, an inferred or an empty one.
 
     Args:
         capture: The capture.
         given: Name or file of a marker set, None where none was named.
+
+    Returns:
+        The set, and the capture, with its axes put right where the set was inferred from it.
 
     Raises:
         UnknownName: No marker set is called so.
         FileFormatError: The file is not a valid one.
     """
     if given is not None:
-        return load_protocol(given)
+        return load_protocol(given), capture
+    still = stands_still(capture.markers)
     try:
-        return detect_protocol(capture.markers.names)
-    except UnknownName:
-        return Protocol("my_markers", "My markers", load_body("human18"), ())
+        chosen = choose_marker_set(capture if still else None, () if still else (capture,))
+    except (NotObservable, InvalidInput):
+        return Protocol("my_markers", "My markers", load_body("human18"), ()), capture
+    return chosen.protocol, chosen.captures[0]
 
 
 def edited(protocol: Protocol, standing: Standing, choices: Mapping[str, Choice], name: str) -> Protocol:

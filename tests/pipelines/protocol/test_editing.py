@@ -7,7 +7,7 @@ import pytest
 
 from mbkf.errors import FileFormatError, InvalidInput, UnknownName
 from mbkf.model.protocol import load_protocol
-from mbkf.pipelines.protocol.editing import Choice, edited, starting_protocol
+from mbkf.pipelines.protocol.editing import Choice, edited, starting_set
 from mbkf.pipelines.protocol.standing import in_reference, stand_beside
 from tests.captures import made_capture
 
@@ -90,11 +90,26 @@ def test_what_cannot_be_is_refused(name, choice, error, standing):
         edited(before, standing, {name: choice}, "mine")
 
 
+def renamed(markers):
+    return replace(markers, names=tuple(f"m{k}" for k in range(len(markers.names))))
+
+
 def test_where_a_set_begins(tmp_path):
     capture = made_capture(2, 0.0)
-    assert starting_protocol(capture, None).name == "reference36"
-    assert starting_protocol(capture, "gait2354").name == "gait2354"
-    strange = replace(capture.markers, names=tuple(f"m{k}" for k in range(len(capture.markers.names))))
-    assert starting_protocol(replace(capture, markers=strange), None).markers == ()
+    found, same = starting_set(capture, None)
+    assert found.name == "reference36" and same is capture
+    assert starting_set(capture, "gait2354")[0].name == "gait2354"
+    few = replace(capture, markers=renamed(capture.markers.select(capture.markers.names[:4])))
+    found, same = starting_set(few, None)
+    assert found.markers == () and same is few
     with pytest.raises(FileFormatError):
-        starting_protocol(capture, str(tmp_path / "none.toml"))
+        starting_set(capture, str(tmp_path / "none.toml"))
+
+
+@pytest.mark.parametrize("amplitude", [0.0, 0.4])
+def test_markers_whose_names_tell_nothing_are_inferred(amplitude):
+    capture = made_capture(40, amplitude)
+    found, _ = starting_set(replace(capture, markers=renamed(capture.markers)), None)
+    truth = {f"m{k}": PROTOCOL.match([name])[name].segment for k, name in enumerate(capture.markers.names)}
+    right = [marker.name for marker in found.markers if truth[marker.name] == marker.segment]
+    assert len(right) > 0.7 * len(truth)

@@ -1,0 +1,312 @@
+"""Where markers are on the body by their names alone, from a dictionary of spellings and a small grammar.
+
+All names of a capture are read together, because a set shares a convention. What many of them carry in front or
+behind is taken off (:mod:`mbkf.marker_sets.affixes`); each way to find a side in a name is tried
+(:mod:`mbkf.marker_sets.sides`); what is left is looked up (:mod:`mbkf.marker_sets.spelling`). A way counts more
+where the set holds the marker of the other side (RKNE, LKNE) and where the other names tell their side the same way;
+an L counts as "lateral" where the set holds the same name with an M. A name that can be read in several ways keeps
+them with their probabilities; a name with an unknown piece is not read at all.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from mbkf.marker_sets.affixes import Core, without_affixes
+from mbkf.marker_sets.sides import (
+    APART,
+    NEEDS_PARTNER,
+    WEIGHTS,
+    SideGuess,
+    side_guesses,
+    side_words,
+    tokens_of,
+)
+from mbkf.marker_sets.spelling import Dictionary, Odds, Parse, load_dictionary
+from mbkf.model.body_file import load_body
+
+KINDS = ("marker", "keypoint", "computed", "object", "unknown")
+"""What a named point is: on the skin; a joint's centre of a markerless system; made by software; of no body."""
+
+BODY = "human18"
+"""The body whose segments and landmarks the places are."""
+
+_WITH_PARTNER, _WITHOUT_PARTNER = 6.0, 0.4
+_PARTNER_ELSEWHERE, _SIDE_POSSIBLE = 0.15, 0.3
+_UNCONVENTIONAL, _CONVENTION = 0.15, 0.3
+_LEAST = 0.02
+_MOSTLY = 0.8
+_SPINE = {"c": 7, "t": 12, "l": 5, "s": 5}
+_NUMBERED = re.compile(r"([a-z])(\d+)")
+_SHORTEST_OBJECT = 3
+
+
+@dataclass(frozen=True)
+class NamedPlace:
+    """A place on the body that a name may mean.
+
+    Attributes:
+        segment: Segment of human18.
+        landmark: Landmark of human18, "" where the name tells the segment only.
+        probability: That the marker is there.
+    """
+
+    segment: str
+    landmark: str
+    probability: float
+
+
+@dataclass(frozen=True)
+class NameReading:
+    """What the name of one point tells.
+
+    Attributes:
+        name: The name as given.
+        places: Likeliest first; their probabilities add up to 1 at most. Empty where the name tells no place.
+        kind: One of :data:`KINDS`.
+        side: "right", "left", "middle" or "" where it is not known.
+    """
+
+    name: str
+    places: tuple[NamedPlace, ...]
+    kind: str
+    side: str
+
+
+@dataclass(frozen=True)
+class _Way:
+    """One way to read a name: a side and a place."""
+
+    guess: SideGuess
+    parse: Parse
+    weight: float
+
+
+def read_names(names: Sequence[str]) -> dict[str, NameReading]:
+    """Reads the names of all points of one capture together.
+
+    Args:
+        names: The names as the file has them.
+
+    Returns:
+        The reading by name; names that tell nothing are of kind "unknown" without places.
+    """
+    dictionary = load_dictionary()
+    sides = side_words()
+    sets: dict[tuple[str, ...], list[Core]] = defaultdict(list)
+    for core in without_affixes(
+        list(dict.fromkeys(names)),
+        lambda word: word.lower() in sides or any(map(dictionary.spellings.knows, _texts_of(word))),
+    ):
+        sets[core.affixes].append(core)
+    readings = {
+        reading.name: reading for cores in sets.values() for reading in _Set(cores, dictionary).readings()
+    }
+    return {name: readings[name] for name in names}
+
+
+def _texts_of(word: str) -> list[str]:
+    """A word as a name, and what is left of it without a side."""
+    return [guess.rest for guess in side_guesses(word)]
+
+
+class _Set:
+    """The names of one set, read together."""
+
+    def __init__(self, cores: Sequence[Core], dictionary: Dictionary) -> None:
+        self.cores, self.dictionary = cores, dictionary
+        self.texts = {"".join(tokens_of(core.core)) for core in cores}
+        first = {core.name: self._ways(core, {}) for core in cores}
+        styles = self._styles(first)
+        self.ways = {core.name: self._ways(core, styles) for core in cores}
+        best = [ways[0].parse for ways in self.ways.values() if ways]
+        self.company = frozenset(parse.spelling for parse in best)
+        pointlike = [parse for parse in best if parse.group.keypoint]
+        self.keypoints = len(pointlike) >= _MOSTLY * len(best) and any(
+            parse.group.signature for parse in pointlike
+        )
+
+    def readings(self) -> list[NameReading]:
+        """The reading of each name."""
+        return [self._reading(core) for core in self.cores]
+
+    def _ways(self, core: Core, styles: Mapping[str, float]) -> list[_Way]:
+        """Every way to read a name, likeliest first.
+
+        Args:
+            core: The name.
+            styles: Share of the set's names that tell their side in this style; empty where that is not known.
+        """
+        ways: list[_Way] = []
+        unreadable = (
+            False  # a marker of the other side exists, so that the letter is no part of the place's name
+        )
+        guesses = side_guesses(self._text(core)) if self._virtual(core) else side_guesses(core.core)
+        for guess in guesses:
+            parse = self.dictionary.spellings.parse(guess.rest)
+            partner = guess.partner in self.texts
+            if guess.side and partner and parse is None:
+                unreadable = True
+            if parse is None or (not partner and not _believed(guess, styles)):
+                continue
+            if not guess.side and (unreadable or self._is_a_number(guess.rest)):
+                continue
+            places, _ = parse.places(bool(guess.side), frozenset())
+            weight = WEIGHTS[guess.style] * parse.quality * sum(places.values())
+            if guess.side and len(self.texts) > 1:
+                weight *= _WITH_PARTNER if partner else _WITHOUT_PARTNER
+                if styles:
+                    weight *= _UNCONVENTIONAL + styles.get(guess.style, 0.0)
+            if not guess.side:
+                weight *= self._lateral(guess.rest)
+            if weight > 0:
+                ways.append(_Way(guess, parse, weight))
+        partners = [way.guess.partner in self.texts for way in ways if way.guess.side]
+        if partners:
+            doubt = _PARTNER_ELSEWHERE if any(partners) else _SIDE_POSSIBLE
+            if any(way.guess.style in APART for way in ways):
+                doubt *= _PARTNER_ELSEWHERE
+            ways = [way if way.guess.side else _Way(way.guess, way.parse, way.weight * doubt) for way in ways]
+        return sorted(ways, key=lambda way: -way.weight)
+
+    def _lateral(self, text: str) -> float:
+        """How much more likely an L at an end of the name is "lateral": its partner has an M there."""
+        at_ends = [text[1:] if text[0] == "l" else None, text[:-1] if text[-1] == "l" else None]
+        partners = {f"m{rest}" for rest in at_ends[:1] if rest} | {f"{rest}m" for rest in at_ends[1:] if rest}
+        return _WITH_PARTNER / _PARTNER_ELSEWHERE if partners & self.texts else 1.0
+
+    def _styles(self, ways: dict[str, list[_Way]]) -> dict[str, float]:
+        """Share of the names with a partner that tell their side in each style."""
+        counts = Counter(
+            found[0].guess.style for found in ways.values() if found and found[0].guess.partner in self.texts
+        )
+        return {style: count / counts.total() for style, count in counts.items()}
+
+    def _is_a_number(self, text: str) -> bool:
+        """Whether a letter and a number are a place in a row and no vertebra: S1 ... S20, L4 beside R4."""
+        match = _NUMBERED.fullmatch(text)
+        if match is None or match.group(1) not in _SPINE:
+            return False
+        letter, digits = match.groups()
+        if letter == "l" and f"r{digits}" in self.texts:
+            return True
+        found = [m.groups() for m in map(_NUMBERED.fullmatch, self.texts) if m and m.group(1) in _SPINE]
+        row = {number for other, number in found if other == letter}
+        others = {other for other, _ in found if other != letter}
+        beyond = any(n.startswith("0") or int(n) > _SPINE[letter] for n in row)
+        return beyond or (not others and {"1", "2", "3"} <= row)
+
+    def _virtual(self, core: Core) -> bool:
+        """Whether the name is that of another marker with a "v" for its virtual twin."""
+        text = "".join(tokens_of(core.core))
+        return len(text) > 2 and text.endswith("v") and text[:-1] in self.texts
+
+    def _text(self, core: Core) -> str:
+        return "".join(tokens_of(core.core))[:-1] if self._virtual(core) else core.core
+
+    def _reading(self, core: Core) -> NameReading:
+        ways = self.ways[core.name]
+        kind = self._kind_without_place(core, ways)
+        if kind:
+            return NameReading(core.name, (), kind, "")
+        total = sum(way.weight for way in ways)
+        odds: dict[tuple[str, str], float] = defaultdict(float)
+        sides: dict[str, float] = defaultdict(float)
+        for way in ways:
+            share = way.weight / total
+            sides[_side(way)] += share
+            for place, probability in self._places(way).items():
+                odds[place] += share * probability
+        places = [NamedPlace(*place, p) for place, p in odds.items() if p >= _LEAST]
+        places.sort(key=lambda place: (-place.probability, place.segment, place.landmark))
+        side = max(sides, key=lambda name: sides[name])
+        return NameReading(
+            core.name,
+            tuple(places),
+            self._kind(core, ways[0]) if places else "unknown",
+            side if places and sides[side] >= _MOSTLY else "",
+        )
+
+    def _kind_without_place(self, core: Core, ways: Sequence[_Way]) -> str:
+        """Kind of a name that tells no place of the body, "" where it does."""
+        dictionary, tokens = self.dictionary, set(tokens_of(core.core))
+        rests = {guess.rest for guess in side_guesses(core.core)}
+        if tokens & dictionary.objects:
+            return "object"
+        if (tokens | ({ways[0].guess.rest} if ways else rests)) & dictionary.computed:
+            return "computed"
+        if ways:
+            return ""
+        objects = dictionary.objects | dictionary.lone_objects
+        stems = {re.sub(r"\d+$", "", text) for text in tokens | rests}
+        named = any(
+            stem in objects or (len(word) > _SHORTEST_OBJECT and stem.startswith(word))
+            for stem in stems
+            for word in objects
+        )
+        return "object" if named else "unknown"
+
+    def _kind(self, core: Core, way: _Way) -> str:
+        told = way.parse.modifiers
+        if "made" in told or self._virtual(core):
+            return "computed"
+        if self.keypoints:
+            return "keypoint"
+        group = way.parse.group
+        two = group.sided is not None or _paired(group.places)
+        between = "middle" in told and not way.guess.side and two
+        return "computed" if between or "centre" in told else group.kind
+
+    def _places(self, way: _Way) -> dict[tuple[str, str], float]:
+        """Probability by segment and landmark of one way to read a name."""
+        group, told = way.parse.group, way.parse.modifiers
+        side = way.guess.side
+        odds, landmarks = way.parse.places(bool(side), self.company)
+        if self.keypoints and group.keypoint and group.keypoint not in odds:
+            odds = {group.keypoint: sum(odds.values())}
+        if "made" in told or ("centre" in told and not landmarks):
+            landmarks = False
+        result: dict[tuple[str, str], float] = defaultdict(float)
+        for place, probability in odds.items():
+            for (segment, landmark), share in _on_body(place, side).items():
+                result[segment, landmark if landmarks else ""] += share * probability
+        return result
+
+
+def _believed(guess: SideGuess, styles: Mapping[str, float]) -> bool:
+    """Whether a side is believed without the marker of the other side."""
+    return guess.style not in NEEDS_PARTNER or styles.get(guess.style, 0.0) > _CONVENTION
+
+
+def _side(way: _Way) -> str:
+    if way.guess.side:
+        return way.guess.side
+    return "middle" if way.parse.group.middle or _unpaired_landmarks(way.parse.group.places) else ""
+
+
+def _paired(odds: Odds) -> bool:
+    return any(f"right_{place}" in load_body(BODY).landmarks for place in odds)
+
+
+def _unpaired_landmarks(odds: Odds) -> bool:
+    landmarks = load_body(BODY).landmarks
+    return bool(odds) and all(place in landmarks for place in odds)
+
+
+def _on_body(place: str, side: str) -> dict[tuple[str, str], float]:
+    """Segments and landmarks of a place of the dictionary, each with its share where no side is told."""
+    body = load_body(BODY)
+    segments = {segment.name for segment in body.segments}
+    if place in body.landmarks:
+        return {(body.landmark(place).segment, place): 1.0}
+    if place in segments:
+        return {(place, ""): 1.0}
+    found = {}
+    for one in (side,) if side else ("right", "left"):
+        sided = f"{one}_{place}"
+        segment = sided if sided in segments else body.landmark(sided).segment
+        found[segment, "" if sided in segments else sided] = 1.0 if side else 0.5
+    return found

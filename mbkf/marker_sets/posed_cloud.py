@@ -1,0 +1,236 @@
+"""A body fitted to a cloud of unnamed points: pose and size by expectation–maximisation over where markers are worn.
+
+With the density of :mod:`mbkf.marker_sets.places` on a body in pose q with scale factors k, a point p has the
+likelihood
+
+    L(p) = ε u + (1 − ε) Σ_c π_c N(p; m_c(q, k), (s² + σ_c²) 1)
+
+with the share ε of points that are no body, spread evenly (u), and a width s that shrinks while the fit goes on, so
+that far starts are drawn in (deterministic annealing). The E-step shares every point out among the components, the
+M-step is one Gauss–Newton step of the weighted distances with priors of posture, size and upright stance (Dempster,
+Laird & Rubin 1977; for point sets Myronenko & Song, IEEE Trans. PAMI 32, 2010, 2262-2275).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.marker_sets.places import WornPlaces
+from mbkf.model.human import HumanModel
+from mbkf.scaling.problem import FACTOR_BOUNDS, origin_derivatives
+from mbkf.sensors.marker_sensor import MarkerReading, MarkerSensor
+from mbkf.sensors.posture_sensor import PostureSensor
+
+NO_BODY = 0.03
+"""Share ε of points that are no part of the body, before anything is known."""
+
+ROOM_M3 = 2.0
+"""Volume that such points are spread over: that of a person with arms and legs moving, and what is around."""
+
+TILT_RAD = 0.25
+"""Spread of the pelvis about upright."""
+
+PROPORTION_SD = 0.06
+"""Spread of a scale factor about the person's overall size."""
+
+SIZE_SD = 0.13
+"""Spread of the overall size about the reference body's, children among the persons."""
+
+LEAST_SHARE = 1e-3
+"""Components that have less of a point than this do not pull."""
+
+LIMIT_SD_RAD = 0.1
+"""Softness of the joints' limits: knees and elbows bend one way, which tells front from back."""
+
+_DAMPING = 1e-6
+
+
+@dataclass(frozen=True)
+class PosedBody:
+    """A body in a cloud of N points.
+
+    Attributes:
+        q: (nq,) pose.
+        factors: (K,) scale factors.
+        shares: (N, C) probability that a point belongs to a component; what a row lacks of 1 is that of no body.
+        worth: Logarithm of likelihood and priors.
+    """
+
+    q: Array
+    factors: Array
+    shares: Array
+    worth: float
+
+
+class CloudProblem:
+    """Where a body of the reference's kind is among points.
+
+    Attributes:
+        places: Where markers are worn.
+        points_m: (N, 3) the points, all of them seen.
+        weight: (C,) share of each component in this cloud, or (N, C) for each of its points.
+    """
+
+    def __init__(self, places: WornPlaces, points_m: Array, weight: Array) -> None:
+        self.places, self.points_m = places, points_m
+        with np.errstate(divide="ignore"):
+            self._log_weight = np.log(weight)
+        body = places.body
+        self.model = HumanModel(body, np.ones(len(body.scale_factors)), body.reference_mass_kg)
+        self._posture = PostureSensor(self.model)
+        self._scale = np.array([body.segment(name).scale_matrix for name in places.segments])
+        count = len(body.scale_factors)
+        covariance = PROPORTION_SD**2 * np.eye(count) + SIZE_SD**2 * np.ones((count, count))
+        self._factor_information = np.linalg.inv(covariance)
+
+    def sized(self, factors: Array) -> MarkerSensor:
+        """The components on a body of these scale factors (K,)."""
+        body = self.places.body
+        model = HumanModel(body, factors, body.reference_mass_kg)
+        local = np.einsum("cak,k->ca", self._scale, factors) * self.places.position_m
+        return MarkerSensor(model, self.places.segments, local)
+
+    def shares(
+        self, positions_m: Array, width_m: float, points_m: Array | None = None
+    ) -> tuple[Array, float]:
+        """E-step: shares (N, C) of the points in components at positions (C, 3), and the log-likelihood.
+
+        Args:
+            positions_m: (C, 3) centres of the components.
+            width_m: The width s.
+            points_m: (N, 3) other points than the cloud's.
+        """
+        points = self.points_m if points_m is None else points_m
+        variance = width_m**2 + self.places.sd_m**2
+        squared = (
+            (points**2).sum(axis=1)[:, None] - 2.0 * points @ positions_m.T + (positions_m**2).sum(axis=1)
+        )
+        height = self._log_weight - 1.5 * np.log(2.0 * np.pi * variance)
+        density = (1.0 - NO_BODY) * np.exp(height - 0.5 * squared / variance)
+        total = density.sum(axis=1) + NO_BODY / ROOM_M3
+        return density / total[:, None], float(np.log(total).sum())
+
+    def priors(self, q: Array, factors: Array) -> float:
+        """Logarithm of the priors of a pose (nq,) and scale factors (K,), but for a constant."""
+        turned, _ = self._posture.deviation(q)
+        deviation = turned[self._posture.dofs] / self._posture.sd
+        beyond = self._beyond(turned) / LIMIT_SD_RAD
+        rotation = self.model.placements(q)[0][self.model.root.joint_id]
+        tilt = rotation[:2, 2] / TILT_RAD
+        size = factors - 1.0
+        return -0.5 * float(
+            deviation @ deviation + beyond @ beyond + tilt @ tilt + size @ self._factor_information @ size
+        )
+
+    def _beyond(self, turned: Array) -> Array:
+        """(nv,) how far joints turned by these angles are beyond their limits, rad."""
+        return np.asarray(turned - np.clip(turned, self.model.limits[:, 0], self.model.limits[:, 1]))
+
+    def posed(self, q: Array, size: float, widths_m: tuple[float, ...]) -> PosedBody:
+        """A body of the reference's proportions, its pose fitted.
+
+        Args:
+            q: (nq,) pose to start from, of the body of this size.
+            size: Its overall size.
+            widths_m: Widths of the iterations, one after the other.
+        """
+        factors = np.full(len(self.places.body.scale_factors), size)
+        sensor = self._reference
+        points = self.points_m / size
+        q = self._with_root(q, 1.0 / size)
+        for width in widths_m:
+            reading = sensor.reading(q)
+            shares, _ = self.shares(reading.positions_m, width / size, points)
+            step = self._step(reading, shares, points, width / size, q)
+            q = self.model.integrate(q, step)
+        q = self._with_root(q, size)
+        return self._judged(q, factors, widths_m[-1], sensor.positions(self._with_root(q, 1.0 / size)) * size)
+
+    def fitted(self, start: PosedBody, widths_m: tuple[float, ...]) -> PosedBody:
+        """Pose and scale factors fitted together.
+
+        Args:
+            start: Where to start.
+            widths_m: Widths of the iterations, one after the other.
+        """
+        q, factors = start.q, start.factors
+        for width in widths_m:
+            sensor = self.sized(factors)
+            reading = sensor.reading(q)
+            shares, _ = self.shares(reading.positions_m, width)
+            step = self._step(reading, shares, self.points_m, width, q, (sensor, factors))
+            q = self.model.integrate(q, step[: self.model.nv])
+            factors = np.clip(factors + step[self.model.nv :], *FACTOR_BOUNDS)
+        return self._judged(q, factors, widths_m[-1], self.sized(factors).positions(q))
+
+    def _judged(self, q: Array, factors: Array, width_m: float, positions_m: Array) -> PosedBody:
+        shares, worth = self.shares(positions_m, width_m)
+        return PosedBody(q, factors, shares, worth + self.priors(q, factors))
+
+    @property
+    def _reference(self) -> MarkerSensor:
+        return MarkerSensor(self.model, self.places.segments, self.places.position_m)
+
+    def _with_root(self, q: Array, size: float) -> Array:
+        moved = q.copy()
+        moved[self.model.root.q][:3] = size * q[self.model.root.q][:3]
+        return moved
+
+    def _step(
+        self,
+        reading: MarkerReading,
+        shares: Array,
+        points_m: Array,
+        width_m: float,
+        q: Array,
+        sized: tuple[MarkerSensor, Array] | None = None,
+    ) -> Array:
+        """M-step: one Gauss–Newton step of the pose (nv,), and of the scale factors behind it where they are free."""
+        total = shares.sum(axis=0)
+        active = total > LEAST_SHARE
+        pull = total[active] / (width_m**2 + self.places.sd_m[active] ** 2)
+        target = (shares[:, active].T @ points_m) / total[active, None]
+        errors = target - reading.positions_m[active]
+        root = np.sqrt(pull)[:, None]
+        rows = reading.only(active).jacobian
+        if sized is not None:
+            sensor, factors = sized
+            rows = np.concatenate([rows, self._by_factors(sensor, q, active)], axis=2)
+        nv, size = self.model.nv, rows.shape[2]
+        flat = (rows * root[:, :, None]).reshape(-1, size)
+        matrix = flat.T @ flat
+        right = flat.T @ (errors * root).ravel()
+        prior = self._posture.reading(q)
+        weighted = prior.jacobian / self._posture.sd[:, None]
+        matrix[:nv, :nv] += weighted.T @ weighted
+        right[:nv] -= weighted.T @ (prior.deviation / self._posture.sd)
+        turned, by_pose = self._posture.deviation(q)
+        beyond = self._beyond(turned)
+        passed = by_pose[beyond != 0.0] / LIMIT_SD_RAD
+        matrix[:nv, :nv] += passed.T @ passed
+        right[:nv] -= passed.T @ (beyond[beyond != 0.0] / LIMIT_SD_RAD)
+        self._upright(q, matrix, right)
+        if sized is not None:
+            matrix[nv:, nv:] += self._factor_information
+            right[nv:] -= self._factor_information @ (factors - 1.0)
+        matrix[np.diag_indices(size)] += _DAMPING * np.trace(matrix) / size
+        return np.asarray(np.linalg.solve(matrix, right))
+
+    def _upright(self, q: Array, matrix: Array, right: Array) -> None:
+        """Adds the pull of the pelvis towards upright: the horizontal part of its axis, R z."""
+        rotation = self.model.placements(q)[0][self.model.root.joint_id]
+        turns = np.arange(self.model.nv)[self.model.root.v][3:]
+        # δ(R z) = R (δθ × z), δθ × z = (δθ_y, −δθ_x, 0)
+        jacobian = np.column_stack([-rotation[:2, 1], rotation[:2, 0], np.zeros(2)]) / TILT_RAD
+        matrix[np.ix_(turns, turns)] += jacobian.T @ jacobian
+        right[turns] -= jacobian.T @ (rotation[:2, 2] / TILT_RAD)
+
+    def _by_factors(self, sensor: MarkerSensor, q: Array, active: Array) -> Array:
+        """(A, 3, K) derivatives of the active components by the scale factors."""
+        rotations, _ = sensor.model.placements(q)
+        joints = sensor.joint_ids[active]
+        own = self._scale[active] * self.places.position_m[active, :, None]
+        return np.asarray(origin_derivatives(sensor.model, rotations)[joints] + rotations[joints] @ own)

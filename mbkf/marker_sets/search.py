@@ -1,0 +1,126 @@
+"""The body in one frame of points: many starts fitted roughly, the best of them finely, the likeliest kept."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.errors import NotObservable
+from mbkf.marker_sets.equipment import EQUIPMENTS, Equipment, equipped_weight
+from mbkf.marker_sets.places import WornPlaces
+from mbkf.marker_sets.posed_cloud import CloudProblem, PosedBody
+from mbkf.marker_sets.starts import starts
+
+FEWEST_POINTS = 12
+"""Fewer points do not show which part of which body they are on."""
+
+COARSE_M = (0.12, 0.12, 0.10, 0.10, 0.08, 0.08)
+"""Widths of the rough fit of every start."""
+
+FINE_M = (0.08, 0.07, 0.06, 0.05, 0.04, 0.035, 0.03, 0.03, 0.025, 0.025)
+"""Widths of the fine fit of the best starts."""
+
+THINNEST_M = 0.2
+"""Least side of the box around the points."""
+
+KEPT_EACH, KEPT = 3, 9
+"""So many rough fits of every equipment, and in all, are fitted finely."""
+
+
+@dataclass(frozen=True)
+class FoundBody:
+    """The likeliest body in a frame.
+
+    Attributes:
+        body: Its pose, size and shares.
+        equipment: The part of it that carries markers.
+        worth: Logarithm of likelihood, priors and the equipment's share.
+        rival: The same of the best body that faces another way, −inf where there is none.
+        evidence: How much likelier a point is on this body than anywhere in the box around the points: mean logarithm,
+            names aside.
+    """
+
+    body: PosedBody
+    equipment: Equipment
+    worth: float
+    rival: float
+    evidence: float
+
+
+def find_body(
+    places: WornPlaces, points_m: Array, named: Array | None = None, facing: Array | None = None
+) -> FoundBody:
+    """The body that explains a frame of points.
+
+    Args:
+        places: Where markers are worn.
+        points_m: (N, 3) the points, z up.
+        named: (N, C) how much likelier each component is by a point's name than without it; None without names.
+        facing: (2,) horizontal direction that the person is likely to face.
+
+    Raises:
+        NotObservable: The points are too few, or too low or too tall for a person.
+    """
+    if len(points_m) < FEWEST_POINTS:
+        raise NotObservable(
+            f"a frame shows {len(points_m)} points; fewer than {FEWEST_POINTS} do not show "
+            "which part of a body they are on"
+        )
+    rough: list[tuple[float, PosedBody, CloudProblem, Equipment]] = []
+    for equipment in EQUIPMENTS:
+        problem = CloudProblem(places, points_m, weights(places, equipment, named))
+        share = math.log(equipment.share)
+        own = [
+            problem.posed(start.q, start.size, COARSE_M)
+            for start in starts(problem.model, points_m, equipment, facing)
+        ]
+        own.sort(key=lambda body: -body.worth)
+        rough += [(body.worth + share, body, problem, equipment) for body in own[:KEPT_EACH]]
+    if not rough:
+        raise NotObservable(
+            f"the points reach over {np.ptp(points_m[:, 2]):.2f} m of height; no person stands there "
+            "(which axis points up? give --up; which unit? give --unit)"
+        )
+    rough.sort(key=lambda entry: -entry[0])
+    fine = [
+        (problem.fitted(body, FINE_M), problem, equipment) for _, body, problem, equipment in rough[:KEPT]
+    ]
+    ranked = sorted(fine, key=lambda entry: -(entry[0].worth + math.log(entry[2].share)))
+    best, problem, equipment = ranked[0]
+    others = [
+        body.worth + math.log(other.share)
+        for body, _, other in ranked[1:]
+        if _apart(problem, best.q, body.q) > math.pi / 4.0
+    ]
+    return FoundBody(
+        best,
+        equipment,
+        best.worth + math.log(equipment.share),
+        max(others, default=-math.inf),
+        _evidence(places, points_m, best, equipment),
+    )
+
+
+def _evidence(places: WornPlaces, points_m: Array, body: PosedBody, equipment: Equipment) -> float:
+    problem = CloudProblem(places, points_m, equipped_weight(places, equipment))
+    _, likelihood = problem.shares(problem.sized(body.factors).positions(body.q), FINE_M[-1])
+    box = float(np.prod(np.maximum(np.ptp(points_m, axis=0), THINNEST_M)))
+    return likelihood / len(points_m) + math.log(box)
+
+
+def weights(places: WornPlaces, equipment: Equipment, named: Array | None) -> Array:
+    """(C,) or (N, C) share of every component, by the equipment and by the points' names."""
+    weight = equipped_weight(places, equipment)
+    if named is None:
+        return weight
+    return np.asarray(weight * named)
+
+
+def _apart(problem: CloudProblem, one: Array, other: Array) -> float:
+    """Angle between the ways that two poses face, seen from above, rad."""
+    forward = [problem.model.placements(q)[0][problem.model.root.joint_id][:2, 0] for q in (one, other)]
+    cross = forward[0][0] * forward[1][1] - forward[0][1] * forward[1][0]
+    return abs(math.atan2(cross, float(forward[0] @ forward[1])))

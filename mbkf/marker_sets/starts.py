@@ -1,0 +1,75 @@
+"""Where a body may be in a cloud of points: headings, sizes and arm postures to start the fit from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from mbkf.conventions import Array
+from mbkf.marker_sets.equipment import Equipment
+from mbkf.model.human import HumanModel
+
+HEADINGS = 8
+"""Headings that are tried where nothing tells which way the person faces."""
+
+SIZES = (0.5, 1.2)
+"""Least and greatest overall size that is tried: a child of three, and a tall man."""
+
+ARMS_RAD = (0.2, 0.8, 1.5)
+"""Arms hanging, held away from the body, and stretched out sideways."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """A pose (nq,) of a body of this size."""
+
+    q: Array
+    size: float
+
+
+def starts(
+    model: HumanModel, points_m: Array, equipment: Equipment, facing: Array | None = None
+) -> Iterator[Start]:
+    """Poses to start from, upright, highest and lowest point where the equipment has its highest and lowest marker.
+
+    Args:
+        model: The reference body.
+        points_m: (N, 3) the points.
+        equipment: The part of the body that carries them.
+        facing: (2,) horizontal direction that the person is likely to face, None where nothing tells.
+    """
+    low, high = np.percentile(points_m[:, 2], [1.0, 99.0])
+    middle = np.median(points_m[:, :2], axis=0)
+    sole = model.description.sole
+    neutral = model.neutral()
+    floor = model.placements(neutral)[1][model.joint(sole.segment).joint_id][2] + sole.height_m
+    for top in equipment.top_m:
+        size = (high - low) / (top - equipment.bottom_m)
+        if not SIZES[0] <= size <= SIZES[1]:
+            continue
+        for heading in _headings(facing):
+            for away in ARMS_RAD if "hand" not in equipment.without else ARMS_RAD[:1]:
+                q = _arms(model, neutral, away)
+                root = q[model.root.q]
+                root[:2] = middle
+                root[2] = low - size * (equipment.bottom_m + floor)
+                root[3:] = Rotation.from_euler("z", heading).as_quat()
+                yield Start(q, float(size))
+
+
+def _headings(facing: Array | None) -> Array:
+    if facing is None:
+        return np.asarray(np.arange(HEADINGS) * (2.0 * np.pi / HEADINGS))
+    return np.array([np.arctan2(facing[1], facing[0])])
+
+
+def _arms(model: HumanModel, neutral: Array, away: float) -> Array:
+    """The neutral posture with both arms abducted by an angle, rad."""
+    q = neutral.copy()
+    for segment, sense in (("right_upper_arm", -1.0), ("left_upper_arm", 1.0)):
+        if segment in model.joints:
+            q[model.joint(segment).q] = Rotation.from_euler("x", sense * away).as_quat()
+    return q
