@@ -138,7 +138,9 @@ def _protocol(protocol: ProtocolSummary | None) -> str:
     from mbkf.pipelines.coverage import listed
 
     if protocol is None:
-        return "none knows these markers; scaling needs --protocol"
+        return "none knows these markers, and no person was found among them; scaling needs --protocol"
+    if protocol.told:
+        return protocol.told
     told = f"{protocol.name}, knows {protocol.known} of {protocol.markers} markers ({100 * protocol.share:.0f} %)"
     if protocol.ignored:
         told += f"; ignored: {listed(protocol.ignored)}"

@@ -35,7 +35,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--trial", metavar="TRIAL", action="append", default=[], help="moving trial; may be repeated"
     )
     parser.add_argument(
-        "--protocol", metavar="NAME|FILE", help="marker protocol; by default found from the names"
+        "--protocol",
+        metavar="NAME|FILE",
+        help="marker protocol; by default the shipped one that knows the names, else one inferred from the captures",
     )
     parser.add_argument(
         "--body", metavar="NAME|FILE", help="reference body; by default the one the protocol was written for"
@@ -88,7 +90,11 @@ def run(args: argparse.Namespace) -> int:
 
 
 def warn_of_markers(subject: Subject) -> None:
-    """Warns of a protocol that knows too few of the markers that the person was scaled from."""
+    """Warns of an inferred set's doubts, and of a protocol that knows too few of the person's markers."""
+    inferred = subject.report.get("inferred")
+    for name, odds in inferred["doubtful"].items() if isinstance(inferred, dict) else ():
+        told = ", ".join(f"{segment.replace('_', ' ')} {100 * share:.0f} %" for segment, share in odds)
+        print(f"warning: marker {name} is doubtful: {told}", file=sys.stderr)
     use = subject.report.get("marker_use")
     if isinstance(use, dict) and use["warning"]:
         print(f"warning: {use['warning']}", file=sys.stderr)
@@ -124,6 +130,8 @@ def _print(report: dict[str, Any], protocol: str, out: str) -> None:
         markers.add_row(name, entry["kind"], *("" if x is None else f"{x:.1f}" for x in numbers))
     console.print(factors)
     console.print(markers)
+    if "inferred" in report:
+        console.print(f"note: {report['inferred']['told']}", soft_wrap=True)
     console.print(_use(report["marker_use"]), soft_wrap=True)
     for told in report.get("axes", ()):
         console.print(f"note: {told['capture']}: {told['note']}", soft_wrap=True)

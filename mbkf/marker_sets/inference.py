@@ -46,6 +46,12 @@ OTHER_NAME = 0.03
 STRAY = 4.0
 """A point that scatters by more than so many times the skin's variance on every segment is no part of the body."""
 
+ANCHORS = 4
+"""Frames of moving trials in which a body is searched for, at most."""
+
+CLEAR_EVIDENCE = 1.8
+"""A frame whose points are so much likelier on the body than anywhere near (mean logarithm) ends that search."""
+
 PASSES = 2
 """How often the sure markers are chosen anew."""
 
@@ -115,14 +121,14 @@ def infer_markers(
     names = tuple(dict.fromkeys(name for one in (*static, *dynamic) for name in one.names))
     places = worn_places(body, leave_out)
     by_name = np.array([name_factors(places, readings.get(name)) for name in names])
-    candidates = anchor_frames(static or dynamic, names, 1 if static else 4)
+    candidates = anchor_frames(static or dynamic, names, 1 if static else ANCHORS)
     found, anchor = _anchor(places, candidates, by_name)
     frames = np.concatenate([anchor[None], spread_frames([*static, *dynamic], names)])
     return _Evidence(places, names, by_name, found, anchor, frames).settled()
 
 
 def _anchor(places: WornPlaces, candidates: Array, by_name: Array) -> tuple[FoundBody, Array]:
-    """The frame in which a body explains its points best, (K, 3), and that body."""
+    """The frame in which a body explains its points best, (K, 3), and that body; the first in which it does clearly."""
     best: tuple[float, FoundBody, Array] | None = None
     refused: NotObservable | None = None
     for frame in candidates:
@@ -135,6 +141,8 @@ def _anchor(places: WornPlaces, candidates: Array, by_name: Array) -> tuple[Foun
         worth = found.worth / np.count_nonzero(seen)
         if best is None or worth > best[0]:
             best = (worth, found, frame)
+        if found.evidence >= CLEAR_EVIDENCE:
+            break
     if best is None:
         raise refused or NotObservable("no frame shows any point")
     return best[1], best[2]

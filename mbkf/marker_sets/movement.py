@@ -1,8 +1,8 @@
 """Which segment a marker moves with: its scatter in the frame of every segment over the frames of a movement.
 
 The poses come from markers whose segment is sure already. A marker that is fixed to a segment keeps its place in that
-segment's frame but for the skin; in another segment's frame it moves as the joint between them does. Where joints hardly
-move, the scatter is alike in all of them and says nothing, as it should.
+segment's frame but for the skin; in another segment's frame it moves as the joint between them does. Where joints
+hardly move, the scatter is alike in all of them and says nothing, as it should.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from mbkf.sensors.pose_fit import fit_most_markers, segment_by_segment
 from mbkf.sensors.posture_sensor import PostureSensor
 
 SKIN = 2.0
-"""Scatter of a marker in its own segment's frame over the noise that protocols give it: the segment's pose errs, too."""
+"""Scatter of a marker in its own segment's frame over the noise that protocols give it: the pose errs, too."""
 
 LOOKS = 4.0
 """So many independent looks a movement counts for: skin moves slowly, and with the posture."""
@@ -66,7 +66,7 @@ def movement(
         sure: (K,) markers that the poses are fitted to.
     """
     chosen = np.flatnonzero(sure)
-    sensor = MarkerSensor(model, [segments[k] for k in chosen], local_m[chosen])
+    sensor = MarkerSensor(model, [segments[int(k)] for k in chosen], local_m[chosen])
     posture = PostureSensor(model)
     noise = np.full(len(chosen), NOISE_M)
     joints = [model.joint(segment.name).joint_id for segment in model.description.segments]
@@ -83,11 +83,13 @@ def movement(
         away = points[:, None] - origins[joints]
         places[t] = np.einsum("sji,ksj->ksi", rotations[joints], away)
         squares.append(((sensor.positions(fit.q) - own) ** 2).sum(axis=1))
-    seen = ~np.isnan(places[..., 0]).any(axis=2)
+    seen: BoolArray = np.asarray(~np.isnan(places[..., 0]).any(axis=2))
     count = np.maximum(seen.sum(axis=0), 1)
     with np.errstate(invalid="ignore"):
         mean = np.where(
-            seen.any(axis=0)[:, None, None], np.nansum(places, axis=0) / count[:, None, None], np.nan
+            np.asarray(seen.any(axis=0))[:, None, None],
+            np.nansum(places, axis=0) / count[:, None, None],
+            np.nan,
         )
     squared = np.nansum((places - mean) ** 2, axis=(0, 3)) / count[:, None]
     rms = float(np.sqrt(np.nanmean(np.concatenate(squares)))) if squares else np.nan

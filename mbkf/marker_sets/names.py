@@ -13,7 +13,7 @@ from __future__ import annotations
 import re
 from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mbkf.marker_sets.affixes import Core, without_affixes
 from mbkf.marker_sets.sides import (
@@ -35,11 +35,12 @@ BODY = "human18"
 """The body whose segments and landmarks the places are."""
 
 _WITH_PARTNER, _WITHOUT_PARTNER = 6.0, 0.4
-_PARTNER_ELSEWHERE, _SIDE_POSSIBLE = 0.15, 0.3
+_PARTNER_ELSEWHERE, _SIDE_POSSIBLE, _WHOLE_WORD = 0.15, 0.3, 0.3
 _UNCONVENTIONAL, _CONVENTION = 0.15, 0.3
 _LEAST = 0.02
 _MOSTLY = 0.8
 _SPINE = {"c": 7, "t": 12, "l": 5, "s": 5}
+_AXES = ("o", "a", "l", "p")
 _NUMBERED = re.compile(r"([a-z])(\d+)")
 _SHORTEST_OBJECT = 3
 
@@ -140,43 +141,56 @@ class _Set:
             core: The name.
             styles: Share of the set's names that tell their side in this style; empty where that is not known.
         """
-        ways: list[_Way] = []
-        unreadable = (
-            False  # a marker of the other side exists, so that the letter is no part of the place's name
-        )
-        guesses = side_guesses(self._text(core)) if self._virtual(core) else side_guesses(core.core)
-        for guess in guesses:
-            parse = self.dictionary.spellings.parse(guess.rest)
-            partner = guess.partner in self.texts
-            if guess.side and partner and parse is None:
-                unreadable = True
-            if parse is None or (not partner and not _believed(guess, styles)):
+        guesses = side_guesses(self._text(core))
+        parses = {guess: self.dictionary.spellings.parse(guess.rest) for guess in guesses}
+        # Where the other side's marker exists, the letter is no part of the place's name, even if the rest is unknown.
+        told = any(guess.partner in self.texts and parse is None for guess, parse in parses.items())
+        ways = []
+        for guess, parse in parses.items():
+            if parse is None or not (guess.partner in self.texts or _believed(guess, styles)):
                 continue
-            if not guess.side and (unreadable or self._is_a_number(guess.rest)):
+            if not guess.side and (told or self._is_a_number(guess.rest)):
                 continue
             places, _ = parse.places(bool(guess.side), frozenset())
             weight = WEIGHTS[guess.style] * parse.quality * sum(places.values())
-            if guess.side and len(self.texts) > 1:
-                weight *= _WITH_PARTNER if partner else _WITHOUT_PARTNER
-                if styles:
-                    weight *= _UNCONVENTIONAL + styles.get(guess.style, 0.0)
-            if not guess.side:
-                weight *= self._lateral(guess.rest)
+            if guess.side:
+                weight *= self._trust(guess, styles)
             if weight > 0:
                 ways.append(_Way(guess, parse, weight))
-        partners = [way.guess.partner in self.texts for way in ways if way.guess.side]
-        if partners:
-            doubt = _PARTNER_ELSEWHERE if any(partners) else _SIDE_POSSIBLE
-            if any(way.guess.style in APART for way in ways):
-                doubt *= _PARTNER_ELSEWHERE
-            ways = [way if way.guess.side else _Way(way.guess, way.parse, way.weight * doubt) for way in ways]
-        return sorted(ways, key=lambda way: -way.weight)
+        return sorted(self._doubted(ways), key=lambda way: -way.weight)
 
-    def _lateral(self, text: str) -> float:
-        """How much more likely an L at an end of the name is "lateral": its partner has an M there."""
-        at_ends = [text[1:] if text[0] == "l" else None, text[:-1] if text[-1] == "l" else None]
-        partners = {f"m{rest}" for rest in at_ends[:1] if rest} | {f"{rest}m" for rest in at_ends[1:] if rest}
-        return _WITH_PARTNER / _PARTNER_ELSEWHERE if partners & self.texts else 1.0
+    def _trust(self, guess: SideGuess, styles: Mapping[str, float]) -> float:
+        """How much the other names of the set speak for a side."""
+        if len(self.texts) == 1:
+            return 1.0
+        trust = _WITH_PARTNER if guess.partner in self.texts else _WITHOUT_PARTNER
+        return trust * (_UNCONVENTIONAL + styles.get(guess.style, 0.0)) if styles else trust
+
+    def _doubted(self, ways: Sequence[_Way]) -> list[_Way]:
+        """Ways of a name of which those without and with a side speak against each other."""
+        sided = [way for way in ways if way.guess.side]
+        plain = [way for way in ways if not way.guess.side]
+        if not sided or not plain:
+            return list(ways)
+        against_plain, against_sided = _SIDE_POSSIBLE, 1.0
+        apart = any(way.guess.style in APART for way in sided)
+        if any(way.guess.partner in self.texts for way in sided):
+            against_plain = _PARTNER_ELSEWHERE * (_PARTNER_ELSEWHERE if apart else 1.0)
+        elif any(self._is_lateral(way.guess) for way in sided):
+            against_plain = _WITH_PARTNER
+        elif apart:
+            against_plain = _SIDE_POSSIBLE * _PARTNER_ELSEWHERE
+        elif plain[0].parse.quality == 1.0:
+            against_plain, against_sided = 1.0, _WHOLE_WORD
+        return [
+            replace(way, weight=way.weight * (against_sided if way.guess.side else against_plain))
+            for way in ways
+        ]
+
+    def _is_lateral(self, guess: SideGuess) -> bool:
+        """Whether an L that was taken for left may be "lateral": the set holds the same name with an M."""
+        medial = {f"r{guess.rest}": f"m{guess.rest}", f"{guess.rest}r": f"{guess.rest}m"}
+        return guess.side == "left" and medial.get(guess.partner, "") in self.texts
 
     def _styles(self, ways: dict[str, list[_Way]]) -> dict[str, float]:
         """Share of the names with a partner that tell their side in each style."""
@@ -199,12 +213,17 @@ class _Set:
         beyond = any(n.startswith("0") or int(n) > _SPINE[letter] for n in row)
         return beyond or (not others and {"1", "2", "3"} <= row)
 
+    def _is_axis(self, text: str) -> bool:
+        """Whether the point is of a segment's axes, stored as four points O, A, L and P: LTIO, LTIA, LTIL, LTIP."""
+        return text[-1:] in _AXES and all(text[:-1] + end in self.texts for end in _AXES)
+
     def _virtual(self, core: Core) -> bool:
         """Whether the name is that of another marker with a "v" for its virtual twin."""
         text = "".join(tokens_of(core.core))
         return len(text) > 2 and text.endswith("v") and text[:-1] in self.texts
 
     def _text(self, core: Core) -> str:
+        """The name, without the sign of a virtual twin."""
         return "".join(tokens_of(core.core))[:-1] if self._virtual(core) else core.core
 
     def _reading(self, core: Core) -> NameReading:
@@ -236,6 +255,8 @@ class _Set:
         rests = {guess.rest for guess in side_guesses(core.core)}
         if tokens & dictionary.objects:
             return "object"
+        if self._is_axis("".join(tokens_of(core.core))):
+            return "computed"
         if (tokens | ({ways[0].guess.rest} if ways else rests)) & dictionary.computed:
             return "computed"
         if ways:
@@ -267,8 +288,7 @@ class _Set:
         odds, landmarks = way.parse.places(bool(side), self.company)
         if self.keypoints and group.keypoint and group.keypoint not in odds:
             odds = {group.keypoint: sum(odds.values())}
-        if "made" in told or ("centre" in told and not landmarks):
-            landmarks = False
+        landmarks = landmarks and "made" not in told
         result: dict[tuple[str, str], float] = defaultdict(float)
         for place, probability in odds.items():
             for (segment, landmark), share in _on_body(place, side).items():

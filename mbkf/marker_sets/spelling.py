@@ -26,6 +26,7 @@ SILENT = ("filler",)
 _LETTERS = "apdulmfbstic"
 _LEADING_LETTERS = "pda"
 _MOST_LETTERS = 2
+_MOST_PIECES, _MOST_PLACES = 6, 2
 _MIDLINE_WITH_SIDE = 0.6
 _NUMBERED = frozenset(("number", "letter"))
 _SHORTEST_PAIR = 6
@@ -119,6 +120,18 @@ class _Piece:
     group: Group | None = None
 
 
+@dataclass(frozen=True)
+class _Used:
+    """How much of a name's grammar is used up: pieces, places and letters of direction."""
+
+    pieces: int = 0
+    places: int = 0
+    letters: int = 0
+
+    def and_one(self, places: bool = False, letters: bool = False) -> _Used:
+        return _Used(self.pieces + 1, self.places + places, self.letters + letters)
+
+
 class Spellings:
     """The dictionary: words of the names of markers and the grammar that joins them."""
 
@@ -150,33 +163,35 @@ class Spellings:
         if text in self.places:
             return Parse(self.places[text], text, frozenset(), 1.0)
         best: tuple[float, Parse] | None = None
-        for pieces in self._covers(text, 0, 0, 0):
+        for pieces in self._covers(text, 0, _Used()):
             parse = _joined(pieces)
             score = sum(len(word) ** 2 for word, _ in pieces)
             if parse is not None and (best is None or score > best[0]):
                 best = (score, parse)
         return best[1] if best else None
 
-    def _covers(self, text: str, at: int, places: int, letters: int) -> list[list[tuple[str, _Piece]]]:
-        """Every way to cover the text from a position on with known words, with at most two places."""
+    def _covers(self, text: str, at: int, used: _Used) -> list[list[tuple[str, _Piece]]]:
+        """Every way to cover the text from a position on with a few known words, among them one or two places."""
         if at == len(text):
-            return [[]] if places else []
-        result = []
+            return [[]] if used.places else []
+        if used.pieces == _MOST_PIECES:
+            return []
+        nexts: list[tuple[str, _Piece, _Used]] = []
         for end in range(min(len(text), at + self._longest), at, -1):
             word = text[at:end]
             for piece in self._words.get(word, ()):
-                more = places + (piece.kind == "place")
-                if more <= 2:
-                    rest = self._covers(text, end, more, letters)
-                    result += [[(word, piece), *tail] for tail in rest]
+                nexts.append((word, piece, used.and_one(places=piece.kind == "place")))
         if match := _DIGITS.match(text, at):
-            rest = self._covers(text, match.end(), places, letters)
-            result += [[(match.group(), _Piece("modifier", "number")), *tail] for tail in rest]
+            nexts.append((match.group(), _Piece("modifier", "number"), used.and_one()))
         leading = at == 0 and text[at] in _LEADING_LETTERS
-        if (places or leading) and letters < _MOST_LETTERS and text[at] in _LETTERS:
-            rest = self._covers(text, at + 1, places, letters + 1)
-            result += [[(text[at], _Piece("letter")), *tail] for tail in rest]
-        return result
+        if (used.places or leading) and text[at] in _LETTERS:
+            nexts.append((text[at], _Piece("letter"), used.and_one(letters=True)))
+        return [
+            [(word, piece), *tail]
+            for word, piece, then in nexts
+            if then.places <= _MOST_PLACES and then.letters <= _MOST_LETTERS
+            for tail in self._covers(text, at + len(word), then)
+        ]
 
 
 def _joined(pieces: list[tuple[str, _Piece]]) -> Parse | None:

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from mbkf.conventions import BoolArray
-from mbkf.errors import UnknownName
+from mbkf.errors import MbkfError, UnknownName
 from mbkf.io.axes import axes_matrix, axes_text
 from mbkf.io.records import Capture, CaptureEvent, PlateReadings
 from mbkf.model.protocol import detect_protocol
 from mbkf.pipelines.axes.captures import find_axes_by_names
-from mbkf.pipelines.coverage import use_by_protocol
+from mbkf.pipelines.coverage import MarkerUse, use_by_protocol
+from mbkf.pipelines.marker_set.choice import shipped_protocol
+from mbkf.pipelines.marker_set.inferred import InferredSet, infer_marker_set
 
 
 @dataclass(frozen=True)
@@ -88,7 +90,7 @@ class AxesSummary:
 
 @dataclass(frozen=True)
 class ProtocolSummary:
-    """The shipped protocol that knows most of the names, and how much of the capture it explains.
+    """The marker set that `mbkf scale` would use, and how much of the capture it explains.
 
     Attributes:
         name: Its name.
@@ -97,6 +99,8 @@ class ProtocolSummary:
         share: The first over the second, 0 to 1.
         accepted: Whether `mbkf scale` takes it unasked.
         ignored: Why a marker is not used, by its name.
+        told: What was inferred, in one line; "" for a shipped protocol.
+        doubtful: Segments of every doubtful marker with their probabilities, of an inferred set.
     """
 
     name: str
@@ -105,6 +109,8 @@ class ProtocolSummary:
     share: float
     accepted: bool
     ignored: Mapping[str, str]
+    told: str = ""
+    doubtful: Mapping[str, list[tuple[str, float]]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -131,7 +137,8 @@ class CaptureSummary:
         events: Labelled instants.
         notes: What the reader noticed.
         axes: How the axes were read, and what the body says.
-        protocol: The protocol that knows most of the names; None where none knows enough to be told.
+        protocol: The marker set: a shipped protocol or an inferred one, else the protocol that knows most of the names;
+            None where there is neither.
     """
 
     path: str
@@ -198,13 +205,32 @@ def describe(capture: Capture) -> CaptureSummary:
 
 
 def _protocol(capture: Capture) -> ProtocolSummary | None:
+    """The shipped protocol that knows enough of the names, else an inferred one; None without a person."""
+    shipped = shipped_protocol([capture])
+    if shipped is None:
+        try:
+            inferred = infer_marker_set(None, [capture])
+        except MbkfError:
+            return _nearest(capture)
+        return _summary(use_by_protocol([capture.markers], inferred.protocol), inferred)
+    return _summary(use_by_protocol([capture.markers], shipped), None)
+
+
+def _nearest(capture: Capture) -> ProtocolSummary | None:
+    """The shipped protocol that knows most of the names, though too few."""
     try:
         protocol = detect_protocol(capture.markers.names)
     except UnknownName:
         return None
-    use = use_by_protocol([capture.markers], protocol)
+    return _summary(use_by_protocol([capture.markers], protocol), None)
+
+
+def _summary(use: MarkerUse, inferred: InferredSet | None) -> ProtocolSummary:
     known = use.markers - len(use.unknown)
-    return ProtocolSummary(use.protocol, known, use.markers, use.share, use.accepted, dict(use.ignored))
+    told, doubts = ("", {}) if inferred is None else (inferred.line, inferred.doubts)
+    return ProtocolSummary(
+        use.protocol, known, use.markers, use.share, use.accepted, dict(use.ignored), told, doubts
+    )
 
 
 def _axes(capture: Capture) -> AxesSummary:

@@ -10,11 +10,11 @@ from mbkf.marker_sets.spelling import load_dictionary
 from mbkf.model.body_file import load_body
 from mbkf.model.protocol import load_protocol, protocol_names
 from mbkf.model.sides import mirrored
-from tests.marker_sets.held_out_sets import HELD_OUT, HELD_OUT_LATER
+from tests.marker_sets.held_out_sets import HELD_OUT, HELD_OUT_LAST, HELD_OUT_LATER
 from tests.marker_sets.known_sets import BUILT_ON, markers
 
 SURE = 0.8
-ALL_SETS = BUILT_ON | HELD_OUT | HELD_OUT_LATER
+ALL_SETS = BUILT_ON | HELD_OUT | HELD_OUT_LATER | HELD_OUT_LAST
 ANOTHER_PLACE = {"RFT3", "LFT3", "RTOE", "LTOE", "RMEP", "LMEP", "backneck"}
 """Names of the sets whose likelier meaning is another one: finger tip or foot, toe, epicondyle of elbow or knee."""
 KEYPOINTS = ("Hip", "Knee", "Ankle", "BigToe", "Heel", "Shoulder", "Elbow", "Wrist")
@@ -299,6 +299,18 @@ def test_points_that_software_made(name, landmark):
 def test_things_that_are_no_part_of_the_body(name):
     reading = read_names(["RASI", "LASI", "RKNE", "LKNE", name])[name]
     assert (reading.kind, reading.places) == ("object", ())
+
+
+def test_axes_of_segments_are_points_of_software():
+    axes = [f"{side}TI{end}" for side in "RL" for end in "OALP"]
+    readings = read_names(["RTIB", "LTIB", *axes])
+    assert {readings[name].kind for name in axes} == {"computed"}
+    assert readings["RTIB"].kind == "marker"
+
+
+def test_long_names_are_left_without_a_long_search():
+    names = ["thigh" * 20, "lm" * 40, "tib" * 30, "up" * 30 + "knee", "latmedinout" * 20 + "knee"]
+    assert all(not reading.places for reading in read_names(names).values())
 
 
 def test_a_wand_on_a_segment_is_a_marker():

@@ -33,6 +33,9 @@ FEWEST_SEGMENTS = 3
 LANDMARK_SD_M, PLACED_SD_M = 0.015, 0.035
 """How far a marker is from its landmark, and one without a landmark from where the posed body shows it."""
 
+DOUBTFUL_NOISE = 3.0
+"""Noise of a marker whose segment is doubtful, over that of a sure one: it may follow, but not lead."""
+
 OFF_LANDMARK_M = 0.045
 """A marker further from its landmark than this is not on it."""
 
@@ -200,7 +203,7 @@ def _marker(marker: InferredMarker, body: BodyDescription, on_landmark: bool) ->
         position_m=read_only(position),
         kind="anatomical" if on_landmark else "technical",
         placement_sd_m=LANDMARK_SD_M if on_landmark else PLACED_SD_M,
-        noise_m=marker.noise_m,
+        noise_m=marker.noise_m * (DOUBTFUL_NOISE if marker.doubtful else 1.0),
         landmark=marker.landmark if on_landmark else "",
         probability=round(marker.probability, 3),
         alternatives=marker.alternatives,
