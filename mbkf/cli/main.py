@@ -18,7 +18,7 @@ from mbkf.version import __version__
 
 COMMANDS = (
     "demo", "synth", "info", "scale", "label", "reconstruct", "replay", "live", "view", "report", "tune",
-    "observability", "imu", "export",
+    "observability", "protocol", "imu", "export",
 )  # fmt: skip
 """Names of the subcommands, in the order of the help; each is the module ``mbkf.cli.<name>``."""
 

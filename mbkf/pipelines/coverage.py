@@ -21,6 +21,7 @@ USE_KEY = "marker_use"
 UNKNOWN = "the protocol does not know it"
 COMPUTED = "a computed point, read for scaling only"
 NO_SEGMENT = "the body lacks its segment"
+LEFT_OUT = "the protocol leaves it out"
 TWICE = "another name of a marker that is there under its own"
 
 
@@ -109,9 +110,17 @@ def use_by_protocol(captures: Sequence[MarkerTrajectories], protocol: Protocol) 
     matches = [protocol.match(one.names) for one in captures]
     names = dict.fromkeys(name for one in captures for name in _seen(one))
     used = tuple(name for name in names if any(name in match for match in matches))
-    reasons = _ignored(names, used, protocol.markers, protocol.name)
-    left_out = {name: reason for name, reason in protocol.ignored.items() if name in reasons}
+    reasons = _ignored(names, used, protocol.markers, _cut_from(protocol))
+    left_out = {n: reason or LEFT_OUT for n, reason in protocol.ignored.items() if n in reasons}
     return MarkerUse(protocol.name, used, {**reasons, **left_out})
+
+
+def _cut_from(protocol: Protocol) -> str:
+    """Name of the shipped protocol that this one is a part of, on another body; "" where it is no such part."""
+    if protocol.name not in protocol_names():
+        return ""
+    body = load_protocol(protocol.name).body
+    return "" if (body.name, body.text) == (protocol.body.name, protocol.body.text) else protocol.name
 
 
 def use_by_subject(markers: MarkerTrajectories, subject: Subject) -> MarkerUse:

@@ -31,7 +31,7 @@ def page(recording: dict[str, object] | None = None) -> str:
         "connect": "'self'" if recording is None else "'none'",
         "page.css": asset("page.css"),
         "recording": "" if recording is None else embedded("recording", recording),
-        "meshcat": _in_script(_viewer()),
+        "meshcat": viewer_script(),
         "scripts": _in_script("\n".join(asset(name) for name in SCRIPTS)),
     }
     text = asset("page.html")
@@ -49,6 +49,15 @@ def embedded(name: str, data: dict[str, object]) -> str:
     """Plain data as a script element that holds JSON, whatever its texts contain."""
     text = json.dumps(data, allow_nan=False, separators=(",", ":"), ensure_ascii=False)
     return f'<script type="application/json" id="{name}">' + text.replace("<", "\\u003c") + "</script>"
+
+
+def viewer_script() -> str:
+    """Meshcat's viewer, as it may stand in a script element.
+
+    Raises:
+        FileFormatError: The installed meshcat brings no viewer.
+    """
+    return _in_script(_viewer())
 
 
 @cache

@@ -1,4 +1,4 @@
-"""A small web server for one page: its text, and a WebSocket that sends the newest row, in a thread of its own.
+"""A small web server for one page: its text, and a WebSocket that sends rows and takes words, in a thread of its own.
 
 Bound to this computer alone unless another address is given; then every request must carry the token. Requests
 that another web page or another host name caused are refused.
@@ -33,6 +33,9 @@ STOP_S = 3.0
 Newest = Callable[[], tuple[int, bytes] | None]
 """The newest row and its number, or None where there is none; called at most 30 times a second per open page."""
 
+Hear = Callable[[str], str]
+"""Takes what a page says and returns the answer to it; called in a thread, one word after another per open page."""
+
 
 class PageServer:
     """Serves one page until it is closed.
@@ -41,6 +44,7 @@ class PageServer:
         text: The page.
         greeting: First message of the WebSocket.
         newest: Where rows come from; None for a page that needs no stream.
+        hear: What takes the words that the page sends over the WebSocket; None for a page that only looks.
         address: Where to listen.
         port: 0 for any that is free.
         token: What a request must carry; made up where the address is not this computer's own and none is given.
@@ -60,11 +64,13 @@ class PageServer:
         *,
         greeting: str = "",
         newest: Newest | None = None,
+        hear: Hear | None = None,
         address: str = LOOPBACK,
         port: int = 0,
         token: str | None = None,
     ) -> None:
         self._text, self._greeting, self._newest = text.encode("utf-8"), greeting, newest
+        self._hear = hear
         self._local = is_loopback(address)
         self.token = token or ("" if self._local else secrets.token_urlsafe(16))
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -146,7 +152,7 @@ class PageServer:
             return _response(
                 HTTPStatus.FORBIDDEN, b"Refused: open the address that mbkf printed, with its token.\n"
             )
-        if url.path == "/frames" and self._newest is not None:
+        if url.path == "/frames" and not (self._newest is None and self._hear is None):
             return None
         if url.path == "/":
             return _response(HTTPStatus.OK, self._text, "text/html; charset=utf-8")
@@ -162,7 +168,9 @@ class PageServer:
 
     async def _stream(self, connection: ServerConnection) -> None:
         """Sends the newest row whenever there is one; a slow page gets fewer rows, never old ones."""
-        assert self._newest is not None
+        if self._newest is None:
+            await self._converse(connection)
+            return
         closed = asyncio.ensure_future(connection.wait_closed())
         sent = -1
         try:
@@ -178,6 +186,15 @@ class PageServer:
             pass
         finally:
             closed.cancel()
+
+    async def _converse(self, connection: ServerConnection) -> None:
+        """Answers what the page says until it leaves."""
+        assert self._hear is not None
+        with contextlib.suppress(ConnectionClosed):
+            await connection.send(self._greeting)
+            async for word in connection:
+                if isinstance(word, str):
+                    await connection.send(await asyncio.to_thread(self._hear, word))
 
     async def _woken(self, closed: asyncio.Future[Any]) -> None:
         """Waits for a new row, for the connection's end, or a while."""

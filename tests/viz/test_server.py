@@ -143,3 +143,28 @@ def test_closing_ends_the_thread_and_the_sockets(rows):
             for _ in range(5):
                 socket.recv(2)
     assert threading.active_count() == before
+
+
+def test_a_page_that_speaks_is_answered_word_by_word_and_the_next_page_too():
+    server = PageServer("<p>page</p>", greeting="hello", hear=lambda word: word.upper(), token="open sesame")
+    try:
+        for words in (("a", "b"), ("c",)):
+            with connect(socket_of(server.url)) as socket:
+                assert socket.recv(5) == "hello"
+                for word in words:
+                    socket.send(word)
+                    assert socket.recv(5) == word.upper()
+                socket.send(b"no word")
+                socket.send("last")
+                assert socket.recv(5) == "LAST"
+    finally:
+        server.close()
+
+
+def test_a_page_that_only_looks_is_not_heard(server):
+    with connect(socket_of(server.url)) as socket:
+        socket.recv(5)
+        assert socket.recv(5) == b"first"
+        socket.send("word")
+        with pytest.raises(TimeoutError):
+            socket.recv(0.3)

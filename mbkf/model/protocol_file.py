@@ -1,0 +1,127 @@
+"""Writing marker protocols as files of the form that :func:`mbkf.model.protocol.load_protocol` reads."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+
+from mbkf.errors import InvalidInput
+from mbkf.io.atomic import replacing
+from mbkf.model.protocol import Protocol, ProtocolMarker
+
+_HEADING = (
+    "# A marker set, written by mbkf: which markers there are, on which segment, where.",
+    "# Positions in m in the segment's frame on the reference body (x forward, y left, z up).",
+)
+
+
+def protocol_text(protocol: Protocol, body: str = "") -> str:
+    """A protocol as TOML: what :func:`mbkf.model.protocol.load_protocol` makes the same protocol of.
+
+    A marker is written by its landmark where it sits exactly there, else by its segment and position. Standard
+    deviations stand in mm: one that was read comes back to the last bit, any other to a last bit or two.
+
+    Args:
+        protocol: The protocol.
+        body: What to call its body, a name or a file beside the protocol's; by default the body's own name.
+    """
+    lines = [
+        *_HEADING,
+        f"name = {_text(protocol.name)}",
+        f"title = {_text(protocol.title)}",
+        f"body = {_text(body or protocol.body.name)}",
+    ]
+    if protocol.source:
+        lines.append(f"source = {_text(protocol.source)}")
+    if not protocol.markers:
+        lines.append("marker = []")
+    for marker in protocol.markers:
+        lines += ["", "[[marker]]", *_marker_lines(marker, protocol)]
+    for name, reason in protocol.ignored.items():
+        lines += ["", "[[ignored]]", f"name = {_text(name)}", f"reason = {_text(reason)}"]
+    return "\n".join(lines) + "\n"
+
+
+def write_protocol(protocol: Protocol, path: str | Path) -> None:
+    """Writes a protocol, whole or not at all; a body of a user's own is written beside it, as ``STEM_body.toml``.
+
+    Args:
+        protocol: The protocol.
+        path: The file, which must end in ``.toml`` to be read again.
+
+    Raises:
+        InvalidInput: The file does not end in ``.toml``, or the body's file is there and holds another body.
+        OSError: It cannot be written.
+    """
+    target = checked_name(path)
+    text = protocol.body.text
+    beside = target.with_name(f"{target.stem}_body.toml")
+    if text and not (beside.is_file() and beside.read_text(encoding="utf-8") == text):
+        if beside.exists():
+            raise InvalidInput(
+                f"{beside} holds another body; remove it, or name another file for the marker set"
+            )
+        with replacing(beside) as partial:
+            partial.write_text(text, encoding="utf-8")
+    with replacing(target) as partial:
+        partial.write_text(protocol_text(protocol, beside.name if text else ""), encoding="utf-8")
+
+
+def checked_name(path: str | Path) -> Path:
+    """The file, if a marker set can be written to it; commands call it before long work.
+
+    Raises:
+        InvalidInput: It does not end in ``.toml``, or is a folder.
+    """
+    target = Path(path)
+    if target.suffix != ".toml":
+        raise InvalidInput(f"{target}: a marker set is a TOML file; let its name end in .toml")
+    if target.is_dir():
+        raise InvalidInput(f"{target} is a folder; name a file that ends in .toml")
+    return target
+
+
+def _marker_lines(marker: ProtocolMarker, protocol: Protocol) -> list[str]:
+    landmark = protocol.body.landmarks.get(marker.landmark)
+    there = (
+        landmark is not None
+        and landmark.segment == marker.segment
+        and np.array_equal(landmark.position_m, marker.position_m)
+    )
+    lines = [f"name = {_text(marker.name)}"]
+    if there:
+        lines.append(f"landmark = {_text(marker.landmark)}")
+    else:
+        position = ", ".join(repr(float(x)) for x in marker.position_m)
+        lines += [f"segment = {_text(marker.segment)}", f"position_m = [{position}]"]
+    lines += [
+        f"kind = {_text(marker.kind)}",
+        f"placement_sd_mm = {_millimetres(marker.placement_sd_m)!r}",
+        f"noise_mm = {_millimetres(marker.noise_m)!r}",
+    ]
+    if marker.aliases:
+        lines.append(f"aliases = [{', '.join(_text(alias) for alias in marker.aliases)}]")
+    if marker.static_only:
+        lines.append("static_only = true")
+    if marker.probability != 1.0:
+        lines.append(f"probability = {float(marker.probability)!r}")
+    if marker.alternatives:
+        others = ", ".join(f"[{_text(name)}, {float(odds)!r}]" for name, odds in marker.alternatives)
+        lines.append(f"alternatives = [{others}]")
+    return lines
+
+
+def _millimetres(metres: float) -> float:
+    """The shortest number of millimetres that is read as these metres again, or the nearest there is."""
+    near = 1e3 * metres
+    tries = [float(f"{near:.{digits}g}") for digits in range(1, 18)]
+    tries += [float(np.nextafter(near, side)) for side in (-np.inf, np.inf)]
+    return next((one for one in tries if one / 1e3 == metres), near)
+
+
+def _text(value: str) -> str:
+    """A TOML string; surrogates that no file can hold become question marks."""
+    whole = value.encode("utf-8", "replace").decode("utf-8")
+    return json.dumps(whole, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -1,0 +1,1 @@
+"""Pages of marker sets: one to look at, one to change a set on."""

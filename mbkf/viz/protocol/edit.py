@@ -1,0 +1,92 @@
+"""The page on which a person changes a marker set, and the server behind it that saves the set."""
+
+from __future__ import annotations
+
+import json
+import secrets
+import threading
+from pathlib import Path
+
+from mbkf.errors import InvalidInput, MbkfError
+from mbkf.model.protocol import Protocol
+from mbkf.model.protocol_file import checked_name, write_protocol
+from mbkf.pipelines.protocol.editing import Choice, edited
+from mbkf.pipelines.protocol.standing import Standing
+from mbkf.viz.protocol.page import EDIT_SCRIPTS, page_text, set_data
+from mbkf.viz.server import PageServer
+
+
+class EditPage:
+    """Serves a marker set to be changed until its page says that it is done.
+
+    The page says what a person chose, by marker; what a choice means is worked out here. It is served to this computer
+    alone, and only to who has the token, since it writes a file.
+
+    Args:
+        protocol: The set to begin with.
+        standing: The capture, with the body beside it.
+        out: The file that saving writes.
+        port: 0 for any that is free.
+
+    Attributes:
+        url: What to open in a browser, token included.
+        done: Set once the page says so.
+        saved: The set as it was saved last; None before.
+
+    Raises:
+        InvalidInput: The port cannot be listened on, or the file's name is not a marker set's.
+    """
+
+    def __init__(self, protocol: Protocol, standing: Standing, out: str | Path, *, port: int = 0) -> None:
+        self._protocol, self._standing, self._out = protocol, standing, checked_name(out)
+        self.done = threading.Event()
+        self.saved: Protocol | None = None
+        data = {**set_data(protocol, standing), "out": self._out.name, "trouble": standing.trouble}
+        self._server = PageServer(
+            page_text(data, EDIT_SCRIPTS, "'self'"),
+            hear=self.hear,
+            port=port,
+            token=secrets.token_urlsafe(16),
+        )
+        self.url = self._server.url
+
+    def close(self) -> None:
+        """Ends the server."""
+        self._server.close()
+
+    def hear(self, word: str) -> str:
+        """Does what the page asks for, in JSON, and returns the answer, in JSON.
+
+        Args:
+            word: ``{"do": "done"}``, or ``{"do": "save", "choices": {NAME: {WHAT: TEXT}}}`` with a field of
+                :class:`~mbkf.pipelines.protocol.editing.Choice` for WHAT.
+        """
+        try:
+            asked = json.loads(word)
+            if not isinstance(asked, dict):
+                raise InvalidInput("the page said something that is no request")
+            if asked.get("do") == "save":
+                return json.dumps(self._save(asked.get("choices")))
+            if asked.get("do") == "done":
+                self.done.set()
+                return json.dumps({"done": True})
+            raise InvalidInput(f"the page asked for {asked.get('do')!r}, which is not known")
+        except (MbkfError, OSError) as error:
+            return json.dumps({"trouble": str(error)})
+        except ValueError:
+            return json.dumps({"trouble": "the page said something that is no JSON"})
+
+    def _save(self, choices: object) -> dict[str, object]:
+        known = (
+            {str(name): _choice(one) for name, one in choices.items()} if isinstance(choices, dict) else {}
+        )
+        made = edited(self._protocol, self._standing, known, self._out.stem)
+        write_protocol(made, self._out)
+        self.saved = made
+        return {"saved": self._out.name, "markers": len(made.markers), "ignored": len(made.ignored)}
+
+
+def _choice(said: object) -> Choice:
+    if not isinstance(said, dict) or not set(said) <= {"segment", "landmark", "ignored"}:
+        raise InvalidInput("the page said a choice that is not known")
+    return Choice(**{key: str(value) for key, value in said.items()})

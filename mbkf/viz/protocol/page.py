@@ -1,0 +1,142 @@
+"""The page of a marker set: the body with every marker on it in the colour of its segment, and a list of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.io.atomic import replacing
+from mbkf.model.human import HumanModel
+from mbkf.model.protocol import Protocol
+from mbkf.pipelines.protocol.editing import SURE
+from mbkf.pipelines.protocol.standing import Standing, faced_forward, in_world, neutral_on_floor
+from mbkf.viz.page import asset, embedded, viewer_script
+from mbkf.viz.protocol.colours import segment_colours
+from mbkf.viz.scene.channels import Layout
+from mbkf.viz.scene.description import scene_description, segment_poses
+
+SCRIPTS = ("element.js", "colours.js", "scene.js", "marker_labels.js", "marker_set.js")
+EDIT_SCRIPTS = (*SCRIPTS, "marker_edit.js")
+
+UNKNOWN = "not in the set"
+"""What the page says of a marker of the capture that the set neither has nor leaves out."""
+
+
+def show_page(protocol: Protocol) -> str:
+    """A self-contained page with a set on its reference body; it loads nothing and needs no server."""
+    model = HumanModel.scaled(None, None, protocol.body)
+    standing = Standing((), np.empty((0, 3)), model, neutral_on_floor(model), None)
+    return page_text(set_data(protocol, standing), SCRIPTS, "'none'")
+
+
+def write_show_page(protocol: Protocol, path: str | Path) -> None:
+    """Writes that page, whole or not at all.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    text = show_page(protocol)
+    with replacing(path) as partial:
+        partial.write_text(text, encoding="utf-8")
+
+
+def page_text(data: dict[str, object], scripts: tuple[str, ...], connect: str) -> str:
+    """The page as one piece of text.
+
+    Args:
+        data: What it shows (see :func:`set_data`).
+        scripts: Its own scripts, in the order they are needed.
+        connect: Whom it may connect to, as a content security policy says.
+    """
+    parts = {
+        "connect": connect,
+        "style": asset("page.css") + asset("marker_set.css"),
+        "data": embedded("set", data),
+        "meshcat": viewer_script(),
+        "scripts": "\n".join(asset(name) for name in scripts).replace("</script", "<\\/script"),
+    }
+    text = asset("marker_set.html")
+    for name, part in parts.items():
+        text = text.replace("{{" + name + "}}", part, 1)
+    return text
+
+
+def set_data(protocol: Protocol, standing: Standing) -> dict[str, object]:
+    """What the page shows, as JSON can hold it.
+
+    Args:
+        protocol: The marker set.
+        standing: The capture, with the body beside it; without a point for a set by itself.
+    """
+    standing = faced_forward(standing)
+    model, body = standing.model, protocol.body
+    layout = Layout(len(model.joints), 0, 0)
+    row = layout.blank(1)
+    layout.put(row, "segments", segment_poses(model, standing.q[None]))
+    colours = segment_colours(model.joints)
+    scene = scene_description(protocol.title, model, (), (), np.empty((0, 4, 3)), layout, streamed=False)
+    return {
+        "name": protocol.name,
+        "title": protocol.title,
+        "source": protocol.source,
+        "body": body.name,
+        "sure": SURE,
+        "captured": bool(standing.names),
+        "scene": {**scene, "quantities": []},
+        "row": [None if np.isnan(value) else round(float(value), 5) for value in row[0]],
+        "segments": [
+            {"name": name, "title": name.replace("_", " "), "colour": colours[name]} for name in model.joints
+        ],
+        "landmarks": [
+            {
+                "name": one.name,
+                "segment": one.segment,
+                "at": _plain(in_world(standing, one.segment, one.position_m)),
+            }
+            for one in body.landmarks.values()
+        ],
+        "markers": _markers(protocol, standing),
+    }
+
+
+def _markers(protocol: Protocol, standing: Standing) -> list[dict[str, object]]:
+    """Every marker of the set and of the capture: where it is, and where the set has it."""
+    match = protocol.match(standing.names)
+    names = {marker.name: name for name, marker in match.items()}
+    points = dict(zip(standing.names, standing.points_m, strict=True))
+    found: list[dict[str, object]] = []
+    for marker in protocol.markers:
+        name = names.get(marker.name, marker.name)
+        place = in_world(standing, marker.segment, marker.position_m)
+        found.append(
+            {
+                "name": name,
+                "segment": marker.segment,
+                "landmark": marker.landmark,
+                "kind": marker.kind,
+                "probability": marker.probability,
+                "alternatives": [list(one) for one in marker.alternatives],
+                "ignored": "",
+                "at": _plain(points.get(name, place)),
+                "place": _plain(place),
+                "seen": name in points,
+            }
+        )
+    ignored = {**dict.fromkeys((n for n in standing.names if n not in match), UNKNOWN), **protocol.ignored}
+    shown = {str(one["name"]) for one in found}
+    for name, reason in ignored.items():
+        if name not in shown:
+            at = _plain(points[name]) if name in points else None
+            found.append(
+                {
+                    "name": name, "segment": "", "landmark": "", "kind": "", "probability": 1.0, "alternatives": [],
+                    "ignored": reason or "left out", "at": at, "place": None, "seen": name in points,
+                }
+            )  # fmt: skip
+    return found
+
+
+def _plain(point_m: Array) -> list[float]:
+    return [round(float(x), 4) for x in point_m]

@@ -1,0 +1,110 @@
+"""OpenSim's models of both forms: the same joints and markers, functions at zero, and what is refused."""
+
+import numpy as np
+import pytest
+
+from mbkf.errors import FileFormatError
+from mbkf.io.loose_xml import parse_loose_xml
+from mbkf.io.osim import _value_at_zero, read_osim
+from tests.osim_files import marker_set, osim_3, osim_4, skeleton
+
+MARKERS = [("R.ASIS", "pelvis", (0.01, 0.02, 0.13), True), ("R.Thigh", "femur_r", (0.05, -0.2, 0.03), False)]
+
+
+@pytest.mark.parametrize("text", [osim_3(skeleton(), MARKERS), osim_4(skeleton(), MARKERS, "0.3 -1.2 0.7")])
+def test_both_forms_hold_the_same(text, tmp_path):
+    (tmp_path / "model.osim").write_text(text, encoding="utf-8")
+    model = read_osim(tmp_path / "model.osim")
+    assert model.name == "made"
+    assert model.damaged == {}
+    assert [(m.name, m.body, tuple(m.position_m), m.fixed) for m in model.markers] == MARKERS
+    expected = {(parent, child): at for parent, child, at in skeleton()}
+    assert {(j.parent, j.child) for j in model.joints} == set(expected)
+    for joint in model.joints:
+        pose = np.eye(4)
+        pose[:3, 3] = expected[joint.parent, joint.child]
+        assert joint.child_in_parent == pytest.approx(pose, abs=1e-12)
+        assert joint.centre_m == pytest.approx(np.zeros(3))
+
+
+@pytest.mark.parametrize(
+    ("function", "value"),
+    [
+        ("<Constant><value>0.25</value></Constant>", 0.25),
+        ("<LinearFunction><coefficients>2 0.5</coefficients></LinearFunction>", 0.5),
+        ("<PolynomialFunction><coefficients>3 2 1 -0.75</coefficients></PolynomialFunction>", -0.75),
+        ("<function><Constant><value>4</value></Constant></function>", 4.0),
+        ("<PiecewiseLinearFunction><x>-1 1</x><y>0 3</y></PiecewiseLinearFunction>", 1.5),
+        # a natural cubic through points of a straight line is the line
+        ("<SimmSpline><x>-2 -1 1 2</x><y>-3 -1 3 5</y></SimmSpline>", 1.0),
+        ("<NaturalCubicSpline><x>-1 0 1</x><y>7 0.125 -9</y></NaturalCubicSpline>", 0.125),
+        (
+            "<MultiplierFunction><function><SimmSpline><x>-1 0 1</x><y>1 2 5</y></SimmSpline></function>"
+            "<scale>1.5</scale></MultiplierFunction>",
+            3.0,
+        ),
+        ("<SimmSpline><x>0</x><y>1</y></SimmSpline>", 0.0),
+        ("<Unheard/>", 0.0),
+    ],
+)
+def test_functions_at_zero(function, value):
+    (element,) = parse_loose_xml(function).children
+    assert _value_at_zero(element) == pytest.approx(value)
+
+
+def test_a_joint_that_shifts_and_turns_at_zero(tmp_path):
+    moved = (
+        '<SpatialTransform><TransformAxis name="rotation1"><axis>0 0 1</axis><Constant><value>1.5707963267948966'
+        '</value></Constant></TransformAxis><TransformAxis name="translation2"><coordinates/><axis>0 1 0</axis>'
+        "<Constant><value>-0.4</value></Constant></TransformAxis></SpatialTransform></CustomJoint>"
+    )
+    text = osim_3([("pelvis", "femur_r", (0.1, 0.0, 0.0))], MARKERS).replace("</CustomJoint>", moved)
+    (tmp_path / "model.osim").write_text(text, encoding="utf-8")
+    (joint,) = read_osim(tmp_path / "model.osim").joints
+    assert joint.child_in_parent[:3, 3] == pytest.approx([0.1, -0.4, 0.0])
+    assert joint.child_in_parent[:3, 0] == pytest.approx([0.0, 1.0, 0.0])
+
+
+def test_a_marker_on_a_frame_fixed_to_a_body(tmp_path):
+    text = osim_4([("pelvis", "femur_r", (0.1, 0.2, 0.3))], [("A", "x/pelvis_offset", (0.0, 0.0, 1.0), True)])
+    (tmp_path / "model.osim").write_text(text, encoding="utf-8")
+    (marker,) = read_osim(tmp_path / "model.osim").markers
+    assert marker.body == "pelvis"
+    assert marker.position_m == pytest.approx([0.1, 0.2, 1.3])
+
+
+def test_markers_that_cannot_be_read_are_told(tmp_path):
+    good = marker_set([MARKERS[0], MARKERS[0]], 3)
+    bad = (
+        "<Marker name='B'><body>pelvis</body><location>1 2</location></Marker>"
+        "<Marker name='C'><body>pelvis</body><location>1 2 nan</location></Marker>"
+        "<Marker name='D'><location>1 2 3</location></Marker>"
+        "<Marker><body>pelvis</body><location>1 2 3</location></Marker></objects>"
+    )
+    (tmp_path / "set.xml").write_text(good.replace("</objects>", bad), encoding="utf-8")
+    model = read_osim(tmp_path / "set.xml")
+    assert [marker.name for marker in model.markers] == ["R.ASIS"]
+    assert set(model.damaged) == {"R.ASIS (again)", "B", "C", "D", "(no name)"}
+    assert model.joints == ()
+
+
+def test_defaults_are_no_part_of_the_model(tmp_path):
+    text = osim_3(skeleton(), MARKERS[:1]).replace(
+        "<BodySet>", f"<defaults>{marker_set(MARKERS[1:], 3)}<Body name='x'/></defaults><BodySet>"
+    )
+    (tmp_path / "model.osim").write_text(text, encoding="utf-8")
+    assert [marker.name for marker in read_osim(tmp_path / "model.osim").markers] == ["R.ASIS"]
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        (osim_4(skeleton(), []), "holds no marker"),
+        ("<svg><rect/></svg>", "is no OpenSim model"),
+        ("<MarkerSet><Marker name='B'><body>x</body></Marker></MarkerSet>", "no marker that can be read"),
+    ],
+)
+def test_other_files_are_refused(text, reason, tmp_path):
+    (tmp_path / "model.osim").write_text(text, encoding="utf-8")
+    with pytest.raises(FileFormatError, match=reason):
+        read_osim(tmp_path / "model.osim")
