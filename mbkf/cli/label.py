@@ -20,6 +20,7 @@ examples:
   mbkf label walk7/raw.c3d --subject walk7/subject.toml --truth walk7/trial.c3d --out labelled.c3d
   mbkf label raw.c3d --static standing.c3d --mass 71 --out trial.c3d       (scales from the labelled standing trial)
   mbkf label raw.c3d --protocol autolabel62 --mass 75 --out trial.c3d      (a person not scaled before)
+  mbkf label raw.c3d --mass 75 --out trial.c3d                             (nor a marker set known: it is inferred)
 
 Points may be shuffled in every frame or come as tracks. Points that are no marker are dropped. The numbers that are
 printed also go to FILE.json. A person scaled on the way is written to FILE.toml, for 'mbkf reconstruct --subject'.
@@ -106,6 +107,7 @@ def _label(
     from mbkf.io.subject import read_subject
     from mbkf.pipelines.axes.captures import turned_like_subject
     from mbkf.pipelines.label import label
+    from mbkf.pipelines.label_nameless import label_nameless
     from mbkf.pipelines.label_unscaled import label_unscaled
     from mbkf.pipelines.scale import scale
 
@@ -116,20 +118,22 @@ def _label(
         static = read_capture(args.static, **axes_options(args))
         subject = scale(static, protocol=args.protocol, progress=report, **person)
         warn_of_markers(subject)
-    else:
+    elif args.protocol is not None:
         return *label_unscaled(raw, args.protocol, progress=report, **person), raw
+    else:
+        found, subject, inferred = label_nameless(raw, progress=report, **person)
+        print(f"note: {inferred.line}")
+        return found, subject, inferred.captures[0]
     raw = turned_like_subject(raw, subject)
     return label(raw, subject, progress=report), subject, raw
 
 
 def _check_person(args: argparse.Namespace) -> None:
-    """Refuses none or two ways to state who wears the markers."""
+    """Refuses two ways to state who wears the markers."""
     from mbkf.errors import InvalidInput
 
-    if args.subject is None and args.static is None and args.protocol is None:
-        raise InvalidInput(
-            "who wears the markers? give --subject SUBJECT.toml, --static LABELLED, or --protocol NAME with --mass KG"
-        )
+    if args.subject is None and args.static is None and args.protocol is None and args.truth is not None:
+        raise InvalidInput("--truth: an inferred marker set has names of its own; give --protocol or --subject too")
     if args.subject is not None:
         for name in ("static", "protocol", "mass", "height"):
             if getattr(args, name) is not None:

@@ -75,7 +75,7 @@ def test_a_person_scaled_on_the_way_is_written(folder, tmp_path, capsys, who):
 
 def test_it_must_be_known_who_wears_the_markers(folder, tmp_path, refused):
     raw, out = folder / "raw.c3d", tmp_path / "named.c3d"
-    refused(["label", raw, "--out", out], "--subject", "--protocol")
+    refused(["label", raw, "--truth", raw, "--out", out], "--truth", "--protocol")
     both = ["--subject", folder / "subject.toml", "--protocol", "reference36"]
     refused(["label", raw, *both, "--out", out], "--protocol", "--subject")
     refused(["label", raw, "--protocol", "reference36", "--mass", "-3", "--out", out], "--mass", "positive")
