@@ -11,7 +11,7 @@ from mbkf.filters.inverse_dynamics import inverse_dynamics
 from mbkf.filters.tracking import Track
 from mbkf.io.records import PlateReadings
 from mbkf.model.body import Body
-from mbkf.sensors.contact.offline import FootLoads, assign_feet
+from mbkf.sensors.contact.offline import BOTH, FootLoads, assign_feet
 from mbkf.sensors.contact.plates import pressure_and_free_moment, surface_height
 from mbkf.sensors.contact.records import Contact
 
@@ -99,7 +99,8 @@ def _plate_change(wrench: Array, loads: FootLoads, plates: tuple[PlateReadings, 
     change = np.full(loads.plate_wrench.shape, np.nan)
     for p, plate in enumerate(plates):
         foot = loads.foot_of_plate[:, p]
-        alone = (foot >= 0) & ((loads.foot_of_plate == foot[:, None]).sum(axis=1) == 1)
+        others = (loads.foot_of_plate == BOTH).any(axis=1)
+        alone = (foot >= 0) & ~others & ((loads.foot_of_plate == foot[:, None]).sum(axis=1) == 1)
         frames = np.flatnonzero(alone)
         difference = wrench[frames, foot[frames]] - loads.plate_wrench[frames, p]
         difference[:, 3:] -= np.cross(plate.origin_m, difference[:, :3])
@@ -128,6 +129,6 @@ def _contact_warnings(contact: Array, plates: tuple[PlateReadings, ...]) -> list
         )
     if shared:
         warnings.append(
-            f"in {shared} frames both feet stand on one plate: how they share its load cannot be observed"
+            f"in {shared} frames both feet stand on one plate: how they share its load is estimated from where they stand"
         )
     return warnings

@@ -1,0 +1,109 @@
+"""Two feet on one plate: how they share what it reads, and how well that is known.
+
+The plate reads the sum W of both wrenches about any point. In double support the foot ahead is loaded towards its heel
+and the foot behind towards its toes; side by side both are loaded in the middle. With the expected centres of pressure
+c_r, c_l and the plate's own p, the right foot carries the share
+
+    s = (p − c_l) · (c_r − c_l) / |c_r − c_l|²,  0 ≤ s ≤ 1
+
+of the vertical force F, known to √(s² + (1 − s)²) σ_c F / |c_r − c_l| with the spread σ_c of the centres. What p lies
+beside the line between the centres moves both of them. The force on each foot points to the pelvis, as in walking it
+passes near the centre of mass (Maus et al., Nature Communications 1:70, 2010); what is left of the measured shear is
+shared as the vertical force is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.sensors.contact.plates import pressed_at
+from mbkf.sensors.contact.soles import Sole
+
+MIDDLE, FORWARD = 0.525, 0.275
+"""Where a foot is loaded along its sole, from heel 0 to toe end 1, beside the other foot, and how far from there when
+the feet are a step apart: towards the heel of the foot ahead, towards the toes of the foot behind."""
+
+STEP_M = 0.3
+"""Distance ahead from which feet are a step apart."""
+
+CENTRE_SD_M = 0.02
+"""Spread of a foot's expected centre of pressure along the line between the feet."""
+
+LEVER_M = 0.03
+"""Spread of a foot's centre of pressure about the expected one."""
+
+LEAST_APART_M = 0.05
+"""Feet are not taken to be nearer to each other than this."""
+
+SHEAR_SHARE, TWIST_M = 0.05, 0.01
+"""Spread of a foot's shear force and of its free moment's arm, as shares of the plate's vertical force."""
+
+LEAST_SHARE = 0.05
+"""Share of the plate's force that a foot is taken to carry at least where spreads are counted."""
+
+
+@dataclass(frozen=True)
+class SharedLoad:
+    """A plate's reading shared between two feet.
+
+    Attributes:
+        wrench: (2, 6) force N and moment N m about the world's origin on right and left foot; they sum to the plate's.
+        centres_m: (2, 3) expected centres of pressure.
+        sd: (6,) spread of the right foot's wrench about its centre of pressure; the left one's is its opposite.
+    """
+
+    wrench: Array
+    centres_m: Array
+    sd: Array
+
+
+def share_load(total: Array, soles: Sequence[Sole], pelvis_m: Array, surface_m: float) -> SharedLoad:
+    """Shares a plate's reading between two feet.
+
+    Args:
+        total: (6,) force N and moment N m about the world's origin, with a vertical force other than zero.
+        soles: Heel, ball and toe end of right and left sole.
+        pelvis_m: (3,) where the forces point.
+        surface_m: Height of the plate's surface.
+    """
+    force = float(total[2])
+    pressed = np.array([*pressed_at(total.tolist(), surface_m), surface_m])
+    centres = expected_centres(soles, surface_m)
+    line = centres[0] - centres[1]
+    apart = max(float(np.linalg.norm(line)), LEAST_APART_M)
+    share = min(max(float((pressed - centres[1]) @ line) / apart**2, 0.0), 1.0)
+    shares = np.array([share, 1.0 - share])
+    centres = centres + (pressed - shares @ centres)
+    arms = pelvis_m - centres
+    towards = (shares * force / arms[:, 2])[:, None] * arms[:, :2]
+    forces = np.column_stack([towards + np.outer(shares, total[:2] - towards.sum(axis=0)), shares * force])
+    moments = np.cross(centres, forces)
+    moments[:, 2] += shares * (total[5] - moments[:, 2].sum())
+    carried = max(share, LEAST_SHARE) * force
+    spread = max(float(np.hypot(share, 1.0 - share)) * CENTRE_SD_M / apart, 1e-3) * force
+    shear, lever = SHEAR_SHARE * force, LEVER_M * carried
+    sd = np.array([shear, shear, spread, lever, lever, TWIST_M * force])
+    return SharedLoad(np.concatenate([forces, moments], axis=1), centres, sd)
+
+
+def expected_centres(soles: Sequence[Sole], surface_m: float) -> Array:
+    """(2, 3) where right and left foot are loaded on a surface, by which of them is ahead.
+
+    Args:
+        soles: Heel, ball and toe end of both soles.
+        surface_m: Height of the surface.
+    """
+    ends = np.array([[sole[0], sole[2]] for sole in soles])
+    along = ends[:, 1, :2] - ends[:, 0, :2]
+    direction = along.sum(axis=0)
+    direction = direction / max(float(np.hypot(*direction)), 1e-9)
+    middles = ends[:, :, :2].mean(axis=1)
+    ahead = float((middles[0] - middles[1]) @ direction)
+    shift = FORWARD * min(max(ahead / STEP_M, -1.0), 1.0)
+    places = np.array([MIDDLE - shift, MIDDLE + shift])
+    centres = ends[:, 0, :2] + places[:, None] * along
+    return np.column_stack([centres, np.full(2, surface_m)])
