@@ -3,7 +3,8 @@
     measured    X w = X w_plate + r       r ~ N(0, diag(σ_F², σ_M²)) of the plate, moments about the middle of the sole
     shared      X (w_r + w_l) = X w_plate + r, and X w_r its share by geometry (:mod:`mbkf.sensors.contact.sharing`)
     air         X w = r                   a foot in the air carries nothing
-    unmeasured  X w = X w_share + r       weakly its share of the weight; its wrench is otherwise free
+    unmeasured  X w = X w_share + r       weakly its share of the weight; its wrench is otherwise free; in double
+                                          support each foot's lever and direction by where it stands
 
 X moves a wrench from the world's origin to the middle of the sole. Between frames wrenches are random walks about that
 point. Which foot stands on what is decided by :class:`mbkf.sensors.contact.causal.ContactDetector`. An unmeasured foot
@@ -20,8 +21,8 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.contact.causal import ContactDetector
-from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
-from mbkf.sensors.contact.sharing import SharedLoad
+from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, FreeStance
+from mbkf.sensors.contact.sharing import LEAST_SHARE, LEVER_M, TWIST_M, SharedLoad
 from mbkf.sensors.layout import Layout
 from mbkf.sensors.states import LoadedState
 
@@ -39,6 +40,10 @@ class FootContactSettings:
             weights, and of its lever about the middle of the sole, m, per reading: what keeps two such feet from
             pulling against each other.
         pulling_force_n: How softly an unmeasured foot is kept from pulling at the floor, N.
+        free_shear_share: Spread of an unmeasured foot's shear force about the direction to the pelvis in double
+            support, as a share of its vertical force.
+        landing_share, landing_lever_m: Spread of the force, in body weights, and of its lever, m, of a foot that is in
+            the air but about to touch a floor that no plate reads, or has just left it: when is known to some 40 ms.
     """
 
     plate_force_n: float = 3.0
@@ -50,6 +55,9 @@ class FootContactSettings:
     free_force_share: float = 2.0
     free_lever_m: float = 0.3
     pulling_force_n: float = 10.0
+    free_shear_share: float = 0.08
+    landing_share: float = 0.2
+    landing_lever_m: float = 0.05
 
 
 class FootDecision(NamedTuple):
@@ -89,6 +97,9 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         self._free = 1.0 / np.repeat([s.free_force_share * weight_n, s.free_lever_m * weight_n], 3)
         self._pulling = self._free.copy()
         self._pulling[2] = 1.0 / s.pulling_force_n
+        self._landing = np.repeat(
+            [s.landing_share * weight_n, s.landing_share * s.landing_lever_m * weight_n], 3
+        )
         self._walk = np.repeat([s.wrench_force, s.wrench_moment], 3) * dt_s**0.5
         self._first = 0
 
@@ -123,12 +134,14 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         kinds, rows, values, plates = contact.contacts, np.zeros((12, 12)), np.empty(12), 0
         if contact.shared is not None:
             return self._shared(w, contact, contact.shared)
+        if contact.free is not None and not lifted:
+            return self._both_unmeasured(w, contact, contact.free)
         about = _about(contact.centres_m)
         only_left = kinds[0] != Contact.MEASURED and kinds[1] == Contact.MEASURED
         for place, foot in enumerate((1, 0) if only_left else (0, 1)):
             wrench, mine = w[6 * foot : 6 * foot + 6], slice(6 * place, 6 * place + 6)
             pulls = wrench[2] < 0.0 or foot in lifted
-            X = about[foot] * self._weight(kinds[foot], pulls)[:, None]
+            X = about[foot] * self._weight(kinds[foot], pulls, contact.near[foot])[:, None]
             rows[mine, 6 * foot : 6 * foot + 6] = X
             values[mine] = X @ (self._expected(contact, foot, pulls) - wrench)
             plates += 6 * (kinds[foot] == Contact.MEASURED)
@@ -172,13 +185,41 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         x, y, _ = contact.centres_m[foot].tolist()
         return np.array([0.0, 0.0, rest, y * rest, -x * rest, 0.0])
 
-    def _weight(self, kind: Contact, pulls: bool) -> Array:
-        """(6,) 1/sd of a foot's rows; an unmeasured foot that would pull at the floor is held at no vertical force."""
+    def _weight(self, kind: Contact, pulls: bool, near: float) -> Array:
+        """(6,) 1/sd of a foot's rows; an unmeasured foot that would pull at the floor is held at no vertical force.
+
+        Args:
+            kind: What the foot stands on.
+            pulls: Whether it would pull.
+            near: How near a foot in the air is to touching a floor that no plate reads, 0 to 1.
+        """
         if kind == Contact.MEASURED:
             return self._plate
         if kind == Contact.AIR:
-            return self._air
+            return 1.0 / (1.0 / self._air + near * self._landing)
         return self._pulling if pulls else self._free
+
+    def _both_unmeasured(self, w: Array, contact: ContactDecision, free: FreeStance) -> Rows:
+        """Both feet on floor that no plate reads: Newton's law knows the sum, geometry where and whither each presses.
+
+        About its expected centre of pressure each foot's horizontal moment is 0 to a lever, its force points to the
+        pelvis, and its vertical force is weakly half of the weight.
+        """
+        s, weight = self.settings, self._weight_n
+        carried = np.maximum(w[[2, 8]], LEAST_SHARE * weight)
+        centres = free.stance.centres_at(float(carried[0] / carried.sum()))
+        about, arms = _about(centres), free.pelvis_m - centres
+        rows, values = np.zeros((12, 12)), np.empty(12)
+        for foot in (0, 1):
+            mine = slice(6 * foot, 6 * foot + 6)
+            X, force = about[foot], carried[foot]
+            X[:2, 2] -= arms[foot, :2] / arms[foot, 2]
+            shear, lever = s.free_shear_share * force, LEVER_M * force
+            sd = np.array([shear, shear, s.free_force_share * weight, lever, lever, TWIST_M * force])
+            rows[mine, mine] = X / sd[:, None]
+            values[mine] = -rows[mine, mine] @ w[mine]
+            values[6 * foot + 2] += 0.5 * weight / sd[2]
+        return Rows(rows, values, self._first, 0)
 
     def _shared(self, w: Array, contact: ContactDecision, shared: SharedLoad) -> Rows:
         """One plate reads the sum of both wrenches; how they share it is known by geometry, with its spread."""

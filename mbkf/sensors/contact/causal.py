@@ -15,8 +15,8 @@ from mbkf.conventions import Array
 from mbkf.io.records import PlateReadings
 from mbkf.model.body import Body
 from mbkf.sensors.contact.plates import PlateAreas, least_load, pressed_at, surface_height
-from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, Planted, Pressed
-from mbkf.sensors.contact.sharing import SharedLoad, share_load
+from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, FreeStance, Planted, Pressed
+from mbkf.sensors.contact.sharing import SharedLoad, expected_stance, share_load
 from mbkf.sensors.contact.soles import Sole, distance_to_sole, nearer_foot, share_along, sole_locals
 from mbkf.sensors.contact.thresholds import (
     FLAT_FROM,
@@ -91,6 +91,10 @@ class ContactDetector:
         elsewhere = self._elsewhere.decide(memory, (q, v, a), soles, contacts, vertical < self._least_n)
         for foot in elsewhere.carrying:
             contacts[foot] = Contact.UNMEASURED
+        free = None
+        if contacts[0] == contacts[1] == Contact.UNMEASURED:
+            surface = min(point[2] for sole in soles for point in sole)
+            free = FreeStance(expected_stance(soles, surface), self._pelvis_m(q))
         return ContactDecision(
             (contacts[0], contacts[1]),
             wrench,
@@ -98,6 +102,8 @@ class ContactDetector:
             any(foot_of_plate[k] < 0 for k in loaded),
             ContactMemory(tuple(foot_of_plate), tuple(latest), elsewhere.sole_height_m, elsewhere.touching_s),
             shared,
+            free,
+            elsewhere.near,
         )
 
     def planted(self, decision: ContactDecision, q: Array, foot: int) -> Planted | None:
@@ -165,7 +171,8 @@ class ContactDetector:
         if 2 not in foot_of_plate:
             return None
         under = [k for k, owner in enumerate(foot_of_plate) if owner >= 0]
-        _, origins = self._model.placements(q)
-        pelvis = origins[self._model.root.joint_id]
         surface = self.surfaces_m[foot_of_plate.index(2)]
-        return share_load(plate_wrench[under].sum(axis=0), soles, pelvis, surface)
+        return share_load(plate_wrench[under].sum(axis=0), soles, self._pelvis_m(q), surface)
+
+    def _pelvis_m(self, q: Array) -> Array:
+        return self._model.placements(q)[1][self._model.root.joint_id]

@@ -7,7 +7,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from mbkf.conventions import Array
-from mbkf.sensors.contact.sharing import SharedLoad
+from mbkf.sensors.contact.sharing import SharedLoad, Stance
 
 
 class Contact(IntEnum):
@@ -51,6 +51,13 @@ class ContactMemory:
     touching_s: tuple[float, float]
 
 
+class FreeStance(NamedTuple):
+    """Both feet on floor that no plate reads: where they are expected to be loaded, and the pelvis (3,)."""
+
+    stance: Stance
+    pelvis_m: Array
+
+
 @dataclass(frozen=True)
 class ContactDecision:
     """The contact decision of one frame.
@@ -63,6 +70,8 @@ class ContactDecision:
         stray: Whether a loaded plate belongs to no foot.
         memory: For the next frame.
         shared: How the feet share a plate; None where they do not.
+        free: Where both feet stand if both carry weight where no plate reads; None else.
+        near: How near right and left foot in the air are to touching a floor that no plate reads, 0 to 1.
     """
 
     contacts: tuple[Contact, Contact]
@@ -71,6 +80,8 @@ class ContactDecision:
     stray: bool
     memory: ContactMemory
     shared: SharedLoad | None = None
+    free: FreeStance | None = None
+    near: tuple[float, float] = (0.0, 0.0)
 
 
 class Planted(NamedTuple):

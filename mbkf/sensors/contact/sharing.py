@@ -83,6 +83,10 @@ class Stance(NamedTuple):
     roll_m: Array
     forward: Array
 
+    def centres_at(self, share: float) -> Array:
+        """(2, 3) expected centres of pressure while the right foot carries this share of the load."""
+        return np.asarray(self.centres_m + np.array([[share - 1.0], [share]]) * self.roll_m)
+
 
 def share_load(total: Array, soles: Sequence[Sole], pelvis_m: Array, surface_m: float) -> SharedLoad:
     """Shares a plate's reading between two feet.
@@ -95,12 +99,13 @@ def share_load(total: Array, soles: Sequence[Sole], pelvis_m: Array, surface_m: 
     """
     force = float(total[2])
     pressed = np.array([*pressed_at(total.tolist(), surface_m), surface_m])
-    centres, roll, forward = expected_stance(soles, surface_m)
+    stance = expected_stance(soles, surface_m)
+    centres, forward = stance.centres_m, stance.forward
     line = centres[0] - centres[1]
     apart = max(float(np.linalg.norm(line)), LEAST_APART_M)
     share = min(max(float((pressed - centres[1]) @ line) / apart**2, 0.0), 1.0)
     shares = np.array([share, 1.0 - share])
-    centres = centres + np.array([[share - 1.0], [share]]) * roll
+    centres = stance.centres_at(share)
     centres = centres + (pressed - shares @ centres)
     arms = pelvis_m - centres
     towards = (shares * force / arms[:, 2])[:, None] * arms[:, :2]

@@ -6,7 +6,7 @@ In the air a body falls. Where both feet are in the air and it does not fall, so
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot, isnan
+from math import exp, hypot, isnan
 from typing import NamedTuple
 
 import numpy as np
@@ -36,11 +36,13 @@ class Elsewhere(NamedTuple):
         carrying: The feet.
         sole_height_m: Height at which the body's loaded soles lie, NaN before one was loaded.
         touching_s: For how long right and left foot have touched the floor without a reading.
+        near: How near right and left foot in the air are to touching a floor that no plate reads, 0 to 1.
     """
 
     carrying: Sequence[int]
     sole_height_m: float
     touching_s: tuple[float, float]
+    near: tuple[float, float] = (0.0, 0.0)
 
 
 class UnmeasuredFeet:
@@ -87,7 +89,25 @@ class UnmeasuredFeet:
         in_air = contacts[0] == contacts[1] == Contact.AIR
         if not carrying and in_air and not _falls(q, v, a):
             carrying = self._holding(soles, idle)
-        return Elsewhere(carrying, height, touching)
+        near = [
+            0.0
+            if f in carrying or contacts[f] != Contact.AIR or self._watched(f, soles[f], idle)
+            else self._near(f, soles[f], (q, v), height)
+            for f in (0, 1)
+        ]
+        return Elsewhere(carrying, height, touching, (near[0], near[1]))
+
+    def _near(self, foot: int, sole: Sole, motion: tuple[Array, Array], height: float) -> float:
+        """How near a foot is to touching the floor, 0 to 1: low and slow, as Gaussians of the limits of standing."""
+        floor = height if not isnan(height) else self._floor
+        if isnan(floor):
+            return 0.0
+        speeds = self._speeds(foot, sole, motion)
+        away = [
+            (max(point[2] - floor, 0.0) / STAND_HEIGHT_M) ** 2 + (speed / STAND_SPEED_M_S) ** 2
+            for point, speed in zip(sole, speeds, strict=True)
+        ]
+        return exp(-0.5 * min(away))
 
     def _touching(
         self,
@@ -144,11 +164,14 @@ class UnmeasuredFeet:
         low = [point for point in sole[:SOLE_ENDS] if point[2] < floor + slack * STAND_HEIGHT_M]
         if not low:
             return False
+        return min(self._speeds(foot, low, motion)) < slack * STAND_SPEED_M_S
+
+    def _speeds(self, foot: int, points: Sole, motion: tuple[Array, Array]) -> list[float]:
+        """Speeds of world points that move with a foot."""
         q, v = motion
         # The foot's velocity at the world's origin, from which each point's follows.
         vx, vy, vz, wx, wy, wz = (self._model.spatial_jacobian(q) @ (v * self._moves[foot])).tolist()
-        speeds = [hypot(vx + wy * z - wz * y, vy + wz * x - wx * z, vz + wx * y - wy * x) for x, y, z in low]
-        return min(speeds) < slack * STAND_SPEED_M_S
+        return [hypot(vx + wy * z - wz * y, vy + wz * x - wx * z, vz + wx * y - wy * x) for x, y, z in points]
 
     def _watched(self, foot: int, sole: Sole, idle: _Idle) -> bool:
         """Whether an unloaded plate lies under a foot, so that the foot carries nothing.
