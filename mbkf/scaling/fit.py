@@ -22,7 +22,10 @@ MAX_STANDING_TILT_DEG = 50.0
 SESSION_SHARE = 0.5
 MIN_SESSION_SD_M = 0.005
 MAX_RMS_M = 0.05
-"""Markers that fit worse than this are not this protocol on a person."""
+"""Markers that fit worse than this, and than their noise explains, are not this protocol on a person."""
+
+MAX_RMS_PER_NOISE = 2.5
+"""Greatest RMS distance over the noise per coordinate; noise alone gives 1.7."""
 
 
 def scale_subject(
@@ -73,7 +76,7 @@ def scale_subject(
         solution = _minimise(problem, solution.state, progress)
     errors = np.linalg.norm(problem.errors_m(solution.state), axis=2)
     rms = float(np.sqrt(np.nanmean(errors**2)))
-    if rms > MAX_RMS_M:
+    if rms > max(MAX_RMS_M, MAX_RMS_PER_NOISE * float(np.sqrt((problem.noise_m**2).mean()))):
         raise NotConverged(
             f"markers fit the body only to {1e3 * rms:.0f} mm; is '{protocol.name}' their protocol?"
         )
@@ -119,11 +122,15 @@ def scaling_problem(
     expected = 1.0 if height_m is None else height_m / body.reference_height_m
     stature = settings.stature_sd if height_m is None else settings.known_stature_sd
     count = len(body.scale_factors)
+    standing = None
+    if any(marker.kind == "keypoint" for marker in frames.markers):
+        standing = (frames.trial < static_trials) / counts[frames.trial]
     prior = ScalingPrior(
         factors=np.full(count, expected),
         factor_covariance=settings.proportion_sd**2 * np.eye(count) + stature**2 * np.ones((count, count)),
         offsets_m=np.zeros((len(frames.markers), 3)),
         offset_precision=np.diag(np.repeat([m.placement_sd_m**-2 for m in frames.markers], 3)),
+        standing=standing,
     )
     return ScalingProblem(body, frames.markers, frames.measured_m, weight, prior)
 
@@ -187,6 +194,8 @@ def _subject(
                 marker.noise_m,
                 _session_sd_m(marker, seen),
                 marker.aliases,
+                marker.correlated_m,
+                marker.correlation_s,
             )
         )
     return Subject(
@@ -202,7 +211,12 @@ def _subject(
 
 
 def _session_sd_m(marker: ProtocolMarker, seen: bool) -> float:
-    """How far a marker may sit elsewhere in the next trial: a share of the freedom its protocol gives it."""
+    """How far a marker may sit elsewhere in the next trial: a share of the freedom its protocol gives it.
+
+    Nobody sticks keypoints on anew: what a network takes for a knee it takes for one in the next trial, too.
+    """
+    if seen and marker.kind == "keypoint":
+        return MIN_SESSION_SD_M
     return max(MIN_SESSION_SD_M, SESSION_SHARE * marker.placement_sd_m) if seen else marker.placement_sd_m
 
 

@@ -1,0 +1,35 @@
+"""Noise that stays for a while, told as white noise of equal weight to a slowly moving body.
+
+A reading's error is r_k = w_k + c_k: w white with variance σ² − σ_c², c a Gauss–Markov process (Bryson & Henrikson
+1968) with variance σ_c² and correlation time τ, ρ = e^(−Δt/τ). Its power at the angular frequency ω, per reading, is
+
+    R(ω) = σ² − σ_c² + σ_c² (1 − ρ²) / (1 − 2 ρ cos ωΔt + ρ²)
+
+A filter that takes white noise of the variance R(ω) weighs the readings as their errors deserve at that frequency. At
+ω = 0 this is σ² − σ_c² + σ_c² coth(Δt/2τ) ≈ σ² − σ_c² + 2 τ σ_c² / Δt, the variance of a mean of many readings times
+their number.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import Array
+
+
+def white_noise_m(
+    noise_m: Array, correlated_m: Array, correlation_s: Array, dt_s: float, frequency_hz: float = 0.0
+) -> Array:
+    """(M,) standard deviation √R of the white noise of equal weight at a frequency, m.
+
+    Args:
+        noise_m: (M,) standard deviation of the whole noise, m.
+        correlated_m: (M,) standard deviation of the part that stays, m.
+        correlation_s: (M,) its correlation time, s; 0 where it does not stay.
+        dt_s: Time between readings.
+        frequency_hz: The frequency.
+    """
+    stays = (correlated_m > 0.0) & (correlation_s > 0.0)
+    rho = np.where(stays, np.exp(-dt_s / np.where(stays, correlation_s, 1.0)), 0.0)
+    gain = (1.0 - rho**2) / (1.0 - 2.0 * rho * np.cos(2.0 * np.pi * frequency_hz * dt_s) + rho**2)
+    return np.sqrt(noise_m**2 - correlated_m**2 + gain * correlated_m**2)
