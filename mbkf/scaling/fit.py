@@ -14,7 +14,14 @@ from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.levenberg_marquardt import Solution, minimise
 from mbkf.scaling.frames import MIN_MARKERS, ScalingFrames, choose_frames
-from mbkf.scaling.problem import FACTOR_BOUNDS, ScalingPrior, ScalingProblem, ScalingSettings, ScalingState
+from mbkf.scaling.problem import (
+    FACTOR_BOUNDS,
+    KEYPOINT_POSTURE_FRAMES,
+    ScalingPrior,
+    ScalingProblem,
+    ScalingSettings,
+    ScalingState,
+)
 from mbkf.sensors.pose_fit import segment_by_segment
 
 MAX_ITERATIONS = 60
@@ -118,13 +125,16 @@ def scaling_problem(
         settings.static_posture_frames,
         settings.dynamic_posture_frames,
     )
+    keypoints = any(marker.kind == "keypoint" for marker in frames.markers)
+    if keypoints:
+        looks = np.where(np.arange(len(counts)) < static_trials, looks, KEYPOINT_POSTURE_FRAMES)
     weight = np.minimum(looks / counts, 1.0)[frames.trial]
     expected = 1.0 if height_m is None else height_m / body.reference_height_m
     stature = settings.stature_sd if height_m is None else settings.known_stature_sd
     count = len(body.scale_factors)
     standing = None
-    if any(marker.kind == "keypoint" for marker in frames.markers):
-        standing = (frames.trial < static_trials) / counts[frames.trial]
+    if keypoints:
+        standing = np.where(frames.trial < static_trials, 1.0, 0.0)
     prior = ScalingPrior(
         factors=np.full(count, expected),
         factor_covariance=settings.proportion_sd**2 * np.eye(count) + stature**2 * np.ones((count, count)),

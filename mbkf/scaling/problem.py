@@ -30,6 +30,10 @@ from mbkf.sensors.posture_sensor import PostureSensor
 FACTOR_BOUNDS = (0.5, 1.6)
 """Range of a scale factor; one that ends here is reported as an active bound."""
 
+KEYPOINT_POSTURE_FRAMES = 0.5
+"""How many independent looks at the posture a moving trial of keypoints counts for: they leave joints so much freedom
+that a squat would otherwise be scaled to look like standing."""
+
 OUTLYING_SD = 4.0
 """A sample within so many standard deviations of its noise is no outlier: of three coordinates 0.1 % lie further."""
 

@@ -11,11 +11,12 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.human import HumanModel
+from mbkf.model.sides import mirrored
 
-FLAT_SD_RAD = np.deg2rad(2.0)
+FLAT_SD_RAD = np.deg2rad(3.0)
 """How far a sole is from level in standing."""
 
-UPRIGHT_SD_RAD = np.deg2rad(4.0)
+UPRIGHT_SD_RAD = np.deg2rad(6.0)
 """How far a pelvis is from the reference posture's."""
 
 
@@ -28,9 +29,11 @@ class Standing:
 
     def __init__(self, model: HumanModel) -> None:
         """Args: the body, whose roles name the feet and the root."""
-        names = [*model.roles.feet, model.roles.root]
+        segments = model.description.segments
+        trunk = [s.name for s in segments if s.parent == model.roles.root and s.name == mirrored(s.name)]
+        names = [*model.roles.feet, model.roles.root, *trunk]
         self._joints = np.array([model.joint(name).joint_id for name in names])
-        self.sd = np.array([FLAT_SD_RAD] * len(model.roles.feet) + [UPRIGHT_SD_RAD])[:, None]
+        self.sd = np.array([FLAT_SD_RAD] * len(model.roles.feet) + [UPRIGHT_SD_RAD] * (1 + len(trunk)))[:, None]
 
     def residuals(self, model: HumanModel, q: Array) -> Array:
         """(2 S,) whitened inclinations at q (nq,)."""

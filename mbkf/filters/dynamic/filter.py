@@ -7,6 +7,7 @@ has a linear plant that is never stiff; Newton's law at the pelvis is one of its
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -43,6 +44,7 @@ def dynamic_blocks(
     unobservable: BoolArray,
     settings: DynamicSettings,
     inertial: InertialSensor | None = None,
+    spread_m: Array | None = None,
 ) -> list[AnyBlock]:
     """The standard blocks, in the order in which they decide.
 
@@ -54,15 +56,22 @@ def dynamic_blocks(
         unobservable: (nv,) dofs that no marker of the capture moves with.
         settings: Settings of every block.
         inertial: Inertial sensors on the body.
+        spread_m: (M,) spread of one reading where noise stays for a while (:mod:`mbkf.sensors.lasting_noise`), m. A
+            frame then counts for less than an independent reading, and so does the posture prior, or the body would
+            be drawn to standing.
     """
     model, s, posture = sensor.model, settings, PostureSensor(sensor.model)
+    prior = s.posture
+    if spread_m is not None:
+        frames = float(np.sqrt(np.mean((noise_m / spread_m) ** 2)))
+        prior = replace(prior, posture_scale=prior.posture_scale * frames)
     movement = np.where(unobservable, 0.0, s.motion.acceleration_scale * model.movement_sd)
     blocks: list[AnyBlock] = [
-        Markers(sensor, noise_m, dt_s, unobservable, s.markers),
+        Markers(sensor, noise_m, dt_s, unobservable, s.markers, spread_m=spread_m),
         NewtonEulerLaw(NewtonEuler(model), s.law),
         FootContact(detector, GRAVITY_M_S2 * model.mass_kg, dt_s, s.contact),
         UnobservedJoints.of(movement, s.unobserved),
-        PlantedFeet(model, detector, s.planted),
+        PlantedFeet(model, detector, s.planted, spread_m is not None),
     ]
     if inertial is not None:
         blocks += [InertialSensors(inertial, s.inertial), MeanPosture(model, dt_s, s.mean_posture)]
@@ -70,7 +79,7 @@ def dynamic_blocks(
         blocks.append(CoordinationPrior(model, dt_s, unobservable, s.coordination))
     return [
         *blocks,
-        PosturePrior(posture, unobservable, s.posture),
+        PosturePrior(posture, unobservable, prior),
         JointLimits(posture, unobservable, s.limits),
     ]
 
@@ -86,6 +95,7 @@ class DynamicFilter(Filter[DynamicState]):
         model: The body.
         dt_s: Time between frames.
         balance: Newton–Euler equations, for torques.
+        spread_m: (M,) spread of one reading where noise stays for a while, else None.
     """
 
     plant: SingerPlant
@@ -98,6 +108,7 @@ class DynamicFilter(Filter[DynamicState]):
         unobservable: BoolArray,
         settings: DynamicSettings,
         blocks: Sequence[AnyBlock],
+        spread_m: Array | None = None,
     ) -> None:
         """Makes the filter.
 
@@ -108,7 +119,9 @@ class DynamicFilter(Filter[DynamicState]):
             unobservable: (nv,) dofs that no marker of the capture moves with.
             settings: Settings of plant and error covariance.
             blocks: Instruments, laws and priors; :func:`dynamic_blocks` for the standard ones.
+            spread_m: (M,) spread of one reading of markers whose noise stays; None where the noise is white.
         """
+        self.spread_m = spread_m
         extras = [extra for block in blocks for extra in block.states()]
         super().__init__(SingerPlant(sensor.model, dt_s, unobservable, settings.motion, extras), blocks)
         self.sensor, self.unobservable, self.settings = sensor, unobservable, settings
