@@ -15,6 +15,11 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.model.sides import mirrored
+from mbkf.sensors.marker_sensor import MarkerSensor
+
+LINE_M = 0.03
+"""Points whose scatter about their best line is smaller than this do not show how a segment is turned about it."""
 
 
 def white_noise_m(
@@ -33,3 +38,27 @@ def white_noise_m(
     rho = np.where(stays, np.exp(-dt_s / np.where(stays, correlation_s, 1.0)), 0.0)
     gain = (1.0 - rho**2) / (1.0 - 2.0 * rho * np.cos(2.0 * np.pi * frequency_hz * dt_s) + rho**2)
     return np.sqrt(noise_m**2 - correlated_m**2 + gain * correlated_m**2)
+
+
+def prior_dilution(sensor: MarkerSensor, noise_m: Array, spread_m: Array) -> Array:
+    """(nv,) factor on a prior that is read in every frame, so that it does not outweigh diluted markers.
+
+    A frame of markers counts as (spread/noise)² of an independent reading, and a prior beside it for as little. Where the
+    root's own points lie on a line, as the hips do, its tilt shows only by the bend of the trunk above it; that is all
+    but straight, so that millimetres bend it by many degrees. What is known of the trunk's posture then keeps its weight.
+
+    Args:
+        sensor: The markers on the body.
+        noise_m: (M,) white noise of equal weight.
+        spread_m: (M,) spread of one reading.
+    """
+    model = sensor.model
+    factor = np.full(model.nv, float(np.sqrt(np.mean((noise_m / spread_m) ** 2))))
+    root = model.roles.root
+    places = sensor.local_m[[segment == root for segment in sensor.segments]]
+    off_line = np.linalg.svd(places - places.mean(axis=0), compute_uv=False)[1:2] if len(places) > 2 else ()
+    if not len(off_line) or off_line[0] < LINE_M * np.sqrt(len(places)):
+        for segment in model.description.segments:
+            if segment.parent == root and segment.name == mirrored(segment.name):
+                factor[model.joint(segment.name).v] = 1.0
+    return factor

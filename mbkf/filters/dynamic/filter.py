@@ -7,7 +7,6 @@ has a linear plant that is never stiff; Newton's law at the pelvis is one of its
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from mbkf.sensors.foot_contact import FootContact
 from mbkf.sensors.inertial import InertialSensors
 from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.joint_limits import JointLimits
+from mbkf.sensors.lasting_noise import prior_dilution
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers
 from mbkf.sensors.mean_posture import MeanPosture
@@ -61,10 +61,7 @@ def dynamic_blocks(
             be drawn to standing.
     """
     model, s, posture = sensor.model, settings, PostureSensor(sensor.model)
-    prior = s.posture
-    if spread_m is not None:
-        frames = float(np.sqrt(np.mean((noise_m / spread_m) ** 2)))
-        prior = replace(prior, posture_scale=prior.posture_scale * frames)
+    dilution = None if spread_m is None else prior_dilution(sensor, noise_m, spread_m)
     movement = np.where(unobservable, 0.0, s.motion.acceleration_scale * model.movement_sd)
     blocks: list[AnyBlock] = [
         Markers(sensor, noise_m, dt_s, unobservable, s.markers, spread_m=spread_m),
@@ -79,7 +76,7 @@ def dynamic_blocks(
         blocks.append(CoordinationPrior(model, dt_s, unobservable, s.coordination))
     return [
         *blocks,
-        PosturePrior(posture, unobservable, prior),
+        PosturePrior(posture, unobservable, s.posture, dilution),
         JointLimits(posture, unobservable, s.limits),
     ]
 
