@@ -58,12 +58,14 @@ class Errors:
 def keypoint_rows(context: Context) -> list[Check]:
     """The rows: RMS over persons, sides and frames, of smoothed results, and of causal ones for information."""
     found: dict[tuple[str, str, bool], list[Errors]] = {}
-    for name in SETS:
-        for motion in MOTIONS:
-            for seed in SEEDS[:1] if context.quick else SEEDS:
-                scene = Scene.of(name, motion, seed)
-                for smooth in (True, False):
-                    found.setdefault((name, motion, smooth), []).append(scene.errors(smooth))
+    for motion in MOTIONS:
+        for seed in SEEDS[:1] if context.quick else SEEDS:
+            body = body_of(synthesise_subject(seed, SETS[0]))
+            moved = synthesise_motion(body, motion, registered_motion(motion).seconds, RATE_HZ, seed)
+            for name in SETS:
+                smoothed, causal = Scene.of(name, moved, seed).errors()
+                found.setdefault((name, motion, True), []).append(smoothed)
+                found.setdefault((name, motion, False), []).append(causal)
     return [check for key, errors in found.items() for check in _rows(*key, errors)]
 
 
@@ -100,29 +102,26 @@ class Scene:
     trial: Capture
 
     @classmethod
-    def of(cls, protocol: str, motion: str, seed: int) -> Scene:
+    def of(cls, protocol: str, motion: TrueMotion, seed: int) -> Scene:
         """The scene of a person.
 
         Args:
             protocol: Name of the keypoints' set.
-            motion: Name of the motion.
-            seed: Chooses person, motion and noise.
+            motion: How the person moves.
+            seed: Chooses person and noise; the person has the same body whatever the set.
         """
         person = synthesise_subject(seed, protocol)
-        seconds = registered_motion(motion).seconds
-        true = synthesise_motion(body_of(person), motion, seconds, RATE_HZ, seed)
-        exact, rng = synthesise_capture(person, true, EXACT, seed), np.random.default_rng([seed, 7])
-        return cls(person, true, noisy(exact.static, rng, 0.0), noisy(exact.trial, rng, GAPS))
+        exact, rng = synthesise_capture(person, motion, EXACT, seed), np.random.default_rng([seed, 7])
+        return cls(person, motion, noisy(exact.static, rng, 0.0), noisy(exact.trial, rng, GAPS))
 
-    def errors(self, smooth: bool) -> Errors:
-        """Errors of the motion found from the keypoints.
-
-        Args:
-            smooth: Whether later frames correct earlier ones.
-        """
+    def errors(self) -> tuple[Errors, Errors]:
+        """Errors of the motion found from the keypoints, smoothed and causal."""
         subject = scale(self.static, [self.trial], mass_kg=self.person.mass_kg)
-        found = reconstruct(self.trial, subject, settings=ReconstructSettings(smooth=smooth))
-        return compared(found, self.person, self.motion)
+        smoothed, causal = (
+            reconstruct(self.trial, subject, settings=ReconstructSettings(smooth=smooth))
+            for smooth in (True, False)
+        )
+        return compared(smoothed, self.person, self.motion), compared(causal, self.person, self.motion)
 
 
 def noisy(capture: Capture, rng: np.random.Generator, gaps: float) -> Capture:

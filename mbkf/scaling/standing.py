@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.model.human import HumanModel
+from mbkf.model.body import Body
 from mbkf.model.sides import mirrored
 
 FLAT_SD_RAD = np.deg2rad(3.0)
@@ -27,20 +27,22 @@ class Standing:
         sd: (S, 1) spread of the inclination of each segment, rad.
     """
 
-    def __init__(self, model: HumanModel) -> None:
+    def __init__(self, model: Body) -> None:
         """Args: the body, whose roles name the feet and the root."""
         segments = model.description.segments
         trunk = [s.name for s in segments if s.parent == model.roles.root and s.name == mirrored(s.name)]
         names = [*model.roles.feet, model.roles.root, *trunk]
         self._joints = np.array([model.joint(name).joint_id for name in names])
-        self.sd = np.array([FLAT_SD_RAD] * len(model.roles.feet) + [UPRIGHT_SD_RAD] * (1 + len(trunk)))[:, None]
+        self.sd = np.array([FLAT_SD_RAD] * len(model.roles.feet) + [UPRIGHT_SD_RAD] * (1 + len(trunk)))[
+            :, None
+        ]
 
-    def residuals(self, model: HumanModel, q: Array) -> Array:
+    def residuals(self, model: Body, q: Array) -> Array:
         """(2 S,) whitened inclinations at q (nq,)."""
         frames = model.frames(q)
         return (frames[4 * self._joints + 2, :2] / self.sd).ravel()
 
-    def linearised(self, model: HumanModel, q: Array) -> tuple[Array, Array]:
+    def linearised(self, model: Body, q: Array) -> tuple[Array, Array]:
         """Residuals (2 S,) and their Jacobian (2 S, nv) in the tangent space."""
         frames, spatial = model.frames_and_jacobian(q)
         axis = frames[4 * self._joints + 2]

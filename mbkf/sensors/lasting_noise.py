@@ -43,9 +43,9 @@ def white_noise_m(
 def prior_dilution(sensor: MarkerSensor, noise_m: Array, spread_m: Array) -> Array:
     """(nv,) factor on a prior that is read in every frame, so that it does not outweigh diluted markers.
 
-    A frame of markers counts as (spread/noise)² of an independent reading, and a prior beside it for as little. Where the
-    root's own points lie on a line, as the hips do, its tilt shows only by the bend of the trunk above it; that is all
-    but straight, so that millimetres bend it by many degrees. What is known of the trunk's posture then keeps its weight.
+    A frame of markers counts as (spread/noise)² of an independent reading, and a prior beside it for as little. Where
+    the root's own points lie on a line, as the hips do, its tilt shows only by the bend of the trunk above it; that is
+    all but straight, so that millimetres bend it by many degrees. What is known of the trunk then keeps its weight.
 
     Args:
         sensor: The markers on the body.
@@ -56,8 +56,11 @@ def prior_dilution(sensor: MarkerSensor, noise_m: Array, spread_m: Array) -> Arr
     factor = np.full(model.nv, float(np.sqrt(np.mean((noise_m / spread_m) ** 2))))
     root = model.roles.root
     places = sensor.local_m[[segment == root for segment in sensor.segments]]
-    off_line = np.linalg.svd(places - places.mean(axis=0), compute_uv=False)[1:2] if len(places) > 2 else ()
-    if not len(off_line) or off_line[0] < LINE_M * np.sqrt(len(places)):
+    off_line_m = 0.0
+    if len(places) > 2:
+        scatter = np.linalg.svd(places - places.mean(axis=0), compute_uv=False)
+        off_line_m = float(scatter[1]) / np.sqrt(len(places))
+    if off_line_m < LINE_M:
         for segment in model.description.segments:
             if segment.parent == root and segment.name == mirrored(segment.name):
                 factor[model.joint(segment.name).v] = 1.0

@@ -16,7 +16,11 @@ def test_a_person_in_neutral_posture_stands():
 
 @pytest.mark.parametrize(
     ("joint", "rows", "sd"),
-    [("right_foot", [0, 1], FLAT_SD_RAD), ("left_foot", [2, 3], FLAT_SD_RAD), ("torso", [6, 7], UPRIGHT_SD_RAD)],
+    [
+        ("right_foot", [0, 1], FLAT_SD_RAD),
+        ("left_foot", [2, 3], FLAT_SD_RAD),
+        ("torso", [6, 7], UPRIGHT_SD_RAD),
+    ],
 )
 def test_a_segment_that_leans_is_told_by_its_angle(joint, rows, sd):
     step = np.zeros(MODEL.nv)

@@ -97,7 +97,7 @@ class DynamicTracking(TrackingFilter):
         return P
 
     def errors(self, estimate: Posterior) -> ErrorCovariance:
-        """Those of the whole state; what the filter itself states where it expects white noise, knows how long noise stays or models the skin."""
+        """Those of the whole state; what the filter itself states where it knows how the noise is correlated."""
         step = _record(estimate)
         s, P, notes = self.kalman.settings, step.state.P, step.decisions.notes
         # Readings may tell of velocities and of further states, too; markers whose skin has a memory do.

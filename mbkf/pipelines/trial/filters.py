@@ -66,9 +66,7 @@ def _dynamic(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
     known = inputs.sensor, inputs.noise_m
     if blocks is None:
         blocks = standard(inputs)
-    kalman = DynamicFilter(
-        *known, inputs.dt_s, inputs.unobservable, inputs.dynamic, blocks, inputs.spread_m
-    )
+    kalman = DynamicFilter(*known, inputs.dt_s, inputs.unobservable, inputs.dynamic, blocks, inputs.spread_m)
     return DynamicTracking(kalman, _starter(inputs))
 
 

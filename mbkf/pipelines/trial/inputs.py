@@ -7,6 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
+from mbkf.conventions import Array
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.estimate import Recording
 from mbkf.filters.kinematic.settings import KinematicSettings
