@@ -17,7 +17,7 @@ from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.human import HumanModel
 from mbkf.pipelines.trial.filters import FilterInputs
 from mbkf.sensors.contact.plates import plate_wrenches
-from mbkf.sensors.lasting_noise import white_noise_m
+from mbkf.sensors.lasting_noise import MOVEMENT_HZ, white_noise_m
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 MIN_PRESENT = 0.02
@@ -84,5 +84,6 @@ def _noise(markers: Sequence[SubjectMarker], dt_s: float, share: float) -> tuple
     correlated = np.array([m.correlated_m for m in markers])
     if not correlated.any():
         return own, None
-    noise = white_noise_m(own, correlated, np.array([m.correlation_s for m in markers]), dt_s)
+    lasting_s = np.array([m.correlation_s for m in markers])
+    noise = white_noise_m(own, correlated, lasting_s, dt_s, MOVEMENT_HZ)
     return noise, np.where(correlated > 0.0, own, own * share**0.5)
