@@ -19,8 +19,8 @@ from mbkf.model.sides import mirrored
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 MOVEMENT_HZ = 0.5
-"""Frequency at which noise is weighed: the slow end of everyday movement. By ω = 0 a gait's quick turns of the ankle would
-be smoothed away, by 0.7 Hz stated intervals be too narrow (synthetic walks)."""
+"""Frequency at which noise is weighed: the slow end of everyday movement. Weighed at 0 Hz, a gait's quick turns of the
+ankle are smoothed away; weighed at 0.7 Hz, stated intervals are too narrow (synthetic walks)."""
 
 LINE_M = 0.03
 """Points whose scatter about their best line is smaller than this do not show how a segment is turned about it."""
