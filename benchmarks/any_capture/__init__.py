@@ -6,6 +6,7 @@ from benchmarks.any_capture.axes import axes_rows
 from benchmarks.any_capture.coverage import coverage_rows
 from benchmarks.any_capture.direction import direction_rows
 from benchmarks.any_capture.forces import forces_rows
+from benchmarks.any_capture.keypoints import keypoint_rows
 from benchmarks.checks import Check, Context
 
 
@@ -16,4 +17,5 @@ def run(context: Context) -> list[Check]:
         *forces_rows(context),
         *coverage_rows(),
         *direction_rows(context.require_data()),
+        *keypoint_rows(context),
     ]

@@ -125,7 +125,7 @@ def _print(report: dict[str, Any], protocol: str, out: str) -> None:
     for heading in ("marker", "kind", "moved mm", "RMS mm", "max mm"):
         markers.add_column(heading, justify="left" if heading in ("marker", "kind") else "right")
     ranked = sorted(report["markers"].items(), key=lambda item: -item[1]["moved_mm"])
-    for name, entry in [item for item in ranked if item[1]["kind"] == "anatomical"][:8]:
+    for name, entry in [item for item in ranked if item[1]["kind"] in {"anatomical", "keypoint"}][:8]:
         numbers = (entry["moved_mm"], entry["rms_mm"], entry["max_mm"])
         markers.add_row(name, entry["kind"], *("" if x is None else f"{x:.1f}" for x in numbers))
     console.print(factors)

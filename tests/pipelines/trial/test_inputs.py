@@ -37,3 +37,21 @@ def test_a_marker_that_is_hardly_seen_shows_no_dof():
     assert MIN_PRESENT * markers.frames > 1.0
     hidden, _ = trial_inputs(replace(markers, positions_m=positions), plates, subject, ReconstructSettings())
     assert hidden.unobservable.all()
+
+
+def test_noise_that_stays_is_told_as_wider_white_noise():
+    markers, plates, subject = shown(walker().trial.markers.names)
+    first, *others = subject.markers
+    keypoint = replace(first, noise_m=0.02, correlated_m=0.01, correlation_s=0.3)
+    subject = replace(subject, markers=(keypoint, *others))
+    settings = ReconstructSettings()
+    inputs, _ = trial_inputs(markers, plates, subject, settings)
+    column = markers.names.index(first.name)
+    own = {marker.name: marker.noise_m for marker in subject.markers}
+    skin = np.array([own[name] for name in markers.names])
+    assert inputs.noise_m[column] > 0.04
+    assert inputs.spread_m is not None and inputs.spread_m[column] == 0.02
+    np.testing.assert_array_equal(np.delete(inputs.noise_m, column), np.delete(skin, column))
+    share = settings.dynamic.markers.innovation_share
+    np.testing.assert_allclose(np.delete(inputs.spread_m, column), np.delete(share**0.5 * skin, column))
+    assert trial_inputs(*shown(walker().trial.markers.names), settings)[0].spread_m is None
