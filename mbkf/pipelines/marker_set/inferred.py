@@ -15,7 +15,13 @@ from mbkf.marker_sets.names import NameReading, read_names
 from mbkf.marker_sets.search import FEWEST_POINTS
 from mbkf.model.body_file import load_body
 from mbkf.model.description import BodyDescription
-from mbkf.model.protocol import Protocol, ProtocolMarker
+from mbkf.model.protocol import (
+    DEFAULT_CORRELATED_M,
+    DEFAULT_CORRELATION_S,
+    DEFAULT_NOISE_M,
+    Protocol,
+    ProtocolMarker,
+)
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.coverage import COMPUTED, listed
 from mbkf.pipelines.marker_set.upright import upright_captures
@@ -124,9 +130,13 @@ def infer_marker_set(
         standing = 0 if static is None else 1
         found = infer_markers(worn[:standing], worn[standing:], readings, reference, leave_out)
     _require_person(found)
+    keypoints = {name for name, one in readings.items() if one.kind == "keypoint"}
     ignored |= {marker.name: NOT_BODY for marker in found.markers if not marker.segment}
     return InferredSet(
-        _protocol(found, reference, ignored), tuple(upright), found.found.equipment.name, found.rms_m
+        _protocol(found, reference, ignored, keypoints),
+        tuple(upright),
+        found.found.equipment.name,
+        found.rms_m,
     )
 
 
@@ -167,10 +177,14 @@ def _require_person(found: Inference) -> None:
         )
 
 
-def _protocol(found: Inference, body: BodyDescription, ignored: Mapping[str, str]) -> Protocol:
+def _protocol(
+    found: Inference, body: BodyDescription, ignored: Mapping[str, str], keypoints: set[str]
+) -> Protocol:
     on_landmark = _nearest_on_landmarks(found, body)
     markers = tuple(
-        _marker(marker, body, marker.name in on_landmark) for marker in found.markers if marker.segment
+        _marker(marker, body, marker.name in on_landmark, marker.name in keypoints)
+        for marker in found.markers
+        if marker.segment
     )
     return Protocol(
         NAME,
@@ -195,16 +209,22 @@ def _nearest_on_landmarks(found: Inference, body: BodyDescription) -> set[str]:
     return {name for _, name in nearest.values()}
 
 
-def _marker(marker: InferredMarker, body: BodyDescription, on_landmark: bool) -> ProtocolMarker:
+def _marker(
+    marker: InferredMarker, body: BodyDescription, on_landmark: bool, keypoint: bool
+) -> ProtocolMarker:
     position = body.landmark(marker.landmark).position_m if on_landmark else marker.position_m
+    kind = "keypoint" if keypoint else "anatomical" if on_landmark else "technical"
+    noise = DEFAULT_NOISE_M[kind] if keypoint else marker.noise_m
     return ProtocolMarker(
         name=marker.name,
         segment=marker.segment,
         position_m=read_only(position),
-        kind="anatomical" if on_landmark else "technical",
+        kind=kind,
         placement_sd_m=LANDMARK_SD_M if on_landmark else PLACED_SD_M,
-        noise_m=marker.noise_m * (DOUBTFUL_NOISE if marker.doubtful else 1.0),
+        noise_m=noise * (DOUBTFUL_NOISE if marker.doubtful else 1.0),
         landmark=marker.landmark if on_landmark else "",
         probability=round(marker.probability, 3),
         alternatives=marker.alternatives,
+        correlated_m=DEFAULT_CORRELATED_M[kind],
+        correlation_s=DEFAULT_CORRELATION_S if keypoint else 0.0,
     )

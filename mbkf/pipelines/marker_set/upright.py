@@ -80,7 +80,7 @@ def known_places(readings: Mapping[str, NameReading], body: BodyDescription) -> 
                 landmark.position_m,
                 "anatomical",
                 DEFAULT_PLACEMENT_SD_M["anatomical"],
-                DEFAULT_NOISE_M,
+                DEFAULT_NOISE_M["anatomical"],
             )
     return known
 
