@@ -17,8 +17,8 @@ from mbkf.errors import MbkfError
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import detect_protocol, load_protocol
-from mbkf.pipelines.coverage import USE_KEY
-from mbkf.pipelines.scale import INFERRED_KEY, scale
+from mbkf.pipelines.coverage import INFERRED_KEY, USE_KEY
+from mbkf.pipelines.scale import scale
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.marker_sensor import MarkerSensor
 

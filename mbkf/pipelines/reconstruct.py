@@ -22,7 +22,7 @@ from mbkf.io.subject import Subject, match_names
 from mbkf.model.clinical import dof_names
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.axes.captures import checked_for_subject
-from mbkf.pipelines.coverage import use_by_subject
+from mbkf.pipelines.coverage import INFERRED_KEY, use_by_subject
 from mbkf.pipelines.imu.on_body import ImuOnBody, with_imus
 from mbkf.pipelines.results.clinical import clinical_motion
 from mbkf.pipelines.results.progression import PELVIS_FRAMES, pelvis_frame
@@ -145,7 +145,12 @@ def reconstruct(
             progress=None if progress is None else lambda done, total: progress("Filtering", done, total),
         )
         found = assemble(capture, subject, settings, measured, hidden, inputs, result)
-        return replace(found, markers_ignored=dict(use.ignored), markers_explained=use.share)
+        return replace(
+            found,
+            markers_ignored=dict(use.ignored),
+            markers_explained=use.share,
+            warnings=(*inferred_set(subject), *found.warnings),
+        )
 
 
 def subject_markers(markers: MarkerTrajectories, subject: Subject) -> MarkerTrajectories:
@@ -283,6 +288,12 @@ def _predicted(sensor: MarkerSensor, result: Track, measured: MarkerTrajectories
     positions = np.where(shown[:, :, None], measured.positions_m, np.nan)
     on_body, with_skin = filled(sensor, result.q, positions, 1.0 / measured.rate_hz, result.smoothed)
     return np.where(shown[:, :, None], on_body, with_skin)
+
+
+def inferred_set(subject: Subject) -> tuple[str, ...]:
+    """What is to be told of a person whose marker set was inferred; nothing of one with a known set."""
+    inferred = subject.report.get(INFERRED_KEY)
+    return (str(inferred["told"]),) if isinstance(inferred, dict) else ()
 
 
 def _warnings(result: Track, names: tuple[str, ...], unobservable: BoolArray) -> list[str]:

@@ -17,13 +17,10 @@ from mbkf.model.description import BodyDescription
 from mbkf.model.protocol import Protocol, load_protocol
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.axes.captures import REPORT_KEY, checked_for_protocol, told_axes
-from mbkf.pipelines.coverage import USE_KEY, use_by_protocol
+from mbkf.pipelines.coverage import INFERRED_KEY, USE_KEY, use_by_protocol
 from mbkf.pipelines.marker_set.choice import ChosenSet, choose_marker_set, inferred_choice
 from mbkf.scaling.fit import scale_subject
 from mbkf.scaling.problem import ScalingSettings
-
-INFERRED_KEY = "inferred"
-"""Key of a subject's report under which an inferred marker set is told."""
 
 EXPECTED = 4.0
 """Markers that fit worse (RMS) than so many times their noise may not be those that their names say."""
