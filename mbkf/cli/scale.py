@@ -88,7 +88,13 @@ def run(args: argparse.Namespace) -> int:
 
 
 def warn_of_markers(subject: Subject) -> None:
-    """Warns of a protocol that knows too few of the markers that the person was scaled from."""
+    """Warns of a protocol that knows too few of the markers that the person was scaled from, and of exchanged names."""
+    from mbkf.pipelines.scale import EXCHANGED_KEY
+    from mbkf.pipelines.trial.exchanged import exchange_notes
+
+    exchanged = subject.report.get(EXCHANGED_KEY)
+    for line in exchange_notes(exchanged) if isinstance(exchanged, list) else ():
+        print(f"note: {line}", file=sys.stderr)
     use = subject.report.get("marker_use")
     if isinstance(use, dict) and use["warning"]:
         print(f"warning: {use['warning']}", file=sys.stderr)
