@@ -172,6 +172,23 @@ def put_right(positions_m: Array, found: tuple[Exchange, ...] | list[Exchange]) 
     return right
 
 
+def misfits(positions_m: Array, distances: Distances) -> tuple[Array, Array]:
+    """(T, M) cost of every marker under its own name, and how many neighbours (T, M) it was judged by.
+
+    Args:
+        positions_m: (T, M, 3) named trajectories, NaN where hidden.
+        distances: What distances are expected between the M markers.
+    """
+    near = distances.neighbours
+    cost, count = np.zeros(positions_m.shape[:2]), np.zeros(positions_m.shape[:2])
+    for marker, own in enumerate(near):
+        away = np.sqrt(((positions_m[:, own] - positions_m[:, marker, None]) ** 2).sum(axis=2))
+        off = ((away - distances.expected_m[marker, own]) / distances.sd_m[marker, own]) ** 2
+        cost[:, marker] = np.nan_to_num(np.minimum(off, WORST), nan=0.0).sum(axis=1)
+        count[:, marker] = (~np.isnan(off)).sum(axis=1)
+    return cost, count
+
+
 def _suspects(shown_m: Array, distances: Distances, turning: BoolArray) -> Indices:
     """(P, 2) pairs that fit better the other way round in some frame looked at, or whose δ turns about (M, M)."""
     looks = np.unique(np.linspace(0, len(shown_m) - 1, LOOKS).astype(int))
