@@ -20,7 +20,7 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.labelling.any_attitude import STAGE, AnyAttitude
 from mbkf.pipelines.labelling.body import LabelBody, label_body
 from mbkf.pipelines.labelling.doubts import Doubts
-from mbkf.pipelines.labelling.known_names import known_names, no_names
+from mbkf.pipelines.labelling.known_names import known_names, no_names, with_claims
 from mbkf.pipelines.labelling.relabelling import relabel_offline, trajectories
 from mbkf.pipelines.labelling.scaled_doubts import scaled_doubts
 from mbkf.pipelines.labelling.score import LabelScore
@@ -198,7 +198,8 @@ def label(
             lambda n, all_: report("Looking again", n, all_),
             known,
         )
-        labels = again.label_of_point
+        labels = with_claims(again.label_of_point, names)
+        again = replace(again, label_of_point=labels)
         return replace(
             found.labelling,
             markers=trajectories(markers, labels, body.names),

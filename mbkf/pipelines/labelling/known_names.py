@@ -29,8 +29,8 @@ CONTRADICTED = 3.0
 LEAST_NEIGHBOURS = 2.0
 """Names with fewer named neighbours at hand are taken as they are."""
 
-LEAST_SHARE = 0.5
-"""Where fewer of a capture's named samples go with the body, its names mean nothing."""
+MOST_CONTRADICTED = 0.5
+"""Where a larger share of a capture's named samples contradicts the body, its names mean nothing."""
 
 LOOKS = 60
 """Frames by which it is judged whether names stay on their points."""
@@ -87,7 +87,7 @@ def known_names(
         return nothing
     named = np.array(list(column), dtype=np.intp)
     if not _stay(points.positions_m, named):
-        return replace(nothing, ignored="its names change their points from frame to frame")
+        return replace(nothing, ignored="they change their points from frame to frame")
     owner = np.array(list(column.values()), dtype=np.intp)
     placed = np.array([np.hypot(np.hypot(m.noise_m, m.session_sd_m), PLACED_SD_M) for m in markers])
     distances = body_distances(sensor, placed)
@@ -95,14 +95,32 @@ def known_names(
     shown[:, owner] = points.positions_m[:, named]
     claimed = np.full(points.positions_m.shape[:2], HIDDEN, dtype=np.intp)
     claimed[:, named] = np.where(np.isnan(points.positions_m[:, named, 0]), HIDDEN, owner)
+    tracklets = linked(points.positions_m)
+    if _contradicted(points.positions_m, claimed, tracklets, distances) > MOST_CONTRADICTED:
+        return KnownNames(claimed, nothing.trusted, "most of them contradict the body")
     right = claimed.copy()
     for one in exchanges(shown, distances):
         a, b = (right == one.a) & one.frames[:, None], (right == one.b) & one.frames[:, None]
         right[a], right[b] = one.b, one.a
-    trusted = _trusted(points.positions_m, right, linked(points.positions_m), distances)
-    if (trusted != HIDDEN).sum() < LEAST_SHARE * (claimed != HIDDEN).sum():
-        return KnownNames(claimed, nothing.trusted, "most of its names contradict the body")
-    return KnownNames(claimed, trusted)
+    return KnownNames(claimed, _trusted(points.positions_m, right, tracklets, distances))
+
+
+def with_claims(labels: Indices, names: KnownNames) -> Indices:
+    """(T, C) labels with the names of points that no label fits, where nothing else has that name.
+
+    A marker that was put on elsewhere contradicts the body and is still that marker.
+
+    Args:
+        labels: (T, C) marker of every point, ``HIDDEN`` where none.
+        names: What the names of the capture say.
+    """
+    if names.ignored or not names.names:
+        return labels
+    found = labels.copy()
+    for t, c in np.argwhere((labels == HIDDEN) & (names.claimed != HIDDEN)):
+        if names.claimed[t, c] not in found[t]:
+            found[t, c] = names.claimed[t, c]
+    return found
 
 
 def _stay(positions_m: Array, named: Indices) -> bool:
@@ -114,6 +132,14 @@ def _stay(positions_m: Array, named: Indices) -> bool:
         both += int(there.sum())
         same += int(continued(positions_m[t - 1], positions_m[t])[named][there].sum())
     return same >= COLUMNS_ARE_TRACKS * both
+
+
+def _contradicted(positions_m: Array, claimed: Indices, tracklets: Tracklets, distances: Distances) -> float:
+    """Share of the named samples whose names contradict the body."""
+    label = np.array([_most(claimed[f, c]) for f, c in tracklets.pieces], dtype=np.intp)
+    mean = _mean_misfits(positions_m, label, tracklets, distances, len(distances.expected_m))
+    length = np.diff(tracklets.spans, axis=1)[:, 0] * (label != HIDDEN)
+    return float(length[mean > CONTRADICTED].sum()) / max(1, int(length.sum()))
 
 
 def _trusted(positions_m: Array, right: Indices, tracklets: Tracklets, distances: Distances) -> Indices:

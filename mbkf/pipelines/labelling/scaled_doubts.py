@@ -26,8 +26,8 @@ from mbkf.pipelines.labelling.relabelling import Relabelled, trajectories
 MOVED_SD_M = 0.008
 """A marker that was not touched is found no better than this where scaling had it."""
 
-FAR = 2.0
-"""A label is in doubt that lies so many standard deviations from its place ..."""
+FAR, NAMED_FAR = 1.2, 2.0
+"""A label is in doubt that lies so many standard deviations from its place, or so many where the capture names it ..."""
 
 RARE = 0.5
 """... or that is seen in a smaller share of the usual number of frames, unless the capture names it."""
@@ -81,7 +81,12 @@ def scaled_doubts(
     place, spread = body.sensor.local_m, _spread(body)
     off = np.linalg.norm(shown.local_m - place[shown.markers], axis=1)
     deviation = off / spread[shown.markers]
-    far = {body.names[m]: float(d) for m, d, s in zip(shown.markers, off, deviation, strict=True) if s > FAR}
+    limit = np.where(shown.named >= NAMED_SHARE, NAMED_FAR, FAR)
+    far = {
+        body.names[m]: float(d)
+        for m, d, s, most in zip(shown.markers, off, deviation, limit, strict=True)
+        if s > most
+    }
     usual = float(np.median(shown.share))
     rare = {
         body.names[m]: float(share)
@@ -166,6 +171,13 @@ def _contradictions(
     if names.ignored:
         return (f"the capture's names are ignored: {names.ignored}",)
     told = []
+    contradicted = np.where(names.claimed == found.label_of_point, names.claimed != names.trusted, False)
+    for marker in np.unique(names.claimed[contradicted & (names.claimed != HIDDEN)]):
+        frames, _ = np.nonzero(contradicted & (names.claimed == marker))
+        told.append(
+            f"name {body.names[marker]} at frames {frames.min()}–{frames.max()} ({len(frames)} samples) is kept, though "
+            "its distances to other markers contradict the body"
+        )
     for marker in np.unique(names.claimed[names.claimed != HIDDEN]):
         frames, columns = np.nonzero((names.claimed == marker) & (found.label_of_point != marker))
         given = found.label_of_point[frames, columns]
@@ -174,7 +186,7 @@ def _contradictions(
             first, last = int(frames[own].min()), int(frames[own].max())
             where = f"name {body.names[marker]} at frames {first}–{last} ({int(own.sum())} samples)"
             if other == HIDDEN:
-                told.append(f"{where} fits no marker, or contradicts the body")
+                told.append(f"{where} fits no marker")
                 continue
             at, shown = frames[own], points.positions_m[frames[own], columns[own]]
             off = [_away_mm(found, body.names[m], at, shown) for m in (marker, other)]
