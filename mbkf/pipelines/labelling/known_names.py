@@ -29,6 +29,9 @@ CONTRADICTED = 3.0
 LEAST_NEIGHBOURS = 2.0
 """Names with fewer named neighbours at hand are taken as they are."""
 
+UNKNOWN_M = 1e3
+"""Spread of a distance that is not known."""
+
 MOST_CONTRADICTED = 0.5
 """Where a larger share of a capture's named samples contradicts the body, its names mean nothing."""
 
@@ -91,6 +94,8 @@ def known_names(
     owner = np.array(list(column.values()), dtype=np.intp)
     placed = np.array([np.hypot(np.hypot(m.noise_m, m.session_sd_m), PLACED_SD_M) for m in markers])
     distances = body_distances(sensor, placed)
+    unnamed = np.setdiff1d(np.arange(len(markers)), owner)
+    distances.sd_m[:, unnamed] = UNKNOWN_M  # a marker's neighbours are those that have names
     shown = np.full((points.frames, len(markers), 3), np.nan)
     shown[:, owner] = points.positions_m[:, named]
     claimed = np.full(points.positions_m.shape[:2], HIDDEN, dtype=np.intp)
