@@ -27,6 +27,7 @@ from mbkf.pipelines.imu.on_body import ImuOnBody, with_imus
 from mbkf.pipelines.results.clinical import clinical_motion
 from mbkf.pipelines.results.progression import PELVIS_FRAMES, pelvis_frame
 from mbkf.pipelines.results.reactions import reactions
+from mbkf.pipelines.trial.exchanged import exchange_notes, names_put_right
 from mbkf.pipelines.trial.filters import FILTERS, FilterInputs, standard, tracking_filter
 from mbkf.pipelines.trial.inputs import trial_inputs
 from mbkf.scaling.correction import correct_markers
@@ -118,7 +119,8 @@ def reconstruct(
         raise UnknownName("frame of the pelvis", settings.pelvis, PELVIS_FRAMES)
     with single_threaded():
         capture = checked_for_subject(capture, subject)
-        measured = subject_markers(capture.markers, subject)
+        measured, exchanged = names_put_right(subject_markers(capture.markers, subject), subject)
+        capture = replace(capture, notes=(*capture.notes, *exchange_notes(exchanged)))
         use = use_by_subject(capture.markers, subject)
         if use.warning:
             capture = replace(capture, notes=(*capture.notes, use.warning))
@@ -150,6 +152,7 @@ def reconstruct(
             markers_ignored=dict(use.ignored),
             markers_explained=use.share,
             warnings=(*inferred_set(subject), *found.warnings),
+            names_exchanged=exchanged,
         )
 
 
