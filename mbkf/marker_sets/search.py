@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import NotObservable
-from mbkf.marker_sets.equipment import EQUIPMENTS, Equipment, equipped_weight
+from mbkf.marker_sets.equipment import EQUIPMENTS, Equipment, count_worth, equipped_weight
 from mbkf.marker_sets.places import WornPlaces
 from mbkf.marker_sets.posed_cloud import CloudProblem, PosedBody
 from mbkf.marker_sets.starts import starts
@@ -37,7 +38,7 @@ class FoundBody:
     Attributes:
         body: Its pose, size and shares.
         equipment: The part of it that carries markers.
-        worth: Logarithm of likelihood, priors and the equipment's share.
+        worth: Logarithm of likelihood and priors, the equipment's among them.
         rival: The same of the best body that faces another way, −inf where there is none.
         evidence: How much likelier a point is on this body than anywhere in the box around the points: mean logarithm,
             names aside.
@@ -69,39 +70,43 @@ def find_body(
             f"a frame shows {len(points_m)} points; fewer than {FEWEST_POINTS} do not show "
             "which part of a body they are on"
         )
-    rough: list[tuple[float, PosedBody, CloudProblem, Equipment]] = []
+    rough: list[_Candidate] = []
     for equipment in EQUIPMENTS:
         problem = CloudProblem(places, points_m, weights(places, equipment, named))
-        share = math.log(equipment.share)
         own = [
-            problem.posed(start.q, start.size, COARSE_M)
+            _Candidate(problem.posed(start.q, start.size, COARSE_M), problem, equipment)
             for start in starts(problem.model, points_m, equipment, facing)
         ]
-        own.sort(key=lambda body: -body.worth)
-        rough += [(body.worth + share, body, problem, equipment) for body in own[:KEPT_EACH]]
+        rough += sorted(own, key=lambda one: -one.worth)[:KEPT_EACH]
     if not rough:
         raise NotObservable(
             f"the points reach over {np.ptp(points_m[:, 2]):.2f} m of height; no person stands there "
             "(which axis points up? give --up; which unit? give --unit)"
         )
-    rough.sort(key=lambda entry: -entry[0])
-    fine = [
-        (problem.fitted(body, FINE_M), problem, equipment) for _, body, problem, equipment in rough[:KEPT]
-    ]
-    ranked = sorted(fine, key=lambda entry: -(entry[0].worth + math.log(entry[2].share)))
-    best, problem, equipment = ranked[0]
-    others = [
-        body.worth + math.log(other.share)
-        for body, _, other in ranked[1:]
-        if _apart(problem, best.q, body.q) > math.pi / 4.0
-    ]
+    rough.sort(key=lambda one: -one.worth)
+    fine = [replace(one, body=one.problem.fitted(one.body, FINE_M)) for one in rough[:KEPT]]
+    best, *others = sorted(fine, key=lambda one: -one.worth)
+    rivals = [one.worth for one in others if _apart(best.problem, best.body.q, one.body.q) > math.pi / 4.0]
     return FoundBody(
-        best,
-        equipment,
-        best.worth + math.log(equipment.share),
-        max(others, default=-math.inf),
-        _evidence(places, points_m, best, equipment),
+        best.body,
+        best.equipment,
+        best.worth,
+        max(rivals, default=-math.inf),
+        _evidence(places, points_m, best.body, best.equipment),
     )
+
+
+@dataclass(frozen=True)
+class _Candidate:
+    body: PosedBody
+    problem: CloudProblem
+    equipment: Equipment
+
+    @cached_property
+    def worth(self) -> float:
+        """Logarithm of likelihood and priors, those of the equipment among them."""
+        prior = math.log(self.equipment.share)
+        return self.body.worth + prior + count_worth(self.problem.places, self.equipment, self.body.shares)
 
 
 def _evidence(places: WornPlaces, points_m: Array, body: PosedBody, equipment: Equipment) -> float:
