@@ -42,6 +42,8 @@ class FoundBody:
         rival: The same of the best body that faces another way, −inf where there is none.
         evidence: How much likelier a point is on this body than anywhere in the box around the points: mean logarithm,
             names aside.
+        odds: Logarithm of how much likelier all points are to be this body than to be strewn over that box: the evidence
+            of all points and the priors, names aside.
     """
 
     body: PosedBody
@@ -49,6 +51,7 @@ class FoundBody:
     worth: float
     rival: float
     evidence: float
+    odds: float
 
 
 def find_body(
@@ -87,12 +90,10 @@ def find_body(
     fine = [replace(one, body=one.problem.fitted(one.body, FINE_M)) for one in rough[:KEPT]]
     best, *others = sorted(fine, key=lambda one: -one.worth)
     rivals = [one.worth for one in others if _apart(best.problem, best.body.q, one.body.q) > math.pi / 4.0]
+    evidence = _evidence(places, points_m, best.body, best.equipment)
+    odds = len(points_m) * evidence + best.prior
     return FoundBody(
-        best.body,
-        best.equipment,
-        best.worth,
-        max(rivals, default=-math.inf),
-        _evidence(places, points_m, best.body, best.equipment),
+        best.body, best.equipment, best.worth, max(rivals, default=-math.inf), evidence, odds
     )
 
 
@@ -105,8 +106,17 @@ class _Candidate:
     @cached_property
     def worth(self) -> float:
         """Logarithm of likelihood and priors, those of the equipment among them."""
-        prior = math.log(self.equipment.share)
-        return self.body.worth + prior + count_worth(self.problem.places, self.equipment, self.body.shares)
+        return self.body.worth + self._equipped
+
+    @property
+    def prior(self) -> float:
+        """Logarithm of all priors."""
+        return self.problem.priors(self.body.q, self.body.factors) + self._equipped
+
+    @property
+    def _equipped(self) -> float:
+        count = count_worth(self.problem.places, self.equipment, self.body.shares)
+        return math.log(self.equipment.share) + count
 
 
 def _evidence(places: WornPlaces, points_m: Array, body: PosedBody, equipment: Equipment) -> float:

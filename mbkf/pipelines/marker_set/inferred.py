@@ -23,9 +23,9 @@ from mbkf.pipelines.marker_set.upright import upright_captures
 NAME = "inferred"
 """Name of an inferred protocol."""
 
-LEAST_EVIDENCE = 0.8
-"""How much likelier a point must be on the body than anywhere near, in the mean of the logarithm: 1.2 to 2.6 of
-measured persons, 0.3 of scattered points, up to 1.5 of a person on his head."""
+LEAST_ODDS = 6.0
+"""How much likelier (logarithm) the points must be a person than strewn about: 29 and more of measured persons, 9 and
+more of a trunk with one arm, 3 at most of scattered points; up to 73 of a person on his head."""
 
 FEWEST_SEGMENTS = 3
 """Markers on fewer segments do not show a person."""
@@ -155,7 +155,7 @@ def _require_person(found: Inference) -> None:
         NotObservable: The points are not where markers of a person are, or on too small a part of one.
     """
     segments = {marker.segment for marker in found.markers if marker.segment}
-    if found.found.evidence < LEAST_EVIDENCE:
+    if found.found.odds < LEAST_ODDS:
         raise NotObservable(
             "no person is found among the points: they do not stand as the markers of an upright body do "
             "(which axis points up? give --up; a static trial with --static; or a marker set with --protocol)"
