@@ -61,9 +61,7 @@ CAPTURES = (
         "HC032A_Static_HC032A01.c3d",
         (("LHFB", "LTUB"),),
     ),
-    Marked(
-        "HC044A", "biomechzoo_walk_turn", "HC044A_Straight_HC044A15.c3d", "HC044A_Static_HC044A01.c3d"
-    ),
+    Marked("HC044A", "biomechzoo_walk_turn", "HC044A_Straight_HC044A15.c3d", "HC044A_Static_HC044A01.c3d"),
     Marked("gaitalytics", "gaitalytics_walk", "overground_fullbody_4plates.c3d"),
     Marked("opensim gappy", "opensim_gappy_walk", "walking2.c3d"),
     Marked("autolabel run", "autolabel_unlabelled_fullbody", "PronetoRun01_labelled.c3d", walks=False),
@@ -73,9 +71,7 @@ CAPTURES = (
     Marked("bmc lower walk", "bmc_walk_run", "lower_walk1.trc", quick=True),
     Marked("biobuddy", "biobuddy_functional", "functional_right_knee.c3d", "static.c3d"),
     Marked("cgm24", "cgm24_lowerlimb_walk", "CGM24_Walking01.c3d"),
-    Marked(
-        "stoop lift", "stoop_lift_box", "stoop1_t169_f620f800.c3d", "neu_t169_f250f350.c3d", walks=False
-    ),
+    Marked("stoop lift", "stoop_lift_box", "stoop1_t169_f620f800.c3d", "neu_t169_f250f350.c3d", walks=False),
 )
 
 
@@ -137,9 +133,7 @@ def exchanged(capture: Capture, pairs: Sequence[tuple[str, str]]) -> Capture:
 
 def leaking(names: tuple[str, ...]) -> tuple[str, ...]:
     """Shipped protocols that know too many of these names to be used in a trial on them."""
-    return tuple(
-        one for one in protocol_names() if len(load_protocol(one).match(names)) > LEAKS * len(names)
-    )
+    return tuple(one for one in protocol_names() if len(load_protocol(one).match(names)) > LEAKS * len(names))
 
 
 def _worn(capture: Capture, protocol: Protocol) -> Capture:
@@ -168,9 +162,7 @@ def renamed(capture: Capture, names: Mapping[str, str]) -> Capture:
         names: The new name by the old one.
     """
     markers = capture.markers
-    return replace(
-        capture, markers=replace(markers, names=tuple(names[name] for name in markers.names))
-    )
+    return replace(capture, markers=replace(markers, names=tuple(names[name] for name in markers.names)))
 
 
 def beside(one: str, other: str) -> bool:

@@ -71,7 +71,7 @@ def marker_set_rows(data: Path, *, quick: bool = False) -> list[Check]:
     return rows_of(judged(data, quick=quick))
 
 
-def judged(data: Path, *, quick: bool = False, told: Callable[[str], None] = lambda line: None) -> Judged:
+def judged(data: Path, *, quick: bool = False, told: Callable[[str], object] = str) -> Judged:
     """All captures inferred and compared.
 
     Args:

@@ -14,8 +14,8 @@ import numpy as np
 from benchmarks.checks import Check, number
 from mbkf.cli.main import main
 from mbkf.io.axes import axes_matrix
-from mbkf.io.subject import read_subject
 from mbkf.io.storage import read_storage
+from mbkf.io.subject import read_subject
 from mbkf.pipelines.axes.captures import REPORT_KEY
 
 KNEE_DEG = (-5.0, 75.0)
@@ -61,9 +61,7 @@ STRANGERS = (
     ),
     Stranger("biobuddy", "biobuddy_functional", "functional_right_knee.c3d", 62.0, 6.0, "static.c3d"),
     Stranger("cgm24", "cgm24_lowerlimb_walk", "CGM24_Walking01.c3d", 77.6, 6.0),
-    Stranger(
-        "stoop lift", "stoop_lift_box", "stoop1_t169_f620f800.c3d", 81.7, 15.0, "neu_t169_f250f350.c3d"
-    ),
+    Stranger("stoop lift", "stoop_lift_box", "stoop1_t169_f620f800.c3d", 81.7, 15.0, "neu_t169_f250f350.c3d"),
 )
 
 

@@ -42,8 +42,8 @@ class FoundBody:
         rival: The same of the best body that faces another way, −inf where there is none.
         evidence: How much likelier a point is on this body than anywhere in the box around the points: mean logarithm,
             names aside.
-        odds: Logarithm of how much likelier all points are to be this body than to be strewn over that box: the evidence
-            of all points and the priors, names aside.
+        odds: Logarithm of how much likelier all points are this body than strewn over that box: the evidence of all
+            points and the priors, names aside.
     """
 
     body: PosedBody
@@ -92,9 +92,7 @@ def find_body(
     rivals = [one.worth for one in others if _apart(best.problem, best.body.q, one.body.q) > math.pi / 4.0]
     evidence = _evidence(places, points_m, best.body, best.equipment)
     odds = len(points_m) * evidence + best.prior
-    return FoundBody(
-        best.body, best.equipment, best.worth, max(rivals, default=-math.inf), evidence, odds
-    )
+    return FoundBody(best.body, best.equipment, best.worth, max(rivals, default=-math.inf), evidence, odds)
 
 
 @dataclass(frozen=True)

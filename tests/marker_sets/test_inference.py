@@ -1,4 +1,4 @@
-"""Marker sets inferred of synthetic persons: whole and partial, standing and walking, turned and mirrored, with names."""
+"""Marker sets inferred of synthetic persons: whole and partial, standing and walking, turned, mirrored, with names."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from mbkf.marker_sets.inference import OTHER_NAME, infer_markers, name_factors
 from mbkf.marker_sets.names import NamedPlace, NameReading
 from mbkf.marker_sets.places import worn_places
 from mbkf.model.body_file import load_body
-from tests.marker_sets.worn import BOX_M, near, standing, walking
+from tests.marker_sets.worn import BOX_M, box_at, near, standing, walking
 
 BODY = load_body()
 PLACES = worn_places(BODY)
@@ -50,7 +50,7 @@ def walk():
 @pytest.fixture(scope="module")
 def boxed(walk):
     """A person who walks past a box that stood there in the static trial already."""
-    static, moving = (one.beside(BOX_M + [0.8, 1.2, 0.0]) for one in walk)
+    static, moving = (one.beside(box_at(0.8, 1.2, 0.0)) for one in walk)
     return static, moving, inferred(static, moving)
 
 
@@ -93,7 +93,11 @@ def test_a_mirror_image_is_a_person_with_right_and_left_exchanged(worn, found):
     ("protocol", "without", "least"),
     [
         ("autolabel62", (*ARMS, *HEAD, "torso"), 0.95),  # pelvis and legs
-        ("autolabel62", (*LEGS, *HEAD), 0.9),  # trunk and both arms, of a wheelchair user; lumbar markers hide
+        (
+            "autolabel62",
+            (*LEGS, *HEAD),
+            0.9,
+        ),  # trunk and both arms, of a wheelchair user; lumbar markers hide
         ("hbm47", (*LEGS, *HEAD), 0.95),
         ("autolabel62", LEGS, 0.9),
         ("autolabel62", (*LEGS, *HEAD, "left_upper_arm", "left_forearm", "left_hand"), 0.8),
@@ -158,7 +162,9 @@ def test_a_landmark_is_likelier_than_the_rest_of_its_segment():
     assert factors[at].min() > factors[own & ~at].max()
 
 
-@pytest.mark.parametrize(("name", "neighbour"), [("RKNE", "right_shank"), ("LELB", "left_forearm"), ("C7", "head")])
+@pytest.mark.parametrize(
+    ("name", "neighbour"), [("RKNE", "right_shank"), ("LELB", "left_forearm"), ("C7", "head")]
+)
 def test_names_change_probabilities_towards_what_they_tell(worn, found, name, neighbour):
     own = worn.segments[name]
     right = inferred(worn, readings={name: told(own)})
@@ -169,7 +175,9 @@ def test_names_change_probabilities_towards_what_they_tell(worn, found, name, ne
 
 
 def test_markers_that_are_never_seen_are_left_out(worn):
-    unseen = worn.moved(lambda points: np.where(np.arange(points.shape[1])[None, :, None] == 4, np.nan, points))
+    unseen = worn.moved(
+        lambda points: np.where(np.arange(points.shape[1])[None, :, None] == 4, np.nan, points)
+    )
     names = [one.name for one in inferred(unseen).markers]
     assert worn.markers.names[4] not in names
     assert len(names) == len(worn.markers.names) - 1

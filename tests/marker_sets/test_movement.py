@@ -14,7 +14,7 @@ from mbkf.marker_sets.movement import (
     unrest_m,
 )
 from mbkf.synthesis.person import body_of, synthesise_subject
-from tests.marker_sets.worn import BOX_M, walking
+from tests.marker_sets.worn import box_at, walking
 
 SUBJECT = synthesise_subject(1, "plug_in_gait")
 MODEL = body_of(SUBJECT)
@@ -25,7 +25,7 @@ MOVING = ("pelvis", "thigh", "shank", "foot", "forearm")
 
 @pytest.fixture(scope="module")
 def worn():
-    return walking("plug_in_gait", 1, 0.0)[1].beside(BOX_M + [0.5, 1.0, 0.0])
+    return walking("plug_in_gait", 1, 0.0)[1].beside(box_at(0.5, 1.0, 0.0))
 
 
 @pytest.fixture(scope="module")

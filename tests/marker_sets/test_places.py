@@ -83,7 +83,10 @@ def test_points_of_the_skin_lie_above_it(bare):
 @pytest.mark.parametrize("segment", ["thigh", "shank", "upper_arm", "forearm"])
 def test_left_skin_mirrors_the_right(bare, segment):
     def skin(side):
-        own = [s == f"{side}_{segment}" and not name for s, name in zip(bare.segments, bare.landmarks, strict=True)]
+        own = [
+            s == f"{side}_{segment}" and not name
+            for s, name in zip(bare.segments, bare.landmarks, strict=True)
+        ]
         return bare.position_m[own]
 
     image = skin("left") * [1.0, -1.0, 1.0]

@@ -99,7 +99,10 @@ def test_a_pass_does_not_lower_the_objective(scene, width_m):
     rng = np.random.default_rng(7)
     q = problem.model.integrate(true, rng.normal(0.0, 0.05, problem.model.nv))
     body = problem.posed(q, 0.95, (width_m,))
-    for fit in (lambda one: problem.posed(one.q, 0.95, (width_m,)), lambda one: problem.fitted(one, (width_m,))):
+    for fit in (
+        lambda one: problem.posed(one.q, 0.95, (width_m,)),
+        lambda one: problem.fitted(one, (width_m,)),
+    ):
         worths = [body.worth]
         for _ in range(8):
             body = fit(body)
@@ -153,7 +156,9 @@ def test_a_body_is_found_where_its_own_markers_are():
     start = problem.model.neutral()
     start[:2] = np.median(worn.points_m[:, :2], axis=0) + 0.07
     start[2] = np.median(worn.points_m[[s == "pelvis" for s in worn.segments.values()], 2])
-    body = problem.fitted(problem.posed(start, 0.97, (0.12,) * 5), (0.08, 0.06, 0.05, 0.04, 0.03, 0.03, 0.025, 0.025))
+    body = problem.fitted(
+        problem.posed(start, 0.97, (0.12,) * 5), (0.08, 0.06, 0.05, 0.04, 0.03, 0.03, 0.025, 0.025)
+    )
     index = PLACES.segment_index[body.shares.argmax(axis=1)]
     names = [segment.name for segment in PLACES.body.segments]
     right = [names[s] == worn.segments[n] for s, n in zip(index, worn.markers.names, strict=True)]

@@ -38,7 +38,9 @@ def found(worn):
 
 
 def test_a_standing_person_is_found(worn, found):
-    right = [near(one, worn.segments[name]) for one, name in zip(segments(found), worn.markers.names, strict=True)]
+    right = [
+        near(one, worn.segments[name]) for one, name in zip(segments(found), worn.markers.names, strict=True)
+    ]
     assert np.mean(right) >= 0.95
     assert facing(found)[0] > 0.95, "he faces along x"
     assert found.equipment.name == "the whole body"
@@ -56,7 +58,11 @@ def test_a_turned_and_shifted_cloud_has_the_turned_body(worn, found):
     angle = 1.9
     again = find_body(PLACES, worn.turned(angle, (3.0, -2.0, 0.3)).points_m)
     assert segments(again) == segments(found)
-    np.testing.assert_allclose(facing(again), np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]) @ facing(found), atol=0.03)
+    np.testing.assert_allclose(
+        facing(again),
+        np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]) @ facing(found),
+        atol=0.03,
+    )
     np.testing.assert_allclose(again.body.factors, found.body.factors, atol=0.02)
     assert again.worth == pytest.approx(found.worth, abs=1.0)
 
@@ -66,7 +72,9 @@ def test_names_are_weighed_point_by_point(worn):
     named = np.ones((3, len(weight)))
     named[1] = 2.0
     np.testing.assert_array_equal(weights(PLACES, EQUIPMENTS[0], None), weight)
-    np.testing.assert_array_equal(weights(PLACES, EQUIPMENTS[0], named), np.stack([weight, 2 * weight, weight]))
+    np.testing.assert_array_equal(
+        weights(PLACES, EQUIPMENTS[0], named), np.stack([weight, 2 * weight, weight])
+    )
 
 
 def test_too_few_points_are_refused(worn):

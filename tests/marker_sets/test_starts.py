@@ -21,7 +21,7 @@ def heading(start):
 
 def cloud(height_m, low_m=0.1):
     rng = np.random.default_rng(1)
-    points = rng.uniform(-0.3, 0.3, (200, 3)) + [1.0, 2.0, 0.0]
+    points = rng.uniform([0.7, 1.7, 0.0], [1.3, 2.3, 0.0], (200, 3))
     points[:, 2] = np.linspace(low_m, low_m + height_m, 200)
     return points
 
@@ -38,7 +38,9 @@ def test_headings_go_round_in_equal_steps_with_every_posture_of_the_arms():
     found = list(starts(MODEL, cloud(1.6), WHOLE))
     assert len(found) == len(WHOLE.top_m) * HEADINGS * len(ARMS_RAD)
     steps = np.sort(np.mod([heading(one) for one in found], 2 * np.pi - 1e-9))
-    np.testing.assert_allclose(np.unique(steps.round(6)), np.arange(HEADINGS) * 2 * np.pi / HEADINGS, atol=1e-6)
+    np.testing.assert_allclose(
+        np.unique(steps.round(6)), np.arange(HEADINGS) * 2 * np.pi / HEADINGS, atol=1e-6
+    )
 
 
 def test_a_known_facing_is_the_only_heading():
@@ -56,7 +58,9 @@ def test_the_soles_are_as_far_below_the_lowest_point_as_the_equipment_says():
     sole = MODEL.description.sole
     for start in starts(MODEL, points, WHOLE):
         model = HumanModel(MODEL.description, start.size * np.ones_like(MODEL.scale), 70.0)
-        floor = model.placements(start.q)[1][model.joint(sole.segment).joint_id][2] + start.size * sole.height_m
+        floor = (
+            model.placements(start.q)[1][model.joint(sole.segment).joint_id][2] + start.size * sole.height_m
+        )
         assert floor == pytest.approx(low - start.size * WHOLE.bottom_m, abs=1e-9)
 
 

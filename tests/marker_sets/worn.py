@@ -47,9 +47,7 @@ class Worn:
 
     def moved(self, change: Callable[[np.ndarray], np.ndarray]) -> Worn:
         """The same with other positions."""
-        return replace(
-            self, markers=replace(self.markers, positions_m=change(self.markers.positions_m))
-        )
+        return replace(self, markers=replace(self.markers, positions_m=change(self.markers.positions_m)))
 
     def turned(self, angle_rad: float, shift_m: Sequence[float] = (0.0, 0.0, 0.0)) -> Worn:
         """The same turned about the vertical, then shifted."""
@@ -66,13 +64,17 @@ class Worn:
         names = tuple(f"X{k}" for k in range(len(points_m)))
         rest = np.broadcast_to(points_m, (self.markers.frames, *points_m.shape))
         positions = np.concatenate([self.markers.positions_m, rest], axis=1)
-        markers = replace(
-            self.markers, names=(*self.markers.names, *names), positions_m=positions
-        )
+        markers = replace(self.markers, names=(*self.markers.names, *names), positions_m=positions)
         return Worn(markers, {**self.segments, **dict.fromkeys(names, "")})
 
 
-NEIGHBOURS = ({"thigh", "shank"}, {"shank", "foot"}, {"foot", "toes"}, {"upper_arm", "forearm"}, {"forearm", "hand"})
+NEIGHBOURS = (
+    {"thigh", "shank"},
+    {"shank", "foot"},
+    {"foot", "toes"},
+    {"upper_arm", "forearm"},
+    {"forearm", "hand"},
+)
 
 
 def near(one: str, other: str) -> bool:
@@ -106,7 +108,7 @@ def standing(
     for arm, sense in (("right_upper_arm", -1.0), ("left_upper_arm", 1.0)):
         q[model.joint(arm).q] = Rotation.from_euler("x", sense * ARMS_AWAY_RAD).as_quat()
     points = sensor.positions(q)
-    points = points + [0.4, -0.3, 0.05 - points[:, 2].min()]
+    points = points + np.array([0.4, -0.3, 0.05 - points[:, 2].min()])
     positions = points + rng.normal(0.0, NOISE_M, (FRAMES, *points.shape))
     names = tuple(marker.name for marker in worn)
     return Worn(
@@ -132,3 +134,8 @@ def walking(protocol: str = "reference36", seed: int = 1, skin_sd_m: float = 0.0
 
 BOX_M = np.array([[0.0, 0.0, 0.2], [0.4, 0.0, 0.2], [0.0, 0.3, 0.2], [0.4, 0.3, 0.5]])
 """Markers on a box."""
+
+
+def box_at(x_m: float, y_m: float, z_m: float) -> np.ndarray:
+    """(4, 3) the box somewhere."""
+    return BOX_M + np.array([x_m, y_m, z_m])
