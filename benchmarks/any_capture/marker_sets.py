@@ -165,7 +165,13 @@ def found_segments(
 
 
 def wrong(one: Known, inferred: InferredSet | None, names: Mapping[str, str]) -> str:
-    """The wrong markers, in words."""
+    """The wrong markers, in words.
+
+    Args:
+        one: The capture.
+        inferred: What was inferred; None where it was refused.
+        names: The names that it was inferred from, by the true ones.
+    """
     found = zip(names, found_segments(one, inferred, names), strict=True)
     return ", ".join(
         f"{name} {segment or 'none'} ({sure:.2f}) not {true}"

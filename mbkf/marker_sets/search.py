@@ -125,7 +125,13 @@ def _evidence(places: WornPlaces, points_m: Array, body: PosedBody, equipment: E
 
 
 def weights(places: WornPlaces, equipment: Equipment, named: Array | None) -> Array:
-    """(C,) or (N, C) share of every component, by the equipment and by the points' names."""
+    """(C,) or (N, C) share of every component, by the equipment and by the points' names.
+
+    Args:
+        places: Where markers are worn.
+        equipment: The part of the body that carries them.
+        named: (N, C) how much likelier each component is by a point's name than without it; None without names.
+    """
     weight = equipped_weight(places, equipment)
     if named is None:
         return weight

@@ -1,4 +1,4 @@
-"""The rows of inferred marker sets: what counts as right and as told, what is withheld, and which commands are typed."""
+"""The rows of inferred marker sets: what counts as right and as told, what is withheld, which commands are typed."""
 
 from dataclasses import replace
 
