@@ -1,7 +1,8 @@
 """Names that a capture has already, as knowledge: which of its points carry a name that the body does not contradict.
 
 A name counts per tracklet, for a column may take up another marker after a gap. Names whose points jump from frame to
-frame, as in captures shuffled in every frame, mean nothing; nor do those of a capture of which most contradict the body.
+frame, as in captures shuffled in every frame, mean nothing; nor do those of a capture most of which contradict the
+body.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Labels of a scaled person that may be wrong: the capture shows a marker elsewhere than the standing trial did.
 
-Markers are put on anew, fall off or are added between the trials, and a ghost may take the place of one that is not worn.
-A label is then judged by where its points lie on the smoothed body: near the place that scaling found, or as near to
+Markers are put on anew, fall off or are added between the trials, and a ghost may take the place of one that is not
+worn. A label is then judged by where its points lie on the smoothed body: near the place that scaling found, or as near to
 that of a neighbour.
 """
 
@@ -27,7 +27,7 @@ MOVED_SD_M = 0.008
 """A marker that was not touched is found no better than this where scaling had it."""
 
 FAR, NAMED_FAR = 1.2, 2.0
-"""A label is in doubt that lies so many standard deviations from its place, or so many where the capture names it ..."""
+"""A label is in doubt that lies so many standard deviations from its place, or so many where the capture names it."""
 
 RARE = 0.5
 """... or that is seen in a smaller share of the usual number of frames, unless the capture names it."""
@@ -175,8 +175,8 @@ def _contradictions(
     for marker in np.unique(names.claimed[contradicted & (names.claimed != HIDDEN)]):
         frames, _ = np.nonzero(contradicted & (names.claimed == marker))
         told.append(
-            f"name {body.names[marker]} at frames {frames.min()}–{frames.max()} ({len(frames)} samples) is kept, though "
-            "its distances to other markers contradict the body"
+            f"name {body.names[marker]} at frames {frames.min()}–{frames.max()} ({len(frames)} samples) is kept, "
+            "though its distances to other markers contradict the body"
         )
     for marker in np.unique(names.claimed[names.claimed != HIDDEN]):
         frames, columns = np.nonzero((names.claimed == marker) & (found.label_of_point != marker))

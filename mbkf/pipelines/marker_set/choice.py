@@ -52,7 +52,7 @@ def choose_marker_set(
 def inferred_choice(
     static: Capture | None, trials: Sequence[Capture], body: BodyDescription | None = None
 ) -> ChosenSet:
-    """The same, always inferred.
+    """The same, always inferred, whatever the names.
 
     Args:
         static: A standing trial, if there is one.
@@ -61,7 +61,7 @@ def inferred_choice(
 
     Raises:
         InvalidInput: The axes of a capture cannot be right.
-        NotObservable: No person is found among the markers.
+        NotObservable: Too few markers, or no person is found among them.
     """
     inferred = infer_marker_set(static, trials, body)
     return ChosenSet(inferred.protocol, inferred.captures, inferred)

@@ -29,9 +29,10 @@ from mbkf.pipelines.marker_set.upright import upright_captures
 NAME = "inferred"
 """Name of an inferred protocol."""
 
-LEAST_EVIDENCE = 0.8
-"""How much likelier a point must be on the body than anywhere near, in the mean of the logarithm: 1.2 to 2.6 of
-measured persons, 0.3 of scattered points, up to 1.5 of a person on his head."""
+LEAST_ODDS, LEAST_NAMED_ODDS = 15.0, 0.0
+"""How much likelier (logarithm) the points must be a person than strewn about: 29 and more of measured persons, 9 to 27
+of synthetic trunks with one arm, about −15 of scattered points and 13 at most; up to 73 of a person on his head. The
+second where names tell of most points that they are on a body."""
 
 FEWEST_SEGMENTS = 3
 """Markers on fewer segments do not show a person."""
@@ -129,7 +130,7 @@ def infer_marker_set(
         worn = [_without(one.markers, ignored) for one in upright]
         standing = 0 if static is None else 1
         found = infer_markers(worn[:standing], worn[standing:], readings, reference, leave_out)
-    _require_person(found)
+    _require_person(found, LEAST_NAMED_ODDS if _mostly_named(worn, readings) else LEAST_ODDS)
     keypoints = {name for name, one in readings.items() if one.kind == "keypoint"}
     ignored |= {marker.name: NOT_BODY for marker in found.markers if not marker.segment}
     return InferredSet(
@@ -158,14 +159,24 @@ def _without(markers: MarkerTrajectories, ignored: Mapping[str, str]) -> MarkerT
     return markers.select(tuple(name for name in _named(markers) if name not in ignored))
 
 
-def _require_person(found: Inference) -> None:
+def _mostly_named(captures: Sequence[MarkerTrajectories], readings: Mapping[str, NameReading]) -> bool:
+    """Whether names tell of most markers that they are on a body."""
+    names = {name for one in captures for name in one.names}
+    return 2 * sum(name in readings and bool(readings[name].places) for name in names) > len(names)
+
+
+def _require_person(found: Inference, least_odds: float) -> None:
     """Refuses what is no person.
+
+    Args:
+        found: What was inferred.
+        least_odds: Odds that the body has to have.
 
     Raises:
         NotObservable: The points are not where markers of a person are, or on too small a part of one.
     """
     segments = {marker.segment for marker in found.markers if marker.segment}
-    if found.found.evidence < LEAST_EVIDENCE:
+    if found.found.odds < least_odds:
         raise NotObservable(
             "no person is found among the points: they do not stand as the markers of an upright body do "
             "(which axis points up? give --up; a static trial with --static; or a marker set with --protocol)"

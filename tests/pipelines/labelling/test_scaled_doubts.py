@@ -34,7 +34,7 @@ def test_a_point_that_stands_where_a_marker_is_not_is_told():
     made = walker()
     names = made.trial.markers.names
     knee = made.trial.markers.positions_m[:, names.index("RKNE")]
-    found = label(without(made, "RKNE", knee + [0.0, 0.0, 0.045]), made.subject)
+    found = label(without(made, "RKNE", knee + np.array([0.0, 0.0, 0.045])), made.subject)
     truth = made.trial.markers.select(tuple(name for name in names if name != "RKNE"))
     wrong = score(found.markers, truth, made.subject).wrong.any(axis=0)
     assert "RKNE" in found.doubts.labels or not wrong.any()
