@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -35,8 +35,6 @@ class Marked:
         folder: Its folder, below the data folder.
         trial: The moving trial.
         static: The standing trial, where there is one.
-        exchanged: Names that the static and the trial have exchanged; the static is judged with those of the trial, for
-            no angle is right where a protocol takes such names at their word.
         walks: Whether the angles of its legs are compared: it walks or runs, or bends a knee.
         quick: Whether it is judged in a quick run.
     """
@@ -45,7 +43,6 @@ class Marked:
     folder: str
     trial: str
     static: str | None = None
-    exchanged: tuple[tuple[str, str], ...] = ()
     walks: bool = True
     quick: bool = False
 
@@ -54,20 +51,14 @@ CAPTURES = (
     Marked("gait2354", "gait2354_walk", "subject01_walk1.trc", "subject01_static.trc", quick=True),
     Marked("rajagopal walk", "rajagopal_walk_run", "motion_capture_walk.trc", "static_walk_1.trc"),
     Marked("rajagopal run", "rajagopal_walk_run", "motion_capture_run.trc", "static_run.trc"),
-    Marked(
-        "HC032A",
-        "biomechzoo_walk_turn",
-        "HC032A_Straight_HC032A03.c3d",
-        "HC032A_Static_HC032A01.c3d",
-        (("LHFB", "LTUB"),),
-    ),
+    Marked("HC032A", "biomechzoo_walk_turn", "HC032A_Straight_HC032A03.c3d", "HC032A_Static_HC032A01.c3d"),
     Marked("HC044A", "biomechzoo_walk_turn", "HC044A_Straight_HC044A15.c3d", "HC044A_Static_HC044A01.c3d"),
     Marked("gaitalytics", "gaitalytics_walk", "overground_fullbody_4plates.c3d"),
     Marked("opensim gappy", "opensim_gappy_walk", "walking2.c3d"),
     Marked("autolabel run", "autolabel_unlabelled_fullbody", "PronetoRun01_labelled.c3d", walks=False),
     Marked("autolabel kneel", "autolabel_unlabelled_fullbody", "KneeltoProne01_labelled.c3d", walks=False),
     Marked("rehazenter", "rehazenter_walk", "2014001_C1_01.c3d", "2014001_ST_static.c3d"),
-    Marked("bmc run", "bmc_walk_run", "run.trc", "run_static.trc", (("RTOE", "RMT5"),)),
+    Marked("bmc run", "bmc_walk_run", "run.trc", "run_static.trc"),
     Marked("bmc lower walk", "bmc_walk_run", "lower_walk1.trc", quick=True),
     Marked("biobuddy", "biobuddy_functional", "functional_right_knee.c3d", "static.c3d"),
     Marked("cgm24", "cgm24_lowerlimb_walk", "CGM24_Walking01.c3d"),
@@ -114,21 +105,11 @@ def known(marked: Marked, data: Path) -> Known:
     """
     folder = data / marked.folder
     read = [read_capture(folder / file) for file in (marked.static, marked.trial) if file is not None]
-    if marked.exchanged:
-        read[0] = exchanged(read[0], marked.exchanged)
     protocol = detect_protocol(read[0].markers.names)
     worn = [_worn(one, protocol) for one in checked_for_protocol(read, protocol)]
     static = None if marked.static is None else worn[0]
     names = tuple(dict.fromkeys(name for one in worn for name in one.markers.names))
     return Known(marked.name, static, worn[-1], protocol, leaking(names))
-
-
-def exchanged(capture: Capture, pairs: Sequence[tuple[str, str]]) -> Capture:
-    """The capture with the names of each pair exchanged."""
-    other = {name: name for name in capture.markers.names}
-    for one, two in pairs:
-        other |= {one: two, two: one}
-    return renamed(capture, other)
 
 
 def leaking(names: tuple[str, ...]) -> tuple[str, ...]:

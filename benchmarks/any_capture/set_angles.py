@@ -114,15 +114,18 @@ def angle_rows(case: str, found: Mapping[str, Compared]) -> list[Check]:
 
 
 def _followed(static: Capture | None, trial: Capture, protocol: Protocol) -> Reconstruction:
-    short = _first_frames(trial)
+    short = _best_seen(trial)
     subject = scale(static, [short], mass_kg=MASS_KG, protocol=protocol)
     return reconstruct(short, subject, settings=ReconstructSettings(filter="kinematic", smooth=True))
 
 
-def _first_frames(trial: Capture) -> Capture:
-    """The first frames, without plates, which such a filter does not follow."""
+def _best_seen(trial: Capture) -> Capture:
+    """The stretch in which most is seen, without plates, which such a filter does not follow."""
     markers = trial.markers
-    cut = replace(markers, positions_m=markers.positions_m[:MOST_FRAMES])
+    seen = np.concatenate([[0], np.cumsum(markers.present.sum(axis=1))])
+    last = max(markers.frames - MOST_FRAMES, 0)
+    first = int((seen[MOST_FRAMES:] - seen[: last + 1]).argmax()) if last else 0
+    cut = replace(markers, positions_m=markers.positions_m[first : first + MOST_FRAMES])
     return replace(trial, markers=cut, plates=())
 
 

@@ -142,10 +142,11 @@ def _scaled(
     use = use_by_protocol([one.markers for one in captures], protocol)
     checked = checked_for_protocol(chosen.captures, protocol)
     first = 1 if standing else 0
-    exchanged: tuple[tuple[str, str, int], ...] = ()
+    exchanged = () if chosen.inferred is None else chosen.inferred.exchanged
     with single_threaded():
         if standing and len(checked) > 1:
-            trials, exchanged = trials_put_right(checked[0].markers, checked[1:], protocol)
+            trials, more = trials_put_right(checked[0].markers, checked[1:], protocol)
+            exchanged = (*exchanged, *more)
             checked = [checked[0], *trials]
         subject = scale_subject(
             [one.markers for one in checked[:first]],

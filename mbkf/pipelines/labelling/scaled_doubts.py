@@ -1,8 +1,8 @@
 """Labels of a scaled person that may be wrong: the capture shows a marker elsewhere than the standing trial did.
 
 Markers are put on anew, fall off or are added between the trials, and a ghost may take the place of one that is not
-worn. A label is then judged by where its points lie on the smoothed body: near the place that scaling found, or as near to
-that of a neighbour.
+worn. A label is then judged by where its points lie on the smoothed body: near the place that scaling found, or as
+near to that of a neighbour.
 """
 
 from __future__ import annotations

@@ -25,6 +25,7 @@ from mbkf.model.protocol import (
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.coverage import COMPUTED, listed
 from mbkf.pipelines.marker_set.upright import upright_captures
+from mbkf.pipelines.trial.exchanged import trials_put_right
 
 NAME = "inferred"
 """Name of an inferred protocol."""
@@ -40,7 +41,10 @@ FEWEST_SEGMENTS = 3
 LANDMARK_SD_M, PLACED_SD_M = 0.015, 0.035
 """How far a marker is from its landmark, and one without a landmark from where the posed body shows it."""
 
-DOUBTFUL_NOISE = 3.0
+ROUNDS = 2
+"""How often a set is inferred: again where names turn out to be exchanged between the standing trial and the others."""
+
+DOUBTFUL_NOISE = 1.5
 """Noise of a marker whose segment is doubtful, over that of a sure one: it may follow, but not lead."""
 
 OFF_LANDMARK_M = 0.045
@@ -59,12 +63,14 @@ class InferredSet:
         captures: The captures that it was inferred from, static one first, with their axes put right.
         equipment: The part of the body that carries markers, in words.
         rms_m: RMS distance of the sure markers from the body that they were found on; NaN where no frame was posed.
+        exchanged: Names that trials exchange against the standing trial and frames, put right in :attr:`captures`.
     """
 
     protocol: Protocol
     captures: tuple[Capture, ...]
     equipment: str
     rms_m: float
+    exchanged: tuple[tuple[str, str, int], ...] = ()
 
     @property
     def doubtful(self) -> tuple[str, ...]:
@@ -125,20 +131,24 @@ def infer_marker_set(
             f"the captures have {len(names) - len(ignored)} markers of a body ({listed(names) or 'none'}); "
             f"fewer than {FEWEST_POINTS} do not show which part of it they are on; give --protocol"
         )
+    keypoints = {name for name, one in readings.items() if one.kind == "keypoint"}
+    standing = 0 if static is None else 1
+    exchanged: tuple[tuple[str, str, int], ...] = ()
     with single_threaded():
         upright = upright_captures(captures, readings, reference)
-        worn = [_without(one.markers, ignored) for one in upright]
-        standing = 0 if static is None else 1
-        found = infer_markers(worn[:standing], worn[standing:], readings, reference, leave_out)
-    _require_person(found, LEAST_NAMED_ODDS if _mostly_named(worn, readings) else LEAST_ODDS)
-    keypoints = {name for name, one in readings.items() if one.kind == "keypoint"}
-    ignored |= {marker.name: NOT_BODY for marker in found.markers if not marker.segment}
-    return InferredSet(
-        _protocol(found, reference, ignored, keypoints),
-        tuple(upright),
-        found.found.equipment.name,
-        found.rms_m,
-    )
+        for _ in range(ROUNDS):
+            worn = [_without(one.markers, ignored) for one in upright]
+            found = infer_markers(worn[:standing], worn[standing:], readings, reference, leave_out)
+            _require_person(found, LEAST_NAMED_ODDS if _mostly_named(worn, readings) else LEAST_ODDS)
+            left_out = ignored | {marker.name: NOT_BODY for marker in found.markers if not marker.segment}
+            protocol = _protocol(found, reference, left_out, keypoints)
+            if not (standing and trials):
+                break
+            fresh, told = trials_put_right(upright[0].markers, upright[1:], protocol)
+            if not told:
+                break
+            upright, exchanged = [upright[0], *fresh], (*exchanged, *told)
+    return InferredSet(protocol, tuple(upright), found.found.equipment.name, found.rms_m, exchanged)
 
 
 def _named(markers: MarkerTrajectories) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from benchmarks.any_capture import marker_sets, out_of_box
-from benchmarks.any_capture.marked import CAPTURES, Known, beside, exchanged, hidden_names, leaking, renamed
+from benchmarks.any_capture.marked import CAPTURES, Known, beside, hidden_names, leaking, renamed
 from benchmarks.any_capture.marker_sets import Judged, Score, found_segments, rows_of
 from benchmarks.any_capture.out_of_box import STRANGERS, steps
 from benchmarks.any_capture.set_angles import FAILED, Compared
@@ -39,13 +39,6 @@ def test_hidden_names_are_all_different_and_tell_nothing():
     assert set(names) == set(KNOWN.trial.markers.names)
     assert len(set(names.values())) == len(names)
     assert renamed(KNOWN.trial, names).markers.names[0] == "M01"
-
-
-def test_exchanged_twice_is_as_it_was():
-    pair = [KNOWN.trial.markers.names[:2]]
-    once = exchanged(KNOWN.trial, pair)
-    assert once.markers.names[:2] == KNOWN.trial.markers.names[1::-1]
-    assert exchanged(once, pair).markers.names == KNOWN.trial.markers.names
 
 
 def test_nothing_found_is_wrong_but_told():
