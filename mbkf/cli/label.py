@@ -133,7 +133,9 @@ def _check_person(args: argparse.Namespace) -> None:
     from mbkf.errors import InvalidInput
 
     if args.subject is None and args.static is None and args.protocol is None and args.truth is not None:
-        raise InvalidInput("--truth: an inferred marker set has names of its own; give --protocol or --subject too")
+        raise InvalidInput(
+            "--truth: an inferred marker set has names of its own; give --protocol or --subject too"
+        )
     if args.subject is not None:
         for name in ("static", "protocol", "mass", "height"):
             if getattr(args, name) is not None:

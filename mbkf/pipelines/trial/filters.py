@@ -39,6 +39,7 @@ class FilterInputs:
         unobservable: (nv,) dofs that no marker of the trial moves with.
         kinematic, dynamic, torque: Settings of each filter.
         inertial: Inertial sensors on the body, None where there are none.
+        remarks: What was refused of the plates' readings, in words.
     """
 
     sensor: MarkerSensor
@@ -50,6 +51,7 @@ class FilterInputs:
     dynamic: DynamicSettings
     torque: TorqueSettings
     inertial: InertialSensor | None = None
+    remarks: tuple[str, ...] = ()
 
 
 def _kinematic(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
