@@ -11,12 +11,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from mbkf.conventions import BoolArray
+from mbkf.conventions import GRAVITY_M_S2, BoolArray
 from mbkf.io.records import PlateReadings
 from mbkf.io.turning import plate_normal
 from mbkf.io.wrench import centre_of_pressure
 from mbkf.sensors.contact.faults import NO_FAULT, bridged, faults_of, runs
-from mbkf.sensors.contact.possible import Fault, Faults, reaches, weight_of
+from mbkf.sensors.contact.possible import Fault, Faults, reaches
 
 BRIDGED_S = 0.025
 """Longest gap that straight lines bridge. Ground reactions of gait hold little above 10 Hz (0.2 body weights), which
@@ -29,7 +29,7 @@ TOLD_STRETCHES = 3
 """So many stretches of one kind are told with their times."""
 
 WORDS = {
-    Fault.NOT_A_NUMBER: "not numbers",
+    Fault.NOT_A_NUMBER: "missing or no numbers",
     Fault.FORCE: "beyond any force of this body",
     Fault.PULL: "pulling the body down",
     Fault.SHEAR: "shear beyond any friction",
@@ -60,17 +60,22 @@ def cleaned(
     return tuple(plate for plate, _ in found), tuple(remark for _, remark in found if remark)
 
 
+def longest_bridge(rate_hz: float) -> int:
+    """Samples in the longest gap that is bridged."""
+    return round(BRIDGED_S * rate_hz)
+
+
 def bridgeable(bad: BoolArray, rate_hz: float) -> BoolArray:
     """(S,) those of the bad samples (S,) that lie in a gap short enough, with a good sample on either side."""
     short = np.zeros(len(bad), dtype=bool)
     for first, after in runs(bad):
         inside = first > 0 and after < len(bad)
-        short[first:after] = inside and after - first <= round(BRIDGED_S * rate_hz)
+        short[first:after] = inside and after - first <= longest_bridge(rate_hz)
     return short
 
 
 def _cleaned(plate: PlateReadings, reach_m: float, mass_kg: float) -> tuple[PlateReadings, str]:
-    weight_n = weight_of(mass_kg)
+    weight_n = GRAVITY_M_S2 * mass_kg
     given = np.hstack([plate.force_n, plate.moment_nm])
     wrench, faults = given, np.full(len(given), NO_FAULT)
     for _ in range(MOST_PASSES):

@@ -39,7 +39,8 @@ FLAT_WEIGHTS, FLAT_LEVER_M = 0.2, 0.2
 """Least force at which a channel is cut off, and lever of the least moment; lower, equal samples are a zeroed plate."""
 
 STUCK_SAMPLES, STUCK_S = 20, 0.1
-"""All six channels of a plate under a person are not the same for so long."""
+"""All six channels of a plate under a person are not the same for so long; unless they are so from the first sample
+to the last, as a made example has them."""
 
 STUCK_WEIGHTS = 0.05
 """Least force of a plate that is said to be stuck; an unloaded one may read the same all the time."""
@@ -113,7 +114,7 @@ def _stuck(wrench: Array, rate_hz: float, weight_n: float) -> BoolArray:
     loaded = np.linalg.norm(wrench[:, :3], axis=1) >= STUCK_WEIGHTS * weight_n
     same = (wrench[1:] == wrench[:-1]).all(axis=1) & loaded[1:]
     for first, after in _equal_runs(same, max(STUCK_SAMPLES, round(STUCK_S * rate_hz))):
-        stuck[first:after] = True
+        stuck[first:after] = after - first < len(wrench)
     return stuck
 
 

@@ -16,7 +16,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from mbkf.conventions import GRAVITY_M_S2, Array
+from mbkf.conventions import Array
 from mbkf.io.records import PlateReadings
 
 MOST_WEIGHTS = 20.0
@@ -39,9 +39,6 @@ BEYOND_M = 0.5
 ANYWHERE_M = 20.0
 """The same for a set of forces without an outline, which may be a whole walkway."""
 
-HEAVIEST_KG = 250.0
-"""Mass that is reckoned with as long as a person's own is not known."""
-
 
 class Fault(IntEnum):
     """What is wrong with a sample of a plate; 0 for nothing."""
@@ -61,11 +58,6 @@ class Fault(IntEnum):
 
 Faults = NDArray[np.int8]
 """A :class:`Fault` per sample."""
-
-
-def weight_of(mass_kg: float | None) -> float:
-    """Weight in N by which readings are judged: that of the person, or of the heaviest one where it is not known."""
-    return GRAVITY_M_S2 * (HEAVIEST_KG if mass_kg is None else mass_kg)
 
 
 def reaches(plates: Sequence[PlateReadings]) -> Array:
