@@ -33,7 +33,7 @@ DROP_WEIGHTS, DROP_RATE = 0.25, 60.0
 some 20 to 40 of them per second; software zeroes a plate below 10 to 50 N."""
 
 FLAT_SAMPLES, FLAT_S = 5, 0.005
-"""A peak in which so many samples are equal is cut off: instruments have noise."""
+"""A peak in which so many samples are equal is cut off: instruments have noise. A channel that never changes is not."""
 
 FLAT_WEIGHTS, FLAT_LEVER_M = 0.2, 0.2
 """Least force at which a channel is cut off, and lever of the least moment; lower, equal samples are a zeroed plate."""
@@ -131,7 +131,7 @@ def _saturated(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) -
             at_limit = channel == limit
             same = at_limit[1:] & at_limit[:-1]
             for first, after in _equal_runs(same, max(FLAT_SAMPLES, round(FLAT_S * rate_hz))):
-                cut[first:after] = True
+                cut[first:after] |= after - first < len(wrench)
     return cut
 
 
