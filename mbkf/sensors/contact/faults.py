@@ -72,7 +72,7 @@ def faults_of(wrench: Array, rate_hz: float, weight_n: float, reach_m: float) ->
         (Fault.DROPOUT, _dropouts(wrench, faults, rate_hz, weight_n)),
     ):
         faults[found & (faults == NO_FAULT)] = kind
-    spikes = _spikes(bridged(wrench, faults != NO_FAULT), rate_hz, weight_n)
+    spikes = _spikes(bridged(wrench, faults == Fault.NOT_A_NUMBER), rate_hz, weight_n)
     faults[spikes & (faults == NO_FAULT)] = Fault.SPIKE
     return faults
 

@@ -37,3 +37,18 @@ def test_a_marker_that_is_hardly_seen_shows_no_dof():
     assert MIN_PRESENT * markers.frames > 1.0
     hidden, _ = trial_inputs(replace(markers, positions_m=positions), plates, subject, ReconstructSettings())
     assert hidden.unobservable.all()
+
+
+def test_filters_and_inverse_dynamics_read_the_same_cleaned_plates():
+    markers, plates, subject = shown(walker().trial.markers.names)
+    clean, recording = trial_inputs(markers, plates, subject, ReconstructSettings())
+    assert clean.plates is plates or all(a is b for a, b in zip(clean.plates, plates, strict=True))
+    assert clean.remarks == ()
+    force = np.array(plates[1].force_n)
+    force[700, 2] = 1e9
+    faulty = (plates[0], replace(plates[1], force_n=force), *plates[2:])
+    inputs, repaired = trial_inputs(markers, faulty, subject, ReconstructSettings())
+    (remark,) = inputs.remarks
+    assert "plate '2'" in remark
+    assert np.abs(inputs.plates[1].force_n - plates[1].force_n).max() < 20.0
+    np.testing.assert_allclose(repaired.plates, recording.plates, atol=20.0)
