@@ -259,7 +259,7 @@ def assemble(
         nis=result.nis,
         nis_readings=result.readings,
         step_seconds=result.step_seconds,
-        warnings=(*capture.notes, *ground.warnings, *_warnings(result, names, unobservable)),
+        warnings=(*capture.notes, *inputs.remarks, *ground.warnings, *_warnings(result, names, unobservable)),
         settings=recorded(settings),
         plate_change=ground.plate_change,
         foot_wrench_sd=ground.wrench_sd,

@@ -40,6 +40,7 @@ class FilterInputs:
         kinematic, dynamic, torque: Settings of each filter.
         inertial: Inertial sensors on the body, None where there are none.
         spread_m: (M,) spread of one reading where noise stays for a while, None where no marker's does.
+        remarks: What was refused of the plates' readings, in words.
     """
 
     sensor: MarkerSensor
@@ -52,6 +53,7 @@ class FilterInputs:
     torque: TorqueSettings
     inertial: InertialSensor | None = None
     spread_m: Array | None = None
+    remarks: tuple[str, ...] = ()
 
 
 def _kinematic(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:

@@ -16,6 +16,7 @@ from mbkf.io.records import MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.human import HumanModel
 from mbkf.pipelines.trial.filters import FilterInputs
+from mbkf.sensors.contact.cleaning import cleaned
 from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.sensors.lasting_noise import MOVEMENT_HZ, white_noise_m
 from mbkf.sensors.marker_sensor import MarkerSensor
@@ -43,7 +44,7 @@ class FilterSettings(Protocol):
 def trial_inputs(
     shown: MarkerTrajectories, plates: tuple[PlateReadings, ...], subject: Subject, settings: FilterSettings
 ) -> tuple[FilterInputs, Recording]:
-    """Body, markers and plates of a trial, and its readings.
+    """Body, markers and plates of a trial, and its readings; the plates without what this person cannot make them read.
 
     Args:
         shown: (T, M, 3) m, under the subject's own names; what is hidden is NaN.
@@ -52,6 +53,7 @@ def trial_inputs(
         settings: Settings of the filters.
     """
     model = HumanModel.of(subject)
+    plates, remarks = cleaned(plates, subject.mass_kg)
     by_name = {marker.name: marker for marker in subject.markers}
     tracked = [by_name[name] for name in shown.names]
     sensor = MarkerSensor(model, [m.segment for m in tracked], np.array([m.position_m for m in tracked]))
@@ -67,6 +69,7 @@ def trial_inputs(
         settings.dynamic,
         settings.torque,
         spread_m=spread_m,
+        remarks=remarks,
     )
     wrenches = plate_wrenches(plates, shown.times_s, shown.rate_hz)
     return inputs, Recording(shown.positions_m, wrenches, inputs.dt_s)

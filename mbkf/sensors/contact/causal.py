@@ -82,7 +82,9 @@ class ContactDetector:
             for foot in (0, 1) if owner == 2 else (owner,) if owner >= 0 else ():
                 wrench[foot] += plate_wrench[k]
                 contacts[foot] = Contact.SHARED if owner == 2 else Contact.MEASURED
-        elsewhere = self._elsewhere.decide(memory, (q, v, a), soles, contacts, vertical < self._least_n)
+        elsewhere = self._elsewhere.decide(
+            memory, (q, v, a), soles, contacts, vertical < self._least_n, np.isnan(vertical)
+        )
         for foot in elsewhere.carrying:
             contacts[foot] = Contact.UNMEASURED
         return ContactDecision(

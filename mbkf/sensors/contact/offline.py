@@ -14,16 +14,25 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.io.records import PlateReadings
 from mbkf.model.body import Body
 from mbkf.numerics.windows import dilated, majority, second_derivative
-from mbkf.sensors.contact.plates import centres_of_pressure, free_moment, plate_wrenches, surface_height
+from mbkf.sensors.contact.plates import (
+    PlateAreas,
+    centres_of_pressure,
+    free_moment,
+    plate_wrenches,
+    surface_height,
+)
 from mbkf.sensors.contact.soles import distances_to_soles, nearer_foot, sole_points
 from mbkf.sensors.contact.thresholds import (
     FALL_EDGE_S,
     FALL_M_S2,
     FALL_WINDOW_S,
     FLOOR_PERCENTILE,
+    LEAVE_SLACK,
     MAJORITY_S,
     MIXED_SHARE,
     REACH_M,
+    STAND_HEIGHT_M,
+    STAND_SPEED_M_S,
     STANDING_SHARE,
     TOUCH_HEIGHT_M,
     TOUCH_SPEED_M_S,
@@ -81,6 +90,7 @@ def assign_feet(
     touching = _touching(soles, foot, rate_hz)
     flight = ~touching.any(axis=1) & _falling(q[:, 2], rate_hz)
     valid, warnings = _validity(model, touching, flight, foot, wrench, pressure, recorded)
+    valid &= ~_on_silent_plate(PlateAreas(plates), soles, foot, recorded, rate_hz)
     return FootLoads(total, at_feet, free, wrench, foot, valid, warnings)
 
 
@@ -133,13 +143,45 @@ def _per_foot_pressure(pressure: Array, wrench: Array, foot: Array) -> tuple[Arr
     return at_feet, free
 
 
-def _touching(soles: Array, foot: Array, rate_hz: float) -> BoolArray:
+def _on_silent_plate(
+    areas: PlateAreas, soles: Array, foot: Array, recorded: BoolArray, rate_hz: float
+) -> BoolArray:
+    """(T,) frames in which a foot may stand on a plate that was not recorded; whoever cannot tell says so.
+
+    Args:
+        areas: Outlines of the plates.
+        soles: (T, 2, 3, 3) sole points, NaN where untracked.
+        foot: (T, P) foot of each plate.
+        recorded: (T, P) where plates were recorded.
+        rate_hz: Frame rate.
+    """
+    found = np.zeros(len(soles), dtype=bool)
+    silent = np.flatnonzero(~recorded.all(axis=1))
+    if not len(silent):
+        return found
+    standing = _touching(soles, foot, rate_hz, LEAVE_SLACK * STAND_HEIGHT_M, LEAVE_SLACK * STAND_SPEED_M_S)
+    for t in silent:
+        for side in np.flatnonzero(standing[t] & ~(foot[t] == np.array([[0], [1]])).any(axis=1)):
+            over = areas.contain(soles[t, side, :, :2]).any(axis=0) | ~areas.known
+            found[t] |= bool((over & ~recorded[t]).any())
+    return found
+
+
+def _touching(
+    soles: Array,
+    foot: Array,
+    rate_hz: float,
+    height_m: float = TOUCH_HEIGHT_M,
+    speed_m_s: float = TOUCH_SPEED_M_S,
+) -> BoolArray:
     """(T, 2) feet that touch the floor: a sole point is low and slow.
 
     Args:
         soles: (T, 2, 3, 3) sole points, NaN where untracked.
         foot: (T, P) foot of each plate.
         rate_hz: Frame rate.
+        height_m: How low it is.
+        speed_m_s: How slow it is.
     """
     touching = np.zeros((len(soles), 2), dtype=bool)
     known = ~np.isnan(soles[:, 0, 0, 0])
@@ -152,8 +194,8 @@ def _touching(soles: Array, foot: Array, rate_hz: float) -> BoolArray:
         lowest_ever = np.percentile(lowest[known, side], FLOOR_PERCENTILE)
         floor = stood_on.get(side, min([lowest_ever, *stood_on.values()]))
         speed = np.linalg.norm(np.gradient(soles[:, side], axis=0), axis=2) * rate_hz
-        low = soles[:, side, :, 2] < floor + TOUCH_HEIGHT_M
-        touching[:, side] = (low & (speed < TOUCH_SPEED_M_S)).any(axis=1)
+        low = soles[:, side, :, 2] < floor + height_m
+        touching[:, side] = (low & (speed < speed_m_s)).any(axis=1)
     return touching
 
 

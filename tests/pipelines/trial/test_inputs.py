@@ -55,3 +55,18 @@ def test_noise_that_stays_is_told_as_wider_white_noise():
     share = settings.dynamic.markers.innovation_share
     np.testing.assert_allclose(np.delete(inputs.spread_m, column), np.delete(share**0.5 * skin, column))
     assert trial_inputs(*shown(walker().trial.markers.names), settings)[0].spread_m is None
+
+
+def test_filters_and_inverse_dynamics_read_the_same_cleaned_plates():
+    markers, plates, subject = shown(walker().trial.markers.names)
+    clean, recording = trial_inputs(markers, plates, subject, ReconstructSettings())
+    assert clean.plates is plates or all(a is b for a, b in zip(clean.plates, plates, strict=True))
+    assert clean.remarks == ()
+    force = np.array(plates[1].force_n)
+    force[700, 2] = 1e9
+    faulty = (plates[0], replace(plates[1], force_n=force), *plates[2:])
+    inputs, repaired = trial_inputs(markers, faulty, subject, ReconstructSettings())
+    (remark,) = inputs.remarks
+    assert "plate '2'" in remark
+    assert np.abs(inputs.plates[1].force_n - plates[1].force_n).max() < 20.0
+    np.testing.assert_allclose(repaired.plates, recording.plates, atol=20.0)
