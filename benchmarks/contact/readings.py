@@ -201,7 +201,13 @@ def _judged(name: str, clean: Reconstruction, found: Reconstruction, fault: Faul
 
 
 def broken(capture: Capture, subject: Subject, fault: FaultyPlate) -> Capture:
-    """The capture with a fault in the plate that carries most, from the middle of its longest stance on."""
+    """The capture with a fault in the plate that carries most, from the middle of its longest stance on.
+
+    Args:
+        capture: A clean capture.
+        subject: Its person.
+        fault: What is done to the plate.
+    """
     most = int(np.argmax([plate.force_n[:, 2].sum() / plate.rate_hz for plate in capture.plates]))
     plate = capture.plates[most]
     stances = runs(plate.force_n[:, 2] > STANCE_WEIGHTS * GRAVITY_M_S2 * subject.mass_kg)
@@ -213,7 +219,13 @@ def broken(capture: Capture, subject: Subject, fault: FaultyPlate) -> Capture:
 
 
 def peak_change(clean: Reconstruction, found: Reconstruction, frames: BoolArray) -> float:
-    """Largest relative change of the peak torque of hips, knees or ankles over some frames (T,)."""
+    """Largest relative change of the peak torque of hips, knees or ankles.
+
+    Args:
+        clean: The run on clean plates.
+        found: The run on a faulty one.
+        frames: (T,) frames that are compared.
+    """
     changes = []
     for before, after in _torques(clean, found, frames):
         least = float(np.abs(before).max(initial=0.0))
@@ -223,7 +235,13 @@ def peak_change(clean: Reconstruction, found: Reconstruction, frames: BoolArray)
 
 
 def curve_change(clean: Reconstruction, found: Reconstruction, frames: BoolArray) -> float:
-    """Largest change of a torque of hips, knees or ankles in any of some frames (T,), over its clean peak."""
+    """Largest change of a torque of hips, knees or ankles in any frame, over its clean peak.
+
+    Args:
+        clean: The run on clean plates.
+        found: The run on a faulty one.
+        frames: (T,) frames that are compared.
+    """
     return max(
         float(np.abs(after - before).max(initial=0.0) / np.abs(before).max(initial=1e-9))
         for before, after in _torques(clean, found, frames)

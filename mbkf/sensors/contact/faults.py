@@ -67,7 +67,7 @@ def faults_of(wrench: Array, rate_hz: float, weight_n: float, reach_m: float) ->
     if _pulls(wrench, faults, rate_hz, weight_n):
         return np.where(faults == Fault.NOT_A_NUMBER, faults, np.int8(Fault.SIGN))
     for kind, found in (
-        (Fault.STUCK, _stuck(wrench, rate_hz, weight_n)),
+        (Fault.STUCK, _stuck(wrench, faults, rate_hz, weight_n)),
         (Fault.SATURATED, _saturated(wrench, faults, rate_hz, weight_n)),
         (Fault.DROPOUT, _dropouts(wrench, faults, rate_hz, weight_n)),
     ):
@@ -109,29 +109,36 @@ def _equal_runs(same: BoolArray, least: int) -> list[tuple[int, int]]:
     return [(first, last + 1) for first, last in runs(same) if last + 1 - first >= least]
 
 
-def _stuck(wrench: Array, rate_hz: float, weight_n: float) -> BoolArray:
+def _never_changes(known: Array) -> bool:
+    """Whether known values (n, …) are all the same, as only a made example's are."""
+    return bool((known[1:] == known[:-1]).all())
+
+
+def _stuck(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) -> BoolArray:
     stuck = np.zeros(len(wrench), dtype=bool)
+    if _never_changes(wrench[faults == NO_FAULT]):
+        return stuck
     loaded = np.linalg.norm(wrench[:, :3], axis=1) >= STUCK_WEIGHTS * weight_n
     same = (wrench[1:] == wrench[:-1]).all(axis=1) & loaded[1:]
     for first, after in _equal_runs(same, max(STUCK_SAMPLES, round(STUCK_S * rate_hz))):
-        stuck[first:after] = after - first < len(wrench)
+        stuck[first:after] = True
     return stuck
 
 
 def _saturated(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) -> BoolArray:
     cut = np.zeros(len(wrench), dtype=bool)
     known = faults == NO_FAULT
-    if not known.any():
-        return cut
     least = FLAT_WEIGHTS * weight_n * np.repeat([1.0, FLAT_LEVER_M], 3)
     for channel, floor in zip(wrench.T, least, strict=True):
+        if _never_changes(channel[known]):
+            continue
         for limit in (channel[known].max(), channel[known].min()):
             if abs(limit) < floor:
                 continue
             at_limit = channel == limit
             same = at_limit[1:] & at_limit[:-1]
             for first, after in _equal_runs(same, max(FLAT_SAMPLES, round(FLAT_S * rate_hz))):
-                cut[first:after] |= after - first < len(wrench)
+                cut[first:after] = True
     return cut
 
 

@@ -95,3 +95,19 @@ def impossible(wrench: Array, weight_n: float, reach_m: float | Array) -> Faults
     for kind, breaks in kinds:
         faults[breaks] = kind
     return faults
+
+
+def without_impossible(wrench: Array, plates: Sequence[PlateReadings], weight_n: float) -> Array:
+    """Readings of a frame with NaN for plates that read what is not possible.
+
+    Args:
+        wrench: (K, 6) force N and moment N m about the world's origin.
+        plates: The K plates; only their places are used.
+        weight_n: The person's weight.
+    """
+    own = wrench.copy()
+    origins = np.array([plate.origin_m for plate in plates]).reshape(-1, 3)
+    with np.errstate(invalid="ignore", over="ignore"):
+        own[:, 3:] -= np.cross(origins, wrench[:, :3])
+    bad = impossible(own, weight_n, reaches(plates)) != Fault.NONE
+    return np.where(bad[:, None], np.nan, wrench)

@@ -89,7 +89,10 @@ def test_a_loaded_plate_that_repeats_itself_is_stuck():
 
 
 def test_what_never_changes_at_all_is_not_judged():
-    assert not faults(np.tile(WEIGHT_N * np.array([0.0, 0.0, 0.5, 0.0, 0.0, 0.0]), (500, 1))).any()
+    wrench = np.tile(WEIGHT_N * np.array([0.0, 0.0, 0.5, 0.0, 0.0, 0.0]), (500, 1))
+    assert not faults(wrench).any()
+    wrench[200] = np.nan
+    assert np.flatnonzero(faults(wrench)).tolist() == [200]
 
 
 @pytest.mark.parametrize("share", [0.7, 0.9, 0.98])

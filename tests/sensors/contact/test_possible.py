@@ -7,7 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mbkf.sensors.contact.possible import ANYWHERE_M, BEYOND_M, Fault, impossible, reaches
+from mbkf.sensors.contact.possible import (
+    ANYWHERE_M,
+    BEYOND_M,
+    Fault,
+    impossible,
+    reaches,
+    without_impossible,
+)
 from tests.captures import made_plates
 
 WEIGHT_N, REACH_M = 700.0, 0.8
@@ -78,3 +85,17 @@ def test_each_plate_has_its_own_reach():
     wrench = np.tile(WEIGHT_N * np.array([0.0, 0.0, 1.0, 5.0, 0.0, 0.0]), (3, 2, 1))
     found = impossible(wrench, WEIGHT_N, np.array([0.8, 20.0]))
     assert found.tolist() == [[Fault.MOMENT, Fault.NONE]] * 3
+
+
+def test_a_frame_is_judged_about_each_plates_own_origin():
+    """However far from the world's origin the plates lie."""
+    far = np.array([80.0, -50.0, 0.3])
+    plates = [replace(p, origin_m=p.origin_m + far, corners_m=p.corners_m + far) for p in made_plates(1)]
+    force = WEIGHT_N * np.array([0.1, 0.0, 1.0])
+    wrench = np.array([[*force, *np.cross(plate.origin_m, force)] for plate in plates])
+    np.testing.assert_array_equal(without_impossible(wrench, plates, WEIGHT_N), wrench)
+    wrench[1, 3:] = 0.0
+    found = without_impossible(wrench, plates, WEIGHT_N)
+    np.testing.assert_array_equal(found[0], wrench[0])
+    assert np.isnan(found[1]).all()
+    assert without_impossible(np.zeros((0, 6)), (), WEIGHT_N).shape == (0, 6)
