@@ -232,7 +232,6 @@ def _torque_errors(
         frames: (T,) frames that count.
         subject: Whose.
     """
-    assert found.sd_tau is not None  # the dynamic filter's
     model, off, sd = body_of(subject), (found.tau - true)[frames], found.sd_tau[frames]
     errors_of = {}
     for joint, segment in JOINTS.items():

@@ -129,6 +129,7 @@ def _contact_warnings(contact: Array, plates: tuple[PlateReadings, ...]) -> list
         )
     if shared:
         warnings.append(
-            f"in {shared} frames both feet stand on one plate: how they share its load is estimated from where they stand"
+            f"in {shared} frames both feet stand on one plate: how they share its load is estimated from where they "
+            "stand"
         )
     return warnings

@@ -100,7 +100,7 @@ def share_load(total: Array, soles: Sequence[Sole], pelvis_m: Array, surface_m: 
     centres, roll, forward = expected_stance(soles, surface_m)
     line = centres[0] - centres[1]
     apart = max(float(np.linalg.norm(line)), LEAST_APART_M)
-    share = min(max(float((pressed - centres[1]) @ line) / apart**2, 0.0), 1.0)
+    share = min(max(0.5 + float((pressed - centres.mean(axis=0)) @ line) / apart**2, 0.0), 1.0)
     shares = np.array([share, 1.0 - share])
     centres = centres + np.array([[share - 1.0], [share]]) * roll
     centres = centres + (pressed - shares @ centres)
