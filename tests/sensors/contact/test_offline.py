@@ -135,7 +135,7 @@ def moving(speeds_m_s, frames=30):
     """Standing feet that are carried along x at a speed each (the hips bend)."""
     times = (np.arange(frames) - frames // 2) / RATE_HZ
     q = np.repeat(standing()[None], frames, axis=0)
-    height = MODEL.neutral()[2] - 0.05
+    height = standing()[2] - 0.05
     for segment, speed in zip(("right_thigh", "left_thigh"), speeds_m_s, strict=True):
         turn = Rotation.from_rotvec(np.outer(-np.arctan(speed * times / height), [0.0, 1.0, 0.0]))
         q[:, MODEL.joint(segment).q] = turn.as_quat()
