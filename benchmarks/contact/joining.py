@@ -83,7 +83,9 @@ def _about(plate: PlateReadings, origin_m: Array) -> Array:
     return plate.moment_nm + np.cross(plate.origin_m - origin_m, plate.force_n)
 
 
-def _plate(like: PlateReadings, origin_m: Array, force_n: Array, moment_nm: Array, corners_m: Array) -> PlateReadings:
+def _plate(
+    like: PlateReadings, origin_m: Array, force_n: Array, moment_nm: Array, corners_m: Array
+) -> PlateReadings:
     """A plate recorded when another was, with readings of its own.
 
     Args:
@@ -95,5 +97,13 @@ def _plate(like: PlateReadings, origin_m: Array, force_n: Array, moment_nm: Arra
     """
     pressed = centre_of_pressure(force_n, moment_nm, origin_m, _UP, like.threshold_n)
     return PlateReadings(
-        "1", like.rate_hz, like.start_time_s, origin_m, force_n, moment_nm, pressed, like.threshold_n, corners_m
+        "1",
+        like.rate_hz,
+        like.start_time_s,
+        origin_m,
+        force_n,
+        moment_nm,
+        pressed,
+        like.threshold_n,
+        corners_m,
     )

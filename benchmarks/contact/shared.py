@@ -1,8 +1,8 @@
 """Two feet on one plate or belt, against plates of their own and against exact truth.
 
-Real walks: all plates' readings are added into one plate, and the feet's forces compared with those that the same filter
-finds on the separate plates. Synthetic ones are compared with the truth. The shares follow from where the feet stand;
-its constants were set on HC032A and gaitalytics (:mod:`mbkf.sensors.contact.sharing`).
+Real walks: all plates' readings are added into one plate, and the feet's forces compared with those that the same
+filter finds on the separate plates. Synthetic ones are compared with the truth. The constants of the shares were set on
+HC032A and gaitalytics (:mod:`mbkf.sensors.contact.sharing`).
 """
 
 from __future__ import annotations
@@ -173,7 +173,9 @@ def _real_rows(data: Path, spreads: dict[str, list[float]]) -> Iterator[Check]:
             )
             spreads[name].append(off.spread)
             label = f"shared, {person}, {name}"
-            yield Check(f"{label}: force per foot, double support", off.double_percent, REAL_DOUBLE, "<=", "% BW")
+            yield Check(
+                f"{label}: force per foot, double support", off.double_percent, REAL_DOUBLE, "<=", "% BW"
+            )
             yield Check(f"{label}: force per foot, stance", off.stance_percent, REAL_STANCE, "<=", "% BW")
             yield information(f"{label}: error over stated sd", off.spread)
             yield information(f"{label}: frames of double support not seen as shared", off.unshared)
@@ -186,7 +188,7 @@ def _walk_rows(spreads: dict[str, list[float]]) -> Iterator[Check]:
     subject, made = synthesise("walk", seconds=WALK_S, seed=SEED, settings=_PLATES)
     truth, weight = made.truth, subject.mass_kg * GRAVITY_M_S2
     bears = (truth.foot_wrench[:, :, 2] > BEARS_N) & (truth.times_s >= SETTLED_S)[:, None]
-    both = bears.all(axis=1)
+    both = np.asarray(bears.all(axis=1))
     one = joined(made.trial)
     for name in PASSES:
         usual = _torque_errors(_follow(made.trial, subject, name), truth.tau, both, subject)

@@ -52,7 +52,12 @@ def motion_of(kind: str, width_m: float, person: str) -> str:
 
 
 def _plan(
-    kind: str, width_m: float, left_m: tuple[float, float], model: Body, seconds: float, rng: np.random.Generator
+    kind: str,
+    width_m: float,
+    left_m: tuple[float, float],
+    model: Body,
+    seconds: float,
+    rng: np.random.Generator,
 ) -> MotionPlan:
     """The motion's usual plan on other feet.
 
@@ -69,7 +74,9 @@ def _plan(
     return replace(plan, feet=feet, load=_load(feet, left_m, 0.045 * float(model.scale.mean()), rng))
 
 
-def _load(feet: FeetPlan, left_m: tuple[float, float], forward_m: float, rng: np.random.Generator) -> LoadPlan:
+def _load(
+    feet: FeetPlan, left_m: tuple[float, float], forward_m: float, rng: np.random.Generator
+) -> LoadPlan:
     """Weight that shifts between the feet, each pressed at a place of its own.
 
     Args:

@@ -5,7 +5,7 @@ the ankles, force N and moment N m in world axes (:mod:`mbkf.sensors.foot_wrench
 
     measured              z = the plate's wrench,  r ~ N(0, diag(σ_F², σ_M²)) of the plate
     air                   z = 0,                   r ~ N(0, diag(σ_F², σ_M²)) of a foot that carries nothing
-    shared                z_r + z_l = the plate's wrench, and z_r its share by where the feet stand, each with its spread
+    shared                z_r + z_l = the plate's wrench, and z_r its share by where the feet stand, with its spread
     unmeasured            no reading; the wrench follows from Newton's law and the other foot
 
 Which foot stands on what is decided where the posterior of the frame before leads at its own acceleration,

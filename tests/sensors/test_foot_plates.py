@@ -96,14 +96,16 @@ def test_a_shared_plate_is_read_as_shares(scene):
     right = linearised(scene, shared(wrench))
     assert right.readings == 12 and right.innovation < 1e-12
     off = np.array([0.0, 0.0, 60.0, 60.0 * -0.1, 60.0 * -0.1, 0.0])  # 60 N at the right foot's centre
-    assert linearised(scene, shared(wrench + [off, -off])).innovation == pytest.approx((60.0 / 30.0) ** 2)
+    assert linearised(scene, shared(wrench + np.array([off, -off]))).innovation == pytest.approx(
+        (60.0 / 30.0) ** 2
+    )
 
 
 def test_shares_leave_the_sum_as_exact_as_the_plate(scene):
     block, _, wrench = scene
     s = block.settings
     heavier = np.array([0.0, 0.0, 10.0, -1.0, -1.5, 0.0])  # 10 N on the left foot alone
-    found = linearised(scene, shared(wrench + [np.zeros(6), heavier]))
+    found = linearised(scene, shared(wrench + np.array([np.zeros(6), heavier])))
     assert found.innovation >= (10.0 / s.plate_force_n) ** 2
     matrix = found.matrix[-12:, -12:]
     assert np.linalg.matrix_rank(matrix) == 12

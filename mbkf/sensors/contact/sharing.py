@@ -8,8 +8,8 @@ c_r, c_l and the plate's own p, the right foot carries the share
 
 of the vertical force F, known to √(s² + (1 − s)²) σ_c F / |c_r − c_l| with the spread σ_c of the centres along the line
 between them. While the load passes from foot to foot, both centres roll forward by the same way, ρ (s − 1) and ρ s for
-a right foot that is ahead, which leaves p = s c_r + (1 − s) c_l and so the share. What p lies beside the line moves both
-of them. The force on each foot points to the pelvis, as in walking it passes near the centre of mass (Maus et al.,
+a right foot that is ahead, which leaves p = s c_r + (1 − s) c_l and so the share. What p lies beside the line moves
+both of them. The force on each foot points to the pelvis, as in walking it passes near the centre of mass (Maus et al.,
 Nature Communications 1:70, 2010); what is left of the measured shear is shared by the roots of the shares: a foot that
 hardly bears takes none, and otherwise both take nearly the same.
 

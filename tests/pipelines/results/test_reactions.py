@@ -174,7 +174,7 @@ def one_plate():
 
 
 def test_one_plate_under_both_feet_is_shared_and_that_is_told():
-    """Inverse dynamics gets the plate's whole wrench; how much an estimate changes a plate is told of lone feet only."""
+    """Inverse dynamics gets the plate's whole wrench; the change of a plate is known of feet that stand alone."""
     found = found_with(followed(), one_plate())
     assert_near(found.wrench.sum(axis=1), truly().sum(axis=1), 1e-9)
     assert_near(found.wrench[:, :, 2], truly()[:, :, 2], 0.1 * trial("squat").model.mass_kg * GRAVITY_M_S2)

@@ -137,7 +137,9 @@ def test_a_plate_without_an_outline_is_not_shared():
 def passing(speed_m_s):
     """Velocities at which the hips carry the soles against each other at a speed."""
     v = STILL.copy()
-    jacobian = [MODEL.segment_jacobian(standing(MODEL), foot, np.zeros(3)) for foot in ("right_foot", "left_foot")]
+    jacobian = [
+        MODEL.segment_jacobian(standing(MODEL), foot, np.zeros(3)) for foot in ("right_foot", "left_foot")
+    ]
     hips = [MODEL.joint(f"{side}_thigh").v.start + 1 for side in ("right", "left")]
     v[hips[RIGHT]] = 0.5 * speed_m_s / jacobian[RIGHT][0, hips[RIGHT]]
     v[hips[LEFT]] = -0.5 * speed_m_s / jacobian[LEFT][0, hips[LEFT]]
@@ -180,13 +182,13 @@ def test_a_foot_lifted_or_beside_the_plate_does_not_share_it():
 
 @pytest.mark.parametrize("belt_m_s", [0.0, 1.2])
 def test_a_walk_over_one_plate_is_shared_while_both_feet_bear(belt_m_s):
-    """Over the floor, and on a belt that carries the feet back. Just before and after, the share is nearly all or none."""
+    """Over the floor, and on a belt that carries the feet back; just before and after, one has nearly all."""
     made = trial("walk")
     m, load = made.motion, vertical(made)
     feet = ContactDetector(made.model, [plate(0.0, 0.0, (5.0, 5.0))], DT)
     memory, found, off = feet.begin(), [], []
-    for t, (q, v, a) in enumerate(zip(m.q, m.v, m.a, strict=True)):
-        q, v, both = q.copy(), v.copy(), m.foot_wrench[t].sum(axis=0)
+    for t, a in enumerate(m.a):
+        q, v, both = m.q[t].copy(), m.v[t].copy(), m.foot_wrench[t].sum(axis=0)
         back = np.array([-belt_m_s * m.times_s[t], 0.0, 0.0])
         q[:3] += back
         v[:3] += made.model.placements(q)[0][made.model.root.joint_id].T @ [-belt_m_s, 0.0, 0.0]

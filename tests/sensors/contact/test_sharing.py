@@ -28,12 +28,13 @@ small = st.floats(-0.3, 0.3)
 def soles(ahead_m=0.0, width_m=WIDTH_M, surface_m=0.0):
     """Both soles along x, the right one so far ahead."""
     heel = np.array([[ahead_m, -0.5 * width_m, surface_m], [0.0, 0.5 * width_m, surface_m]])
-    return np.stack([heel, heel + [0.7 * LENGTH_M, 0.0, 0.0], heel + [LENGTH_M, 0.0, 0.0]], axis=1)
+    along = LENGTH_M * np.array([1.0, 0.0, 0.0])
+    return np.stack([heel, heel + 0.7 * along, heel + along], axis=1)
 
 
 def load(point, force=(0.0, 0.0, WEIGHT_N), free_nm=0.0):
     """A wrench about the world's origin that acts at a point."""
-    return np.concatenate([force, np.cross(point, force) + [0.0, 0.0, free_nm]])
+    return np.concatenate([force, np.cross(point, force) + np.array([0.0, 0.0, free_nm])])
 
 
 def shared(total, feet, pelvis=PELVIS, surface_m=0.0):
@@ -132,7 +133,9 @@ def test_the_pressure_lies_between_the_centres_in_the_ratio_of_the_forces(readin
 
 
 def test_feet_nearer_than_a_step_are_loaded_in_proportion():
-    shift = [expected_stance(soles(ahead).tolist(), 0.0).centres_m[RIGHT, 0] - ahead for ahead in (0.0, 0.1, 1.0)]
+    shift = [
+        expected_stance(soles(ahead).tolist(), 0.0).centres_m[RIGHT, 0] - ahead for ahead in (0.0, 0.1, 1.0)
+    ]
     assert shift[0] == pytest.approx(MIDDLE * LENGTH_M)
     assert shift[0] - shift[1] == pytest.approx(FORWARD * LENGTH_M * 0.1 / STEP_M)
     assert shift[0] - shift[2] == pytest.approx(FORWARD * LENGTH_M)
