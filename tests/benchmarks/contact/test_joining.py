@@ -18,7 +18,7 @@ ABOUT_PLATE = np.array([[1, -1, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0]]) * 0.3
 def plate(name, x, seed, outline=True):
     rng, samples = np.random.default_rng(seed), int(SECONDS * 1000)
     origin = np.array([x, 0.1 * seed, 0.0])
-    force = rng.normal(0, 50, (samples, 3)) + [0.0, 0.0, 400.0]
+    force = rng.normal(0, 50, (samples, 3)) + np.array([0.0, 0.0, 400.0])
     pressed = np.tile(origin, (samples, 1))
     corners = origin + ABOUT_PLATE if outline else None
     return PlateReadings(

@@ -259,3 +259,28 @@ def test_stretches_are_the_unbroken_runs():
     assert [run.tolist() for run in stretches(mask)] == [[0, 1], [4], [6, 7, 8]]
     assert stretches(np.zeros(3, bool)) == []
     assert [run.tolist() for run in stretches(np.ones(2, bool))] == [[0, 1]]
+
+
+@pytest.mark.parametrize("outline", [True, False])
+def test_a_foot_on_a_plate_that_fell_silent_is_not_fully_measured(outline):
+    """Even one that rolls too fast to be taken for standing elsewhere; a foot high above it is none of its business."""
+    frames = 30
+    q = np.repeat(standing()[None], frames, axis=0)
+    q[:, 0] += 0.006 * np.arange(frames)  # 0.6 m/s
+    right, left = (plate(ball(q[15], side), 0.5 * WEIGHT_N, frames) for side in (RIGHT, LEFT))
+    broken = right.force_n.copy()
+    broken[100:200] = np.nan
+    silent = replace(right, force_n=broken, corners_m=right.corners_m if outline else None)
+    assert assigned(q, [right, left]).valid[12:18].all()
+    assert not assigned(q, [silent, left]).valid[12:18].any()
+    elsewhere = plate(np.array([5.0, 5.0]), 0.0, frames)
+    gone = replace(elsewhere, force_n=np.full_like(elsewhere.force_n, np.nan))
+    assert assigned(q, [right, left, gone]).valid[12:18].all()
+
+
+def test_a_plate_that_fell_silent_does_not_matter_to_feet_that_share_another():
+    """Both stand on one plate that reads; another was not recorded, and nobody can stand on it."""
+    q = np.repeat(standing()[None], 20, axis=0)
+    middle = 0.5 * (ball(q[0], RIGHT) + ball(q[0], LEFT))
+    silent = replace(plate(ball(q[0], RIGHT), 0.0, 20, start_s=9.0), corners_m=None)
+    assert assigned(q, [plate(middle, WEIGHT_N, 20, half_m=0.5), silent]).valid.all()
