@@ -1,7 +1,7 @@
 """Plates and foot contact, as a block: what each foot's wrench w is read to be, by what the foot stands on.
 
     measured    X w = X w_plate + r       r ~ N(0, diag(σ_F², σ_M²)) of the plate, moments about the middle of the sole
-    shared      X (w_r + w_l) = X w_plate + r, and each foot weakly half of it
+    shared      X (w_r + w_l) = X w_plate + r, and X w_r its share by geometry (:mod:`mbkf.sensors.contact.sharing`)
     air         X w = r                   a foot in the air carries nothing
     unmeasured  X w = X w_share + r       weakly its share of the weight; its wrench is otherwise free
 
@@ -21,6 +21,7 @@ from mbkf.conventions import Array
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
+from mbkf.sensors.contact.sharing import SharedLoad
 from mbkf.sensors.layout import Layout
 from mbkf.sensors.states import LoadedState
 
@@ -120,8 +121,8 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         """Twelve rows; readings of plates come first."""
         w, contact, lifted = at.state.w, decision.contact, decision.lifted
         kinds, rows, values, plates = contact.contacts, np.zeros((12, 12)), np.empty(12), 0
-        if Contact.SHARED in kinds:
-            return self._shared(w, contact)
+        if contact.shared is not None:
+            return self._shared(w, contact, contact.shared)
         about = _about(contact.centres_m)
         only_left = kinds[0] != Contact.MEASURED and kinds[1] == Contact.MEASURED
         for place, foot in enumerate((1, 0) if only_left else (0, 1)):
@@ -179,15 +180,15 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
             return self._air
         return self._pulling if pulls else self._free
 
-    def _shared(self, w: Array, contact: ContactDecision) -> Rows:
-        """One plate reads the sum of both wrenches; each is weakly held near a half of it."""
+    def _shared(self, w: Array, contact: ContactDecision, shared: SharedLoad) -> Rows:
+        """One plate reads the sum of both wrenches; how they share it is known by geometry, with its spread."""
         rows, values = np.zeros((12, 12)), np.empty(12)
         middle = _about(contact.centres_m.mean(axis=0, keepdims=True))[0] * self._plate[:, None]
         rows[:6, :6] = rows[:6, 6:] = middle
-        values[:6] = middle @ (contact.wrench[0] - w[:6] - w[6:])
-        half = _about(contact.centres_m[:1])[0] * self._free[:, None]
-        rows[6:, :6] = half
-        values[6:] = half @ (0.5 * contact.wrench[0] - w[:6])
+        values[:6] = middle @ (shared.wrench.sum(axis=0) - w[:6] - w[6:])
+        right = _about(shared.centres_m[:1])[0] / shared.sd[:, None]
+        rows[6:, :6] = right
+        values[6:] = right @ (shared.wrench[0] - w[:6])
         return Rows(rows, values, self._first, 6)
 
 

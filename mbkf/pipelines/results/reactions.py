@@ -11,7 +11,7 @@ from mbkf.filters.inverse_dynamics import inverse_dynamics
 from mbkf.filters.tracking import Track
 from mbkf.io.records import PlateReadings
 from mbkf.model.body import Body
-from mbkf.sensors.contact.offline import FootLoads, assign_feet
+from mbkf.sensors.contact.offline import BOTH, FootLoads, assign_feet
 from mbkf.sensors.contact.plates import pressure_and_free_moment, surface_height
 from mbkf.sensors.contact.records import Contact
 
@@ -76,7 +76,9 @@ def reactions(
             moment,
             None,
             loads.valid,
-            loads.warnings if plates else ("no force plates: torques and residuals are not computed",),
+            (*loads.warnings, *_shared_warning((loads.foot_of_plate == BOTH).any(axis=1)))
+            if plates
+            else ("no force plates: torques and residuals are not computed",),
         )
     surface = np.mean([surface_height(plate) for plate in plates]) if plates else 0.0
     pressure, free = pressure_and_free_moment(track.wrench, float(surface), PRESSURE_FROM_N)
@@ -99,7 +101,8 @@ def _plate_change(wrench: Array, loads: FootLoads, plates: tuple[PlateReadings, 
     change = np.full(loads.plate_wrench.shape, np.nan)
     for p, plate in enumerate(plates):
         foot = loads.foot_of_plate[:, p]
-        alone = (foot >= 0) & ((loads.foot_of_plate == foot[:, None]).sum(axis=1) == 1)
+        others = (loads.foot_of_plate == BOTH).any(axis=1)
+        alone = (foot >= 0) & ~others & ((loads.foot_of_plate == foot[:, None]).sum(axis=1) == 1)
         frames = np.flatnonzero(alone)
         difference = wrench[frames, foot[frames]] - loads.plate_wrench[frames, p]
         difference[:, 3:] -= np.cross(plate.origin_m, difference[:, :3])
@@ -110,7 +113,6 @@ def _plate_change(wrench: Array, loads: FootLoads, plates: tuple[PlateReadings, 
 def _contact_warnings(contact: Array, plates: tuple[PlateReadings, ...]) -> list[str]:
     unread = contact == Contact.UNMEASURED
     one, both = int(unread.any(axis=1).sum()), int(unread.all(axis=1).sum())
-    shared = int((contact == Contact.SHARED).any(axis=1).sum())
     warnings = []
     if not plates:
         warnings.append(
@@ -126,8 +128,14 @@ def _contact_warnings(contact: Array, plates: tuple[PlateReadings, ...]) -> list
             f"in {both} frames both feet do, and how they share the load cannot be observed "
             "(see the standard deviations)"
         )
-    if shared:
-        warnings.append(
-            f"in {shared} frames both feet stand on one plate: how they share its load cannot be observed"
-        )
-    return warnings
+    return [*warnings, *_shared_warning((contact == Contact.SHARED).any(axis=1))]
+
+
+def _shared_warning(shared: BoolArray) -> list[str]:
+    """What is told of the frames (T,) in which both feet stand on one plate."""
+    if not shared.any():
+        return []
+    return [
+        f"in {int(shared.sum())} frames both feet stand on one plate: how they share its load is estimated from where "
+        "they stand"
+    ]

@@ -16,14 +16,16 @@ from mbkf.io.records import PlateReadings
 from mbkf.model.body import Body
 from mbkf.sensors.contact.plates import PlateAreas, least_load, pressed_at, surface_height
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, Planted, Pressed
+from mbkf.sensors.contact.sharing import SharedLoad, share_load
 from mbkf.sensors.contact.soles import Sole, distance_to_sole, nearer_foot, share_along, sole_locals
 from mbkf.sensors.contact.thresholds import (
-    BETWEEN_M,
     FLAT_FROM,
     FLAT_TO,
+    LEAVE_SLACK,
+    LEVEL_M,
+    PARTED_M_S,
     SOLE_ENDS,
     STAND_AFTER_S,
-    TOUCH_HEIGHT_M,
 )
 from mbkf.sensors.contact.unmeasured import UnmeasuredFeet
 from mbkf.sensors.marker_sensor import MarkerSensor
@@ -48,6 +50,9 @@ class ContactDetector:
         self.surfaces_m = [surface_height(plate) for plate in plates]
         self._areas = PlateAreas(plates)
         self._model, self._soles = model, MarkerSensor(model, *sole_locals(model))
+        self._moves = [
+            model.supports[model.joint(segment).joint_id].astype(float) for segment in model.roles.feet
+        ]
         self._elsewhere = UnmeasuredFeet(model, self._areas, min(self.surfaces_m, default=np.nan), dt_s)
 
     def begin(self) -> ContactMemory:
@@ -74,7 +79,7 @@ class ContactDetector:
         latest, foot_of_plate = list(memory.pressed), [-1] * len(vertical)
         for k in loaded:
             point = pressed_at(plate_wrench[k].tolist(), self.surfaces_m[k])
-            foot_of_plate[k] = self._owner(k, point, soles, memory.foot_of_plate[k])
+            foot_of_plate[k] = self._owner(k, point, (q, v), soles, memory.foot_of_plate[k])
             latest[k] = Pressed(*point, foot_of_plate[k])
         wrench, contacts = np.zeros((2, 6)), [Contact.AIR, Contact.AIR]
         for k in loaded:
@@ -82,6 +87,7 @@ class ContactDetector:
             for foot in (0, 1) if owner == 2 else (owner,) if owner >= 0 else ():
                 wrench[foot] += plate_wrench[k]
                 contacts[foot] = Contact.SHARED if owner == 2 else Contact.MEASURED
+        shared = self._shared(foot_of_plate, plate_wrench, soles, q)
         elsewhere = self._elsewhere.decide(
             memory, (q, v, a), soles, contacts, vertical < self._least_n, np.isnan(vertical)
         )
@@ -93,6 +99,7 @@ class ContactDetector:
             0.5 * (positions[:, 0] + positions[:, 2]),
             any(foot_of_plate[k] < 0 for k in loaded),
             ContactMemory(tuple(foot_of_plate), tuple(latest), elsewhere.sole_height_m, elsewhere.touching_s),
+            shared,
         )
 
     def planted(self, decision: ContactDecision, q: Array, foot: int) -> Planted | None:
@@ -120,17 +127,47 @@ class ContactDetector:
             return Planted((self._model.roles.toes or self._model.roles.feet)[foot], pressed, flat=True)
         return Planted(self._model.roles.feet[foot], pressed, flat=FLAT_FROM < share < FLAT_TO)
 
-    def _owner(self, k: int, point: tuple[float, float], soles: Sequence[Sole], before: int) -> int:
+    def _owner(
+        self,
+        k: int,
+        point: tuple[float, float],
+        motion: tuple[Array, Array],
+        soles: Sequence[Sole],
+        before: int,
+    ) -> int:
         """Foot of plate k with this centre of pressure: 0 right, 1 left, 2 both, -1 none."""
-        away = [distance_to_sole(*point, sole) for sole in soles]
-        return 2 if self._between(k, soles, away) else nearer_foot(away, before)
+        if self._both_on(k, motion, soles, LEAVE_SLACK if before == 2 else 1.0):
+            return 2
+        return nearer_foot([distance_to_sole(*point, sole) for sole in soles], before)
 
-    def _between(self, k: int, soles: Sequence[Sole], away: list[float]) -> bool:
-        """Whether both feet stand flat on plate k: both soles inside it, the centre of pressure between them."""
-        if not self._areas.known[k] or min(away) <= BETWEEN_M:
+    def _both_on(self, k: int, motion: tuple[Array, Array], soles: Sequence[Sole], slack: float) -> bool:
+        """Whether both feet stand on plate k: their lowest points over it, level, and at rest against each other.
+
+        Args:
+            k: The plate.
+            motion: Predicted (nq,) configuration and (nv,) velocity.
+            soles: Heel, ball and toe end of both soles.
+            slack: Factor on the limit of speed: feet that stood there together must clearly part.
+        """
+        if not self._areas.known[k]:
             return False
-        heights = [min(p[2] for p in sole) for sole in soles]
-        if abs(heights[0] - heights[1]) >= TOUCH_HEIGHT_M:
+        lowest = np.array([min(sole, key=lambda point: point[2]) for sole in soles])
+        if abs(lowest[0, 2] - lowest[1, 2]) >= LEVEL_M or not self._areas.contain(lowest[:, :2])[:, k].all():
             return False
-        ends = np.array([end[:2] for sole in soles for end in (sole[0], sole[2])])
-        return bool(self._areas.contain(ends)[:, k].all())
+        q, v = motion
+        jacobian = self._model.spatial_jacobian(q)
+        moving = [jacobian @ (v * moves) for moves in self._moves]
+        velocity = [twist[:3] + np.cross(twist[3:], at) for twist, at in zip(moving, lowest, strict=True)]
+        return bool(np.linalg.norm(velocity[0] - velocity[1]) < slack * PARTED_M_S)
+
+    def _shared(
+        self, foot_of_plate: Sequence[int], plate_wrench: Array, soles: Sequence[Sole], q: Array
+    ) -> SharedLoad | None:
+        """How the feet share what they stand on together: all that the plates under either of them read."""
+        if 2 not in foot_of_plate:
+            return None
+        under = [k for k, owner in enumerate(foot_of_plate) if owner >= 0]
+        _, origins = self._model.placements(q)
+        pelvis = origins[self._model.root.joint_id]
+        surface = self.surfaces_m[foot_of_plate.index(2)]
+        return share_load(plate_wrench[under].sum(axis=0), soles, pelvis, surface)

@@ -21,6 +21,7 @@ from mbkf.sensors.contact.plates import (
     plate_wrenches,
     surface_height,
 )
+from mbkf.sensors.contact.sharing import share_load
 from mbkf.sensors.contact.soles import distances_to_soles, nearer_foot, sole_points
 from mbkf.sensors.contact.thresholds import (
     FALL_EDGE_S,
@@ -28,8 +29,10 @@ from mbkf.sensors.contact.thresholds import (
     FALL_WINDOW_S,
     FLOOR_PERCENTILE,
     LEAVE_SLACK,
+    LEVEL_M,
     MAJORITY_S,
     MIXED_SHARE,
+    PARTED_M_S,
     REACH_M,
     STAND_HEIGHT_M,
     STAND_SPEED_M_S,
@@ -37,6 +40,9 @@ from mbkf.sensors.contact.thresholds import (
     TOUCH_HEIGHT_M,
     TOUCH_SPEED_M_S,
 )
+
+BOTH = 2
+"""Number of both feet together, beside 0 right, 1 left and -1 none."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +54,7 @@ class FootLoads:
         centre_of_pressure_m: (T, 2, 3) of the stronger plate under each foot; NaN unloaded.
         free_moment_nm: (T, 2) about the vertical through the centre of pressure; NaN unloaded.
         plate_wrench: (T, P, 6) every plate about the world's origin; zero outside its recording.
-        foot_of_plate: (T, P) 0 right, 1 left, -1 none.
+        foot_of_plate: (T, P) 0 right, 1 left, 2 both, -1 none.
         valid: (T,) every loaded foot stands on a recorded plate.
         warnings: Remarks for the reader of a report.
     """
@@ -83,10 +89,17 @@ def assign_feet(
     for p, plate in enumerate(plates):
         pressure[:, p] = centres_of_pressure(wrench[:, p], surface_height(plate), plate.threshold_n)
         foot[:, p] = _foot_of_plate(pressure[:, p], soles, wrench[:, p, 2], rate_hz)
+    foot[_together(soles, PlateAreas(plates), rate_hz) & ~np.isnan(pressure[:, :, 0])] = BOTH
     total = np.zeros((len(q), 2, 6))
     for side in range(2):
         total[:, side] = (wrench * (foot == side)[:, :, None]).sum(axis=1)
     at_feet, free = _per_foot_pressure(pressure, wrench, foot)
+    for t in np.flatnonzero((foot == BOTH).any(axis=1)):
+        on = foot[t] >= 0
+        surface = pressure[t, foot[t] == BOTH][0, 2]
+        shared = share_load(wrench[t, on].sum(axis=0), soles[t].tolist(), q[t, :3], surface)
+        total[t], at_feet[t] = shared.wrench, shared.centres_m
+        free[t] = free_moment(shared.wrench, shared.centres_m)
     touching = _touching(soles, foot, rate_hz)
     flight = ~touching.any(axis=1) & _falling(q[:, 2], rate_hz)
     valid, warnings = _validity(model, touching, flight, foot, wrench, pressure, recorded)
@@ -126,6 +139,29 @@ def stretches(mask: BoolArray) -> list[Array]:
     return np.split(frames, np.flatnonzero(np.diff(frames) > 1) + 1) if len(frames) else []
 
 
+def _together(soles: Array, areas: PlateAreas, rate_hz: float) -> BoolArray:
+    """(T, P) plates on which both feet stand: their lowest points over it, level, and at rest against each other.
+
+    Args:
+        soles: (T, 2, 3, 3) sole points, NaN where untracked.
+        areas: Outlines of the plates; on one without an outline no two feet are distinguished.
+        rate_hz: Frame rate.
+    """
+    together = np.zeros((len(soles), len(areas.known)), dtype=bool)
+    known = np.flatnonzero(~np.isnan(soles[:, 0, 0, 0]))
+    if len(known) < 2:
+        return together
+    moving = np.gradient(soles, axis=0)[known] * rate_hz
+    at = soles[known, :, :, 2].argmin(axis=2)[:, :, None, None]
+    lowest = np.take_along_axis(soles[known], at, axis=2)[:, :, 0]
+    velocity = np.take_along_axis(moving, at, axis=2)[:, :, 0]
+    level = np.abs(lowest[:, 0, 2] - lowest[:, 1, 2]) < LEVEL_M
+    slow = np.linalg.norm(velocity[:, 0] - velocity[:, 1], axis=1) < PARTED_M_S
+    inside = areas.contain(lowest[:, :, :2].reshape(-1, 2)).reshape(len(known), 2, -1).all(axis=1)
+    together[known] = inside & (level & slow)[:, None]
+    return together
+
+
 def _per_foot_pressure(pressure: Array, wrench: Array, foot: Array) -> tuple[Array, Array]:
     """(T, 2, 3) centre of pressure and (T, 2) free moment of the strongest plate under each foot."""
     frames = np.arange(len(foot))
@@ -141,6 +177,11 @@ def _per_foot_pressure(pressure: Array, wrench: Array, foot: Array) -> tuple[Arr
         at_feet[mine, side] = point[mine]
         free[mine, side] = free_moment(load, point)[mine]
     return at_feet, free
+
+
+def _on_plate(foot: Array) -> BoolArray:
+    """(T, 2) feet that stand on a loaded plate, of their own or shared; foot (T, P) is that of each plate."""
+    return np.stack([((foot == side) | (foot == BOTH)).any(axis=1) for side in range(2)], axis=1)
 
 
 def _on_silent_plate(
@@ -159,9 +200,10 @@ def _on_silent_plate(
     silent = np.flatnonzero(~recorded.all(axis=1))
     if not len(silent):
         return found
+    on_plate = _on_plate(foot)
     standing = _touching(soles, foot, rate_hz, LEAVE_SLACK * STAND_HEIGHT_M, LEAVE_SLACK * STAND_SPEED_M_S)
     for t in silent:
-        for side in np.flatnonzero(standing[t] & ~(foot[t] == np.array([[0], [1]])).any(axis=1)):
+        for side in np.flatnonzero(standing[t] & ~on_plate[t]):
             over = areas.contain(soles[t, side, :, :2]).any(axis=0) | ~areas.known
             found[t] |= bool((over & ~recorded[t]).any())
     return found
@@ -188,7 +230,7 @@ def _touching(
     if not known.any():
         return touching
     lowest = soles[:, :, :, 2].min(axis=2)
-    loaded = np.stack([(foot == side).any(axis=1) & known for side in range(2)], axis=1)
+    loaded = _on_plate(foot) & known[:, None]
     stood_on = {side: np.median(lowest[loaded[:, side], side]) for side in range(2) if loaded[:, side].any()}
     for side in range(2):
         lowest_ever = np.percentile(lowest[known, side], FLOOR_PERCENTILE)
@@ -230,8 +272,7 @@ def _validity(
         pressure: (T, P, 3) their centres of pressure, NaN where not loaded.
         recorded: (T, P) where they were recorded.
     """
-    on_plate = np.stack([(foot == side).any(axis=1) for side in range(2)], axis=1)
-    measured = (~touching | on_plate).all(axis=1)
+    measured = (~touching | _on_plate(foot)).all(axis=1)
     weight = -model.pin_model.gravity.linear[2] * model.mass_kg
     carried = np.where(foot >= 0, wrench[:, :, 2], 0.0).sum(axis=1) > STANDING_SHARE * weight
     stray = (~np.isnan(pressure[:, :, 0]) & (foot < 0)).any(axis=1)

@@ -7,6 +7,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from mbkf.conventions import Array
+from mbkf.sensors.contact.sharing import SharedLoad
 
 
 class Contact(IntEnum):
@@ -61,6 +62,7 @@ class ContactDecision:
         centres_m: (2, 3) middle of right and left sole, world.
         stray: Whether a loaded plate belongs to no foot.
         memory: For the next frame.
+        shared: How the feet share a plate; None where they do not.
     """
 
     contacts: tuple[Contact, Contact]
@@ -68,6 +70,7 @@ class ContactDecision:
     centres_m: Array
     stray: bool
     memory: ContactMemory
+    shared: SharedLoad | None = None
 
 
 class Planted(NamedTuple):

@@ -60,9 +60,11 @@ MIXED_SHARE = 0.2
 """Offline: where more than this share of a stretch of loading is nearer to the other sole, the plate changes feet
 within the stretch, and each frame follows the majority of the frames up to so much earlier and later."""
 
-BETWEEN_M = 0.02
-"""Causal: a centre of pressure nearer to a sole than this belongs to that foot, and not to two feet on one plate.
-Offline, two feet on one plate are never distinguished: one of them remains without a plate."""
+LEVEL_M = 0.09
+PARTED_M_S = 1.2
+"""Two feet stand on one plate while the lowest points of their soles are level to this (toes that bend dip into the
+floor by 40 mm, a landing heel is above it by as much), and move so slowly against each
+other: on a belt both move, a foot that swings is faster by 3 m/s."""
 
 STANDING_SHARE = 0.05
 """Offline: share of body weight that the plates must carry for a frame outside flight to be fully measured."""

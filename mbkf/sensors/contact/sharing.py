@@ -1,0 +1,154 @@
+"""Two feet on one plate: how they share what it reads, and how well that is known.
+
+The plate reads the sum W of both wrenches about any point. In double support the foot ahead is loaded towards its heel
+and the foot behind towards its toes; side by side both are loaded in the middle. With the expected centres of pressure
+c_r, c_l and the plate's own p, the right foot carries the share
+
+    s = (p − c_l) · (c_r − c_l) / |c_r − c_l|²,  0 ≤ s ≤ 1
+
+of the vertical force F, known to √(s² + (1 − s)²) σ_c F / |c_r − c_l| with the spread σ_c of the centres along the line
+between them. While the load passes from foot to foot, both centres roll forward by the same way, ρ (s − 1) and ρ s for
+a right foot that is ahead, which leaves p = s c_r + (1 − s) c_l and so the share. What p lies beside the line moves
+both of them. The force on each foot points to the pelvis, as in walking it passes near the centre of mass (Maus et al.,
+Nature Communications 1:70, 2010); what is left of the measured shear is shared by the roots of the shares: a foot that
+hardly bears takes none, and otherwise both take nearly the same.
+
+The constants below are set on two walks (biomechZoo HC032A, gaitalytics) and hold on four others (HC044A, Rajagopal's,
+Rehazenter's, gait2354) and on a person who stands on two plates (Millard's): see ``python -m benchmarks contact``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.sensors.contact.plates import pressed_at
+from mbkf.sensors.contact.soles import Sole
+
+MIDDLE, FORWARD = 0.525, 0.275
+"""Where a foot is loaded along its sole, from heel 0 to toe end 1, beside the other foot, and how far from there when
+the feet are a step apart: the foot ahead at the end of double support, the foot behind at its beginning."""
+
+ROLL = 0.2
+"""How far, in sole lengths, the centres roll forward during double support when the feet are a step apart."""
+
+STEP_M = 0.3
+"""Distance ahead from which feet are a step apart."""
+
+ALONG_SD_M, ACROSS_SD_M = 0.02, 0.009
+"""Spread of a foot's expected centre of pressure along the feet and across them. Across, feet that bear alone and flat
+are pressed 7 mm (RMS) beside the middle of the sole in six walkers, and the sole itself is known to about 5 mm."""
+
+LEVER_M = 0.02
+"""Spread of a foot's centre of pressure about the expected one, in the moments."""
+
+LEAST_APART_M = 0.05
+"""Feet are not taken to be nearer to each other than this."""
+
+SHEAR_SHARE, TWIST_M = 0.03, 0.01
+"""Spread of a foot's shear force and of its free moment's arm, as shares of the plate's vertical force."""
+
+LEAST_SHARE = 0.05
+"""Share of the plate's force that a foot is taken to carry at least where spreads are counted."""
+
+
+@dataclass(frozen=True)
+class SharedLoad:
+    """A plate's reading shared between two feet.
+
+    Attributes:
+        wrench: (2, 6) force N and moment N m about the world's origin on right and left foot; they sum to the plate's.
+        centres_m: (2, 3) expected centres of pressure.
+        sd: (6,) spread of the right foot's wrench about its centre of pressure; the left one's is its opposite.
+    """
+
+    wrench: Array
+    centres_m: Array
+    sd: Array
+
+
+class Stance(NamedTuple):
+    """Where two feet are expected to be loaded.
+
+    Attributes:
+        centres_m: (2, 3) of right and left foot, the foot behind as it begins to be unloaded, the foot ahead as it
+            ends to be loaded.
+        roll_m: (2, 3) way of both centres meanwhile; backwards where the right foot is behind.
+        forward: (2,) unit vector of the feet's mean heading.
+    """
+
+    centres_m: Array
+    roll_m: Array
+    forward: Array
+
+
+def share_load(total: Array, soles: Sequence[Sole], pelvis_m: Array, surface_m: float) -> SharedLoad:
+    """Shares a plate's reading between two feet.
+
+    Args:
+        total: (6,) force N and moment N m about the world's origin, with a vertical force other than zero.
+        soles: Heel, ball and toe end of right and left sole.
+        pelvis_m: (3,) where the forces point.
+        surface_m: Height of the plate's surface.
+    """
+    force = float(total[2])
+    pressed = np.array([*pressed_at(total.tolist(), surface_m), surface_m])
+    centres, roll, forward = expected_stance(soles, surface_m)
+    line = centres[0] - centres[1]
+    apart = max(float(np.linalg.norm(line)), LEAST_APART_M)
+    share = min(max(0.5 + float((pressed - centres.mean(axis=0)) @ line) / apart**2, 0.0), 1.0)
+    shares = np.array([share, 1.0 - share])
+    centres = centres + np.array([[share - 1.0], [share]]) * roll
+    centres = centres + (pressed - shares @ centres)
+    arms = pelvis_m - centres
+    towards = (shares * force / arms[:, 2])[:, None] * arms[:, :2]
+    left = np.outer(shares**0.5 / (shares**0.5).sum(), total[:2] - towards.sum(axis=0))
+    forces = np.column_stack([towards + left, shares * force])
+    moments = np.cross(centres, forces)
+    moments[:, 2] += shares * (total[5] - moments[:, 2].sum())
+    return SharedLoad(
+        np.concatenate([forces, moments], axis=1), centres, _spread(share, force, line[:2], forward)
+    )
+
+
+def _spread(share: float, force_n: float, line_m: Array, forward: Array) -> Array:
+    """(6,) spread of the right foot's wrench about its centre of pressure.
+
+    Args:
+        share: Part of the vertical force that it carries.
+        force_n: The vertical force of both feet.
+        line_m: (2,) from the left foot's expected centre to the right one's.
+        forward: (2,) heading of the feet.
+    """
+    apart = float(np.hypot(*line_m))
+    along = float(line_m @ forward) / max(apart, 1e-9)
+    centre = float(np.hypot(ALONG_SD_M * along, ACROSS_SD_M * (1.0 - along**2) ** 0.5))
+    vertical = float(np.hypot(share, 1.0 - share)) * centre / max(apart, LEAST_APART_M)
+    lever = LEVER_M * max(share, LEAST_SHARE)
+    return force_n * np.array([SHEAR_SHARE, SHEAR_SHARE, vertical, lever, lever, TWIST_M])
+
+
+def expected_stance(soles: Sequence[Sole], surface_m: float) -> Stance:
+    """Where right and left foot are loaded on a surface, by which of them is ahead.
+
+    Args:
+        soles: Heel, ball and toe end of both soles.
+        surface_m: Height of the surface.
+    """
+    ends = np.array([[sole[0], sole[2]] for sole in soles])
+    along = ends[:, 1, :2] - ends[:, 0, :2]
+    heading = along.sum(axis=0)
+    heading = heading / max(float(np.hypot(*heading)), 1e-9)
+    middles = ends[:, :, :2].mean(axis=1)
+    ahead = min(max(float((middles[0] - middles[1]) @ heading) / STEP_M, -1.0), 1.0)
+    places = MIDDLE + FORWARD * ahead * np.array([-1.0, 1.0])
+    centres = ends[:, 0, :2] + places[:, None] * along
+    return Stance(
+        np.column_stack([centres, np.full(2, surface_m)]),
+        np.column_stack([ROLL * ahead * along, np.zeros(2)]),
+        heading,
+    )
