@@ -6,6 +6,9 @@ from benchmarks.any_capture.axes import axes_rows
 from benchmarks.any_capture.coverage import coverage_rows
 from benchmarks.any_capture.direction import direction_rows
 from benchmarks.any_capture.forces import forces_rows
+from benchmarks.any_capture.keypoints import keypoint_rows
+from benchmarks.any_capture.marker_sets import marker_set_rows
+from benchmarks.any_capture.out_of_box import out_of_box_rows
 from benchmarks.checks import Check, Context
 
 
@@ -16,4 +19,7 @@ def run(context: Context) -> list[Check]:
         *forces_rows(context),
         *coverage_rows(),
         *direction_rows(context.require_data()),
+        *keypoint_rows(context),
+        *marker_set_rows(context.require_data(), quick=context.quick),
+        *out_of_box_rows(context.require_data(), context.out / "out_of_box"),
     ]

@@ -17,8 +17,8 @@ from mbkf.errors import MbkfError
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import detect_protocol, load_protocol
-from mbkf.pipelines.coverage import USE_KEY
-from mbkf.pipelines.scale import INFERRED_KEY, scale
+from mbkf.pipelines.coverage import INFERRED_KEY, USE_KEY
+from mbkf.pipelines.scale import scale
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.marker_sensor import MarkerSensor
 
@@ -28,11 +28,11 @@ LEAST_SHARE = 0.6
 
 FRAMES, SPREAD_M = 5, 0.0005
 
-KEYPOINTS = (
-    "Nose", "Neck", "Head", "CHip", "RHip", "LHip", "RKnee", "LKnee", "RAnkle", "LAnkle", "RHeel", "LHeel", "RBigToe",
-    "LBigToe", "RSmallToe", "LSmallToe", "RShoulder", "LShoulder", "RElbow", "LElbow", "RWrist", "LWrist",
+FOREIGN = (
+    "beak", "neck", "crest", "tail", "r.loin", "l.loin", "R.Knee", "L.Knee", "R.Ankle", "L.Ankle", "R.Heel", "L.Heel",
+    "r.claw", "l.claw", "r.spur", "l.spur", "R.Shoulder", "L.Shoulder", "R.Elbow", "L.Elbow", "R.Wrist", "L.Wrist",
 )  # fmt: skip
-"""Names of a body found in video, 12 of which are also names of Helen Hayes markers."""
+"""Names of a set of which 12 are also names of Helen Hayes markers, which it does not hold otherwise."""
 
 
 @dataclass(frozen=True)
@@ -55,8 +55,8 @@ class MixedSet:
 
 
 SETS = (
-    MixedSet("video keypoints", "helen_hayes", 0, 0, KEYPOINTS),
-    MixedSet("video keypoints and 42 computed points", "helen_hayes", 0, 42, KEYPOINTS),
+    MixedSet("foreign names", "helen_hayes", 0, 0, FOREIGN),
+    MixedSet("foreign names and 42 computed points", "helen_hayes", 0, 42, FOREIGN),
     MixedSet("7 of 51", "plug_in_gait", 7, 44),
     MixedSet("12 of 63", "helen_hayes", 12, 51),
     MixedSet("15 of 30", "reference36", 15, 15),

@@ -22,9 +22,11 @@ examples:
   mbkf label raw.c3d --protocol autolabel62 --mass 75 --out trial.c3d      (a person not scaled before)
   mbkf label raw.c3d --mass 75 --out trial.c3d                             (nor a marker set known: it is inferred)
 
-Points may be shuffled in every frame or come as tracks. Points that are no marker are dropped. The numbers that are
-printed also go to FILE.json. A person scaled on the way is written to FILE.toml, for 'mbkf reconstruct --subject'.
-By the protocol alone some labels may fit nearly as well by another name: warnings name these, and what settles them.
+Points may be shuffled in every frame or come as tracks. Points that are no marker are dropped. Names that the subject
+knows are kept unless they jump from frame to frame or contradict the body; without a subject or a standing trial they
+are ignored. The numbers that are printed also go to FILE.json. A person scaled on the way is written to FILE.toml, for
+'mbkf reconstruct --subject'. Warnings tell labels that may be wrong: another name fits nearly as well, or a marker sits
+elsewhere than it stood.
 """
 
 
@@ -39,7 +41,14 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         epilog=_EPILOG,
     )
     parser.add_argument(
-        "raw", metavar="RAW", help=f"unlabelled capture ({CAPTURE_FILES}); its names are ignored"
+        "raw",
+        metavar="RAW",
+        help=f"capture ({CAPTURE_FILES}) with unnamed points; names that it has are kept",
+    )
+    parser.add_argument(
+        "--ignore-names",
+        action="store_true",
+        help="the capture's names mean nothing; by default those are kept that stay on their points and fit the body",
     )
     parser.add_argument("--subject", metavar="SUBJECT.toml", help="written by 'mbkf scale'")
     parser.add_argument(
@@ -125,7 +134,7 @@ def _label(
         print(f"note: {inferred.line}")
         return found, subject, inferred.captures[0]
     raw = turned_like_subject(raw, subject)
-    return label(raw, subject, progress=report), subject, raw
+    return label(raw, subject, ignore_names=args.ignore_names, progress=report), subject, raw
 
 
 def _check_person(args: argparse.Namespace) -> None:

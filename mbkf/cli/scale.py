@@ -90,11 +90,17 @@ def run(args: argparse.Namespace) -> int:
 
 
 def warn_of_markers(subject: Subject) -> None:
-    """Warns of an inferred set's doubts, and of a protocol that knows too few of the person's markers."""
+    """Tells an inferred set's doubts, exchanged names, and a protocol that knows too few of the person's markers."""
+    from mbkf.pipelines.scale import EXCHANGED_KEY
+    from mbkf.pipelines.trial.exchanged import exchange_notes
+
     inferred = subject.report.get("inferred")
     for name, odds in inferred["doubtful"].items() if isinstance(inferred, dict) else ():
         told = ", ".join(f"{segment.replace('_', ' ')} {100 * share:.0f} %" for segment, share in odds)
         print(f"warning: marker {name} is doubtful: {told}", file=sys.stderr)
+    exchanged = subject.report.get(EXCHANGED_KEY)
+    for line in exchange_notes(exchanged) if isinstance(exchanged, list) else ():
+        print(f"note: {line}", file=sys.stderr)
     use = subject.report.get("marker_use")
     if isinstance(use, dict) and use["warning"]:
         print(f"warning: {use['warning']}", file=sys.stderr)
@@ -125,7 +131,7 @@ def _print(report: dict[str, Any], protocol: str, out: str) -> None:
     for heading in ("marker", "kind", "moved mm", "RMS mm", "max mm"):
         markers.add_column(heading, justify="left" if heading in ("marker", "kind") else "right")
     ranked = sorted(report["markers"].items(), key=lambda item: -item[1]["moved_mm"])
-    for name, entry in [item for item in ranked if item[1]["kind"] == "anatomical"][:8]:
+    for name, entry in [item for item in ranked if item[1]["kind"] in {"anatomical", "keypoint"}][:8]:
         numbers = (entry["moved_mm"], entry["rms_mm"], entry["max_mm"])
         markers.add_row(name, entry["kind"], *("" if x is None else f"{x:.1f}" for x in numbers))
     console.print(factors)

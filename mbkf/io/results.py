@@ -90,6 +90,7 @@ class Reconstruction:
         angles_lab: (T, A) ``angles`` with the root's in the laboratory's axes; None where they are so themselves.
         markers_ignored: Why a marker of the capture was not used, by its name there.
         markers_explained: Share of the capture's named markers that the protocol knows, used or not, 0 to 1.
+        names_exchanged: Two markers whose names were exchanged and are put right, and in how many frames.
     """
 
     trial: str
@@ -146,6 +147,7 @@ class Reconstruction:
     angles_lab: Array | None = None
     markers_ignored: dict[str, str] = field(default_factory=dict)
     markers_explained: float = 1.0
+    names_exchanged: tuple[tuple[str, str, int], ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("dof_names", "coordinate_names", "marker_names", "unobserved_dofs", "warnings"):

@@ -49,6 +49,7 @@ class Summary(TypedDict):
         markers_used: Number of markers.
         markers_ignored: Why a marker of the capture was not used, by its name there.
         markers_explained: Share of the capture's named markers that the protocol knows, used or not, 0 to 1.
+        names_exchanged: Two markers whose names were exchanged and are put right, and in how many frames.
         missing_fraction: Share of marker samples that the filter did not receive.
         marker_rms_mm, marker_max_mm: Distances of seen markers from the body.
         marker_rms_mm_by_name: The same by marker.
@@ -80,6 +81,7 @@ class Summary(TypedDict):
     markers_used: int
     markers_ignored: dict[str, str]
     markers_explained: float
+    names_exchanged: list[tuple[str, str, int]]
     missing_fraction: float | None
     marker_rms_mm: float | None
     marker_max_mm: float | None

@@ -27,6 +27,9 @@ class SubjectMarker:
         noise_m: Measurement noise with skin movement, per coordinate, m.
         session_sd_m: How far it may sit from there in another trial, per coordinate, m.
         aliases: Other names for it in captures.
+        correlated_m: The part of the noise that stays for a while, per coordinate, m; 0 for a marker on skin, whose
+            slow movement the filters know by themselves.
+        correlation_s: Time after which a share 1/e of that part is left, s.
     """
 
     name: str
@@ -35,6 +38,8 @@ class SubjectMarker:
     noise_m: float
     session_sd_m: float
     aliases: tuple[str, ...] = ()
+    correlated_m: float = 0.0
+    correlation_s: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -135,6 +140,11 @@ def write_subject(subject: Subject, path: str | Path) -> None:
             f"session_sd_m = {float(marker.session_sd_m)!r}",
             f"aliases = [{', '.join(_text(alias) for alias in marker.aliases)}]",
         ]
+        if marker.correlated_m:
+            lines += [
+                f"correlated_m = {float(marker.correlated_m)!r}",
+                f"correlation_s = {float(marker.correlation_s)!r}",
+            ]
     if subject.report:
         lines += ["", "# How it was found: one JSON object.", f"report = {_text(json.dumps(subject.report))}"]
         lines.insert(1, lines.pop())
@@ -190,6 +200,8 @@ def _marker(entry: dict[str, Any]) -> SubjectMarker:
         float(entry["noise_m"]),
         float(entry["session_sd_m"]),
         tuple(entry.get("aliases", ())),
+        float(entry.get("correlated_m", 0.0)),
+        float(entry.get("correlation_s", 0.0)),
     )
 
 

@@ -42,6 +42,7 @@ class RelabellingSettings:
         correlation_s: Offsets this far apart in time are independent looks.
         ghosts_per_m3: λ.
         kept: How much cheaper the label is that the tracklet carried so far.
+        named: How much cheaper the label is by which the capture names it; no gate then holds.
         least_votes: Least share of a tracklet's frames that must have carried a label for it to win the vote.
         least_share: A marker labelled in a smaller share of the frames was not worn: a ghost took its place.
         rare: Likewise one labelled in less than this share of the typical number of frames, if ...
@@ -58,6 +59,7 @@ class RelabellingSettings:
     correlation_s: float = 0.1
     ghosts_per_m3: float = 5.0
     kept: float = 6.0
+    named: float = 40.0
     least_votes: float = 0.15
     least_share: float = 0.15
     rare: float = 0.6
@@ -107,6 +109,7 @@ def relabel(
     noise_m: Array,
     dt_s: float,
     settings: RelabellingSettings,
+    known: Indices | None = None,
 ) -> Indices:
     """(n,) label of every tracklet by the cheapest assignment.
 
@@ -118,8 +121,15 @@ def relabel(
         noise_m: (M,) marker noise, NaN for markers that are not looked for.
         dt_s: Time between frames.
         settings: Limits that separate markers from ghosts.
+        known: (T, C) marker of the points that carry a name which is relied on; None where there are none.
     """
     cost = _costs(positions_m, tracklets, course, noise_m, dt_s, settings)
+    if known is not None:
+        length = np.diff(tracklets.spans, axis=1)
+        carried = _votes(known, len(noise_m), tracklets) > 0.5 * length
+        looks = np.broadcast_to((length - 1) * dt_s / (settings.correlation_s + dt_s), cost.shape)
+        sure = settings.named + settings.restless * looks
+        cost[carried] = np.minimum(cost[carried], 0.0) - sure[carried]
     votes = _votes(label_of_point, len(noise_m), tracklets)
     cost -= settings.kept * ((votes > 0.0) & (votes == votes.max(axis=1, keepdims=True)))
     times = np.unique(tracklets.spans)

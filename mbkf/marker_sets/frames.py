@@ -17,7 +17,7 @@ NEARLY_ALL = 0.9
 
 
 def anchor_frames(trials: Sequence[MarkerTrajectories], names: Sequence[str], count: int) -> Array:
-    """(F, K, 3) well-seen frames of the trials, the tallest of each of so many stretches.
+    """(F, K, 3) well-seen frames of the trials, the tallest of each of so many stretches, the tallest of all first.
 
     Args:
         trials: The trials.
@@ -29,7 +29,8 @@ def anchor_frames(trials: Sequence[MarkerTrajectories], names: Sequence[str], co
     good = np.flatnonzero(seen >= NEARLY_ALL * seen.max(initial=0))
     height = np.array([_height(columns[t]) for t in good])
     parts = [part for part in np.array_split(np.arange(len(good)), count) if len(part)]
-    return columns[[good[part[np.argmax(height[part])]] for part in parts]]
+    tallest = sorted((part[np.argmax(height[part])] for part in parts), key=lambda k: -height[k])
+    return columns[good[tallest]]
 
 
 def spread_frames(trials: Sequence[MarkerTrajectories], names: Sequence[str]) -> Array:

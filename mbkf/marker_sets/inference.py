@@ -46,6 +46,10 @@ OTHER_NAME = 0.03
 STRAY = 4.0
 """A point that scatters by more than so many times the skin's variance on every segment is no part of the body."""
 
+LOINS_M, OTHER_LOIN = 0.12, 0.15
+"""So near in height to the joint of pelvis and trunk a marker is on the other of both with this probability at least:
+the spine bends there over a hand's breadth, and the body has one joint."""
+
 ANCHORS = 4
 """Frames of moving trials in which a body is searched for, at most."""
 
@@ -250,15 +254,38 @@ class _Evidence:
         own[:, -1] = odds[:, -1]
         return own, odds[:, :-1]
 
+    def _with_loins(self, odds: Array, best: int, means_m: Array) -> Array:
+        """The odds (S + 1,) of a marker; near the joint of root and trunk the other of both is never unlikely."""
+        body = self.places.body
+        trunk = next(
+            (s.name for s in body.segments if s.parent == body.roles.root and s.name not in body.roles.legs),
+            "",
+        )
+        pair = {self.segments.index(name) for name in (body.roles.root, trunk) if name}
+        joint = means_m[self.segments.index(trunk)] if trunk else np.full(3, np.inf)
+        if best not in pair or len(pair) < 2 or abs(joint[2]) > LOINS_M:
+            return odds
+        (other,) = pair - {best}
+        shared = odds.copy()
+        moved = max(OTHER_LOIN - float(odds[other]), 0.0)
+        shared[best], shared[other] = odds[best] - moved, odds[other] + moved
+        return shared if shared[best] > shared[other] else odds
+
     def _marker(self, k: int, odds: Array, components: Array, means_m: Array) -> InferredMarker:
         order = np.argsort(-odds)
         labels = (*self.segments, "")
         best = int(order[0])
-        alternatives = tuple(
-            (labels[s], round(float(odds[s]), 3)) for s in order[1:] if odds[s] >= 0.01 and labels[s]
-        )
         if best == len(self.segments):
+            alternatives = tuple(
+                (labels[s], round(float(odds[s]), 3)) for s in order[1:] if odds[s] >= 0.01 and labels[s]
+            )
             return InferredMarker(self.names[k], "", float(odds[best]), alternatives, "", np.zeros(3), 0.0)
+        odds = self._with_loins(odds, best, means_m)
+        alternatives = tuple(
+            (labels[s], round(float(odds[s]), 3))
+            for s in np.argsort(-odds)
+            if s != best and odds[s] >= 0.01 and labels[s]
+        )
         own = np.flatnonzero(self.places.segment_index == best)
         likeliest = own[components[own].argmax()]
         landmark = self.places.landmarks[likeliest]

@@ -165,7 +165,7 @@ def _spread_noise(places: list[_Place]) -> None:
         if not place.noise_m:
             own = [other for other in known if other.segment == place.segment]
             nearest = min(own, key=lambda other: _distance_m(other, place.position_m), default=None)
-            place.noise_m = DEFAULT_NOISE_M if nearest is None else nearest.noise_m
+            place.noise_m = DEFAULT_NOISE_M["technical"] if nearest is None else nearest.noise_m
 
 
 def _distance_m(place: _Place, position_m: Array) -> float:

@@ -189,6 +189,29 @@ class CloudProblem:
         sized: tuple[MarkerSensor, Array] | None = None,
     ) -> Array:
         """M-step: one Gauss–Newton step of the pose (nv,), and of the scale factors behind it where they are free."""
+        matrix, gradient = self.equations(reading, shares, points_m, width_m, q, sized)
+        matrix[np.diag_indices(len(matrix))] += _DAMPING * np.trace(matrix) / len(matrix)
+        return np.asarray(np.linalg.solve(matrix, gradient))
+
+    def equations(
+        self,
+        reading: MarkerReading,
+        shares: Array,
+        points_m: Array,
+        width_m: float,
+        q: Array,
+        sized: tuple[MarkerSensor, Array] | None = None,
+    ) -> tuple[Array, Array]:
+        """Gauss–Newton matrix (n, n) of the M-step and gradient (n,) of log-likelihood and priors, uphill.
+
+        Args:
+            reading: The components at q.
+            shares: (N, C) what the E-step gave.
+            points_m: (N, 3) the points.
+            width_m: The width s.
+            q: (nq,) the pose.
+            sized: The components' sensor and scale factors (K,) where those are free: then n = nv + K, else nv.
+        """
         total = shares.sum(axis=0)
         active = total > LEAST_SHARE
         pull = total[active] / (width_m**2 + self.places.sd_m[active] ** 2)
@@ -202,31 +225,30 @@ class CloudProblem:
         nv, size = self.model.nv, rows.shape[2]
         flat = (rows * root[:, :, None]).reshape(-1, size)
         matrix = flat.T @ flat
-        right = flat.T @ (errors * root).ravel()
+        gradient = flat.T @ (errors * root).ravel()
         prior = self._posture.reading(q)
         weighted = prior.jacobian / self._posture.sd[:, None]
         matrix[:nv, :nv] += weighted.T @ weighted
-        right[:nv] -= weighted.T @ (prior.deviation / self._posture.sd)
+        gradient[:nv] -= weighted.T @ (prior.deviation / self._posture.sd)
         turned, by_pose = self._posture.deviation(q)
         beyond = self._beyond(turned)
         passed = by_pose[beyond != 0.0] / LIMIT_SD_RAD
         matrix[:nv, :nv] += passed.T @ passed
-        right[:nv] -= passed.T @ (beyond[beyond != 0.0] / LIMIT_SD_RAD)
-        self._upright(q, matrix, right)
+        gradient[:nv] -= passed.T @ (beyond[beyond != 0.0] / LIMIT_SD_RAD)
+        self._upright(q, matrix, gradient)
         if sized is not None:
             matrix[nv:, nv:] += self._factor_information
-            right[nv:] -= self._factor_information @ (factors - 1.0)
-        matrix[np.diag_indices(size)] += _DAMPING * np.trace(matrix) / size
-        return np.asarray(np.linalg.solve(matrix, right))
+            gradient[nv:] -= self._factor_information @ (factors - 1.0)
+        return matrix, gradient
 
-    def _upright(self, q: Array, matrix: Array, right: Array) -> None:
+    def _upright(self, q: Array, matrix: Array, gradient: Array) -> None:
         """Adds the pull of the pelvis towards upright: the horizontal part of its axis, R z."""
         rotation = self.model.placements(q)[0][self.model.root.joint_id]
         turns = np.arange(self.model.nv)[self.model.root.v][3:]
         # δ(R z) = R (δθ × z), δθ × z = (δθ_y, −δθ_x, 0)
         jacobian = np.column_stack([-rotation[:2, 1], rotation[:2, 0], np.zeros(2)]) / TILT_RAD
         matrix[np.ix_(turns, turns)] += jacobian.T @ jacobian
-        right[turns] -= jacobian.T @ (rotation[:2, 2] / TILT_RAD)
+        gradient[turns] -= jacobian.T @ (rotation[:2, 2] / TILT_RAD)
 
     def _by_factors(self, sensor: MarkerSensor, q: Array, active: Array) -> Array:
         """(A, 3, K) derivatives of the active components by the scale factors."""

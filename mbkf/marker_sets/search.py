@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import NotObservable
-from mbkf.marker_sets.equipment import EQUIPMENTS, Equipment, equipped_weight
+from mbkf.marker_sets.equipment import EQUIPMENTS, Equipment, count_worth, equipped_weight
 from mbkf.marker_sets.places import WornPlaces
 from mbkf.marker_sets.posed_cloud import CloudProblem, PosedBody
 from mbkf.marker_sets.starts import starts
@@ -37,10 +38,12 @@ class FoundBody:
     Attributes:
         body: Its pose, size and shares.
         equipment: The part of it that carries markers.
-        worth: Logarithm of likelihood, priors and the equipment's share.
+        worth: Logarithm of likelihood and priors, the equipment's among them.
         rival: The same of the best body that faces another way, −inf where there is none.
         evidence: How much likelier a point is on this body than anywhere in the box around the points: mean logarithm,
             names aside.
+        odds: Logarithm of how much likelier all points are this body than strewn over that box: the evidence of all
+            points and the priors, names aside.
     """
 
     body: PosedBody
@@ -48,6 +51,7 @@ class FoundBody:
     worth: float
     rival: float
     evidence: float
+    odds: float
 
 
 def find_body(
@@ -69,39 +73,48 @@ def find_body(
             f"a frame shows {len(points_m)} points; fewer than {FEWEST_POINTS} do not show "
             "which part of a body they are on"
         )
-    rough: list[tuple[float, PosedBody, CloudProblem, Equipment]] = []
+    rough: list[_Candidate] = []
     for equipment in EQUIPMENTS:
         problem = CloudProblem(places, points_m, weights(places, equipment, named))
-        share = math.log(equipment.share)
         own = [
-            problem.posed(start.q, start.size, COARSE_M)
+            _Candidate(problem.posed(start.q, start.size, COARSE_M), problem, equipment)
             for start in starts(problem.model, points_m, equipment, facing)
         ]
-        own.sort(key=lambda body: -body.worth)
-        rough += [(body.worth + share, body, problem, equipment) for body in own[:KEPT_EACH]]
+        rough += sorted(own, key=lambda one: -one.worth)[:KEPT_EACH]
     if not rough:
         raise NotObservable(
             f"the points reach over {np.ptp(points_m[:, 2]):.2f} m of height; no person stands there "
             "(which axis points up? give --up; which unit? give --unit)"
         )
-    rough.sort(key=lambda entry: -entry[0])
-    fine = [
-        (problem.fitted(body, FINE_M), problem, equipment) for _, body, problem, equipment in rough[:KEPT]
-    ]
-    ranked = sorted(fine, key=lambda entry: -(entry[0].worth + math.log(entry[2].share)))
-    best, problem, equipment = ranked[0]
-    others = [
-        body.worth + math.log(other.share)
-        for body, _, other in ranked[1:]
-        if _apart(problem, best.q, body.q) > math.pi / 4.0
-    ]
-    return FoundBody(
-        best,
-        equipment,
-        best.worth + math.log(equipment.share),
-        max(others, default=-math.inf),
-        _evidence(places, points_m, best, equipment),
-    )
+    rough.sort(key=lambda one: -one.worth)
+    fine = [replace(one, body=one.problem.fitted(one.body, FINE_M)) for one in rough[:KEPT]]
+    best, *others = sorted(fine, key=lambda one: -one.worth)
+    rivals = [one.worth for one in others if _apart(best.problem, best.body.q, one.body.q) > math.pi / 4.0]
+    evidence = _evidence(places, points_m, best.body, best.equipment)
+    odds = len(points_m) * evidence + best.prior
+    return FoundBody(best.body, best.equipment, best.worth, max(rivals, default=-math.inf), evidence, odds)
+
+
+@dataclass(frozen=True)
+class _Candidate:
+    body: PosedBody
+    problem: CloudProblem
+    equipment: Equipment
+
+    @cached_property
+    def worth(self) -> float:
+        """Logarithm of likelihood and priors, those of the equipment among them."""
+        return self.body.worth + self._equipped
+
+    @property
+    def prior(self) -> float:
+        """Logarithm of all priors."""
+        return self.problem.priors(self.body.q, self.body.factors) + self._equipped
+
+    @property
+    def _equipped(self) -> float:
+        count = count_worth(self.problem.places, self.equipment, self.body.shares)
+        return math.log(self.equipment.share) + count
 
 
 def _evidence(places: WornPlaces, points_m: Array, body: PosedBody, equipment: Equipment) -> float:
@@ -112,7 +125,13 @@ def _evidence(places: WornPlaces, points_m: Array, body: PosedBody, equipment: E
 
 
 def weights(places: WornPlaces, equipment: Equipment, named: Array | None) -> Array:
-    """(C,) or (N, C) share of every component, by the equipment and by the points' names."""
+    """(C,) or (N, C) share of every component, by the equipment and by the points' names.
+
+    Args:
+        places: Where markers are worn.
+        equipment: The part of the body that carries them.
+        named: (N, C) how much likelier each component is by a point's name than without it; None without names.
+    """
     weight = equipped_weight(places, equipment)
     if named is None:
         return weight

@@ -18,12 +18,15 @@ from mbkf.model.body_file import load_body
 from mbkf.model.description import BodyDescription
 from mbkf.model.sides import mirrored
 
-KINDS = ("anatomical", "technical", "computed")
+KINDS = ("anatomical", "technical", "computed", "keypoint")
 """Anatomical: on a landmark, stays near it. Technical: anywhere on the segment, its position comes from the data.
-Computed: a point that software stored (a joint centre); used for scaling, never followed."""
+Computed: a point that software stored (a joint centre); used for scaling, never followed. Keypoint: a point that a
+neural network found in videos (a joint centre or a feature); followed, with noise that stays for a while."""
 
-DEFAULT_PLACEMENT_SD_M = {"anatomical": 0.010, "technical": 0.060, "computed": 0.006}
-DEFAULT_NOISE_M = 0.005
+DEFAULT_PLACEMENT_SD_M = {"anatomical": 0.010, "technical": 0.060, "computed": 0.006, "keypoint": 0.025}
+DEFAULT_NOISE_M = {"anatomical": 0.005, "technical": 0.005, "computed": 0.005, "keypoint": 0.020}
+DEFAULT_CORRELATED_M = {"anatomical": 0.0, "technical": 0.0, "computed": 0.0, "keypoint": 0.010}
+DEFAULT_CORRELATION_S = 0.3
 
 
 @dataclass(frozen=True)
@@ -42,6 +45,8 @@ class ProtocolMarker:
         landmark: Landmark of the body that it sits on, "" where the position alone is given.
         probability: That it is on this segment; below 1 where it was inferred.
         alternatives: Other segments that it may be on, each with its probability, likeliest first.
+        correlated_m: The part of the noise (1 sd) that stays for a while, m; what is left is new in every frame.
+        correlation_s: Time after which a share 1/e of that part is left, s.
     """
 
     name: str
@@ -55,6 +60,8 @@ class ProtocolMarker:
     landmark: str = ""
     probability: float = 1.0
     alternatives: tuple[tuple[str, float], ...] = ()
+    correlated_m: float = 0.0
+    correlation_s: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -221,6 +228,8 @@ def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> Protoco
         "kind",
         "placement_sd_mm",
         "noise_mm",
+        "correlated_mm",
+        "correlation_s",
         "aliases",
         "mirror",
         "mirror_aliases",
@@ -249,16 +258,34 @@ def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> Protoco
     kind = entry.get("kind", "anatomical" if "landmark" in entry else "technical")
     if kind not in KINDS:
         raise UnknownName("marker kind", kind, KINDS, where)
+    noise, correlated, lasting = _noise(entry, kind, path)
     return ProtocolMarker(
         name=entry["name"],
         segment=segment,
         position_m=position,
         kind=kind,
         placement_sd_m=entry.get("placement_sd_mm", 1e3 * DEFAULT_PLACEMENT_SD_M[kind]) / 1e3,
-        noise_m=entry.get("noise_mm", 1e3 * DEFAULT_NOISE_M) / 1e3,
+        noise_m=noise,
         aliases=tuple(entry.get("aliases", ())),
         static_only=entry.get("static_only", False),
         landmark=entry.get("landmark", ""),
         probability=float(entry.get("probability", 1.0)),
         alternatives=tuple((str(other), float(odds)) for other, odds in entry.get("alternatives", [])),
+        correlated_m=correlated,
+        correlation_s=lasting,
     )
+
+
+def _noise(entry: dict[str, Any], kind: str, path: Path) -> tuple[float, float, float]:
+    """Noise, m, the part of it that stays for a while, m, and for how long, s."""
+    noise = entry.get("noise_mm", 1e3 * DEFAULT_NOISE_M[kind]) / 1e3
+    usual = min(DEFAULT_CORRELATED_M[kind], 0.5 * noise)
+    correlated = entry.get("correlated_mm", 1e3 * usual) / 1e3
+    lasting = entry.get("correlation_s", DEFAULT_CORRELATION_S if correlated else 0.0)
+    if not (0.0 <= correlated <= noise and lasting >= 0.0):
+        raise FileFormatError(
+            path,
+            f"marker {entry['name']}: correlated_mm is a part of noise_mm, at most all of it, and "
+            "correlation_s is not negative",
+        )
+    return noise, correlated, lasting

@@ -101,6 +101,9 @@ def _marker_lines(marker: ProtocolMarker, protocol: Protocol) -> list[str]:
         f"placement_sd_mm = {_millimetres(marker.placement_sd_m)!r}",
         f"noise_mm = {_millimetres(marker.noise_m)!r}",
     ]
+    if marker.kind == "keypoint" or marker.correlated_m:
+        lines.append(f"correlated_mm = {_millimetres(marker.correlated_m)!r}")
+        lines.append(f"correlation_s = {float(marker.correlation_s)!r}")
     if marker.aliases:
         lines.append(f"aliases = [{', '.join(_text(alias) for alias in marker.aliases)}]")
     if marker.static_only:

@@ -18,6 +18,9 @@ MOST_NAMED = 8
 USE_KEY = "marker_use"
 """Key of a subject's report under which the markers of its captures are told."""
 
+INFERRED_KEY = "inferred"
+"""Key of a subject's report under which an inferred marker set is told."""
+
 UNKNOWN = "the protocol does not know it"
 COMPUTED = "a computed point, read for scaling only"
 NO_SEGMENT = "the body lacks its segment"

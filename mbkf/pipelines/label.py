@@ -20,7 +20,9 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.labelling.any_attitude import STAGE, AnyAttitude
 from mbkf.pipelines.labelling.body import LabelBody, label_body
 from mbkf.pipelines.labelling.doubts import Doubts
+from mbkf.pipelines.labelling.known_names import known_names, no_names, with_claims
 from mbkf.pipelines.labelling.relabelling import relabel_offline, trajectories
+from mbkf.pipelines.labelling.scaled_doubts import scaled_doubts
 from mbkf.pipelines.labelling.score import LabelScore
 
 CANDIDATES = 8
@@ -28,6 +30,9 @@ CANDIDATES = 8
 
 PASSES = 3
 """At most so many passes are made from starts that disagree; the likeliest is kept."""
+
+NAMED_TRIES = 3
+"""Frames with most named points that are tried as a start."""
 
 COMPARED = 40
 """Frames, spread over the capture, by which passes are compared."""
@@ -48,7 +53,7 @@ class Labelling:
         repaired: How many markers had their labels taken back from a wrong point.
         step_seconds: (T,) computing time of each frame's labels, filter not counted; NaN where searched.
         relabelled: Number of samples whose label was removed or changed by the offline relabelling.
-        doubts: Possible errors in the labels, for a person not measured before.
+        doubts: Possible errors in the labels.
     """
 
     markers: MarkerTrajectories
@@ -85,7 +90,7 @@ class LabelSummary(TypedDict):
         first_labelled_frame: First frame with labels.
         starts: Frames in which the labeller started.
         step_seconds_median: Computing time of a frame.
-        doubts: Labels that may be others; only where the person was not measured before.
+        doubts: Labels that may be wrong.
         correct_fraction, wrong_fraction, missed_fraction: Against a truth; only where it is known.
     """
 
@@ -153,6 +158,7 @@ def label(
     subject: Subject,
     *,
     start: Start | None = None,
+    ignore_names: bool = False,
     progress: StageCallback | None = None,
 ) -> Labelling:
     """Names the points of a capture.
@@ -162,9 +168,11 @@ def label(
     result (thesis 4.1.1).
 
     Args:
-        capture: Unlabelled points; their names are ignored.
+        capture: Points, wholly, partly or not named.
         subject: The scaled person. Markers that scaling never saw are not looked for.
         start: Where to start from; by default it is searched for.
+        ignore_names: Whether names mean nothing; by default those are relied on that stay on their points from frame to
+            frame and that the body does not contradict.
         progress: Called with the stage, items done and items in all.
 
     Raises:
@@ -174,22 +182,31 @@ def label(
     markers = capture.markers
     with single_threaded():
         body = label_body(subject.markers, subject, RunningSettings())
-        starts = _starts(body, markers, report) if start is None else _started(body, markers, start, report)
-        found = _likeliest(body, markers, starts, lambda n, all_: report("Labelling", n, all_))
+        names = no_names(markers) if ignore_names else known_names(markers, body.markers, body.sensor)
+        known = names.trusted if names.names else None
+        starts = [] if start is not None or known is None else _named_start(body, markers, known)
+        if not starts:
+            starts = (
+                _starts(body, markers, report) if start is None else _started(body, markers, start, report)
+            )
+        found = _likeliest(body, markers, starts, lambda n, all_: report("Labelling", n, all_), known)
         again = relabel_offline(
             body,
             markers,
             found.labelling.label_of_point,
             found.q,
             lambda n, all_: report("Looking again", n, all_),
+            known,
         )
-        labels = again.label_of_point
+        labels = with_claims(again.label_of_point, names)
+        again = replace(again, label_of_point=labels)
         return replace(
             found.labelling,
             markers=trajectories(markers, labels, body.names),
             label_of_point=labels,
             ghosts=_ghosts(markers.positions_m, labels),
             relabelled=again.changed,
+            doubts=scaled_doubts(body, markers, again, names),
         )
 
 
@@ -218,6 +235,7 @@ def _likeliest(
     markers: MarkerTrajectories,
     starts: list[tuple[int, FirstFrame]],
     progress: Callable[[int, int], None],
+    known: Indices | None,
 ) -> _Run:
     """The pass whose labels fit the body best, of those from a few starts that disagree."""
     runs: list[_Run] = []
@@ -226,7 +244,7 @@ def _likeliest(
         shown = labelled(points, first.points)
         if any(np.array_equal(run.labelling.markers.positions_m[t], shown, equal_nan=True) for run in runs):
             continue
-        runs.append(_both_ways(body, markers, t, first, progress))
+        runs.append(_both_ways(body, markers, t, first, progress, known))
         if len(runs) == PASSES:
             break
     return max(runs, key=lambda run: _likelihood(body, run))
@@ -277,18 +295,34 @@ def _started(
     return _starts(body, markers, report) if first is None else [(start.frame, first)]
 
 
+def _named_start(
+    body: LabelBody, markers: MarkerTrajectories, known: Indices
+) -> list[tuple[int, FirstFrame]]:
+    """The frame with most named points, with its labels, where the body in the pose that these give fits the points."""
+    for t in np.argsort(-(known != HIDDEN).sum(axis=1), kind="stable")[:NAMED_TRIES]:
+        columns = np.flatnonzero(~np.isnan(markers.positions_m[t]).any(axis=1))
+        marker = known[t, columns]
+        labels = np.full(len(body.markers), HIDDEN, dtype=np.intp)
+        labels[marker[marker != HIDDEN]] = np.flatnonzero(marker != HIDDEN)
+        first = body.search.settled(markers.positions_m[t, columns], labels)
+        if first is not None:
+            return [(int(t), first)]
+    return []
+
+
 def _both_ways(
     body: LabelBody,
     markers: MarkerTrajectories,
     start: int,
     first: FirstFrame,
     progress: Callable[[int, int], None],
+    known: Indices | None,
 ) -> _Run:
     """Labels from a frame to the end and back to the beginning."""
     positions, dt, frames = markers.positions_m, 1.0 / markers.rate_hz, markers.frames
-    ahead = body.start_pass(positions, dt)
+    ahead = body.start_pass(positions, dt, known)
     ahead.run(start, first, lambda done: progress(done - start, frames))
-    back = body.start_pass(positions[::-1], dt)
+    back = body.start_pass(positions[::-1], dt, None if known is None else known[::-1])
     mirror = frames - 1 - start
     back.run(mirror, first, lambda done: progress(frames - start + done - mirror - 1, frames))
     progress(frames, frames)

@@ -112,7 +112,7 @@ def label_unscaled(
         best = search.best(lambda done, total: report(STAGE, done, total))
         best = search.settled(best, lambda done, total: report(NAMES, done, total))
         start = search.start(best)
-    found = label(capture, best.subject, start=start, progress=progress)
+    found = label(capture, best.subject, start=start, ignore_names=True, progress=progress)
     return replace(found, doubts=best.doubts), best.subject
 
 

@@ -22,11 +22,12 @@ from mbkf.io.subject import Subject, match_names
 from mbkf.model.clinical import dof_names
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.axes.captures import checked_for_subject
-from mbkf.pipelines.coverage import use_by_subject
+from mbkf.pipelines.coverage import INFERRED_KEY, use_by_subject
 from mbkf.pipelines.imu.on_body import ImuOnBody, with_imus
 from mbkf.pipelines.results.clinical import clinical_motion
 from mbkf.pipelines.results.progression import PELVIS_FRAMES, pelvis_frame
 from mbkf.pipelines.results.reactions import reactions
+from mbkf.pipelines.trial.exchanged import exchange_notes, names_put_right
 from mbkf.pipelines.trial.filters import FILTERS, FilterInputs, standard, tracking_filter
 from mbkf.pipelines.trial.inputs import trial_inputs
 from mbkf.scaling.correction import correct_markers
@@ -118,7 +119,8 @@ def reconstruct(
         raise UnknownName("frame of the pelvis", settings.pelvis, PELVIS_FRAMES)
     with single_threaded():
         capture = checked_for_subject(capture, subject)
-        measured = subject_markers(capture.markers, subject)
+        measured, exchanged = names_put_right(subject_markers(capture.markers, subject), subject)
+        capture = replace(capture, notes=(*capture.notes, *exchange_notes(exchanged)))
         use = use_by_subject(capture.markers, subject)
         if use.warning:
             capture = replace(capture, notes=(*capture.notes, use.warning))
@@ -145,7 +147,13 @@ def reconstruct(
             progress=None if progress is None else lambda done, total: progress("Filtering", done, total),
         )
         found = assemble(capture, subject, settings, measured, hidden, inputs, result)
-        return replace(found, markers_ignored=dict(use.ignored), markers_explained=use.share)
+        return replace(
+            found,
+            markers_ignored=dict(use.ignored),
+            markers_explained=use.share,
+            warnings=(*inferred_set(subject), *found.warnings),
+            names_exchanged=exchanged,
+        )
 
 
 def subject_markers(markers: MarkerTrajectories, subject: Subject) -> MarkerTrajectories:
@@ -251,7 +259,7 @@ def assemble(
         nis=result.nis,
         nis_readings=result.readings,
         step_seconds=result.step_seconds,
-        warnings=(*capture.notes, *ground.warnings, *_warnings(result, names, unobservable)),
+        warnings=(*capture.notes, *inputs.remarks, *ground.warnings, *_warnings(result, names, unobservable)),
         settings=recorded(settings),
         plate_change=ground.plate_change,
         foot_wrench_sd=ground.wrench_sd,
@@ -283,6 +291,12 @@ def _predicted(sensor: MarkerSensor, result: Track, measured: MarkerTrajectories
     positions = np.where(shown[:, :, None], measured.positions_m, np.nan)
     on_body, with_skin = filled(sensor, result.q, positions, 1.0 / measured.rate_hz, result.smoothed)
     return np.where(shown[:, :, None], on_body, with_skin)
+
+
+def inferred_set(subject: Subject) -> tuple[str, ...]:
+    """What is to be told of a person whose marker set was inferred; nothing of one with a known set."""
+    inferred = subject.report.get(INFERRED_KEY)
+    return (str(inferred["told"]),) if isinstance(inferred, dict) else ()
 
 
 def _warnings(result: Track, names: tuple[str, ...], unobservable: BoolArray) -> list[str]:

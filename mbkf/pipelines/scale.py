@@ -17,13 +17,14 @@ from mbkf.model.description import BodyDescription
 from mbkf.model.protocol import Protocol, load_protocol
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.axes.captures import REPORT_KEY, checked_for_protocol, told_axes
-from mbkf.pipelines.coverage import USE_KEY, use_by_protocol
+from mbkf.pipelines.coverage import INFERRED_KEY, USE_KEY, use_by_protocol
 from mbkf.pipelines.marker_set.choice import ChosenSet, choose_marker_set, inferred_choice
+from mbkf.pipelines.trial.exchanged import trials_put_right
 from mbkf.scaling.fit import scale_subject
 from mbkf.scaling.problem import ScalingSettings
 
-INFERRED_KEY = "inferred"
-"""Key of a subject's report under which an inferred marker set is told."""
+EXCHANGED_KEY = "names_exchanged"
+"""Key of a subject's report under which names are told that trials exchange: ``[a, b, frames]`` by pair."""
 
 EXPECTED = 4.0
 """Markers that fit worse (RMS) than so many times their noise may not be those that their names say."""
@@ -141,7 +142,12 @@ def _scaled(
     use = use_by_protocol([one.markers for one in captures], protocol)
     checked = checked_for_protocol(chosen.captures, protocol)
     first = 1 if standing else 0
+    exchanged = () if chosen.inferred is None else chosen.inferred.exchanged
     with single_threaded():
+        if standing and len(checked) > 1:
+            trials, more = trials_put_right(checked[0].markers, checked[1:], protocol)
+            exchanged = (*exchanged, *more)
+            checked = [checked[0], *trials]
         subject = scale_subject(
             [one.markers for one in checked[:first]],
             [one.markers for one in checked[first:]],
@@ -154,6 +160,8 @@ def _scaled(
     told = told_axes(captures, checked)
     use = use.without(_rarely_seen(captures, protocol, subject))
     extra: dict[str, object] = {USE_KEY: use.as_report()}
+    if exchanged:
+        extra[EXCHANGED_KEY] = [list(one) for one in exchanged]
     if told:
         extra[REPORT_KEY] = told
     if chosen.inferred is not None:

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.errors import ShapeError
 from mbkf.filters.estimate import Posterior, TrackingFilter
 from mbkf.filters.spread import Spread
@@ -25,6 +25,7 @@ from mbkf.pipelines.live.filter import LiveFilter, LiveInputs, live_inputs
 from mbkf.pipelines.reconstruct import ReconstructSettings
 from mbkf.pipelines.trial.filters import standard, tracking_filter
 from mbkf.sensors.block import NO_READINGS, AnyBlock, Frame
+from mbkf.sensors.contact.possible import without_impossible
 
 
 @dataclass(frozen=True)
@@ -164,7 +165,8 @@ class Tracker:
         settings = settings or ReconstructSettings()
         live = _inputs(subject, markers, plates, rate_hz, settings)
         self._given = len(_marker_names(subject, markers))
-        self.names, self._columns, self._plates = live.names, live.columns, len(plates)
+        self.names, self._columns, self._plates = live.names, live.columns, tuple(plates)
+        self._weight_n = GRAVITY_M_S2 * subject.mass_kg
         with single_threaded():
             self._filter = tracking_filter(settings.filter, live.inputs, blocks)
         self._live, self._balance = LiveFilter(self._filter), NewtonEuler(self._filter.model)
@@ -184,7 +186,7 @@ class Tracker:
         Args:
             markers_m: (M, 3) marker positions in the world, m, z up; NaN where missing.
             wrenches: (K, 6) force N and moment N m about the world's origin of every plate; NaN or None where not
-                recorded.
+                recorded. What this person cannot make a plate read is taken for not recorded.
             imus: (S, 6) readings of inertial sensors that blocks know: angular velocity rad/s, specific force m/s².
             readings: Of instruments of one's own, by the name that their block knows.
 
@@ -197,9 +199,11 @@ class Tracker:
         markers_m = np.asarray(markers_m, dtype=float)
         if markers_m.shape != (self._given, 3):
             raise ShapeError("markers_m", f"({self._given}, 3)", markers_m.shape)
-        plates = np.full((self._plates, 6), np.nan) if wrenches is None else np.asarray(wrenches, dtype=float)
-        if plates.shape != (self._plates, 6):
-            raise ShapeError("wrenches", f"({self._plates}, 6)", plates.shape)
+        count = len(self._plates)
+        plates = np.full((count, 6), np.nan) if wrenches is None else np.asarray(wrenches, dtype=float)
+        if plates.shape != (count, 6):
+            raise ShapeError("wrenches", f"({count}, 6)", plates.shape)
+        plates = without_impossible(plates, self._plates, self._weight_n)
         frame = Frame(markers_m[self._columns], plates, imus, readings)
         with single_threaded():
             steps = self._live.push(self._number, frame)

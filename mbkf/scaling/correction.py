@@ -23,7 +23,7 @@ from mbkf.model.human import reference_body
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.levenberg_marquardt import minimise
 from mbkf.scaling.frames import choose_frames
-from mbkf.scaling.problem import ScalingPrior, ScalingProblem
+from mbkf.scaling.problem import KEYPOINT_POSTURE_FRAMES, ScalingPrior, ScalingProblem
 from mbkf.sensors.pose_fit import segment_by_segment
 
 FRAMES = 40
@@ -103,7 +103,9 @@ def _problem(subject: Subject, trial: MarkerTrajectories) -> ScalingProblem:
             markers, subject, body.roles.steady, np.ones(len(markers), dtype=bool)
         ),
     )
-    weight = np.full(count, min(1.0, POSTURE_LOOKS / count))
+    keypoints = any(marker.correlated_m > 0.0 for marker in subject.markers)
+    looks = KEYPOINT_POSTURE_FRAMES if keypoints else POSTURE_LOOKS
+    weight = np.full(count, min(1.0, looks / count))
     return ScalingProblem(body, markers, frames.measured_m, weight, prior)
 
 

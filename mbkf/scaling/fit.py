@@ -14,7 +14,14 @@ from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.levenberg_marquardt import Solution, minimise
 from mbkf.scaling.frames import MIN_MARKERS, ScalingFrames, choose_frames
-from mbkf.scaling.problem import FACTOR_BOUNDS, ScalingPrior, ScalingProblem, ScalingSettings, ScalingState
+from mbkf.scaling.problem import (
+    FACTOR_BOUNDS,
+    KEYPOINT_POSTURE_FRAMES,
+    ScalingPrior,
+    ScalingProblem,
+    ScalingSettings,
+    ScalingState,
+)
 from mbkf.sensors.pose_fit import segment_by_segment
 
 MAX_ITERATIONS = 60
@@ -22,7 +29,10 @@ MAX_STANDING_TILT_DEG = 50.0
 SESSION_SHARE = 0.5
 MIN_SESSION_SD_M = 0.005
 MAX_RMS_M = 0.05
-"""Markers that fit worse than this are not this protocol on a person."""
+"""Markers that fit worse than this, and than their noise explains, are not this protocol on a person."""
+
+MAX_RMS_PER_NOISE = 2.5
+"""Greatest RMS distance over the noise per coordinate; noise alone gives 1.7."""
 
 
 def scale_subject(
@@ -73,7 +83,7 @@ def scale_subject(
         solution = _minimise(problem, solution.state, progress)
     errors = np.linalg.norm(problem.errors_m(solution.state), axis=2)
     rms = float(np.sqrt(np.nanmean(errors**2)))
-    if rms > MAX_RMS_M:
+    if rms > max(MAX_RMS_M, MAX_RMS_PER_NOISE * float(np.sqrt((problem.noise_m**2).mean()))):
         raise NotConverged(
             f"markers fit the body only to {1e3 * rms:.0f} mm; is '{protocol.name}' their protocol?"
         )
@@ -115,15 +125,22 @@ def scaling_problem(
         settings.static_posture_frames,
         settings.dynamic_posture_frames,
     )
+    keypoints = any(marker.kind == "keypoint" for marker in frames.markers)
+    if keypoints:
+        looks = np.where(np.arange(len(counts)) < static_trials, looks, KEYPOINT_POSTURE_FRAMES)
     weight = np.minimum(looks / counts, 1.0)[frames.trial]
     expected = 1.0 if height_m is None else height_m / body.reference_height_m
     stature = settings.stature_sd if height_m is None else settings.known_stature_sd
     count = len(body.scale_factors)
+    standing = None
+    if keypoints:
+        standing = np.where(frames.trial < static_trials, 1.0, 0.0)
     prior = ScalingPrior(
         factors=np.full(count, expected),
         factor_covariance=settings.proportion_sd**2 * np.eye(count) + stature**2 * np.ones((count, count)),
         offsets_m=np.zeros((len(frames.markers), 3)),
         offset_precision=np.diag(np.repeat([m.placement_sd_m**-2 for m in frames.markers], 3)),
+        standing=standing,
     )
     return ScalingProblem(body, frames.markers, frames.measured_m, weight, prior)
 
@@ -187,6 +204,8 @@ def _subject(
                 marker.noise_m,
                 _session_sd_m(marker, seen),
                 marker.aliases,
+                marker.correlated_m,
+                marker.correlation_s,
             )
         )
     return Subject(
@@ -202,7 +221,12 @@ def _subject(
 
 
 def _session_sd_m(marker: ProtocolMarker, seen: bool) -> float:
-    """How far a marker may sit elsewhere in the next trial: a share of the freedom its protocol gives it."""
+    """How far a marker may sit elsewhere in the next trial: a share of the freedom its protocol gives it.
+
+    Nobody sticks keypoints on anew: what a network takes for a knee it takes for one in the next trial, too.
+    """
+    if seen and marker.kind == "keypoint":
+        return MIN_SESSION_SD_M
     return max(MIN_SESSION_SD_M, SESSION_SHARE * marker.placement_sd_m) if seen else marker.placement_sd_m
 
 

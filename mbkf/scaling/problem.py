@@ -7,6 +7,7 @@ reference place, shared by all frames. Residuals, each divided by its standard d
     placement  δ − δ₀                (tight for anatomical markers, loose for technical ones)
     factors    k − k₀                (bodies are alike in proportion, less so in size)
     posture    joint rotations       (dofs without markers stay near standing)
+    standing   inclination of feet and root, where keypoints are scaled from standing (:mod:`mbkf.scaling.standing`)
 """
 
 from __future__ import annotations
@@ -22,11 +23,19 @@ from mbkf.model.description import BodyDescription
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import ProtocolMarker
 from mbkf.numerics.levenberg_marquardt import ArrowEquations
+from mbkf.scaling.standing import Standing
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.posture_sensor import PostureSensor
 
 FACTOR_BOUNDS = (0.5, 1.6)
 """Range of a scale factor; one that ends here is reported as an active bound."""
+
+KEYPOINT_POSTURE_FRAMES = 0.5
+"""How many independent looks at the posture a moving trial of keypoints counts for: they leave joints so much freedom
+that a squat would otherwise be scaled to look like standing."""
+
+OUTLYING_SD = 4.0
+"""A sample within so many standard deviations of its noise is no outlier: of three coordinates 0.1 % lie further."""
 
 
 @dataclass(frozen=True)
@@ -70,12 +79,14 @@ class ScalingPrior:
         factor_covariance: (K, K) their covariance.
         offsets_m: (M, 3) expected offsets δ₀ of the markers.
         offset_precision: (3 M, 3 M) inverse covariance of the offsets, 1/m², marker by marker.
+        standing: (N,) weight of upright standing in each frame; None where it is not used.
     """
 
     factors: Array
     factor_covariance: Array
     offsets_m: Array
     offset_precision: Array
+    standing: Array | None = None
 
 
 class ScalingProblem:
@@ -108,6 +119,8 @@ class ScalingProblem:
         self.factor_root = np.linalg.cholesky(np.linalg.inv(prior.factor_covariance)).T
         self._segment_scale = np.array([body.segment(name).scale_matrix for name in self.segments])
         self.posture = PostureSensor(HumanModel.scaled(body=body))
+        self._standing = Standing(HumanModel.scaled(body=body))
+        self._upright = np.zeros(len(self.measured_m)) if prior.standing is None else prior.standing
 
     def start(self, poses: Array) -> ScalingState:
         """State with factors and offsets as expected."""
@@ -128,8 +141,9 @@ class ScalingProblem:
         return np.array([sensor.positions(q) for q in state.poses]) - self.measured_m
 
     def outliers(self, state: ScalingState, limit_m: float) -> BoolArray:
-        """(N, M) samples further than a limit from the fitted body."""
-        return np.nan_to_num(np.linalg.norm(self.errors_m(state), axis=2)) > limit_m
+        """(N, M) samples further than a limit from the fitted body, and further than their noise explains."""
+        limit = np.maximum(limit_m, OUTLYING_SD * self.noise_m)
+        return np.nan_to_num(np.linalg.norm(self.errors_m(state), axis=2)) > limit
 
     def without(self, samples: BoolArray) -> ScalingProblem:
         """The same problem without some samples (N, M)."""
@@ -153,7 +167,12 @@ class ScalingProblem:
         errors = np.where(self.seen[:, :, None], self.errors_m(state), 0.0) / self.noise_m[:, None]
         deviations = np.array([self.posture.reading(q).deviation for q in state.poses]) / self.posture.sd
         posture = float((self.posture_weight[:, None] * deviations**2).sum())
-        return float((errors**2).sum()) + posture + self._shared_cost(state)
+        standing = sum(
+            weight * float((self._standing.residuals(self.posture.model, q) ** 2).sum())
+            for q, weight in zip(state.poses, self._upright, strict=True)
+            if weight
+        )
+        return float((errors**2).sum()) + posture + standing + self._shared_cost(state)
 
     def _shared_cost(self, state: ScalingState) -> float:
         factors = self.factor_root @ (state.factors - self.prior.factors)
@@ -192,6 +211,10 @@ class ScalingProblem:
             frame_gradient[t] = by_pose.T @ errors + weight * (
                 weighted.T @ (prior.deviation / self.posture.sd)
             )
+            if self._upright[t]:
+                tilt, by_tilt = self._standing.linearised(self.posture.model, q)
+                frames[t] += self._upright[t] * (by_tilt.T @ by_tilt)
+                frame_gradient[t] += self._upright[t] * (by_tilt.T @ tilt)
             border[t] = by_pose.T @ by_shared
             corner += by_shared.T @ by_shared
             corner_gradient += by_shared.T @ errors

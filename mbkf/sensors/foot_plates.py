@@ -5,7 +5,8 @@ the ankles, force N and moment N m in world axes (:mod:`mbkf.sensors.foot_wrench
 
     measured              z = the plate's wrench,  r ~ N(0, diag(σ_F², σ_M²)) of the plate
     air                   z = 0,                   r ~ N(0, diag(σ_F², σ_M²)) of a foot that carries nothing
-    unmeasured, shared    no reading; the wrench follows from Newton's law and the other foot
+    shared                z_r + z_l = the plate's wrench, and z_r its share by where the feet stand, with its spread
+    unmeasured            no reading; the wrench follows from Newton's law and the other foot
 
 Which foot stands on what is decided where the posterior of the frame before leads at its own acceleration,
 q ⊕ v Δt and v + a Δt, and not at the prediction, whose forces may be wrong at a heel strike.
@@ -20,11 +21,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.model.human_dynamics import HumanDynamics
+from mbkf.model.human_dynamics import HumanDynamics, cross_matrix
 from mbkf.numerics.kalman import Information, information
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
+from mbkf.sensors.contact.sharing import SharedLoad
 from mbkf.sensors.foot_wrench import FootWrenchSensor
 from mbkf.sensors.layout import Layout
 from mbkf.sensors.states import ForceState
@@ -52,15 +54,20 @@ class FootReading(NamedTuple):
         wrench: (2, 6) force N and moment N m about the world's origin, world axes, on right and left foot.
         known: (2,) feet whose wrench is read: from a plate, or 0 in the air.
         airborne: (2,) feet that touch nothing.
+        shared: How both share a plate; None where they do not.
     """
 
     wrench: Array
     known: BoolArray
     airborne: BoolArray
+    shared: SharedLoad | None = None
 
     @classmethod
     def of(cls, decision: ContactDecision) -> FootReading:
-        """Of a decision on contact. A shared plate is a reading of neither foot."""
+        """Of a decision on contact."""
+        if decision.shared is not None:
+            none, both = np.zeros(2, dtype=bool), np.ones(2, dtype=bool)
+            return cls(decision.shared.wrench, both, none, decision.shared)
         airborne = np.array([foot == Contact.AIR for foot in decision.contacts])
         known = np.array([foot == Contact.MEASURED for foot in decision.contacts]) | airborne
         return cls(np.where(airborne[:, None], 0.0, decision.wrench), known, airborne)
@@ -151,9 +158,13 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
         predicted = self.sensor.reading(state.q, state.u[-12:], points)
         target = feet.wrench.copy()
         target[:, 3:] -= np.cross(points, feet.wrench[:, :3])
-        read = np.repeat(feet.known, 6)
-        H = np.hstack([predicted.by_q, predicted.by_state])[read]
-        own = information((target.ravel() - predicted.wrench)[read], H, self.sd(feet)[read])
+        y, H = target.ravel() - predicted.wrench, np.hstack([predicted.by_q, predicted.by_state])
+        if feet.shared is not None:
+            whitening = self._whitening(feet.shared, points)
+            own = information(whitening @ y, whitening @ H, np.ones(12))
+        else:
+            read = np.repeat(feet.known, 6)
+            own = information(y[read], H[read], self.sd(feet)[read])
         matrix, vector = np.zeros((self._size, self._size)), np.zeros(self._size)
         matrix[np.ix_(self.columns, self.columns)], vector[self.columns] = own.matrix, own.vector
         return Information(matrix, vector, own.innovation, own.readings)
@@ -175,8 +186,22 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
         a = self.body.acceleration(q, v, posterior.u)
         return PlateMemory(decision.contact.memory, Ahead(self.body.integrate(q, dt * v), v + dt * a, a))
 
+    def _whitening(self, shared: SharedLoad, points_m: Array) -> Array:
+        """(12, 12) that takes wrenches about points to the plate's sum and the right foot's share, whitened.
+
+        Args:
+            shared: How the feet share the plate.
+            points_m: (2, 3) about which the moments of right and left foot are taken.
+        """
+        rows = np.zeros((12, 12))
+        rows[:6, :6], rows[:6, 6:] = np.eye(6), _moved(points_m[1] - points_m[0])
+        rows[6:, :6] = _moved(points_m[0] - shared.centres_m[0])
+        return rows / np.concatenate([self._plate, shared.sd])[:, None]
+
     def sd(self, feet: FootReading) -> Array:
         """(12,) standard deviations of a frame's readings, infinite for a foot whose wrench is not known."""
+        if feet.shared is not None:
+            return np.tile(np.hypot(self._plate, feet.shared.sd), 2)
         none = np.full(6, np.inf)
         sds = [
             self._air if airborne else self._plate if known else none
@@ -186,4 +211,13 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
 
     def log_noise(self, decision: PlateDecision) -> float:
         """Log det R of the readings."""
+        if decision.reading.shared is not None:
+            return 2.0 * float(np.log(self._plate).sum() + np.log(decision.reading.shared.sd).sum())
         return 2.0 * float(np.log(self.sd(decision.reading)[np.repeat(decision.reading.known, 6)]).sum())
+
+
+def _moved(arm_m: Array) -> Array:
+    """(6, 6) that takes a wrench about a point to one about another, from which the arm (3,) leads to the first."""
+    moved = np.eye(6)
+    moved[3:, :3] = cross_matrix(arm_m)
+    return moved

@@ -6,6 +6,9 @@ independent reading only:
 
     c ← c + (1 − e^(−Δt/T)) (clip(yᵀR⁻¹y / (3 m s)) − c)
 
+Noise that stays for a while is told as white noise σ_m of equal weight (:mod:`mbkf.sensors.lasting_noise`). One frame
+then shows only the noise's own spread e_m, and s is (e_m/σ_m)² of each such marker.
+
 The innovation gate is that of :mod:`mbkf.sensors.gating`. Where all that is seen of a segment lies elsewhere than
 predicted, its joint's spread is inflated.
 """
@@ -105,6 +108,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         unobservable: BoolArray,
         settings: MarkerSettings = MarkerSettings(),
         *,
+        spread_m: Array | None = None,
         inflate: bool = True,
         track_loss: bool = True,
         compress: type[MarkerInformation] | type[JacobianInformation] = MarkerInformation,
@@ -117,6 +121,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
             dt_s: Time between frames.
             unobservable: (nv,) dofs that no marker of the capture moves with.
             settings: Noise and gate.
+            spread_m: (M,) spread of one reading of markers whose noise stays, m; None where σ_m and s tell it.
             inflate: Whether a displaced limb's predicted covariance is inflated.
             track_loss: Whether a frame in which most markers lie far off ends the track.
             compress: Arithmetic of the information; both give the same up to rounding.
@@ -124,7 +129,10 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         s = settings
         self.sensor, self.settings, self.noise_m = sensor, s, noise_m * s.marker_noise_scale
         self._inflate, self._track_loss = inflate, track_loss
-        self._certainty = 1.0 / self.noise_m[:, None]
+        expected = self.noise_m * s.innovation_share**0.5
+        if spread_m is not None and s.innovation_share > 0.0:
+            expected = spread_m * s.marker_noise_scale
+        self._certainty = 1.0 / np.maximum(expected, 1e-9)[:, None]
         self._information = compress(sensor, self.noise_m)
         self._skin: SkinMarkers | None = None
         if s.skin_memory_s > 0.0:
@@ -201,7 +209,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         scaled = decision.innovation_m[trusted] * self._certainty[trusted]
         squared = float(np.vdot(scaled, scaled)) / scaled.size
         low, high = self.settings.noise_range
-        wanted = min(max(squared / share, low**2), high**2)
+        wanted = min(max(squared, low**2), high**2)
         return decision.noise_scale + self._forget * (wanted - decision.noise_scale)
 
     def log_noise(self, decision: MarkerDecision) -> float:

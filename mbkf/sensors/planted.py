@@ -1,5 +1,8 @@
 """Planted foot, as a block: 0 = ṗ + r_p and 0 = ω + r_ω, for a loaded foot none of whose markers is seen.
 
+Where keypoints show a foot, which leave its pitch open by several degrees, its sole is level while it lies flat on a
+plate: 0 = (A e_z)_xy + r_l.
+
 The point p under the centre of pressure stands still, whether the foot is flat or rolls; a flat foot does not turn
 either, nor do the toes once the load is on them and the heel rises. The derivative by the configuration vanishes where
 the reading is met and is left out.
@@ -8,6 +11,7 @@ the reading is met and is left out.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,18 +30,28 @@ class PlantedSettings:
     Attributes:
         planted_speed_sd, planted_turn_sd: Standard deviations of the point's velocity, m/s, and of the turning of what
             lies flat, rad/s.
+        level_sd_rad: How far from level a flat sole is per frame, where only keypoints show the foot, rad.
     """
 
     planted_speed_sd: float = 0.03
     planted_turn_sd: float = 0.2
+    level_sd_rad: float = 0.3
 
 
-class PlantedFeet(Block[State, None, tuple[Planted, ...], None]):
-    """Loaded feet without a marker in sight.
+class PlantedDecision(NamedTuple):
+    """What stands still, and the segments of feet whose soles are level."""
+
+    still: tuple[Planted, ...]
+    level: tuple[str, ...]
+
+
+class PlantedFeet(Block[State, None, PlantedDecision, None]):
+    """Loaded feet without a marker in sight, and flat ones that keypoints show.
 
     Attributes:
         detector: Finds what the feet stand on.
         settings: How still they stand.
+        keypoints: Whether keypoints show the feet.
     """
 
     prior = True
@@ -47,6 +61,7 @@ class PlantedFeet(Block[State, None, tuple[Planted, ...], None]):
         model: Body,
         detector: ContactDetector,
         settings: PlantedSettings = PlantedSettings(),
+        keypoints: bool = False,
     ) -> None:
         """Makes the block.
 
@@ -54,7 +69,9 @@ class PlantedFeet(Block[State, None, tuple[Planted, ...], None]):
             model: The body.
             detector: Finds what the feet stand on; a block before this one asks it in every frame.
             settings: How still they stand.
+            keypoints: Whether keypoints show the feet.
         """
+        self.keypoints = keypoints
         self._model, self.detector, self.settings = model, detector, settings
         self._dof = [model.joint(segment).v.start for segment in model.roles.feet]
         self._v = 0
@@ -65,21 +82,32 @@ class PlantedFeet(Block[State, None, tuple[Planted, ...], None]):
 
     def decide(
         self, at: OperatingPoint[State, None], frame: Frame, memory: None, notes: Notes
-    ) -> tuple[Planted, ...]:
-        """What of which foot stands still."""
-        if not len(notes.unmarked) or notes.contact is None:
-            return ()
-        lost = [foot for foot, dof in enumerate(self._dof) if dof in notes.unmarked]
-        found = [self.detector.planted(notes.contact, at.state.q, foot) for foot in lost]
-        return tuple(one for one in found if one is not None)
+    ) -> PlantedDecision:
+        """What of which foot stands still, and which soles are level."""
+        contact = notes.contact
+        if contact is None or not (self.keypoints or len(notes.unmarked)):
+            return PlantedDecision((), ())
+        unmarked = [dof in notes.unmarked for dof in self._dof]
+        found = [
+            self.detector.planted(contact, at.state.q, foot) if self.keypoints or lost else None
+            for foot, lost in enumerate(unmarked)
+        ]
+        still = tuple(one for one, lost in zip(found, unmarked, strict=True) if lost and one is not None)
+        if not self.keypoints:
+            return PlantedDecision(still, ())
+        flat = [one.segment for one in found if one is not None and one.flat]
+        return PlantedDecision(still, tuple(name for name in flat if name in self._model.roles.feet))
 
-    def linearise(self, at: OperatingPoint[State, None], decision: tuple[Planted, ...]) -> list[Rows]:
-        """Rows on the velocity."""
+    def linearise(self, at: OperatingPoint[State, None], decision: PlantedDecision) -> list[Rows]:
+        """Rows on the velocity, and on the configuration where a sole is level."""
         s, state = self.settings, at.state
         sds = s.planted_speed_sd, s.planted_turn_sd
-        return [
-            Rows(*standing_still(self._model, state.q, state.v, foot, *sds), self._v) for foot in decision
+        found = [
+            Rows(*standing_still(self._model, state.q, state.v, foot, *sds), self._v)
+            for foot in decision.still
         ]
+        level = decision.level
+        return found + [Rows(*lying_level(self._model, state.q, name, s.level_sd_rad)) for name in level]
 
 
 def standing_still(
@@ -99,3 +127,19 @@ def standing_still(
     weight = 1.0 / np.repeat([speed_sd, turn_sd], 3)
     rows = (weight[:, None] * jacobian)[: 6 if planted.flat else 3]
     return rows, -rows @ v
+
+
+def lying_level(model: Body, q: Array, segment: str, level_sd_rad: float) -> tuple[Array, Array]:
+    """Whitened rows (2, nv) on the configuration and their innovations (2,): the inclination of a flat foot.
+
+    Args:
+        model: The body.
+        q: (nq,) configuration.
+        segment: The foot.
+        level_sd_rad: How far from level it is.
+    """
+    joint = model.joint(segment).joint_id
+    frames, spatial = model.frames_and_jacobian(q)
+    up = frames[4 * joint + 2]
+    turned = np.cross(spatial[3:].T, up) * model.supports[joint][:, None]
+    return turned[:, :2].T / level_sd_rad, -up[:2] / level_sd_rad

@@ -59,16 +59,25 @@ class PosturePrior(Block[State, PreparedPosture, Notes, None]):
 
     prior = True
 
-    def __init__(self, sensor: PostureSensor, unobservable: BoolArray, settings: PostureSettings) -> None:
+    def __init__(
+        self,
+        sensor: PostureSensor,
+        unobservable: BoolArray,
+        settings: PostureSettings,
+        dilution: Array | None = None,
+    ) -> None:
         """Makes the block.
 
         Args:
             sensor: Deviation of every joint from neutral.
             unobservable: (nv,) dofs that no marker of the capture moves with; they have no prior.
             settings: Its weight.
+            dilution: (nv,) further factor on the spread of each dof, None for 1.
         """
         self.sensor, self.settings = sensor, settings
         self._weights = sensor.weights(settings.posture_scale, unobservable)
+        if dilution is not None:
+            self._weights = self._weights / dilution
 
     def prepare(self, state: State, memory: None) -> PreparedPosture:
         """What the prior says while every segment is observed."""

@@ -19,7 +19,7 @@ SPREAD, LIMIT = 0.03, 0.08
 
 BODY_MASS_INDEX = (21.0, 27.0)
 
-PLACEMENT_SD_M = {"anatomical": 0.004, "technical": 0.015}
+PLACEMENT_SD_M = {"anatomical": 0.004, "technical": 0.015, "keypoint": 0.004}
 """How far markers are from where the protocol puts them, per coordinate."""
 
 SESSION_SD_M = 0.0005
@@ -75,7 +75,15 @@ def synthesise_subject(
         offset = np.clip(rng.normal(size=3), -2.5, 2.5) * PLACEMENT_SD_M[marker.kind]
         position = model.axis_scale(description.segment(marker.segment)) * marker.position_m + offset
         markers.append(
-            SubjectMarker(marker.name, marker.segment, read_only(position), marker.noise_m, SESSION_SD_M)
+            SubjectMarker(
+                marker.name,
+                marker.segment,
+                read_only(position),
+                marker.noise_m,
+                SESSION_SD_M,
+                correlated_m=marker.correlated_m,
+                correlation_s=marker.correlation_s,
+            )
         )
     return Subject(
         body,

@@ -20,6 +20,7 @@ def test_a_round_trip_keeps_everything_but_the_covariance(tmp_path, frames):
         file_axes_source="body",
         markers_ignored={"X ü": "not known"},
         markers_explained=0.9,
+        names_exchanged=(("RTOE", "RMT5", 43),),
     )
     write_h5(r, tmp_path / "motion.h5")
     back = read_h5(tmp_path / "motion.h5")
@@ -58,9 +59,9 @@ def test_older_files_have_no_axes(tmp_path):
 def test_older_files_tell_no_ignored_markers(tmp_path):
     write_h5(made_up(markers_ignored={"X": "not known"}, markers_explained=0.5), tmp_path / "motion.h5")
     with h5py.File(tmp_path / "motion.h5", "a") as file:
-        del file.attrs["markers_ignored"], file.attrs["markers_explained"]
+        del file.attrs["markers_ignored"], file.attrs["markers_explained"], file.attrs["names_exchanged"]
     back = read_h5(tmp_path / "motion.h5")
-    assert (back.markers_ignored, back.markers_explained) == ({}, 1.0)
+    assert (back.markers_ignored, back.markers_explained, back.names_exchanged) == ({}, 1.0, ())
 
 
 def test_a_file_without_a_direction_is_told_in_the_laboratory(tmp_path):

@@ -86,6 +86,15 @@ def test_a_body_of_ones_own_is_carried_word_for_word(subject, tmp_path, text):
     assert read_subject(tmp_path / "s.toml").body_text == text
 
 
+def test_noise_that_stays_is_kept(subject, tmp_path):
+    keypoint = replace(subject.markers[0], correlated_m=0.004, correlation_s=0.3)
+    write_subject(replace(subject, markers=(keypoint,)), tmp_path / "s.toml")
+    assert (
+        plain(read_subject(tmp_path / "s.toml")).markers[0]
+        == plain(replace(subject, markers=(keypoint,))).markers[0]
+    )
+
+
 def test_a_shipped_body_leaves_no_text(subject, tmp_path):
     write_subject(subject, tmp_path / "s.toml")
     assert "body_text" not in (tmp_path / "s.toml").read_text(encoding="utf-8")

@@ -15,15 +15,20 @@ LEGS = Path(__file__).resolve().parents[2] / "docs/examples/bodies/legs.toml"
 SHIPPED = (
     "autolabel62",
     "biobuddy73",
+    "blazepose",
+    "body25",
     "cast",
     "cgm23",
     "cgm24",
     "cgm25",
+    "coco17",
     "fukuchi2018",
     "gait2354",
+    "halpe26",
     "hbm47",
     "helen_hayes",
     "ior_gait",
+    "opencap43",
     "opencap_lab",
     "opensim_fullbody2009",
     "optitrack_biomech57",
@@ -57,6 +62,8 @@ CAPTURES = {
     "bmc_walk_run/run.trc": "rajagopal_run",
     "biobuddy_functional/static.c3d": "biobuddy73",
     "biobuddy_functional/functional_right_knee.c3d": "biobuddy73",
+    "pose2sim_keypoints_balance/static_raw.trc": "halpe26",
+    "pose2sim_keypoints_balance/balancing_filt.trc": "halpe26",
 }
 NOT_FOLLOWED = ("Ground", "Mid", "v", "PELO")
 """Ends and beginnings of the points that no protocol takes over (projections, midpoints and virtual points)."""
@@ -116,6 +123,32 @@ NAME_LISTS = {
         "r.ASIS L.ASIS r.PSIS L.PSIS C7 R_Shoulder L_Shoulder R_Sternum L_Sternum r_knee r_mknee r_ankle r_mankle "
         "r_toe r_5meta r_calc L_knee L_mknee L_ankle L_mankle L_toe L_5meta L_calc r_thigh1 r_thigh2 r_sh2 r_sh3 "
         "R_elbow_lat R_elbow_med R_wrist_radius R_wrist_ulna R_HJC L_HJC"
+    ),
+    "halpe26": (
+        "RHip RKnee RAnkle RBigToe RSmallToe RHeel LHip LKnee LAnkle LBigToe LSmallToe LHeel Neck Head Nose RShoulder "
+        "RElbow RWrist LShoulder LElbow LWrist"
+    ),
+    "body25": (
+        "CHip RHip RKnee RAnkle RBigToe RSmallToe RHeel LHip LKnee LAnkle LBigToe LSmallToe LHeel Neck Nose RShoulder "
+        "RElbow RWrist LShoulder LElbow LWrist"
+    ),
+    "coco17": (
+        "nose left_eye right_eye left_ear right_ear left_shoulder right_shoulder left_elbow right_elbow left_wrist "
+        "right_wrist left_hip right_hip left_knee right_knee left_ankle right_ankle"
+    ),
+    "blazepose": (
+        "nose left_eye_inner left_eye left_eye_outer right_eye_inner right_eye right_eye_outer left_ear right_ear "
+        "mouth_left mouth_right left_shoulder right_shoulder left_elbow right_elbow left_wrist right_wrist left_pinky "
+        "right_pinky left_index right_index left_thumb right_thumb left_hip right_hip left_knee right_knee left_ankle "
+        "right_ankle left_heel right_heel left_foot_index right_foot_index"
+    ),
+    "opencap43": (
+        "r.ASIS_study L.ASIS_study r.PSIS_study L.PSIS_study r_knee_study r_mknee_study r_ankle_study r_mankle_study "
+        "r_toe_study r_5meta_study r_calc_study L_knee_study L_mknee_study L_ankle_study L_mankle_study L_toe_study "
+        "L_calc_study L_5meta_study r_shoulder_study L_shoulder_study C7_study r_thigh1_study r_thigh2_study "
+        "r_thigh3_study L_thigh1_study L_thigh2_study L_thigh3_study r_sh1_study r_sh2_study r_sh3_study L_sh1_study "
+        "L_sh2_study L_sh3_study RHJC_study LHJC_study r_lelbow_study r_melbow_study r_lwrist_study r_mwrist_study "
+        "L_lelbow_study L_melbow_study L_lwrist_study L_mwrist_study"
     ),
 }
 
@@ -177,6 +210,8 @@ def test_markers_lie_on_the_side_their_name_says(name):
 def test_mirrored_markers_mirror(name):
     markers = {marker.name: marker for marker in load_protocol(name).markers}
     partners = {name: "L" + name[1:] for name in markers if name[0] in "Rr"}
+    partners = {n: "L" + n[1:] for n in markers if n[0] in "Rr"}
+    partners.update({n: "left" + n[5:] for n in markers if n.startswith("right")})
     pairs = [(markers[name], markers[other]) for name, other in partners.items() if other in markers]
     asymmetric = 0
     for right, left in pairs:
@@ -319,3 +354,43 @@ def test_a_protocol_names_its_body_by_a_file_beside_it(tmp_path):
         'name = "mine"\nbody = "legs.toml"\n[[marker]]\nname = "X"\nlandmark = "right_asis"\n', "utf-8"
     )
     assert load_protocol(path).body.name == "legs"
+
+
+def test_raw_keypoints_beside_augmented_ones_are_told_and_left(real_data):
+    names = read_capture(real_data / "pose2sim_keypoints_balance/static_filt_LSTM.trc").markers.names
+    protocol = detect_protocol(names)
+    assert protocol.name == "opencap43"
+    matched = protocol.match(names)
+    assert len(matched) == 45, "43 points and the two on the head"
+    assert set(names) - set(matched) == set(names) & set(protocol.ignored)
+
+
+@pytest.mark.parametrize("name", ["halpe26", "body25", "coco17", "blazepose", "opencap43"])
+def test_keypoints_have_the_noise_of_their_kind(name):
+    protocol = load_protocol(name)
+    assert protocol.source
+    for marker in protocol.markers:
+        assert marker.kind == "keypoint"
+        assert (marker.noise_m, marker.correlated_m, marker.correlation_s) == (0.020, 0.010, 0.3)
+
+
+def test_noise_that_stays_from_a_file(write):
+    place = 'segment = "pelvis"\nposition_m = [0, 0.1, -0.2]'
+    own, halved, still = load_protocol(
+        write(
+            f'name = "A"\n{place}\nkind = "keypoint"\nnoise_mm = 30\ncorrelated_mm = 25\ncorrelation_s = 0.5',
+            f'name = "B"\n{place}\nkind = "keypoint"\nnoise_mm = 8',
+            f'name = "C"\n{place}',
+        )
+    ).markers
+    assert (own.noise_m, own.correlated_m, own.correlation_s) == (0.030, 0.025, 0.5)
+    assert (halved.noise_m, halved.correlated_m, halved.correlation_s) == (0.008, 0.004, 0.3)
+    assert (still.correlated_m, still.correlation_s) == (0.0, 0.0)
+
+
+def test_a_part_of_the_noise_is_no_larger_than_it(write):
+    place = 'name = "A"\nsegment = "pelvis"\nposition_m = [0, 0.1, -0.2]'
+    with pytest.raises(FileFormatError, match="correlated_mm"):
+        load_protocol(write(f"{place}\nnoise_mm = 5\ncorrelated_mm = 6"))
+    with pytest.raises(FileFormatError, match="correlation_s"):
+        load_protocol(write(f"{place}\nnoise_mm = 5\ncorrelated_mm = 4\ncorrelation_s = -1"))

@@ -31,18 +31,22 @@ def markers(draw, name):
     else:
         segment, label = draw(st.sampled_from(SEGMENTS)), ""
         position = np.array(draw(st.tuples(*3 * [st.floats(-2.0, 2.0)])))
+    noise = draw(millimetres) / 1e3
+    lasting = draw(st.sampled_from([0.0, noise]))
     return ProtocolMarker(
         name,
         segment,
         position,
         draw(st.sampled_from(KINDS)),
         draw(millimetres) / 1e3,
-        draw(millimetres) / 1e3,
+        noise,
         tuple(draw(st.lists(text, max_size=2))),
         draw(st.booleans()),
         label,
         draw(st.floats(0.0, 1.0)),
         tuple(draw(st.lists(st.tuples(st.sampled_from(SEGMENTS), st.floats(0.0, 1.0)), max_size=2))),
+        lasting,
+        draw(st.floats(0.0, 2.0)) if lasting else 0.0,
     )
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
 from mbkf.model.protocol import load_protocol
-from mbkf.pipelines.coverage import USE_KEY
-from mbkf.pipelines.scale import INFERRED_KEY, scale
+from mbkf.pipelines.coverage import INFERRED_KEY, USE_KEY
+from mbkf.pipelines.scale import scale
 from tests.motions import capture_of, marker_positions, moderate_pose, protocol_sensor, random_model
 
 MODEL = random_model(np.random.default_rng(1), spread=0.05)

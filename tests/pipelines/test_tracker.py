@@ -134,3 +134,23 @@ def test_wrong_arrays_and_filters_are_refused():
         mbkf.Tracker(person, ["a", "b"])
     with pytest.raises(InvalidInput, match="dynamic"):
         mbkf.Tracker(person, settings=ReconstructSettings(filter="kinematic"), blocks=[Barometer()])
+
+
+@pytest.mark.parametrize("nonsense", [1e9, -1e5, np.inf])
+def test_a_reading_that_the_person_cannot_make_is_one_that_was_not_made(nonsense):
+    person, trial, wrenches = squat()
+    found = []
+    for value in (np.nan, nonsense):
+        tracker = mbkf.Tracker(person, trial.markers.names, trial.plates, trial.markers.rate_hz)
+        answers = []
+        for t in range(35):
+            pushed = wrenches[t].copy()
+            if t == 31:
+                pushed[0] = np.nan if np.isnan(value) else pushed[0]
+                pushed[0, 2] = value
+            tracker.push(trial.markers.positions_m[t], pushed)
+            answers += tracker.answers
+        found.append(answers)
+    for missing, refused in zip(*found, strict=True):
+        np.testing.assert_array_equal(refused.q, missing.q)
+        np.testing.assert_array_equal(refused.wrenches, missing.wrenches)

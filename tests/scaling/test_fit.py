@@ -242,3 +242,30 @@ def test_a_static_trial_that_lies_is_refused(turn):
     lying = np.stack([x, -z, y] if turn == "x" else [z, y, -x], axis=-1)
     with pytest.raises(InvalidInput, match=r"tilted by 90.*--up"):
         scale_subject([replace(standing, positions_m=lying)], [], PROTOCOL, mass_kg=70.0)
+
+
+def test_keypoints_are_scaled_from_standing_and_carry_their_noise():
+    """Feet stay flat and lengths true under 20 mm of noise, and what stays of the noise is told to the filters."""
+    protocol, rng = load_protocol("halpe26"), np.random.default_rng(4)
+    model = HumanModel(BODY, np.full(17, 0.97), 70.0)
+    places = [0.97 * m.position_m for m in protocol.markers]
+    sensor = MarkerSensor(model, [m.segment for m in protocol.markers], np.array(places))
+    names = tuple(m.name for m in protocol.markers)
+
+    def seen(poses):
+        exact = marker_positions(sensor, poses)
+        return MarkerTrajectories(names, exact + rng.normal(0.0, 0.02, exact.shape), 60.0)
+
+    standing, moving = [model.neutral()] * 40, [moderate_pose(model, rng, spread=0.6) for _ in range(40)]
+    found = scale_subject([seen(standing)], [seen(moving)], protocol, mass_kg=70.0)
+    for name in ("trunk_height", "right_thigh", "left_shank"):
+        assert found.scale_factors[name] == pytest.approx(0.97, abs=0.03)
+    place = {m.name: m.position_m for m in found.markers}
+    sole = place["RSmallToe"] - place["RHeel"]
+    true = dict(zip(names, places, strict=True))
+    expected = true["RSmallToe"] - true["RHeel"]
+    assert np.degrees(np.arctan2(sole[2], sole[0]) - np.arctan2(expected[2], expected[0])) == pytest.approx(
+        0, abs=3
+    )
+    assert {(m.noise_m, m.correlated_m, m.correlation_s) for m in found.markers} == {(0.02, 0.01, 0.3)}
+    assert {m.session_sd_m for m in found.markers} == {0.005}, "nobody sticks them on anew"

@@ -8,6 +8,7 @@ import pytest
 
 from mbkf.sensors.block import OperatingPoint
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
+from mbkf.sensors.contact.sharing import SharedLoad
 from mbkf.sensors.foot_contact import FootContact, FootContactSettings, FootDecision
 from mbkf.sensors.layout import Layout
 
@@ -25,7 +26,11 @@ def load(contacts, seed=0):
     wrench = rng.normal(0.0, 100.0, (2, 6))
     wrench[:, 2] = 300.0
     wrench[[foot in (Contact.AIR, Contact.UNMEASURED) for foot in contacts]] = 0.0
-    return ContactDecision(contacts, wrench, rng.uniform(-0.5, 0.5, (2, 3)), False, MEMORY)
+    centres = rng.uniform(-0.5, 0.5, (2, 3))
+    if Contact.SHARED not in contacts:
+        return ContactDecision(contacts, wrench, centres, False, MEMORY)
+    shared = SharedLoad(wrench, rng.uniform(-0.5, 0.5, (2, 3)), rng.uniform(10.0, 50.0, 6))
+    return ContactDecision(contacts, np.tile(wrench.sum(axis=0), (2, 1)), centres, False, MEMORY, shared)
 
 
 def filled(loaded, w, lifted=()):
@@ -65,7 +70,32 @@ def test_a_shared_plate_reads_the_sum():
     assert plates == 6
     noise = np.repeat([SETTINGS.plate_force_n, SETTINGS.plate_moment_nm], 3)
     off = about(loaded.centres_m.mean(axis=0), loaded.wrench[0] - w[:6] - w[6:])
-    np.testing.assert_allclose(values[:6], off / noise, rtol=1e-12)
+    np.testing.assert_allclose(values[:6], off / noise, rtol=1e-9)
+
+
+def test_the_right_foot_reads_its_share_with_the_spread_of_that():
+    loaded, w = load((Contact.SHARED, Contact.SHARED)), np.arange(12.0)
+    rows, values, _ = filled(loaded, w)
+    share = loaded.shared
+    off = about(share.centres_m[0], share.wrench[0] - w[:6])
+    np.testing.assert_allclose(values[6:], off / share.sd, rtol=1e-9)
+    assert not rows[6:, 6:].any()
+
+
+def test_shares_leave_what_the_plate_says_of_the_sum_alone():
+    """Whatever the share: the sum is known as exactly as by the plate, the difference only by the share."""
+    loaded = load((Contact.SHARED, Contact.SHARED))
+    rows, values, _ = filled(loaded, np.zeros(12))
+    P = np.linalg.inv(rows.T @ rows)
+    to_middle = np.array([about(loaded.centres_m.mean(axis=0), one) for one in np.eye(6)]).T
+    to_centre = np.array([about(loaded.shared.centres_m[0], one) for one in np.eye(6)]).T
+    both = to_middle @ np.hstack([np.eye(6), np.eye(6)])
+    right = to_centre @ np.hstack([np.eye(6), np.zeros((6, 6))])
+    noise = np.repeat([SETTINGS.plate_force_n, SETTINGS.plate_moment_nm], 3)
+    np.testing.assert_allclose(both @ P @ both.T, np.diag(noise**2), atol=1e-6)
+    np.testing.assert_allclose(right @ P @ right.T, np.diag(loaded.shared.sd**2), rtol=1e-6, atol=1e-6)
+    found = P @ rows.T @ values
+    np.testing.assert_allclose(found, loaded.shared.wrench.ravel(), rtol=1e-6, atol=1e-6)
 
 
 def test_a_free_foot_carries_what_the_plates_do_not_under_its_sole():

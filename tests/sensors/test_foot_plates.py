@@ -7,7 +7,8 @@ from mbkf.filters.torque.plant import ForcedState
 from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.sensors.block import Frame, Notes
 from mbkf.sensors.contact.records import Contact, ContactDecision
-from mbkf.sensors.foot_plates import FootPlates, FootPlateSettings, FootReading
+from mbkf.sensors.contact.sharing import SharedLoad
+from mbkf.sensors.foot_plates import FootPlates, FootPlateSettings, FootReading, PlateDecision
 from tests.dynamics import DT, prepared_at, trial
 from tests.forced_bodies import torque_plant
 from tests.motions import assert_near
@@ -70,6 +71,56 @@ def test_feet_without_a_reading_are_left_out(scene):
     )
     assert found.readings == 6
     assert not found.matrix[-12:-6].any() and found.matrix[-6:].any()
+
+
+def shared(wrench, sd=(20.0, 20.0, 30.0, 10.0, 10.0, 5.0)):
+    """A decision on feet that share a plate, right and left with these wrenches."""
+    load = SharedLoad(wrench, np.array([[0.1, -0.1, 0.0], [0.15, 0.1, 0.0]]), np.array(sd))
+    total = np.tile(wrench.sum(axis=0), (2, 1))
+    return ContactDecision((Contact.SHARED, Contact.SHARED), total, np.zeros((2, 3)), False, None, load)
+
+
+def linearised(scene, decision):
+    block, state, wrench = scene
+    first = block.decide(prepared_at(block, state), Frame(NO_MARKERS, wrench), block.begin(), Notes())
+    reading = FootReading.of(decision)
+    return block.linearise(prepared_at(block, state), first._replace(contact=decision, reading=reading))
+
+
+def test_a_shared_plate_is_read_as_shares(scene):
+    """True shares leave no innovation; shares that are wrong are worth what their spread says, whatever the sum."""
+    _, _, wrench = scene
+    read = FootReading.of(shared(wrench))
+    assert read.known.all() and not read.airborne.any()
+    np.testing.assert_array_equal(read.wrench, wrench)
+    right = linearised(scene, shared(wrench))
+    assert right.readings == 12 and right.innovation < 1e-12
+    off = np.array([0.0, 0.0, 60.0, 60.0 * -0.1, 60.0 * -0.1, 0.0])  # 60 N at the right foot's centre
+    assert linearised(scene, shared(wrench + np.array([off, -off]))).innovation == pytest.approx(
+        (60.0 / 30.0) ** 2
+    )
+
+
+def test_shares_leave_the_sum_as_exact_as_the_plate(scene):
+    block, _, wrench = scene
+    s = block.settings
+    heavier = np.array([0.0, 0.0, 10.0, -1.0, -1.5, 0.0])  # 10 N on the left foot alone
+    found = linearised(scene, shared(wrench + np.array([np.zeros(6), heavier])))
+    assert found.innovation >= (10.0 / s.plate_force_n) ** 2
+    matrix = found.matrix[-12:, -12:]
+    assert np.linalg.matrix_rank(matrix) == 12
+    sd = block.sd(FootReading.of(shared(wrench)))
+    assert np.isfinite(sd).all() and sd[2] == pytest.approx(np.hypot(30.0, s.plate_force_n))
+
+
+def test_the_noise_of_shares_is_that_of_their_whitening(scene):
+    """Log det R is minus twice the log of the whitening's determinant."""
+    block, state, wrench = scene
+    points = block.body.model.placements(state.q)[1][block.sensor.ids]
+    decision = shared(wrench)
+    rows = block._whitening(decision.shared, points)
+    found = block.log_noise(PlateDecision(decision, FootReading.of(decision)))
+    assert found == pytest.approx(-2.0 * np.linalg.slogdet(rows)[1])
 
 
 def test_contact_is_decided_where_the_posterior_leads(scene):

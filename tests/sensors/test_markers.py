@@ -104,3 +104,14 @@ def test_where_skin_is_modelled_the_markers_used_are_kept():
 
 def test_a_settings_factor_widens_the_noise():
     assert_near(block_with(marker_noise_scale=3.0).noise_m, 3.0 * NOISE, 1e-15)
+
+
+@pytest.mark.parametrize(("size", "expected"), [(1.0, 1.0), (3.0, 9.0), (0.1, 0.25), (50.0, 16.0)])
+def test_noise_that_stays_follows_its_own_spread(size, expected):
+    """One frame shows the spread of a reading, however wide the white noise of equal weight is."""
+    spread = np.full(len(NOISE), 0.02)
+    settings = MarkerSettings(noise_memory_s=1e-6)
+    block = Markers(SENSOR, 4.0 * spread, DT, np.zeros(NV, dtype=bool), settings, spread_m=spread)
+    at, decision, _ = decided(block, SENSOR.positions(STATE.q) + 0.02 * size)
+    decision = decision._replace(trusted=np.ones(len(NOISE), dtype=bool))
+    assert block.remember(STATE, at, decision, block.begin()).noise_scale == pytest.approx(expected)

@@ -5,8 +5,8 @@ import pytest
 
 from mbkf.sensors.contact.soles import sole_locals
 from mbkf.sensors.marker_sensor import MarkerSensor
-from mbkf.sensors.planted import Planted, standing_still
-from tests.motions import moderate_pose, reference_model
+from mbkf.sensors.planted import Planted, lying_level, standing_still
+from tests.motions import central_difference, moderate_pose, reference_model
 
 MODEL = reference_model()
 Q = moderate_pose(MODEL, np.random.default_rng(3))
@@ -40,3 +40,16 @@ def test_smaller_spreads_weigh_more():
     planted = Planted(MODEL.roles.feet[0], SOLES.positions(Q)[0], flat=True)
     coarse, fine = (standing_still(MODEL, Q, V, planted, sd, sd)[0] for sd in (1.0, 0.1))
     np.testing.assert_allclose(fine, 10 * coarse)
+
+
+@pytest.mark.parametrize("foot", MODEL.roles.feet)
+def test_level_rows_are_the_inclination(foot):
+    joint = MODEL.joint(foot).joint_id
+
+    def inclination(q):
+        return MODEL.placements(q)[0][joint][:2, 2]
+
+    rows, short = lying_level(MODEL, Q, foot, 0.5)
+    np.testing.assert_allclose(0.5 * rows, central_difference(MODEL, inclination, Q), atol=1e-7)
+    np.testing.assert_allclose(0.5 * short, -inclination(Q))
+    np.testing.assert_allclose(lying_level(MODEL, MODEL.neutral(), foot, 0.5)[1], 0.0, atol=1e-12)

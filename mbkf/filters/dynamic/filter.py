@@ -22,6 +22,7 @@ from mbkf.sensors.foot_contact import FootContact
 from mbkf.sensors.inertial import InertialSensors
 from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.joint_limits import JointLimits
+from mbkf.sensors.lasting_noise import prior_dilution
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers
 from mbkf.sensors.mean_posture import MeanPosture
@@ -43,6 +44,7 @@ def dynamic_blocks(
     unobservable: BoolArray,
     settings: DynamicSettings,
     inertial: InertialSensor | None = None,
+    spread_m: Array | None = None,
 ) -> list[AnyBlock]:
     """The standard blocks, in the order in which they decide.
 
@@ -54,15 +56,19 @@ def dynamic_blocks(
         unobservable: (nv,) dofs that no marker of the capture moves with.
         settings: Settings of every block.
         inertial: Inertial sensors on the body.
+        spread_m: (M,) spread of one reading where noise stays for a while (:mod:`mbkf.sensors.lasting_noise`), m. A
+            frame then counts for less than an independent reading, and so does the posture prior, or the body would
+            be drawn to standing.
     """
     model, s, posture = sensor.model, settings, PostureSensor(sensor.model)
+    dilution = None if spread_m is None else prior_dilution(sensor, noise_m, spread_m)
     movement = np.where(unobservable, 0.0, s.motion.acceleration_scale * model.movement_sd)
     blocks: list[AnyBlock] = [
-        Markers(sensor, noise_m, dt_s, unobservable, s.markers),
+        Markers(sensor, noise_m, dt_s, unobservable, s.markers, spread_m=spread_m),
         NewtonEulerLaw(NewtonEuler(model), s.law),
         FootContact(detector, GRAVITY_M_S2 * model.mass_kg, dt_s, s.contact),
         UnobservedJoints.of(movement, s.unobserved),
-        PlantedFeet(model, detector, s.planted),
+        PlantedFeet(model, detector, s.planted, spread_m is not None),
     ]
     if inertial is not None:
         blocks += [InertialSensors(inertial, s.inertial), MeanPosture(model, dt_s, s.mean_posture)]
@@ -70,7 +76,7 @@ def dynamic_blocks(
         blocks.append(CoordinationPrior(model, dt_s, unobservable, s.coordination))
     return [
         *blocks,
-        PosturePrior(posture, unobservable, s.posture),
+        PosturePrior(posture, unobservable, s.posture, dilution),
         JointLimits(posture, unobservable, s.limits),
     ]
 
@@ -86,6 +92,7 @@ class DynamicFilter(Filter[DynamicState]):
         model: The body.
         dt_s: Time between frames.
         balance: Newton–Euler equations, for torques.
+        spread_m: (M,) spread of one reading where noise stays for a while, else None.
     """
 
     plant: SingerPlant
@@ -98,6 +105,7 @@ class DynamicFilter(Filter[DynamicState]):
         unobservable: BoolArray,
         settings: DynamicSettings,
         blocks: Sequence[AnyBlock],
+        spread_m: Array | None = None,
     ) -> None:
         """Makes the filter.
 
@@ -108,7 +116,9 @@ class DynamicFilter(Filter[DynamicState]):
             unobservable: (nv,) dofs that no marker of the capture moves with.
             settings: Settings of plant and error covariance.
             blocks: Instruments, laws and priors; :func:`dynamic_blocks` for the standard ones.
+            spread_m: (M,) spread of one reading of markers whose noise stays; None where the noise is white.
         """
+        self.spread_m = spread_m
         extras = [extra for block in blocks for extra in block.states()]
         super().__init__(SingerPlant(sensor.model, dt_s, unobservable, settings.motion, extras), blocks)
         self.sensor, self.unobservable, self.settings = sensor, unobservable, settings

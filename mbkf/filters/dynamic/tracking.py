@@ -97,13 +97,13 @@ class DynamicTracking(TrackingFilter):
         return P
 
     def errors(self, estimate: Posterior) -> ErrorCovariance:
-        """Those of the whole state; what the filter itself states where it expects white noise or models the skin."""
+        """Those of the whole state; what the filter itself states where it knows how the noise is correlated."""
         step = _record(estimate)
         s, P, notes = self.kalman.settings, step.state.P, step.decisions.notes
         # Readings may tell of velocities and of further states, too; markers whose skin has a memory do.
         information = step.readings.matrix[: self.model.nv, : self.model.nv]
         share = s.markers.innovation_share
-        if share <= 0.0 or s.markers.skin_memory_s > 0.0:
+        if share <= 0.0 or s.markers.skin_memory_s > 0.0 or self.kalman.spread_m is not None:
             return ErrorCovariance(P, information, NO_DOFS, 0.0, 1.0, 0.0)
         known = ~self.kalman.unobservable
         known[notes.unmarked] = False

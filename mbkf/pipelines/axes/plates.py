@@ -15,6 +15,9 @@ from mbkf.pipelines.axes.evidence import MarkerPlaces
 PUSHING_N, LEAST_SAMPLES = 50.0, 20
 """Force of a loaded plate, and the least number of samples with it, that tell where a person is pushed to."""
 
+OUTLYING = 10.0
+"""A sample of more than so many times the usual force says no more than one of that force."""
+
 UPWARD_COSINE = np.cos(np.deg2rad(30.0))
 """The ground pushes upwards on the whole, within this angle: friction averages out."""
 
@@ -46,13 +49,33 @@ def contradiction(capture: Capture, turn: Array, places: MarkerPlaces) -> str:
 
 def pushed_away(plates: Sequence[PlateReadings]) -> str:
     """Where plates push that do not push upwards, in words; "" where they do, or carry nobody."""
-    pushes = [plate.force_n[np.linalg.norm(plate.force_n, axis=1) > PUSHING_N] for plate in plates]
+    pushes = [_pushes(plate) for plate in plates]
     if sum(map(len, pushes)) < LEAST_SAMPLES:
+        return ""
+    if _signs_differ(pushes):
         return ""
     whole = sum((push.sum(axis=0) for push in pushes), np.zeros(3))
     if whole[2] > UPWARD_COSINE * np.linalg.norm(whole):
         return ""
     return f"the plates push along {nearest_axis(whole)} of the world (z is up)"
+
+
+def _pushes(plate: PlateReadings) -> Array:
+    """(n, 3) forces of a plate's loaded samples, N; none counts more than ten of their median, as a wrong one might."""
+    size = np.linalg.norm(plate.force_n, axis=1)
+    loaded = np.isfinite(size) & (size > PUSHING_N)
+    if not loaded.any():
+        return np.zeros((0, 3))
+    most = OUTLYING * float(np.median(size[loaded]))
+    return np.asarray(plate.force_n[loaded] * np.minimum(1.0, most / size[loaded])[:, None])
+
+
+def _signs_differ(pushes: Sequence[Array]) -> bool:
+    """Whether some plates push upwards and the others pull: the vertical is right, and a sign wrong."""
+    wholes = [push.sum(axis=0) for push in pushes if len(push)]
+    cosines = np.array([whole[2] / np.linalg.norm(whole) for whole in wholes if whole.any()])
+    upright = np.abs(cosines) > UPWARD_COSINE
+    return bool(upright.all() and (cosines > 0.0).any() and (cosines < 0.0).any())
 
 
 def _beside_feet(capture: Capture, plates: Sequence[PlateReadings], turn: Array, places: MarkerPlaces) -> str:

@@ -14,6 +14,7 @@ from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.kinematic.tracking import KinematicTracking
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject, SubjectMarker
+from mbkf.labelling.assignment import Indices
 from mbkf.labelling.first_frame import FirstFrameSearch
 from mbkf.labelling.running import RunningLabeller, RunningSettings
 from mbkf.model.human import HumanModel
@@ -66,11 +67,17 @@ class LabelBody:
         placement = np.array([m.session_sd_m for m in self.markers])
         return RunningLabeller(self.noise_m, placement, dt_s, self.settings)
 
-    def start_pass(self, positions_m: Array, dt_s: float) -> LabellingPass:
-        """A pass over points (T, C, 3) with a filter and a labeller of its own."""
+    def start_pass(self, positions_m: Array, dt_s: float, known: Indices | None = None) -> LabellingPass:
+        """A pass over points with a filter and a labeller of its own.
+
+        Args:
+            positions_m: (T, C, 3) points, NaN where a column is empty.
+            dt_s: Time between frames.
+            known: (T, C) marker of the points that carry a name which is relied on; None where there are none.
+        """
         any_attitude = AnyAttitude(self.search, positions_m, 1.0 / dt_s)
         return LabellingPass(
-            self.tracking_filter(dt_s), self.sensor, any_attitude, self.labeller(dt_s), positions_m
+            self.tracking_filter(dt_s), self.sensor, any_attitude, self.labeller(dt_s), positions_m, known
         )
 
 

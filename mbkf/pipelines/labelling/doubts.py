@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -66,7 +66,7 @@ class Doubt:
 
 @dataclass(frozen=True)
 class Doubts:
-    """Possible errors in the labels of a person not measured before.
+    """Possible errors in the labels of a person.
 
     Attributes:
         cases: Labels that may be others, the likeliest others first.
@@ -74,6 +74,10 @@ class Doubts:
         misfit: Mean squared distance of person and points, in squares of what is usual.
         nameless: Tracks seen in half of the frames that fit no marker.
         unused: Markers of the protocol that were found nowhere.
+        scaled: Whether the person was scaled before, so that places are those of the standing trial.
+        rare: Labels seen much more rarely than others, and in which share of the frames.
+        names: Lines about names of the capture that the labels do not keep.
+        odds: How many times likelier each label is than the likeliest other.
     """
 
     cases: tuple[Doubt, ...]
@@ -81,14 +85,22 @@ class Doubts:
     misfit: float
     nameless: int
     unused: tuple[str, ...]
+    scaled: bool = False
+    rare: Mapping[str, float] = field(default_factory=dict)
+    names: tuple[str, ...] = ()
+    odds: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def labels(self) -> tuple[str, ...]:
         """The labels in doubt, each once."""
-        return tuple(dict.fromkeys([*self.far_m, *(label for case in self.cases for label in case.labels)]))
+        return tuple(
+            dict.fromkeys([*self.far_m, *self.rare, *(label for case in self.cases for label in case.labels)])
+        )
 
     def warnings(self) -> tuple[str, ...]:
         """Warnings in words: the person as a whole, labels far from their places, names, and what settles them."""
+        if self.scaled:
+            return self._against_standing()
         found = []
         if self.misfit > MISFIT:
             found.append(
@@ -110,9 +122,29 @@ class Doubts:
             )
         return tuple(found)
 
+    def _against_standing(self) -> tuple[str, ...]:
+        """Warnings where places are those of the standing trial."""
+        found = list(self.names)
+        if self.nameless > 0 and self.unused:
+            found.append(
+                f"{self.nameless} tracks seen in half of the frames fit no marker, and found nowhere are "
+                f"{', '.join(self.unused)}: are these other markers, or moved far?"
+            )
+        if self.far_m:
+            names = ", ".join(f"{name} ({_MM * off:.0f} mm)" for name, off in self.far_m.items())
+            found.append(
+                f"far from where scaling found them, hence moved since, other markers, or ghosts: {names}"
+            )
+        if self.rare:
+            names = ", ".join(f"{name} ({100.0 * share:.0f} %)" for name, share in self.rare.items())
+            found.append(f"labelled in few of the frames, hence perhaps ghosts: {names}")
+        return (*found, *(_group_text(group) for group in _groups(self.cases)))
+
     def summary(self) -> dict[str, object]:
         """Plain numbers for the summary."""
+        more = {"rarely_seen": dict(self.rare), "names_not_kept": list(self.names), "odds": dict(self.odds)}
         return {
+            **(more if self.scaled else {}),
             "labels": list(self.labels),
             "far_from_place_mm": {name: _MM * off for name, off in self.far_m.items()},
             "cases": [case.summary() for case in self.cases],

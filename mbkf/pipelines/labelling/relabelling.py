@@ -36,10 +36,14 @@ class Relabelled:
     Attributes:
         label_of_point: (T, C) marker of every point, ``HIDDEN`` where none; markers as the body given has them.
         changed: Samples whose label was taken away or is another now.
+        places: The smoothed body's markers by which they were judged, None where the body fitted no person.
+        body: The body with the markers shown, at the places where the capture has them.
     """
 
     label_of_point: Indices
     changed: int
+    places: SmoothedMarkers | None = None
+    body: LabelBody | None = None
 
 
 def relabel_offline(
@@ -48,6 +52,7 @@ def relabel_offline(
     label_of_point: Indices,
     q: Array,
     progress: Callable[[int, int], None],
+    known: Indices | None = None,
 ) -> Relabelled:
     """Relabels a capture with the smoothed body, which uses all frames.
 
@@ -57,6 +62,7 @@ def relabel_offline(
         label_of_point: (T, C) labels of its points.
         q: (T, nq) poses of the pass, NaN where the body was not tracked.
         progress: Called with frames done and frames in all.
+        known: (T, C) marker of the points that carry a name which is relied on; None where there are none.
     """
     settings = RelabellingSettings()
     tracklets = linked(points.positions_m)
@@ -76,18 +82,20 @@ def relabel_offline(
         return corrected, course(corrected, own, lambda done: progress(begin + done, all_))
 
     label = majority_labels(label_of_point, len(body.markers), tracklets, settings)
+    named = np.unique(known[known != HIDDEN]) if known is not None else np.zeros(0, dtype=np.intp)
     name = renamed(body.search, shown(tracklets.points(label)).positions_m, q)
-    label = np.where(label == HIDDEN, HIDDEN, name[label])
-    label = exchanged(body.search, shown(tracklets.points(label)).positions_m, q, label, tracklets)
+    label = _kept(named, label, np.where(label == HIDDEN, HIDDEN, name[label]))
+    other = exchanged(body.search, shown(tracklets.points(label)).positions_m, q, label, tracklets)
+    label = _kept(named, label, other)
     labels = tracklets.points(label)
     found = smoothed(labels)
     if found is not None:
-        labels, sure = _sure(points, tracklets, labels, body, *found, settings)
+        labels, sure = _sure(points, tracklets, labels, body, *found, settings, named)
         found = smoothed(sure)
     for _ in range(ROUNDS):
         if found is None:
             break
-        fresh = _relabelled(points, tracklets, labels, body, *found, settings)
+        fresh = _relabelled(points, tracklets, labels, body, *found, settings, known)
         settled = bool((fresh == labels).all())
         labels = fresh
         if settled:
@@ -95,7 +103,17 @@ def relabel_offline(
         found = smoothed(labels)
     progress(1, 1)
     had = label_of_point != HIDDEN
-    return Relabelled(labels, int((had & (labels != label_of_point)).sum()))
+    own, places = found or (None, None)
+    return Relabelled(labels, int((had & (labels != label_of_point)).sum()), places, own)
+
+
+def _kept(named: Indices, before: Indices, after: Indices) -> Indices:
+    """(n,) labels after a change that concerns no marker whose name is known."""
+    changed = before != after
+    touched = changed & (np.isin(before, named) | np.isin(after, named))
+    markers = np.union1d(before[touched], after[touched])
+    undone = changed & (np.isin(before, markers) | np.isin(after, markers))
+    return np.where(undone, before, after)
 
 
 def trajectories(
@@ -158,6 +176,7 @@ def _sure(
     corrected: LabelBody,
     places: SmoothedMarkers,
     settings: RelabellingSettings,
+    named: Indices,
 ) -> tuple[Indices, Indices]:
     """(T, C) labels of markers that were worn, and those of them that are in no doubt.
 
@@ -166,7 +185,7 @@ def _sure(
     own, place = _numbered(labels, body, corrected)
     shown = trajectories(points, own, corrected.names).positions_m
     there = worn(places, shown, corrected.noise_m, corrected.sensor.segments, settings)
-    labels = np.where(np.isin(labels, place[there]), labels, HIDDEN)
+    labels = np.where(np.isin(labels, np.union1d(place[there], named)), labels, HIDDEN)
     dt = 1.0 / points.rate_hz
     astray = doubtful(own, points.positions_m, tracklets, places, corrected.noise_m, dt, settings)
     return labels, np.where(tracklets.points(astray.astype(np.intp)) == 1, HIDDEN, labels)
@@ -180,13 +199,17 @@ def _relabelled(
     corrected: LabelBody,
     places: SmoothedMarkers,
     settings: RelabellingSettings,
+    known: Indices | None,
 ) -> Indices:
     """(T, C) labels as the tracklets' judgement has them."""
     own, place = _numbered(labels, body, corrected)
     shown = trajectories(points, own, corrected.names).positions_m
     there = worn(places, shown, corrected.noise_m, corrected.sensor.segments, settings)
+    names = None if known is None else _numbered(known, body, corrected)[0]
+    if names is not None:
+        there = there | np.isin(np.arange(len(there)), names)
     noise, dt = np.where(there, corrected.noise_m, np.nan), 1.0 / points.rate_hz
-    found = relabel(own, points.positions_m, tracklets, places, noise, dt, settings)
+    found = relabel(own, points.positions_m, tracklets, places, noise, dt, settings, names)
     return tracklets.points(np.where(found == HIDDEN, HIDDEN, place[found]))
 
 

@@ -65,6 +65,7 @@ class LabellingPass:
         any_attitude: AnyAttitude,
         labeller: RunningLabeller,
         positions_m: Array,
+        known: Indices | None = None,
     ) -> None:
         """A pass that has labelled no frame yet.
 
@@ -74,7 +75,9 @@ class LabellingPass:
             any_attitude: Finds labels in frames without a prediction.
             labeller: Assigns points from frame to frame.
             positions_m: (T, C, 3) points of the capture, NaN where empty.
+            known: (T, C) marker of the points that carry a name which is relied on; None where there are none.
         """
+        self._known = known
         self._filter, self._sensor, self._search, self._any_attitude = (
             filter,
             sensor,
@@ -122,9 +125,21 @@ class LabellingPass:
         found = self._search.standing(points)
         return self._any_attitude.at(t) if found is None and thorough else found
 
+    def _as_named(self, t: int, points: Points, labels: Indices) -> Indices:
+        """(M,) labels with those of the points whose names are known."""
+        if self._known is None:
+            return labels
+        marker = self._known[t, points.columns]
+        named = np.flatnonzero(marker != HIDDEN)
+        labels = np.where(np.isin(labels, named), HIDDEN, labels)
+        labels[marker[named]] = named
+        return labels
+
     def _begin(self, t: int, found: FirstFrame) -> Posterior | None:
         """The filter's first estimate: labels are carried through the next frames pose by pose to learn velocities."""
-        self._note(t, self._points(t), found.points)
+        points = self._points(t)
+        first = self._as_named(t, points, found.points)
+        self._note(t, points, first)
         last, poses = t, [found.q]
         model = self._sensor.model
         for k in range(t + 1, min(t + START_FRAMES, len(self._positions_m))):
@@ -135,7 +150,7 @@ class LabellingPass:
             then = self._search.about(frame.positions_m, guess)
             if then is None:
                 break
-            self._note(k, frame, then.points)
+            self._note(k, frame, self._as_named(k, frame, then.points))
             poses.append(then.q)
             last = k
         known = Recording(
@@ -147,7 +162,7 @@ class LabellingPass:
             return None
         self.starts.append(t)
         self.labeller.restart()
-        self._remember(t, self._points(t), found.points, estimate)
+        self._remember(t, points, first, estimate)
         return estimate
 
     def _follow(self, t: int, estimate: Posterior, progress: Callable[[int], None] | None) -> int:
@@ -156,7 +171,7 @@ class LabellingPass:
         while t < len(self._positions_m):
             points = self._points(t)
             prediction = self._filter.predict(estimate)
-            labels = self._labels(t, points, prediction, lost)
+            labels = self._as_named(t, points, self._labels(t, points, prediction, lost))
             could = min(len(labels), len(points.positions_m))
             few = np.count_nonzero(labels != HIDDEN) < max(LOST_SHARE * could, 6)
             lost = lost + 1 if few else 0

@@ -52,7 +52,17 @@ def choose_marker_set(
 def inferred_choice(
     static: Capture | None, trials: Sequence[Capture], body: BodyDescription | None = None
 ) -> ChosenSet:
-    """The same, always inferred; arguments and errors as for :func:`choose_marker_set`."""
+    """The same, always inferred, whatever the names.
+
+    Args:
+        static: A standing trial, if there is one.
+        trials: Trials of any movement.
+        body: The reference body.
+
+    Raises:
+        InvalidInput: The axes of a capture cannot be right.
+        NotObservable: Too few markers, or no person is found among them.
+    """
     inferred = infer_marker_set(static, trials, body)
     return ChosenSet(inferred.protocol, inferred.captures, inferred)
 

@@ -15,17 +15,25 @@ from mbkf.marker_sets.names import NameReading, read_names
 from mbkf.marker_sets.search import FEWEST_POINTS
 from mbkf.model.body_file import load_body
 from mbkf.model.description import BodyDescription
-from mbkf.model.protocol import Protocol, ProtocolMarker
+from mbkf.model.protocol import (
+    DEFAULT_CORRELATED_M,
+    DEFAULT_CORRELATION_S,
+    DEFAULT_NOISE_M,
+    Protocol,
+    ProtocolMarker,
+)
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.coverage import COMPUTED, listed
 from mbkf.pipelines.marker_set.upright import upright_captures
+from mbkf.pipelines.trial.exchanged import trials_put_right
 
 NAME = "inferred"
 """Name of an inferred protocol."""
 
-LEAST_EVIDENCE = 0.8
-"""How much likelier a point must be on the body than anywhere near, in the mean of the logarithm: 1.2 to 2.6 of
-measured persons, 0.3 of scattered points, up to 1.5 of a person on his head."""
+LEAST_ODDS, LEAST_NAMED_ODDS = 15.0, 0.0
+"""How much likelier (logarithm) the points must be a person than strewn about: 29 and more of measured persons, 9 to 27
+of synthetic trunks with one arm, about −15 of scattered points and 13 at most; up to 73 of a person on his head. The
+second where names tell of most points that they are on a body."""
 
 FEWEST_SEGMENTS = 3
 """Markers on fewer segments do not show a person."""
@@ -33,7 +41,10 @@ FEWEST_SEGMENTS = 3
 LANDMARK_SD_M, PLACED_SD_M = 0.015, 0.035
 """How far a marker is from its landmark, and one without a landmark from where the posed body shows it."""
 
-DOUBTFUL_NOISE = 3.0
+ROUNDS = 2
+"""How often a set is inferred: again where names turn out to be exchanged between the standing trial and the others."""
+
+DOUBTFUL_NOISE = 1.5
 """Noise of a marker whose segment is doubtful, over that of a sure one: it may follow, but not lead."""
 
 OFF_LANDMARK_M = 0.045
@@ -52,12 +63,14 @@ class InferredSet:
         captures: The captures that it was inferred from, static one first, with their axes put right.
         equipment: The part of the body that carries markers, in words.
         rms_m: RMS distance of the sure markers from the body that they were found on; NaN where no frame was posed.
+        exchanged: Names that trials exchange against the standing trial and frames, put right in :attr:`captures`.
     """
 
     protocol: Protocol
     captures: tuple[Capture, ...]
     equipment: str
     rms_m: float
+    exchanged: tuple[tuple[str, str, int], ...] = ()
 
     @property
     def doubtful(self) -> tuple[str, ...]:
@@ -118,16 +131,24 @@ def infer_marker_set(
             f"the captures have {len(names) - len(ignored)} markers of a body ({listed(names) or 'none'}); "
             f"fewer than {FEWEST_POINTS} do not show which part of it they are on; give --protocol"
         )
+    keypoints = {name for name, one in readings.items() if one.kind == "keypoint"}
+    standing = 0 if static is None else 1
+    exchanged: tuple[tuple[str, str, int], ...] = ()
     with single_threaded():
         upright = upright_captures(captures, readings, reference)
-        worn = [_without(one.markers, ignored) for one in upright]
-        standing = 0 if static is None else 1
-        found = infer_markers(worn[:standing], worn[standing:], readings, reference, leave_out)
-    _require_person(found)
-    ignored |= {marker.name: NOT_BODY for marker in found.markers if not marker.segment}
-    return InferredSet(
-        _protocol(found, reference, ignored), tuple(upright), found.found.equipment.name, found.rms_m
-    )
+        for _ in range(ROUNDS):
+            worn = [_without(one.markers, ignored) for one in upright]
+            found = infer_markers(worn[:standing], worn[standing:], readings, reference, leave_out)
+            _require_person(found, LEAST_NAMED_ODDS if _mostly_named(worn, readings) else LEAST_ODDS)
+            left_out = ignored | {marker.name: NOT_BODY for marker in found.markers if not marker.segment}
+            protocol = _protocol(found, reference, left_out, keypoints)
+            if not (standing and trials):
+                break
+            fresh, told = trials_put_right(upright[0].markers, upright[1:], protocol)
+            if not told:
+                break
+            upright, exchanged = [upright[0], *fresh], (*exchanged, *told)
+    return InferredSet(protocol, tuple(upright), found.found.equipment.name, found.rms_m, exchanged)
 
 
 def _named(markers: MarkerTrajectories) -> tuple[str, ...]:
@@ -148,14 +169,24 @@ def _without(markers: MarkerTrajectories, ignored: Mapping[str, str]) -> MarkerT
     return markers.select(tuple(name for name in _named(markers) if name not in ignored))
 
 
-def _require_person(found: Inference) -> None:
+def _mostly_named(captures: Sequence[MarkerTrajectories], readings: Mapping[str, NameReading]) -> bool:
+    """Whether names tell of most markers that they are on a body."""
+    names = {name for one in captures for name in one.names}
+    return 2 * sum(name in readings and bool(readings[name].places) for name in names) > len(names)
+
+
+def _require_person(found: Inference, least_odds: float) -> None:
     """Refuses what is no person.
+
+    Args:
+        found: What was inferred.
+        least_odds: Odds that the body has to have.
 
     Raises:
         NotObservable: The points are not where markers of a person are, or on too small a part of one.
     """
     segments = {marker.segment for marker in found.markers if marker.segment}
-    if found.found.evidence < LEAST_EVIDENCE:
+    if found.found.odds < least_odds:
         raise NotObservable(
             "no person is found among the points: they do not stand as the markers of an upright body do "
             "(which axis points up? give --up; a static trial with --static; or a marker set with --protocol)"
@@ -167,10 +198,14 @@ def _require_person(found: Inference) -> None:
         )
 
 
-def _protocol(found: Inference, body: BodyDescription, ignored: Mapping[str, str]) -> Protocol:
+def _protocol(
+    found: Inference, body: BodyDescription, ignored: Mapping[str, str], keypoints: set[str]
+) -> Protocol:
     on_landmark = _nearest_on_landmarks(found, body)
     markers = tuple(
-        _marker(marker, body, marker.name in on_landmark) for marker in found.markers if marker.segment
+        _marker(marker, body, marker.name in on_landmark, marker.name in keypoints)
+        for marker in found.markers
+        if marker.segment
     )
     return Protocol(
         NAME,
@@ -195,16 +230,22 @@ def _nearest_on_landmarks(found: Inference, body: BodyDescription) -> set[str]:
     return {name for _, name in nearest.values()}
 
 
-def _marker(marker: InferredMarker, body: BodyDescription, on_landmark: bool) -> ProtocolMarker:
+def _marker(
+    marker: InferredMarker, body: BodyDescription, on_landmark: bool, keypoint: bool
+) -> ProtocolMarker:
     position = body.landmark(marker.landmark).position_m if on_landmark else marker.position_m
+    kind = "keypoint" if keypoint else "anatomical" if on_landmark else "technical"
+    noise = DEFAULT_NOISE_M[kind] if keypoint else marker.noise_m
     return ProtocolMarker(
         name=marker.name,
         segment=marker.segment,
         position_m=read_only(position),
-        kind="anatomical" if on_landmark else "technical",
+        kind=kind,
         placement_sd_m=LANDMARK_SD_M if on_landmark else PLACED_SD_M,
-        noise_m=marker.noise_m * (DOUBTFUL_NOISE if marker.doubtful else 1.0),
+        noise_m=noise * (DOUBTFUL_NOISE if marker.doubtful else 1.0),
         landmark=marker.landmark if on_landmark else "",
         probability=round(marker.probability, 3),
         alternatives=marker.alternatives,
+        correlated_m=DEFAULT_CORRELATED_M[kind],
+        correlation_s=DEFAULT_CORRELATION_S if keypoint else 0.0,
     )

@@ -11,6 +11,7 @@ from mbkf.errors import NotObservable
 from mbkf.io.axes import axes_matrix, axes_text, rotation_to_world
 from mbkf.io.records import AxesSource, Capture
 from mbkf.marker_sets.frames import anchor_frames
+from mbkf.marker_sets.inference import CLEAR_EVIDENCE
 from mbkf.marker_sets.names import NameReading
 from mbkf.marker_sets.places import worn_places
 from mbkf.marker_sets.search import find_body
@@ -80,7 +81,7 @@ def known_places(readings: Mapping[str, NameReading], body: BodyDescription) -> 
                 landmark.position_m,
                 "anatomical",
                 DEFAULT_PLACEMENT_SD_M["anatomical"],
-                DEFAULT_NOISE_M,
+                DEFAULT_NOISE_M["anatomical"],
             )
     return known
 
@@ -110,7 +111,16 @@ def _by_body(capture: Capture, body: BodyDescription) -> AxesFinding:
     points = frame[~np.isnan(frame[:, 0])]
     old = axes_matrix(capture.axes)
     turns = {up: np.asarray(rotation_to_world(up)) for up in UPS}
-    worth = {up: _worth(points @ turn.T, body) for up, turn in turns.items()}
+    worth = {"z": -np.inf}
+    try:
+        standing = find_body(worn_places(body), points)
+    except NotObservable:
+        pass
+    else:
+        if standing.evidence >= CLEAR_EVIDENCE:
+            return same
+        worth["z"] = standing.worth
+    worth |= {up: _worth(points @ turn.T, body) for up, turn in turns.items() if up != "z"}
     best = max(worth, key=lambda up: worth[up])
     if best == "z" or worth[best] < worth["z"] + CLEARLY:
         return same

@@ -130,14 +130,24 @@ def _placed(
                 f"the capture does not show '{name}'; choose a landmark for it, or leave it out"
             )
         position = read_only(np.round(in_reference(standing, segment, point_m), 4))
-    return ProtocolMarker(
-        name,
-        segment,
-        position,
-        kind,
-        DEFAULT_PLACEMENT_SD_M[kind],
-        DEFAULT_NOISE_M if before is None else before.noise_m,
-        () if before is None else before.aliases,
-        before is not None and before.static_only,
-        choice.landmark,
+    if before is None:
+        return ProtocolMarker(
+            name,
+            segment,
+            position,
+            kind,
+            DEFAULT_PLACEMENT_SD_M[kind],
+            DEFAULT_NOISE_M[kind],
+            landmark=choice.landmark,
+        )
+    kind = before.kind if before.kind == "keypoint" else kind
+    return replace(
+        before,
+        segment=segment,
+        position_m=position,
+        kind=kind,
+        placement_sd_m=DEFAULT_PLACEMENT_SD_M[kind],
+        landmark=choice.landmark,
+        probability=1.0,
+        alternatives=(),
     )

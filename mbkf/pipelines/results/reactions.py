@@ -76,7 +76,9 @@ def reactions(
             moment,
             None,
             loads.valid,
-            loads.warnings if plates else ("no force plates: torques and residuals are not computed",),
+            (*loads.warnings, *_shared_warning((loads.foot_of_plate == BOTH).any(axis=1)))
+            if plates
+            else ("no force plates: torques and residuals are not computed",),
         )
     surface = np.mean([surface_height(plate) for plate in plates]) if plates else 0.0
     pressure, free = pressure_and_free_moment(track.wrench, float(surface), PRESSURE_FROM_N)
@@ -111,7 +113,6 @@ def _plate_change(wrench: Array, loads: FootLoads, plates: tuple[PlateReadings, 
 def _contact_warnings(contact: Array, plates: tuple[PlateReadings, ...]) -> list[str]:
     unread = contact == Contact.UNMEASURED
     one, both = int(unread.any(axis=1).sum()), int(unread.all(axis=1).sum())
-    shared = int((contact == Contact.SHARED).any(axis=1).sum())
     warnings = []
     if not plates:
         warnings.append(
@@ -127,8 +128,14 @@ def _contact_warnings(contact: Array, plates: tuple[PlateReadings, ...]) -> list
             f"in {both} frames both feet do, and how they share the load cannot be observed "
             "(see the standard deviations)"
         )
-    if shared:
-        warnings.append(
-            f"in {shared} frames both feet stand on one plate: how they share its load is estimated from where they stand"
-        )
-    return warnings
+    return [*warnings, *_shared_warning((contact == Contact.SHARED).any(axis=1))]
+
+
+def _shared_warning(shared: BoolArray) -> list[str]:
+    """What is told of the frames (T,) in which both feet stand on one plate."""
+    if not shared.any():
+        return []
+    return [
+        f"in {int(shared.sum())} frames both feet stand on one plate: how they share its load is estimated from where "
+        "they stand"
+    ]

@@ -55,6 +55,7 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "markers_used": len(r.marker_names),
         "markers_ignored": dict(r.markers_ignored),
         "markers_explained": r.markers_explained,
+        "names_exchanged": list(r.names_exchanged),
         "missing_fraction": float(missing.mean()) if missing.size else None,
         "marker_rms_mm": _rms(seen_mm),
         "marker_max_mm": _largest(seen_mm),

@@ -39,6 +39,8 @@ class FilterInputs:
         unobservable: (nv,) dofs that no marker of the trial moves with.
         kinematic, dynamic, torque: Settings of each filter.
         inertial: Inertial sensors on the body, None where there are none.
+        spread_m: (M,) spread of one reading where noise stays for a while, None where no marker's does.
+        remarks: What was refused of the plates' readings, in words.
     """
 
     sensor: MarkerSensor
@@ -50,6 +52,8 @@ class FilterInputs:
     dynamic: DynamicSettings
     torque: TorqueSettings
     inertial: InertialSensor | None = None
+    spread_m: Array | None = None
+    remarks: tuple[str, ...] = ()
 
 
 def _kinematic(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
@@ -64,7 +68,7 @@ def _dynamic(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
     known = inputs.sensor, inputs.noise_m
     if blocks is None:
         blocks = standard(inputs)
-    kalman = DynamicFilter(*known, inputs.dt_s, inputs.unobservable, inputs.dynamic, blocks)
+    kalman = DynamicFilter(*known, inputs.dt_s, inputs.unobservable, inputs.dynamic, blocks, inputs.spread_m)
     return DynamicTracking(kalman, _starter(inputs))
 
 
@@ -72,7 +76,15 @@ def standard(inputs: FilterInputs) -> list[AnyBlock]:
     """The dynamic filter's standard blocks."""
     detector = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
     known = inputs.sensor, inputs.noise_m
-    return dynamic_blocks(*known, detector, inputs.dt_s, inputs.unobservable, inputs.dynamic, inputs.inertial)
+    return dynamic_blocks(
+        *known,
+        detector,
+        inputs.dt_s,
+        inputs.unobservable,
+        inputs.dynamic,
+        inputs.inertial,
+        inputs.spread_m,
+    )
 
 
 def _torque(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
 
+from mbkf.conventions import Array
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.estimate import Recording
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.io.records import MarkerTrajectories, PlateReadings
-from mbkf.io.subject import Subject
+from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.human import HumanModel
 from mbkf.pipelines.trial.filters import FilterInputs
+from mbkf.sensors.contact.cleaning import cleaned
 from mbkf.sensors.contact.plates import plate_wrenches
+from mbkf.sensors.lasting_noise import MOVEMENT_HZ, white_noise_m
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 MIN_PRESENT = 0.02
@@ -40,7 +44,7 @@ class FilterSettings(Protocol):
 def trial_inputs(
     shown: MarkerTrajectories, plates: tuple[PlateReadings, ...], subject: Subject, settings: FilterSettings
 ) -> tuple[FilterInputs, Recording]:
-    """Body, markers and plates of a trial, and its readings.
+    """Body, markers and plates of a trial, and its readings; the plates without what this person cannot make them read.
 
     Args:
         shown: (T, M, 3) m, under the subject's own names; what is hidden is NaN.
@@ -49,19 +53,40 @@ def trial_inputs(
         settings: Settings of the filters.
     """
     model = HumanModel.of(subject)
+    plates, remarks = cleaned(plates, subject.mass_kg)
     by_name = {marker.name: marker for marker in subject.markers}
     tracked = [by_name[name] for name in shown.names]
     sensor = MarkerSensor(model, [m.segment for m in tracked], np.array([m.position_m for m in tracked]))
+    noise_m, spread_m = _noise(tracked, 1.0 / shown.rate_hz, settings.dynamic.markers.innovation_share)
     present = shown.present.mean(axis=0) >= MIN_PRESENT
     inputs = FilterInputs(
         sensor,
-        np.array([m.noise_m for m in tracked]),
+        noise_m,
         plates,
         1.0 / shown.rate_hz,
         ~model.supports[sensor.joint_ids[present]].any(axis=0),
         settings.kinematic,
         settings.dynamic,
         settings.torque,
+        spread_m=spread_m,
+        remarks=remarks,
     )
     wrenches = plate_wrenches(plates, shown.times_s, shown.rate_hz)
     return inputs, Recording(shown.positions_m, wrenches, inputs.dt_s)
+
+
+def _noise(markers: Sequence[SubjectMarker], dt_s: float, share: float) -> tuple[Array, Array | None]:
+    """(M,) white noise of equal weight, and (M,) spread of one reading where any marker's noise stays for a while.
+
+    Args:
+        markers: The M markers.
+        dt_s: Time between frames.
+        share: Share of an independent reading that a frame of a marker on skin counts for.
+    """
+    own = np.array([m.noise_m for m in markers])
+    correlated = np.array([m.correlated_m for m in markers])
+    if not correlated.any():
+        return own, None
+    lasting_s = np.array([m.correlation_s for m in markers])
+    noise = white_noise_m(own, correlated, lasting_s, dt_s, MOVEMENT_HZ)
+    return noise, np.where(correlated > 0.0, own, own * share**0.5)

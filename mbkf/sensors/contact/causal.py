@@ -88,7 +88,9 @@ class ContactDetector:
                 wrench[foot] += plate_wrench[k]
                 contacts[foot] = Contact.SHARED if owner == 2 else Contact.MEASURED
         shared = self._shared(foot_of_plate, plate_wrench, soles, q)
-        elsewhere = self._elsewhere.decide(memory, (q, v, a), soles, contacts, vertical < self._least_n)
+        elsewhere = self._elsewhere.decide(
+            memory, (q, v, a), soles, contacts, vertical < self._least_n, np.isnan(vertical)
+        )
         for foot in elsewhere.carrying:
             contacts[foot] = Contact.UNMEASURED
         free = None

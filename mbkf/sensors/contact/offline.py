@@ -28,11 +28,14 @@ from mbkf.sensors.contact.thresholds import (
     FALL_M_S2,
     FALL_WINDOW_S,
     FLOOR_PERCENTILE,
+    LEAVE_SLACK,
     LEVEL_M,
     MAJORITY_S,
     MIXED_SHARE,
     PARTED_M_S,
     REACH_M,
+    STAND_HEIGHT_M,
+    STAND_SPEED_M_S,
     STANDING_SHARE,
     TOUCH_HEIGHT_M,
     TOUCH_SPEED_M_S,
@@ -100,6 +103,7 @@ def assign_feet(
     touching = _touching(soles, foot, rate_hz)
     flight = ~touching.any(axis=1) & _falling(q[:, 2], rate_hz)
     valid, warnings = _validity(model, touching, flight, foot, wrench, pressure, recorded)
+    valid &= ~_on_silent_plate(PlateAreas(plates), soles, foot, recorded, rate_hz)
     return FootLoads(total, at_feet, free, wrench, foot, valid, warnings)
 
 
@@ -175,27 +179,65 @@ def _per_foot_pressure(pressure: Array, wrench: Array, foot: Array) -> tuple[Arr
     return at_feet, free
 
 
-def _touching(soles: Array, foot: Array, rate_hz: float) -> BoolArray:
+def _on_plate(foot: Array) -> BoolArray:
+    """(T, 2) feet that stand on a loaded plate, of their own or shared; foot (T, P) is that of each plate."""
+    return np.stack([((foot == side) | (foot == BOTH)).any(axis=1) for side in range(2)], axis=1)
+
+
+def _on_silent_plate(
+    areas: PlateAreas, soles: Array, foot: Array, recorded: BoolArray, rate_hz: float
+) -> BoolArray:
+    """(T,) frames in which a foot may stand on a plate that was not recorded; whoever cannot tell says so.
+
+    Args:
+        areas: Outlines of the plates.
+        soles: (T, 2, 3, 3) sole points, NaN where untracked.
+        foot: (T, P) foot of each plate.
+        recorded: (T, P) where plates were recorded.
+        rate_hz: Frame rate.
+    """
+    found = np.zeros(len(soles), dtype=bool)
+    silent = np.flatnonzero(~recorded.all(axis=1))
+    if not len(silent):
+        return found
+    on_plate = _on_plate(foot)
+    standing = _touching(soles, foot, rate_hz, LEAVE_SLACK * STAND_HEIGHT_M, LEAVE_SLACK * STAND_SPEED_M_S)
+    for t in silent:
+        for side in np.flatnonzero(standing[t] & ~on_plate[t]):
+            over = areas.contain(soles[t, side, :, :2]).any(axis=0) | ~areas.known
+            found[t] |= bool((over & ~recorded[t]).any())
+    return found
+
+
+def _touching(
+    soles: Array,
+    foot: Array,
+    rate_hz: float,
+    height_m: float = TOUCH_HEIGHT_M,
+    speed_m_s: float = TOUCH_SPEED_M_S,
+) -> BoolArray:
     """(T, 2) feet that touch the floor: a sole point is low and slow.
 
     Args:
         soles: (T, 2, 3, 3) sole points, NaN where untracked.
         foot: (T, P) foot of each plate.
         rate_hz: Frame rate.
+        height_m: How low it is.
+        speed_m_s: How slow it is.
     """
     touching = np.zeros((len(soles), 2), dtype=bool)
     known = ~np.isnan(soles[:, 0, 0, 0])
     if not known.any():
         return touching
     lowest = soles[:, :, :, 2].min(axis=2)
-    loaded = np.stack([(foot == side).any(axis=1) & known for side in range(2)], axis=1)
+    loaded = _on_plate(foot) & known[:, None]
     stood_on = {side: np.median(lowest[loaded[:, side], side]) for side in range(2) if loaded[:, side].any()}
     for side in range(2):
         lowest_ever = np.percentile(lowest[known, side], FLOOR_PERCENTILE)
         floor = stood_on.get(side, min([lowest_ever, *stood_on.values()]))
         speed = np.linalg.norm(np.gradient(soles[:, side], axis=0), axis=2) * rate_hz
-        low = soles[:, side, :, 2] < floor + TOUCH_HEIGHT_M
-        touching[:, side] = (low & (speed < TOUCH_SPEED_M_S)).any(axis=1)
+        low = soles[:, side, :, 2] < floor + height_m
+        touching[:, side] = (low & (speed < speed_m_s)).any(axis=1)
     return touching
 
 
@@ -230,8 +272,7 @@ def _validity(
         pressure: (T, P, 3) their centres of pressure, NaN where not loaded.
         recorded: (T, P) where they were recorded.
     """
-    on_plate = np.stack([((foot == side) | (foot == BOTH)).any(axis=1) for side in range(2)], axis=1)
-    measured = (~touching | on_plate).all(axis=1)
+    measured = (~touching | _on_plate(foot)).all(axis=1)
     weight = -model.pin_model.gravity.linear[2] * model.mass_kg
     carried = np.where(foot >= 0, wrench[:, :, 2], 0.0).sum(axis=1) > STANDING_SHARE * weight
     stray = (~np.isnan(pressure[:, :, 0]) & (foot < 0)).any(axis=1)

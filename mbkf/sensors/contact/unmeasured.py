@@ -69,6 +69,7 @@ class UnmeasuredFeet:
         soles: Sequence[Sole],
         contacts: Sequence[Contact],
         unloaded: BoolArray,
+        silent: BoolArray | None = None,
     ) -> Elsewhere:
         """Which feet that no plate reads carry weight.
 
@@ -78,13 +79,18 @@ class UnmeasuredFeet:
             soles: Heel, ball and toe end of both soles.
             contacts: What right and left foot stand on by the plates.
             unloaded: (K,) plates that are recorded and not loaded.
+            silent: (K,) plates that are not recorded, None where all are. A foot that one of them carried stands on,
+                without a delay.
         """
         q, v, a = motion
         height = self._sole_height(memory.sole_height_m, soles, contacts)
         if Contact.AIR not in contacts:
             return Elsewhere((), height, (0.0, 0.0))
         idle = _Idle(unloaded, memory.pressed)
-        touching = self._touching(memory.touching_s, contacts, soles, (q, v), height, idle)
+        before_s = memory.touching_s
+        if silent is not None and silent.any():
+            before_s = self._carried_on(memory, silent)
+        touching = self._touching(before_s, contacts, soles, (q, v), height, idle)
         carrying = [f for f in (0, 1) if touching[f] > STAND_AFTER_S]
         in_air = contacts[0] == contacts[1] == Contact.AIR
         if not carrying and in_air and not _falls(q, v, a):
@@ -108,6 +114,16 @@ class UnmeasuredFeet:
             for point, speed in zip(sole, speeds, strict=True)
         ]
         return exp(-0.5 * min(away))
+
+    def _carried_on(self, memory: ContactMemory, silent: BoolArray) -> tuple[float, float]:
+        """For how long the feet have touched the floor; a foot whose plate has just fallen silent, long enough."""
+        owners = [memory.foot_of_plate[k] for k in silent.nonzero()[0].tolist()]
+
+        def before(f: int) -> float:
+            carried = f in owners or 2 in owners
+            return STAND_AFTER_S + self._dt_s if carried else memory.touching_s[f]
+
+        return before(0), before(1)
 
     def _touching(
         self,

@@ -52,17 +52,20 @@ class FrameAlignment:
         lost: Frames that did not, or came too late.
     """
 
-    def __init__(self, stream: StreamDescription, columns: Array | None, note: Note) -> None:
+    def __init__(
+        self, stream: StreamDescription, columns: Array | None, note: Note, mass_kg: float | None = None
+    ) -> None:
         """An alignment that has seen no frame yet.
 
         Args:
             stream: The stream's description.
             columns: (M,) columns of the subject's markers in the stream; None for points without names.
             note: Called with events.
+            mass_kg: The person's mass, by which readings of the plates are judged; None for not at all.
         """
         self._stream, self._columns, self._note = stream, columns, note
         self._numbering = Numbering(stream.rate_hz)
-        self._plates = PlateBuffer(stream)
+        self._plates = PlateBuffer(stream, mass_kg)
         self._ratio = stream.plate_rate_hz / stream.rate_hz
         self._plate_shift = 0
         self._heard_s: float | None = None
@@ -122,7 +125,7 @@ class FrameAlignment:
         samples = frame.plates
         if place.reset and place.number is not None and len(samples.index):
             self._realign(frame, place.number)
-        before = self._plates.missing
+        before, refused = self._plates.missing, self._plates.refused
         taken = self._plates.put(PlateSamples(samples.index + self._plate_shift, samples.wrench))
         if self._plates.missing > before:
             self._note(
@@ -130,6 +133,13 @@ class FrameAlignment:
                 "samples of the plates were lost on the way",
                 place.number,
                 self._plates.missing - before,
+            )
+        if self._plates.refused > refused:
+            self._note(
+                "plates refused",
+                "readings of the plates that this person cannot make were refused",
+                place.number,
+                self._plates.refused - refused,
             )
         return taken
 

@@ -28,6 +28,7 @@ class Receiver:
         columns: Array | None,
         samples: Callable[[PlateSamples], None],
         note: Note,
+        mass_kg: float | None = None,
     ) -> None:
         """The thread is not started yet.
 
@@ -37,9 +38,10 @@ class Receiver:
             columns: (M,) columns of the subject's markers in the stream; None for points without names.
             samples: Called with the plates' new samples.
             note: Called with events.
+            mass_kg: The person's mass, by which readings of the plates are judged; None for not at all.
         """
         self.rate_hz = stream.rate_hz
-        self._alignment = FrameAlignment(stream, columns, note)
+        self._alignment = FrameAlignment(stream, columns, note, mass_kg)
         self._buffer: RingBuffer[ReadyFrame] = RingBuffer(self._frames(START_SLACK_S), source.patient)
         self._reader = Reader(
             source, self._alignment, self._buffer, samples, lambda kind, what: note(kind, what, None, 1)

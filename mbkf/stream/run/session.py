@@ -123,7 +123,9 @@ class LiveSession:
             report.write(self._report(RUNNING, receiver, statistics))
 
         writer = LogWriter(log, self._disk_failed, report_running)
-        receiver = Receiver(self._source, setup.stream, setup.columns, writer.put_samples, note)
+        receiver = Receiver(
+            self._source, setup.stream, setup.columns, writer.put_samples, note, self._subject.mass_kg
+        )
         output = RunOutput(setup, sinks, writer.put_row, statistics, note)
         loop = FilterLoop(setup, receiver, output, statistics, note)
         with single_threaded(), low_latency():

@@ -19,6 +19,9 @@ BAD_MARKER_RMS_MM = 25.0
 20 mm RMS and 40 mm at most for inverse kinematics, whose markers stay where they were put; here their places are fitted
 to the trial, and 3 to 6 mm are usual."""
 
+KEYPOINT_RMS, KEYPOINT_BAD_RMS, KEYPOINT_MAX = 2.0, 2.5, 6.0
+"""The same bounds for keypoints, in units of their noise per coordinate: noise alone gives an RMS distance of 1.7."""
+
 FORCE_SHARE, MOMENT_SHARE = 0.05, 0.01
 """What Hicks et al. accept: peak residual force over peak external force, peak residual moment over that force times
 the height of the centre of mass."""
@@ -86,7 +89,7 @@ def verdicts(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
     gap = float(longest_gap_s(r).max(initial=0.0))
     missing = summary.get("missing_fraction") or 0.0
     tracked = 100.0 * float(r.tracked.mean()) if r.frames else 0.0
-    fit = [_markers(summary), _tracked(r, tracked), *_ignored(summary)]
+    fit = [_markers(r, summary), _tracked(r, tracked), *_ignored(summary)]
     others = [*_residuals(r, summary), _nis(summary.get("nis_per_dof"))]
     if any(one.kind == BAD for one in fit):
         others = [_doubted(one) for one in others]
@@ -136,14 +139,24 @@ def _doubted(verdict: Verdict) -> Verdict:
     )
 
 
-def _markers(summary: JsonTable) -> Verdict:
+def _markers(r: Reconstruction, summary: JsonTable) -> Verdict:
     rms, largest = summary.get("marker_rms_mm"), summary.get("marker_max_mm")
     if rms is None or largest is None:
         return Verdict("Marker error", "–", NONE, "no marker was tracked")
-    good = rms <= MARKER_RMS_MM and largest <= MARKER_MAX_MM
-    kind = GOOD if good else CARE if rms <= BAD_MARKER_RMS_MM else BAD
-    remark = f"RMS; largest {largest:.1f} mm. Good: {MARKER_RMS_MM:.0f} and {MARKER_MAX_MM:.0f} mm"
+    noise = _keypoint_noise_mm(r)
+    most, limit = max(MARKER_RMS_MM, KEYPOINT_RMS * noise), max(MARKER_MAX_MM, KEYPOINT_MAX * noise)
+    good = rms <= most and largest <= limit
+    kind = GOOD if good else CARE if rms <= max(BAD_MARKER_RMS_MM, KEYPOINT_BAD_RMS * noise) else BAD
+    remark = f"RMS; largest {largest:.1f} mm. Good: {most:.0f} and {limit:.0f} mm"
     return Verdict("Marker error", f"{rms:.1f} mm", kind, remark)
+
+
+def _keypoint_noise_mm(r: Reconstruction) -> float:
+    """RMS of the stated noise per coordinate where the markers are keypoints, 0 where they are not."""
+    used = [m for m in r.subject.markers if m.name in r.marker_names]
+    if not any(marker.correlated_m for marker in used):
+        return 0.0
+    return 1e3 * float(np.sqrt(np.mean([marker.noise_m**2 for marker in used])))
 
 
 def _residuals(r: Reconstruction, summary: JsonTable) -> list[Verdict]:

@@ -8,6 +8,7 @@ import pytest
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.sensors.block import Frame
 from mbkf.sensors.contact.records import Contact
+from mbkf.sensors.contact.sharing import share_load
 from mbkf.sensors.contact.soles import sole_points
 from tests.dynamics import (
     about,
@@ -124,6 +125,7 @@ def test_two_feet_on_one_plate_carry_what_it_reads():
         state, memory = step.state, step.memory
     assert step.decisions.notes.contact.contacts == (Contact.SHARED, Contact.SHARED)
     assert_near(about(middle) @ (state.w[:6] + state.w[6:] - both), 0.0, 5.0)
-    assert (state.w[[2, 8]] > 0.2 * both[2]).all()
+    shared = share_load(both, SOLES.tolist(), STANDING[:3], 0.0)
+    assert_near(state.w[[2, 8]], shared.wrench[:, 2], shared.sd[2])
     sd = np.sqrt(np.diag(state.P)[3 * NV :])
-    assert (sd[[2, 8]] > 50.0).all()
+    assert (sd[[2, 8]] > 0.8 * shared.sd[2]).all() and (sd[[2, 8]] < 1.2 * shared.sd[2]).all()

@@ -64,3 +64,18 @@ def test_plates_beside_the_feet_are_noticed():
     assert "beside the feet" in contradiction(
         replace(BARE, plates=(aside,)), np.diag([1.0, -1.0, 1.0]), PLACES
     )
+
+
+def test_one_odd_sample_turns_no_capture():
+    force = np.array(CAPTURE.plates[0].force_n)
+    force[3], force[4] = [1e9, 0.0, 0.0], np.nan
+    odd = replace(CAPTURE.plates[0], force_n=force)
+    assert pushed_away([odd, CAPTURE.plates[1]]) == ""
+
+
+def test_a_plate_of_the_wrong_sign_does_not_doubt_the_axes():
+    """It is told, and left out, where the readings are judged; where all plates pull, the vertical is wrong."""
+    right, left = CAPTURE.plates
+    pulling = replace(left, force_n=-3.0 * left.force_n)
+    assert pushed_away([right, pulling]) == ""
+    assert "along -z of" in pushed_away([pulling, pulling])

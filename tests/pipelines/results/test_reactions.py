@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from mbkf.conventions import GRAVITY_M_S2
 from mbkf.pipelines.results.reactions import PRESSURE_FROM_N, reactions
 from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.sensors.contact.records import Contact
@@ -149,13 +150,40 @@ def feet(*changes):
             "both",
         ),
         (feet((slice(7), [0, 1], Contact.UNMEASURED)), "in 7 frames both feet do", "one plate"),
-        (feet((slice(9), [0, 1], Contact.SHARED)), "in 9 frames both feet stand on one plate", "no plate"),
+        (
+            feet((slice(9), [0, 1], Contact.SHARED)),
+            "in 9 frames both feet stand on one plate: how they share its load is estimated from where they stand",
+            "no plate",
+        ),
     ],
 )
 def test_what_the_feet_do_is_told(contact, said, unsaid):
     words = " ".join(found_with(followed(truly(), contact), plates()).warnings)
     assert said in words
     assert unsaid not in words
+
+
+def one_plate():
+    """Both plates as one, outlined around both."""
+    right, left = plates()
+    corners = np.concatenate([right.corners_m, left.corners_m])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    outline = np.array([[high[0], low[1], 0.0], high, [low[0], high[1], 0.0], low])
+    moment = right.moment_nm + left.moment_nm + np.cross(left.origin_m - right.origin_m, left.force_n)
+    return (replace(right, force_n=right.force_n + left.force_n, moment_nm=moment, corners_m=outline),)
+
+
+def test_one_plate_under_both_feet_is_shared_and_that_is_told():
+    """Inverse dynamics gets the plate's whole wrench; the change of a plate is known of feet that stand alone."""
+    found = found_with(followed(), one_plate())
+    assert_near(found.wrench.sum(axis=1), truly().sum(axis=1), 1e-9)
+    assert_near(found.wrench[:, :, 2], truly()[:, :, 2], 0.1 * trial("squat").model.mass_kg * GRAVITY_M_S2)
+    assert (found.wrench[:, :, 2] > 0.0).all() and found.valid.all()
+    told = f"in {FRAMES} frames both feet stand on one plate: how they share its load is estimated"
+    assert any(warning.startswith(told) for warning in found.warnings)
+    assert not any("one plate" in warning for warning in found_with(followed(), plates()).warnings)
+    estimated = found_with(followed(truly(), feet((slice(None), [0, 1], Contact.SHARED))), one_plate())
+    assert np.isnan(estimated.plate_change).all()
 
 
 def test_frames_with_an_unread_loaded_foot_do_not_count():

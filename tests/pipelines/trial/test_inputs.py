@@ -37,3 +37,36 @@ def test_a_marker_that_is_hardly_seen_shows_no_dof():
     assert MIN_PRESENT * markers.frames > 1.0
     hidden, _ = trial_inputs(replace(markers, positions_m=positions), plates, subject, ReconstructSettings())
     assert hidden.unobservable.all()
+
+
+def test_noise_that_stays_is_told_as_wider_white_noise():
+    markers, plates, subject = shown(walker().trial.markers.names)
+    first, *others = subject.markers
+    keypoint = replace(first, noise_m=0.02, correlated_m=0.01, correlation_s=0.3)
+    subject = replace(subject, markers=(keypoint, *others))
+    settings = ReconstructSettings()
+    inputs, _ = trial_inputs(markers, plates, subject, settings)
+    column = markers.names.index(first.name)
+    own = {marker.name: marker.noise_m for marker in subject.markers}
+    skin = np.array([own[name] for name in markers.names])
+    assert inputs.noise_m[column] > 0.04
+    assert inputs.spread_m is not None and inputs.spread_m[column] == 0.02
+    np.testing.assert_array_equal(np.delete(inputs.noise_m, column), np.delete(skin, column))
+    share = settings.dynamic.markers.innovation_share
+    np.testing.assert_allclose(np.delete(inputs.spread_m, column), np.delete(share**0.5 * skin, column))
+    assert trial_inputs(*shown(walker().trial.markers.names), settings)[0].spread_m is None
+
+
+def test_filters_and_inverse_dynamics_read_the_same_cleaned_plates():
+    markers, plates, subject = shown(walker().trial.markers.names)
+    clean, recording = trial_inputs(markers, plates, subject, ReconstructSettings())
+    assert clean.plates is plates or all(a is b for a, b in zip(clean.plates, plates, strict=True))
+    assert clean.remarks == ()
+    force = np.array(plates[1].force_n)
+    force[700, 2] = 1e9
+    faulty = (plates[0], replace(plates[1], force_n=force), *plates[2:])
+    inputs, repaired = trial_inputs(markers, faulty, subject, ReconstructSettings())
+    (remark,) = inputs.remarks
+    assert "plate '2'" in remark
+    assert np.abs(inputs.plates[1].force_n - plates[1].force_n).max() < 20.0
+    np.testing.assert_allclose(repaired.plates, recording.plates, atol=20.0)

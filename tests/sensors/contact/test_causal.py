@@ -4,14 +4,17 @@ from dataclasses import FrozenInstanceError, fields
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import GRAVITY_M_S2
+from mbkf.numerics.windows import dilated
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact
+from mbkf.sensors.contact.sharing import share_load
 from mbkf.sensors.contact.soles import sole_points
-from mbkf.sensors.contact.thresholds import STAND_AFTER_S
+from mbkf.sensors.contact.thresholds import LEAVE_SLACK, PARTED_M_S, STAND_AFTER_S
 from tests.dynamics import DT, half_weight, plate, plates_under, standing, trial
-from tests.motions import reference_model
+from tests.motions import assert_near, reference_model
 
 MODEL = reference_model()
 STILL = np.zeros(MODEL.nv)
@@ -101,6 +104,104 @@ def test_both_feet_on_one_plate_share_it():
     assert decided.contacts == (Contact.SHARED, Contact.SHARED)
     np.testing.assert_array_equal(decided.wrench, [both, both])
     assert not decided.stray
+
+
+def test_what_a_shared_plate_reads_is_shared_where_the_feet_are_predicted():
+    q = standing(MODEL)
+    soles = sole_points(MODEL, q[None])[0]
+    both = half_weight(MODEL, soles.mean(axis=1)).sum(axis=0)
+    x, y = soles.mean(axis=(0, 1))[:2]
+    found = stand_on([plate(x, y)], [both]).shared
+    expected = share_load(both, soles.tolist(), q[:3], 0.0)
+    assert_near(found.wrench, expected.wrench, 1e-9)
+    assert_near(found.sd, expected.sd, 1e-9)
+    assert stand_on([plate(3.0, 0.0)], np.zeros(6)).shared is None
+
+
+@pytest.mark.parametrize("share", [0.02, 0.5, 0.98])
+def test_feet_share_a_plate_wherever_they_press_it(share):
+    """Also where the pressure lies under one sole."""
+    middles = sole_points(MODEL, standing(MODEL)[None])[0].mean(axis=1)
+    both = half_weight(MODEL, middles) * [[2 * share], [2 * (1 - share)]]
+    x, y = middles.mean(axis=0)[:2]
+    assert stand_on([plate(x, y)], [both.sum(axis=0)]).contacts == (Contact.SHARED, Contact.SHARED)
+
+
+def test_a_plate_without_an_outline_is_not_shared():
+    middles = sole_points(MODEL, standing(MODEL)[None])[0].mean(axis=1)
+    x, y = middles.mean(axis=0)[:2]
+    decided = stand_on([plate(x, y, outline=False)], half_weight(MODEL, middles).sum(axis=0))
+    assert Contact.SHARED not in decided.contacts
+
+
+def passing(speed_m_s):
+    """Velocities at which the hips carry the soles against each other at a speed."""
+    v = STILL.copy()
+    jacobian = [
+        MODEL.segment_jacobian(standing(MODEL), foot, np.zeros(3)) for foot in ("right_foot", "left_foot")
+    ]
+    hips = [MODEL.joint(f"{side}_thigh").v.start + 1 for side in ("right", "left")]
+    v[hips[RIGHT]] = 0.5 * speed_m_s / jacobian[RIGHT][0, hips[RIGHT]]
+    v[hips[LEFT]] = -0.5 * speed_m_s / jacobian[LEFT][0, hips[LEFT]]
+    return v
+
+
+def test_feet_that_pass_each_other_do_not_share_and_feet_on_a_belt_do():
+    """Speed against each other counts, not that of the belt; what parts has to be clearly faster than what meets."""
+    q = standing(MODEL)
+    middles = sole_points(MODEL, q[None])[0].mean(axis=1)
+    both, at = half_weight(MODEL, middles).sum(axis=0)[None], middles.mean(axis=0)
+    feet = ContactDetector(MODEL, [plate(at[0], at[1], (3.0, 3.0))], DT)
+    belt = STILL.copy()
+    belt[0] = -2.0
+
+    def owner(memory, v):
+        return feet.decide(memory, q, v, STILL, both).memory
+
+    parted = 0.5 * (1.0 + LEAVE_SLACK) * PARTED_M_S
+    apart, together = feet.begin(), owner(feet.begin(), belt)
+    assert together.foot_of_plate == (2,)
+    assert owner(apart, belt + passing(0.8 * PARTED_M_S)).foot_of_plate == (2,)
+    assert owner(apart, belt + passing(parted)).foot_of_plate != (2,)
+    assert owner(together, belt + passing(parted)).foot_of_plate == (2,)
+    assert owner(together, belt + passing(1.2 * LEAVE_SLACK * PARTED_M_S)).foot_of_plate != (2,)
+
+
+def test_a_foot_lifted_or_beside_the_plate_does_not_share_it():
+    q = standing(MODEL)
+    middles = sole_points(MODEL, q[None])[0].mean(axis=1)
+    on_right = half_weight(MODEL, middles)[RIGHT] * 2
+    lifted = q.copy()
+    lifted[MODEL.joint("left_thigh").q] = Rotation.from_euler("y", -40, degrees=True).as_quat()
+    lifted[MODEL.joint("left_shank").q] = Rotation.from_euler("y", 80, degrees=True).as_quat()
+    large = plate(middles[RIGHT, 0], middles[RIGHT, 1], (3.0, 3.0))
+    assert stand_on([large], on_right, lifted).contacts == (Contact.MEASURED, Contact.AIR)
+    small = plate(middles[RIGHT, 0], middles[RIGHT, 1], (0.2, 0.05))
+    assert stand_on([small], on_right, q).contacts[RIGHT] == Contact.MEASURED
+
+
+@pytest.mark.parametrize("belt_m_s", [0.0, 1.2])
+def test_a_walk_over_one_plate_is_shared_while_both_feet_bear(belt_m_s):
+    """Over the floor, and on a belt that carries the feet back; just before and after, one has nearly all."""
+    made = trial("walk")
+    m, load = made.motion, vertical(made)
+    feet = ContactDetector(made.model, [plate(0.0, 0.0, (5.0, 5.0))], DT)
+    memory, found, off = feet.begin(), [], []
+    for t, a in enumerate(m.a):
+        q, v, both = m.q[t].copy(), m.v[t].copy(), m.foot_wrench[t].sum(axis=0)
+        back = np.array([-belt_m_s * m.times_s[t], 0.0, 0.0])
+        q[:3] += back
+        v[:3] += made.model.placements(q)[0][made.model.root.joint_id].T @ [-belt_m_s, 0.0, 0.0]
+        both[3:] += np.cross(back, both[:3])
+        decided = feet.decide(memory, q, v, a, both[None])
+        memory = decided.memory
+        found.append(decided.shared is not None)
+        if decided.shared is not None:
+            off.append(decided.shared.wrench[:, 2] - load[t])
+    found, both_bear = np.array(found), (load > 20.0).all(axis=1)
+    assert found[both_bear].all()
+    assert not found[~dilated(both_bear, 7)].any()
+    assert np.sqrt(np.mean(np.square(off))) < 0.04 * made.model.mass_kg * GRAVITY_M_S2
 
 
 def test_two_plates_are_not_shared():

@@ -1,12 +1,15 @@
 """Plates assigned to feet over whole trials, and the frames in which every contact is measured."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.io.records import PlateReadings
-from mbkf.sensors.contact.offline import assign_feet, stretches
+from mbkf.sensors.contact.offline import BOTH, assign_feet, stretches
+from mbkf.sensors.contact.sharing import expected_stance
 from mbkf.sensors.contact.soles import sole_points
 from tests.motions import assert_near, reference_model
 
@@ -37,15 +40,18 @@ def ball(q, side):
     return sole_points(MODEL, q[None])[0, side, 1]
 
 
-def plate(at, vertical_n, frames, start_s=0.0, free_nm=0.0, height_m=0.0):
-    """A plate whose load acts at ``at`` (x, y, …), with a vertical force given per frame (or one for all)."""
+def plate(at, vertical_n, frames, start_s=0.0, free_nm=0.0, height_m=0.0, half_m=0.09):
+    """A plate whose load acts at ``at`` (x, y, …), with a vertical force given per frame (or one for all).
+
+    It lies about that point and is too small for two feet unless ``half_m`` says otherwise.
+    """
     fz = np.repeat(np.broadcast_to(np.asarray(vertical_n, float), frames), int(PLATE_RATE_HZ / RATE_HZ))
     force = np.stack([0.1 * fz, -0.05 * fz, fz], axis=1)
     origin = np.array([at[0] + 0.1, at[1] - 0.05, height_m])
     point = np.array([at[0], at[1], height_m])
     moment = np.cross(point - origin, force) + np.outer(fz > 0, [0.0, 0.0, free_nm])
     pressure = np.where((fz > 20)[:, None], point, np.nan)
-    corners = origin + np.array([[0.3, 0.2, 0], [0.3, -0.2, 0], [-0.3, -0.2, 0], [-0.3, 0.2, 0]])
+    corners = point + half_m * np.array([[1, 1, 0], [1, -1, 0], [-1, -1, 0], [-1, 1, 0]])
     return PlateReadings("1", PLATE_RATE_HZ, start_s, origin, force, moment, pressure, 20.0, corners)
 
 
@@ -93,10 +99,65 @@ def test_two_feet_one_after_the_other_on_one_plate():
     assert (foot[46:] == LEFT).all()
 
 
-def test_two_feet_on_one_plate_are_not_measured_apart():
+def test_two_feet_on_one_plate_share_it_by_where_they_stand():
+    q = np.repeat(standing()[None], 20, axis=0)
+    centres = expected_stance(sole_points(MODEL, q[:1])[0].tolist(), 0.0).centres_m
+    for share in (0.5, 0.3):
+        pressed = share * centres[RIGHT] + (1 - share) * centres[LEFT]
+        loads = assigned(q, [plate(pressed, WEIGHT_N, 20, free_nm=2.0, half_m=0.5)])
+        assert (loads.foot_of_plate == BOTH).all()
+        assert loads.valid.all()
+        assert_near(loads.wrench.sum(axis=1), loads.plate_wrench[:, 0], 1e-9)
+        assert_near(loads.wrench[:, RIGHT, 2], share * WEIGHT_N, 1e-9)
+        assert_near(loads.centre_of_pressure_m, np.tile(centres, (20, 1, 1)), 1e-9)
+        at_feet = np.cross(loads.centre_of_pressure_m, loads.wrench[:, :, :3])
+        at_feet[:, :, 2] += loads.free_moment_nm
+        assert_near(loads.wrench[:, :, 3:], at_feet, 1e-9)
+
+
+def test_a_plate_beside_the_shared_one_counts_for_both():
     q = np.repeat(standing()[None], 20, axis=0)
     middle = 0.5 * (ball(q[0], RIGHT) + ball(q[0], LEFT))
-    assert not assigned(q, [plate(middle, WEIGHT_N, 20)]).valid.any()
+    beside = plate(ball(q[0], RIGHT), 100.0, 20, half_m=0.02)
+    loads = assigned(q, [plate(middle, WEIGHT_N - 100.0, 20, half_m=0.5), beside])
+    assert (loads.foot_of_plate == [BOTH, RIGHT]).all()
+    assert_near(loads.wrench.sum(axis=1), loads.plate_wrench.sum(axis=1), 1e-9)
+
+
+def test_feet_on_a_plate_without_an_outline_are_not_told_apart():
+    q = np.repeat(standing()[None], 20, axis=0)
+    middle = 0.5 * (ball(q[0], RIGHT) + ball(q[0], LEFT))
+    unknown = replace(plate(middle, WEIGHT_N, 20), corners_m=None)
+    assert (assigned(q, [unknown]).foot_of_plate == RIGHT).all()
+
+
+def moving(speeds_m_s, frames=30):
+    """Standing feet that are carried along x at a speed each (the hips bend)."""
+    times = (np.arange(frames) - frames // 2) / RATE_HZ
+    q = np.repeat(standing()[None], frames, axis=0)
+    height = standing()[2] - 0.05
+    for segment, speed in zip(("right_thigh", "left_thigh"), speeds_m_s, strict=True):
+        turn = Rotation.from_rotvec(np.outer(-np.arctan(speed * times / height), [0.0, 1.0, 0.0]))
+        q[:, MODEL.joint(segment).q] = turn.as_quat()
+    return q
+
+
+@pytest.mark.parametrize(
+    ("speeds", "belt_m_s", "owner"),
+    [((0.0, 0.0), 0.0, BOTH), ((0.0, 0.0), 2.0, BOTH), ((0.3, -0.3), 1.3, BOTH), ((2.0, -0.5), 1.3, RIGHT)],
+)
+def test_feet_that_pass_each_other_do_not_share_and_feet_on_a_belt_do(speeds, belt_m_s, owner):
+    """What counts is how fast the soles move against each other, not against the plate."""
+    q = moving(speeds)
+    middle = len(q) // 2
+    q[:, 0] -= belt_m_s * (np.arange(len(q)) - middle) / RATE_HZ
+    feet = sole_points(MODEL, q)
+    pressed = plate([0.0, 0.0], 0.0, len(q), half_m=3.0)
+    at = np.repeat(feet[:, RIGHT, 1] * [1, 1, 0], int(PLATE_RATE_HZ / RATE_HZ), axis=0)
+    force = np.tile([0.0, 0.0, WEIGHT_N], (len(at), 1))
+    pressed = replace(pressed, force_n=force, moment_nm=np.cross(at - pressed.origin_m, force))
+    near = np.abs(np.arange(len(q)) - middle) <= 3
+    assert (assigned(q, [pressed]).foot_of_plate[near, 0] == owner).all()
 
 
 def test_a_foot_beside_the_plates_makes_a_frame_invalid():
@@ -198,3 +259,28 @@ def test_stretches_are_the_unbroken_runs():
     assert [run.tolist() for run in stretches(mask)] == [[0, 1], [4], [6, 7, 8]]
     assert stretches(np.zeros(3, bool)) == []
     assert [run.tolist() for run in stretches(np.ones(2, bool))] == [[0, 1]]
+
+
+@pytest.mark.parametrize("outline", [True, False])
+def test_a_foot_on_a_plate_that_fell_silent_is_not_fully_measured(outline):
+    """Even one that rolls too fast to be taken for standing elsewhere; a foot high above it is none of its business."""
+    frames = 30
+    q = np.repeat(standing()[None], frames, axis=0)
+    q[:, 0] += 0.006 * np.arange(frames)  # 0.6 m/s
+    right, left = (plate(ball(q[15], side), 0.5 * WEIGHT_N, frames) for side in (RIGHT, LEFT))
+    broken = right.force_n.copy()
+    broken[100:200] = np.nan
+    silent = replace(right, force_n=broken, corners_m=right.corners_m if outline else None)
+    assert assigned(q, [right, left]).valid[12:18].all()
+    assert not assigned(q, [silent, left]).valid[12:18].any()
+    elsewhere = plate(np.array([5.0, 5.0]), 0.0, frames)
+    gone = replace(elsewhere, force_n=np.full_like(elsewhere.force_n, np.nan))
+    assert assigned(q, [right, left, gone]).valid[12:18].all()
+
+
+def test_a_plate_that_fell_silent_does_not_matter_to_feet_that_share_another():
+    """Both stand on one plate that reads; another was not recorded, and nobody can stand on it."""
+    q = np.repeat(standing()[None], 20, axis=0)
+    middle = 0.5 * (ball(q[0], RIGHT) + ball(q[0], LEFT))
+    silent = replace(plate(ball(q[0], RIGHT), 0.0, 20, start_s=9.0), corners_m=None)
+    assert assigned(q, [plate(middle, WEIGHT_N, 20, half_m=0.5), silent]).valid.all()

@@ -16,10 +16,10 @@ AIR = (Contact.AIR, Contact.AIR)
 NO_PLATES = np.zeros(0, dtype=bool)
 
 
-def decided(q, memory, a=STILL, plates=(), unloaded=NO_PLATES, contacts=AIR):
+def decided(q, memory, a=STILL, plates=(), unloaded=NO_PLATES, contacts=AIR, silent=None):
     feet = UnmeasuredFeet(MODEL, PlateAreas(plates), 0.0 if plates else np.nan, DT)
     soles = sole_points(MODEL, q[None])[0].tolist()
-    return feet.decide(memory, (q, STILL, a), soles, contacts, unloaded)
+    return feet.decide(memory, (q, STILL, a), soles, contacts, unloaded, silent)
 
 
 def memory(touching_s, plates=0):
@@ -54,3 +54,21 @@ def test_measured_feet_are_not_asked():
     found = decided(standing(MODEL), memory((1.0, 1.0)), contacts=both)
     assert list(found.carrying) == [] and found.touching_s == (0.0, 0.0)
     assert abs(found.sole_height_m) < 0.02
+
+
+def test_a_foot_whose_plate_falls_silent_stands_on_at_once():
+    """Without the delay of a foot that has only just touched the floor, which waits for its plate."""
+    q = standing(MODEL)
+    plates = plates_under(MODEL, q)
+    before = ContactMemory((0, 1), (None, None), 0.0, (0.0, 0.0))
+    right_silent = np.array([True, False])
+    contacts = (Contact.AIR, Contact.MEASURED)
+    idle = np.zeros(2, dtype=bool)
+    found = decided(q, before, plates=plates, unloaded=idle, contacts=contacts, silent=right_silent)
+    assert list(found.carrying) == [0]
+    waiting = decided(q, before, plates=plates, unloaded=idle, contacts=contacts)
+    assert list(waiting.carrying) == []
+    lifted = decided(
+        standing(MODEL, 0.5), before, plates=plates, unloaded=idle, contacts=contacts, silent=right_silent
+    )
+    assert list(lifted.carrying) == []

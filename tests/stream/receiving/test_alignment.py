@@ -33,6 +33,25 @@ def test_markers_are_the_wanted_ones_and_plates_the_frames_means(capture):
     assert (alignment.frames_in, alignment.lost, notes) == (80, 0, [])
 
 
+def test_readings_that_the_person_cannot_make_are_refused_and_told(capture):
+    stream, frames = frames_of(capture)
+    wrench = np.array(frames[5].plates.wrench)
+    wrench[3, 0, 2], wrench[4, 1] = 1e9, np.nan
+    frames[5] = replace(frames[5], plates=replace(frames[5].plates, wrench=wrench))
+    notes = []
+    alignment = FrameAlignment(stream, np.arange(36), lambda *note: notes.append(note), 75.0)
+    accepted = [alignment.accept(frame) for frame in frames]
+    expected = plate_wrenches(capture.plates, capture.markers.times_s, 100.0)
+    found = [one.plates for ready, _ in accepted for one in ready]
+    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-9)
+    logged = accepted[5][1].wrench
+    assert np.isnan(logged[3, 0]).all()
+    assert np.isnan(logged[4, 1]).all()
+    assert np.isnan(logged).any(axis=2).sum() == 2
+    ((kind, _, frame, count),) = notes
+    assert (kind, frame, count) == ("plates refused", 5, 2)
+
+
 def test_points_without_names_are_handed_on_without_holes(capture):
     alignment, frames, _ = intake_of(capture, unlabelled=True)
     points = np.array(frames[0].unlabelled_m)

@@ -1,12 +1,16 @@
 """Means over frames are those of a whole trial, bit for bit, and what was not read is NaN."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mbkf.conventions import GRAVITY_M_S2
 from mbkf.io.records import PlateReadings
 from mbkf.io.resample import WHOLE
+from mbkf.sensors.contact.cleaning import cleaned, longest_bridge
 from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.stream.receiving.plate_buffer import PlateBuffer
 from mbkf.stream.source import PlateSamples, StreamDescription, without_readings
@@ -83,16 +87,95 @@ def test_before_the_first_sample_and_far_from_any_nothing_is_read():
     assert np.isnan(buffer.mean(30)).all()
 
 
-@pytest.mark.parametrize("at_once", [True, False])
-def test_lost_samples_leave_their_frames_unread(at_once):
-    plates = plates_of(1000.0, 300)
-    index = np.delete(np.arange(300), np.arange(100, 105))
-    buffer = buffer_of(plates)
-    for part in [index] if at_once else np.array_split(index, 30):
+def without(lost, plates, parts):
+    """A buffer that never received some samples, in so many parts."""
+    index, buffer = np.delete(np.arange(300), lost), buffer_of(plates)
+    for part in np.array_split(index, parts):
         buffer.put(PlateSamples(part, readings(plates)[part]))
+    return buffer
+
+
+@pytest.mark.parametrize("parts", [1, 30])
+def test_lost_samples_leave_their_frames_unread(parts):
+    lost = np.arange(95, 124)
+    assert len(lost) > longest_bridge(1000.0)
+    buffer = without(lost, plates_of(1000.0, 300), parts)
     unread = [np.isnan(buffer.mean(number)).any() for number in range(29)]
-    assert np.flatnonzero(unread).tolist() == [10]
-    assert buffer.missing == 5
+    assert np.flatnonzero(unread).tolist() == [9, 10, 11, 12]
+    assert buffer.missing == 29
+
+
+@pytest.mark.parametrize("parts", [1, 30])
+def test_few_lost_samples_are_bridged_as_in_a_whole_trial(parts):
+    plates, lost = plates_of(1000.0, 300), np.arange(95, 119)
+    whole = tuple(
+        replace(plate, force_n=gapped(plate.force_n, lost), moment_nm=gapped(plate.moment_nm, lost))
+        for plate in plates
+    )
+    clean, remarks = cleaned(whole, 10_000.0)
+    assert len(remarks) == len(plates)
+    expected = plate_wrenches(clean, np.arange(29) / RATE_HZ, RATE_HZ)
+    buffer = without(lost, plates, parts)
+    np.testing.assert_array_equal([buffer.mean(number) for number in range(29)], expected)
+
+
+def gapped(values, lost):
+    found = np.array(values)
+    found[lost] = np.nan
+    return found
+
+
+def loaded_plates(samples, mass_kg):
+    """A person rocking from foot to foot on two plates; both plates possible for the mass, with noise."""
+    weight, t = GRAVITY_M_S2 * mass_kg, np.arange(samples) / 1000.0
+    rng, made = np.random.default_rng(3), []
+    for k, plate in enumerate(plates_of(1000.0, samples)):
+        share = 0.5 + 0.3 * np.sin(8.0 * t + np.pi * k)
+        force = weight * np.stack([0.05 * share, 0.03 * share, share], axis=1) + rng.normal(size=(samples, 3))
+        moment = weight * 0.05 * np.stack([share, -share, 0.1 * share], axis=1) + rng.normal(
+            size=(samples, 3)
+        )
+        made.append(replace(plate, force_n=force, moment_nm=moment))
+    return tuple(made)
+
+
+@settings(deadline=None, max_examples=40)
+@given(
+    at=st.integers(30, 250),
+    length=st.integers(1, 40),
+    channel=st.integers(0, 5),
+    value=st.sampled_from([1e5, -1e5, 1e9, np.nan, np.inf, -np.inf]),
+    plate=st.integers(0, 1),
+    chunk=st.integers(1, 15),
+)
+def test_what_is_refused_by_value_is_refused_as_offline(at, length, channel, value, plate, chunk):
+    """Frames agree with the whole trial's, but for those due before a gap ended, which stay unread."""
+    mass_kg, plates = 70.0, loaded_plates(300, 70.0)
+    values = np.array(readings(plates))
+    values[at : at + length, plate, channel] = value
+    broken = tuple(
+        replace(one, force_n=values[:, k, :3], moment_nm=values[:, k, 3:]) for k, one in enumerate(plates)
+    )
+    expected = plate_wrenches(cleaned(broken, mass_kg)[0], np.arange(29) / RATE_HZ, RATE_HZ)
+    described = tuple(without_readings(one) for one in plates)
+    buffer = PlateBuffer(StreamDescription("x", ("A",), RATE_HZ, 0.0, described), mass_kg)
+    sent = 0
+    for number in range(29):
+        while sent - 1 < 10 * (number + 0.5):
+            index = np.arange(sent, min(sent + chunk, 300))
+            taken = buffer.put(PlateSamples(index, values[index]))
+            assert np.isfinite(taken.wrench).all(axis=2).sum() == (
+                2 * len(index) - ((index >= at) & (index < at + length)).sum()
+            )
+            sent = index[-1] + 1
+        found = buffer.mean(number)
+        open_gap = at <= 10 * (number + 0.5) and at + length >= sent
+        if open_gap:
+            assert np.isnan(found[plate]).all()
+            np.testing.assert_array_equal(found[1 - plate], expected[number, 1 - plate])
+        else:
+            np.testing.assert_array_equal(found, expected[number])
+    assert buffer.refused == length
 
 
 def test_old_samples_are_not_taken_again():

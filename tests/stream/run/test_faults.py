@@ -123,6 +123,19 @@ def test_points_that_cannot_be_are_left_out(tmp_path, capture, subject, nonsense
     assert_same(tmp_path, offline(shown, subject))
 
 
+@pytest.mark.parametrize("nonsense", [1e9, -1e9, np.nan])
+def test_plate_readings_that_cannot_be_are_refused(tmp_path, capture, subject, nonsense):
+    stream, frames = frames_of(capture)
+    for number in range(30, 60, 7):
+        wrench = np.array(frames[number].plates.wrench)
+        wrench[number % 5, number % 2, number % 3] = nonsense
+        frames[number] = replace(frames[number], plates=replace(frames[number].plates, wrench=wrench))
+    outcome = follow(tmp_path, stream, frames, subject)
+    assert kinds(outcome) == {"plates refused"}
+    assert_same(tmp_path, offline(capture, subject))
+    assert any("refused" in warning for warning in read_reconstruction(tmp_path).warnings)
+
+
 def test_points_at_the_edge_of_what_can_be_do_not_end_it(tmp_path, capture, subject):
     stream, frames = frames_of(capture)
     for number in range(40, 50):

@@ -38,6 +38,14 @@ def test_verdicts_follow_their_bounds(changes, title, kind):
     assert judged(walk(), **changes)[title].kind == kind
 
 
+@pytest.mark.parametrize(("rms_mm", "kind"), [(38.0, GOOD), (45.0, CARE), (52.0, BAD)])
+def test_keypoints_are_judged_by_their_noise(rms_mm, kind):
+    r = walk()
+    markers = tuple(replace(m, noise_m=0.02, correlated_m=0.01, correlation_s=0.3) for m in r.subject.markers)
+    r = replace(r, subject=replace(r.subject, markers=markers))
+    assert judged(r, marker_rms_mm=rms_mm, marker_max_mm=110.0)["Marker error"].kind == kind
+
+
 def test_one_large_residual_is_noticed():
     r = walk()
     force, moment = r.residual_force_n.copy(), r.residual_moment_nm.copy()

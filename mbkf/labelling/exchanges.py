@@ -1,0 +1,303 @@
+"""Names that two markers of a named capture exchange for some frames, found by distances and by jumps.
+
+A laboratory's labels may be swapped between two markers, mostly after one of them was hidden. Two kinds of evidence are
+joined. The distances from a marker to its rigid neighbours tell whether it stands under its own name: with expected
+distance D and its spread s, a point at x costs Σ min((|x − x_n| − D_n)² / s_n², c) as that marker. And names that are
+exchanged from one frame to the next turn the vector δ from one marker to the other about: δ(t) · δ(t+1) < 0, which two
+markers that only move do not. The likeliest sequence of stored and exchanged frames follows by the Viterbi recursion
+(G. D. Forney, Proc. IEEE 61, 1973, 268-278).
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.labelling.assignment import Indices
+from mbkf.sensors.marker_sensor import MarkerSensor
+
+POSTURES = 48
+"""Postures by which it is learnt how far the distance of two markers varies."""
+
+FREE_SD_RAD = 0.4
+"""Spread of joint rotations that the body describes no posture for."""
+
+NEIGHBOURS = 6
+"""So many markers of the steadiest distances speak for a marker's name."""
+
+WORST = 9.0
+"""The most that one distance costs, c: a neighbour may be astray itself."""
+
+LOOKS = 150
+"""Frames, spread over the capture, at which pairs are looked for."""
+
+TURNED, FLIPPED = 400.0, 25.0
+"""Cost of a state that goes against a turn of δ or its absence, and of a change where δ is not known."""
+
+APART_M = 0.015
+"""Markers nearer than this to each other are not told apart."""
+
+SUSPECT_GAIN = 5.0
+"""A pair is looked at that gains so much in some frame."""
+
+LEAST_GAIN, SURE_GAIN = 1.0, 12.0
+"""Mean gain of a frame by which an exchange is put right: where δ turns at all of its ends, and where it does not."""
+
+LEFT, SURELY_LEFT = 0.9, 0.6
+"""An exchange that is put right leaves no more than this share of the cost; in the same two cases."""
+
+OBSERVED_SD_M, FEW = 0.008, 20
+"""Least spread of a distance as the capture has it, and how many frames looked at must show it."""
+
+BLOCK = 16
+"""Frames that are worked on at once."""
+
+ROUNDS = 8
+"""Most rounds of exchanges that hang together."""
+
+
+@dataclass(frozen=True)
+class Distances:
+    """What distances between the markers are expected.
+
+    Attributes:
+        expected_m: (M, M) expected distance.
+        sd_m: (M, M) its spread, by posture and placement.
+    """
+
+    expected_m: Array
+    sd_m: Array
+
+    @property
+    def neighbours(self) -> Indices:
+        """(M, k) markers to whom a marker's distance is the steadiest."""
+        spread = self.sd_m + np.diag(np.full(len(self.sd_m), np.inf))
+        return np.asarray(np.argsort(spread, axis=1)[:, : min(NEIGHBOURS, len(spread) - 1)])
+
+
+@dataclass(frozen=True)
+class Exchange:
+    """Two markers and the frames in which they have each other's name.
+
+    Attributes:
+        a, b: Their indices, the smaller first.
+        frames: (T,) where their names are exchanged.
+    """
+
+    a: int
+    b: int
+    frames: BoolArray
+
+
+def body_distances(sensor: MarkerSensor, placement_m: Array) -> Distances:
+    """Distances between the markers of a body, over postures that are likely for it.
+
+    Args:
+        sensor: M markers on the body.
+        placement_m: (M,) how far each may be from its place, m.
+    """
+    model, rng = sensor.model, np.random.default_rng(0)
+    spread = np.where(model.posture_sd > 0.0, np.minimum(model.posture_sd, FREE_SD_RAD), FREE_SD_RAD)
+    spread[:6] = 0.0
+    neutral = model.neutral()
+    poses = [model.integrate(neutral, spread * rng.standard_normal(model.nv)) for _ in range(POSTURES)]
+    places = np.array([sensor.positions(q) for q in poses])
+    apart = np.linalg.norm(places[:, :, None] - places[:, None], axis=3)
+    placed = placement_m[:, None] ** 2 + placement_m**2
+    return Distances(apart.mean(axis=0), np.sqrt(apart.var(axis=0) + placed))
+
+
+def observed_distances(positions_m: Array, distances: Distances) -> Distances:
+    """Distances as a capture has them most of the time: closer than the body's, where markers sit elsewhere on it.
+
+    Args:
+        positions_m: (T, M, 3) named trajectories, NaN where hidden, exchanged in the fewer of the frames.
+        distances: What is expected of pairs that are never seen together.
+    """
+    looks = np.unique(np.linspace(0, len(positions_m) - 1, LOOKS).astype(int))
+    apart = np.sqrt(np.maximum(_squared(positions_m[looks]), 0.0))
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "All-NaN slice", RuntimeWarning)
+        low, middle, high = np.nanpercentile(apart, (10.0, 50.0, 90.0), axis=0)
+    seen = (~np.isnan(apart)).sum(axis=0) >= FEW
+    spread = np.hypot(OBSERVED_SD_M, high - low)
+    return Distances(
+        np.where(seen, middle, distances.expected_m),
+        np.where(seen, np.minimum(spread, distances.sd_m), distances.sd_m),
+    )
+
+
+def exchanges(positions_m: Array, distances: Distances) -> tuple[Exchange, ...]:
+    """Pairs of markers whose names are exchanged, and where; each pair once.
+
+    Args:
+        positions_m: (T, M, 3) named trajectories, NaN where hidden.
+        distances: What distances are expected between the M markers.
+    """
+    shown, found = positions_m, dict[tuple[int, int], BoolArray]()
+    if shown.shape[1] < 4 or not len(shown):
+        return ()
+    expected, of_body, turning = distances, True, _turning(shown)
+    for _ in range(ROUNDS):
+        pairs = _suspects(shown, expected, turning)
+        chosen = _chosen(shown, expected, pairs) if len(pairs) else []
+        for one in chosen:
+            found[one.a, one.b] = found.get((one.a, one.b), np.zeros(len(shown), dtype=bool)) ^ one.frames
+        shown = put_right(shown, chosen)
+        if not chosen and not of_body:
+            break
+        if chosen:
+            turning = _turning(shown)
+        else:
+            expected, of_body = observed_distances(shown, distances), False
+    return tuple(Exchange(a, b, frames) for (a, b), frames in found.items() if frames.any())
+
+
+def put_right(positions_m: Array, found: tuple[Exchange, ...] | list[Exchange]) -> Array:
+    """(T, M, 3) trajectories with exchanged names put right, in the order in which the exchanges were found.
+
+    Args:
+        positions_m: (T, M, 3) trajectories as they are named.
+        found: The exchanges.
+    """
+    right = positions_m.copy()
+    for one in found:
+        right[one.frames, one.a], right[one.frames, one.b] = (
+            right[one.frames, one.b],
+            right[one.frames, one.a],
+        )
+    return right
+
+
+def misfits(positions_m: Array, distances: Distances) -> tuple[Array, Array]:
+    """(T, M) cost of every marker under its own name, and how many neighbours (T, M) it was judged by.
+
+    Args:
+        positions_m: (T, M, 3) named trajectories, NaN where hidden.
+        distances: What distances are expected between the M markers.
+    """
+    near = distances.neighbours
+    cost, count = np.zeros(positions_m.shape[:2]), np.zeros(positions_m.shape[:2])
+    for marker, own in enumerate(near):
+        away = np.sqrt(((positions_m[:, own] - positions_m[:, marker, None]) ** 2).sum(axis=2))
+        off = ((away - distances.expected_m[marker, own]) / distances.sd_m[marker, own]) ** 2
+        cost[:, marker] = np.nan_to_num(np.minimum(off, WORST), nan=0.0).sum(axis=1)
+        count[:, marker] = (~np.isnan(off)).sum(axis=1)
+    return cost, count
+
+
+def _suspects(shown_m: Array, distances: Distances, turning: BoolArray) -> Indices:
+    """(P, 2) pairs that fit better the other way round in some frame looked at, or whose δ turns about (M, M)."""
+    looks = np.unique(np.linspace(0, len(shown_m) - 1, LOOKS).astype(int))
+    near, frames = distances.neighbours, shown_m[looks]
+    count = shown_m.shape[1]
+    apart = np.sqrt(np.maximum(_squared(frames), 0.0))  # (F, M, M)
+    markers = np.arange(count)[:, None]
+    expected, spread = distances.expected_m[markers, near], distances.sd_m[markers, near]
+    cost = np.zeros((len(looks), count, count))  # of point b (last but one) as marker a (last)
+    for k in range(near.shape[1]):
+        off = apart[:, :, near[:, k]] - expected[:, k]
+        off *= off / spread[:, k] ** 2
+        off[:, near[:, k], np.arange(count)] = 0.0
+        cost += np.minimum(np.nan_to_num(off, nan=0.0), WORST)
+    own = np.einsum("tmm->tm", cost)
+    gain = own[:, :, None] + own[:, None] - cost - cost.transpose(0, 2, 1)
+    both = ~np.isnan(apart) & (apart >= APART_M)
+    suspect = (both & (gain > SUSPECT_GAIN)).any(axis=0) | turning
+    return np.argwhere(np.triu(suspect, 1))
+
+
+def _squared(frames_m: Array) -> Array:
+    """(F, M, M) squared distances between the markers of a frame."""
+    middle = frames_m - np.nan_to_num(frames_m).mean(axis=1, keepdims=True)
+    inner = middle @ middle.transpose(0, 2, 1)
+    own = np.einsum("tmm->tm", inner)
+    return np.asarray(own[:, :, None] + own[:, None] - 2.0 * inner)
+
+
+def _turning(shown_m: Array) -> BoolArray:
+    """(M, M) whether the vector from one marker to another turns about from any frame to the next."""
+    turning = np.zeros((shown_m.shape[1], shown_m.shape[1]), dtype=bool)
+    for first in range(0, len(shown_m) - 1, BLOCK):  # small blocks stay in the processor's cache
+        now = shown_m[first : first + BLOCK + 1]
+        cross = now[1:] @ now[:-1].transpose(0, 2, 1)
+        own = np.einsum("tmm->tm", cross)
+        cross += cross.transpose(0, 2, 1)
+        turning |= (cross > own[:, :, None] + own[:, None]).any(axis=0)
+    return turning
+
+
+def _chosen(shown_m: Array, distances: Distances, pairs: Indices) -> list[Exchange]:
+    """The exchanges that gain most, no marker in two of them."""
+    gain, left, stored = _gains(shown_m, distances, pairs)
+    delta = shown_m[:, pairs[:, 0]] - shown_m[:, pairs[:, 1]]
+    turn = np.einsum("tpi,tpi->tp", delta[1:], delta[:-1])  # NaN where one is hidden
+    state = _likeliest(gain, turn)
+    tried = []
+    for p, (a, b) in enumerate(pairs):
+        kept = np.zeros(len(shown_m), dtype=bool)
+        for first, end in _runs(state[:, p]):
+            there = slice(first, end)
+            looked = stored[there, p] > 0.0
+            if not looked.any():
+                continue
+            ends = [t for t in (first - 1, end - 1) if 0 <= t < len(turn)]
+            if any(turn[t, p] >= 0.0 for t in ends):
+                continue
+            told = bool(ends) and all(turn[t, p] < 0.0 for t in ends)
+            least, most = (LEAST_GAIN, LEFT) if told else (SURE_GAIN, SURELY_LEFT)
+            gained = gain[there, p].sum() >= least * looked.sum()
+            kept[there] = gained and left[there, p].sum() <= most * stored[there, p].sum()
+        if kept.any():
+            tried.append((float(gain[kept, p].sum()), Exchange(int(a), int(b), kept)))
+    chosen: list[Exchange] = []
+    for _, one in sorted(tried, key=lambda each: -each[0]):
+        if not any({one.a, one.b} & {other.a, other.b} for other in chosen):
+            chosen.append(one)
+    return chosen
+
+
+def _gains(shown_m: Array, distances: Distances, pairs: Indices) -> tuple[Array, Array, Array]:
+    """(T, P) what exchanging each pair gains, what then is left, and the cost as stored; 0 where both are hidden."""
+    shape = (len(shown_m), len(pairs))
+    stored, left = np.zeros(shape), np.zeros(shape)
+    for p, (a, b) in enumerate(pairs):
+        for marker, other in ((a, b), (b, a)):
+            spread = distances.sd_m[marker].copy()
+            spread[[marker, other]] = np.inf
+            near = np.argsort(spread)[: min(NEIGHBOURS, len(spread) - 2)]
+            expected, sd = distances.expected_m[marker, near], distances.sd_m[marker, near]
+            for point, total in ((marker, stored), (other, left)):
+                away = np.sqrt(((shown_m[:, near] - shown_m[:, point, None]) ** 2).sum(axis=2))
+                each = np.minimum(((away - expected) / sd) ** 2, WORST)
+                total[:, p] += np.nan_to_num(each, nan=0.0).sum(axis=1)
+    return stored - left, left, stored
+
+
+def _likeliest(gain: Array, turn: Array) -> BoolArray:
+    """(T, P) whether the names of each pair are exchanged, by gains (T, P) and δ(t)·δ(t+1) (T - 1, P)."""
+    frames, pairs = gain.shape
+    stay = np.where(np.isnan(turn), 0.0, np.where(turn < 0.0, TURNED, 0.0))
+    flip = np.where(np.isnan(turn), FLIPPED, np.where(turn < 0.0, 0.0, TURNED))
+    cost = np.array([np.zeros(pairs), FLIPPED - gain[0]])
+    came = np.zeros((frames, 2, pairs), dtype=bool)  # whether from the other state
+    for t in range(1, frames):
+        kept, changed = cost + stay[t - 1], cost[::-1] + flip[t - 1]
+        came[t] = changed < kept
+        cost = np.minimum(kept, changed)
+        cost[1] -= gain[t]
+    state = np.zeros((frames, pairs), dtype=bool)
+    state[-1] = cost[1] < cost[0]
+    every = np.arange(pairs)
+    for t in range(frames - 1, 0, -1):
+        state[t - 1] = state[t] ^ came[t, state[t].astype(int), every]
+    return state
+
+
+def _runs(state: BoolArray) -> list[tuple[int, int]]:
+    """First frame and the frame after the last of every run of True."""
+    edges = np.diff(np.concatenate([[0], state.astype(int), [0]]))
+    return list(zip(np.flatnonzero(edges == 1).tolist(), np.flatnonzero(edges == -1).tolist(), strict=True))

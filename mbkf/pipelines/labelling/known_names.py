@@ -1,0 +1,190 @@
+"""Names that a capture has already, as knowledge: which of its points carry a name that the body does not contradict.
+
+A name counts per tracklet, for a column may take up another marker after a gap. Names whose points jump from frame to
+frame, as in captures shuffled in every frame, mean nothing; nor do those of a capture most of which contradict the
+body.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.io.records import MarkerTrajectories
+from mbkf.io.subject import SubjectMarker, match_names
+from mbkf.labelling.assignment import HIDDEN, Indices
+from mbkf.labelling.exchanges import Distances, body_distances, exchanges, misfits
+from mbkf.labelling.tracklets import Tracklets, linked
+from mbkf.labelling.tracks import COLUMNS_ARE_TRACKS, continued
+from mbkf.sensors.marker_sensor import MarkerSensor
+
+PLACED_SD_M = 0.015
+"""A marker may sit so far from where the static trial had it, besides what the subject says."""
+
+CONTRADICTED = 3.0
+"""A name is contradicted whose distances to its neighbours are off by so many variances in the mean."""
+
+LEAST_NEIGHBOURS = 2.0
+"""Names with fewer named neighbours at hand are taken as they are."""
+
+UNKNOWN_M = 1e3
+"""Spread of a distance that is not known."""
+
+MOST_CONTRADICTED = 0.5
+"""Where a larger share of a capture's named samples contradicts the body, its names mean nothing."""
+
+LOOKS = 60
+"""Frames by which it is judged whether names stay on their points."""
+
+
+@dataclass(frozen=True)
+class KnownNames:
+    """What the names of a capture say.
+
+    Attributes:
+        claimed: (T, C) marker that each point is named as, ``HIDDEN`` where its name says nothing.
+        trusted: (T, C) the same where the body does not contradict it.
+        ignored: Why all names are ignored, "" where they are not.
+    """
+
+    claimed: Indices
+    trusted: Indices
+    ignored: str = ""
+
+    @property
+    def names(self) -> bool:
+        """Whether any name is known."""
+        return bool((self.trusted != HIDDEN).any())
+
+
+def no_names(points: MarkerTrajectories) -> KnownNames:
+    """Nothing is known of a capture's names.
+
+    Args:
+        points: The capture.
+    """
+    nothing = np.full(points.positions_m.shape[:2], HIDDEN, dtype=np.intp)
+    return KnownNames(nothing, nothing)
+
+
+def known_names(
+    points: MarkerTrajectories, markers: Sequence[SubjectMarker], sensor: MarkerSensor
+) -> KnownNames:
+    """The names of a capture that can be relied on.
+
+    Args:
+        points: The capture, wholly, partly or not named.
+        markers: The M markers that are looked for.
+        sensor: They on the body.
+    """
+    nothing = no_names(points)
+    place = {marker.name: k for k, marker in enumerate(markers)}
+    column = {
+        points.names.index(name): place[marker.name]
+        for name, marker in match_names(points.names, markers).items()
+        if marker.name in place and points.present[:, points.names.index(name)].any()
+    }
+    if not column:
+        return nothing
+    named = np.array(list(column), dtype=np.intp)
+    if not _stay(points.positions_m, named):
+        return replace(nothing, ignored="they change their points from frame to frame")
+    owner = np.array(list(column.values()), dtype=np.intp)
+    placed = np.array([np.hypot(np.hypot(m.noise_m, m.session_sd_m), PLACED_SD_M) for m in markers])
+    distances = body_distances(sensor, placed)
+    unnamed = np.setdiff1d(np.arange(len(markers)), owner)
+    distances.sd_m[:, unnamed] = UNKNOWN_M  # a marker's neighbours are those that have names
+    shown = np.full((points.frames, len(markers), 3), np.nan)
+    shown[:, owner] = points.positions_m[:, named]
+    claimed = np.full(points.positions_m.shape[:2], HIDDEN, dtype=np.intp)
+    claimed[:, named] = np.where(np.isnan(points.positions_m[:, named, 0]), HIDDEN, owner)
+    tracklets = linked(points.positions_m)
+    if _contradicted(points.positions_m, claimed, tracklets, distances) > MOST_CONTRADICTED:
+        return KnownNames(claimed, nothing.trusted, "most of them contradict the body")
+    right = claimed.copy()
+    for one in exchanges(shown, distances):
+        a, b = (right == one.a) & one.frames[:, None], (right == one.b) & one.frames[:, None]
+        right[a], right[b] = one.b, one.a
+    return KnownNames(claimed, _trusted(points.positions_m, right, tracklets, distances))
+
+
+def with_claims(labels: Indices, names: KnownNames) -> Indices:
+    """(T, C) labels with the names of points that no label fits, where nothing else has that name.
+
+    A marker that was put on elsewhere contradicts the body and is still that marker.
+
+    Args:
+        labels: (T, C) marker of every point, ``HIDDEN`` where none.
+        names: What the names of the capture say.
+    """
+    if names.ignored or not names.names:
+        return labels
+    found = labels.copy()
+    for t, c in np.argwhere((labels == HIDDEN) & (names.claimed != HIDDEN)):
+        if names.claimed[t, c] not in found[t]:
+            found[t, c] = names.claimed[t, c]
+    return found
+
+
+def _stay(positions_m: Array, named: Indices) -> bool:
+    """Whether the points of named columns are from frame to frame the same ones."""
+    looks = np.unique(np.linspace(1, len(positions_m) - 1, LOOKS).astype(int))
+    same = both = 0
+    for t in looks[looks > 0]:
+        there = ~np.isnan(positions_m[t - 1 : t + 1, named]).any(axis=(0, 2))
+        both += int(there.sum())
+        same += int(continued(positions_m[t - 1], positions_m[t])[named][there].sum())
+    return same >= COLUMNS_ARE_TRACKS * both
+
+
+def _contradicted(positions_m: Array, claimed: Indices, tracklets: Tracklets, distances: Distances) -> float:
+    """Share of the named samples whose names contradict the body."""
+    label = np.array([_most(claimed[f, c]) for f, c in tracklets.pieces], dtype=np.intp)
+    mean = _mean_misfits(positions_m, label, tracklets, distances, len(distances.expected_m))
+    length = np.diff(tracklets.spans, axis=1)[:, 0] * (label != HIDDEN)
+    return float(length[mean > CONTRADICTED].sum()) / max(1, int(length.sum()))
+
+
+def _trusted(positions_m: Array, right: Indices, tracklets: Tracklets, distances: Distances) -> Indices:
+    """(T, C) names of the tracklets that go with the body; the worst is dropped first, for it spoils its neighbours."""
+    label = np.array([_most(right[f, c]) for f, c in tracklets.pieces], dtype=np.intp)
+    markers = len(distances.expected_m)
+    dropped = np.zeros(len(label), dtype=bool)
+    for _ in range(len(label)):
+        own = np.where(dropped, HIDDEN, label)
+        mean = _mean_misfits(positions_m, own, tracklets, distances, markers)
+        bad = mean > CONTRADICTED
+        if not bad.any():
+            break
+        worst = float(mean[bad].max())
+        dropped |= bad & (mean >= 0.8 * worst)
+    trusted = tracklets.points(np.where(dropped, HIDDEN, label))
+    return np.where(right == trusted, trusted, HIDDEN)
+
+
+def _most(names: Indices) -> int:
+    """The name that most points of a tracklet carry, ``HIDDEN`` where fewer than half carry one."""
+    values, counts = np.unique(names, return_counts=True)
+    return int(values[counts.argmax()])
+
+
+def _mean_misfits(
+    positions_m: Array, label: Indices, tracklets: Tracklets, distances: Distances, markers: int
+) -> Array:
+    """(n,) mean misfit of every named tracklet, 0 where too few neighbours are at hand."""
+    shown = np.full((len(positions_m), markers, 3), np.nan)
+    named: BoolArray = np.asarray(label != HIDDEN)
+    for k in np.flatnonzero(named):
+        frames, columns = tracklets.pieces[k]
+        shown[frames, label[k]] = positions_m[frames, columns]
+    cost, count = misfits(shown, distances)
+    found = np.zeros(len(label))
+    for k in np.flatnonzero(named):
+        frames, _ = tracklets.pieces[k]
+        near = count[frames, label[k]]
+        if near.mean() >= LEAST_NEIGHBOURS:
+            found[k] = cost[frames, label[k]].sum() / near.sum()
+    return found

@@ -1,0 +1,102 @@
+"""Exchanged names of a named trial put right before it is used, and told."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mbkf.io.records import Capture, MarkerTrajectories
+from mbkf.io.subject import Subject
+from mbkf.labelling.exchanges import Distances, Exchange, body_distances, exchanges, put_right
+from mbkf.model.human import HumanModel
+from mbkf.model.protocol import Protocol
+from mbkf.sensors.marker_sensor import MarkerSensor
+
+STANDING_SD_M = 0.008
+"""How far a marker sits from where the standing trial has it."""
+
+
+def names_put_right(
+    markers: MarkerTrajectories, subject: Subject
+) -> tuple[MarkerTrajectories, tuple[tuple[str, str, int], ...]]:
+    """A trial's trajectories with exchanged names put right by the subject's geometry, and what was exchanged.
+
+    Args:
+        markers: (T, M, 3) m, under the subject's own names.
+        subject: The scaled person.
+    """
+    by_name = {marker.name: marker for marker in subject.markers}
+    own = [by_name[name] for name in markers.names]
+    sensor = MarkerSensor(
+        HumanModel.of(subject), [m.segment for m in own], np.array([m.position_m for m in own])
+    )
+    placed = np.array([np.hypot(m.noise_m, m.session_sd_m) for m in own])
+    found = exchanges(markers.positions_m, body_distances(sensor, placed))
+    return _changed(markers, found), _told(markers, found)
+
+
+def trials_put_right(
+    static: MarkerTrajectories, trials: Sequence[Capture], protocol: Protocol
+) -> tuple[list[Capture], tuple[tuple[str, str, int], ...]]:
+    """Trials with exchanged names put right by distances as the standing trial has them, and what was exchanged.
+
+    Only markers that the standing trial shows take part: of a person not scaled yet, nothing else is known.
+
+    Args:
+        static: The standing trial.
+        trials: The trials, under any names of the protocol.
+        protocol: The markers worn.
+    """
+    standing = {marker.name: name for name, marker in protocol.match(static.names).items()}
+    there = np.asarray(static.present.any(axis=0))
+    right: list[Capture] = []
+    told: list[tuple[str, str, int]] = []
+    for trial in trials:
+        match = {
+            name: marker
+            for name, marker in protocol.match(trial.markers.names).items()
+            if marker.kind != "computed"
+            and marker.name in standing
+            and there[static.names.index(standing[marker.name])]
+        }
+        own = trial.markers.select(tuple(match))
+        columns = [static.names.index(standing[marker.name]) for marker in match.values()]
+        sensor = MarkerSensor(
+            HumanModel.scaled(body=protocol.body),
+            [marker.segment for marker in match.values()],
+            np.array([marker.position_m for marker in match.values()]).reshape(-1, 3),
+        )
+        found = exchanges(own.positions_m, _standing(static.positions_m[:, columns], sensor)) if match else ()
+        told += _told(own, found)
+        fresh = _changed(own, found)
+        positions = trial.markers.positions_m.copy()
+        positions[:, [trial.markers.names.index(name) for name in own.names]] = fresh.positions_m
+        right.append(
+            replace(trial, markers=replace(trial.markers, positions_m=positions)) if found else trial
+        )
+    return right, tuple(told)
+
+
+def exchange_notes(found: Sequence[tuple[str, str, int]]) -> tuple[str, ...]:
+    """One line about each pair."""
+    return tuple(f"names {a} and {b} exchanged in {frames} frames, put right" for a, b, frames in found)
+
+
+def _standing(positions_m: np.ndarray, sensor: MarkerSensor) -> Distances:
+    """Distances as a standing trial has them, with the spread that movement brings."""
+    body = body_distances(sensor, np.full(len(sensor.segments), STANDING_SD_M))
+    apart = np.linalg.norm(positions_m[:, :, None] - positions_m[:, None], axis=3)
+    seen = ~np.isnan(apart).all(axis=0)
+    middle = body.expected_m.copy()
+    middle[seen] = np.nanmedian(apart[:, seen], axis=0)
+    return Distances(middle, body.sd_m)
+
+
+def _changed(markers: MarkerTrajectories, found: tuple[Exchange, ...]) -> MarkerTrajectories:
+    return replace(markers, positions_m=put_right(markers.positions_m, found)) if found else markers
+
+
+def _told(markers: MarkerTrajectories, found: tuple[Exchange, ...]) -> tuple[tuple[str, str, int], ...]:
+    return tuple((markers.names[one.a], markers.names[one.b], int(one.frames.sum())) for one in found)

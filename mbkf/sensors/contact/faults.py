@@ -1,0 +1,176 @@
+"""Faults of a plate over a whole trial: what no sample shows alone, but the samples around it do.
+
+=========  ========================================================================================================
+spike      leaves by a jump that no foot makes, and is back where it was within :data:`SPIKE_S`
+dropout    exact zeros that a loaded plate falls to, and rises from, within one sample
+saturated  a channel stays at its largest value of the trial, as a converter's limit cuts a peak off
+stuck      a loaded plate repeats the very same six numbers
+sign       a plate that pulls where it should push
+=========  ========================================================================================================
+
+Impacts are real: the vertical force under a running foot rises by 100 to 300 body weights per second. So a jump alone
+is no fault, however steep: it counts only where a sample or two later it is undone.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.sensors.contact.possible import Fault, Faults, impossible
+
+JUMP_WEIGHTS, JUMP_RATE = 0.5, 1000.0
+"""A change from one sample to the next beyond 0.5 body weights and 1000 of them per second is no foot's."""
+
+JUMP_LEVER_M = 2.0
+"""A moment's change is a force's at a lever of no more than this."""
+
+SPIKE_S = 0.025
+"""A spike is over after this; what stays longer is a change of the load."""
+
+DROP_WEIGHTS, DROP_RATE = 0.25, 60.0
+"""A load that vanishes within one sample, in body weights and body weights per second. A foot leaves the floor with
+some 20 to 40 of them per second; software zeroes a plate below 10 to 50 N."""
+
+FLAT_SAMPLES, FLAT_S = 5, 0.005
+"""A peak in which so many samples are equal is cut off: instruments have noise. A channel that never changes is not."""
+
+FLAT_WEIGHTS, FLAT_LEVER_M = 0.2, 0.2
+"""Least force at which a channel is cut off, and lever of the least moment; lower, equal samples are a zeroed plate."""
+
+STUCK_SAMPLES, STUCK_S = 20, 0.1
+"""All six channels of a plate under a person are not the same for so long; unless they are so from the first sample
+to the last, as a made example has them."""
+
+STUCK_WEIGHTS = 0.05
+"""Least force of a plate that is said to be stuck; an unloaded one may read the same all the time."""
+
+SIGN_S = 0.05
+"""A plate that pulls by more than it can for this long, and on the whole more than it pushes, has the wrong sign."""
+
+NO_FAULT = np.int8(Fault.NONE)
+
+
+def faults_of(wrench: Array, rate_hz: float, weight_n: float, reach_m: float) -> Faults:
+    """What is wrong with each sample of a trial.
+
+    Args:
+        wrench: (S, 6) force N and moment N m about the plate's origin, world axes.
+        rate_hz: Sample rate.
+        weight_n: The person's weight.
+        reach_m: Farthest that a foot can press from the origin.
+
+    Returns:
+        (S,) one :class:`Fault` per sample.
+    """
+    faults = impossible(wrench, weight_n, reach_m)
+    if _pulls(wrench, faults, rate_hz, weight_n):
+        return np.where(faults == Fault.NOT_A_NUMBER, faults, np.int8(Fault.SIGN))
+    for kind, found in (
+        (Fault.STUCK, _stuck(wrench, faults, rate_hz, weight_n)),
+        (Fault.SATURATED, _saturated(wrench, faults, rate_hz, weight_n)),
+        (Fault.DROPOUT, _dropouts(wrench, faults, rate_hz, weight_n)),
+    ):
+        faults[found & (faults == NO_FAULT)] = kind
+    spikes = _spikes(bridged(wrench, faults == Fault.NOT_A_NUMBER), rate_hz, weight_n)
+    faults[spikes & (faults == NO_FAULT)] = Fault.SPIKE
+    return faults
+
+
+def bridged(wrench: Array, bad: BoolArray) -> Array:
+    """Readings (S, 6) with straight lines over the samples that are bad (S,), level at either end; zero if all are."""
+    if not bad.any():
+        return wrench
+    good, filled = np.flatnonzero(~bad), wrench.copy()
+    gaps = np.flatnonzero(bad)
+    for channel in filled.T:
+        channel[gaps] = np.interp(gaps, good, channel[good]) if len(good) else 0.0
+    return filled
+
+
+def runs(mask: BoolArray) -> list[tuple[int, int]]:
+    """First sample of each unbroken run of True in a mask (S,), and the sample after its last."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
+    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+
+
+def _pulls(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) -> bool:
+    """Whether a plate pulls for some time, and more than it pushes."""
+    pulling = faults == Fault.PULL
+    if pulling.sum() < max(1.0, SIGN_S * rate_hz):
+        return False
+    vertical = wrench[(faults != Fault.NOT_A_NUMBER) & (faults != Fault.FORCE), 2]
+    loaded = np.abs(vertical) > STUCK_WEIGHTS * weight_n
+    return bool(vertical[loaded].sum() < 0.0)
+
+
+def _equal_runs(same: BoolArray, least: int) -> list[tuple[int, int]]:
+    """First sample and sample after the last of runs of equal samples; same (S − 1,) compares each with the next."""
+    return [(first, last + 1) for first, last in runs(same) if last + 1 - first >= least]
+
+
+def _never_changes(known: Array) -> bool:
+    """Whether known values (n, …) are all the same, as only a made example's are."""
+    return bool((known[1:] == known[:-1]).all())
+
+
+def _stuck(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) -> BoolArray:
+    stuck = np.zeros(len(wrench), dtype=bool)
+    if _never_changes(wrench[faults == NO_FAULT]):
+        return stuck
+    loaded = np.linalg.norm(wrench[:, :3], axis=1) >= STUCK_WEIGHTS * weight_n
+    same = (wrench[1:] == wrench[:-1]).all(axis=1) & loaded[1:]
+    for first, after in _equal_runs(same, max(STUCK_SAMPLES, round(STUCK_S * rate_hz))):
+        stuck[first:after] = True
+    return stuck
+
+
+def _saturated(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) -> BoolArray:
+    cut = np.zeros(len(wrench), dtype=bool)
+    known = faults == NO_FAULT
+    least = FLAT_WEIGHTS * weight_n * np.repeat([1.0, FLAT_LEVER_M], 3)
+    for channel, floor in zip(wrench.T, least, strict=True):
+        if _never_changes(channel[known]):
+            continue
+        for limit in (channel[known].max(), channel[known].min()):
+            if abs(limit) < floor:
+                continue
+            at_limit = channel == limit
+            same = at_limit[1:] & at_limit[:-1]
+            for first, after in _equal_runs(same, max(FLAT_SAMPLES, round(FLAT_S * rate_hz))):
+                cut[first:after] = True
+    return cut
+
+
+def _dropouts(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) -> BoolArray:
+    dropped = np.zeros(len(wrench), dtype=bool)
+    least = (DROP_WEIGHTS + DROP_RATE / rate_hz) * weight_n
+    carries = (wrench[:, 2] >= least) & (faults == NO_FAULT)
+    for first, after in runs((wrench == 0.0).all(axis=1)):
+        if first > 0 and after < len(wrench) and carries[first - 1] and carries[after]:
+            dropped[first:after] = True
+    return dropped
+
+
+def _spikes(wrench: Array, rate_hz: float, weight_n: float) -> BoolArray:
+    """Samples between a jump and the first one after it that is back; a jump that is not undone stays.
+
+    Args:
+        wrench: (S, 6) finite readings.
+        rate_hz: Sample rate.
+        weight_n: The person's weight.
+    """
+    spikes = np.zeros(len(wrench), dtype=bool)
+    jump_n = (JUMP_WEIGHTS + JUMP_RATE / rate_hz) * weight_n
+    scaled = wrench / (jump_n * np.repeat([1.0, JUMP_LEVER_M], 3))
+    longest = max(1, round(SPIKE_S * rate_hz))
+    back_at = 0
+    for before in np.flatnonzero((np.abs(np.diff(scaled, axis=0)) > 1.0).any(axis=1)).tolist():
+        if before < back_at:
+            continue
+        following = scaled[before + 1 : before + 2 + longest]
+        back = (np.abs(following - scaled[before]) <= 1.0).all(axis=1)
+        if back.any():
+            back_at = before + 1 + int(np.argmax(back))
+            spikes[before + 1 : back_at] = True
+    return spikes

@@ -1,0 +1,94 @@
+"""The body in one frame: found wherever it stands and faces, and refused where there is none."""
+
+import numpy as np
+import pytest
+
+from mbkf.errors import NotObservable
+from mbkf.marker_sets.equipment import EQUIPMENTS, equipped_weight
+from mbkf.marker_sets.places import worn_places
+from mbkf.marker_sets.search import FEWEST_POINTS, find_body, weights
+from mbkf.model.body_file import load_body
+from mbkf.model.human import HumanModel
+from tests.marker_sets.worn import near, standing
+
+BODY = load_body()
+PLACES = worn_places(BODY, ["plug_in_gait"])
+
+
+def segments(found):
+    names = [segment.name for segment in BODY.segments]
+    index = PLACES.segment_index
+    shares = np.array([found.body.shares[:, index == s].sum(axis=1) for s in range(len(names))]).T
+    return [names[s] for s in shares.argmax(axis=1)]
+
+
+def facing(found):
+    model = HumanModel(BODY, found.body.factors, 70.0)
+    return model.placements(found.body.q)[0][model.root.joint_id][:2, 0]
+
+
+@pytest.fixture(scope="module")
+def worn():
+    return standing("plug_in_gait", 1)
+
+
+@pytest.fixture(scope="module")
+def found(worn):
+    return find_body(PLACES, worn.points_m)
+
+
+def test_a_standing_person_is_found(worn, found):
+    right = [
+        near(one, worn.segments[name]) for one, name in zip(segments(found), worn.markers.names, strict=True)
+    ]
+    assert np.mean(right) >= 0.95
+    assert facing(found)[0] > 0.95, "he faces along x"
+    assert found.equipment.name == "the whole body"
+    assert found.evidence > 1.0
+    assert found.rival < found.worth
+
+
+def test_a_known_facing_gives_the_same_body(worn, found):
+    again = find_body(PLACES, worn.points_m, facing=np.array([1.0, 0.1]))
+    assert segments(again) == segments(found)
+    assert again.worth == pytest.approx(found.worth, abs=1.0)
+
+
+def test_a_turned_and_shifted_cloud_has_the_turned_body(worn, found):
+    angle = 1.9
+    again = find_body(PLACES, worn.turned(angle, (3.0, -2.0, 0.3)).points_m)
+    assert segments(again) == segments(found)
+    np.testing.assert_allclose(
+        facing(again),
+        np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]) @ facing(found),
+        atol=0.03,
+    )
+    np.testing.assert_allclose(again.body.factors, found.body.factors, atol=0.02)
+    assert again.worth == pytest.approx(found.worth, abs=1.0)
+
+
+def test_names_are_weighed_point_by_point(worn):
+    weight = equipped_weight(PLACES, EQUIPMENTS[0])
+    named = np.ones((3, len(weight)))
+    named[1] = 2.0
+    np.testing.assert_array_equal(weights(PLACES, EQUIPMENTS[0], None), weight)
+    np.testing.assert_array_equal(
+        weights(PLACES, EQUIPMENTS[0], named), np.stack([weight, 2 * weight, weight])
+    )
+
+
+def test_too_few_points_are_refused(worn):
+    with pytest.raises(NotObservable, match=f"{FEWEST_POINTS - 1} points; fewer than {FEWEST_POINTS}"):
+        find_body(PLACES, worn.points_m[: FEWEST_POINTS - 1])
+
+
+@pytest.mark.parametrize("scale", [0.1, 10.0, 1000.0])
+def test_clouds_of_no_persons_size_are_refused(worn, scale):
+    with pytest.raises(NotObservable, match=r"of height; no person stands there .* which unit"):
+        find_body(PLACES, scale * worn.points_m)
+
+
+def test_scattered_points_speak_for_no_body(found):
+    rng = np.random.default_rng(2)
+    scattered = rng.uniform([-0.3, -0.4, 0.0], [0.3, 0.4, 1.7], (40, 3))
+    assert find_body(PLACES, scattered).evidence < found.evidence - 0.5
