@@ -1,10 +1,11 @@
-"""Feet and plates: readings that cannot be and what the torques make of them, and two feet that share one plate."""
+"""Feet and plates: readings that cannot be, two feet that share one plate, and what is known without plates."""
 
 from __future__ import annotations
 
 from benchmarks.checks import Check, Context
 from benchmarks.contact.readings import readings_rows
 from benchmarks.contact.shared import shared_rows
+from benchmarks.contact.withheld import withheld_rows
 
 
 def run(context: Context) -> list[Check]:
@@ -12,4 +13,5 @@ def run(context: Context) -> list[Check]:
     return [
         *readings_rows(context),
         *shared_rows(context),
+        *withheld_rows(context),
     ]

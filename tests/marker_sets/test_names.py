@@ -16,8 +16,8 @@ from tests.marker_sets.known_sets import BUILT_ON, markers
 SURE = 0.8
 ALL_SETS = BUILT_ON | HELD_OUT | HELD_OUT_LATER | HELD_OUT_LAST
 ANOTHER_PLACE = {"RFT3", "LFT3", "RTOE", "LTOE", "RMEP", "LMEP", "backneck", "RHGT", "LHGT", "LV1"}
-"""Names of the sets whose likelier meaning is another one: finger tip or foot, toe, epicondyle of elbow or knee, back of
-the shoulder or tubercle of the arm, first lumbar vertebra."""
+"""Names of the sets whose likelier meaning is another one: finger tip or foot, toe, epicondyle of elbow or knee, back
+of the shoulder or tubercle of the arm, first lumbar vertebra."""
 KEYPOINTS = ("Hip", "Knee", "Ankle", "BigToe", "Heel", "Shoulder", "Elbow", "Wrist")
 CORES = sorted(
     spelling

@@ -1,5 +1,6 @@
 """The feet's twelve rows: minus the derivative of their innovations, about the soles, by what each foot stands on."""
 
+from dataclasses import replace
 from itertools import product
 from types import SimpleNamespace
 
@@ -7,8 +8,8 @@ import numpy as np
 import pytest
 
 from mbkf.sensors.block import OperatingPoint
-from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
-from mbkf.sensors.contact.sharing import SharedLoad
+from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, FreeStance
+from mbkf.sensors.contact.sharing import SharedLoad, Stance
 from mbkf.sensors.foot_contact import FootContact, FootContactSettings, FootDecision
 from mbkf.sensors.layout import Layout
 
@@ -114,6 +115,52 @@ def test_a_free_foot_that_pulls_carries_nothing(lifted):
     rows, values, _ = filled(loaded, w, lifted)
     assert values[2] == pytest.approx(-w[2] / SETTINGS.pulling_force_n)
     assert rows[2, 2] == pytest.approx(1.0 / SETTINGS.pulling_force_n)
+
+
+def both_free(share_right):
+    """Both feet on floor without a plate, 0.4 m apart, and wrenches that press where expected towards the pelvis."""
+    stance = Stance(np.array([[0.5, -0.1, 0.0], [0.1, 0.1, 0.0]]), np.zeros((2, 3)), np.array([1.0, 0.0]))
+    pelvis = np.array([0.3, 0.0, 1.0])
+    kinds = (Contact.UNMEASURED, Contact.UNMEASURED)
+    loaded = ContactDecision(
+        kinds, np.zeros((2, 6)), stance.centres_m, False, MEMORY, free=FreeStance(stance, pelvis)
+    )
+    vertical = WEIGHT_N * np.array([share_right, 1.0 - share_right])
+    arms = pelvis - stance.centres_m
+    forces = arms / arms[:, 2:] * vertical[:, None]
+    return loaded, np.concatenate([forces, np.cross(stance.centres_m, forces)], axis=1).ravel()
+
+
+@pytest.mark.parametrize("share_right", [0.2, 0.5, 0.9])
+def test_feet_in_double_support_press_where_they_stand_towards_the_pelvis(share_right):
+    loaded, w = both_free(share_right)
+    rows, values, plates = filled(loaded, w)
+    assert plates == 0
+    vertical = np.zeros(12, dtype=bool)
+    vertical[[2, 8]] = True
+    np.testing.assert_allclose(values[~vertical], 0.0, atol=1e-9)
+    expected = (0.5 * WEIGHT_N - w[[2, 8]]) / (SETTINGS.free_force_share * WEIGHT_N)
+    np.testing.assert_allclose(values[vertical], expected, rtol=1e-9)
+    assert not rows[:6, 6:].any() and not rows[6:, :6].any()
+
+
+def test_their_sum_decides_how_they_share():
+    """With the sum of both wrenches known, the levers tell the share, and its spread is that of the levers."""
+    loaded, w = both_free(0.3)
+    rows, _, _ = filled(loaded, w)
+    exact = np.hstack([np.eye(6), np.eye(6)]) / 0.1
+    P = np.linalg.inv(rows.T @ rows + exact.T @ exact)
+    assert 0.02 * WEIGHT_N < np.sqrt(P[2, 2]) < 0.1 * WEIGHT_N
+
+
+def test_a_foot_about_to_land_where_no_plate_reads_may_carry_a_little():
+    loaded, w = load((Contact.AIR, Contact.MEASURED)), np.zeros(12)
+    sure, _, _ = filled(loaded, w)
+    soft, _, _ = filled(replace(loaded, near=(0.5, 0.0)), w)
+    spread = SETTINGS.air_force_n + 0.5 * SETTINGS.landing_share * WEIGHT_N
+    assert 1.0 / sure[8, 2] == pytest.approx(SETTINGS.air_force_n)
+    assert 1.0 / soft[8, 2] == pytest.approx(spread)
+    np.testing.assert_array_equal(sure[:6], soft[:6])
 
 
 def test_wrenches_wander_about_the_soles():

@@ -72,3 +72,23 @@ def test_a_foot_whose_plate_falls_silent_stands_on_at_once():
         standing(MODEL, 0.5), before, plates=plates, unloaded=idle, contacts=contacts, silent=right_silent
     )
     assert list(lifted.carrying) == []
+
+
+def test_a_foot_in_the_air_is_near_the_floor_where_it_is_low_and_slow():
+    fresh = decided(standing(MODEL), memory((0.0, 0.0)))
+    np.testing.assert_allclose(fresh.near, 1.0, atol=0.1)
+    falling = STILL.copy()
+    falling[2] = -9.8
+    heights = [0.02, 0.05, 0.10, 0.30]
+    near = [decided(standing(MODEL, height), memory((0.0, 0.0)), falling).near[0] for height in heights]
+    assert near == sorted(near, reverse=True)
+    assert near[-1] < 1e-6
+
+
+def test_a_foot_over_an_idle_plate_is_not_near_to_bearing():
+    q = standing(MODEL)
+    plates = plates_under(MODEL, q)
+    assert decided(q, memory((0.0, 0.0), 2), plates=plates, unloaded=np.ones(2, dtype=bool)).near == (
+        0.0,
+        0.0,
+    )
