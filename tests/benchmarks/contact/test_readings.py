@@ -14,8 +14,8 @@ BY_NAME = {fault.name: fault for fault in FAULTS}
 
 
 def test_a_fault_is_put_into_one_plate_in_its_stance():
-    trial, subject = walker().trial, walker().subject
-    found = broken(trial, subject, BY_NAME["one sample of 1e9 N"])
+    trial = walker().trial
+    found = broken(trial, BY_NAME["one sample of 1e9 N"])
     changed = [k for k, (a, b) in enumerate(zip(found.plates, trial.plates, strict=True)) if a is not b]
     assert len(changed) == 1
     before, after = trial.plates[changed[0]].force_n, found.plates[changed[0]].force_n
@@ -26,8 +26,8 @@ def test_a_fault_is_put_into_one_plate_in_its_stance():
 
 @pytest.mark.parametrize("name", sorted(BY_NAME))
 def test_every_fault_changes_readings(name):
-    trial, subject = walker().trial, walker().subject
-    found = broken(trial, subject, BY_NAME[name])
+    trial = walker().trial
+    found = broken(trial, BY_NAME[name])
     assert any(
         not np.array_equal(a.force_n, b.force_n) for a, b in zip(found.plates, trial.plates, strict=True)
     )
@@ -54,5 +54,5 @@ def test_changes_are_those_that_were_made():
 def test_refused_samples_are_counted():
     trial, subject = walker().trial, walker().subject
     assert refused(iter([(trial.plates, subject.mass_kg)])) == 0.0
-    found = broken(trial, subject, BY_NAME["three samples of 4000 N"])
+    found = broken(trial, BY_NAME["three samples of 4000 N"])
     assert refused(iter([(found.plates, subject.mass_kg)])) == 3.0
