@@ -75,10 +75,10 @@ def test_a_foot_whose_plate_falls_silent_stands_on_at_once():
 
 
 def test_a_foot_in_the_air_is_near_the_floor_where_it_is_low_and_slow():
-    fresh = decided(standing(MODEL), memory((0.0, 0.0)))
-    np.testing.assert_allclose(fresh.near, 1.0, atol=0.1)
     falling = STILL.copy()
     falling[2] = -9.8
+    landing = decided(standing(MODEL), memory((0.0, 0.0)), falling)
+    np.testing.assert_allclose(landing.near, 1.0, atol=0.1)
     heights = [0.02, 0.05, 0.10, 0.30]
     near = [decided(standing(MODEL, height), memory((0.0, 0.0)), falling).near[0] for height in heights]
     assert near == sorted(near, reverse=True)
