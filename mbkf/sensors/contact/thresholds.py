@@ -63,8 +63,8 @@ within the stretch, and each frame follows the majority of the frames up to so m
 LEVEL_M = 0.09
 PARTED_M_S = 1.2
 """Two feet stand on one plate while the lowest points of their soles are level to this (toes that bend dip into the
-floor by 40 mm, a landing heel is above it by as much), and move so slowly against each
-other: on a belt both move, a foot that swings is faster by 3 m/s."""
+floor by 40 mm, a landing heel is above it by as much), and move so slowly against each other: on a belt both move, a
+foot that swings is faster by 3 m/s. Causal: feet that share a plate must part faster by the slack above."""
 
 STANDING_SHARE = 0.05
 """Offline: share of body weight that the plates must carry for a frame outside flight to be fully measured."""
