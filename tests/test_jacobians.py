@@ -58,6 +58,8 @@ ELSEWHERE = {
     "numerics.windows.second_derivative": "numerics/test_windows.py",
     "numerics.rotations.log_and_inverse_jacobian": "numerics/test_rotations.py",
     "scaling.problem.ScalingProblem.linearise": "scaling/test_problem.py",
+    "scaling.problem.origin_derivatives": "scaling/test_problem.py linearise",
+    "scaling.standing.Standing.linearised": "scaling/test_standing.py",
     "sensors.block.Rows.jacobian": "block_contract.py jacobian",
     "sensors.pose_fit.segment_by_segment": "sensors/test_pose_fit.py",
 }
