@@ -14,7 +14,7 @@ the density ε u and a scatter of its own.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -128,7 +128,28 @@ def infer_markers(
     candidates = anchor_frames(static or dynamic, names, 1 if static else ANCHORS)
     found, anchor = _anchor(places, candidates, by_name)
     frames = np.concatenate([anchor[None], spread_frames([*static, *dynamic], names)])
-    return _Evidence(places, names, by_name, found, anchor, frames).settled()
+    inferred = _Evidence(places, names, by_name, found, anchor, frames).settled()
+    placed = {marker.name for marker in inferred.markers}
+    if not (static and dynamic) or placed.issuperset(names):
+        return inferred
+    return _with_others(inferred, dynamic, readings, body, leave_out)
+
+
+def _with_others(
+    inferred: Inference,
+    dynamic: Sequence[MarkerTrajectories],
+    readings: Mapping[str, NameReading],
+    body: BodyDescription,
+    leave_out: Sequence[str],
+) -> Inference:
+    """With the markers that only the moving trials show, where the standing trial's body cannot be followed there."""
+    try:
+        moving = infer_markers((), dynamic, readings, body, leave_out)
+    except NotObservable:
+        return inferred
+    placed = {marker.name for marker in inferred.markers}
+    others = tuple(marker for marker in moving.markers if marker.name not in placed)
+    return replace(inferred, markers=(*inferred.markers, *others))
 
 
 def _anchor(places: WornPlaces, candidates: Array, by_name: Array) -> tuple[FoundBody, Array]:

@@ -44,7 +44,7 @@ LANDMARK_SD_M, PLACED_SD_M = 0.015, 0.035
 ROUNDS = 2
 """How often a set is inferred: again where names turn out to be exchanged between the standing trial and the others."""
 
-DOUBTFUL_NOISE = 1.5
+DOUBTFUL_NOISE = 1.2
 """Noise of a marker whose segment is doubtful, over that of a sure one: it may follow, but not lead."""
 
 OFF_LANDMARK_M = 0.045
