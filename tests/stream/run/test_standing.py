@@ -157,10 +157,22 @@ def test_missing_markers_are_told_by_name(tmp_path, visit):
         begin(tmp_path, ScriptedSource(*frames_of(hidden)))
 
 
-def test_wrong_names_are_told_and_it_keeps_trying(tmp_path, visit):
-    said = []
+def test_a_set_that_nobody_knows_is_inferred(tmp_path, visit):
     names = tuple(f"M{k}" for k in range(36))
     strange = replace(visit, markers=replace(visit.markers, names=names), plates=())
+    stream, frames = frames_of(strange)
+    found, _ = begin(tmp_path, ScriptedSource(stream, frames[COMES : COMES + STANDS]))
+    assert found.subject.protocol == "inferred"
+    assert found.subject.report["marker_rms_mm"] < 5.0
+
+
+def test_points_that_are_nobody_are_told_and_it_keeps_trying(tmp_path, visit, monkeypatch):
+    monkeypatch.setattr(prompting, "AGAIN_S", 1000.0)
+    said = []
+    names = tuple(f"M{k}" for k in range(36))
+    scattered = np.random.default_rng(4).uniform([-0.4, -0.4, 0.0], [0.4, 0.4, 1.7], (36, 3))
+    places = np.broadcast_to(scattered, visit.markers.positions_m.shape)
+    strange = replace(visit, markers=replace(visit.markers, names=names, positions_m=places), plates=())
     stream, frames = frames_of(strange)
     still = frames[COMES : COMES + STANDS]
     with pytest.raises(InvalidInput, match=r"scaling failed: .*--protocol"):
