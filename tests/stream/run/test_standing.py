@@ -168,6 +168,7 @@ def test_a_set_that_nobody_knows_is_inferred(tmp_path, visit):
 
 def test_points_that_are_nobody_are_told_and_it_keeps_trying(tmp_path, visit, monkeypatch):
     monkeypatch.setattr(prompting, "AGAIN_S", 1000.0)
+    monkeypatch.setattr(prompting, "TELL_S", 1000.0)
     said = []
     names = tuple(f"M{k}" for k in range(36))
     scattered = np.random.default_rng(4).uniform([-0.4, -0.4, 0.0], [0.4, 0.4, 1.7], (36, 3))
