@@ -22,7 +22,7 @@ from mbkf.conventions import Array
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, FreeStance
-from mbkf.sensors.contact.sharing import LEAST_SHARE, LEVER_M, TWIST_M, SharedLoad
+from mbkf.sensors.contact.sharing import LEAST_SHARE, LEVER_M, STEP_M, TWIST_M, SharedLoad
 from mbkf.sensors.layout import Layout
 from mbkf.sensors.states import LoadedState
 
@@ -42,8 +42,9 @@ class FootContactSettings:
         pulling_force_n: How softly an unmeasured foot is kept from pulling at the floor, N.
         free_shear_share: Spread of an unmeasured foot's shear force about the direction to the pelvis in double
             support, as a share of its vertical force.
-        landing_share, landing_lever_m: Spread of the force, in body weights, and of its lever, m, of a foot that is in
-            the air but about to touch a floor that no plate reads, or has just left it: when is known to some 40 ms.
+        free_sway_m: Further spread of its centre of pressure along the sole where the feet stand side by side, m.
+        landing_force_n, landing_moment_nm: Spread of what a foot carries that is in the air, but about to touch a floor
+            that no plate reads, or has just left it: when is known to some 40 ms.
     """
 
     plate_force_n: float = 3.0
@@ -56,8 +57,13 @@ class FootContactSettings:
     free_lever_m: float = 0.3
     pulling_force_n: float = 10.0
     free_shear_share: float = 0.08
-    landing_share: float = 0.2
-    landing_lever_m: float = 0.05
+    free_sway_m: float = 0.06
+    landing_force_n: float = 120.0
+    landing_moment_nm: float = 6.0
+
+
+TOGETHER = 0.1
+"""Weight of the direction of both feet's shear together, over that of their difference, where no plate reads."""
 
 
 class FootDecision(NamedTuple):
@@ -97,9 +103,7 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         self._free = 1.0 / np.repeat([s.free_force_share * weight_n, s.free_lever_m * weight_n], 3)
         self._pulling = self._free.copy()
         self._pulling[2] = 1.0 / s.pulling_force_n
-        self._landing = np.repeat(
-            [s.landing_share * weight_n, s.landing_share * s.landing_lever_m * weight_n], 3
-        )
+        self._landing = np.repeat([s.landing_force_n, s.landing_moment_nm], 3)
         self._walk = np.repeat([s.wrench_force, s.wrench_moment], 3) * dt_s**0.5
         self._first = 0
 
@@ -202,23 +206,36 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
     def _both_unmeasured(self, w: Array, contact: ContactDecision, free: FreeStance) -> Rows:
         """Both feet on floor that no plate reads: Newton's law knows the sum, geometry where and whither each presses.
 
-        About its expected centre of pressure each foot's horizontal moment is 0 to a lever, its force points to the
-        pelvis, and its vertical force is weakly half of the weight.
+        About its expected centre of pressure each foot's horizontal moment is 0 to a lever, the forces differ as those
+        that point to the pelvis do, and each vertical force is weakly half of the weight. Feet side by side are loaded
+        towards heels or toes together, as the body leans; a step apart the foot ahead is at its heel and the foot
+        behind at its toes.
         """
         s, weight = self.settings, self._weight_n
         carried = np.maximum(w[[2, 8]], LEAST_SHARE * weight)
         centres = free.stance.centres_at(float(carried[0] / carried.sum()))
         about, arms = _about(centres), free.pelvis_m - centres
+        x, y = free.stance.forward
+        turned = np.array([[x, y], [-y, x]])
+        ahead = abs(float((centres[0] - centres[1])[:2] @ free.stance.forward))
+        along = LEVER_M + s.free_sway_m * (1.0 - min(ahead / STEP_M, 1.0))
         rows, values = np.zeros((12, 12)), np.empty(12)
         for foot in (0, 1):
             mine = slice(6 * foot, 6 * foot + 6)
             X, force = about[foot], carried[foot]
             X[:2, 2] -= arms[foot, :2] / arms[foot, 2]
-            shear, lever = s.free_shear_share * force, LEVER_M * force
-            sd = np.array([shear, shear, s.free_force_share * weight, lever, lever, TWIST_M * force])
+            X[3:5] = turned @ X[3:5]
+            shear = s.free_shear_share * 0.5 * carried.sum()
+            sd = np.array(
+                [shear, shear, s.free_force_share * weight, LEVER_M * force, along * force, TWIST_M * force]
+            )
             rows[mine, mine] = X / sd[:, None]
             values[mine] = -rows[mine, mine] @ w[mine]
             values[6 * foot + 2] += 0.5 * weight / sd[2]
+        # Of the shear of both feet together Newton's law knows more than the direction to the pelvis.
+        for kept in (rows, values):
+            right, left = kept[:2].copy(), kept[6:8].copy()
+            kept[:2], kept[6:8] = right - left, TOGETHER * (right + left)
         return Rows(rows, values, self._first, 0)
 
     def _shared(self, w: Array, contact: ContactDecision, shared: SharedLoad) -> Rows:

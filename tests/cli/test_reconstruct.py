@@ -171,7 +171,7 @@ def test_without_forces_the_kinematic_filter_says_nothing_about_torques(person, 
 
 
 def test_without_forces_torques_are_estimated_with_large_spreads(person, reconstruct):
-    """How two feet share the weight is not observable; residuals need plates."""
+    """How two feet share the weight is known by where they stand only; residuals need plates."""
     measured, guessed = (read_summary(reconstruct(trial)) for trial in (person.trial, person.trial_trc))
     assert set(guessed) == KEYS
     assert guessed["valid_frames"] == 0
@@ -179,10 +179,10 @@ def test_without_forces_torques_are_estimated_with_large_spreads(person, reconst
     assert guessed["plate_force_change_rms_n"] is None
     assert None not in guessed["torque_peak_nm_per_kg"].values()
     for joint in ("hip_r", "knee_r", "ankle_l"):
-        assert guessed["torque_sd_nm"][joint] > 5 * measured["torque_sd_nm"][joint]
+        assert guessed["torque_sd_nm"][joint] > 3 * measured["torque_sd_nm"][joint]
     said = " ".join(guessed["warnings"])
     assert "no force plates: reactions are estimated from the motion" in said
-    assert "how they share the load cannot be observed" in said
+    assert "how they share the load is known by where they stand only" in said
 
 
 def test_kept_markers_are_those_of_the_subject(person, reconstruct):

@@ -125,7 +125,7 @@ def _contact_warnings(contact: Array, plates: tuple[PlateReadings, ...]) -> list
         )
     if both:
         warnings.append(
-            f"in {both} frames both feet do, and how they share the load cannot be observed "
+            f"in {both} frames both feet do, and how they share the load is known by where they stand only "
             "(see the standard deviations)"
         )
     return [*warnings, *_shared_warning((contact == Contact.SHARED).any(axis=1))]
