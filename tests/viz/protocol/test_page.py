@@ -107,10 +107,10 @@ def test_markers_are_chosen_by_mouse_and_keyboard_and_seen_from_all_sides(opened
         page.set_viewport_size({"width": 1300, "height": 850})
         until(page, "Boolean(window.mbkf && mbkf.labels.seen !== '')")
         page.click('.item[data-item="RKNE"]')
-        until(page, "document.querySelector('.tag.chosen').dataset.marker === 'RKNE'")
+        until(page, "document.querySelector('.tag.chosen')?.dataset.marker === 'RKNE'")
         page.keyboard.press("ArrowDown")
         page.keyboard.press("Enter")
-        until(page, "document.querySelector('.tag.chosen').dataset.marker !== 'RKNE'")
+        until(page, "document.querySelector('.tag.chosen')?.dataset.marker !== 'RKNE'")
         page.keyboard.press("Escape")
         until(page, "document.querySelector('.tag.chosen') === null")
         where = "document.querySelector('.dot[data-marker=RKNE]').getBoundingClientRect().x"
