@@ -46,9 +46,9 @@ OTHER_NAME = 0.03
 STRAY = 4.0
 """A point that scatters by more than so many times the skin's variance on every segment is no part of the body."""
 
-LOINS_M, OTHER_LOIN = 0.12, 0.15
-"""So near in height to the joint of pelvis and trunk a marker is on the other of both with this probability at least:
-the spine bends there over a hand's breadth, and the body has one joint."""
+LOINS_M, OTHER_LOIN = (-0.12, 0.03), 0.15
+"""At these heights above the joint of pelvis and trunk a marker is on the other of both with this probability at least:
+the lumbar spine bends there over a hand's breadth, and the body has one joint, at its upper end."""
 
 ANCHORS = 4
 """Frames of moving trials in which a body is searched for, at most."""
@@ -284,7 +284,7 @@ class _Evidence:
         )
         pair = {self.segments.index(name) for name in (body.roles.root, trunk) if name}
         joint = means_m[self.segments.index(trunk)] if trunk else np.full(3, np.inf)
-        if best not in pair or len(pair) < 2 or abs(joint[2]) > LOINS_M:
+        if best not in pair or len(pair) < 2 or not LOINS_M[0] < joint[2] < LOINS_M[1]:
             return odds
         (other,) = pair - {best}
         shared = odds.copy()
