@@ -25,9 +25,6 @@ SKIN = 2.0
 LOOKS = 4.0
 """So many independent looks a movement counts for: skin moves slowly, and with the posture."""
 
-SKIN_M = 0.012
-"""Usual scatter."""
-
 FREEDOM = 4.0
 """Degrees of freedom of the Student distribution of scatter."""
 

@@ -81,6 +81,7 @@ class CloudProblem:
         body = places.body
         self.model = HumanModel(body, np.ones(len(body.scale_factors)), body.reference_mass_kg)
         self._posture = PostureSensor(self.model)
+        self._reference = MarkerSensor(self.model, places.segments, places.position_m)
         self._scale = np.array([body.segment(name).scale_matrix for name in places.segments])
         count = len(body.scale_factors)
         covariance = PROPORTION_SD**2 * np.eye(count) + SIZE_SD**2 * np.ones((count, count))
@@ -169,10 +170,6 @@ class CloudProblem:
     def _judged(self, q: Array, factors: Array, width_m: float, positions_m: Array) -> PosedBody:
         shares, worth = self.shares(positions_m, width_m)
         return PosedBody(q, factors, shares, worth + self.priors(q, factors))
-
-    @property
-    def _reference(self) -> MarkerSensor:
-        return MarkerSensor(self.model, self.places.segments, self.places.position_m)
 
     def _with_root(self, q: Array, size: float) -> Array:
         moved = q.copy()

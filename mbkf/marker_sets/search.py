@@ -54,16 +54,13 @@ class FoundBody:
     odds: float
 
 
-def find_body(
-    places: WornPlaces, points_m: Array, named: Array | None = None, facing: Array | None = None
-) -> FoundBody:
+def find_body(places: WornPlaces, points_m: Array, named: Array | None = None) -> FoundBody:
     """The body that explains a frame of points.
 
     Args:
         places: Where markers are worn.
         points_m: (N, 3) the points, z up.
         named: (N, C) how much likelier each component is by a point's name than without it; None without names.
-        facing: (2,) horizontal direction that the person is likely to face.
 
     Raises:
         NotObservable: The points are too few, or too low or too tall for a person.
@@ -78,7 +75,7 @@ def find_body(
         problem = CloudProblem(places, points_m, weights(places, equipment, named))
         own = [
             _Candidate(problem.posed(start.q, start.size, COARSE_M), problem, equipment)
-            for start in starts(problem.model, points_m, equipment, facing)
+            for start in starts(problem.model, points_m, equipment)
         ]
         rough += sorted(own, key=lambda one: -one.worth)[:KEPT_EACH]
     if not rough:

@@ -13,7 +13,7 @@ from mbkf.marker_sets.equipment import Equipment
 from mbkf.model.human import HumanModel
 
 HEADINGS = 8
-"""Headings that are tried where nothing tells which way the person faces."""
+"""Headings that are tried: nothing tells which way the person faces."""
 
 SIZES = (0.5, 1.2)
 """Least and greatest overall size that is tried: a child of three, and a tall man."""
@@ -30,16 +30,13 @@ class Start:
     size: float
 
 
-def starts(
-    model: HumanModel, points_m: Array, equipment: Equipment, facing: Array | None = None
-) -> Iterator[Start]:
+def starts(model: HumanModel, points_m: Array, equipment: Equipment) -> Iterator[Start]:
     """Poses to start from, upright, highest and lowest point where the equipment has its highest and lowest marker.
 
     Args:
         model: The reference body.
         points_m: (N, 3) the points.
         equipment: The part of the body that carries them.
-        facing: (2,) horizontal direction that the person is likely to face, None where nothing tells.
     """
     low, high = np.percentile(points_m[:, 2], [1.0, 99.0])
     middle = np.median(points_m[:, :2], axis=0)
@@ -50,7 +47,7 @@ def starts(
         size = (high - low) / (top - equipment.bottom_m)
         if not SIZES[0] <= size <= SIZES[1]:
             continue
-        for heading in _headings(facing):
+        for heading in np.arange(HEADINGS) * (2.0 * np.pi / HEADINGS):
             for away in ARMS_RAD if "hand" not in equipment.without else ARMS_RAD[:1]:
                 q = _arms(model, neutral, away)
                 root = q[model.root.q]
@@ -58,12 +55,6 @@ def starts(
                 root[2] = low - size * (equipment.bottom_m + floor)
                 root[3:] = Rotation.from_euler("z", heading).as_quat()
                 yield Start(q, float(size))
-
-
-def _headings(facing: Array | None) -> Array:
-    if facing is None:
-        return np.asarray(np.arange(HEADINGS) * (2.0 * np.pi / HEADINGS))
-    return np.array([np.arctan2(facing[1], facing[0])])
 
 
 def _arms(model: HumanModel, neutral: Array, away: float) -> Array:

@@ -43,11 +43,6 @@ def test_headings_go_round_in_equal_steps_with_every_posture_of_the_arms():
     )
 
 
-def test_a_known_facing_is_the_only_heading():
-    found = list(starts(MODEL, cloud(1.6), WHOLE, np.array([0.0, -2.0])))
-    np.testing.assert_allclose([heading(one) for one in found], -np.pi / 2)
-
-
 def test_arms_are_not_tried_where_they_carry_nothing():
     assert len(list(starts(MODEL, cloud(0.9), LEGS))) == len(LEGS.top_m) * HEADINGS
 
