@@ -163,6 +163,8 @@ def track_of(q, v, a, **known):
     fields |= {
         "wrench": np.full((frames, 2, 6), np.nan),
         "wrench_sd": np.full((frames, 2, 6), np.nan),
+        "support": np.full((frames, 0, 6), np.nan),
+        "support_sd": np.full((frames, 0, 6), np.nan),
         "contact": None,
         "root_covariance": np.zeros((frames, 3, 3)),
         "foot_height_sd": np.zeros((frames, 2)),

@@ -71,6 +71,8 @@ class Posterior(NamedTuple):
         tracked: Whether enough instruments read.
         started: Whether the filter was started in this frame.
         inner: The filter's own record of the step.
+        support: (B, 6) wrench about the world's origin on each part of the body that may bear load besides the feet
+            (``description.bearings``), 0 on one that bears none; None where the filter does not ask.
     """
 
     q: Array
@@ -82,6 +84,7 @@ class Posterior(NamedTuple):
     tracked: bool
     started: bool
     inner: object
+    support: Array | None = None
 
 
 class Prediction(NamedTuple):
@@ -142,6 +145,11 @@ class TrackingFilter(Protocol):
 
     def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) standard deviations of the feet's wrenches, NaN where the filter estimates none."""
+
+    def support_sd(self, estimate: Posterior) -> Array:
+        """(B, 6) standard deviations of the wrenches on parts besides the feet; NaN where the filter asks for none."""
+        del estimate
+        return np.full((len(self.model.description.bearings), 6), np.nan)
 
     def innovation(self, estimate: Posterior) -> tuple[float, int]:
         """Normalised innovation squared of an estimate's frame and the number of readings in it; NaN at a start."""

@@ -45,6 +45,8 @@ FIELDS = (
     Field("a", "<f8", "nv"),
     Field("wrench", "<f8", "2 6"),
     Field("wrench_sd", "<f8", "2 6"),
+    Field("support", "<f8", "B 6"),
+    Field("support_sd", "<f8", "B 6"),
     Field("foot_height_sd", "<f8", "2"),
     Field("position_sd", "<f8", "nv"),
     Field("velocity_sd", "<f8", "nv"),
@@ -60,8 +62,10 @@ whether enough instruments read. readings, nis: numbers in the normalised innova
 start. footing: what right and left foot stand on (:class:`mbkf.sensors.contact.records.Contact`). refused: markers seen
 but outside their gate. measured_m: markers, NaN where missing. latency_s, step_seconds: from arrival to answer, and
 the computing time of the step. q, v, a: configuration, velocity, acceleration. wrench: of the ground on right and left
-foot, about the world's origin. The others are standard deviations: of the wrenches, of the height of the feet, of
-position and velocity in the tangent space, of the A clinical coordinates and their rates, of the generalised forces.
+foot, about the world's origin. support, support_sd: the same on the B parts that may bear load besides the feet, and
+standard deviations; 0 on one that bears none. The others are standard deviations: of the wrenches, of the height of the
+feet, of position and velocity in the tangent space, of the A clinical coordinates and their rates, of the generalised
+forces.
 root_covariance: of the root's orientation in its own axes, rad², for angles told in other axes than the world's.
 """
 
@@ -70,7 +74,7 @@ SPREAD_AT_ONCE, SPREAD_LATER = ("position", "velocity", "torque"), ("angle", "ra
 
 
 def record_dtype(sizes: Mapping[str, int]) -> np.dtype:
-    """Type of a record for these sizes: M markers, nq and nv of the body, A clinical coordinates."""
+    """Type of a record for these sizes: M markers, nq and nv of the body, A clinical coordinates, B bearing parts."""
 
     def length(letter: str) -> int:
         return int(letter) if letter.isdigit() else sizes[letter]
@@ -101,6 +105,7 @@ class FrameRecorder:
         self.filter = filter
         model = filter.model
         sizes = {"M": markers, "nq": model.nq, "nv": model.nv, "A": len(filter.clinical.names)}
+        sizes["B"] = len(model.description.bearings)
         self.dtype = record_dtype(sizes)
         self._empty = blank(self.dtype, 1)
 
@@ -141,6 +146,8 @@ class FrameRecorder:
         for name in MOTION:
             row[name] = getattr(posterior, name)
         row["wrench_sd"] = self.filter.wrench_sd(posterior)
+        row["support"] = np.nan if posterior.support is None else posterior.support
+        row["support_sd"] = self.filter.support_sd(posterior)
         spread = self.filter.spread(posterior)
         for name in SPREAD_AT_ONCE:
             row[f"{name}_sd"] = getattr(spread, name)

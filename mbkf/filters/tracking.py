@@ -26,6 +26,9 @@ class Track:
         wrench: (T, 2, 6) estimated wrenches on right and left foot about the world's origin; NaN where the filter
             estimates none.
         wrench_sd: (T, 2, 6) their standard deviations.
+        support: (T, B, 6) wrenches on the parts that may bear load besides the feet (``description.bearings``), 0 on
+            one that bears none; NaN where the filter does not ask.
+        support_sd: (T, B, 6) their standard deviations.
         contact: (T, 2) what the feet stand on (``mbkf.sensors.contact.records.Contact``); None where not decided.
         position_sd, velocity_sd: (T, nv) standard deviations in the tangent space.
         angle_sd, rate_sd: (T, A) of the clinical coordinates, the root's in the world's axes, and their rates.
@@ -47,6 +50,8 @@ class Track:
     a: Array
     wrench: Array
     wrench_sd: Array
+    support: Array
+    support_sd: Array
     contact: Array | None
     position_sd: Array
     velocity_sd: Array

@@ -23,6 +23,7 @@ from mbkf.model.body_checks import check_body
 from mbkf.model.clinical_table import ClinicalJoint, clinical_joints
 from mbkf.model.description import (
     JOINT_DOF,
+    Bearing,
     BodyDescription,
     Landmark,
     Roles,
@@ -122,6 +123,7 @@ def _body(table: dict[str, Any], path: Path, kept: str) -> BodyDescription:
         roles=_roles(table, segments, path),
         clinical_joints=_clinical(table["clinical_joint"], segments, path),
         shapes=_shapes(table.get("shape", []), segments, path),
+        bearings=_bearings(table.get("bearing", []), segments, path),
         text=kept,
     )
 
@@ -304,4 +306,24 @@ def _shapes(
         other = mirrored(segment)
         if other in names:
             found.setdefault(other, SegmentShape(other, entry["kind"], numbers, mirrored(to)))
+    return found
+
+
+def _bearings(entries: list[dict[str, Any]], segments: tuple[Segment, ...], path: Path) -> dict[str, Bearing]:
+    """Parts that may bear load; one written for a right segment is the left one's, too, where that exists."""
+    names = {segment.name for segment in segments}
+    found: dict[str, Bearing] = {}
+    for entry in entries:
+        name, where = entry["name"], f"{path}, bearing {entry['name']}"
+        segment, place = _known(entry["segment"], segments, where), np.array(entry["position_m"], dtype=float)
+        size = (float(entry["radius_m"]), float(entry["lever_m"]))
+        if place.shape != (3,) or not np.isfinite(place).all() or min(size) <= 0.0:
+            raise FileFormatError(
+                path, f"bearing {name}: three finite numbers of position_m, radius_m and lever_m > 0"
+            )
+        found[name] = Bearing(name, segment, read_only(place), *size)
+        other = mirrored(segment)
+        if other in names and other != segment:
+            place = place * [1.0, -1.0, 1.0]
+            found.setdefault(mirrored(name), Bearing(mirrored(name), other, read_only(place), *size))
     return found

@@ -83,6 +83,25 @@ class Sole:
 
 
 @dataclass(frozen=True)
+class Bearing:
+    """A part of the body, besides the feet, that may bear load: a knee on the floor, the pelvis on a seat, a hand.
+
+    Attributes:
+        name: Its name, e.g. ``"right_knee"``.
+        segment: The segment that the load acts on.
+        position_m: (3,) middle of the part in the segment's frame.
+        radius_m: From the middle to the surface that touches.
+        lever_m: How far from the middle the centre of pressure may lie.
+    """
+
+    name: str
+    segment: str
+    position_m: Array
+    radius_m: float
+    lever_m: float
+
+
+@dataclass(frozen=True)
 class Roles:
     """What segments are to the algorithms; paired ones right side first.
 
@@ -141,6 +160,7 @@ class BodyDescription:
         roles: What segments are to the algorithms.
         clinical_joints: The clinical coordinates of every segment's joint, in the order of the segments.
         shapes: Shapes for drawing, by segment; segments without one are drawn as plain limbs.
+        bearings: Parts that may bear load besides the feet, by name.
         text: The file it was read from, word for word; "" for the bodies that come with mbkf.
     """
 
@@ -153,6 +173,7 @@ class BodyDescription:
     roles: Roles
     clinical_joints: tuple[ClinicalJoint, ...]
     shapes: dict[str, SegmentShape]
+    bearings: dict[str, Bearing]
     text: str = ""
 
     @property
