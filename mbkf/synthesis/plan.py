@@ -10,7 +10,9 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.synthesis.contact import LoadPlan
 from mbkf.synthesis.curves import Curve, added, path, ripple
+from mbkf.synthesis.holding import Hold
 from mbkf.synthesis.inverse_kinematics import FootPose
+from mbkf.synthesis.support import Support
 
 FeetPlan = Callable[[Array], dict[str, FootPose]]
 """(T,) times in s to the feet by side."""
@@ -57,6 +59,8 @@ class MotionPlan:
         straightest_rad: Knee flexion at the straightest moment of the recorded time.
         recorded_s: The time that is recorded; all of it when None.
         flight: The spell in the air, if any.
+        supports: What bears besides the feet; not together with a flight.
+        hold: What stays in place on its support, if anything.
     """
 
     start_s: float
@@ -68,6 +72,8 @@ class MotionPlan:
     straightest_rad: float
     recorded_s: tuple[float, float] | None = None
     flight: Flight | None = None
+    supports: tuple[Support, ...] = ()
+    hold: Hold | None = None
 
 
 def degrees(*knots: tuple[float, ...]) -> Curve:
