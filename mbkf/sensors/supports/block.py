@@ -40,6 +40,7 @@ class SupportSettings:
         support_force, support_moment: Random walk of their wrench, N/√s and N m/√s.
         support_force_n: Spread of the force about 0, N: what keeps it from drifting where nothing tells.
         support_shear_share: Spread of the shear on a floor or a seat, as a share of the force.
+        support_lever_scale: Factor on how far from its middle each part may be pressed.
     """
 
     closed_force_n: float = 0.3
@@ -48,6 +49,7 @@ class SupportSettings:
     support_moment: float = 150.0
     support_force_n: float = 2000.0
     support_shear_share: float = 0.15
+    support_lever_scale: float = 1.0
 
 
 class SupportDecision(NamedTuple):
@@ -109,7 +111,7 @@ class Supports(Block[LoadedState, None, SupportDecision, tuple[int, ...]]):
     ) -> SupportDecision:
         """The parts that the frame's flags name."""
         flags, state = frame.readings.get(BEARING), at.state
-        parts = () if flags is None else tuple(np.flatnonzero(flags).tolist())
+        parts = () if flags is None else tuple(np.flatnonzero(np.asarray(flags) > 0.0).tolist())
         points = self.bearings.at(state.q, state.v)
         middle = points.points_m[list(parts)].mean(axis=0) if parts else state.q[:3]
         notes.supports = parts
@@ -146,7 +148,7 @@ class Supports(Block[LoadedState, None, SupportDecision, tuple[int, ...]]):
         force = max(float(np.linalg.norm(wrench[:3])), 0.1 * self._weight_n)
         points, levers = decision.points.points_m[parts], self.bearings.levers_m[parts]
         apart = ((points - decision.about_m) ** 2).sum(axis=1) + levers**2
-        moment = force * float(np.sqrt(apart.mean()))
+        moment = s.support_lever_scale * force * float(np.sqrt(apart.mean()))
         grips = all(self.bearings.grips[k] for k in parts)
         shear = s.support_force_n if grips else s.support_shear_share * force
         return np.array([shear, shear, s.support_force_n, moment, moment, moment])

@@ -37,7 +37,13 @@ class WholeBody:
 
     @classmethod
     def of(cls, model: Body, q: Array, v: Array) -> WholeBody:
-        """Of a motion q (T, nq), v (T, nv)."""
+        """Of a motion.
+
+        Args:
+            model: The body.
+            q: (T, nq) configurations, NaN where untracked.
+            v: (T, nv) velocities.
+        """
         data = model.pin_model.createData()
         centre, momentum = np.full((len(q), 3), np.nan), np.full((len(q), 6), np.nan)
         for t in np.flatnonzero(~np.isnan(q).any(axis=1)):

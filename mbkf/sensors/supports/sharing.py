@@ -1,7 +1,7 @@
-"""How the parts that bear share a wrench: as equally as its line of action allows, and none pulls at a floor.
+"""How the parts that bear share a wrench: by their areas as far as its line of action allows; none pulls at a floor.
 
-Part i carries (f_i, n_i), its moment about its own middle c_i. Beforehand each has 1/n of the force, with a spread of
-half the whole force and a lever of its own size. That their wrenches sum to the whole one conditions this Gaussian
+Part i carries (f_i, n_i), its moment about its own middle c_i. Beforehand each has a share of the force that goes with
+its area, the square of its lever, with a spread of half the whole force and a moment of its lever times its share. That their wrenches sum to the whole one conditions this Gaussian
 exactly; what is left of its covariance is the spread of the shares.
 """
 
@@ -55,15 +55,16 @@ def shares(whole: Array, points_m: Array, levers_m: Array, pulls: Sequence[bool]
 
 
 def _shared(whole: Array, points_m: Array, levers_m: Array, used: BoolArray) -> Shares:
-    count, n = int(used.sum()), len(points_m)
+    n, areas = len(points_m), np.where(used, levers_m, 0.0) ** 2
+    expected = areas / areas.sum()
     force = max(float(np.linalg.norm(whole[:3])), LEAST_FORCE_N)
     # G takes (f_i, n_i) of all parts to the whole wrench about the origin, and mean to what is expected of them.
     G, mean, variance = np.zeros((6, 6 * n)), np.zeros((6 * n, 6)), np.zeros(6 * n)
     for k in np.flatnonzero(used).tolist():
         own = slice(6 * k, 6 * k + 6)
         G[:, own] = about(-points_m[k])
-        mean[6 * k : 6 * k + 3, :3] = np.eye(3) / count
-        variance[own] = np.repeat([SPREAD_SHARE * force, levers_m[k] * force / count], 3) ** 2
+        mean[6 * k : 6 * k + 3, :3] = expected[k] * np.eye(3)
+        variance[own] = np.repeat([SPREAD_SHARE * force, levers_m[k] * force * expected[k]], 3) ** 2
     gain = variance[:, None] * G.T @ np.linalg.inv(G * variance @ G.T)
     local = mean + gain @ (np.eye(6) - G @ mean)
     spread = np.diag(variance) - gain @ (G * variance)
