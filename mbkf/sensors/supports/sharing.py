@@ -1,8 +1,9 @@
 """How the parts that bear share a wrench: by their areas as far as its line of action allows; none pulls at a floor.
 
 Part i carries (f_i, n_i), its moment about its own middle c_i. Beforehand each has a share of the force that goes with
-its area, the square of its lever, with a spread of half the whole force and a moment of its lever times its share. That their wrenches sum to the whole one conditions this Gaussian
-exactly; what is left of its covariance is the spread of the shares.
+its area, the square of its lever, with a spread of half the whole force, and a moment of its lever times its share.
+That their wrenches sum to the whole one conditions this Gaussian exactly; what is left of its covariance is the spread
+of the shares.
 """
 
 from __future__ import annotations
