@@ -17,6 +17,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
 from mbkf.numerics.windows import dilated
 from mbkf.sensors.contact.offline import FootLoads, stretches
+from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.sensors.supports.momentum import WholeBody
 
@@ -37,6 +38,9 @@ BODY_LEVER_M = 0.02
 
 FITS = 2.0
 """A missing wrench acts on a part whose middle its line of action misses by less than this many deviations."""
+
+SOLE_LEVER_M = 0.1
+"""How far from the middle of a sole its centre of pressure may lie."""
 
 PAIR_PENALTY = 0.5
 """Two parts must fit better than one by this, squared deviations: they have a share that is free."""
@@ -76,8 +80,9 @@ def other_contacts(
     """
     bearings = BearingParts(model)
     points, speeds = _moving(bearings, q, v)
-    judged = read & ~loads.unread.any(axis=1) & ~np.isnan(q).any(axis=1)
-    flags, remarks = _missing(bearings, points, WholeBody.of(model, q, v), rate_hz, loads, judged)
+    judged = read & loads.valid & ~np.isnan(q).any(axis=1)
+    body, feet = WholeBody.of(model, q, v), sole_points(model, q).mean(axis=2)
+    flags, remarks = _missing(bearings, np.concatenate([points, feet], axis=1), body, rate_hz, loads, judged)
     return OtherContacts(flags | _lying(bearings, points, speeds, rate_hz, loads.floor_m, judged), remarks)
 
 
@@ -102,13 +107,13 @@ def _missing(
 
     Args:
         bearings: The parts.
-        points: (T, B, 3) their middles.
+        points: (T, B + 2, 3) their middles, and those of the soles of right and left foot.
         body: The body's momentum.
         rate_hz: Frame rate.
         loads: What the plates give to the feet.
         judged: (T,) frames in which they give all that the feet bear.
     """
-    flags = np.zeros(points.shape[:2], dtype=bool)
+    flags = np.zeros((len(points), len(bearings)), dtype=bool)
     given = np.where(judged[:, None], loads.wrench.sum(axis=1), 0.0)
     weight_n = float(np.linalg.norm(body.weight))
     slow, fast = (body.missing_wrench(given, rate_hz, s) for s in (WINDOW_S, EDGE_WINDOW_S))
@@ -128,6 +133,8 @@ def _missing(
             continue
         parts = _fitting(bearings, points[run] - body.centre_m[run, None], slow[run], weight_n)
         frames = _edges(run, fast[:, :3], force, weight_n, rate_hz, judged)
+        if parts is not None and parts[0] >= len(bearings):
+            continue
         if parts is None:
             size, since = float(np.linalg.norm(force)), run[0] / rate_hz
             remarks.append(
@@ -176,15 +183,18 @@ def _edges(
 def _fitting(bearings: BearingParts, arms: Array, missing: Array, weight_n: float) -> tuple[int, ...] | None:
     """Parts through which a stretch's missing wrench leads best; None where it leads through none.
 
+    A foot that no plate was seen to carry may be it as well: B for the right one, B + 1 for the left.
+
     Args:
         bearings: The parts.
-        arms: (n, B, 3) from the centre of mass to their middles.
+        arms: (n, B + 2, 3) from the centre of mass to their middles and those of the soles.
         missing: (n, 6) wrench about the centre of mass.
         weight_n: The body's weight.
     """
     best, least = None, FITS**2
+    levers = np.append(bearings.levers_m, [SOLE_LEVER_M, SOLE_LEVER_M])
     for parts in _groups(bearings, missing[:, :3].mean(axis=0)):
-        lever = float(bearings.levers_m[list(parts)].mean())
+        lever = float(levers[list(parts)].mean())
         off = _off(arms[:, list(parts)], missing, lever, weight_n) + PAIR_PENALTY * (len(parts) - 1)
         if off < least:
             best, least = parts, off
@@ -196,6 +206,8 @@ def _groups(bearings: BearingParts, force: Array) -> Iterator[tuple[int, ...]]:
     pushes = float(force[2]) > 0.5 * float(np.linalg.norm(force))
     usable = [k for k in range(len(bearings)) if pushes or bearings.grips[k]]
     yield from ((k,) for k in usable)
+    if pushes:
+        yield from ((len(bearings),), (len(bearings) + 1,))
     yield from (pair for pair in bearings.pairs if pair[0] in usable and pair[1] in usable)
 
 
