@@ -9,6 +9,7 @@ from mbkf.synthesis.general import general_plan
 from mbkf.synthesis.jump import jump_plan
 from mbkf.synthesis.one_foot import one_foot_plan
 from mbkf.synthesis.plan import JOINTS, MotionPlan
+from mbkf.synthesis.rail import rail_plan
 from mbkf.synthesis.reach import reach_plan
 from mbkf.synthesis.sit_to_stand import sit_to_stand_plan
 from mbkf.synthesis.squat import squat_plan
@@ -28,6 +29,7 @@ PLANS = {
     "reach": (reach_plan, 3.0),
     "step_up": (step_up_plan, 3.5),
     "general": (general_plan, 10.0),
+    "rail": (rail_plan, 3.2),
     "sit_to_stand": (sit_to_stand_plan, 5.6),
 }
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import GRAVITY_M_S2, SIDES
 from mbkf.errors import InvalidInput
@@ -11,7 +12,7 @@ from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
 from mbkf.synthesis.support import SEGMENTS, Support, fault, wrenches, zero_moment
 
-SHORT_S = {"sit_to_stand": 2.6}
+SHORT_S = {"sit_to_stand": 2.6, "rail": 3.0}
 SEEDS = (1, 2, 3)
 
 
@@ -140,3 +141,35 @@ def test_who_sits_stays_on_the_seat_and_then_stands(supported):
 def test_standing_up_needs_time():
     with pytest.raises(InvalidInput, match="standing up"):
         synthesise_motion(body_of(synthesise_subject(1)), "sit_to_stand", 1.5)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("supported", [("rail", seed) for seed in SEEDS], indirect=True)
+def test_a_hand_that_holds_a_rail_stays_where_it_is(supported):
+    body, motion = supported
+    (name,) = motion.support_names
+    joint = body.joint(SEGMENTS[name]).joint_id
+    force = np.linalg.norm(motion.support_wrench[:, 0, :3], axis=1)
+    holds = force > 0
+    placed = [body.placements(q) for q in motion.q[holds]]
+    where = np.array([origins[joint] for _, origins in placed])
+    assert np.ptp(where, axis=0).max() < 1e-9
+    assert np.ptp([rotations[joint] for rotations, _ in placed], axis=0).max() < 1e-9
+    assert 0.1 <= force.max() / (body.mass_kg * GRAVITY_M_S2) <= 0.2
+    rested = body.placements(motion.q[0])[1][joint]
+    assert np.linalg.norm(where[0] - rested) > 0.2
+    moment, pushed = motion.support_wrench[holds, 0, 3:], motion.support_wrench[holds, 0, :3]
+    lever = moment - np.cross(where, pushed)
+    assert (np.linalg.norm(lever, axis=1) <= 0.08 * force[holds]).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("supported", [("rail", seed) for seed in SEEDS], indirect=True)
+def test_joints_stay_within_their_limits(supported):
+    body, motion = supported
+    for side in ("right", "left"):
+        for part in ("upper_arm", "forearm", "hand"):
+            joint = body.joint(f"{side}_{part}")
+            turned = Rotation.from_quat(motion.q[:, joint.q]).as_euler("YXZ", degrees=True)[:, [1, 0, 2]]
+            low, high = np.rad2deg(body.limits[joint.v]).T
+            assert ((turned >= low) & (turned <= high)).all(), f"{side}_{part}"
