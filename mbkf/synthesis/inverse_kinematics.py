@@ -26,12 +26,16 @@ STRAIGHT_RAD = np.deg2rad(2.5)
 
 @dataclass(frozen=True)
 class FootPose:
-    """Where a foot is: ``ankle`` (T, 3) m, (T,) ``yaw`` and ``pitch`` (heel up positive) and ``toes`` hinge, rad."""
+    """Where a foot is: ``ankle`` (T, 3) m, (T,) ``yaw`` and ``pitch`` (heel up positive) and ``toes`` hinge, rad.
+
+    The knee bends towards the heading of the foot, or towards a point ``knee`` (3,), m.
+    """
 
     ankle: Dual
     yaw: Dual
     pitch: Dual
     toes: Dual
+    knee: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -231,9 +235,12 @@ class InverseKinematics:
             name, foot = SIDE_NAMES[side], feet[side]
             hip = pelvis + pelvis_rotation.apply(self.offset[f"{name}_thigh"])
             lengths = (-self.offset[f"{name}_shank"][2], -self.offset[f"{name}_foot"][2])
-            across = dual_numbers.stack(
-                [-dual_numbers.sin(foot.yaw), dual_numbers.cos(foot.yaw), foot.yaw * 0.0]
-            )
+            if foot.knee is None:
+                across = dual_numbers.stack(
+                    [-dual_numbers.sin(foot.yaw), dual_numbers.cos(foot.yaw), foot.yaw * 0.0]
+                )
+            else:
+                across = dual_numbers.cross(foot.knee - hip, foot.ankle - hip)
             thigh, shank, knee, used = self._limb(lengths, foot.ankle - hip, angles[f"{name}_shank"], across)
             foot_rotation = dual_numbers.rotation(2, foot.yaw) @ dual_numbers.rotation(1, foot.pitch)
             rotations[f"{name}_thigh"], origins[f"{name}_thigh"] = thigh, hip

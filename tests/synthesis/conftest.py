@@ -18,6 +18,7 @@ SECONDS = {
     "general": 10.0,
     "sit_to_stand": 5.6,
     "rail": 3.2,
+    "kneel": 6.8,
 }
 
 
