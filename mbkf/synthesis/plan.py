@@ -65,6 +65,8 @@ class MotionPlan:
         supports: What bears besides the feet; not together with a flight.
         hold: What stays in place on its support, if anything.
         hands: Hands whose place is given, if any.
+        belts: Belts under the feet that move uniformly, the plan standing in the laboratory: 1 for both feet, 2 for one
+            each; 0 on the floor.
     """
 
     start_s: float
@@ -79,6 +81,7 @@ class MotionPlan:
     supports: tuple[Support, ...] = ()
     hold: Hold | None = None
     hands: HandsPlan | None = None
+    belts: int = 0
 
 
 def degrees(*knots: tuple[float, ...]) -> Curve:
