@@ -83,7 +83,10 @@ def other_contacts(
     judged = read & loads.valid & ~np.isnan(q).any(axis=1)
     body, feet = WholeBody.of(model, q, v), sole_points(model, q).mean(axis=2)
     flags, remarks = _missing(bearings, np.concatenate([points, feet], axis=1), body, rate_hz, loads, judged)
-    return OtherContacts(flags | _lying(bearings, points, speeds, rate_hz, loads.floor_m, judged), remarks)
+    lying = _lying(bearings, points, speeds, rate_hz, loads.floor_m)
+    # Beside a part that is seen to bear on the floor, others that lie there bear as well.
+    kneels = (flags & lying).any(axis=1)
+    return OtherContacts(flags | (lying & (kneels | ~judged)[:, None]), remarks)
 
 
 def _moving(bearings: BearingParts, q: Array, v: Array) -> tuple[Array, Array]:
@@ -119,7 +122,8 @@ def _missing(
     slow, fast = (body.missing_wrench(given, rate_hz, s) for s in (WINDOW_S, EDGE_WINDOW_S))
     # A window that reaches into frames that cannot be judged cannot be either.
     clear = judged & ~dilated(~judged, round(0.5 * WINDOW_S * rate_hz))
-    lacks = clear & (np.linalg.norm(slow[:, :3], axis=1) > LEAST_SHARE * weight_n)
+    size = np.where(clear, np.linalg.norm(slow[:, :3], axis=1), 0.0)
+    lacks = size > LEAST_SHARE * weight_n
     if lacks.sum() > ALWAYS_SHARE * max(int(clear.sum()), 1):
         share = 100.0 * float(np.mean(slow[lacks, 2])) / weight_n
         return flags, (
@@ -127,18 +131,18 @@ def _missing(
             "plates' scale or the axes may be wrong",
         )
     remarks = []
-    for run in _lasting(lacks, rate_hz):
+    for run in _lasting(size > EDGE_SHARE * weight_n, rate_hz):
         force = slow[run, :3].mean(axis=0)
-        if np.linalg.norm(force) < LEAST_SHARE * weight_n:
+        if lacks[run].sum() < LASTING_S * rate_hz or np.linalg.norm(force) < EDGE_SHARE * weight_n:
             continue
         parts = _fitting(bearings, points[run] - body.centre_m[run, None], slow[run], weight_n)
         frames = _edges(run, fast[:, :3], force, weight_n, rate_hz, judged)
         if parts is not None and parts[0] >= len(bearings):
             continue
         if parts is None:
-            size, since = float(np.linalg.norm(force)), run[0] / rate_hz
+            much, since = float(np.linalg.norm(force)), run[0] / rate_hz
             remarks.append(
-                f"from {since:.2f} s for {len(run) / rate_hz:.2f} s the motion asks for {size:.0f} N that neither the "
+                f"from {since:.2f} s for {len(run) / rate_hz:.2f} s the motion asks for {much:.0f} N that neither the "
                 "plates nor a part of the body that could bear it account for"
             )
         else:
@@ -230,10 +234,8 @@ def _off(arms: Array, missing: Array, lever_m: float, weight_n: float) -> float:
     return float((off**2).sum(axis=1).mean())
 
 
-def _lying(
-    bearings: BearingParts, points: Array, speeds: Array, rate_hz: float, floor_m: float, judged: BoolArray
-) -> BoolArray:
-    """(T, B) parts that lie on the floor in frames that plates do not judge.
+def _lying(bearings: BearingParts, points: Array, speeds: Array, rate_hz: float, floor_m: float) -> BoolArray:
+    """(T, B) parts that lie on the floor.
 
     Args:
         bearings: The parts.
@@ -241,11 +243,8 @@ def _lying(
         speeds: (T, B) how fast they move.
         rate_hz: Frame rate.
         floor_m: Height of the floor.
-        judged: (T,) frames in which plates read all that the feet bear.
     """
-    low = (
-        (points[:, :, 2] - bearings.radii_m - floor_m < ON_FLOOR_M) & (speeds < RESTS_M_S) & ~judged[:, None]
-    )
+    low = (points[:, :, 2] - bearings.radii_m - floor_m < ON_FLOOR_M) & (speeds < RESTS_M_S)
     found = np.zeros_like(low)
     for k in range(len(bearings)):
         for run in stretches(low[:, k]):
