@@ -74,7 +74,7 @@ def test_numbers_that_are_not_known_do_not_appear_as_nan():
     bare = replace(
         r, filter="kinematic", moments=unknown, moments_sd=unknown, angles_sd=unknown, foot_wrench_sd=None,
         foot_contact=None, foot_wrench=0.0 * r.foot_wrench, residual_force_n=nothing, residual_moment_nm=nothing,
-        plate_corners_m=None, valid=np.zeros(r.frames, bool),
+        plate_corners_m=None, measured=np.zeros(r.frames, bool),
     )  # fmt: skip
     for page in (report(bare), report(broken_walk())):
         words = " ".join(Outline(page).texts).lower()
@@ -84,7 +84,7 @@ def test_numbers_that_are_not_known_do_not_appear_as_nan():
 
 def test_a_body_never_followed_is_reported_without_curves():
     r = walk()
-    lost = replace(r, tracked=np.zeros(r.frames, bool), valid=np.zeros(r.frames, bool))
+    lost = replace(r, tracked=np.zeros(r.frames, bool), measured=np.zeros(r.frames, bool))
     assert Outline(report(lost)).sections == ["quality", "settings"]
 
 
