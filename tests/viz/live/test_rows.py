@@ -12,7 +12,6 @@ from mbkf.viz.live.rows import MOST_UNLABELLED, DisplayRows
 from tests.motions import assert_near
 from tests.recordings import walk, walker
 
-
 UNASKED = np.full((len(walker()[1].description.bearings), 6), np.nan)
 
 
