@@ -54,7 +54,7 @@ def test_it_says_in_which_axes_the_pelvis_is_told():
 def test_sections_come_in_order_quality_first():
     text = report(broken_walk())
     outline = Outline(text)
-    assert outline.sections == ["quality", "gait", "motion", "reactions", "settings"]
+    assert outline.sections == ["quality", "gait", "motion", "reactions", "contacts", "settings"]
     assert len(text) < 5_000_000
     whole = " ".join(outline.texts)
     for words in ("walk <1>", "a remark with <b>markup</b>", "dynamic filter, frame by frame", "jerk"):
