@@ -20,9 +20,15 @@ FORMAT_VERSION = 1
 UNITS = {
     "times_s": "s", "q": "m, unit quaternions (x, y, z, w), rad", "v": "m/s, rad/s", "a": "m/s^2, rad/s^2",
     "tau": "N, N m", "foot_wrench": "N, N m about the world origin, right then left", "centre_of_pressure": "m",
-    "markers_m": "m",
+    "markers_m": "m", "support_wrench": "N, N m about the world origin, in the order of support_names",
 }  # fmt: skip
 """Unit of every array, also their list."""
+
+NAMES = ("marker_names", "dof_names", "support_names")
+"""Lists of names."""
+
+SINCE_SUPPORTS = ("support_names", "support_wrench")
+"""What files of earlier versions do not hold: nothing bore but the feet."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +48,9 @@ class Truth:
         dof_names: nv names.
         version: Version of mbkf that made it.
         settings: Plain data: motion, seed and noise.
+        support_names: S parts of the body that bear besides the feet, see
+            :data:`mbkf.synthesis.support.SEGMENTS`.
+        support_wrench: (T, S, 6) on the segments of these parts, N and N m about the world origin; 0 without contact.
     """
 
     times_s: Array
@@ -56,8 +65,12 @@ class Truth:
     dof_names: tuple[str, ...]
     version: str = ""
     settings: dict[str, object] = field(default_factory=dict)
+    support_names: tuple[str, ...] = ()
+    support_wrench: Array = field(default_factory=lambda: np.zeros((0, 0, 6)))
 
     def __post_init__(self) -> None:
+        if not self.support_names:
+            object.__setattr__(self, "support_wrench", np.zeros((len(self.times_s), 0, 6)))
         for name in UNITS:
             object.__setattr__(self, name, read_only(getattr(self, name)))
         frames = len(self.times_s)
@@ -65,6 +78,7 @@ class Truth:
             "q": (frames, *self.q.shape[1:2]), "v": (frames, len(self.dof_names)), "a": (frames, len(self.dof_names)),
             "tau": (frames, len(self.dof_names)), "foot_wrench": (frames, 2, 6),
             "centre_of_pressure": (frames, 2, 3), "markers_m": (frames, len(self.marker_names), 3),
+            "support_wrench": (frames, len(self.support_names), 6),
         }  # fmt: skip
         for name, shape in expected.items():
             if getattr(self, name).shape != shape:
@@ -83,7 +97,7 @@ def write_truth(truth: Truth, path: str | Path) -> None:
         file.attrs["axes"] = "x forward, y left, z up; forces are those of the ground on the body"
         file.attrs["version"] = truth.version
         file.attrs["settings"] = json.dumps(truth.settings)
-        for name in ("marker_names", "dof_names"):
+        for name in NAMES:
             file.create_dataset(name, data=list(getattr(truth, name)), dtype=h5py.string_dtype())
         for name, unit in UNITS.items():
             file.create_dataset(name, data=getattr(truth, name)).attrs["unit"] = unit
@@ -102,9 +116,10 @@ def read_truth(path: str | Path) -> Truth:
         with h5py.File(source, "r") as file:
             if file.attrs.get("format") != FORMAT:
                 raise FileFormatError(source, "not a truth file; make it with 'mbkf synth'")
-            arrays: dict[str, Any] = {name: np.asarray(file[name]) for name in UNITS}
+            known = {name for name in (*UNITS, *NAMES) if name in file or name not in SINCE_SUPPORTS}
+            arrays: dict[str, Any] = {name: np.asarray(file[name]) for name in UNITS if name in known}
             names: dict[str, Any] = {
-                name: tuple(text.decode() for text in file[name][:]) for name in ("marker_names", "dof_names")
+                name: tuple(text.decode() for text in file[name][:]) for name in NAMES if name in known
             }
             return Truth(
                 **arrays,

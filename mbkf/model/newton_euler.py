@@ -7,6 +7,7 @@ does not change with q by itself.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -79,6 +80,7 @@ class NewtonEuler:
         self._chains = [np.flatnonzero(model.supports[j]) for j in ids]
         self._moves = [model.supports[j].astype(float) for j in ids]
         self._after = [_moved_by(model, chain) for chain in self._chains]
+        self._others: dict[int, tuple[NDArray[np.intp], Array]] = {}
 
     def root(self, q: Array, v: Array, a: Array, wrenches: Array) -> RootBalance:
         """The pelvis's equations for the feet's wrenches (12,).
@@ -121,6 +123,27 @@ class NewtonEuler:
             own = J[:, chain]
             by_state[chain[:, None], chain] -= after * (own.T @ _turned_wrench(wrench) @ own)
         return found
+
+    def loaded(self, found: JointTorques, loads: Mapping[int, Array]) -> None:
+        """Counts further loads in torques just found by :meth:`torques`, in place: τ −= Σ Jᵀ w.
+
+        Args:
+            found: What :meth:`torques` gave in its last call.
+            loads: (6,) wrench about the world's origin by the index of the joint whose segment bears it.
+        """
+        J = self._data.J
+        for joint, wrench in loads.items():
+            if joint not in self._others:
+                chain = np.flatnonzero(self.model.supports[joint])
+                self._others[joint] = chain, _moved_by(self.model, chain)
+            chain, after = self._others[joint]
+            own = J[:, chain]
+            found.tau[chain] -= own.T @ wrench
+            found.by_state[chain[:, None], chain] -= after * (own.T @ _turned_wrench(wrench) @ own)
+
+    def jacobian(self, joint: int) -> Array:
+        """(6, nv) velocity at the world's origin of a joint's segment, at the configuration of the last call."""
+        return np.where(self.model.supports[joint], self._data.J, 0.0)
 
     def tau(self, q: Array, v: Array, a: Array, wrenches: Array) -> Array:
         """(nv,) generalised forces alone.

@@ -34,6 +34,26 @@ def second_derivative(samples: Array, window: int, dt: float) -> Array:
     return np.pad(np.correlate(samples, weights, "valid"), half, mode="edge")
 
 
+def slopes(samples: Array, window: int, dt: float) -> Array:
+    """First derivative of the parabolas that fit the samples around each one best (Savitzky and Golay 1964).
+
+    Near either end, where no whole window surrounds a sample, it is that of the outermost window.
+
+    Args:
+        samples: (T, k) values, at least one window of them.
+        window: Samples in a window, odd and at least three.
+        dt: Time between samples.
+
+    Returns:
+        (T, k) first derivative.
+    """
+    half = window // 2
+    steps = np.arange(-half, half + 1)
+    weights = steps / (steps @ steps) / dt
+    columns = [np.correlate(column, weights, "valid") for column in samples.T]
+    return np.pad(np.array(columns).T, ((half, half), (0, 0)), mode="edge")
+
+
 def majority(votes: BoolArray, window: int) -> BoolArray:
     """Whether most samples around each one are true: the running median of a yes-or-no sequence.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +33,7 @@ from mbkf.pipelines.results.validity import torques_known
 from mbkf.pipelines.trial.exchanged import exchange_notes, names_put_right
 from mbkf.pipelines.trial.filters import FILTERS, FilterInputs, standard, tracking_filter
 from mbkf.pipelines.trial.inputs import trial_inputs
+from mbkf.pipelines.trial.other_contacts import with_other_contacts
 from mbkf.scaling.correction import correct_markers
 from mbkf.scaling.frames import MIN_MARKERS
 from mbkf.sensors.block import AnyBlock
@@ -67,6 +69,8 @@ class ReconstructSettings:
         without_plates: Names of plates to withhold.
         pelvis: The frame of the pelvis's angles: "progression", or "lab" for the laboratory's axes.
         keep_covariance: Whether full covariances are kept in memory.
+        other_contacts: Whether parts besides the feet may bear load: a seat, a knee or a hand on the floor, a load in
+            the hands. Only the dynamic filter knows of them.
     """
 
     filter: str = "dynamic"
@@ -80,6 +84,7 @@ class ReconstructSettings:
     without_plates: tuple[str, ...] = ()
     pelvis: str = "progression"
     keep_covariance: bool = False
+    other_contacts: bool = True
 
 
 def recorded(settings: ReconstructSettings) -> dict[str, object]:
@@ -141,6 +146,9 @@ def reconstruct(
             capture = replace(capture, notes=(*capture.notes, *remarks))
         if readings:
             recording = replace(recording, readings=readings)
+        if settings.other_contacts and settings.filter == "dynamic":
+            searched = None if progress is None else partial(progress, "Looking for other contacts")
+            inputs, recording = with_other_contacts(inputs, recording, shown.times_s, searched)
         result = track(
             tracking_filter(settings.filter, inputs, [*standard(inputs), *blocks] if blocks else None),
             recording,

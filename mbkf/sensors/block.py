@@ -82,6 +82,7 @@ class Notes:
         imus: (S, 6) inertial readings that are used; None where there are none.
         contact: What the feet stand on; None where no block asks.
         coordinated: Dofs that the coordination prior predicts.
+        supports: Parts besides the feet that bear load, by their place among the body's bearings.
     """
 
     # Arrays here are replaced, never written into, so that the defaults can be shared.
@@ -94,6 +95,7 @@ class Notes:
     imus: Array | None = None
     contact: ContactDecision | None = None
     coordinated: NDArray[np.intp] = field(default_factory=lambda: NO_DOFS)
+    supports: tuple[int, ...] = ()
 
 
 class Rows(NamedTuple):

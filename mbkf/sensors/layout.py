@@ -14,6 +14,9 @@ from mbkf.errors import InvalidInput, UnknownName
 WRENCH = "wrench"
 """Name of the slice of the feet's wrenches, right and left: force N, moment N m about the world's origin."""
 
+SUPPORT = "support"
+"""Name of the slice of the wrench on all other parts: force N, moment N m about the world's origin."""
+
 
 class ExtraState(NamedTuple):
     """States that a block adds: a bias, a wrench at a chair, a length. They are random walks.

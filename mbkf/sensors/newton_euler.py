@@ -12,6 +12,7 @@ import numpy as np
 
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+from mbkf.sensors.layout import SUPPORT, Layout
 from mbkf.sensors.states import LoadedState
 
 
@@ -41,17 +42,30 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
 
     def __init__(self, balance: NewtonEuler, settings: NewtonEulerSettings = NewtonEulerSettings()) -> None:
         self.balance, self.settings = balance, settings
+        self._support: slice | None = None
+        self._extra = slice(0)
         self._sharp = 1.0 / np.repeat([settings.residual_force_n, settings.residual_moment_nm], 3)
+
+    def bind(self, layout: Layout) -> None:
+        """Where the wrench of other contacts stands, if the state has one."""
+        if SUPPORT in layout:
+            self._support, self._extra = layout[SUPPORT], layout.extra_index(SUPPORT)
 
     def prepare(self, state: LoadedState, memory: None) -> Rows:
         """The law's rows at a state; they do not depend on the frame."""
-        nv = len(state.v)
-        root, sharp = self.balance.root(state.q, state.v, state.a, state.w), self._sharp[:, None]
-        rows = np.empty((6, 3 * nv + 12))
+        nv, wrenches, support = len(state.v), state.w, self._support
+        if support is not None:
+            # At the root a wrench is the same wherever it acts: that of other parts adds to the right foot's.
+            wrenches = wrenches.copy()
+            wrenches[:6] += state.extra[self._extra]
+        root, sharp = self.balance.root(state.q, state.v, state.a, wrenches), self._sharp[:, None]
+        rows = np.zeros((6, 3 * nv + 12 if support is None else support.stop))
+        if support is not None:
+            rows[:, support] = root.by_wrench * sharp
         np.multiply(root.by_q, sharp, out=rows[:, :nv])
         np.multiply(root.by_v, sharp, out=rows[:, nv : 2 * nv])
         np.multiply(root.by_a, sharp, out=rows[:, 2 * nv : 3 * nv])
-        rows[:, 3 * nv : 3 * nv + 6] = rows[:, 3 * nv + 6 :] = root.by_wrench * sharp
+        rows[:, 3 * nv : 3 * nv + 6] = rows[:, 3 * nv + 6 : 3 * nv + 12] = root.by_wrench * sharp
         return Rows(rows, -root.residual * self._sharp, readings=6)
 
     def decide(

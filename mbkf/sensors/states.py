@@ -23,6 +23,10 @@ class LoadedState(AcceleratedState, Protocol):
     def w(self) -> Array:
         """(12,) wrench of the ground on right and left foot: force N, moment N m about the world's origin."""
 
+    @property
+    def extra(self) -> Array:
+        """(m,) states that blocks add."""
+
 
 class ForceState(State, Protocol):
     """A state with generalised forces."""

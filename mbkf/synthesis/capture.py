@@ -114,6 +114,8 @@ def synthesise_capture(
         dof_names(model),
         __version__,
         {"motion": motion.name, "rate_hz": motion.rate_hz, "seed": seed, **asdict(chosen)},
+        motion.support_names,
+        motion.support_wrench,
     )
     return SyntheticCapture(trial, raw, static, truth)
 

@@ -15,8 +15,10 @@ from mbkf.synthesis.balance import HorizontalPath
 from mbkf.synthesis.curves import Curve
 from mbkf.synthesis.dual_numbers import Dual
 from mbkf.synthesis.flight import SMALL, Tumbling
+from mbkf.synthesis.holding import Correction
 from mbkf.synthesis.inverse_kinematics import InverseKinematics, Pose
 from mbkf.synthesis.plan import MotionPlan
+from mbkf.synthesis.support import weight_n, zero_moment
 
 STEP_S = 0.005
 """Grid on which balance is solved."""
@@ -25,6 +27,9 @@ LIFTS, ROUNDS = 3, 8
 """Iterations that find the height alone, and all together."""
 
 FLIGHT_ROUNDS = 40
+
+HOLD_ROUNDS, NEAR_M, FAR_M = 24, 0.001, 0.02
+"""Iterations at most that bring to its place what stays on a support, how near is near enough, and how far too far."""
 
 
 @dataclass
@@ -36,10 +41,16 @@ class Composition:
     horizontal: HorizontalPath
     pelvis: tuple[Curve, Curve, Curve]
     lift_m: float = 0.0
+    correction: Correction | None = None
+
+    def height(self, times: Array) -> Dual:
+        """(T,) height of the centre of mass."""
+        planned = self.plan.height(times) + self.lift_m
+        return planned if self.correction is None else planned + self.correction(times)[:, 1]
 
     def com(self, times: Array) -> Dual:
         """(T, 3) centre of mass."""
-        plane, height = self.horizontal(times), self.plan.height(times) + self.lift_m
+        plane, height = self.horizontal(times), self.height(times)
         return Dual(*(np.column_stack([p, h]) for p, h in zip(plane.orders, height.orders, strict=True)))
 
     def pose(self, times: Array, start: Dual | None = None, pelvis: tuple[Dual, ...] | None = None) -> Pose:
@@ -51,8 +62,14 @@ class Composition:
             pelvis: (T,) pelvis angles about x, y and z, rad; by default the composition's own.
         """
         angles = {joint: tuple(curve(times) for curve in axes) for joint, axes in self.plan.angles.items()}
-        angles["pelvis"] = pelvis or tuple(curve(times) for curve in self.pelvis)
-        return self.kinematics.pose(self.com(times), angles, self.plan.feet(times), start)
+        angles["pelvis"] = pelvis or self._pelvis(times)
+        if self.correction is not None:
+            lean = self.correction(times)[:, 0]
+            for joint, gains in self.correction.hold.lean.items():
+                if joint != "pelvis":
+                    angles[joint] = _leaned(angles[joint], gains, lean)
+        hands = None if self.plan.hands is None else self.plan.hands(times)
+        return self.kinematics.pose(self.com(times), angles, self.plan.feet(times), start, hands)
 
     def coordinates(self, times: Array) -> tuple[Array, Array, Array]:
         """q, v and a at times in s."""
@@ -60,7 +77,19 @@ class Composition:
 
     def pelvis_rotations(self, times: Array) -> Array:
         """(T, 3, 3) world rotations of the pelvis."""
-        return dual_numbers.euler((curve(times) for curve in self.pelvis), order="zyx").value
+        return dual_numbers.euler(self._pelvis(times), order="zyx").value
+
+    def _pelvis(self, times: Array) -> tuple[Dual, ...]:
+        """(T,) pelvis angles about x, y and z, rad."""
+        angles = tuple(curve(times) for curve in self.pelvis)
+        if self.correction is None:
+            return angles
+        gains = self.correction.hold.lean.get("pelvis", (0.0, 0.0, 0.0))
+        return _leaned(angles, gains, self.correction(times)[:, 0])
+
+
+def _leaned(angles: tuple[Dual, ...], gains: tuple[float, float, float], lean: Dual) -> tuple[Dual, ...]:
+    return tuple(angle + lean * gain for angle, gain in zip(angles, gains, strict=True))
 
 
 @single_threaded()
@@ -68,7 +97,7 @@ def compose(model: Body, plan: MotionPlan) -> Composition:
     """Solves balance and flight for a plan.
 
     Raises:
-        NotConverged: The flight was not found.
+        NotConverged: The flight was not found, or what is supported does not stay in place.
     """
     times = np.linspace(plan.start_s, plan.end_s, round((plan.end_s - plan.start_s) / STEP_S) + 1)
     load = plan.load(times)
@@ -82,22 +111,33 @@ def compose(model: Body, plan: MotionPlan) -> Composition:
         HorizontalPath(spells),
         plan.angles["pelvis"] if tumbling is None else tumbling.curves(),
     )
+    if plan.hold is not None:
+        result.correction = Correction(plan.hold, times)
     turning = np.zeros((len(times), 2))
     start: Dual | None = None
-    for k in range(LIFTS + ROUNDS):
-        height = plan.height(times) + result.lift_m
-        over = Dual(height.value - load.mean_surface, height.first, height.second)
-        result.horizontal.solve(times, load.zero_moment(height.value), over, turning)
+    missed_m = 0.0
+    for k in range(LIFTS + (ROUNDS if plan.hold is None else HOLD_ROUNDS)):
+        height = result.height(times)
+        vertical = weight_n(model.mass_kg, height.second)
+        target, level = zero_moment(plan.supports, times, load, height.value, vertical)
+        over = Dual(height.value - level, height.first, height.second)
+        result.horizontal.solve(times, target, over, turning)
         pose = result.pose(times, start)
         start = pose.origins["pelvis"]
         result.lift_m += _lift(result, pose, times)
         if k < LIFTS:
             continue
+        if result.correction is not None:
+            missed_m = result.correction.improve(pose)
+            if missed_m < NEAR_M and k > ROUNDS:
+                break
         if tumbling is not None:
             _fly(result, tumbling, 3)
             pose = result.pose(times, start)
         _, _, change = result.kinematics.momentum(pose)
         turning = np.column_stack([change[:, 1], -change[:, 0]]) / result.kinematics.total_mass
+    if missed_m > FAR_M:
+        raise NotConverged("what bears the body does not stay in its place; try another seed")
     if tumbling is not None and _fly(result, tumbling, FLIGHT_ROUNDS) > 1e3 * SMALL:
         raise NotConverged("the flight was not found; try another seed")
     return result
@@ -116,8 +156,14 @@ def _fly(composition: Composition, tumbling: Tumbling, rounds: int) -> float:
 
 
 def _lift(composition: Composition, pose: Pose, times: Array) -> float:
-    """How much higher the body may stand until its straightest knee has the planned flexion, m."""
+    """How much higher the body may stand until its straightest knee has the planned flexion, m.
+
+    With something that stays on a support, only where nothing changes for that.
+    """
     kinematics, plan = composition.kinematics, composition.plan
     start, end = plan.recorded_s or (plan.start_s, plan.end_s)
-    reach = pose.reach[(times >= start - STEP_S) & (times <= end + STEP_S)].max()
+    use = (times >= start - STEP_S) & (times <= end + STEP_S)
+    if plan.hold is not None:
+        use &= plan.hold.free(times) > 0
+    reach = pose.reach[use].max()
     return 0.9 * (np.cos(plan.straightest_rad / 2) - reach) * kinematics.leg_length("r")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from mbkf.synthesis.contact import FRICTION, sole_outline, split
 from mbkf.synthesis.inverse_kinematics import SIDE_NAMES
 from mbkf.synthesis.motions import registered_motion
 from mbkf.synthesis.strength import overloaded
+from mbkf.synthesis.support import SEGMENTS, Support, fault, wrenches
 
 ATTEMPTS, BENT_RAD = 4, np.deg2rad(1.5)
 """How often a motion that fails is tried again, each time with the knees bent a little more."""
@@ -40,6 +41,10 @@ class TrueMotion:
         plate_wrench: (S, 2, 6) the same wrenches at that rate.
         plate_surface_m: (S, 2) height of the surface under right and left foot at that rate, m.
         flight_s: Take-off and touch-down times of a jump, or None.
+        support_names: S parts of the body that bear besides the feet, out of
+            :data:`mbkf.synthesis.support.SEGMENTS`, which also names the segment that takes each wrench.
+        support_wrench: (T, S, 6) force N and moment N m about the world origin, world axes, on these segments; 0
+            without contact.
     """
 
     name: str
@@ -55,12 +60,16 @@ class TrueMotion:
     plate_wrench: Array
     plate_surface_m: Array
     flight_s: tuple[float, float] | None = None
+    support_names: tuple[str, ...] = ()
+    support_wrench: Array = field(default_factory=lambda: np.zeros((0, 0, 6)))
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
+        if not self.support_names:
+            object.__setattr__(self, "support_wrench", np.zeros((len(self.times_s), 0, 6)))
+        for each in fields(self):
+            value = getattr(self, each.name)
             if isinstance(value, np.ndarray):
-                object.__setattr__(self, field.name, read_only(value))
+                object.__setattr__(self, each.name, read_only(value))
 
 
 def synthesise_motion(
@@ -91,51 +100,70 @@ def synthesise_motion(
     fine = np.arange((frames - 1) * every + 1) / (rate_hz * every)
     for attempt in range(ATTEMPTS):
         bent = replace(plan, straightest_rad=plan.straightest_rad + attempt * BENT_RAD)
-        q, v, a, wrenches, centres, tau = _dynamics(model, compose(model, bent), fine, every)
-        fault = _fault(model, q, wrenches, wrenches[::every], centres) or _strain(model, tau)
-        if not fault:
+        moved = _dynamics(model, compose(model, bent), fine, every)
+        problem = _fault(model, moved, plan.supports) or _strain(model, moved.tau)
+        if not problem:
             break
     else:
-        raise NotConverged(f"{motion} of this person: {fault}; try another seed")
+        raise NotConverged(f"{motion} of this person: {problem}; try another seed")
     flight = plan.flight
     return TrueMotion(
         motion,
         rate_hz,
         fine[::every],
-        q,
-        v,
-        a,
-        tau,
-        wrenches[::every],
-        centres,
+        moved.q,
+        moved.v,
+        moved.a,
+        moved.tau,
+        moved.feet[::every],
+        moved.centres,
         rate_hz * every,
-        wrenches,
+        moved.feet,
         plan.load(fine).surfaces,
         None if flight is None else (flight.take_off_s, flight.touch_down_s),
+        tuple(support.name for support in plan.supports),
+        moved.supports[::every],
     )
 
 
-def _dynamics(model: Body, composition: Composition, times: Array, every: int) -> tuple[Array, ...]:
-    """q, v, a, centres and torques at every n-th time, foot wrenches at all."""
+@dataclass(frozen=True)
+class _Moved:
+    """q, v, a, centres (of pressure) and tau at the cameras' times; wrenches of feet and supports at the plates'."""
+
+    q: Array
+    v: Array
+    a: Array
+    tau: Array
+    centres: Array
+    feet: Array
+    supports: Array
+
+
+def _dynamics(model: Body, composition: Composition, times: Array, every: int) -> _Moved:
+    """The motion at every n-th time, wrenches at all."""
     q, v, a = composition.coordinates(times)
-    load = composition.plan.load(times)
+    plan = composition.plan
+    load = plan.load(times)
     needed = np.array([model.inverse_dynamics(*state)[:6] for state in zip(q, v, a, strict=True)])
     for k in np.flatnonzero(~load.grounded).tolist():
         a[k, :6] -= np.linalg.solve(model.mass_matrix(q[k])[:6, :6], needed[k])
     rotations = composition.pelvis_rotations(times)
     force = np.einsum("tij,tj->ti", rotations, needed[:, :3])
     moment = np.einsum("tij,tj->ti", rotations, needed[:, 3:]) + np.cross(q[:, :3], force)
-    height = composition.com(times).value[:, 2]
-    wrenches, centres = split(np.hstack([force, moment]), load, height)
-    q, v, a, centres, own = q[::every], v[::every], a[::every], centres[::every], wrenches[::every]
+    carried = wrenches(plan.supports, times, force)
+    rest = np.hstack([force, moment]) - carried.sum(axis=1)
+    feet, centres = split(rest, load, composition.com(times).value[:, 2])
+    q, v, a, centres = q[::every], v[::every], a[::every], centres[::every]
+    names = [f"{SIDE_NAMES[side]}_foot" for side in SIDES] + [SEGMENTS[s.name] for s in plan.supports]
+    joints = [model.joint(name).joint_id for name in names]
+    own = np.concatenate([feet, carried], axis=1)[::every]
     tau = np.empty_like(v)
-    feet = [model.joint(f"{SIDE_NAMES[side]}_foot").joint_id for side in SIDES]
     for k in range(len(tau)):
         tau[k] = model.inverse_dynamics(q[k], v[k], a[k])
         jacobian = model.placements_and_jacobian(q[k])[2]
-        for foot, joint in enumerate(feet):
-            tau[k] -= np.where(model.supports[joint], own[k, foot] @ jacobian, 0.0)
-    return q, v, a, wrenches, centres, tau
+        for contact, joint in enumerate(joints):
+            tau[k] -= np.where(model.supports[joint], own[k, contact] @ jacobian, 0.0)
+    return _Moved(q, v, a, tau, centres, feet, carried)
 
 
 def _strain(model: Body, tau: Array) -> str:
@@ -144,18 +172,19 @@ def _strain(model: Body, tau: Array) -> str:
     return f"{joint} would have to be stronger than people are" if joint else ""
 
 
-def _fault(model: Body, q: Array, fine: Array, wrenches: Array, centres: Array) -> str:
+def _fault(model: Body, moved: _Moved, supports: tuple[Support, ...]) -> str:
     """The broken law of contact as a sentence, "" if none: the ground pushes, under the soles, within friction."""
+    every = (len(moved.feet) - 1) // max(1, len(moved.q) - 1)
     for foot, side in enumerate(SIDES):
-        name = SIDE_NAMES[side]
-        along = np.linalg.norm(fine[:, foot, :2], axis=1)
-        if fine[:, foot, 2].min() < 0:
+        name, fine = SIDE_NAMES[side], moved.feet[:, foot]
+        along = np.linalg.norm(fine[:, :2], axis=1)
+        if fine[:, 2].min() < 0:
             return f"the {name} foot would pull at the floor"
-        if (along > FRICTION * fine[:, foot, 2] + 1e-9).any():
+        if (along > FRICTION * fine[:, 2] + 1e-9).any():
             return f"the {name} foot would slip"
         outline, joint = sole_outline(model, side), model.joint(f"{name}_foot").joint_id
-        for k in np.flatnonzero(wrenches[:, foot, 2] > 0):
-            rotations, origins = model.placements(q[int(k)])
-            if not outline.holds(rotations[joint].T @ (centres[k, foot] - origins[joint])):
+        for k in np.flatnonzero(fine[::every, 2] > 0):
+            rotations, origins = model.placements(moved.q[int(k)])
+            if not outline.holds(rotations[joint].T @ (moved.centres[k, foot] - origins[joint])):
                 return f"the pressure leaves the {name} sole"
-    return ""
+    return fault(supports, moved.supports)

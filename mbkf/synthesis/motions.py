@@ -146,6 +146,27 @@ def _general(model: Body, seconds: float, rng: np.random.Generator) -> MotionPla
     return general_plan(model, seconds, rng)
 
 
+@register_motion("sit_to_stand", seconds=6.0, stream=9)
+def _sit_to_stand(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    from mbkf.synthesis.sit_to_stand import sit_to_stand_plan
+
+    return sit_to_stand_plan(model, seconds, rng)
+
+
+@register_motion("rail", seconds=5.0, stream=10)
+def _rail(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    from mbkf.synthesis.rail import rail_plan
+
+    return rail_plan(model, seconds, rng)
+
+
+@register_motion("kneel", seconds=7.0, stream=11)
+def _kneel(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    from mbkf.synthesis.kneel import kneel_plan
+
+    return kneel_plan(model, seconds, rng)
+
+
 @register_motion("stand", seconds=1.5, stream=2, trial=False)
 def _stand(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
     from mbkf.synthesis.stand import stand_plan

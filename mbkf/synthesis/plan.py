@@ -10,10 +10,15 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.synthesis.contact import LoadPlan
 from mbkf.synthesis.curves import Curve, added, path, ripple
-from mbkf.synthesis.inverse_kinematics import FootPose
+from mbkf.synthesis.holding import Hold
+from mbkf.synthesis.inverse_kinematics import FootPose, HandPose
+from mbkf.synthesis.support import Support
 
 FeetPlan = Callable[[Array], dict[str, FootPose]]
 """(T,) times in s to the feet by side."""
+
+HandsPlan = Callable[[Array], dict[str, HandPose]]
+"""(T,) times in s to the hands whose place is given, by side."""
 
 JOINTS = (
     "torso",
@@ -57,6 +62,9 @@ class MotionPlan:
         straightest_rad: Knee flexion at the straightest moment of the recorded time.
         recorded_s: The time that is recorded; all of it when None.
         flight: The spell in the air, if any.
+        supports: What bears besides the feet; not together with a flight.
+        hold: What stays in place on its support, if anything.
+        hands: Hands whose place is given, if any.
     """
 
     start_s: float
@@ -68,6 +76,9 @@ class MotionPlan:
     straightest_rad: float
     recorded_s: tuple[float, float] | None = None
     flight: Flight | None = None
+    supports: tuple[Support, ...] = ()
+    hold: Hold | None = None
+    hands: HandsPlan | None = None
 
 
 def degrees(*knots: tuple[float, ...]) -> Curve:

@@ -34,6 +34,21 @@ def test_round_trip(tmp_path):
     )
 
 
+def test_what_bears_besides_the_feet_is_read_back_and_may_be_missing(tmp_path):
+    wrench = np.random.default_rng(1).normal(size=(4, 2, 6))
+    write_truth(made(support_names=("pelvis", "right_hand"), support_wrench=wrench), tmp_path / "truth.h5")
+    back = read_truth(tmp_path / "truth.h5")
+    assert back.support_names == ("pelvis", "right_hand")
+    assert np.array_equal(back.support_wrench, wrench)
+    with h5py.File(tmp_path / "truth.h5", "a") as file:
+        del file["support_names"], file["support_wrench"]
+    older = read_truth(tmp_path / "truth.h5")
+    assert older.support_names == ()
+    assert older.support_wrench.shape == (4, 0, 6)
+    with pytest.raises(ShapeError, match="support_wrench"):
+        made(support_names=("pelvis",), support_wrench=wrench)
+
+
 def test_arrays_carry_their_unit(tmp_path):
     write_truth(made(), tmp_path / "truth.h5")
     with h5py.File(tmp_path / "truth.h5") as file:

@@ -16,6 +16,9 @@ SECONDS = {
     "reach": 3.5,
     "step_up": 3.2,
     "general": 10.0,
+    "sit_to_stand": 5.6,
+    "rail": 3.2,
+    "kneel": 6.8,
 }
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pinocchio as pin
 import pytest
+from scipy.interpolate import CubicSpline
 
 from mbkf.conventions import GRAVITY_M_S2, SIDES
 from mbkf.errors import InvalidInput, UnknownName
@@ -10,6 +11,7 @@ from mbkf.synthesis.contact import FRICTION, sole_outline
 from mbkf.synthesis.inverse_kinematics import SIDE_NAMES
 from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.strength import overloaded
+from mbkf.synthesis.support import SEGMENTS
 
 pytestmark = pytest.mark.slow
 
@@ -35,6 +37,8 @@ def test_newton_and_euler_hold_at_every_frame(body, motion):
         for foot, side in enumerate(SIDES):
             jacobian = body.segment_jacobian(motion.q[k], f"{SIDE_NAMES[side]}_foot", np.zeros(3))
             needed = needed - jacobian.T @ motion.foot_wrench[k, foot]
+        for name, wrench in zip(motion.support_names, motion.support_wrench[k], strict=True):
+            needed = needed - body.segment_jacobian(motion.q[k], SEGMENTS[name], np.zeros(3)).T @ wrench
         assert np.abs(needed - motion.tau[k]).max() < 1e-9
         assert np.abs(motion.tau[k, :6]).max() < 1e-9
 
@@ -66,6 +70,8 @@ def test_velocity_is_the_derivative_of_configuration_to_second_order(body, motio
 def test_momentum_changes_by_the_impulse_of_ground_and_weight(body, motion):
     every = round(motion.plate_rate_hz / motion.rate_hz)
     force = motion.plate_wrench[:, :, :3].sum(axis=1) - [0, 0, body.mass_kg * GRAVITY_M_S2]
+    carried = motion.support_wrench[:, :, :3].sum(axis=1)
+    force += CubicSpline(motion.times_s, carried)(np.arange(len(force)) / motion.plate_rate_hz)
     steps = 0.5 * (force[1:] + force[:-1]) / motion.plate_rate_hz
     impulse = np.vstack([np.zeros(3), np.cumsum(steps, axis=0)])[::every]
     change = momentum(body, motion)[:, :3]

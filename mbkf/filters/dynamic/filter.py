@@ -30,6 +30,7 @@ from mbkf.sensors.newton_euler import NewtonEulerLaw
 from mbkf.sensors.planted import PlantedFeet
 from mbkf.sensors.posture import PosturePrior
 from mbkf.sensors.posture_sensor import PostureSensor
+from mbkf.sensors.supports.block import Supports
 from mbkf.sensors.unobserved import UnobservedJoints
 
 START_WRENCH_SD = 1000.0
@@ -45,6 +46,7 @@ def dynamic_blocks(
     settings: DynamicSettings,
     inertial: InertialSensor | None = None,
     spread_m: Array | None = None,
+    other_contacts: bool = False,
 ) -> list[AnyBlock]:
     """The standard blocks, in the order in which they decide.
 
@@ -59,6 +61,7 @@ def dynamic_blocks(
         spread_m: (M,) spread of one reading where noise stays for a while (:mod:`mbkf.sensors.lasting_noise`), m. A
             frame then counts for less than an independent reading, and so does the posture prior, or the body would
             be drawn to standing.
+        other_contacts: Whether parts besides the feet bear load in some frames.
     """
     model, s, posture = sensor.model, settings, PostureSensor(sensor.model)
     dilution = None if spread_m is None else prior_dilution(sensor, noise_m, spread_m)
@@ -66,6 +69,7 @@ def dynamic_blocks(
     blocks: list[AnyBlock] = [
         Markers(sensor, noise_m, dt_s, unobservable, s.markers, spread_m=spread_m),
         NewtonEulerLaw(NewtonEuler(model), s.law),
+        *([Supports(model, dt_s, s.supports)] if other_contacts else []),
         FootContact(detector, GRAVITY_M_S2 * model.mass_kg, dt_s, s.contact),
         UnobservedJoints.of(movement, s.unobserved),
         PlantedFeet(model, detector, s.planted, spread_m is not None),

@@ -15,6 +15,7 @@ from mbkf.sensors.mean_posture import MeanPostureSettings
 from mbkf.sensors.newton_euler import NewtonEulerSettings
 from mbkf.sensors.planted import PlantedSettings
 from mbkf.sensors.posture import PostureSettings
+from mbkf.sensors.supports.block import SupportSettings
 from mbkf.sensors.unobserved import UnobservedSettings
 
 
@@ -27,6 +28,7 @@ class DynamicSettings:
         markers: Noise and gate of the markers.
         law: How exactly Newton's law holds.
         contact: Noise of plates and of feet that stand elsewhere.
+        supports: When other parts than the feet bear.
         unobserved: Damping of joints that nothing observes.
         planted: How still a loaded foot stands.
         inertial: Noise of inertial sensors.
@@ -41,6 +43,7 @@ class DynamicSettings:
     markers: MarkerSettings = field(default_factory=MarkerSettings)
     law: NewtonEulerSettings = field(default_factory=NewtonEulerSettings)
     contact: FootContactSettings = field(default_factory=FootContactSettings)
+    supports: SupportSettings = field(default_factory=SupportSettings)
     unobserved: UnobservedSettings = field(default_factory=UnobservedSettings)
     planted: PlantedSettings = field(default_factory=PlantedSettings)
     inertial: InertialSettings = field(default_factory=InertialSettings)

@@ -11,6 +11,7 @@ from mbkf.conventions import Array
 from mbkf.filters.dynamic.filter import DynamicFilter
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.dynamic.smoother import smooth
+from mbkf.filters.dynamic.support_loads import SupportLoads
 from mbkf.filters.error_covariance import ErrorCovariance
 from mbkf.filters.estimate import Posterior, Prediction, Recording, TrackingFilter
 from mbkf.filters.filter import Prior, Step
@@ -40,7 +41,7 @@ class DynamicTracking(TrackingFilter):
         self.kalman, self._starter = kalman, starter
         self.model, self.dt_s = kalman.model, kalman.dt_s
         self.restart_after_s = starter.settings.restart_after_s
-        self._reader = SpreadReader(self.model)
+        self._reader, self.loads = SpreadReader(self.model), SupportLoads(self.model, kalman.layout)
         self.clinical = self._reader.clinical
         self._unobservable = np.flatnonzero(kalman.unobservable)
         self._anywhere = self.model.posture_sd[self._unobservable] ** 2
@@ -80,6 +81,8 @@ class DynamicTracking(TrackingFilter):
         state = _record(estimate).state
         torque = self.kalman.balance.torques(state.q, state.v, state.a, state.w)
         errors = self.errors(estimate)
+        loads = self.loads.of(_record(estimate))
+        by_state, shared = self.loads.torques(self.kalman.balance, torque, loads)
         variance = errors.position_variance
         variance[self._unobservable] += self._anywhere
         return Spread(
@@ -87,7 +90,7 @@ class DynamicTracking(TrackingFilter):
             state.q,
             variance,
             errors.velocity_variance,
-            root(errors.variance_of(torque.by_state)),
+            root(errors.variance_of(by_state) + shared),
             lambda: self._configuration(errors.position),
         )
 
@@ -118,6 +121,11 @@ class DynamicTracking(TrackingFilter):
         """(2, 6) from the state's covariance."""
         return np.sqrt(np.diag(_record(estimate).state.P)[self.kalman.layout.wrench]).reshape(2, 6)
 
+    def support_sd(self, estimate: Posterior) -> Array:
+        """(B, 6) from the state's covariance, and from how the parts that bear share their load."""
+        step = _record(estimate)
+        return self.loads.sd(self.loads.of(step), step.state.P)
+
     def innovation(self, estimate: Posterior) -> tuple[float, int]:
         """Of markers, plates and Newton's law."""
         if estimate.started:
@@ -131,10 +139,15 @@ class DynamicTracking(TrackingFilter):
         """Iterated smoother; see :mod:`mbkf.filters.dynamic.smoother`."""
         del recording, first
         states = smooth(self.kalman, [_record(estimate) for estimate in run], ROUNDS, wanted)
-        return [
-            e._replace(q=s.q, v=s.v, a=s.a, wrench=s.w.reshape(2, 6), inner=_record(e)._replace(state=s))
-            for e, s in zip(run, states, strict=False)
-        ]
+        return [self._moved(e, s) for e, s in zip(run, states, strict=False)]
+
+    def _moved(self, estimate: Posterior, state: DynamicState) -> Posterior:
+        """An estimate whose state the smoother has corrected."""
+        inner = _record(estimate)._replace(state=state)
+        support = self.loads.wrench(self.loads.of(inner))
+        return estimate._replace(
+            q=state.q, v=state.v, a=state.a, wrench=state.w.reshape(2, 6), inner=inner, support=support
+        )
 
     def _estimate(self, step: DynamicStep) -> Posterior:
         state, notes = step.state, step.decisions.notes
@@ -149,4 +162,5 @@ class DynamicTracking(TrackingFilter):
             step.tracked,
             False,
             step,
+            self.loads.wrench(self.loads.of(step)),
         )

@@ -41,6 +41,7 @@ class FilterInputs:
         inertial: Inertial sensors on the body, None where there are none.
         spread_m: (M,) spread of one reading where noise stays for a while, None where no marker's does.
         remarks: What was refused of the plates' readings, in words.
+        other_contacts: Whether parts besides the feet bear load somewhere in the trial.
     """
 
     sensor: MarkerSensor
@@ -54,6 +55,7 @@ class FilterInputs:
     inertial: InertialSensor | None = None
     spread_m: Array | None = None
     remarks: tuple[str, ...] = ()
+    other_contacts: bool = False
 
 
 def _kinematic(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
@@ -84,6 +86,7 @@ def standard(inputs: FilterInputs) -> list[AnyBlock]:
         inputs.dynamic,
         inputs.inertial,
         inputs.spread_m,
+        inputs.other_contacts,
     )
 
 

@@ -56,6 +56,8 @@ class FootLoads:
         plate_wrench: (T, P, 6) every plate about the world's origin; zero outside its recording.
         foot_of_plate: (T, P) 0 right, 1 left, 2 both, -1 none.
         valid: (T,) every loaded foot stands on a recorded plate.
+        unread: (T, 2) feet that touch the floor where no plate reads.
+        floor_m: Height of the floor as the soles show it; NaN where they were never tracked.
         warnings: Remarks for the reader of a report.
     """
 
@@ -65,6 +67,8 @@ class FootLoads:
     plate_wrench: Array
     foot_of_plate: Array
     valid: BoolArray
+    unread: BoolArray
+    floor_m: float
     warnings: tuple[str, ...]
 
 
@@ -104,7 +108,10 @@ def assign_feet(
     flight = ~touching.any(axis=1) & _falling(q[:, 2], rate_hz)
     valid, warnings = _validity(model, touching, flight, foot, wrench, pressure, recorded)
     valid &= ~_on_silent_plate(PlateAreas(plates), soles, foot, recorded, rate_hz)
-    return FootLoads(total, at_feet, free, wrench, foot, valid, warnings)
+    lowest = soles[..., 2].min(axis=(1, 2))
+    floor = float(np.nanpercentile(lowest, FLOOR_PERCENTILE)) if not np.isnan(lowest).all() else np.nan
+    unread = touching & ~_on_plate(foot)
+    return FootLoads(total, at_feet, free, wrench, foot, valid, unread, floor, warnings)
 
 
 def _foot_of_plate(pressure: Array, soles: Array, vertical_n: Array, rate_hz: float) -> Array:

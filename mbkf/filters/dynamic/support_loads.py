@@ -1,0 +1,89 @@
+"""What the parts that bear besides the feet carry, read off a state of the dynamic filter, and the torques it makes."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.filters.dynamic.plant import DynamicState
+from mbkf.filters.filter import Step
+from mbkf.model.body import Body
+from mbkf.model.newton_euler import JointTorques, NewtonEuler
+from mbkf.sensors.layout import SUPPORT, Layout
+from mbkf.sensors.supports.bearings import BearingParts
+from mbkf.sensors.supports.sharing import Shares, shares
+
+
+class Loads(NamedTuple):
+    """Parts that bear in a frame and how they share the wrench of all."""
+
+    parts: tuple[int, ...]
+    shares: Shares
+
+
+class SupportLoads:
+    """Reads the wrenches of a body's bearings.
+
+    Attributes:
+        bearings: The parts that may bear.
+    """
+
+    def __init__(self, model: Body, layout: Layout) -> None:
+        self.bearings, self._nv = BearingParts(model), model.nv
+        known = SUPPORT in layout
+        self._slice = layout[SUPPORT] if known else None
+        self._extra = layout.extra_index(SUPPORT) if known else slice(0)
+
+    def of(self, step: Step[DynamicState]) -> Loads | None:
+        """What bears at a step's state; None where only feet do."""
+        parts, state = step.decisions.notes.supports, step.state
+        if not parts or self._slice is None:
+            return None
+        points, chosen = self.bearings.at(state.q, state.v).points_m, list(parts)
+        grips = [self.bearings.grips[k] for k in parts]
+        return Loads(
+            parts, shares(state.extra[self._extra], points[chosen], self.bearings.levers_m[chosen], grips)
+        )
+
+    def wrench(self, loads: Loads | None) -> Array | None:
+        """(B, 6) wrench on each part about the world's origin; None where the filter has no such state."""
+        if self._slice is None:
+            return None
+        found = np.zeros((len(self.bearings), 6))
+        if loads is not None:
+            found[list(loads.parts)] = loads.shares.wrench
+        return found
+
+    def sd(self, loads: Loads | None, P: Array) -> Array:
+        """(B, 6) standard deviations of :meth:`wrench`, for the state's covariance P (N, N)."""
+        found = np.zeros((len(self.bearings), 6))
+        if loads is not None and self._slice is not None:
+            rows = loads.shares.by_whole.reshape(-1, 6)
+            whole = np.einsum("ij,jk,ik->i", rows, P[self._slice, self._slice], rows)
+            variance = whole + np.diag(loads.shares.covariance)
+            found[list(loads.parts)] = np.sqrt(np.maximum(variance, 0.0)).reshape(-1, 6)
+        return found
+
+    def torques(self, balance: NewtonEuler, torque: JointTorques, loads: Loads | None) -> tuple[Array, Array]:
+        """Derivative (nv, n) of the generalised forces by the state, and (nv,) variance by how parts share the load.
+
+        Args:
+            balance: The equations, last asked for these torques.
+            torque: Torques for the feet's wrenches; the others' are counted in, in place.
+            loads: What else bears; None for nothing.
+        """
+        none = np.zeros(self._nv)
+        if loads is None or self._slice is None:
+            return torque.by_state, none
+        ids = [self.bearings.joint_ids[k] for k in loads.parts]
+        by_joint: dict[int, Array] = {}
+        for joint, wrench in zip(ids, loads.shares.wrench, strict=True):
+            by_joint[joint] = by_joint.get(joint, np.zeros(6)) + wrench
+        balance.loaded(torque, by_joint)
+        J = np.vstack([balance.jacobian(joint) for joint in ids])
+        by_state = np.zeros((self._nv, self._slice.stop))
+        by_state[:, : torque.by_state.shape[1]] = torque.by_state
+        by_state[:, self._slice] = -J.T @ loads.shares.by_whole.reshape(-1, 6)
+        return by_state, np.einsum("ij,ik,kj->j", J, loads.shares.covariance, J)

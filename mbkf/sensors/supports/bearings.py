@@ -1,0 +1,76 @@
+"""Where the parts of a body that may bear load besides its feet are, and how they move."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.model.body import Body
+from mbkf.model.description import Bearing
+from mbkf.model.sides import mirrored
+
+
+@dataclass(frozen=True)
+class BearingPoints:
+    """The parts at a configuration.
+
+    Attributes:
+        points_m: (B, 3) their middles in the world.
+        speeds_m_s: (B,) how fast these move.
+    """
+
+    points_m: Array
+    speeds_m_s: Array
+
+
+class BearingParts:
+    """The parts of a body that may bear load besides its feet, in the order of the body file.
+
+    Attributes:
+        model: The body.
+        parts: The parts.
+        joint_ids: Index of the joint that carries each one's segment.
+        radii_m: (B,) from their middles to the skin.
+        levers_m: (B,) how far from its middle a part's centre of pressure may lie.
+        grips: Whether a part ends a limb and so may hold something: a hand.
+        seat: Place among them of the part on the root, which may sit; -1 for none.
+    """
+
+    def __init__(self, model: Body) -> None:
+        self.model = model
+        self.parts: tuple[Bearing, ...] = tuple(model.description.bearings.values())
+        scales = [model.axis_scale(model.description.segment(one.segment)) for one in self.parts]
+        size = np.array([float(by.mean()) for by in scales])
+        self.joint_ids = [model.joint(one.segment).joint_id for one in self.parts]
+        self._local = np.array([one.position_m * by for one, by in zip(self.parts, scales, strict=True)])
+        self.radii_m = np.array([one.radius_m for one in self.parts]) * size
+        self.levers_m = np.array([one.lever_m for one in self.parts]) * size
+        self._moves = model.supports[self.joint_ids].astype(float)
+        parents = {segment.parent for segment in model.description.segments}
+        self.grips = [one.segment not in parents for one in self.parts]
+        sits = [k for k, one in enumerate(self.parts) if one.segment == model.roles.root]
+        self.seat = sits[0] if sits else -1
+
+    def __len__(self) -> int:
+        return len(self.parts)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the parts."""
+        return tuple(one.name for one in self.parts)
+
+    @property
+    def pairs(self) -> list[tuple[int, int]]:
+        """Right and left parts of the same kind."""
+        at = {one.name: k for k, one in enumerate(self.parts)}
+        both = [(at[name], at[mirrored(name)]) for name in at if mirrored(name) in at]
+        return [(first, second) for first, second in both if first < second]
+
+    def at(self, q: Array, v: Array) -> BearingPoints:
+        """The parts at a configuration q (nq,) with velocity v (nv,)."""
+        rotations, origins, jacobian = self.model.placements_and_jacobian(q)
+        points = origins[self.joint_ids] + np.einsum("bij,bj->bi", rotations[self.joint_ids], self._local)
+        twists = (self._moves * v) @ jacobian.T
+        return BearingPoints(points, np.linalg.norm(twists[:, :3] + np.cross(twists[:, 3:], points), axis=1))

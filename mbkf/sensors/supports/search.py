@@ -1,0 +1,253 @@
+"""Finds which parts of the body bear load besides the feet, and when, before a trial is filtered.
+
+Where plates read every foot, what the motion of the markers asks for and the plates do not give must act somewhere: its
+line of action leads through the part that bears (:mod:`mbkf.sensors.supports.momentum`). Where a foot stands beside the
+plates, or there are none, parts that lie low and still on the floor bear.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.model.body import Body
+from mbkf.numerics.windows import dilated
+from mbkf.sensors.contact.offline import FootLoads, stretches
+from mbkf.sensors.contact.soles import sole_points
+from mbkf.sensors.supports.bearings import BearingParts
+from mbkf.sensors.supports.momentum import WholeBody
+
+WINDOW_S, EDGE_WINDOW_S = 0.25, 0.1
+"""Durations over which a missing wrench is taken: to see that there is one, and when it begins and ends."""
+
+LEAST_SHARE, EDGE_SHARE = 0.08, 0.04
+"""A missing force of this share of body weight is one, and lasts as long as it is more than the second."""
+
+LASTING_S = 0.25
+"""It lasts at least so long: what bodies' masses are wrong by swings faster in a step."""
+
+EDGE_S = 0.15
+"""How far from the wide window's first and last frame its true begin and end are looked for."""
+
+BODY_LEVER_M = 0.02
+"""Moment about the centre of mass, in body weights times m, that scaled bodies are wrong by."""
+
+FITS = 2.0
+"""A missing wrench acts on a part whose middle its line of action misses by less than this many deviations."""
+
+SOLE_LEVER_M = 0.1
+"""How far from the middle of a sole its centre of pressure may lie."""
+
+PAIR_PENALTY = 0.5
+"""Two parts must fit better than one by this, squared deviations: they have a share that is free."""
+
+ON_FLOOR_M, RESTS_M_S, RESTS_S = 0.05, 0.4, 0.1
+"""A part whose surface is lower than this above the soles' floor, slower, for so long, lies on the floor."""
+
+ALWAYS_SHARE = 0.9
+"""A force that is missing in more than this share of the frames is no contact: mass or plates are wrong."""
+
+
+@dataclass(frozen=True)
+class OtherContacts:
+    """Which parts bear besides the feet.
+
+    Attributes:
+        flags: (T, B) whether each of the body's bearings bears.
+        remarks: What a missing wrench is that no contact explains, in words.
+    """
+
+    flags: BoolArray
+    remarks: tuple[str, ...] = ()
+
+
+def other_contacts(
+    model: Body, q: Array, v: Array, rate_hz: float, loads: FootLoads, read: BoolArray
+) -> OtherContacts:
+    """Parts that bear in a trial.
+
+    Args:
+        model: The body.
+        q: (T, nq) configurations from markers alone, NaN where untracked.
+        v: (T, nv) velocities.
+        rate_hz: Frame rate.
+        loads: What the plates give to the feet.
+        read: (T,) frames in which all plates were recorded, none where there are no plates.
+    """
+    bearings = BearingParts(model)
+    points, speeds = _moving(bearings, q, v)
+    judged = read & loads.valid & ~np.isnan(q).any(axis=1)
+    body, feet = WholeBody.of(model, q, v), sole_points(model, q).mean(axis=2)
+    flags, remarks = _missing(bearings, np.concatenate([points, feet], axis=1), body, rate_hz, loads, judged)
+    return OtherContacts(flags | _lying(bearings, points, speeds, rate_hz, loads.floor_m, judged), remarks)
+
+
+def _moving(bearings: BearingParts, q: Array, v: Array) -> tuple[Array, Array]:
+    """(T, B, 3) middles of the parts and (T, B) their speeds; NaN where untracked."""
+    points, speeds = np.full((len(q), len(bearings), 3), np.nan), np.full((len(q), len(bearings)), np.nan)
+    for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
+        found = bearings.at(q[t], v[t])
+        points[t], speeds[t] = found.points_m, found.speeds_m_s
+    return points, speeds
+
+
+def _missing(
+    bearings: BearingParts,
+    points: Array,
+    body: WholeBody,
+    rate_hz: float,
+    loads: FootLoads,
+    judged: BoolArray,
+) -> tuple[BoolArray, tuple[str, ...]]:
+    """(T, B) parts through which a missing wrench leads, and remarks on what leads through none.
+
+    Args:
+        bearings: The parts.
+        points: (T, B + 2, 3) their middles, and those of the soles of right and left foot.
+        body: The body's momentum.
+        rate_hz: Frame rate.
+        loads: What the plates give to the feet.
+        judged: (T,) frames in which they give all that the feet bear.
+    """
+    flags = np.zeros((len(points), len(bearings)), dtype=bool)
+    given = np.where(judged[:, None], loads.wrench.sum(axis=1), 0.0)
+    weight_n = float(np.linalg.norm(body.weight))
+    slow, fast = (body.missing_wrench(given, rate_hz, s) for s in (WINDOW_S, EDGE_WINDOW_S))
+    # A window that reaches into frames that cannot be judged cannot be either.
+    clear = judged & ~dilated(~judged, round(0.5 * WINDOW_S * rate_hz))
+    lacks = clear & (np.linalg.norm(slow[:, :3], axis=1) > LEAST_SHARE * weight_n)
+    if lacks.sum() > ALWAYS_SHARE * max(int(clear.sum()), 1):
+        share = 100.0 * float(np.mean(slow[lacks, 2])) / weight_n
+        return flags, (
+            f"the motion asks for {share:+.0f} % of body weight more than the plates read, throughout: the mass, the "
+            "plates' scale or the axes may be wrong",
+        )
+    remarks = []
+    for run in _lasting(lacks, rate_hz):
+        force = slow[run, :3].mean(axis=0)
+        if np.linalg.norm(force) < LEAST_SHARE * weight_n:
+            continue
+        parts = _fitting(bearings, points[run] - body.centre_m[run, None], slow[run], weight_n)
+        frames = _edges(run, fast[:, :3], force, weight_n, rate_hz, judged)
+        if parts is not None and parts[0] >= len(bearings):
+            continue
+        if parts is None:
+            size, since = float(np.linalg.norm(force)), run[0] / rate_hz
+            remarks.append(
+                f"from {since:.2f} s for {len(run) / rate_hz:.2f} s the motion asks for {size:.0f} N that neither the "
+                "plates nor a part of the body that could bear it account for"
+            )
+        else:
+            flags[frames[:, None], list(parts)] = True
+    return flags, tuple(remarks)
+
+
+def _lasting(lacks: BoolArray, rate_hz: float) -> list[Array]:
+    """Stretches of a mask (T,) that last, across gaps shorter than that."""
+    gap = max(1, round(0.5 * LASTING_S * rate_hz))
+    closed = ~dilated(~dilated(lacks, gap), gap)
+    return [run for run in stretches(closed) if len(run) >= LASTING_S * rate_hz]
+
+
+def _edges(
+    run: Array, fast: Array, force: Array, weight_n: float, rate_hz: float, judged: BoolArray
+) -> NDArray[np.intp]:
+    """Frames of a stretch, moved to where the force along its mean direction begins and ends.
+
+    Args:
+        run: Frames of the stretch.
+        fast: (T, 3) missing force over a short window.
+        force: (3,) its mean.
+        weight_n: The body's weight.
+        rate_hz: Frame rate.
+        judged: (T,) frames that can be judged.
+    """
+    along = fast @ force / np.linalg.norm(force)
+    acts = judged & (along > EDGE_SHARE * weight_n)
+    reach = round(EDGE_S * rate_hz)
+    first, last = int(run[0]), int(run[-1])
+    low, high = max(first - reach, 0), min(last + reach, len(fast) - 1)
+    begins = np.flatnonzero(acts[low : first + reach + 1])
+    ends = (
+        np.flatnonzero(acts[last - reach : high + 1]) if last >= reach else np.flatnonzero(acts[: high + 1])
+    )
+    start = low + int(begins[0]) if len(begins) else first
+    stop = max(last - reach, 0) + int(ends[-1]) if len(ends) else last
+    return np.arange(start, max(stop, start) + 1)
+
+
+def _fitting(bearings: BearingParts, arms: Array, missing: Array, weight_n: float) -> tuple[int, ...] | None:
+    """Parts through which a stretch's missing wrench leads best; None where it leads through none.
+
+    A foot that no plate was seen to carry may be it as well: B for the right one, B + 1 for the left.
+
+    Args:
+        bearings: The parts.
+        arms: (n, B + 2, 3) from the centre of mass to their middles and those of the soles.
+        missing: (n, 6) wrench about the centre of mass.
+        weight_n: The body's weight.
+    """
+    best, least = None, FITS**2
+    levers = np.append(bearings.levers_m, [SOLE_LEVER_M, SOLE_LEVER_M])
+    for parts in _groups(bearings, missing[:, :3].mean(axis=0)):
+        lever = float(levers[list(parts)].mean())
+        off = _off(arms[:, list(parts)], missing, lever, weight_n) + PAIR_PENALTY * (len(parts) - 1)
+        if off < least:
+            best, least = parts, off
+    return best
+
+
+def _groups(bearings: BearingParts, force: Array) -> Iterator[tuple[int, ...]]:
+    """Parts, and pairs of like ones, that could bear a force (3,): what does not hold can only be pushed up."""
+    pushes = float(force[2]) > 0.5 * float(np.linalg.norm(force))
+    usable = [k for k in range(len(bearings)) if pushes or bearings.grips[k]]
+    yield from ((k,) for k in usable)
+    if pushes:
+        yield from ((len(bearings),), (len(bearings) + 1,))
+    yield from (pair for pair in bearings.pairs if pair[0] in usable and pair[1] in usable)
+
+
+def _off(arms: Array, missing: Array, lever_m: float, weight_n: float) -> float:
+    """Mean squared deviations by which a wrench misses one part, or two with the share that fits best.
+
+    Args:
+        arms: (n, 1 or 2, 3) from the centre of mass to the parts' middles.
+        missing: (n, 6) wrench about the centre of mass.
+        lever_m: How far from its middle a part may be pressed.
+        weight_n: The body's weight.
+    """
+    force, moment = missing[:, :3], missing[:, 3:]
+    sd = np.hypot(lever_m * np.linalg.norm(force, axis=1), BODY_LEVER_M * weight_n)[:, None]
+    off = (moment - np.cross(arms[:, 0], force)) / sd
+    if arms.shape[1] > 1:
+        turn = np.cross(arms[:, 1] - arms[:, 0], force) / sd
+        share = float(np.clip((off * turn).sum() / max((turn * turn).sum(), 1e-9), 0.0, 1.0))
+        off = off - share * turn
+    return float((off**2).sum(axis=1).mean())
+
+
+def _lying(
+    bearings: BearingParts, points: Array, speeds: Array, rate_hz: float, floor_m: float, judged: BoolArray
+) -> BoolArray:
+    """(T, B) parts that lie on the floor in frames that plates do not judge.
+
+    Args:
+        bearings: The parts.
+        points: (T, B, 3) their middles.
+        speeds: (T, B) how fast they move.
+        rate_hz: Frame rate.
+        floor_m: Height of the floor.
+        judged: (T,) frames in which plates read all that the feet bear.
+    """
+    low = (
+        (points[:, :, 2] - bearings.radii_m - floor_m < ON_FLOOR_M) & (speeds < RESTS_M_S) & ~judged[:, None]
+    )
+    found = np.zeros_like(low)
+    for k in range(len(bearings)):
+        for run in stretches(low[:, k]):
+            found[run, k] = len(run) >= RESTS_S * rate_hz
+    return found
