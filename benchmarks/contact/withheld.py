@@ -94,7 +94,7 @@ def compared(truth: Reconstruction, found: Reconstruction, subject: Subject) -> 
     """
     weight_n = subject.mass_kg * GRAVITY_M_S2
     assert truth.foot_contact is not None and found.foot_wrench_sd is not None
-    judged = truth.valid & (truth.foot_contact >= 0).all(axis=1) & found.tracked
+    judged = truth.measured & (truth.foot_contact >= 0).all(axis=1) & found.tracked
     vertical = truth.foot_wrench[:, :, 2]
     off = found.foot_wrench[:, :, 2] - vertical
     bears = judged[:, None] & (truth.foot_contact == Contact.MEASURED) & (vertical > BEARS_N)

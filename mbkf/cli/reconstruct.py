@@ -184,7 +184,8 @@ def print_summary(summary: Summary, folder: Path) -> None:
             "pelvis angles",
             f"{summary['progression']['kind']}, {summary['progression']['heading_deg']:.0f}° from the x axis",
         ),
-        ("frames with all reactions measured", str(summary["valid_frames"])),
+        ("frames with all loads known", str(summary["valid_frames"])),
+        ("frames with all loads measured", str(summary["measured_frames"])),
         (
             "residual at the pelvis",
             _pair(summary["residual_force_rms_n"], summary["residual_moment_rms_nm"], "N, N m"),

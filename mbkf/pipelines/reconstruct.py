@@ -17,6 +17,7 @@ from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.settings import flat
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.filters.tracking import Track, track
+from mbkf.io.contacts import bearing
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject, match_names
@@ -28,6 +29,7 @@ from mbkf.pipelines.imu.on_body import ImuOnBody, with_imus
 from mbkf.pipelines.results.clinical import clinical_motion
 from mbkf.pipelines.results.progression import PELVIS_FRAMES, pelvis_frame
 from mbkf.pipelines.results.reactions import reactions
+from mbkf.pipelines.results.validity import torques_known
 from mbkf.pipelines.trial.exchanged import exchange_notes, names_put_right
 from mbkf.pipelines.trial.filters import FILTERS, FilterInputs, standard, tracking_filter
 from mbkf.pipelines.trial.inputs import trial_inputs
@@ -226,60 +228,37 @@ def assemble(
     tau_sd = np.where(np.isnan(tau), np.nan, result.torque_sd)
     frame = pelvis_frame(settings.pelvis, model, result.q, measured.times_s)
     clinical = clinical_motion(model, result, tau, tau_sd, frame)
+    located = result.tracked & _located(result)
+    supports = ground.supports
+    bears = bearing(supports.wrench)
+    known = torques_known(model, clinical.names, clinical.moments_sd, ground.foot_source, bears)
     return Reconstruction(
-        trial=Path(capture.path).stem or "capture",
-        protocol=subject.protocol,
-        filter=settings.filter,
-        smoothed=result.smoothed,
-        version=__version__,
-        subject=subject,
-        rate_hz=measured.rate_hz,
+        trial=Path(capture.path).stem or "capture", protocol=subject.protocol, filter=settings.filter,
+        smoothed=result.smoothed, version=__version__, subject=subject, rate_hz=measured.rate_hz,
         times_s=measured.times_s,
-        dof_names=names,
-        q=result.q,
-        v=result.v,
-        a=result.a,
-        tau=tau,
-        sd_q=result.position_sd,
-        sd_v=result.velocity_sd,
-        sd_tau=tau_sd,
-        coordinate_names=clinical.names,
-        angles=clinical.angles,
-        angle_rates=clinical.rates,
-        moments=clinical.moments,
-        angles_sd=clinical.angles_sd,
-        angle_rates_sd=clinical.rates_sd,
-        moments_sd=clinical.moments_sd,
-        singular=clinical.singular,
-        marker_names=measured.names,
-        measured_m=measured.positions_m,
-        predicted_m=_predicted(inputs.sensor, result, measured, hidden),
-        hidden=hidden,
+        dof_names=names, q=result.q, v=result.v, a=result.a, tau=tau, sd_q=result.position_sd,
+        sd_v=result.velocity_sd, sd_tau=tau_sd,
+        coordinate_names=clinical.names, angles=clinical.angles, angles_lab=clinical.angles_lab,
+        angle_rates=clinical.rates, moments=clinical.moments, angles_sd=clinical.angles_sd,
+        angle_rates_sd=clinical.rates_sd, moments_sd=clinical.moments_sd, singular=clinical.singular,
+        direction=frame.direction, heading_rad=frame.heading_rad,
+        marker_names=measured.names, measured_m=measured.positions_m,
+        predicted_m=_predicted(inputs.sensor, result, measured, hidden), hidden=hidden,
         rejected=result.refused,
-        foot_wrench=ground.wrench,
-        foot_cop_m=ground.centre_of_pressure_m,
-        foot_free_moment_nm=ground.free_moment_nm,
-        residual_force_n=ground.residual_force_n,
-        residual_moment_nm=ground.residual_moment_nm,
-        tracked=result.tracked,
-        valid=ground.valid & result.tracked & _located(result),
-        unobserved_dofs=tuple(name for name, without in zip(names, unobservable, strict=True) if without),
-        nis=result.nis,
-        nis_readings=result.readings,
-        step_seconds=result.step_seconds,
-        warnings=(*capture.notes, *inputs.remarks, *ground.warnings, *_warnings(result, names, unobservable)),
-        settings=recorded(settings),
-        plate_change=ground.plate_change,
-        foot_wrench_sd=ground.wrench_sd,
-        foot_contact=result.contact,
+        foot_wrench=ground.wrench, foot_wrench_sd=ground.wrench_sd, foot_cop_m=ground.centre_of_pressure_m,
+        foot_free_moment_nm=ground.free_moment_nm, foot_contact=result.contact,
+        foot_source=ground.foot_source,
+        support_names=supports.names, support_wrench=supports.wrench,
+        support_wrench_sd=supports.wrench_sd, support_point_m=supports.point_m,
+        residual_force_n=ground.residual_force_n, residual_moment_nm=ground.residual_moment_nm,
+        plate_change=ground.plate_change, plate_corners_m=_corners(capture),
+        tracked=result.tracked, measured=ground.measured & located, valid=ground.accounted & located & known,
+        nis=result.nis, nis_readings=result.readings, step_seconds=result.step_seconds,
         covariance=result.covariance,
-        plate_corners_m=_corners(capture),
-        file_axes=capture.axes,
-        file_axes_source=capture.axes_source.value,
-        direction=frame.direction,
-        heading_rad=frame.heading_rad,
-        angles_lab=clinical.angles_lab,
-    )
+        unobserved_dofs=tuple(name for name, without in zip(names, unobservable, strict=True) if without),
+        warnings=(*capture.notes, *inputs.remarks, *ground.warnings, *_warnings(result, names, unobservable)),
+        settings=recorded(settings), file_axes=capture.axes, file_axes_source=capture.axes_source.value,
+    )  # fmt: skip
 
 
 def _located(result: Track) -> BoolArray:

@@ -1,4 +1,4 @@
-"""One self-contained page about a reconstruction: quality first, then gait, motion, reactions and settings."""
+"""One self-contained page about a reconstruction: quality first, then gait, motion, loads and settings."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ from mbkf.pipelines.results.progression import LABORATORY
 from mbkf.pipelines.results.summary import progression_summary
 from mbkf.viz.markup import folded, paragraph, section, table
 from mbkf.viz.page import asset
+from mbkf.viz.report.contacts import contact_section
 from mbkf.viz.report.gait import gait_section
 from mbkf.viz.report.motion import motion_section, reaction_section
 from mbkf.viz.report.quality import quality_section
 
 NAVIGATION = (
     ("quality", "Quality"), ("gait", "Gait"), ("motion", "Angles and torques"), ("reactions", "Reactions"),
-    ("settings", "Settings"),
+    ("contacts", "Contacts"),    ("settings", "Settings"),
 )  # fmt: skip
 
 
@@ -40,7 +41,8 @@ def report_page(
     gait = find_gait(r) if r.tracked.any() else None
     sections = [quality_section(r, summary, labels)]
     if r.tracked.any():
-        sections += [gait_section(gait, r.times_s), motion_section(r, gait), reaction_section(r, gait)]
+        sections += [gait_section(gait, r.times_s), motion_section(r, gait)]
+        sections += [reaction_section(r, gait), contact_section(r)]
     sections.append(_settings(r, summary))
     there = [entry for entry in NAVIGATION if any(f'<section id="{entry[0]}"' in s for s in sections)]
     links = "".join(f'<a href="#{name}">{title}</a>' for name, title in there)

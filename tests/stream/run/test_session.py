@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput, NotObservable
+from mbkf.filters.inverse_dynamics import support_torques
 from mbkf.filters.record import FrameRecorder
+from mbkf.io.contacts import Source
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.pipelines.live.filter import live_inputs
 from mbkf.pipelines.live.results import live_results
@@ -124,10 +126,34 @@ def test_the_rate_is_that_of_the_last_second(capture, subject):
     rows = FrameRecorder(tracking_filter("dynamic", live.inputs), len(live.names))
     unseen = np.full((len(live.names), 3), np.nan)
     ready = ReadyFrame(7, 6.0, unseen, np.zeros((0, 3)), np.zeros((2, 6)))
-    shown = maker.frame(ready, rows.row(7, unseen, None, 0.0), 0.001, 3)
+    shown = maker.frame(ready, rows.row(7, unseen, None, 0.0)[0], 0.001, 3)
     assert shown.rate_hz == pytest.approx(2.0)
     assert (shown.number, shown.lost, shown.tracked) == (0, 3, False)
     assert np.isnan(shown.q).all()
+
+
+def test_a_listener_gets_loads_on_all_parts_and_torques_that_count_them(capture, subject):
+    stream, _ = frames_of(capture)
+    live = live_inputs(stream.marker_names, stream.rate_hz, stream.plates, subject, ReconstructSettings())
+    model = live.inputs.sensor.model
+    maker = FrameMaker(live, stream.rate_hz)
+    rows = FrameRecorder(tracking_filter("dynamic", live.inputs), len(live.names))
+    unseen = np.full((len(live.names), 3), np.nan)
+    ready = ReadyFrame(0, 0.0, unseen, np.zeros((0, 3)), np.zeros((2, 6)))
+    row, _ = rows.row(0, unseen, None, 0.0)
+    row["known"], row["q"], row["footing"] = True, model.neutral(), [-1, 1]
+    row["v"] = row["a"] = row["wrench"] = row["support"] = 0.0
+    alone = maker.frame(ready, row, 0.0, 0)
+    row["support"] = np.random.default_rng(0).normal(size=row["support"].shape)
+    row["support_sd"] = 2.0
+    shown = maker.frame(ready, row, 0.0, 0)
+    change = shown.torques - alone.torques
+    np.testing.assert_allclose(
+        change, -support_torques(model, model.neutral(), row["support"][0]), atol=1e-10
+    )
+    assert shown.foot_source.tolist() == [Source.ESTIMATED, Source.MEASURED]
+    np.testing.assert_array_equal(shown.support, row["support"][0])
+    assert (shown.support_sd == 2.0).all()
 
 
 def test_a_listener_that_fails_is_dropped(tmp_path, capture, subject):
