@@ -12,7 +12,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.filters.spread import Spread
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
-from mbkf.numerics.passage import Passage
+from mbkf.numerics.passage import LinearStep
 from mbkf.numerics.smoothing import BackwardPass
 from mbkf.sensors.block import NO_READINGS, Frame
 from mbkf.sensors.marker_prediction import MarkerPrediction
@@ -160,8 +160,8 @@ class TrackingFilter(Protocol):
             wanted: How many to return.
         """
 
-    def passage(self, before: Posterior, estimate: Posterior) -> Passage:
-        """How what later frames tell passes back over a frame, linearised as the filter did.
+    def linear_step(self, before: Posterior, estimate: Posterior) -> LinearStep:
+        """The step into a frame, linearised as the filter did.
 
         Args:
             before: Estimate of the frame before.

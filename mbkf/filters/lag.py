@@ -1,9 +1,8 @@
 """Fixed lag: the estimate of every frame waits for the readings of the next few, and then knows them.
 
 One linear backward pass about the filter's own course corrects it (Anderson 1979, chapter 7), with the covariance that
-belongs to it. The pass is joined over the frames of the lag (:mod:`mbkf.numerics.passage`), so that its cost does not
-grow with the lag and a live filter can pay it. Unlike windows (:mod:`mbkf.filters.fixed_lag`), every frame is given
-equally late and linearised once.
+belongs to it, or in a live filter, which has no time for matrix products, without. Unlike windows
+(:mod:`mbkf.filters.fixed_lag`), every frame is given equally late and linearised once.
 """
 
 from __future__ import annotations
@@ -11,7 +10,7 @@ from __future__ import annotations
 from collections import deque
 
 from mbkf.filters.estimate import Posterior, TrackingFilter
-from mbkf.numerics.passage import PassageWindow
+from mbkf.numerics.passage import LaterWindow
 
 
 def lag_frames(lag_s: float, dt_s: float) -> int:
@@ -27,11 +26,18 @@ class FixedLag:
         frames: The lag; 0 gives every estimate back at once and unchanged.
     """
 
-    def __init__(self, filter: TrackingFilter, lag_s: float) -> None:
-        """Args: the filter, and the lag; what is less than a frame of it does not count."""
+    def __init__(self, filter: TrackingFilter, lag_s: float, covariances: bool = True) -> None:
+        """Gives nothing back yet.
+
+        Args:
+            filter: The filter.
+            lag_s: The lag; what is less than a frame of it does not count.
+            covariances: Whether covariances are those of the lagged estimates; else they stay the filter's own, which
+                are larger, and a frame costs a tenth.
+        """
         self.filter, self.frames = filter, lag_frames(lag_s, filter.dt_s)
         self._waiting: deque[tuple[int, Posterior]] = deque()
-        self._window = PassageWindow()
+        self._window = LaterWindow(covariances)
         self._given: Posterior | None = None
 
     def push(self, t: int, estimate: Posterior) -> list[tuple[int, Posterior]]:
@@ -40,7 +46,7 @@ class FixedLag:
         if self.frames == 0:
             return [*done, (t, estimate)]
         if self._waiting:
-            self._window.append(self.filter.passage(self._waiting[-1][1], estimate))
+            self._window.append(self.filter.linear_step(self._waiting[-1][1], estimate))
         self._waiting.append((t, estimate))
         if len(self._waiting) > self.frames:
             done.append(self._first())

@@ -81,24 +81,25 @@ class ReconstructSettings:
     pelvis: str = "progression"
     keep_covariance: bool = False
 
+    def __post_init__(self) -> None:
+        """Refuses a lag that is no time, or beside smoothing.
+
+        Raises:
+            InvalidInput: It is so.
+        """
+        if not 0.0 <= self.lag_s < np.inf:
+            raise InvalidInput(f"a lag of {self.lag_s:g} s is not possible: give a positive time")
+        if self.smooth and self.lag_s > 0.0:
+            raise InvalidInput(
+                "smoothing uses all later frames, so a lag is not possible beside it; choose one"
+            )
+
 
 def recorded(settings: ReconstructSettings) -> dict[str, object]:
     """The settings as result files hold them: the dynamic filter's by their leaves' names, the lag in ms."""
     found: dict[str, object] = {**asdict(settings), "dynamic": flat(settings.dynamic)}
     del found["lag_s"]
     return {**found, LAG_KEY: round(1e3 * settings.lag_s, 6)}
-
-
-def check_lag(settings: ReconstructSettings) -> None:
-    """Refuses a lag that is no time, or beside smoothing.
-
-    Raises:
-        InvalidInput: It is so.
-    """
-    if not 0.0 <= settings.lag_s < np.inf:
-        raise InvalidInput(f"a lag of {settings.lag_s:g} s is not possible: give a positive time")
-    if settings.smooth and settings.lag_s > 0.0:
-        raise InvalidInput("smoothing uses all later frames, so a lag is not possible beside it; choose one")
 
 
 def reconstruct(
@@ -123,8 +124,7 @@ def reconstruct(
         progress: Called with the stage, items done and items in all.
 
     Raises:
-        InvalidInput: The axes or the unit of the capture cannot be right, and it is not clear what they are; or the
-            lag is not possible.
+        InvalidInput: The axes or the unit of the capture cannot be right, and it is not clear what they are.
         NotObservable: Too few of the subject's markers to track the body.
         NotConverged: The markers do not fit the subject's body.
         UnknownName: A hidden marker, a withheld plate, the filter or the frame of the pelvis does not exist.
@@ -134,7 +134,6 @@ def reconstruct(
         raise UnknownName("filter", settings.filter, FILTERS)
     if settings.pelvis not in PELVIS_FRAMES:
         raise UnknownName("frame of the pelvis", settings.pelvis, PELVIS_FRAMES)
-    check_lag(settings)
     with single_threaded():
         capture = checked_for_subject(capture, subject)
         measured, exchanged = names_put_right(subject_markers(capture.markers, subject), subject)

@@ -6,7 +6,7 @@ import pytest
 from mbkf.filters.dynamic.smoother import smooth
 from mbkf.filters.lag import FixedLag, lag_frames
 from mbkf.filters.tracking import track
-from mbkf.numerics.passage import Passage
+from mbkf.numerics.passage import LinearStep
 from mbkf.pipelines.trial.filters import FILTERS
 from tests.dynamics import DT
 from tests.filters.test_fixed_lag import Told
@@ -26,9 +26,9 @@ class Counter:
     def __init__(self):
         self.befores = {}
 
-    def passage(self, before, estimate):
+    def linear_step(self, before, estimate):
         assert estimate.t == before.t + 1 and not estimate.started
-        return Passage(np.eye(1), np.ones(1), np.ones((1, 1)))
+        return LinearStep(np.zeros((1, 1)), np.zeros((1, 1)), -np.ones(1), np.eye(1))
 
     def corrected(self, estimate, later, before):
         self.befores[estimate.t] = None if before is None else before.t
@@ -125,6 +125,20 @@ def test_stated_spreads_shrink_with_the_lag_and_never_below_the_smoothers(name):
         causal, mine, all_ = (getattr(one, spread)[inside] for one in (plain, some, whole))
         assert (mine <= causal * (1 + 1e-9)).all() and (all_ <= mine * (1 + 1e-9)).all()
         assert np.median(mine / causal) < 0.99
+
+
+@every_filter
+def test_without_covariances_the_same_is_found_with_the_filters_own(name):
+    one, found = estimates(name)
+    both = []
+    for lag in (FixedLag(one, LAG_S), FixedLag(one, LAG_S, covariances=False)):
+        both.append(
+            [e for t, fresh in enumerate(found) for _, e in lag.push(t, fresh)] + [e for _, e in lag.finish()]
+        )
+    for plain, cheap, own in zip(*both, found, strict=True):
+        np.testing.assert_array_equal(cheap.q, plain.q)
+        np.testing.assert_array_equal(cheap.v, plain.v)
+        np.testing.assert_allclose(one.covariance(cheap), one.covariance(own), rtol=1e-9, atol=1e-15)
 
 
 def test_frames_before_a_restart_know_nothing_of_those_after():

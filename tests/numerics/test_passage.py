@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbkf.numerics.passage import Passage, PassageWindow
+from mbkf.numerics.passage import LaterWindow, LinearStep, Passage
 from mbkf.numerics.smoothing import BackwardPass
 from tests.motions import worst
 from tests.numerics.test_smoothing import Problem, assert_same, batch, filtered, problem
@@ -13,10 +13,10 @@ from tests.numerics.test_smoothing import Problem, assert_same, batch, filtered,
 seeds, sizes, lengths = st.integers(0, 10**6), st.integers(1, 6), st.integers(1, 12)
 
 
-def passages(p):
-    """Those over frames 1, 2 … of a problem, whose frame 0 has no readings."""
+def steps(p):
+    """Those into frames 1, 2 … of a problem, whose frame 0 has no readings."""
     return [
-        Passage.over(P, H.T @ H, H.T @ (y - H @ before), phi)
+        LinearStep(P, H.T @ H, H.T @ (y - H @ before), phi)
         for (before, _, _, P), H, y, phi in zip(filtered(p)[1:], p.H, p.y, p.phi, strict=True)
     ]
 
@@ -33,18 +33,21 @@ def cut(p, frames):
     return Problem(p.m, p.L, p.phi[:frames], p.G[:frames], p.H[:frames], p.y[:frames])
 
 
-def lagged(p, lag):
+def lagged(p, lag, covariances=True):
     """Mean and covariance of every frame from the readings of the ``lag`` frames after it, by the moving window."""
-    window, found, passed = PassageWindow(), [], filtered(p)
-    for t, passage in enumerate(passages(p), start=1):
-        window.append(passage)
+    window, found, passed = LaterWindow(covariances), [], filtered(p)
+    for t, step in enumerate(steps(p), start=1):
+        window.append(step)
         if len(window) == lag:
-            back, (_, _, x, P) = window.told(), passed[t - lag]
-            found.append((x + back.step(P), back.covariance(P)))
+            (_, _, x, P), (correction, covariance) = (
+                passed[t - lag],
+                window.told().corrected(passed[t - lag][3]),
+            )
+            found.append((x + correction, covariance))
             window.drop()
     for _, _, x, P in passed[len(found) :]:
-        back = window.told() or BackwardPass(len(x))
-        found.append((x + back.step(P), back.covariance(P)))
+        correction, covariance = (window.told() or BackwardPass(len(x))).corrected(P)
+        found.append((x + correction, covariance))
         if len(window):
             window.drop()
     return found
@@ -65,6 +68,16 @@ def test_a_lag_is_exact_to_rounding(lag):
     assert_same(lagged(p, lag), exact, 1e-9)
 
 
+@pytest.mark.parametrize("lag", [1, 4, 16])
+def test_without_curvature_means_are_the_same_and_covariances_the_filters(lag):
+    p = mild(7, 5, 16)
+    found, expected = lagged(p, lag, covariances=False), lagged(p, lag)
+    for (x, P), (mean, smoothed), (_, _, _, own) in zip(found, expected, filtered(p), strict=True):
+        np.testing.assert_array_equal(x, mean)
+        np.testing.assert_allclose(P, own, rtol=1e-12, atol=1e-12)
+        assert np.linalg.eigvalsh(P - smoothed).min() > -1e-9 * worst(P)
+
+
 def test_a_lag_of_all_frames_is_the_smoother():
     p = mild(2, 6, 9)
     assert_same(lagged(p, 9), batch(p), 1e-9)
@@ -72,15 +85,14 @@ def test_a_lag_of_all_frames_is_the_smoother():
 
 @pytest.mark.parametrize("grouped", [1, 3, 6])
 def test_passages_join_in_any_grouping(grouped):
-    """What the pass finds frame by frame, from a gradient and curvature that are not zero."""
-    p, rng = problem(5, 4, 7, 4, 4), np.random.default_rng(0)
-    root = rng.normal(size=(4, 4))
+    """What the pass finds frame by frame, from a curvature that is not zero."""
+    p, root = mild(5, 4, 7), np.random.default_rng(0).normal(size=(4, 4))
     back = BackwardPass(4)
-    back.gradient, back.curvature = rng.normal(size=4), root @ root.T
-    last = Passage(np.zeros((4, 4)), back.gradient, back.curvature)
-    for (before, _, _, P), H, y, phi in list(zip(filtered(p)[1:], p.H, p.y, p.phi, strict=True))[::-1]:
-        back.through_readings(P, H.T @ H, H.T @ (y - H @ before))
-        back.through_plant(phi)
+    back.curvature = root @ root.T
+    last = Passage(np.zeros((4, 4)), back.curvature)
+    for step in reversed(steps(p)):
+        back.through_readings(step.P, step.information, step.vector)
+        back.through_plant(step.transition)
 
     def joined(parts):
         total = parts[-1]
@@ -88,23 +100,16 @@ def test_passages_join_in_any_grouping(grouped):
             total = total.after(part)
         return total
 
-    parts = [*passages(p), last]
+    parts = [*map(Passage.over, steps(p)), last]
     total = joined([joined(parts[:grouped]), joined(parts[grouped:])])
-    assert worst(total.gradient - back.gradient) < 1e-10 * worst(back.gradient)
     assert worst(total.curvature - back.curvature) < 1e-10 * worst(back.curvature)
 
 
-def test_a_frame_without_motion_and_readings_passes_everything_on():
-    one = passages(problem(1, 3, 1, 3, 3))[0]
-    for joined in (one.after(Passage.nothing(3)), Passage.nothing(3).after(one)):
-        for mine, other in zip(joined, one, strict=True):
-            np.testing.assert_allclose(mine, other, atol=1e-15)
-
-
-def test_an_empty_window_tells_nothing():
-    window = PassageWindow()
+@pytest.mark.parametrize("covariances", [True, False])
+def test_an_empty_window_tells_nothing(covariances):
+    window = LaterWindow(covariances)
     assert window.told() is None
-    window.append(passages(problem(1, 3, 1, 3, 3))[0])
+    window.append(steps(problem(1, 3, 1, 3, 3))[0])
     assert window.told() is not None and len(window) == 1
     window.drop()
     assert window.told() is None and len(window) == 0

@@ -17,7 +17,7 @@ from mbkf.filters.filter import Prior, Step
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.tracking import warm_start
 from mbkf.filters.spread import Spread, SpreadReader, root
-from mbkf.numerics.passage import Passage
+from mbkf.numerics.passage import LinearStep
 from mbkf.numerics.smoothing import BackwardPass
 from mbkf.sensors.block import NO_DOFS
 from mbkf.sensors.marker_prediction import MarkerPrediction
@@ -141,12 +141,12 @@ class DynamicTracking(TrackingFilter):
         states = smooth(self.kalman, [_record(estimate) for estimate in run], ROUNDS, wanted)
         return [_with_state(e, s) for e, s in zip(run, states, strict=False)]
 
-    def passage(self, before: Posterior, estimate: Posterior) -> Passage:
+    def linear_step(self, before: Posterior, estimate: Posterior) -> LinearStep:
         """About the filter's own course."""
         step = _record(estimate)
         transition = self.kalman.plant.transition(_record(before).state)
         known = step.readings
-        return Passage.over(step.state.P, known.whole_matrix, known.whole_vector, transition)
+        return LinearStep(step.state.P, known.whole_matrix, known.whole_vector, transition)
 
     def corrected(
         self, estimate: Posterior, later: BackwardPass | None, before: Posterior | None
@@ -156,7 +156,7 @@ class DynamicTracking(TrackingFilter):
         if later is None:
             return estimate
         state = _record(estimate).state
-        moved = self.kalman.plant.retract(state, later.step(state.P), later.covariance(state.P))
+        moved = self.kalman.plant.retract(state, *later.corrected(state.P))
         return _with_state(estimate, moved)
 
     def _estimate(self, step: DynamicStep) -> Posterior:

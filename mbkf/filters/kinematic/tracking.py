@@ -14,7 +14,7 @@ from mbkf.filters.filter import Memory, Prior, Step
 from mbkf.filters.kinematic.filter import KinematicFilter, VelocityStep
 from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.filters.spread import Spread, SpreadReader
-from mbkf.numerics.passage import Passage
+from mbkf.numerics.passage import LinearStep
 from mbkf.numerics.smoothing import BackwardPass
 from mbkf.sensors.block import Frame
 from mbkf.sensors.marker_prediction import MarkerPrediction
@@ -190,7 +190,7 @@ class KinematicTracking(TrackingFilter):
             for e, s, acc in list(zip(run, states, a, strict=True))[:wanted]
         ]
 
-    def passage(self, before: Posterior, estimate: Posterior) -> Passage:
+    def linear_step(self, before: Posterior, estimate: Posterior) -> LinearStep:
         """About the filter's own course.
 
         Raises:
@@ -201,7 +201,7 @@ class KinematicTracking(TrackingFilter):
             raise ValueError("no step leads to a start")
         transition = self.kalman.plant.transition(_record(before).state)
         known = step.readings
-        return Passage.over(step.state.P, known.whole_matrix, known.whole_vector, transition)
+        return LinearStep(step.state.P, known.whole_matrix, known.whole_vector, transition)
 
     def corrected(
         self, estimate: Posterior, later: BackwardPass | None, before: Posterior | None
@@ -213,7 +213,7 @@ class KinematicTracking(TrackingFilter):
         inner = _record(estimate)
         state = inner.state
         if later is not None:
-            state = self.kalman.plant.retract(state, later.step(state.P), later.covariance(state.P))
+            state = self.kalman.plant.retract(state, *later.corrected(state.P))
         a = estimate.a
         if before is not None and inner.since >= len(inner.settling):
             a = (state.v - before.v) / self.dt_s
