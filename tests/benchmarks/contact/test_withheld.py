@@ -43,6 +43,17 @@ def test_errors_are_shares_of_the_weight():
     assert off.over_sd == pytest.approx(OFF_N / 5.0) and off.cover == 100.0
 
 
+def test_frames_count_until_a_foot_lands_beside_the_plates():
+    truth, found = pair()
+    wrench = found.foot_wrench.copy()
+    wrench[8:, :, 2] += 500.0
+    late = replace(found, foot_wrench=wrench)
+    assert compared(truth, late, truth.subject, until_s=0.075) == compared(
+        truth, found, truth.subject, until_s=0.075
+    )
+    assert compared(truth, late, truth.subject).total > 50.0
+
+
 def test_frames_with_a_foot_on_no_plate_do_not_count():
     truth, found = pair()
     wrench, contact = found.foot_wrench.copy(), np.array(truth.foot_contact)
