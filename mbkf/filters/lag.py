@@ -33,7 +33,7 @@ class FixedLag:
             filter: The filter.
             lag_s: The lag; what is less than a frame of it does not count.
             covariances: Whether covariances are those of the lagged estimates; else they stay the filter's own, which
-                are larger, and a frame costs a tenth.
+                are larger, and a frame costs a fifth.
         """
         self.filter, self.frames = filter, lag_frames(lag_s, filter.dt_s)
         self._waiting: deque[tuple[int, Posterior]] = deque()

@@ -99,7 +99,7 @@ class LaterWindow:
     """The frames that follow one frame, which moves on as they come."""
 
     def __init__(self, covariances: bool = True) -> None:
-        """Args: whether covariances are wanted, too; they cost about ten times as much."""
+        """Args: whether covariances are wanted, too; they cost several times as much."""
         self._steps: deque[LinearStep] = deque()
         self._joined = _Joined() if covariances else None
 
