@@ -36,6 +36,9 @@ DTYPES: dict[str, type] = {name: np.bool_ for name in _FLAGS}
 DTYPES |= {name: np.int64 for name in ("nis_readings", "foot_contact", "foot_source")}
 """Arrays that are not floating-point."""
 
+LAG_KEY = "lag_ms"
+"""The fixed lag among the settings of a result."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Reconstruction:
@@ -45,7 +48,7 @@ class Reconstruction:
         trial: Name of the trial.
         protocol: Marker protocol.
         filter: "kinematic", "torque" or "dynamic".
-        smoothed: Whether later frames were used, too.
+        smoothed: Whether all later frames that matter were used, too; see ``lag_ms`` for those of a fixed lag.
         version: Version of mbkf.
         subject: The scaled person.
         rate_hz: Frame rate.
@@ -202,6 +205,12 @@ class Reconstruction:
     def frames(self) -> int:
         """Number of frames T."""
         return len(self.times_s)
+
+    @property
+    def lag_ms(self) -> float:
+        """How far later readings could correct a frame, ms; 0 without a fixed lag."""
+        lag = self.settings.get(LAG_KEY, 0.0)
+        return float(lag) if isinstance(lag, int | float) else 0.0
 
     @property
     def present(self) -> BoolArray:

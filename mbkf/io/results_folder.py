@@ -59,7 +59,7 @@ class Summary(TypedDict):
 
     Attributes:
         trial, protocol, filter: Names of capture, protocol and filter.
-        smoothed: Whether later frames were used.
+        smoothed: Whether all later frames that matter were used; a fixed lag stands in ``settings``.
         version: Version of mbkf.
         direction: What the frame of the pelvis's angles follows: "progression", "heading" or "laboratory".
         progression: That frame's kind in words, its heading, and how far it turns.

@@ -19,7 +19,7 @@ from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.filters.tracking import Track, track
 from mbkf.io.contacts import bearing
 from mbkf.io.records import Capture, MarkerTrajectories
-from mbkf.io.results import Reconstruction
+from mbkf.io.results import LAG_KEY, Reconstruction
 from mbkf.io.subject import Subject, match_names
 from mbkf.model.clinical import dof_names
 from mbkf.numerics.threads import single_threaded
@@ -63,6 +63,7 @@ class ReconstructSettings:
             dynamic filter, "dynamic" ours.
         smooth: Whether later frames correct earlier ones.
         smoothing: How far they do.
+        lag_s: Instead of smoothing, the fixed lag: how long a frame waits for readings that correct it; 0 for none.
         kinematic, dynamic, torque: Settings of each filter.
         correct_markers: Whether marker positions are corrected on the trial first (thesis 4.1.1).
         hide: Markers to hide.
@@ -76,6 +77,7 @@ class ReconstructSettings:
     filter: str = "dynamic"
     smooth: bool = False
     smoothing: SmoothingSettings = field(default_factory=SmoothingSettings)
+    lag_s: float = 0.0
     kinematic: KinematicSettings = field(default_factory=KinematicSettings)
     dynamic: DynamicSettings = field(default_factory=DynamicSettings)
     torque: TorqueSettings = field(default_factory=TorqueSettings)
@@ -86,10 +88,25 @@ class ReconstructSettings:
     keep_covariance: bool = False
     other_contacts: bool = True
 
+    def __post_init__(self) -> None:
+        """Refuses a lag that is no time, or beside smoothing.
+
+        Raises:
+            InvalidInput: It is so.
+        """
+        if not 0.0 <= self.lag_s < np.inf:
+            raise InvalidInput(f"a lag of {self.lag_s:g} s is not possible: give a positive time")
+        if self.smooth and self.lag_s > 0.0:
+            raise InvalidInput(
+                "smoothing uses all later frames, so a lag is not possible beside it; choose one"
+            )
+
 
 def recorded(settings: ReconstructSettings) -> dict[str, object]:
-    """The settings as result files hold them; those of the dynamic filter by their leaves' names."""
-    return {**asdict(settings), "dynamic": flat(settings.dynamic)}
+    """The settings as result files hold them: the dynamic filter's by their leaves' names, the lag in ms."""
+    found: dict[str, object] = {**asdict(settings), "dynamic": flat(settings.dynamic)}
+    del found["lag_s"]
+    return {**found, LAG_KEY: round(1e3 * settings.lag_s, 6)}
 
 
 def reconstruct(
@@ -153,6 +170,7 @@ def reconstruct(
             tracking_filter(settings.filter, inputs, [*standard(inputs), *blocks] if blocks else None),
             recording,
             smoothing=settings.smoothing if settings.smooth else None,
+            lag_s=settings.lag_s,
             keep_covariance=settings.keep_covariance,
             progress=None if progress is None else lambda done, total: progress("Filtering", done, total),
         )

@@ -117,6 +117,17 @@ def test_smooth_is_told(name, person, reconstruct):
     assert np.median(smooth.sd_v / plain.sd_v) < 0.9
 
 
+def test_a_lag_is_told_and_known_to_the_readings_after_a_frame(person, reconstruct, capsys):
+    plain = read_reconstruction(reconstruct(person.trial))
+    out = reconstruct(person.trial, "--lag", "60")
+    summary, lagged = read_summary(out), read_reconstruction(out)
+    assert (summary["smoothed"], summary["settings"]["lag_ms"], lagged.lag_ms) == (False, 60.0, 60.0)
+    assert plain.lag_ms == 0.0
+    assert "(dynamic filter, 60 ms lag)" in capsys.readouterr().out
+    assert np.median(lagged.sd_v / plain.sd_v) < 0.99
+    assert not np.array_equal(lagged.q, plain.q)
+
+
 def test_a_second_run_replaces_the_first_and_keeps_other_files(person, reconstruct):
     out = reconstruct(person.trial, "--hide", "RASI@0.1:0.3")
     (out / "notes.txt").write_text("mine")

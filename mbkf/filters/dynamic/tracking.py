@@ -18,6 +18,8 @@ from mbkf.filters.filter import Prior, Step
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.tracking import warm_start
 from mbkf.filters.spread import Spread, SpreadReader, root
+from mbkf.numerics.passage import LinearStep
+from mbkf.numerics.smoothing import BackwardPass
 from mbkf.sensors.block import NO_DOFS
 from mbkf.sensors.marker_prediction import MarkerPrediction
 from mbkf.sensors.markers import Markers
@@ -32,6 +34,12 @@ ROUNDS = 2
 def _record(estimate: Posterior) -> DynamicStep:
     """The dynamic filter's own record of a frame."""
     return cast(DynamicStep, estimate.inner)
+
+
+def _with_state(estimate: Posterior, state: DynamicState) -> Posterior:
+    """The estimate with another state."""
+    inner = _record(estimate)._replace(state=state)
+    return estimate._replace(q=state.q, v=state.v, a=state.a, wrench=state.w.reshape(2, 6), inner=inner)
 
 
 class DynamicTracking(TrackingFilter):
@@ -139,6 +147,7 @@ class DynamicTracking(TrackingFilter):
         """Iterated smoother; see :mod:`mbkf.filters.dynamic.smoother`."""
         del recording, first
         states = smooth(self.kalman, [_record(estimate) for estimate in run], ROUNDS, wanted)
+<<<<<<< HEAD
         return [self._moved(e, s) for e, s in zip(run, states, strict=False)]
 
     def _moved(self, estimate: Posterior, state: DynamicState) -> Posterior:
@@ -148,6 +157,27 @@ class DynamicTracking(TrackingFilter):
         return estimate._replace(
             q=state.q, v=state.v, a=state.a, wrench=state.w.reshape(2, 6), inner=inner, support=support
         )
+=======
+        return [_with_state(e, s) for e, s in zip(run, states, strict=False)]
+
+    def linear_step(self, before: Posterior, estimate: Posterior) -> LinearStep:
+        """About the filter's own course."""
+        step = _record(estimate)
+        transition = self.kalman.plant.transition(_record(before).state)
+        known = step.readings
+        return LinearStep(step.state.P, known.whole_matrix, known.whole_vector, transition)
+
+    def corrected(
+        self, estimate: Posterior, later: BackwardPass | None, before: Posterior | None
+    ) -> Posterior:
+        """By one linear pass."""
+        del before
+        if later is None:
+            return estimate
+        state = _record(estimate).state
+        moved = self.kalman.plant.retract(state, *later.corrected(state.P))
+        return _with_state(estimate, moved)
+>>>>>>> lag
 
     def _estimate(self, step: DynamicStep) -> Posterior:
         state, notes = step.state, step.decisions.notes

@@ -29,7 +29,7 @@ class LiveFrame:
         predicted_m: (M, 3) the same markers on the body.
         unlabelled_m: (N, 3) points without a name.
         angle_sd: (A,) standard deviations of the clinical coordinates, rad; of the pelvis's translations m.
-        latency_s: Time from the frame's arrival to this result.
+        latency_s: Time from the frame's arrival to this result, a lag included.
         lost: Frames lost so far.
         rate_hz: Rate of the frames of the last second.
         tracked: Whether enough markers passed the gate to track the body.

@@ -64,6 +64,27 @@ def test_results_are_those_of_reconstruct(tmp_path, capture, subject, name):
     assert report["events"] == []
 
 
+def test_lagged_results_are_those_of_reconstruct(tmp_path, capture, subject):
+    """Rows, listeners and files hold the lagged frames under their own numbers; the lag is told apart from latency."""
+    settings, seen = ReconstructSettings(lag_s=0.06, correct_markers=False), Collected([])
+    outcome = follow(tmp_path, *frames_of(capture), subject, settings, sinks=[seen], keep_log=True)
+    expected = offline(capture, subject, settings)
+    found = read_reconstruction(tmp_path)
+    for name, tolerance in (("q", 1e-9), ("v", 1e-9), ("angles", 1e-9), ("tau", 1e-6), ("foot_wrench", 1e-6)):
+        np.testing.assert_allclose(
+            getattr(found, name), getattr(expected, name), atol=tolerance, err_msg=name
+        )
+    plain = offline(capture, subject, ReconstructSettings(correct_markers=False))
+    np.testing.assert_allclose(found.foot_wrench_sd, plain.foot_wrench_sd, rtol=1e-9)  # never too narrow
+    assert outcome.report["lag_ms"] == pytest.approx(60.0)
+    assert read_reconstruction(tmp_path).lag_ms == 60.0
+    assert [frame.number for frame in seen.frames] == list(range(80))
+    np.testing.assert_allclose([frame.q for frame in seen.frames], expected.q, atol=1e-9)
+    again = live_results(tmp_path / LOG_FOLDER)
+    np.testing.assert_allclose(again.q, expected.q, atol=1e-9)
+    assert again.lag_ms == 60.0
+
+
 def test_points_without_names_are_named_in_the_loop(tmp_path, capture, subject):
     outcome = follow(tmp_path, *frames_of(capture, unlabelled=True), subject)
     assert outcome.report["frames_lost"] == 0

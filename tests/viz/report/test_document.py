@@ -61,6 +61,11 @@ def test_sections_come_in_order_quality_first():
         assert words in whole
 
 
+def test_a_fixed_lag_is_told():
+    assert "dynamic filter, fixed lag of 60 ms" in report(replace(walk(), settings={"lag_ms": 60.0}))
+    assert "dynamic filter, smoothed" in report(replace(walk(), smoothed=True))
+
+
 def test_the_page_loads_nothing_and_runs_nothing():
     text = report(walk())
     assert "<script" not in text and "http://" not in text and "https://" not in text
