@@ -66,6 +66,10 @@ TOGETHER = 0.1
 """Weight of the direction of both feet's shear together, over that of their difference, where no plate reads."""
 
 
+BELT_FORCE = 2.0
+"""Force in body weights whose moment about the world's origin changes as a belt takes it along."""
+
+
 class FootDecision(NamedTuple):
     """What the feet stand on, and which unmeasured feet, 0 right and 1 left, were seen to carry nothing."""
 
@@ -96,7 +100,7 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
             dt_s: Time between frames.
             settings: Noise.
         """
-        self.detector, self.settings, self._weight_n = detector, settings, weight_n
+        self.detector, self.settings, self._weight_n, self._dt_s = detector, settings, weight_n, dt_s
         s = settings
         self._plate = 1.0 / np.repeat([s.plate_force_n, s.plate_moment_nm], 3)
         self._air = 1.0 / np.repeat([s.air_force_n, s.air_moment_nm], 3)
@@ -124,9 +128,13 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         return FootDecision(notes.contact)
 
     def inflate(self, P: Array, decision: FootDecision) -> None:
-        """The wrenches' random walk about the middles of the soles."""
+        """The wrenches' random walk about the middles of the soles, which a belt takes along."""
         shift = _about(-decision.contact.centres_m) * self._walk
         walk = shift @ shift.transpose(0, 2, 1)
+        x, y = decision.contact.floor_m_s
+        if x or y:
+            carried = BELT_FORCE * self._weight_n * self._dt_s * np.array([y, -x])
+            walk[:, 3:5, 3:5] += np.outer(carried, carried)
         for foot in (0, 1):
             mine = slice(self._first + 6 * foot, self._first + 6 * foot + 6)
             own = P[mine, mine]

@@ -102,10 +102,17 @@ class ContactDetector:
             wrench,
             0.5 * (positions[:, 0] + positions[:, 2]),
             any(foot_of_plate[k] < 0 for k in loaded),
-            ContactMemory(tuple(foot_of_plate), tuple(latest), elsewhere.sole_height_m, elsewhere.touching_s),
+            ContactMemory(
+                tuple(foot_of_plate),
+                tuple(latest),
+                elsewhere.sole_height_m,
+                elsewhere.touching_s,
+                elsewhere.movement,
+            ),
             shared,
             free,
             elsewhere.near,
+            elsewhere.floor_m_s,
         )
 
     def planted(self, decision: ContactDecision, q: Array, foot: int) -> Planted | None:

@@ -7,6 +7,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from mbkf.conventions import Array
+from mbkf.sensors.contact.floor import NO_MOVEMENT, Movement
 from mbkf.sensors.contact.sharing import SharedLoad, Stance
 
 
@@ -43,12 +44,14 @@ class ContactMemory:
         pressed: (K,) last centre of pressure on each plate and its foot; None before the plate was loaded.
         sole_height_m: Height at which the body's loaded soles lie, NaN before one was loaded.
         touching_s: For how long right and left foot have touched the floor without a reading.
+        movement: The last frames of the body's movement.
     """
 
     foot_of_plate: tuple[int, ...]
     pressed: tuple[Pressed | None, ...]
     sole_height_m: float
     touching_s: tuple[float, float]
+    movement: Movement = NO_MOVEMENT
 
 
 class FreeStance(NamedTuple):
@@ -72,6 +75,7 @@ class ContactDecision:
         shared: How the feet share a plate; None where they do not.
         free: Where both feet stand if both carry weight where no plate reads; None else.
         near: How near right and left foot in the air are to touching a floor that no plate reads, 0 to 1.
+        floor_m_s: Horizontal velocity of the floor: that of a belt, else zero.
     """
 
     contacts: tuple[Contact, Contact]
@@ -82,6 +86,7 @@ class ContactDecision:
     shared: SharedLoad | None = None
     free: FreeStance | None = None
     near: tuple[float, float] = (0.0, 0.0)
+    floor_m_s: tuple[float, float] = (0.0, 0.0)
 
 
 class Planted(NamedTuple):
