@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from math import inf
 from typing import NamedTuple
 
 from mbkf.conventions import Array
@@ -45,6 +46,7 @@ class ContactMemory:
         sole_height_m: Height at which the body's loaded soles lie, NaN before one was loaded.
         touching_s: For how long right and left foot have touched the floor without a reading.
         movement: The last frames of the body's movement.
+        lowest_ball_m: Least height of right and left ball while the foot has touched the floor.
     """
 
     foot_of_plate: tuple[int, ...]
@@ -52,13 +54,21 @@ class ContactMemory:
     sole_height_m: float
     touching_s: tuple[float, float]
     movement: Movement = NO_MOVEMENT
+    lowest_ball_m: tuple[float, float] = (inf, inf)
 
 
 class FreeStance(NamedTuple):
-    """Both feet on floor that no plate reads: where they are expected to be loaded, and the pelvis (3,)."""
+    """Both feet on floor that no plate reads.
+
+    Attributes:
+        stance: Where they are expected to be loaded.
+        pelvis_m: (3,) the pelvis.
+        push_share: Share of the load on right and left foot while it pushes off; None while it does not.
+    """
 
     stance: Stance
     pelvis_m: Array
+    push_share: tuple[float | None, float | None] = (None, None)
 
 
 @dataclass(frozen=True)
