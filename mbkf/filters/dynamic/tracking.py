@@ -37,12 +37,6 @@ def _record(estimate: Posterior) -> DynamicStep:
     return cast(DynamicStep, estimate.inner)
 
 
-def _with_state(estimate: Posterior, state: DynamicState) -> Posterior:
-    """The estimate with another state."""
-    inner = _record(estimate)._replace(state=state)
-    return estimate._replace(q=state.q, v=state.v, a=state.a, wrench=state.w.reshape(2, 6), inner=inner)
-
-
 class DynamicTracking(TrackingFilter):
     """Drives a :class:`DynamicFilter`; see :class:`mbkf.filters.estimate.TrackingFilter`."""
 
@@ -161,18 +155,7 @@ class DynamicTracking(TrackingFilter):
         """Iterated smoother; see :mod:`mbkf.filters.dynamic.smoother`."""
         del recording, first
         states = smooth(self.kalman, [_record(estimate) for estimate in run], ROUNDS, wanted)
-<<<<<<< HEAD
         return [self._moved(e, s) for e, s in zip(run, states, strict=False)]
-
-    def _moved(self, estimate: Posterior, state: DynamicState) -> Posterior:
-        """An estimate whose state the smoother has corrected."""
-        inner = _record(estimate)._replace(state=state)
-        support = self.loads.wrench(self.loads.of(inner))
-        return estimate._replace(
-            q=state.q, v=state.v, a=state.a, wrench=state.w.reshape(2, 6), inner=inner, support=support
-        )
-=======
-        return [_with_state(e, s) for e, s in zip(run, states, strict=False)]
 
     def linear_step(self, before: Posterior, estimate: Posterior) -> LinearStep:
         """About the filter's own course."""
@@ -190,8 +173,15 @@ class DynamicTracking(TrackingFilter):
             return estimate
         state = _record(estimate).state
         moved = self.kalman.plant.retract(state, *later.corrected(state.P))
-        return _with_state(estimate, moved)
->>>>>>> lag
+        return self._moved(estimate, moved)
+
+    def _moved(self, estimate: Posterior, state: DynamicState) -> Posterior:
+        """An estimate whose state the smoother has corrected."""
+        inner = _record(estimate)._replace(state=state)
+        support = self.loads.wrench(self.loads.of(inner))
+        return estimate._replace(
+            q=state.q, v=state.v, a=state.a, wrench=state.w.reshape(2, 6), inner=inner, support=support
+        )
 
     def _estimate(self, step: DynamicStep) -> Posterior:
         state, notes = step.state, step.decisions.notes
