@@ -24,8 +24,9 @@ from mbkf.sensors.supports.momentum import WholeBody
 WINDOW_S, EDGE_WINDOW_S = 0.25, 0.1
 """Durations over which a missing wrench is taken: to see that there is one, and when it begins and ends."""
 
-LEAST_SHARE, EDGE_SHARE = 0.08, 0.04
-"""A missing force of this share of body weight is one, and lasts as long as it is more than the second."""
+LEAST_SHARE, LASTING_SHARE, EDGE_SHARE = 0.08, 0.04, 0.025
+"""A missing force of the first share of body weight is one, lasts as long as it is more than the second over the wide
+window, and begins and ends where it is more than the third over the narrow one."""
 
 LASTING_S = 0.25
 """It lasts at least so long: what bodies' masses are wrong by swings faster in a step."""
@@ -131,9 +132,9 @@ def _missing(
             "plates' scale or the axes may be wrong",
         )
     remarks = []
-    for run in _lasting(size > EDGE_SHARE * weight_n, rate_hz):
+    for run in _lasting(size > LASTING_SHARE * weight_n, rate_hz):
         force = slow[run, :3].mean(axis=0)
-        if lacks[run].sum() < LASTING_S * rate_hz or np.linalg.norm(force) < EDGE_SHARE * weight_n:
+        if lacks[run].sum() < LASTING_S * rate_hz or np.linalg.norm(force) < LASTING_SHARE * weight_n:
             continue
         parts = _fitting(bearings, points[run] - body.centre_m[run, None], slow[run], weight_n)
         frames = _edges(run, fast[:, :3], force, weight_n, rate_hz, judged)
