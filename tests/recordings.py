@@ -8,9 +8,10 @@ import numpy as np
 from mbkf.io.contacts import Source
 from mbkf.io.results import Reconstruction
 from mbkf.model.clinical import ClinicalAngles, dof_names
-from mbkf.pipelines.results.supports import BearingMiddles
+from mbkf.pipelines.results.supports import pressed_points
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
 from tests.motions import marker_positions
@@ -85,13 +86,13 @@ def leaning_walk():
     """The walk with a hand on a rail in its middle half second, a seat touched, and a left foot that nothing reads."""
     r, model = walk(), walker()[1]
     names = tuple(model.description.bearings)
-    support, middles = np.zeros((r.frames, len(names), 6)), BearingMiddles(model)
+    support, parts = np.zeros((r.frames, len(names), 6)), BearingParts(model)
     hand, seat, t = names.index("right_hand"), names.index("pelvis"), np.arange(r.frames)
     support[RAIL, hand, :3] = [40.0, 10.0, 180.0]
     support[SEAT, seat, 2] = 250.0
-    at = np.array([middles.at(q) for q in r.q])
+    at = np.array([parts.at(q, v).points_m for q, v in zip(r.q, r.v, strict=True)])
     support[..., 3:] = np.cross(at, support[..., :3])
-    point = np.array([middles.pressed(q, wrench) for q, wrench in zip(r.q, support, strict=True)])
+    point = np.array([pressed_points(parts, q, wrench) for q, wrench in zip(r.q, support, strict=True)])
     source = np.where((r.foot_source == Source.MEASURED) & (t[:, None] > 150), [1, 3], r.foot_source)
     return replace(
         r, support_names=names, support_wrench=support, support_wrench_sd=np.where(support != 0.0, 20.0, 0.0),

@@ -9,6 +9,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.tracking import Track
 from mbkf.model.body import Body
+from mbkf.sensors.supports.bearings import BearingParts
 
 LEAST_N = 20.0
 """Size of a force from which it has a point where it acts."""
@@ -36,44 +37,28 @@ def supports_of(model: Body, track: Track) -> Supports:
     if not np.isfinite(track.support).any():
         none = np.zeros((len(track.q), 0, 6))
         return Supports((), none, none, none[..., :3])
-    points = BearingMiddles(model)
+    parts = BearingParts(model)
     point_m = np.full((*track.support.shape[:2], 3), np.nan)
     for t in np.flatnonzero(np.nan_to_num(track.support).any(axis=(1, 2))):
-        point_m[t] = points.pressed(track.q[t], track.support[t])
-    return Supports(tuple(model.description.bearings), track.support, track.support_sd, point_m)
+        point_m[t] = pressed_points(parts, track.q[t], track.support[t])
+    return Supports(parts.names, track.support, track.support_sd, point_m)
 
 
-class BearingMiddles:
-    """Where the parts that may bear load are, and where on their surfaces a load acts."""
+def pressed_points(parts: BearingParts, q: Array, wrench: Array) -> Array:
+    """(B, 3) where loads act on parts: NaN where a part bears less than :data:`LEAST_N`.
 
-    def __init__(self, model: Body) -> None:
-        self._model = model
-        parts = model.description.bearings.values()
-        scales = [model.axis_scale(model.description.segment(part.segment)) for part in parts]
-        self._ids = [model.joint(part.segment).joint_id for part in parts]
-        self._local = np.array([p.position_m * k for p, k in zip(parts, scales, strict=True)]).reshape(-1, 3)
-        self._radii = np.array([p.radius_m * k.mean() for p, k in zip(parts, scales, strict=True)])
+    A wrench with force F and moment M about a part's middle has its axis (of least moment) nearest to the middle at
+    F × M / F²; from there the point goes back against the force to the part's surface.
 
-    def at(self, q: Array) -> Array:
-        """(B, 3) the parts' middles at a configuration (nq,), m."""
-        rotations, origins = self._model.placements(q)
-        return np.asarray(origins[self._ids] + np.einsum("bij,bj->bi", rotations[self._ids], self._local))
-
-    def pressed(self, q: Array, wrench: Array) -> Array:
-        """(B, 3) where loads act: NaN where a part bears less than :data:`LEAST_N`.
-
-        A wrench with force F and moment M about a part's middle has its axis (of least moment) nearest to the middle at
-        F × M / F²; from there the point goes back against the force to the part's surface.
-
-        Args:
-            q: (nq,) configuration.
-            wrench: (B, 6) wrenches about the world's origin.
-        """
-        middles, force = self.at(q), wrench[:, :3]
-        size = np.linalg.norm(force, axis=1)
-        loaded = size >= LEAST_N
-        divided = np.where(loaded, size, np.nan)[:, None]
-        moment = wrench[:, 3:] - np.cross(middles, force)
-        return np.asarray(
-            middles + np.cross(force, moment) / divided**2 - self._radii[:, None] * force / divided
-        )
+    Args:
+        parts: The parts.
+        q: (nq,) configuration.
+        wrench: (B, 6) wrenches about the world's origin.
+    """
+    middles, force = parts.at(q, np.zeros(parts.model.nv)).points_m, wrench[:, :3]
+    size = np.linalg.norm(force, axis=1)
+    divided = np.where(size >= LEAST_N, size, np.nan)[:, None]
+    moment = wrench[:, 3:] - np.cross(middles, force)
+    return np.asarray(
+        middles + np.cross(force, moment) / divided**2 - parts.radii_m[:, None] * force / divided
+    )

@@ -8,8 +8,9 @@ from mbkf.conventions import Array
 from mbkf.io.contacts import Source, bearing
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
-from mbkf.pipelines.results.supports import BearingMiddles, Supports
+from mbkf.pipelines.results.supports import Supports, pressed_points
 from mbkf.sensors.contact.plates import pressure_and_free_moment
+from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.viz.scene.channels import Layout, marker_states
 from mbkf.viz.scene.description import segment_poses
@@ -38,9 +39,8 @@ class DisplayRows:
             surface_m: Height of the surface that centres of pressure lie on, m.
         """
         self.clinical = ClinicalAngles(model)
-        coordinates, supports = len(self.clinical.names), tuple(model.description.bearings)
-        self.layout = Layout(len(model.joints), markers, coordinates, MOST_UNLABELLED, supports)
-        self._middles = BearingMiddles(model)
+        self._bearings, coordinates = BearingParts(model), len(self.clinical.names)
+        self.layout = Layout(len(model.joints), markers, coordinates, MOST_UNLABELLED, self._bearings.names)
         self._model, self._surface_m = model, surface_m
         self._before: Array | None = None
 
@@ -91,9 +91,9 @@ class DisplayRows:
 
     def _parts(self, frame: LiveFrame) -> Supports:
         """Loads on other parts than the feet; NaN where the filter does not ask."""
-        names = tuple(self._model.description.bearings)
+        names = self._bearings.names
         unknown = np.full((1, len(names), 6), np.nan)
-        if frame.support.shape != unknown.shape[1:] or not np.isfinite(frame.q).all():
+        if not names or len(frame.support) != len(names) or not np.isfinite(frame.q).all():
             return Supports(names, unknown, unknown, unknown[..., :3])
-        points = self._middles.pressed(frame.q, frame.support)
+        points = pressed_points(self._bearings, frame.q, frame.support)
         return Supports(names, frame.support[None], frame.support_sd[None], points[None])

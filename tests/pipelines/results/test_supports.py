@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from mbkf.pipelines.results.supports import LEAST_N, BearingMiddles, supports_of
+from mbkf.pipelines.results.supports import LEAST_N, pressed_points, supports_of
+from mbkf.sensors.supports.bearings import BearingParts
 from tests.motions import assert_near, moderate_pose, random_model, track_of
 
 
@@ -27,20 +28,15 @@ def acting(points_m, force, couple=0.0):
     return np.hstack([force, np.cross(points_m, force) + couple * force / size])
 
 
-def test_middles_are_points_fixed_to_their_segments(model, rng):
-    q = moderate_pose(model, rng)
-    rotations, origins = model.placements(q)
-    for part, middle in zip(parts(model), BearingMiddles(model).at(q), strict=True):
-        joint = model.joint(part.segment).joint_id
-        local = rotations[joint].T @ (middle - origins[joint])
-        assert_near(local / model.axis_scale(model.description.segment(part.segment)), part.position_m, 1e-12)
+def middles_of(model, q):
+    return BearingParts(model).at(q, np.zeros(model.nv)).points_m
 
 
 def test_a_force_towards_the_middle_acts_on_the_surface_before_it(model, rng):
-    q, points = moderate_pose(model, rng), BearingMiddles(model)
+    q, points = moderate_pose(model, rng), BearingParts(model)
     force = 200.0 * rng.normal(size=(len(parts(model)), 3))
-    middles = points.at(q)
-    found = points.pressed(q, acting(middles, force))
+    middles = middles_of(model, q)
+    found = pressed_points(points, q, acting(middles, force))
     away = middles - found
     assert_near(np.cross(away, force), 0.0, 1e-9)
     assert ((away * force).sum(axis=1) > 0.0).all(), "the force points from the surface into the part"
@@ -50,15 +46,15 @@ def test_a_force_towards_the_middle_acts_on_the_surface_before_it(model, rng):
 
 def test_a_point_lies_on_the_axis_of_its_wrench_as_near_to_the_middle_as_that_gets(model, rng):
     """About the point, what is left of the moment is the couple along the force; off the force it is nearest."""
-    q, points = moderate_pose(model, rng), BearingMiddles(model)
-    middles = points.at(q)
+    q, points = moderate_pose(model, rng), BearingParts(model)
+    middles = middles_of(model, q)
     force = 200.0 * rng.normal(size=middles.shape)
     wrench = acting(middles + 0.05 * rng.normal(size=middles.shape), force, couple=7.0)
-    found = points.pressed(q, wrench)
+    found = pressed_points(points, q, wrench)
     direction = force / np.linalg.norm(force, axis=1, keepdims=True)
     assert_near(wrench[:, 3:] - np.cross(found, force), 7.0 * direction, 1e-9)
     along = ((found - middles) * direction).sum(axis=1, keepdims=True)
-    surface = np.linalg.norm(points.pressed(q, acting(middles, force)) - middles, axis=1)
+    surface = np.linalg.norm(pressed_points(points, q, acting(middles, force)) - middles, axis=1)
     assert_near(-along[:, 0], surface, 1e-12)
 
 
@@ -66,7 +62,7 @@ def test_a_part_that_bears_next_to_nothing_has_no_point(model, rng):
     q = moderate_pose(model, rng)
     force = np.zeros((len(parts(model)), 3))
     force[0, 2], force[1, 2] = 0.99 * LEAST_N, 1.01 * LEAST_N
-    found = BearingMiddles(model).pressed(q, np.hstack([force, 0.0 * force]))
+    found = pressed_points(BearingParts(model), q, np.hstack([force, 0.0 * force]))
     assert np.isfinite(found).all(axis=1).tolist() == [k == 1 for k in range(len(force))]
 
 
@@ -81,7 +77,7 @@ def test_a_trial_has_names_and_points_of_every_frame(model, rng):
     np.testing.assert_array_equal(found.wrench, support)
     np.testing.assert_array_equal(found.wrench_sd, 0.1 * support)
     assert np.argwhere(np.isfinite(found.point_m).all(axis=2)).tolist() == [[2, 3]]
-    assert_near(found.point_m[2, 3], BearingMiddles(model).pressed(q[2], support[2])[3], 0.0)
+    assert_near(found.point_m[2, 3], pressed_points(BearingParts(model), q[2], support[2])[3], 0.0)
 
 
 def test_a_filter_that_does_not_ask_has_no_parts(model, rng):

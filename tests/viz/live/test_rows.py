@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from mbkf.io.contacts import Source
-from mbkf.pipelines.results.supports import BearingMiddles
+from mbkf.pipelines.results.supports import pressed_points
+from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.viz.live.rows import MOST_UNLABELLED, DisplayRows
 from tests.motions import assert_near
@@ -80,7 +81,7 @@ def test_other_parts_have_their_forces_where_they_act(rows):
     assert rows.layout.loads[k] == "left_hand"
     assert_near(part(rows, row, "force").reshape(-1, 3)[k], support[hand, :3], 0.0)
     assert_near(part(rows, row, "force_sd").reshape(-1, 3)[k], [3.0, 2.0, 9.0], 1e-12)
-    expected = BearingMiddles(model).pressed(walk().q[50], support)
+    expected = pressed_points(BearingParts(model), walk().q[50], support)
     np.testing.assert_array_equal(part(rows, row, "pressure").reshape(-1, 3)[2:], expected)
     assert part(rows, row, "source").tolist() == [1, 3] + [3 if i == hand else 0 for i in range(len(names))]
 
