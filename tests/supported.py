@@ -48,7 +48,7 @@ def foot_loads(wrench, unread=False, floor_m=0.0):
 
 
 def carried(motion, points, force):
-    """(T, 2, 6) wrenches of the feet when forces (T, 3) act on the body at points (T, 3): what these give, they do not."""
+    """(T, 2, 6) wrenches of the feet when forces (T, 3) act at points (T, 3), too: what these give, feet do not."""
     wrench = motion.foot_wrench.copy()
     wrench[:, 0] -= np.hstack([force, np.cross(points, force)])
     return wrench

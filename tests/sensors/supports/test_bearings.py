@@ -25,7 +25,9 @@ def test_parts_are_fixed_to_their_segments():
         joint = model.joint(one.segment).joint_id
         assert bearings.joint_ids[k] == joint
         size = model.axis_scale(model.description.segment(one.segment))
-        np.testing.assert_allclose(rotations[joint].T @ (points[k] - origins[joint]), size * one.position_m, atol=1e-12)
+        np.testing.assert_allclose(
+            rotations[joint].T @ (points[k] - origins[joint]), size * one.position_m, atol=1e-12
+        )
         assert bearings.radii_m[k] == one.radius_m * size.mean()
         assert bearings.levers_m[k] == one.lever_m * size.mean()
 

@@ -92,7 +92,9 @@ def test_gaps_part_what_is_known():
 
 
 def test_a_window_has_a_least_number_of_frames():
-    np.testing.assert_array_equal(missing(feet(), 0.0), missing(feet(), (LEAST_WINDOW - 1) / seated().motion.rate_hz))
+    np.testing.assert_array_equal(
+        missing(feet(), 0.0), missing(feet(), (LEAST_WINDOW - 1) / seated().motion.rate_hz)
+    )
     few = slice(0, LEAST_WINDOW - 1)
     whole = WholeBody.of(seated().model, seated().motion.q[few], seated().motion.v[few])
     assert np.isnan(missing(feet()[few], 0.0, whole)).all()

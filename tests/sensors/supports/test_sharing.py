@@ -128,7 +128,7 @@ def test_the_line_of_action_decides_how_two_parts_share(seed):
         for y in at
     ]
     assert first[0] < first[1] + 1e-9
-    assert 0.0 <= first[0] and first[1] <= force[2] + 1e-9
+    assert first[0] >= 0.0 and first[1] <= force[2] + 1e-9
 
 
 def test_the_derivative_is_that_by_the_whole():
@@ -149,7 +149,10 @@ def test_the_spread_is_that_of_conditioning_a_gaussian():
     whole = lifted(points, np.array([0.0, 30.0, 300.0]), rng)
     found = shares(whole, points, levers, [True] * 2)
     share, force = levers**2 / (levers**2).sum(), np.linalg.norm(whole[:3])
-    sd = [np.repeat([SPREAD_SHARE * force, lever * force * part], 3) for lever, part in zip(levers, share, strict=True)]
+    sd = [
+        np.repeat([SPREAD_SHARE * force, lever * force * part], 3)
+        for lever, part in zip(levers, share, strict=True)
+    ]
     X = [about(-point) for point in points]
     each = [x @ np.diag(one**2) @ x.T for x, one in zip(X, sd, strict=True)]
     gain = each[0] @ np.linalg.inv(each[0] + each[1])
