@@ -50,7 +50,7 @@ def made(parts):
 
 
 def under(q, parts, wrench):
-    """(6 n, nv) Jacobians at the world's origin of the parts' segments, at a configuration, and Jᵀ w of wrenches on them."""
+    """(6 n, nv) Jacobians J at the world's origin of the parts' segments, and (nv,) Jᵀ w of wrenches on them."""
     segments = [scene()[0].bearings.parts[k].segment for k in parts]
     J = np.vstack([MODEL.segment_jacobian(q, segment, np.zeros(3)) for segment in segments])
     return J, J.T @ wrench.ravel()
