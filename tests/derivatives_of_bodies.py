@@ -118,6 +118,26 @@ def newton_euler_torques(rng):
     return named("model.newton_euler", ("NewtonEuler.torques", found.by_q, by_q), *pairs, whole)
 
 
+@checks("model.newton_euler.NewtonEuler.loaded", "model.newton_euler.NewtonEuler.jacobian", tolerance=1e-6)
+def further_loads(rng):
+    """Wrenches on some other segments; the feet's chains are among those of one of them."""
+    model = random_model(rng)
+    balance, s = NewtonEuler(model), random_state(model, rng)
+    ids = [model.joint(name).joint_id for name in ("pelvis", "right_hand", "left_shank")]
+    loads = dict(zip(ids, rng.normal(size=(3, 6)) * LOAD, strict=True))
+
+    def tau(q, each):
+        found = balance.torques(q, s.v, s.a, s.w)
+        balance.loaded(found, dict(zip(ids, each.reshape(3, 6), strict=True)))
+        return found
+
+    found, whole = tau(s.q, np.concatenate([*loads.values()])), np.concatenate([*loads.values()])
+    by_q = central_difference(model, lambda q: tau(q, whole).tau, s.q)
+    J = np.vstack([balance.jacobian(joint) for joint in ids])
+    by_loads = slope(lambda each: tau(s.q, each).tau, whole, 1e-2)
+    return named("model.newton_euler.NewtonEuler", ("loaded", found.by_q, by_q), ("jacobian", J, -by_loads.T))
+
+
 # The body of the torque filter.
 
 

@@ -1,22 +1,28 @@
 """Cases of tests/test_jacobians.py: sensors, plants, and the readings of the filters."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 
 from mbkf.filters.dynamic.plant import SingerPlant, SingerSettings
+from mbkf.filters.dynamic.support_loads import Loads, SupportLoads
 from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
 from mbkf.filters.torque.integrators import Motion, runge_kutta
 from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant
+from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.block import Frame
 from mbkf.sensors.foot_wrench import FootWrenchSensor
 from mbkf.sensors.joint_limits import JointLimits, JointLimitSettings
+from mbkf.sensors.layout import SUPPORT
 from mbkf.sensors.markers import Markers
 from mbkf.sensors.posture import PosturePrior, PostureSettings, posture_information
 from mbkf.sensors.posture_sensor import PostureSensor
+from mbkf.sensors.supports.block import Supports
+from mbkf.sensors.supports.sharing import shares
 from tests.derivatives import checks, named, slope
 from tests.derivatives_of_bodies import forced_body
-from tests.dynamics import block_of, dynamic_filter, markers_of, random_state, standing
+from tests.dynamics import LOAD, block_of, dynamic_filter, markers_of, random_state, standing
 from tests.motions import central_difference, moderate_pose, protocol_sensor, random_model
 
 DT = 0.01
@@ -223,3 +229,40 @@ def torque_transition(rng):
     return named("filters.torque.plant.ForcedPrediction", ("phi", phi, numeric)) | named(
         "filters.torque.plant.TorquePlant", ("transition", transition, numeric)
     )
+
+
+# Other contacts than the feet's.
+
+
+def some_parts(rng):
+    """Middles and levers of three parts, all of which may pull."""
+    return rng.uniform(-0.5, 0.5, (3, 3)), rng.uniform(0.05, 0.15, 3), [True] * 3
+
+
+@checks("sensors.supports.sharing.Shares.by_whole")
+def shared_wrench(rng):
+    parts, whole = some_parts(rng), rng.normal(size=6) * LOAD
+    numeric = slope(lambda w: shares(w, *parts).wrench, whole, 1e-2)
+    return named("sensors.supports.sharing.Shares", ("by_whole", shares(whole, *parts).by_whole, numeric))
+
+
+@checks("filters.dynamic.support_loads.SupportLoads.torques", tolerance=1e-6)
+def torques_of_all_contacts(rng):
+    """Along the whole state, the parts' middles held: a configuration moves bodies under loads that stay."""
+    model = random_model(rng)
+    plant = SingerPlant(model, DT, np.zeros(model.nv, dtype=bool), extras=Supports(model, DT).states())
+    reader, balance, s = SupportLoads(model, plant.layout), NewtonEuler(model), random_state(model, rng)
+    s, parts = replace(s, extra=rng.normal(size=6) * LOAD), some_parts(rng)
+    chosen = tuple(int(k) for k in rng.choice(len(reader.bearings), 3, replace=False))
+
+    def found(at):
+        torque = balance.torques(at.q, at.v, at.a, at.w)
+        loads = Loads(chosen, shares(at.extra, *parts))
+        return torque, reader.torques(balance, torque, loads)[0]
+
+    size = np.where(np.arange(plant.layout.size) < plant.layout.a.start, 1.0, 1e3)
+    numeric = (
+        slope(lambda x: found(plant.retract(s, size * x, s.P))[0].tau, np.zeros(plant.layout.size)) / size
+    )
+    assert plant.layout[SUPPORT].stop == len(size)
+    return named("filters.dynamic.support_loads.SupportLoads", ("torques", found(s)[1], numeric))

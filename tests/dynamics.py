@@ -194,12 +194,15 @@ class Trial:
         return DynamicState(q, v, a, m.foot_wrench[t].ravel() + step[3 * nv :], np.diag(sd**2))
 
 
+SECONDS = {"squat": 2.0, "walk": 1.5, "jump": 2.5, "sit_to_stand": 2.6}
+
+
 @cache
 def trial(name):
-    """A squat, a walk or a jump, made once."""
+    """A squat, a walk, a jump or standing up from a chair, made once."""
     subject = synthesise_subject(5)
     model = body_of(subject)
-    motion = synthesise_motion(model, name, {"squat": 2.0, "walk": 1.5, "jump": 2.5}[name], seed=5)
+    motion = synthesise_motion(model, name, SECONDS[name], seed=5)
     ground = tuple(plate(0.0, 0.0, name=name, outline=False) for name in ("r", "l"))
     return Trial(subject, model, motion, ground)
 

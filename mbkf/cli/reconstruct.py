@@ -77,6 +77,12 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="keep the subject's marker positions instead of correcting them on this trial",
     )
     parser.add_argument(
+        "--feet-only",
+        action="store_true",
+        help="take it that nothing but the feet bears load: look for no seat, no hand or knee on the floor, no load in "
+        "the hands",
+    )
+    parser.add_argument(
         "--pelvis",
         choices=("progression", "lab"),
         default="progression",
@@ -115,6 +121,7 @@ def run(args: argparse.Namespace) -> int:
         smooth=args.smooth,
         lag_s=lag_seconds(args),
         correct_markers=not args.keep_markers,
+        other_contacts=not args.feet_only,
         hide=hide,
         without_plates=tuple(args.without_plate),
         pelvis=args.pelvis,

@@ -203,6 +203,13 @@ def test_kept_markers_are_those_of_the_subject(person, reconstruct):
     assert summary["marker_rms_mm"] < 2.0
 
 
+def test_other_contacts_are_looked_for_unless_only_the_feet_bear(person, reconstruct):
+    """And the folder says so."""
+    asked, plain = (read_summary(reconstruct(person.trial, *words)) for words in ((), ("--feet-only",)))
+    assert asked["settings"]["other_contacts"] is True
+    assert plain["settings"]["other_contacts"] is False
+
+
 def test_hide_is_read():
     assert parse_hide("RASI, LASI@0.5:1e0") == Hidden(("RASI", "LASI"), 0.5, 1.0)
     assert math.isclose(parse_hide("A@-1:2").from_s, -1.0)

@@ -5,6 +5,7 @@ import pytest
 from mbkf.conventions import data_folder
 from mbkf.errors import FileFormatError, MbkfError, UnknownName
 from mbkf.model.body_file import load_body, parse_body
+from mbkf.model.sides import mirrored
 
 TEXT = (data_folder("models") / "human18.toml").read_text(encoding="utf-8")
 
@@ -59,6 +60,30 @@ def test_the_left_sole_mirrors_the_right_one():
     assert parse_body(TEXT.replace("ball_x_m = 0.13\n", ""), "x").sole == right
 
 
+def test_the_left_bearings_mirror_the_right_ones():
+    """Those of the midline stand alone, and a left one that is written is kept."""
+    bearings = load_body().bearings
+    assert {"pelvis", "torso"} <= set(bearings)
+    for name, one in bearings.items():
+        assert one.name == name
+        other = bearings.get(mirrored(name))
+        assert other is not None and other.segment == mirrored(one.segment)
+        assert other.position_m.tolist() == [one.position_m[0], -one.position_m[1], one.position_m[2]]
+        assert (other.radius_m, other.lever_m) == (one.radius_m, one.lever_m)
+    place = "position_m = [0, 0, 0]\nradius_m = 0.02\nlever_m = 0.03\n"
+    own = '[[bearing]]\nname = "left_knee"\nsegment = "left_shank"\n' + place
+    changed = parse_body(TEXT + "\n" + own, "x").bearings
+    assert changed["left_knee"].radius_m == 0.02
+    assert changed["right_knee"].radius_m == bearings["right_knee"].radius_m
+
+
+def test_a_body_without_bearings_has_none():
+    """Older files."""
+    start = TEXT.index("[[bearing]]")
+    end = TEXT.index("# Shapes for drawing only")
+    assert parse_body(TEXT[:start] + TEXT[end:], "x").bearings == {}
+
+
 @pytest.mark.parametrize(
     ("old", "new", "complaint"),
     [
@@ -98,6 +123,11 @@ def test_the_left_sole_mirrors_the_right_one():
         ('proximal = "neck"', 'proximal = "torso"', "head hangs on neck, not on torso"),
         ('main = "lumbar_extension"', 'main = "lumbar"', "main angle lumbar"),
         ('kind = "tube"', 'kind = "tub"', "kind 'tub' is not one of"),
+        ("lever_m = 0.12", "", "lever_m"),
+        ("lever_m = 0.12", "lever_m = 0", "bearing pelvis: three finite numbers"),
+        ("position_m = [0.01, 0.0, -0.03]", "position_m = [0.01, 0.0]", "bearing right_knee: three finite"),
+        ("position_m = [0.01, 0.0, -0.03]", "position_m = [nan, 0, 0]", "bearing right_knee: three finite"),
+        ('segment = "right_shank"\nposition_m', 'segment = "shin"\nposition_m', "unknown segment 'shin'"),
         ("numbers = [0.056, 0.05]", "numbers = [0.056]", "shape of neck: a limb has 2 numbers, not 1"),
     ],
 )

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.ndimage import binary_dilation, median_filter
 from scipy.signal import savgol_filter
 
-from mbkf.numerics.windows import dilated, local_lines, majority, second_derivative
+from mbkf.numerics.windows import dilated, local_lines, majority, second_derivative, slopes
 
 masks = st.lists(st.booleans(), min_size=1, max_size=60).map(lambda values: np.array(values, dtype=bool))
 
@@ -30,6 +30,28 @@ def test_a_parabola_has_its_own_second_derivative_up_to_the_ends(window):
     np.testing.assert_allclose(
         second_derivative(1.0 + 2.0 * t - 4.905 * t**2, window, 0.01), -9.81, rtol=1e-9
     )
+
+
+@given(st.integers(1, 12), st.integers(0, 60), st.floats(1e-3, 1.0), st.integers(0, 10_000))
+def test_slopes_are_savgols(half, more, dt, seed):
+    """Up to half a window from either end, and from there on the last one."""
+    window = 2 * half + 1
+    samples = np.random.default_rng(seed).normal(size=(window + more, 3))
+    expected = savgol_filter(samples, window, 2, deriv=1, delta=dt, axis=0)
+    found, inside = slopes(samples, window, dt), slice(half, half + more + 1)
+    assert found.shape == samples.shape
+    np.testing.assert_allclose(found[inside] * dt, expected[inside] * dt, rtol=1e-12, atol=1e-12)
+    np.testing.assert_array_equal(found[:half], np.tile(found[half], (half, 1)))
+    np.testing.assert_array_equal(found[half + more :], np.tile(found[half + more], (half + 1, 1)))
+
+
+@pytest.mark.parametrize("window", [3, 7, 15])
+def test_a_parabola_has_its_own_slopes(window):
+    t = np.arange(40) * 0.01
+    found = slopes(np.column_stack([1.0 + 2.0 * t - 4.905 * t**2, 3.0 - t]), window, 0.01)
+    inside = slice(window // 2, -(window // 2))
+    np.testing.assert_allclose(found[inside, 0], (2.0 - 9.81 * t)[inside], rtol=1e-9)
+    np.testing.assert_allclose(found[:, 1], -1.0, rtol=1e-9)
 
 
 @given(masks, st.integers(0, 20))

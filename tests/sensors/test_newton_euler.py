@@ -1,11 +1,15 @@
 """Newton's law at the pelvis as a reading of zero, as exact as it is said to be."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from mbkf.filters.dynamic.plant import SingerPlant
 from mbkf.model.newton_euler import NewtonEuler
+from mbkf.sensors.layout import SUPPORT, ExtraState
 from mbkf.sensors.newton_euler import NewtonEulerLaw, NewtonEulerSettings
-from tests.dynamics import notes_of, prepared_at, random_state, standing
+from tests.dynamics import DT, notes_of, prepared_at, random_state, standing
 from tests.motions import assert_near, reference_model
 
 MODEL = reference_model()
@@ -62,3 +66,30 @@ def test_it_is_loosened_where_inertial_sensors_read_and_a_limb_is_unobserved(not
 def test_its_noise_is_that_of_six_equations():
     block, _, _ = law()
     assert block.log_noise(notes_of()) == pytest.approx(2.0 * 3.0 * (np.log(2.0) + np.log(0.5)))
+
+
+def test_the_wrench_of_other_contacts_counts_like_a_foots():
+    """Rows along the whole state, against finite differences; without that state they are what they were."""
+    plain, state, _ = law()
+    extras = [ExtraState(SUPPORT, np.zeros(6), np.ones(6), np.zeros(6))]
+    other = [ExtraState("mine", np.zeros(2), np.ones(2), np.zeros(2))]
+    plant = SingerPlant(MODEL, DT, np.zeros(MODEL.nv, dtype=bool), extras=[*other, *extras])
+    block = NewtonEulerLaw(NewtonEuler(MODEL), SETTINGS)
+    block.bind(plant.layout)
+    wrench = np.array([20.0, -30.0, 400.0, 50.0, -80.0, 10.0])
+    at = replace(state, extra=np.concatenate([[7.0, 7.0], wrench]))
+    found, size = block.prepare(at, None), plant.layout.size
+    assert found.jacobian.shape == (6, size)
+
+    def moved(x):
+        return block.prepare(plant.retract(at, x, at.P), None).innovation
+
+    # The law is linear in accelerations and wrenches, and steps along these can be larger.
+    steps = np.where(np.arange(size) < plant.layout.a.start, 1e-6, 1e-2)
+    numeric = [(moved(h * e) - moved(-h * e)) / (2 * h) for h, e in zip(steps, np.eye(size), strict=True)]
+    assert_near(found.jacobian, -np.array(numeric).T, 1e-6 * np.abs(found.jacobian).max())
+    np.testing.assert_array_equal(found.jacobian[:, plant.layout["mine"]], 0.0)
+    mine = found.jacobian[:, plant.layout[SUPPORT]]
+    np.testing.assert_array_equal(mine, found.jacobian[:, plant.layout.wrench][:, :6])
+    on_the_foot = replace(state, w=state.w + np.concatenate([wrench, np.zeros(6)]))
+    assert_near(found.innovation, plain.prepare(on_the_foot, None).innovation, 1e-9)

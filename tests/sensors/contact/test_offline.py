@@ -254,6 +254,27 @@ def test_untracked_frames_assign_no_load():
     assert loads.valid[23:].all()
 
 
+def test_feet_that_touch_beside_the_plates_are_unread():
+    q = np.repeat(standing()[None], 20, axis=0)
+    right = plate(ball(q[0], RIGHT), 0.5 * WEIGHT_N, 20)
+    np.testing.assert_array_equal(assigned(q, [right]).unread, np.tile([False, True], (20, 1)))
+    left = plate(ball(q[0], LEFT), 0.5 * WEIGHT_N, 20)
+    assert not assigned(q, [right, left]).unread.any()
+    assert assigned(q, []).unread.all()
+    lifted = on_the_right_foot(60)
+    loads = assigned(lifted, [plate(ball(lifted[-1], RIGHT), WEIGHT_N, 60)])
+    assert not loads.unread[8:].any()
+
+
+@pytest.mark.parametrize("height_m", [0.0, 0.3])
+def test_the_floor_lies_where_the_soles_are_lowest(height_m):
+    q = on_the_right_foot(60)
+    q[:, 2] += height_m
+    q[30:40] = np.nan
+    assert assigned(q, []).floor_m == pytest.approx(height_m, abs=1e-9)
+    assert np.isnan(assigned(np.full_like(q, np.nan), []).floor_m)
+
+
 def test_stretches_are_the_unbroken_runs():
     mask = np.array([1, 1, 0, 0, 1, 0, 1, 1, 1], bool)
     assert [run.tolist() for run in stretches(mask)] == [[0, 1], [4], [6, 7, 8]]
