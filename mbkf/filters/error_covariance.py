@@ -13,6 +13,9 @@ reads follows from the accelerations by Newton's law, and errs as they do. Of tw
 share it is known by where they stand and how they push off, which errs alike for a whole double support:
 
     (c² − 1) κ [D, −D; −D, D] is added,  D = covariance of half the difference of both wrenches in P
+
+Where no plate reads at all, a quick change is known only after a while, causally, and with its corners cut, smoothed:
+l lᵀ is added, l = the rates of change of accelerations and wrenches times a lag.
 """
 
 from __future__ import annotations
@@ -35,11 +38,14 @@ class ErrorSettings:
         new_share: Share κ of the marker noise that is new in every frame.
         skin_rate_rad_s: How fast the rest changes, ω.
         sharing_scale: Factor c on the spread of how two feet share a load that no plate reads.
+        lag_s, smoothed_lag_s: Time by which reactions without plates lag behind, causally and smoothed.
     """
 
     new_share: float = 0.035
     skin_rate_rad_s: float = 4.0
-    sharing_scale: float = 2.3
+    sharing_scale: float = 1.6
+    lag_s: float = 0.03
+    smoothed_lag_s: float = 0.005
 
 
 @dataclass(frozen=True)
@@ -55,6 +61,7 @@ class ErrorCovariance:
         rate_rad_s: ω.
         free: Feet whose wrenches follow from Newton's law alone, 0 right and 1 left.
         sharing: Factor c where both do.
+        lag: (nv + 12,) l of accelerations and wrenches; None for none.
     """
 
     P: Array
@@ -65,6 +72,7 @@ class ErrorCovariance:
     rate_rad_s: float
     free: tuple[int, ...] = ()
     sharing: float = 1.0
+    lag: Array | None = None
 
     @cached_property
     def size(self) -> Array:
@@ -154,6 +162,8 @@ class ErrorCovariance:
         if self._difference is not None and n == 3 * nv + 12:
             apart = T[:, 3 * nv : 3 * nv + 6] - T[:, 3 * nv + 6 :]
             variance += np.einsum("ij,ij->i", apart @ self._difference, apart)
+        if self.lag is not None and n == 3 * nv + 12:
+            variance += (T[:, 2 * nv :] @ self.lag) ** 2
         return variance
 
     @property
@@ -161,7 +171,9 @@ class ErrorCovariance:
         """(12,) diagonal of Σ of both feet's wrenches."""
         mine = slice(3 * len(self.information), 3 * len(self.information) + 12)
         found: Array = np.diagonal(self.P)[mine] * self.size[mine] ** 2
-        return found if self._difference is None else found + np.tile(np.diagonal(self._difference), 2)
+        if self._difference is not None:
+            found += np.tile(np.diagonal(self._difference), 2)
+        return found if self.lag is None else found + self.lag[-12:] ** 2
 
     def covariance(self) -> Array:
         """(N, N) Σ."""
@@ -174,4 +186,7 @@ class ErrorCovariance:
         if self._difference is not None:
             wrenches = slice(3 * nv, 3 * nv + 12)
             whole[wrenches, wrenches] += np.kron([[1.0, -1.0], [-1.0, 1.0]], self._difference)
+        if self.lag is not None:
+            late = slice(2 * nv, 3 * nv + 12)
+            whole[late, late] += np.outer(self.lag, self.lag)
         return whole

@@ -71,6 +71,7 @@ class Posterior(NamedTuple):
         tracked: Whether enough instruments read.
         started: Whether the filter was started in this frame.
         inner: The filter's own record of the step.
+        lag: (nv + 12,) by how much accelerations and wrenches may lag behind a change; None where that is not stated.
     """
 
     q: Array
@@ -82,6 +83,7 @@ class Posterior(NamedTuple):
     tracked: bool
     started: bool
     inner: object
+    lag: Array | None = None
 
 
 class Prediction(NamedTuple):

@@ -53,7 +53,7 @@ class DynamicTracking(TrackingFilter):
             return None
         state, a = found.state, found.accelerations.mean(axis=0)
         first = self.kalman.first(state.q, state.v, a, state.P, recording.frame(t))
-        return self._estimate(first)._replace(tracked=True, started=True)
+        return self._estimate(first)._replace(tracked=True, started=True, lag=None)
 
     def predict(self, before: Posterior) -> Prediction:
         """By the filter's own plant."""
@@ -115,8 +115,9 @@ class DynamicTracking(TrackingFilter):
         skin = share * readings / max(over, 1)
         # A limb out of sight errs as P says, and so does a reaction that rests on its acceleration.
         all_seen = len(seen) + len(self._unobservable) == self.model.nv
-        contact = notes.contact
-        free = (0, 1) if contact is not None and all_seen else ()
+        contacts = () if notes.contact is None or not all_seen else notes.contact.contacts
+        free = tuple(foot for foot, on in enumerate(contacts) if on == Contact.UNMEASURED)
+        unread = bool(free) and not {Contact.MEASURED, Contact.SHARED} & set(contacts)
         return ErrorCovariance(
             P,
             information,
@@ -124,8 +125,9 @@ class DynamicTracking(TrackingFilter):
             skin,
             s.errors.new_share,
             s.errors.skin_rate_rad_s,
-            tuple(f for f in free if contact is not None and contact.contacts[f] == Contact.UNMEASURED),
+            free,
             s.errors.sharing_scale,
+            estimate.lag if unread else None,
         )
 
     def wrench_sd(self, estimate: Posterior) -> Array:
@@ -144,15 +146,26 @@ class DynamicTracking(TrackingFilter):
     ) -> list[Posterior]:
         """Iterated smoother; see :mod:`mbkf.filters.dynamic.smoother`."""
         del recording, first
-        states = smooth(self.kalman, [_record(estimate) for estimate in run], ROUNDS, wanted)
+        states = list(smooth(self.kalman, [_record(estimate) for estimate in run], ROUNDS, wanted))
+        steps = self.kalman.settings.errors.smoothed_lag_s / self.dt_s
+        befores = [states[0], *states[:-1]] if states else []
         return [
-            e._replace(q=s.q, v=s.v, a=s.a, wrench=s.w.reshape(2, 6), inner=_record(e)._replace(state=s))
-            for e, s in zip(run, states, strict=False)
+            e._replace(
+                q=s.q,
+                v=s.v,
+                a=s.a,
+                wrench=s.w.reshape(2, 6),
+                inner=_record(e)._replace(state=s),
+                lag=steps * np.concatenate([s.a - before.a, s.w - before.w]),
+            )
+            for e, s, before in zip(run, states, befores, strict=False)
         ]
 
     def _estimate(self, step: DynamicStep) -> Posterior:
         state, notes = step.state, step.decisions.notes
         contact = None if notes.contact is None else notes.contact.contacts
+        plant, before = self.kalman.plant, step.prior.state
+        steps = self.kalman.settings.errors.lag_s / self.dt_s
         return Posterior(
             state.q,
             state.v,
@@ -163,4 +176,5 @@ class DynamicTracking(TrackingFilter):
             step.tracked,
             False,
             step,
+            steps * np.concatenate([state.a - before.a / plant.rho, state.w - before.w]),
         )
