@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from benchmarks.checks import Check, Context
 from benchmarks.contact.readings import readings_rows
+from benchmarks.contact.running import running_rows
 from benchmarks.contact.shared import shared_rows
 from benchmarks.contact.withheld import withheld_rows
 
@@ -14,4 +15,5 @@ def run(context: Context) -> list[Check]:
         *readings_rows(context),
         *shared_rows(context),
         *withheld_rows(context),
+        *running_rows(context),
     ]
