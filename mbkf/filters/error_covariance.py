@@ -15,7 +15,8 @@ share it is known by where they stand and how they push off, which errs alike fo
     (c² − 1) κ [D, −D; −D, D] is added,  D = covariance of half the difference of both wrenches in P
 
 Where no plate reads at all, a quick change is known only after a while, causally, and with its corners cut, smoothed:
-l lᵀ is added, l = the rates of change of accelerations and wrenches times a lag.
+l lᵀ is added, l = the rates of change of accelerations and wrenches times a lag. And whether a foot that carries hardly
+anything still bears is not known: e² is added to the variance of its vertical force.
 """
 
 from __future__ import annotations
@@ -39,13 +40,15 @@ class ErrorSettings:
         skin_rate_rad_s: How fast the rest changes, ω.
         sharing_scale: Factor c on the spread of how two feet share a load that no plate reads.
         lag_s, smoothed_lag_s: Time by which reactions without plates lag behind, causally and smoothed.
+        edge_force_n: Spread e of the vertical force on a foot without a plate that carries next to nothing.
     """
 
     new_share: float = 0.035
     skin_rate_rad_s: float = 4.0
-    sharing_scale: float = 1.6
-    lag_s: float = 0.03
-    smoothed_lag_s: float = 0.005
+    sharing_scale: float = 1.3
+    lag_s: float = 0.033
+    smoothed_lag_s: float = 0.008
+    edge_force_n: float = 60.0
 
 
 @dataclass(frozen=True)
@@ -62,6 +65,7 @@ class ErrorCovariance:
         free: Feet whose wrenches follow from Newton's law alone, 0 right and 1 left.
         sharing: Factor c where both do.
         lag: (nv + 12,) l of accelerations and wrenches; None for none.
+        edge_n: e of right and left foot, N.
     """
 
     P: Array
@@ -73,6 +77,7 @@ class ErrorCovariance:
     free: tuple[int, ...] = ()
     sharing: float = 1.0
     lag: Array | None = None
+    edge_n: tuple[float, float] = (0.0, 0.0)
 
     @cached_property
     def size(self) -> Array:
@@ -164,6 +169,8 @@ class ErrorCovariance:
             variance += np.einsum("ij,ij->i", apart @ self._difference, apart)
         if self.lag is not None and n == 3 * nv + 12:
             variance += (T[:, 2 * nv :] @ self.lag) ** 2
+        if n == 3 * nv + 12:
+            variance += (T[:, [3 * nv + 2, 3 * nv + 8]] * self.edge_n) ** 2 @ np.ones(2)
         return variance
 
     @property
@@ -173,6 +180,7 @@ class ErrorCovariance:
         found: Array = np.diagonal(self.P)[mine] * self.size[mine] ** 2
         if self._difference is not None:
             found += np.tile(np.diagonal(self._difference), 2)
+        found[[2, 8]] += np.square(self.edge_n)
         return found if self.lag is None else found + self.lag[-12:] ** 2
 
     def covariance(self) -> Array:
@@ -189,4 +197,6 @@ class ErrorCovariance:
         if self.lag is not None:
             late = slice(2 * nv, 3 * nv + 12)
             whole[late, late] += np.outer(self.lag, self.lag)
+        vertical = 3 * nv + np.array([2, 8])
+        whole[vertical, vertical] += np.square(self.edge_n)
         return whole

@@ -128,7 +128,15 @@ class DynamicTracking(TrackingFilter):
             free,
             s.errors.sharing_scale,
             estimate.lag if unread else None,
+            (self._edge(estimate, 0, free), self._edge(estimate, 1, free)),
         )
+
+    def _edge(self, estimate: Posterior, foot: int, free: tuple[int, ...]) -> float:
+        """Spread of what a foot carries that may or may not bear, N."""
+        edge = self.kalman.settings.errors.edge_force_n
+        if foot not in free or edge <= 0.0:
+            return 0.0
+        return edge * float(np.exp(-0.5 * (estimate.wrench[foot, 2] / (2.0 * edge)) ** 2))
 
     def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) standard deviations of the feet's wrenches."""
