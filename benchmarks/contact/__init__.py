@@ -5,6 +5,7 @@ from __future__ import annotations
 from benchmarks.checks import Check, Context
 from benchmarks.contact.others import other_rows
 from benchmarks.contact.readings import readings_rows
+from benchmarks.contact.running import running_rows
 from benchmarks.contact.shared import shared_rows
 from benchmarks.contact.strangers import stranger_rows
 from benchmarks.contact.withheld import withheld_rows
@@ -18,4 +19,5 @@ def run(context: Context) -> list[Check]:
         *withheld_rows(context),
         *other_rows(context),
         *stranger_rows(context),
+        *running_rows(context),
     ]

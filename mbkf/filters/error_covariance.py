@@ -13,6 +13,10 @@ reads follows from the accelerations by Newton's law, and errs as they do. Of tw
 share it is known by where they stand and how they push off, which errs alike for a whole double support:
 
     (c² − 1) κ [D, −D; −D, D] is added,  D = covariance of half the difference of both wrenches in P
+
+Where no plate reads at all, a quick change is known only after a while, causally, and with its corners cut, smoothed:
+l lᵀ is added, l = the rates of change of accelerations and wrenches times a lag. And whether a foot that carries hardly
+anything still bears is not known: e² is added to the variance of its vertical force.
 """
 
 from __future__ import annotations
@@ -35,11 +39,16 @@ class ErrorSettings:
         new_share: Share κ of the marker noise that is new in every frame.
         skin_rate_rad_s: How fast the rest changes, ω.
         sharing_scale: Factor c on the spread of how two feet share a load that no plate reads.
+        lag_s, smoothed_lag_s: Time by which reactions without plates lag behind, causally and smoothed.
+        edge_force_n: Spread e of the vertical force on a foot without a plate that carries next to nothing.
     """
 
     new_share: float = 0.035
     skin_rate_rad_s: float = 4.0
-    sharing_scale: float = 2.3
+    sharing_scale: float = 1.3
+    lag_s: float = 0.033
+    smoothed_lag_s: float = 0.008
+    edge_force_n: float = 60.0
 
 
 @dataclass(frozen=True)
@@ -55,6 +64,9 @@ class ErrorCovariance:
         rate_rad_s: ω.
         free: Feet whose wrenches follow from Newton's law alone, 0 right and 1 left.
         sharing: Factor c where both do.
+        lag: (nv + 12 or more,) l of accelerations and wrenches; None for none.
+        edge_n: e of right and left foot, N.
+        supports: Slice of the wrench on other parts that bear, which Newton's law alone tells, too; None where none do.
     """
 
     P: Array
@@ -65,6 +77,9 @@ class ErrorCovariance:
     rate_rad_s: float
     free: tuple[int, ...] = ()
     sharing: float = 1.0
+    lag: Array | None = None
+    edge_n: tuple[float, float] = (0.0, 0.0)
+    supports: slice | None = None
 
     @cached_property
     def size(self) -> Array:
@@ -74,6 +89,8 @@ class ErrorCovariance:
             size[first + self.seen] = self.new**0.5
         for foot in self.free:
             size[3 * nv + 6 * foot : 3 * nv + 6 * foot + 6] = self.new**0.5
+        if self.supports is not None:
+            size[self.supports] = self.new**0.5
         return size
 
     @cached_property
@@ -151,17 +168,25 @@ class ErrorCovariance:
         repeated = (parts[:, self.seen] if len(self.seen) < nv else parts) @ self._root.T
         squared = np.einsum("ij,ij->i", repeated, repeated)
         variance += self.skin * (squared[: len(T)] + squared[len(T) :])
-        if self._difference is not None and n == 3 * nv + 12:
-            apart = T[:, 3 * nv : 3 * nv + 6] - T[:, 3 * nv + 6 :]
+        if n < 3 * nv + 12:
+            return variance
+        if self._difference is not None:
+            apart = T[:, 3 * nv : 3 * nv + 6] - T[:, 3 * nv + 6 : 3 * nv + 12]
             variance += np.einsum("ij,ij->i", apart @ self._difference, apart)
-        return variance
+        if self.lag is not None:
+            variance += (T[:, 2 * nv :] @ self.lag[: n - 2 * nv]) ** 2
+        return variance + (T[:, [3 * nv + 2, 3 * nv + 8]] * self.edge_n) ** 2 @ np.ones(2)
 
     @property
     def wrench_variance(self) -> Array:
         """(12,) diagonal of Σ of both feet's wrenches."""
         mine = slice(3 * len(self.information), 3 * len(self.information) + 12)
         found: Array = np.diagonal(self.P)[mine] * self.size[mine] ** 2
-        return found if self._difference is None else found + np.tile(np.diagonal(self._difference), 2)
+        if self._difference is not None:
+            found += np.tile(np.diagonal(self._difference), 2)
+        found[[2, 8]] += np.square(self.edge_n)
+        nv = len(self.information)
+        return found if self.lag is None else found + self.lag[nv : nv + 12] ** 2
 
     def covariance(self) -> Array:
         """(N, N) Σ."""
@@ -174,4 +199,9 @@ class ErrorCovariance:
         if self._difference is not None:
             wrenches = slice(3 * nv, 3 * nv + 12)
             whole[wrenches, wrenches] += np.kron([[1.0, -1.0], [-1.0, 1.0]], self._difference)
+        if self.lag is not None:
+            late = slice(2 * nv, 2 * nv + len(self.lag))
+            whole[late, late] += np.outer(self.lag, self.lag)
+        vertical = 3 * nv + np.array([2, 8])
+        whole[vertical, vertical] += np.square(self.edge_n)
         return whole

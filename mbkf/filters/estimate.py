@@ -75,6 +75,8 @@ class Posterior(NamedTuple):
         inner: The filter's own record of the step.
         support: (B, 6) wrench about the world's origin on each part of the body that may bear load besides the feet
             (``description.bearings``), 0 on one that bears none; None where the filter does not ask.
+        lag: (nv + 12 or more,) by how much accelerations, the feet's wrenches and those on other parts may lag behind a
+            change; None where that is not stated.
     """
 
     q: Array
@@ -87,6 +89,7 @@ class Posterior(NamedTuple):
     started: bool
     inner: object
     support: Array | None = None
+    lag: Array | None = None
 
 
 class Prediction(NamedTuple):

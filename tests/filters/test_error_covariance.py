@@ -34,7 +34,7 @@ def test_parts_are_those_of_the_whole(seed, new, rate):
     rng, P, information = made(seed)
     errors = ErrorCovariance(P, information, np.flatnonzero(rng.random(NV) > 0.3), 0.2, new, rate)
     free = [(), (0,), (1,), (0, 1)][seed % 4]
-    errors = replace(errors, free=free, sharing=2.0)
+    errors = replace(errors, free=free, sharing=2.0, lag=rng.normal(size=NV + 12), edge_n=(3.0, 0.5))
     whole, T = errors.covariance(), rng.normal(size=(7, len(P)))
     near = {"rtol": 1e-9, "atol": 1e-9 * np.abs(whole).max()}
     np.testing.assert_allclose(errors.position, whole[:NV, :NV], **near)
@@ -102,3 +102,16 @@ def test_how_two_feet_share_is_known_less_well_than_their_sum():
     both, apart = (np.hstack([np.zeros((6, 3 * NV)), np.eye(6), sign * np.eye(6)]) for sign in (1.0, -1.0))
     np.testing.assert_allclose(both @ wider @ both.T, both @ usual @ both.T, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(apart @ wider @ apart.T, 2.5**2 * (apart @ usual @ apart.T), rtol=1e-9)
+
+
+def test_what_lags_errs_along_its_change():
+    """A torque to which the late parts add up to nothing has no further spread."""
+    rng, P, information = made(6)
+    lag = rng.normal(size=NV + 12)
+    usual = ErrorCovariance(P, information, EVERYBODY, 0.2, 0.04, 4.0, (0,))
+    late = replace(usual, lag=lag)
+    T = np.concatenate([np.zeros(2 * NV), lag])[None]
+    across = rng.normal(size=NV + 12)
+    U = np.concatenate([np.zeros(2 * NV), across - (across @ lag) / (lag @ lag) * lag])[None]
+    np.testing.assert_allclose(late.variance_of(T) - usual.variance_of(T), (lag @ lag) ** 2, rtol=1e-9)
+    np.testing.assert_allclose(late.variance_of(U), usual.variance_of(U), rtol=1e-9)

@@ -8,6 +8,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.filters.dynamic.plant import DynamicState
+from mbkf.filters.error_covariance import ErrorCovariance
 from mbkf.filters.filter import Step
 from mbkf.model.body import Body
 from mbkf.model.newton_euler import JointTorques, NewtonEuler
@@ -28,18 +29,19 @@ class SupportLoads:
 
     Attributes:
         bearings: The parts that may bear.
+        slice: Where the wrench on all of them stands in the state; None where it is none of its.
     """
 
     def __init__(self, model: Body, layout: Layout) -> None:
         self.bearings, self._nv = BearingParts(model), model.nv
         known = SUPPORT in layout
-        self._slice = layout[SUPPORT] if known else None
+        self.slice = layout[SUPPORT] if known else None
         self._extra = layout.extra_index(SUPPORT) if known else slice(0)
 
     def of(self, step: Step[DynamicState]) -> Loads | None:
         """What bears at a step's state; None where only feet do."""
         parts, state = step.decisions.notes.supports, step.state
-        if not parts or self._slice is None:
+        if not parts or self.slice is None:
             return None
         points, chosen = self.bearings.at(state.q, state.v).points_m, list(parts)
         grips = [self.bearings.grips[k] for k in parts]
@@ -49,20 +51,24 @@ class SupportLoads:
 
     def wrench(self, loads: Loads | None) -> Array | None:
         """(B, 6) wrench on each part about the world's origin; None where the filter has no such state."""
-        if self._slice is None:
+        if self.slice is None:
             return None
         found = np.zeros((len(self.bearings), 6))
         if loads is not None:
             found[list(loads.parts)] = loads.shares.wrench
         return found
 
-    def sd(self, loads: Loads | None, P: Array) -> Array:
-        """(B, 6) standard deviations of :meth:`wrench`, for the state's covariance P (N, N)."""
+    def change(self, before: DynamicState, state: DynamicState) -> Array:
+        """(6,) change of the wrench on all parts from one state to another; none (0,) where the state has none."""
+        return (state.extra - before.extra)[self._extra]
+
+    def sd(self, loads: Loads | None, errors: ErrorCovariance | None) -> Array:
+        """(B, 6) standard deviations of :meth:`wrench`, for the errors of the state; 0 on parts that bear nothing."""
         found = np.zeros((len(self.bearings), 6))
-        if loads is not None and self._slice is not None:
-            rows = loads.shares.by_whole.reshape(-1, 6)
-            whole = np.einsum("ij,jk,ik->i", rows, P[self._slice, self._slice], rows)
-            variance = whole + np.diag(loads.shares.covariance)
+        if loads is not None and errors is not None and self.slice is not None:
+            rows = np.zeros((6 * len(loads.parts), self.slice.stop))
+            rows[:, self.slice] = loads.shares.by_whole.reshape(-1, 6)
+            variance = errors.variance_of(rows) + np.diag(loads.shares.covariance)
             found[list(loads.parts)] = np.sqrt(np.maximum(variance, 0.0)).reshape(-1, 6)
         return found
 
@@ -75,7 +81,7 @@ class SupportLoads:
             loads: What else bears; None for nothing.
         """
         none = np.zeros(self._nv)
-        if loads is None or self._slice is None:
+        if loads is None or self.slice is None:
             return torque.by_state, none
         ids = [self.bearings.joint_ids[k] for k in loads.parts]
         by_joint: dict[int, Array] = {}
@@ -83,7 +89,7 @@ class SupportLoads:
             by_joint[joint] = by_joint.get(joint, np.zeros(6)) + wrench
         balance.loaded(torque, by_joint)
         J = np.vstack([balance.jacobian(joint) for joint in ids])
-        by_state = np.zeros((self._nv, self._slice.stop))
+        by_state = np.zeros((self._nv, self.slice.stop))
         by_state[:, : torque.by_state.shape[1]] = torque.by_state
-        by_state[:, self._slice] = -J.T @ loads.shares.by_whole.reshape(-1, 6)
+        by_state[:, self.slice] = -J.T @ loads.shares.by_whole.reshape(-1, 6)
         return by_state, np.einsum("ij,ik,kj->j", J, loads.shares.covariance, J)

@@ -56,7 +56,7 @@ class DynamicTracking(TrackingFilter):
             return None
         state, a = found.state, found.accelerations.mean(axis=0)
         first = self.kalman.first(state.q, state.v, a, state.P, recording.frame(t))
-        return self._estimate(first)._replace(tracked=True, started=True)
+        return self._estimate(first)._replace(tracked=True, started=True, lag=None)
 
     def predict(self, before: Posterior) -> Prediction:
         """By the filter's own plant."""
@@ -120,8 +120,9 @@ class DynamicTracking(TrackingFilter):
         skin = share * readings / max(over, 1)
         # A limb out of sight errs as P says, and so does a reaction that rests on its acceleration.
         all_seen = len(seen) + len(self._unobservable) == self.model.nv
-        contact = notes.contact
-        free = (0, 1) if contact is not None and all_seen else ()
+        contacts = () if notes.contact is None or not all_seen else notes.contact.contacts
+        free = tuple(foot for foot, on in enumerate(contacts) if on == Contact.UNMEASURED)
+        unread = bool(free) and not {Contact.MEASURED, Contact.SHARED} & set(contacts)
         return ErrorCovariance(
             P,
             information,
@@ -129,9 +130,19 @@ class DynamicTracking(TrackingFilter):
             skin,
             s.errors.new_share,
             s.errors.skin_rate_rad_s,
-            tuple(f for f in free if contact is not None and contact.contacts[f] == Contact.UNMEASURED),
+            free,
             s.errors.sharing_scale,
+            estimate.lag if unread or notes.supports else None,
+            (self._edge(estimate, 0, free), self._edge(estimate, 1, free)),
+            self.loads.slice if notes.supports and all_seen else None,
         )
+
+    def _edge(self, estimate: Posterior, foot: int, free: tuple[int, ...]) -> float:
+        """Spread of what a foot carries that may or may not bear, N."""
+        edge = self.kalman.settings.errors.edge_force_n
+        if foot not in free or edge <= 0.0:
+            return 0.0
+        return edge * float(np.exp(-0.5 * (estimate.wrench[foot, 2] / (2.0 * edge)) ** 2))
 
     def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) standard deviations of the feet's wrenches."""
@@ -139,8 +150,8 @@ class DynamicTracking(TrackingFilter):
 
     def support_sd(self, estimate: Posterior) -> Array:
         """(B, 6) from the state's covariance, and from how the parts that bear share their load."""
-        step = _record(estimate)
-        return self.loads.sd(self.loads.of(step), step.state.P)
+        loads = self.loads.of(_record(estimate))
+        return self.loads.sd(loads, self.errors(estimate) if loads is not None else None)
 
     def innovation(self, estimate: Posterior) -> tuple[float, int]:
         """Of markers, plates and Newton's law."""
@@ -154,8 +165,9 @@ class DynamicTracking(TrackingFilter):
     ) -> list[Posterior]:
         """Iterated smoother; see :mod:`mbkf.filters.dynamic.smoother`."""
         del recording, first
-        states = smooth(self.kalman, [_record(estimate) for estimate in run], ROUNDS, wanted)
-        return [self._moved(e, s) for e, s in zip(run, states, strict=False)]
+        states = list(smooth(self.kalman, [_record(estimate) for estimate in run], ROUNDS, wanted))
+        befores = [states[0], *states[:-1]] if states else []
+        return [self._moved(e, s, before) for e, s, before in zip(run, states, befores, strict=False)]
 
     def linear_step(self, before: Posterior, estimate: Posterior) -> LinearStep:
         """About the filter's own course."""
@@ -168,24 +180,38 @@ class DynamicTracking(TrackingFilter):
         self, estimate: Posterior, later: BackwardPass | None, before: Posterior | None
     ) -> Posterior:
         """By one linear pass."""
-        del before
         if later is None:
             return estimate
         state = _record(estimate).state
         moved = self.kalman.plant.retract(state, *later.corrected(state.P))
-        return self._moved(estimate, moved)
+        return self._moved(estimate, moved, moved if before is None else _record(before).state)
 
-    def _moved(self, estimate: Posterior, state: DynamicState) -> Posterior:
-        """An estimate whose state the smoother has corrected."""
+    def _moved(self, estimate: Posterior, state: DynamicState, before: DynamicState) -> Posterior:
+        """An estimate whose state later frames have corrected.
+
+        Args:
+            estimate: The filter's own.
+            state: The corrected state.
+            before: That of the frame before.
+        """
         inner = _record(estimate)._replace(state=state)
-        support = self.loads.wrench(self.loads.of(inner))
+        steps = self.kalman.settings.errors.smoothed_lag_s / self.dt_s
         return estimate._replace(
-            q=state.q, v=state.v, a=state.a, wrench=state.w.reshape(2, 6), inner=inner, support=support
+            q=state.q,
+            v=state.v,
+            a=state.a,
+            wrench=state.w.reshape(2, 6),
+            inner=inner,
+            support=self.loads.wrench(self.loads.of(inner)),
+            lag=steps
+            * np.concatenate([state.a - before.a, state.w - before.w, self.loads.change(before, state)]),
         )
 
     def _estimate(self, step: DynamicStep) -> Posterior:
         state, notes = step.state, step.decisions.notes
         contact = None if notes.contact is None else notes.contact.contacts
+        plant, before = self.kalman.plant, step.prior.state
+        steps = self.kalman.settings.errors.lag_s / self.dt_s
         return Posterior(
             state.q,
             state.v,
@@ -197,4 +223,8 @@ class DynamicTracking(TrackingFilter):
             False,
             step,
             self.loads.wrench(self.loads.of(step)),
+            steps
+            * np.concatenate(
+                [state.a - before.a / plant.rho, state.w - before.w, self.loads.change(before, state)]
+            ),
         )
