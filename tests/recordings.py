@@ -5,16 +5,22 @@ from functools import cache
 
 import numpy as np
 
+from mbkf.io.contacts import Source
 from mbkf.io.results import Reconstruction
 from mbkf.model.clinical import ClinicalAngles, dof_names
+from mbkf.pipelines.results.supports import pressed_points
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
 from tests.motions import marker_positions
 
 LOST = slice(100, 110)
 """Frames in which the walker's body is not followed."""
+
+RAIL, SEAT = slice(100, 150), slice(60, 80)
+"""Frames in which the right hand holds a rail, and in which the pelvis touches a seat."""
 
 PLATE = np.array([[0.6, 0.4, 0.0], [0.0, 0.4, 0.0], [0.0, -0.4, 0.0], [0.6, -0.4, 0.0]])
 
@@ -52,7 +58,10 @@ def walk():
         hidden=np.zeros((T, M), bool), rejected=np.zeros((T, M), bool), foot_wrench=force,
         foot_cop_m=motion.centre_of_pressure, foot_free_moment_nm=np.zeros((T, 2)),
         residual_force_n=np.full((T, 3), 1.0), residual_moment_nm=np.full((T, 3), 0.5), tracked=np.ones(T, bool),
-        valid=np.ones(T, bool), unobserved_dofs=(), nis=np.full(T, 90.0), nis_readings=np.full(T, 100),
+        support_names=(), support_wrench=np.zeros((T, 0, 6)), support_wrench_sd=np.zeros((T, 0, 6)),
+        support_point_m=np.zeros((T, 0, 3)), measured=np.ones(T, bool), valid=np.ones(T, bool),
+        foot_source=(force[..., 2] > 0).astype(int), unobserved_dofs=(), nis=np.full(T, 90.0),
+        nis_readings=np.full(T, 100),
         step_seconds=np.full(T, 1e-3), warnings=("a remark with <b>markup</b>",),
         settings={"dynamic": {"jerk": 200.0}, "hide": []}, foot_wrench_sd=np.full((T, 2, 6), 5.0),
         foot_contact=np.where(force[..., 2] > 0, Contact.MEASURED, Contact.AIR), plate_corners_m=PLATE[None],
@@ -70,3 +79,22 @@ def broken_walk():
     tracked = r.tracked.copy()
     tracked[LOST] = False
     return replace(r, measured_m=measured, hidden=hidden, rejected=rejected, tracked=tracked)
+
+
+@cache
+def leaning_walk():
+    """The walk with a hand on a rail in its middle half second, a seat touched, and a left foot that nothing reads."""
+    r, model = walk(), walker()[1]
+    names = tuple(model.description.bearings)
+    support, parts = np.zeros((r.frames, len(names), 6)), BearingParts(model)
+    hand, seat, t = names.index("right_hand"), names.index("pelvis"), np.arange(r.frames)
+    support[RAIL, hand, :3] = [40.0, 10.0, 180.0]
+    support[SEAT, seat, 2] = 250.0
+    at = np.array([parts.at(q, v).points_m for q, v in zip(r.q, r.v, strict=True)])
+    support[..., 3:] = np.cross(at, support[..., :3])
+    point = np.array([pressed_points(parts, q, wrench) for q, wrench in zip(r.q, support, strict=True)])
+    source = np.where((r.foot_source == Source.MEASURED) & (t[:, None] > 150), [1, 3], r.foot_source)
+    return replace(
+        r, support_names=names, support_wrench=support, support_wrench_sd=np.where(support != 0.0, 20.0, 0.0),
+        support_point_m=point, foot_source=source, measured=source[:, 1] != Source.ESTIMATED,
+    )  # fmt: skip

@@ -165,7 +165,7 @@ def compared(found: Reconstruction, person: Subject, motion: TrueMotion) -> Erro
     angles = clinical.angles(motion.q)
     moments = clinical.moments(motion.q, motion.tau, angles)
     judged = found.times_s - found.times_s[0] >= SETTLING_S
-    measured = judged & found.valid
+    measured = judged & found.measured
     angle_deg, torque, sd = {}, {}, {}
     for coordinate, joint in FLEXIONS.items():
         pairs = [

@@ -187,7 +187,7 @@ def fault_rows(label: str, capture: Capture, subject: Subject, chosen: str) -> l
 
 
 def _judged(name: str, clean: Reconstruction, found: Reconstruction, fault: FaultyPlate) -> list[Check]:
-    valid = clean.valid & found.valid
+    valid = clean.measured & found.measured
     told = sum("impossible and refused" in warning for warning in summarise(found)["warnings"])
     everywhere = peak_change(clean, found, clean.tracked)
     return [

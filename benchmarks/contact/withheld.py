@@ -1,21 +1,22 @@
 """All plates withheld: what markers and Newton's law tell of the feet's reactions, against the plates.
 
-Four public walks are reconstructed with and without their plates by the same filter. Frames count in which every
+Four public walks are reconstructed with and without their plates by the same filter, causal, with a fixed lag of 60 ms,
+and smoothed. Frames count in which every
 contact is truly measured. The filter's settings for feet without a plate were set on HC032A and the rajagopal walk;
 HC044A and gaitalytics were only looked at. In gaitalytics a foot lands beside the plates from 1.8 s on, which plates do
-not see.
+not see; frames count until then.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks.checks import Check, Context, information
-from benchmarks.contact.shared import BEARS_N, PASSES, REAL_WALKS, read_walk, rms
+from benchmarks.contact.shared import BEARS_N, REAL_WALKS, read_walk, rms
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.io.records import Capture
 from mbkf.io.results import Reconstruction
@@ -23,7 +24,18 @@ from mbkf.io.subject import Subject
 from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
 from mbkf.sensors.contact.records import Contact
 
-TOTAL_PERCENT = {"causal": 9.0, "smoothed": 5.0}
+MODES = {
+    "causal": ReconstructSettings(),
+    "60 ms": ReconstructSettings(lag_s=0.06),
+    "smoothed": ReconstructSettings(smooth=True),
+}
+"""Which later frames a frame knows: none, those of a fixed lag, all."""
+
+MEASURED_UNTIL_S = {"gaitalytics": 1.8}
+"""From when on, s after the first frame, a foot lands beside the plates and is still taken for one in the air: its heel
+marker comes to rest 40 mm above the floor at 1.93 s, while the plates together read 77 % of body weight."""
+
+TOTAL_PERCENT = {"causal": 9.0, "60 ms": 5.5, "smoothed": 5.0}
 """Bounds on the mean over the walks of the total vertical force's RMS, % of body weight."""
 
 WORST_SMOOTHED, STANCE, DOUBLE = 7.5, 8.0, 12.0
@@ -62,39 +74,44 @@ def withheld_rows(context: Context) -> list[Check]:
     """The rows of the table."""
     data = context.require_data()
     found = {name: dict(_both(data, name)) for name in REAL_WALKS}
-    return [check for mode in PASSES for check in _rows(mode, {n: one[mode] for n, one in found.items()})]
+    return [check for mode in MODES for check in _rows(mode, {n: one[mode] for n, one in found.items()})]
 
 
 def _both(data: Path, name: str) -> Iterator[tuple[str, Withheld]]:
     subject, trial = read_walk(data, REAL_WALKS[name])
-    for mode, smooth in PASSES.items():
-        measured = reconstruct(trial, subject, settings=ReconstructSettings(smooth=smooth))
-        yield mode, compared(measured, without_plates(trial, subject, smooth), subject)
+    for mode, settings in MODES.items():
+        measured = reconstruct(trial, subject, settings=settings)
+        found, until_s = without_plates(trial, subject, settings), MEASURED_UNTIL_S.get(name, np.inf)
+        yield mode, compared(measured, found, subject, until_s)
 
 
-def without_plates(trial: Capture, subject: Subject, smooth: bool) -> Reconstruction:
-    """The trial by the dynamic filter, with every plate withheld.
+def without_plates(trial: Capture, subject: Subject, settings: ReconstructSettings) -> Reconstruction:
+    """The trial with every plate withheld.
 
     Args:
         trial: The trial.
         subject: The person.
-        smooth: Whether later frames correct earlier ones.
+        settings: How it is reconstructed otherwise.
     """
     plates = tuple(plate.name for plate in trial.plates)
-    return reconstruct(trial, subject, settings=ReconstructSettings(smooth=smooth, without_plates=plates))
+    return reconstruct(trial, subject, settings=replace(settings, without_plates=plates))
 
 
-def compared(truth: Reconstruction, found: Reconstruction, subject: Subject) -> Withheld:
+def compared(
+    truth: Reconstruction, found: Reconstruction, subject: Subject, until_s: float = np.inf
+) -> Withheld:
     """The errors where every contact is truly measured.
 
     Args:
         truth: With the plates.
         found: Without them.
         subject: The person.
+        until_s: Time after the first frame until which they are.
     """
     weight_n = subject.mass_kg * GRAVITY_M_S2
     assert truth.foot_contact is not None and found.foot_wrench_sd is not None
-    judged = truth.valid & (truth.foot_contact >= 0).all(axis=1) & found.tracked
+    judged = truth.measured & (truth.foot_contact >= 0).all(axis=1) & found.tracked
+    judged &= truth.times_s - truth.times_s[0] < until_s
     vertical = truth.foot_wrench[:, :, 2]
     off = found.foot_wrench[:, :, 2] - vertical
     bears = judged[:, None] & (truth.foot_contact == Contact.MEASURED) & (vertical > BEARS_N)
@@ -120,7 +137,7 @@ def _rows(mode: str, found: dict[str, Withheld]) -> Iterator[Check]:
     mean = float(np.mean([one.total for one in found.values()]))
     yield Check(f"{title}: total vertical, mean of four walks", mean, TOTAL_PERCENT[mode], "<=", "% BW")
     for name, one in found.items():
-        if mode == "causal":
+        if mode != "smoothed":
             yield information(f"{title}, {name}: total vertical", one.total, "% BW")
             yield information(f"{title}, {name}: per foot over stance", one.stance, "% BW")
             yield information(f"{title}, {name}: per foot in double support", one.double, "% BW")

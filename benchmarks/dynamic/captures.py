@@ -176,7 +176,9 @@ def summary_rows(label: str, summary: Summary, kinematic: Summary, bounds: Bound
             "<=",
             "N m",
         ),
-        Check(f"{label}, valid frames", summary["valid_frames"], 0.95 * kinematic["valid_frames"], ">="),
+        Check(
+            f"{label}, measured frames", summary["measured_frames"], 0.95 * kinematic["measured_frames"], ">="
+        ),
     ]
     if bounds.plates_n is not None:
         moved = number(summary["plate_force_change_rms_n"])
@@ -225,7 +227,7 @@ class Withheld:
         r: Correlation over the judged frames.
         rms_n: RMS difference over the judged frames, N.
         rms_everywhere_n: The same over all frames the plate recorded.
-        flagged: Share of the frames with load that the reconstruction flags as not valid.
+        flagged: Share of the frames with load that the reconstruction flags as not measured.
     """
 
     r: float
@@ -237,19 +239,19 @@ class Withheld:
 def withheld_left(person: Person, method: Method) -> Withheld:
     """Withholds the plate under the left foot and estimates its vertical force.
 
-    Judged are the frames in which the plates together carry the person (valid with all plates): before and after, a
+    Judged are the frames in which the plates together carry the person (measured with all plates): before and after, a
     foot stands beside the plates and there is nothing to compare with.
     """
     name = plate_under(person, LEFT)
     plate = next(p for p in person.capture.plates if p.name == name)
-    valid = KINEMATIC.run(person.capture, person.subject).valid
+    judged = KINEMATIC.run(person.capture, person.subject).measured
     found = method.run(person.capture, person.subject, without_plates=(name,))
     measured = average_over_frames(plate, found.times_s, found.rate_hz).force_n[:, 2]
-    return compare_withheld(found.foot_wrench[:, LEFT, 2], measured, valid, found.valid)
+    return compare_withheld(found.foot_wrench[:, LEFT, 2], measured, judged, found.measured)
 
 
 def compare_withheld(
-    estimated_n: Array, measured_n: Array, judged: BoolArray, still_valid: BoolArray
+    estimated_n: Array, measured_n: Array, judged: BoolArray, still_measured: BoolArray
 ) -> Withheld:
     """Compares two vertical forces; a force that is not estimated counts as 0 N.
 
@@ -257,7 +259,7 @@ def compare_withheld(
         estimated_n: (T,) estimated force, N.
         measured_n: (T,) measured force, N.
         judged: (T,) frames that are compared.
-        still_valid: (T,) frames whose estimate is stated to be valid.
+        still_measured: (T,) frames that are stated to be measured.
     """
     estimate = np.nan_to_num(estimated_n)
     error = estimate - measured_n
@@ -267,7 +269,7 @@ def compare_withheld(
         correlation(estimate[known], measured_n[known]),
         rms(error[known]),
         rms(error[np.isfinite(measured_n)]),
-        float((~still_valid[loaded]).mean()) if loaded.any() else float("nan"),
+        float((~still_measured[loaded]).mean()) if loaded.any() else float("nan"),
     )
 
 

@@ -119,7 +119,7 @@ def _reactions(followed: Followed) -> Figure:
     figure, made = axes(len(SIDES), height=1.9)
     truth = followed.trial.truth
     for foot, (one, side) in enumerate(zip(made, SIDES, strict=True)):
-        _shaded(one, truth.times_s, ~followed.runs[FCDI].valid)
+        _shaded(one, truth.times_s, ~followed.runs[FCDI].measured)
         for name, run in followed.runs.items():
             one.plot(run.times_s, run.foot_wrench[:, foot, 2], color=COLOURS[name], lw=0.9, label=name)
         one.plot(truth.times_s, truth.foot_wrench[:, foot, 2], color=TRUTH, lw=2.0, label="truth", zorder=1)
@@ -204,7 +204,7 @@ def _knee_error(one: Axes, followed: Followed) -> None:
 def _residual(followed: Followed) -> Figure:
     figure, (one,) = axes(height=2.8)
     runs = followed.runs
-    _shaded(one, followed.trial.truth.times_s, ~runs[FCDI].valid)
+    _shaded(one, followed.trial.truth.times_s, ~runs[FCDI].measured)
     for name, run in runs.items():
         size = np.linalg.norm(run.residual_force_n, axis=1)
         one.semilogy(run.times_s, np.maximum(size, 1e-2), color=COLOURS[name], lw=0.9, label=name)

@@ -116,7 +116,7 @@ def _scored(
         1e3 * lags[1],
         noise((run.v - reference.v)[whole, legs], judged[whole], run.rate_hz),
         prediction_residual_n(model, run, fcdi.foot_wrench),
-        rms(np.linalg.norm(run.residual_force_n[run.valid], axis=1)),
+        rms(np.linalg.norm(run.residual_force_n[run.measured], axis=1)),
         innovation(run, judged),
         int((~run.tracked).sum()),
     )

@@ -109,7 +109,7 @@ def score(trial: Trial, found: Reconstruction, measured_wrench: Array) -> Scores
         velocity_noise_rad_s=noise(velocity[:, legs], judged, found.rate_hz),
         torque_noise_nm=noise(torque[:, legs], judged, found.rate_hz),
         residual_before_n=before,
-        residual_n=rms(np.linalg.norm(found.residual_force_n[found.valid], axis=1)),
+        residual_n=rms(np.linalg.norm(found.residual_force_n[found.measured], axis=1)),
         residual_everywhere_n=rms(np.linalg.norm(found.residual_force_n[judged], axis=1)),
         nis=innovation(found, judged),
         **_knee(trial, found, model, posture, torque),
@@ -169,7 +169,7 @@ def prediction_residual_n(model: Body, found: Reconstruction, measured_wrench: A
     """
     balance, dt = NewtonEuler(model), 1.0 / found.rate_hz
     missing = []
-    for t in np.flatnonzero(found.valid[1:] & found.tracked[:-1]):
+    for t in np.flatnonzero(found.measured[1:] & found.tracked[:-1]):
         q, v, a = found.q[t], found.v[t], found.a[t]
         if not (np.isfinite(q).all() and np.isfinite(a).all()):
             continue

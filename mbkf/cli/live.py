@@ -30,11 +30,12 @@ examples:
   mbkf live --from lsl --mass 63.6 --out result                     (stand still for a second, then move)
   mbkf live --from natnet --server 192.168.1.10 --local 192.168.1.20 --subject subject.toml --view --out result
   mbkf live --from file:walk.c3d --subject subject.toml --seconds 5 --out result
+  mbkf live --from lsl --subject subject.toml --lag 60 --out result       (each frame 60 ms later, and more exact)
   mbkf live --recover result
 
 Ctrl-C or --seconds ends it. Then DIR holds what 'mbkf reconstruct' writes, and live.json: frames received and lost,
-latencies from arrival to result, and what happened. Marker positions are those of the subject file. A stream that
-breaks off is waited for and taken up again.
+latencies from arrival to result (a lag not counted), and what happened. Marker positions are those of the subject file.
+A stream that breaks off is waited for and taken up again.
 
 Without --subject a person who stands still for a second is scaled from those frames, as 'mbkf scale' would from a
 static trial, and tracked from then on; DIR/subject.toml keeps the person. Points without names need --protocol. Without
@@ -45,6 +46,8 @@ the page shows these prompts to the person, and then the measurement.
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
+    from mbkf.cli.options import add_lag_option
+
     parser = subparsers.add_parser(
         "live",
         help="tracks a person through a stream of markers and plates",
@@ -69,6 +72,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("--filter", choices=("kinematic", "torque", "dynamic"), help="by default dynamic")
     parser.add_argument("--preset", metavar="NAME|FILE", help="settings, as for 'mbkf reconstruct'")
+    add_lag_option(parser)
     parser.add_argument("--view", action="store_true", help="show it in the browser")
     parser.add_argument(
         "--seconds", type=float, metavar="S", help="end after this time, from the first frame"
@@ -119,6 +123,7 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         MbkfError: An input is unusable.
     """
+    from mbkf.cli.options import lag_seconds
     from mbkf.cli.stopping import stopped_by_signal
     from mbkf.errors import InvalidInput
     from mbkf.io.atomic import check_folder
@@ -136,7 +141,9 @@ def run(args: argparse.Namespace) -> int:
     _check_numbers(args)
     person = _person(args)
     folder = check_folder(args.out)
-    settings = ReconstructSettings(filter=args.filter or "dynamic", correct_markers=False)
+    settings = ReconstructSettings(
+        filter=args.filter or "dynamic", lag_s=lag_seconds(args), correct_markers=False
+    )
     if args.preset is not None:
         settings = with_preset(settings, args.preset, args.filter)
     source, name = _source(args), args.source.partition(":")[0]
@@ -324,9 +331,10 @@ def _told(outcome: LiveOutcome, folder: Path) -> int:
     if outcome.summary is not None:
         print_summary(outcome.summary, folder)
     report = outcome.report
+    lag = f" besides a lag of {_ms(report['lag_ms'])} ms" if report["lag_ms"] else ""
     print(
         f"{report['frames_in']} frames came, {report['frames_lost']} were lost; latency median "
-        f"{_ms(report['latency_ms_median'])}, 99 % {_ms(report['latency_ms_p99'])} ms; {report['ended_by']}"
+        f"{_ms(report['latency_ms_median'])}, 99 % {_ms(report['latency_ms_p99'])} ms{lag}; {report['ended_by']}"
     )
     if outcome.problem is not None:
         where = f"; its log is kept, 'mbkf live --recover {folder}' makes them" if report["log"] else ""

@@ -45,6 +45,27 @@ def add_axes_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--unit", metavar="UNIT", help="length unit of the markers: mm, cm or m")
 
 
+def add_lag_option(parser: argparse._ActionsContainer) -> None:
+    """``--lag``, for commands that follow a person frame by frame."""
+    parser.add_argument(
+        "--lag",
+        type=float,
+        default=0.0,
+        metavar="MS",
+        help="give each frame so many ms later, with what the readings until then tell of it (try 60)",
+    )
+
+
+def lag_seconds(args: argparse.Namespace) -> float:
+    """What :func:`add_lag_option` was given, in s.
+
+    Raises:
+        InvalidInput: It is not a time.
+    """
+    check_positive("--lag", args.lag, or_zero=True)
+    return float(args.lag) / 1e3
+
+
 def check_positive(option: str, value: float, or_zero: bool = False) -> None:
     """Refuses a value that is not a positive number.
 

@@ -25,7 +25,7 @@ writes summary.json, motion.h5, angles.mot, angles_lab.mot, torques.sto, reactio
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
-    from mbkf.cli.options import CAPTURE_FILES, FORCE_FILES, add_axes_options
+    from mbkf.cli.options import CAPTURE_FILES, FORCE_FILES, add_axes_options, add_lag_option
 
     parser = subparsers.add_parser(
         "reconstruct",
@@ -48,9 +48,11 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="NAME|FILE",
         help="settings that 'mbkf tune' found, or FD, FDMC, FD-literal, FDMC-literal for the torque filter",
     )
-    parser.add_argument(
+    later = parser.add_mutually_exclusive_group()
+    later.add_argument(
         "--smooth", action="store_true", help="let later frames correct earlier ones (not for live use)"
     )
+    add_lag_option(later)
     parser.add_argument(
         "--hide",
         metavar="A,B@T0:T1",
@@ -98,7 +100,7 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         MbkfError: An input is unusable.
     """
-    from mbkf.cli.options import axes_options
+    from mbkf.cli.options import axes_options, lag_seconds
     from mbkf.cli.progress import stages
     from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
@@ -117,6 +119,7 @@ def run(args: argparse.Namespace) -> int:
     settings = ReconstructSettings(
         filter=args.filter or "dynamic",
         smooth=args.smooth,
+        lag_s=lag_seconds(args),
         correct_markers=not args.keep_markers,
         other_contacts=not args.feet_only,
         hide=hide,
@@ -175,12 +178,14 @@ def print_summary(summary: Summary, folder: Path) -> None:
     from rich.console import Console
     from rich.table import Table
 
+    from mbkf.io.results import LAG_KEY
     from mbkf.pipelines.coverage import listed
 
     console = Console(highlight=False, markup=False)
-    table = Table(
-        title=f"{summary['trial']} ({summary['filter']} filter)", title_justify="left", show_header=False
-    )
+    lag = summary["settings"].get(LAG_KEY)
+    later = f", {lag:g} ms lag" if isinstance(lag, float) and lag else ""
+    title = f"{summary['trial']} ({summary['filter']} filter{later})"
+    table = Table(title=title, title_justify="left", show_header=False)
     table.add_column()
     table.add_column(justify="right")
     rows = [
@@ -191,7 +196,8 @@ def print_summary(summary: Summary, folder: Path) -> None:
             "pelvis angles",
             f"{summary['progression']['kind']}, {summary['progression']['heading_deg']:.0f}° from the x axis",
         ),
-        ("frames with all reactions measured", str(summary["valid_frames"])),
+        ("frames with all loads known", str(summary["valid_frames"])),
+        ("frames with all loads measured", str(summary["measured_frames"])),
         (
             "residual at the pelvis",
             _pair(summary["residual_force_rms_n"], summary["residual_moment_rms_nm"], "N, N m"),

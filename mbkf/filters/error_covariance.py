@@ -8,7 +8,11 @@ keep up; gains depend on their ratio, but P on their size. So P is not what the 
 
 with C the covariance of a pose fitted to one frame whose markers err as much as the innovations show; a sine of
 amplitude 1 has q, v and a of size 1, ω and −ω², the first and the last in opposition. Joints that nothing observes owe
-their spread to neither, and wrenches theirs to plates: they keep what P states.
+their spread to neither, and wrenches theirs to plates: they keep what P states. The wrench of a foot that no plate
+reads follows from the accelerations by Newton's law, and errs as they do. Of two such feet only the sum does; how they
+share it is known by where they stand and how they push off, which errs alike for a whole double support:
+
+    (c² − 1) κ [D, −D; −D, D] is added,  D = covariance of half the difference of both wrenches in P
 """
 
 from __future__ import annotations
@@ -30,10 +34,12 @@ class ErrorSettings:
     Attributes:
         new_share: Share κ of the marker noise that is new in every frame.
         skin_rate_rad_s: How fast the rest changes, ω.
+        sharing_scale: Factor c on the spread of how two feet share a load that no plate reads.
     """
 
     new_share: float = 0.035
     skin_rate_rad_s: float = 4.0
+    sharing_scale: float = 2.3
 
 
 @dataclass(frozen=True)
@@ -47,6 +53,8 @@ class ErrorCovariance:
         skin: Variance of the markers over what the filter takes for it.
         new: Share κ of what the filter takes for it that is new in every frame.
         rate_rad_s: ω.
+        free: Feet whose wrenches follow from Newton's law alone, 0 right and 1 left.
+        sharing: Factor c where both do.
     """
 
     P: Array
@@ -55,6 +63,8 @@ class ErrorCovariance:
     skin: float
     new: float
     rate_rad_s: float
+    free: tuple[int, ...] = ()
+    sharing: float = 1.0
 
     @cached_property
     def size(self) -> Array:
@@ -62,7 +72,20 @@ class ErrorCovariance:
         nv, size = len(self.information), np.ones(len(self.P))
         for first in (0, nv, 2 * nv):
             size[first + self.seen] = self.new**0.5
+        for foot in self.free:
+            size[3 * nv + 6 * foot : 3 * nv + 6 * foot + 6] = self.new**0.5
         return size
+
+    @cached_property
+    def _difference(self) -> Array | None:
+        """(6, 6) what is added to both feet's wrenches, and taken from between them; None for one foot or none."""
+        if len(self.free) < 2 or self.sharing == 1.0:
+            return None
+        first = 3 * len(self.information)
+        right, left = slice(first, first + 6), slice(first + 6, first + 12)
+        between = self.P[right, left]
+        half = 0.25 * (self.P[right, right] + self.P[left, left] - between - between.T)
+        return np.asarray((self.sharing**2 - 1.0) * self.new * half)
 
     @cached_property
     def _root(self) -> Array:
@@ -128,7 +151,17 @@ class ErrorCovariance:
         repeated = (parts[:, self.seen] if len(self.seen) < nv else parts) @ self._root.T
         squared = np.einsum("ij,ij->i", repeated, repeated)
         variance += self.skin * (squared[: len(T)] + squared[len(T) :])
+        if self._difference is not None and n == 3 * nv + 12:
+            apart = T[:, 3 * nv : 3 * nv + 6] - T[:, 3 * nv + 6 :]
+            variance += np.einsum("ij,ij->i", apart @ self._difference, apart)
         return variance
+
+    @property
+    def wrench_variance(self) -> Array:
+        """(12,) diagonal of Σ of both feet's wrenches."""
+        mine = slice(3 * len(self.information), 3 * len(self.information) + 12)
+        found: Array = np.diagonal(self.P)[mine] * self.size[mine] ** 2
+        return found if self._difference is None else found + np.tile(np.diagonal(self._difference), 2)
 
     def covariance(self) -> Array:
         """(N, N) Σ."""
@@ -138,4 +171,7 @@ class ErrorCovariance:
         for first, second, sign in ((0, 0, 1.0), (1, 1, 1.0), (2, 2, 1.0), (0, 2, -1.0), (2, 0, -1.0)):
             own = np.ix_(first * nv + self.seen, second * nv + self.seen)
             whole[own] += sign * rates[first] * rates[second] * C
+        if self._difference is not None:
+            wrenches = slice(3 * nv, 3 * nv + 12)
+            whole[wrenches, wrenches] += np.kron([[1.0, -1.0], [-1.0, 1.0]], self._difference)
         return whole

@@ -12,6 +12,8 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.filters.spread import Spread
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
+from mbkf.numerics.passage import LinearStep
+from mbkf.numerics.smoothing import BackwardPass
 from mbkf.sensors.block import NO_READINGS, Frame
 from mbkf.sensors.marker_prediction import MarkerPrediction
 
@@ -164,6 +166,25 @@ class TrackingFilter(Protocol):
             recording: The readings.
             first: Frame of the first estimate.
             wanted: How many to return.
+        """
+
+    def linear_step(self, before: Posterior, estimate: Posterior) -> LinearStep:
+        """The step into a frame, linearised as the filter did.
+
+        Args:
+            before: Estimate of the frame before.
+            estimate: The frame's own, not a start.
+        """
+
+    def corrected(
+        self, estimate: Posterior, later: BackwardPass | None, before: Posterior | None
+    ) -> Posterior:
+        """An estimate in the light of later frames.
+
+        Args:
+            estimate: The filter's own.
+            later: What they tell; None where there are none.
+            before: Corrected estimate of the frame before, None at a start; for differences over time.
         """
 
 

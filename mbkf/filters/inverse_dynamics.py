@@ -1,4 +1,4 @@
-"""Joint torques after the kinematic filter: the plates' wrenches through Newton–Euler (thesis: FCDI)."""
+"""Joint torques of a followed trial: the wrenches on its body through Newton–Euler (with the plates', thesis: FCDI)."""
 
 from __future__ import annotations
 
@@ -40,18 +40,38 @@ def residual_in_world(model: Body, q: Array, tau: Array) -> tuple[Array, Array]:
     return R @ tau[root][:3], R @ tau[root][3:]
 
 
-def inverse_dynamics(model: Body, track: Track, foot_wrench: Array) -> InverseDynamics:
+def support_torques(model: Body, q: Array, support: Array) -> Array:
+    """(nv,) Σ J_pᵀ w_p: what wrenches on parts of the body besides the feet add to the generalised forces.
+
+    Args:
+        model: The body.
+        q: (nq,) configuration.
+        support: (B, 6) wrenches about the world's origin on the parts ``description.bearings``; a part that is NaN
+            bears nothing.
+    """
+    parts = model.description.bearings.values()
+    moves = model.supports[[model.joint(part.segment).joint_id for part in parts]]
+    return ((np.nan_to_num(support) @ model.spatial_jacobian(q)) * moves).sum(axis=0)
+
+
+def inverse_dynamics(
+    model: Body, track: Track, foot_wrench: Array, support: Array | None = None
+) -> InverseDynamics:
     """Generalised forces and residual of every followed frame.
 
     Args:
         model: The body.
         track: The followed trial.
         foot_wrench: (T, 2, 6) wrenches p on right and left foot: force N and moment N m about the world's origin.
+        support: (T, B, 6) the same on the parts that may bear load besides the feet (``description.bearings``), 0 or
+            NaN on one that bears none; None where the feet alone bear.
     """
     a, balance = track.a, NewtonEuler(model)
     tau = np.full_like(a, np.nan)
     force, moment = np.full((len(a), 3), np.nan), np.full((len(a), 3), np.nan)
     for t in np.flatnonzero(~np.isnan(a).any(axis=1)):
         tau[t] = balance.tau(track.q[t], track.v[t], a[t], foot_wrench[t].ravel())
+        if support is not None and np.nan_to_num(support[t]).any():
+            tau[t] -= support_torques(model, track.q[t], support[t])
         force[t], moment[t] = residual_in_world(model, track.q[t], tau[t])
     return InverseDynamics(tau, force, moment)

@@ -12,6 +12,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.errors import NotObservable
 from mbkf.filters.estimate import Posterior, Recording, TrackingFilter
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
+from mbkf.filters.lag import FixedLag
 from mbkf.filters.record import UNASKED, FrameRecorder, blank
 from mbkf.filters.tracking_loop import followed
 
@@ -41,7 +42,7 @@ class Track:
         readings: (T,) numbers in it.
         step_seconds: (T,) computing time of each step.
         starts: Frames at which the filter was started or restarted.
-        smoothed: Whether later frames were used.
+        smoothed: Whether it was smoothed, with all later frames that matter.
         covariance: (T, 2 nv, 2 nv) full covariances, or None.
     """
 
@@ -75,6 +76,7 @@ def track(
     recording: Recording,
     *,
     smoothing: SmoothingSettings | None = None,
+    lag_s: float = 0.0,
     keep_covariance: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> Track:
@@ -84,6 +86,7 @@ def track(
         filter: The filter.
         recording: What the instruments read.
         smoothing: How to smooth; None for the filter alone.
+        lag_s: Without smoothing, how far later readings may correct a frame.
         keep_covariance: Whether to keep the full covariance of (q, v) of every frame.
         progress: Called with frames done and frames in all.
 
@@ -102,12 +105,14 @@ def track(
             if covariance is not None:
                 covariance[t] = filter.covariance(posterior)
 
-    smoother = None if smoothing is None else FixedLagSmoother(filter, recording, smoothing)
+    later: FixedLag | FixedLagSmoother = FixedLag(filter, lag_s)
+    if smoothing is not None:
+        later = FixedLagSmoother(filter, recording, smoothing)
     for t, fresh, seconds in followed(filter, recording):
         row = rows[t : t + 1]
         recorder.step(row, fresh, seconds)
         recorder.innovation(row, fresh)
-        keep([(t, fresh)] if smoother is None else smoother.push(t, fresh))
+        keep(later.push(t, fresh))
         if progress is not None and (t % 20 == 0 or t == frames - 1):
             progress(t + 1, frames)
     if not rows["started"].any():
@@ -115,9 +120,8 @@ def track(
             "in no frame do the markers fit the scaled body; is this the subject's protocol, "
             "and are unit and axes right (--unit, --up)?"
         )
-    if smoother is not None:
-        keep(smoother.finish())
-    return track_of(rows, smoothed=smoother is not None, covariance=covariance)
+    keep(later.finish())
+    return track_of(rows, smoothed=smoothing is not None, covariance=covariance)
 
 
 def track_of(rows: NDArray, smoothed: bool = False, covariance: Array | None = None) -> Track:
@@ -125,7 +129,7 @@ def track_of(rows: NDArray, smoothed: bool = False, covariance: Array | None = N
 
     Args:
         rows: (T,) records of its frames (:mod:`mbkf.filters.record`).
-        smoothed: Whether later frames were used.
+        smoothed: Whether it was smoothed.
         covariance: (T, 2 nv, 2 nv) full covariances, where they were kept.
     """
     asked = rows["footing"][:, 0] != UNASKED

@@ -8,7 +8,13 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.errors import ShapeError, UnknownName
+from mbkf.io.contacts import FEET, ContactInterval, Loads, Source, bearing
 from mbkf.io.subject import Subject
+
+NAMES = (
+    "dof_names", "coordinate_names", "marker_names", "unobserved_dofs", "warnings", "support_names",
+)  # fmt: skip
+"""Fields that are lists of names or remarks."""
 
 SHAPES: dict[str, str] = {
     "times_s": "T", "q": "T nq", "v": "T nv", "a": "T nv", "tau": "T nv",
@@ -17,17 +23,21 @@ SHAPES: dict[str, str] = {
     "angles_sd": "T A", "angle_rates_sd": "T A", "moments_sd": "T A", "singular": "T A",
     "measured_m": "T M 3", "predicted_m": "T M 3", "hidden": "T M", "rejected": "T M",
     "foot_wrench": "T 2 6", "foot_cop_m": "T 2 3", "foot_free_moment_nm": "T 2",
-    "residual_force_n": "T 3", "residual_moment_nm": "T 3", "tracked": "T", "valid": "T",
+    "residual_force_n": "T 3", "residual_moment_nm": "T 3", "tracked": "T", "measured": "T", "valid": "T",
     "nis": "T", "nis_readings": "T", "step_seconds": "T", "plate_change": "T P 6",
     "foot_wrench_sd": "T 2 6", "foot_contact": "T 2", "covariance": "T 2nv 2nv", "plate_corners_m": "P 4 3",
-    "heading_rad": "T", "angles_lab": "T A",
+    "heading_rad": "T", "angles_lab": "T A", "foot_source": "T 2",
+    "support_wrench": "T B 6", "support_wrench_sd": "T B 6", "support_point_m": "T B 3",
 }  # fmt: skip
-"""Dimensions of every array: T frames, nv dofs, A coordinates, M markers, P plates."""
+"""Dimensions of every array: T frames, nv dofs, A coordinates, M markers, P plates, B parts that may bear load."""
 
-DTYPES: dict[str, type] = {name: np.bool_ for name in ("singular", "hidden", "rejected", "tracked", "valid")}
-DTYPES["nis_readings"] = np.int64
-DTYPES["foot_contact"] = np.int64
+_FLAGS = ("singular", "hidden", "rejected", "tracked", "valid", "measured")
+DTYPES: dict[str, type] = {name: np.bool_ for name in _FLAGS}
+DTYPES |= {name: np.int64 for name in ("nis_readings", "foot_contact", "foot_source")}
 """Arrays that are not floating-point."""
+
+LAG_KEY = "lag_ms"
+"""The fixed lag among the settings of a result."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,7 +48,7 @@ class Reconstruction:
         trial: Name of the trial.
         protocol: Marker protocol.
         filter: "kinematic", "torque" or "dynamic".
-        smoothed: Whether later frames were used, too.
+        smoothed: Whether all later frames that matter were used, too; see ``lag_ms`` for those of a fixed lag.
         version: Version of mbkf.
         subject: The scaled person.
         rate_hz: Frame rate.
@@ -67,7 +77,18 @@ class Reconstruction:
         residual_force_n, residual_moment_nm: (T, 3) residual at the pelvis from measured plates, world axes,
             moment about the pelvis's origin.
         tracked: (T,) enough markers to follow the body.
-        valid: (T,) every loaded foot stands on a measured plate.
+        measured: (T,) every contact that bears load stands on a measured plate, of its own or shared: frames in which
+            the residual from measured plates means something.
+        valid: (T,) every contact that bears load is measured, or estimated so that the torques it loads are known well
+            enough (:mod:`mbkf.pipelines.results.validity`).
+        foot_source: (T, 2) how the wrench of right and left foot is known (:class:`mbkf.io.contacts.Source`): 0 no
+            load, 1 measured, 2 its share of one plate under both feet, 3 estimated.
+        support_names: (B,) parts that may bear load besides the feet, e.g. "pelvis", "right_hand"; empty where the
+            filter does not ask.
+        support_wrench: (T, B, 6) estimated wrench on each: force N, moment N m about the world's origin; 0 where it
+            bears nothing.
+        support_wrench_sd: (T, B, 6) standard deviations.
+        support_point_m: (T, B, 3) where the force acts on the part's surface, NaN where it bears nothing.
         unobserved_dofs: Names of dofs that no marker of the capture moves with.
         nis: (T,) normalised innovation squared.
         nis_readings: (T,) number of scalar readings in it.
@@ -128,7 +149,13 @@ class Reconstruction:
     residual_force_n: Array
     residual_moment_nm: Array
     tracked: BoolArray
+    measured: BoolArray
     valid: BoolArray
+    foot_source: Array
+    support_names: tuple[str, ...]
+    support_wrench: Array
+    support_wrench_sd: Array
+    support_point_m: Array
     unobserved_dofs: tuple[str, ...]
     nis: Array
     nis_readings: Array
@@ -150,9 +177,10 @@ class Reconstruction:
     names_exchanged: tuple[tuple[str, str, int], ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("dof_names", "coordinate_names", "marker_names", "unobserved_dofs", "warnings"):
+        for name in NAMES:
             object.__setattr__(self, name, tuple(getattr(self, name)))
         sizes = {
+            "B": len(self.support_names),
             "T": np.shape(self.times_s)[0],
             "nv": len(self.dof_names),
             "2nv": 2 * len(self.dof_names),
@@ -179,9 +207,36 @@ class Reconstruction:
         return len(self.times_s)
 
     @property
+    def lag_ms(self) -> float:
+        """How far later readings could correct a frame, ms; 0 without a fixed lag."""
+        lag = self.settings.get(LAG_KEY, 0.0)
+        return float(lag) if isinstance(lag, int | float) else 0.0
+
+    @property
     def present(self) -> BoolArray:
         """(T, M) markers that were seen and not taken away on purpose."""
         return ~np.isnan(self.measured_m).any(axis=2) & ~self.hidden
+
+    @property
+    def loads(self) -> Loads:
+        """The loads on the body: on the feet, then on the parts ``support_names``; none where it is not tracked."""
+        feet_sd = (
+            np.full_like(self.foot_wrench, np.nan) if self.foot_wrench_sd is None else self.foot_wrench_sd
+        )
+        parts = np.where(bearing(self.support_wrench), Source.ESTIMATED, Source.NONE)
+        source = np.where(self.tracked[:, None], np.hstack([self.foot_source, parts]), Source.NONE)
+        return Loads(
+            (*FEET, *self.support_names),
+            source,
+            np.concatenate([self.foot_wrench, self.support_wrench], axis=1),
+            np.concatenate([feet_sd, self.support_wrench_sd], axis=1),
+            np.concatenate([self.foot_cop_m, self.support_point_m], axis=1),
+        )
+
+    @property
+    def contacts(self) -> tuple[ContactInterval, ...]:
+        """The stretches in which feet and other parts bore load while the body was tracked, in order of time."""
+        return self.loads.intervals(self.times_s, self.rate_hz)
 
     def angle(self, name: str) -> Array:
         """(T,) a clinical coordinate by its name: rad, m for the pelvis's translations.

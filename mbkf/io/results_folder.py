@@ -35,12 +35,31 @@ class AxesTold(TypedDict):
     source: str
 
 
+class ContactTold(TypedDict):
+    """A stretch of time in which a part of the body bore load.
+
+    Attributes:
+        part: The part, e.g. "right_foot", "pelvis", "left_hand".
+        from_s, to_s: Times of its first and its last frame.
+        peak_n: Largest size of its force, N.
+        sd_n: Mean standard deviation of the force along itself, N; None where not known.
+        how: "measured" by a plate of its own, "shared" (a part of what one plate under both feet reads) or "estimated".
+    """
+
+    part: str
+    from_s: float
+    to_s: float
+    peak_n: float
+    sd_n: float | None
+    how: str
+
+
 class Summary(TypedDict):
     """The contents of summary.json: the key numbers of a reconstruction; None where a number does not apply.
 
     Attributes:
         trial, protocol, filter: Names of capture, protocol and filter.
-        smoothed: Whether later frames were used.
+        smoothed: Whether all later frames that matter were used; a fixed lag stands in ``settings``.
         version: Version of mbkf.
         direction: What the frame of the pelvis's angles follows: "progression", "heading" or "laboratory".
         progression: That frame's kind in words, its heading, and how far it turns.
@@ -54,8 +73,11 @@ class Summary(TypedDict):
         marker_rms_mm, marker_max_mm: Distances of seen markers from the body.
         marker_rms_mm_by_name: The same by marker.
         hidden_marker_rms_mm, hidden_marker_max_mm: Distances of markers hidden on purpose.
-        residual_force_rms_n, residual_moment_rms_nm: Residual at the pelvis in valid frames.
-        valid_frames: Frames in which every loaded foot stands on a measured plate.
+        residual_force_rms_n, residual_moment_rms_nm: Residual at the pelvis in measured frames.
+        valid_frames: Frames in which every contact that bears load is measured, or estimated so that the torques it
+            loads are known well enough (:mod:`mbkf.pipelines.results.validity`).
+        measured_frames: Frames in which plates measure every contact.
+        contacts: Which part of the body bore load from when to when, how much, and how that is known.
         plate_force_change_rms_n, plate_moment_change_rms_nm: Estimated minus measured plate wrenches.
         torque_peak_nm_per_kg, torque_sd_nm: Flexion torques by joint, and their standard deviations.
         nis_per_dof: Normalised innovation squared per reading.
@@ -91,6 +113,8 @@ class Summary(TypedDict):
     residual_force_rms_n: float | None
     residual_moment_rms_nm: float | None
     valid_frames: int
+    measured_frames: int
+    contacts: list[ContactTold]
     plate_force_change_rms_n: float | None
     plate_moment_change_rms_nm: float | None
     torque_peak_nm_per_kg: dict[str, float | None]

@@ -14,6 +14,7 @@ import numpy as np
 from mbkf.conventions import read_only
 from mbkf.errors import FileFormatError, MbkfError
 from mbkf.io.atomic import replacing
+from mbkf.io.contacts import foot_sources
 from mbkf.io.results import ARRAYS, DTYPES, Reconstruction
 from mbkf.io.subject import Subject, SubjectMarker
 
@@ -31,15 +32,20 @@ UNITS = {
     "foot_cop_m": "m", "foot_free_moment_nm": "N m", "residual_force_n": "N", "residual_moment_nm": "N m",
     "step_seconds": "s", "plate_change": "N, N m", "foot_wrench_sd": "N, N m about the world's origin",
     "plate_corners_m": "m", "heading_rad": "rad", "angles_lab": _ANGLE,
+    "support_wrench": "N, N m about the world's origin", "support_wrench_sd": "N, N m about the world's origin",
+    "support_point_m": "m",
 }  # fmt: skip
 """Unit of each array; the others (flags, counts, the innovation statistic) have none and carry "1"."""
 
 _TEXTS = ("trial", "protocol", "filter", "version", "direction", "file_axes", "file_axes_source")
 _NAME_LISTS = {
     "dof_names": "dof_names", "coordinate_names": "coordinate_names", "marker_names": "marker_names",
-    "unobserved_dofs": "held_dofs", "warnings": "warnings",
+    "unobserved_dofs": "held_dofs", "warnings": "warnings", "support_names": "support_names",
 }  # fmt: skip
 """Lists of names and the data sets that hold them."""
+
+_LATER = ("support_names",)
+"""Lists that older files lack."""
 
 _KEYS = {"foot_contact": "footing"}
 """Data sets of arrays that have another name in Python."""
@@ -110,11 +116,16 @@ def read_h5(path: str | Path) -> Reconstruction:
             values["markers_explained"] = float(file.attrs.get("markers_explained", 1.0))
             values["subject"] = _subject(json.loads(file.attrs["subject"]))
             for name, key in _NAME_LISTS.items():
-                values[name] = tuple(file[key].asstr()[:])
+                values[name] = tuple(file[key].asstr()[:]) if key in file or name not in _LATER else ()
             for name in ARRAYS:
                 key = _KEYS.get(name, name)
                 if key in file:
                     values[name] = np.asarray(file[key][()], dtype=DTYPES.get(name, np.float64))
+        if "measured" not in values:  # in older files only feet bear, and only what is measured is valid
+            values["measured"] = values["valid"]
+            values["foot_source"] = foot_sources(values.get("foot_contact"), values["foot_wrench"])
+            none = np.zeros((len(values["valid"]), 0, 6))
+            values |= {"support_wrench": none, "support_wrench_sd": none, "support_point_m": none[..., :3]}
         return Reconstruction(**values)
     except (OSError, KeyError, TypeError, ValueError) as error:
         raise FileFormatError(source, f"damaged or not a reconstruction ({error})") from error

@@ -17,6 +17,7 @@ import numpy as np
 
 from mbkf.conventions import SIDES, Array, BoolArray
 from mbkf.io.axes import rotation_to_world
+from mbkf.io.contacts import Source
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.results import Reconstruction
 from mbkf.io.storage import Table, write_storage
@@ -69,24 +70,34 @@ def torques_table(reconstruction: Reconstruction) -> Table:
 
 
 def reactions_table(reconstruction: Reconstruction) -> Table:
-    """Force, point and moment of the ground on each foot, in OpenSim's axes.
+    """Force, point and moment on each foot and on every other part that ever bears load, in OpenSim's axes.
 
-    The point is the centre of pressure, and while the foot is not loaded the last one (the first one before
-    the foot was ever loaded), so that nothing jumps where OpenSim interpolates. The moment is that about the
-    point, so that force, point and moment together are the wrench exactly.
+    The point is the centre of pressure, and while the part is not loaded the last one (the first one before
+    it was ever loaded), so that nothing jumps where OpenSim interpolates. The moment is that about the
+    point, so that force, point and moment together are the wrench exactly. The header tells the parts in the order of
+    the columns, and which of them are estimated at any time.
     """
     r = reconstruction
     R = rotation_to_world("y")
+    loads = r.loads
+    shown = [k for k in range(len(loads.names)) if k < len(SIDES) or loads.source[:, k].any()]
+    suffixes = [*SIDES, *r.support_names]
     names: list[str] = []
     columns: list[Array] = []
-    for foot, side in enumerate(SIDES):
-        force, moment = r.foot_wrench[:, foot, :3], r.foot_wrench[:, foot, 3:]
-        point = _filled(r.foot_cop_m[:, foot])
+    for k in shown:
+        force, moment = loads.wrench[:, k, :3], loads.wrench[:, k, 3:]
+        point = _filled(loads.point_m[:, k])
         about_point = moment - np.cross(point, force)
         for prefix, vectors in (("force_{}_v", force), ("force_{}_p", point), ("torque_{}_", about_point)):
-            names += [f"ground_{prefix.format(side)}{axis}" for axis in "xyz"]
+            names += [f"ground_{prefix.format(suffixes[k])}{axis}" for axis in "xyz"]
             columns.append(vectors @ R)
-    return _table(r, tuple(names), np.concatenate(columns, axis=1), "Ground reactions")
+    table = _table(r, tuple(names), np.concatenate(columns, axis=1), "Ground reactions")
+    estimated = [loads.names[k] for k in shown if (loads.source[:, k] >= Source.SHARED).any()]
+    said = {
+        "Contacts": ", ".join(loads.names[k] for k in shown),
+        "Estimated": ", ".join(estimated) or "none",
+    }
+    return replace(table, header={**table.header, **said})
 
 
 def reconstructed_markers(reconstruction: Reconstruction) -> MarkerTrajectories:

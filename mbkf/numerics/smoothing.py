@@ -38,6 +38,10 @@ class BackwardPass:
         smoothed = P - P @ self.curvature @ P
         return 0.5 * (smoothed + smoothed.T)
 
+    def corrected(self, P: Array) -> tuple[Array, Array]:
+        """Both of a frame; without curvature its own covariance, which is never smaller than the smoothed one."""
+        return self.step(P), P if self.curvature is None else self.covariance(P)
+
     def through_readings(self, P: Array, information: Array, vector: Array) -> None:
         """From after a frame's readings to before them.
 

@@ -120,7 +120,7 @@ def coordinate_errors(result: Reconstruction, truth: Truth, body: HumanModel) ->
     for name in COORDINATES:
         column = clinical.names.index(name)
         angle = (result.angle(name) - angles[:, column])[result.tracked]
-        moment = (result.moment(name) - moments[:, column])[result.tracked & result.valid]
+        moment = (result.moment(name) - moments[:, column])[result.tracked & result.measured]
         errors.append(
             CoordinateError(
                 name=name,

@@ -17,8 +17,9 @@ from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.settings import flat
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.filters.tracking import Track, track
+from mbkf.io.contacts import bearing
 from mbkf.io.records import Capture, MarkerTrajectories
-from mbkf.io.results import Reconstruction
+from mbkf.io.results import LAG_KEY, Reconstruction
 from mbkf.io.subject import Subject, match_names
 from mbkf.model.clinical import dof_names
 from mbkf.numerics.threads import single_threaded
@@ -28,6 +29,7 @@ from mbkf.pipelines.imu.on_body import ImuOnBody, with_imus
 from mbkf.pipelines.results.clinical import clinical_motion
 from mbkf.pipelines.results.progression import PELVIS_FRAMES, pelvis_frame
 from mbkf.pipelines.results.reactions import reactions
+from mbkf.pipelines.results.validity import torques_known
 from mbkf.pipelines.trial.exchanged import exchange_notes, names_put_right
 from mbkf.pipelines.trial.filters import FILTERS, FilterInputs, standard, tracking_filter
 from mbkf.pipelines.trial.inputs import trial_inputs
@@ -61,6 +63,7 @@ class ReconstructSettings:
             dynamic filter, "dynamic" ours.
         smooth: Whether later frames correct earlier ones.
         smoothing: How far they do.
+        lag_s: Instead of smoothing, the fixed lag: how long a frame waits for readings that correct it; 0 for none.
         kinematic, dynamic, torque: Settings of each filter.
         correct_markers: Whether marker positions are corrected on the trial first (thesis 4.1.1).
         hide: Markers to hide.
@@ -74,6 +77,7 @@ class ReconstructSettings:
     filter: str = "dynamic"
     smooth: bool = False
     smoothing: SmoothingSettings = field(default_factory=SmoothingSettings)
+    lag_s: float = 0.0
     kinematic: KinematicSettings = field(default_factory=KinematicSettings)
     dynamic: DynamicSettings = field(default_factory=DynamicSettings)
     torque: TorqueSettings = field(default_factory=TorqueSettings)
@@ -84,10 +88,25 @@ class ReconstructSettings:
     keep_covariance: bool = False
     other_contacts: bool = True
 
+    def __post_init__(self) -> None:
+        """Refuses a lag that is no time, or beside smoothing.
+
+        Raises:
+            InvalidInput: It is so.
+        """
+        if not 0.0 <= self.lag_s < np.inf:
+            raise InvalidInput(f"a lag of {self.lag_s:g} s is not possible: give a positive time")
+        if self.smooth and self.lag_s > 0.0:
+            raise InvalidInput(
+                "smoothing uses all later frames, so a lag is not possible beside it; choose one"
+            )
+
 
 def recorded(settings: ReconstructSettings) -> dict[str, object]:
-    """The settings as result files hold them; those of the dynamic filter by their leaves' names."""
-    return {**asdict(settings), "dynamic": flat(settings.dynamic)}
+    """The settings as result files hold them: the dynamic filter's by their leaves' names, the lag in ms."""
+    found: dict[str, object] = {**asdict(settings), "dynamic": flat(settings.dynamic)}
+    del found["lag_s"]
+    return {**found, LAG_KEY: round(1e3 * settings.lag_s, 6)}
 
 
 def reconstruct(
@@ -151,6 +170,7 @@ def reconstruct(
             tracking_filter(settings.filter, inputs, [*standard(inputs), *blocks] if blocks else None),
             recording,
             smoothing=settings.smoothing if settings.smooth else None,
+            lag_s=settings.lag_s,
             keep_covariance=settings.keep_covariance,
             progress=None if progress is None else lambda done, total: progress("Filtering", done, total),
         )
@@ -226,60 +246,37 @@ def assemble(
     tau_sd = np.where(np.isnan(tau), np.nan, result.torque_sd)
     frame = pelvis_frame(settings.pelvis, model, result.q, measured.times_s)
     clinical = clinical_motion(model, result, tau, tau_sd, frame)
+    located = result.tracked & _located(result)
+    supports = ground.supports
+    bears = bearing(supports.wrench)
+    known = torques_known(model, clinical.names, clinical.moments_sd, ground.foot_source, bears)
     return Reconstruction(
-        trial=Path(capture.path).stem or "capture",
-        protocol=subject.protocol,
-        filter=settings.filter,
-        smoothed=result.smoothed,
-        version=__version__,
-        subject=subject,
-        rate_hz=measured.rate_hz,
+        trial=Path(capture.path).stem or "capture", protocol=subject.protocol, filter=settings.filter,
+        smoothed=result.smoothed, version=__version__, subject=subject, rate_hz=measured.rate_hz,
         times_s=measured.times_s,
-        dof_names=names,
-        q=result.q,
-        v=result.v,
-        a=result.a,
-        tau=tau,
-        sd_q=result.position_sd,
-        sd_v=result.velocity_sd,
-        sd_tau=tau_sd,
-        coordinate_names=clinical.names,
-        angles=clinical.angles,
-        angle_rates=clinical.rates,
-        moments=clinical.moments,
-        angles_sd=clinical.angles_sd,
-        angle_rates_sd=clinical.rates_sd,
-        moments_sd=clinical.moments_sd,
-        singular=clinical.singular,
-        marker_names=measured.names,
-        measured_m=measured.positions_m,
-        predicted_m=_predicted(inputs.sensor, result, measured, hidden),
-        hidden=hidden,
+        dof_names=names, q=result.q, v=result.v, a=result.a, tau=tau, sd_q=result.position_sd,
+        sd_v=result.velocity_sd, sd_tau=tau_sd,
+        coordinate_names=clinical.names, angles=clinical.angles, angles_lab=clinical.angles_lab,
+        angle_rates=clinical.rates, moments=clinical.moments, angles_sd=clinical.angles_sd,
+        angle_rates_sd=clinical.rates_sd, moments_sd=clinical.moments_sd, singular=clinical.singular,
+        direction=frame.direction, heading_rad=frame.heading_rad,
+        marker_names=measured.names, measured_m=measured.positions_m,
+        predicted_m=_predicted(inputs.sensor, result, measured, hidden), hidden=hidden,
         rejected=result.refused,
-        foot_wrench=ground.wrench,
-        foot_cop_m=ground.centre_of_pressure_m,
-        foot_free_moment_nm=ground.free_moment_nm,
-        residual_force_n=ground.residual_force_n,
-        residual_moment_nm=ground.residual_moment_nm,
-        tracked=result.tracked,
-        valid=ground.valid & result.tracked & _located(result),
-        unobserved_dofs=tuple(name for name, without in zip(names, unobservable, strict=True) if without),
-        nis=result.nis,
-        nis_readings=result.readings,
-        step_seconds=result.step_seconds,
-        warnings=(*capture.notes, *inputs.remarks, *ground.warnings, *_warnings(result, names, unobservable)),
-        settings=recorded(settings),
-        plate_change=ground.plate_change,
-        foot_wrench_sd=ground.wrench_sd,
-        foot_contact=result.contact,
+        foot_wrench=ground.wrench, foot_wrench_sd=ground.wrench_sd, foot_cop_m=ground.centre_of_pressure_m,
+        foot_free_moment_nm=ground.free_moment_nm, foot_contact=result.contact,
+        foot_source=ground.foot_source,
+        support_names=supports.names, support_wrench=supports.wrench,
+        support_wrench_sd=supports.wrench_sd, support_point_m=supports.point_m,
+        residual_force_n=ground.residual_force_n, residual_moment_nm=ground.residual_moment_nm,
+        plate_change=ground.plate_change, plate_corners_m=_corners(capture),
+        tracked=result.tracked, measured=ground.measured & located, valid=ground.accounted & located & known,
+        nis=result.nis, nis_readings=result.readings, step_seconds=result.step_seconds,
         covariance=result.covariance,
-        plate_corners_m=_corners(capture),
-        file_axes=capture.axes,
-        file_axes_source=capture.axes_source.value,
-        direction=frame.direction,
-        heading_rad=frame.heading_rad,
-        angles_lab=clinical.angles_lab,
-    )
+        unobserved_dofs=tuple(name for name, without in zip(names, unobservable, strict=True) if without),
+        warnings=(*capture.notes, *inputs.remarks, *ground.warnings, *_warnings(result, names, unobservable)),
+        settings=recorded(settings), file_axes=capture.axes, file_axes_source=capture.axes_source.value,
+    )  # fmt: skip
 
 
 def _located(result: Track) -> BoolArray:

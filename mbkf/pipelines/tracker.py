@@ -169,7 +169,8 @@ class Tracker:
         self._weight_n = GRAVITY_M_S2 * subject.mass_kg
         with single_threaded():
             self._filter = tracking_filter(settings.filter, live.inputs, blocks)
-        self._live, self._balance = LiveFilter(self._filter), NewtonEuler(self._filter.model)
+        self._live = LiveFilter(self._filter, settings.lag_s)
+        self._balance = NewtonEuler(self._filter.model)
         self._number = 0
         self.answers: list[Estimate] = []
 
@@ -181,7 +182,7 @@ class Tracker:
         imus: Array | None = None,
         readings: Mapping[str, Array] = NO_READINGS,
     ) -> Estimate | None:
-        """The estimate of the next frame.
+        """The estimate of the next frame; with a lag (``settings.lag_s``), of the one so many frames before it.
 
         Args:
             markers_m: (M, 3) marker positions in the world, m, z up; NaN where missing.
@@ -191,7 +192,7 @@ class Tracker:
             readings: Of instruments of one's own, by the name that their block knows.
 
         Returns:
-            None while a start looks ahead, and as long as no start succeeds.
+            None while a start looks ahead or the lag is not over, and as long as no start succeeds.
 
         Raises:
             ShapeError: The arrays do not belong to this tracker's markers or plates.
@@ -210,10 +211,11 @@ class Tracker:
         self._number += 1
         self.answers = [self._estimate(s.number, s.estimate) for s in steps if s.estimate is not None]
         latest = self.answers[-1] if self.answers else None
-        return latest if latest is not None and latest.number == self._number - 1 else None
+        due = self._number - 1 - self._live.lag_frames
+        return latest if latest is not None and latest.number == due else None
 
     def finish(self) -> list[Estimate]:
-        """Estimates of frames that still wait for a start, when no more follow."""
+        """Estimates of frames that still wait for a start or their lag, when no more follow."""
         with single_threaded():
             steps = self._live.finish()
         return [self._estimate(s.number, s.estimate) for s in steps if s.estimate is not None]

@@ -40,6 +40,7 @@ class FootContactSettings:
             weights, and of its lever about the middle of the sole, m, per reading: what keeps two such feet from
             pulling against each other.
         pulling_force_n: How softly an unmeasured foot is kept from pulling at the floor, N.
+        free_push_share: Spread of the share of the load on a foot that pushes off, as part of that share.
         free_shear_share: Spread of an unmeasured foot's shear force about the direction to the pelvis in double
             support, as a share of its vertical force.
         free_sway_m: Further spread of its centre of pressure along the sole where the feet stand side by side, m.
@@ -56,14 +57,22 @@ class FootContactSettings:
     free_force_share: float = 2.0
     free_lever_m: float = 0.3
     pulling_force_n: float = 10.0
+    free_push_share: float = 1.6
     free_shear_share: float = 0.08
     free_sway_m: float = 0.06
     landing_force_n: float = 120.0
     landing_moment_nm: float = 6.0
 
 
+PUSH_LEAST = 0.07
+"""Share that is added to that of a foot that pushes off where its spread is counted."""
+
 TOGETHER = 0.1
 """Weight of the direction of both feet's shear together, over that of their difference, where no plate reads."""
+
+
+BELT_FORCE = 2.0
+"""Force in body weights whose moment about the world's origin changes as a belt takes it along."""
 
 
 class FootDecision(NamedTuple):
@@ -96,7 +105,7 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
             dt_s: Time between frames.
             settings: Noise.
         """
-        self.detector, self.settings, self._weight_n = detector, settings, weight_n
+        self.detector, self.settings, self._weight_n, self._dt_s = detector, settings, weight_n, dt_s
         s = settings
         self._plate = 1.0 / np.repeat([s.plate_force_n, s.plate_moment_nm], 3)
         self._air = 1.0 / np.repeat([s.air_force_n, s.air_moment_nm], 3)
@@ -124,9 +133,13 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         return FootDecision(notes.contact)
 
     def inflate(self, P: Array, decision: FootDecision) -> None:
-        """The wrenches' random walk about the middles of the soles."""
+        """The wrenches' random walk about the middles of the soles, which a belt takes along."""
         shift = _about(-decision.contact.centres_m) * self._walk
         walk = shift @ shift.transpose(0, 2, 1)
+        x, y = decision.contact.floor_m_s
+        if x or y:
+            carried = BELT_FORCE * self._weight_n * self._dt_s * np.array([y, -x])
+            walk[:, 3:5, 3:5] += np.outer(carried, carried)
         for foot in (0, 1):
             mine = slice(self._first + 6 * foot, self._first + 6 * foot + 6)
             own = P[mine, mine]
@@ -232,6 +245,13 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
             rows[mine, mine] = X / sd[:, None]
             values[mine] = -rows[mine, mine] @ w[mine]
             values[6 * foot + 2] += 0.5 * weight / sd[2]
+            share = free.push_share[foot]
+            if share is not None:
+                row = mine.start + 2
+                rows[row] = 0.0
+                rows[row, [mine.start + 2, 8 - mine.start]] = 1.0 - share, -share
+                rows[row] /= s.free_push_share * (share + PUSH_LEAST) * weight
+                values[row] = -rows[row] @ w
         # Of the shear of both feet together Newton's law knows more than the direction to the pelvis.
         for kept in (rows, values):
             right, left = kept[:2].copy(), kept[6:8].copy()

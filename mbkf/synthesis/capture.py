@@ -143,6 +143,7 @@ def _record(
         settings.moment_sd_nm,
         settings.offset_n,
         rng,
+        motion.belts,
     )
     return Capture(
         "",

@@ -68,7 +68,8 @@ class Composition:
             for joint, gains in self.correction.hold.lean.items():
                 if joint != "pelvis":
                     angles[joint] = _leaned(angles[joint], gains, lean)
-        return self.kinematics.pose(self.com(times), angles, self.plan.feet(times), start)
+        hands = None if self.plan.hands is None else self.plan.hands(times)
+        return self.kinematics.pose(self.com(times), angles, self.plan.feet(times), start, hands)
 
     def coordinates(self, times: Array) -> tuple[Array, Array, Array]:
         """q, v and a at times in s."""

@@ -56,12 +56,14 @@ class Load:
         pressure: (T, 2, 2) wanted centre of pressure of right and left foot on its surface, m.
         grounded: (T,) whether anything is on the ground.
         surface_m: (T, 2) height of the surface under right and left foot, m; the floor when None.
+        apex_m: Height at which both feet's forces point, m; that of the centre of mass when None.
     """
 
     share: Array
     pressure: Array
     grounded: np.ndarray
     surface_m: Array | None = None
+    apex_m: float | None = None
 
     @property
     def shares(self) -> Array:
@@ -134,7 +136,7 @@ def split(wrench: Array, load: Load, height: Array) -> tuple[Array, Array]:
     force, moment = wrench[on, :3], wrench[on, 3:]
     shares, surfaces, pressure = load.shares[on], load.surfaces[on], load.pressure[on]
     mean_surface, between = load.mean_surface[on], load.between(height)[on, None]
-    over = height[on] - mean_surface
+    over = (height[on] if load.apex_m is None else load.apex_m) - mean_surface
     lever = np.stack([-moment[:, 1], moment[:, 0]], axis=-1) + mean_surface[:, None] * force[:, :2]
     zero_moment = lever / force[:, 2:]
     own = shares / (shares**2).sum(axis=1)[:, None]

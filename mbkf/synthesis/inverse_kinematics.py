@@ -6,7 +6,7 @@ of mass by iteration. Angles: a joint's rotation is Ry(y) Rx(x) Rz(z); the pelvi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,12 +26,33 @@ STRAIGHT_RAD = np.deg2rad(2.5)
 
 @dataclass(frozen=True)
 class FootPose:
-    """Where a foot is: ``ankle`` (T, 3) m, (T,) ``yaw`` and ``pitch`` (heel up positive) and ``toes`` hinge, rad."""
+    """Where a foot is: ``ankle`` (T, 3) m, (T,) ``yaw`` and ``pitch`` (heel up positive) and ``toes`` hinge, rad.
+
+    The knee bends towards the heading of the foot, or towards a point ``knee`` (3,), m.
+    """
 
     ankle: Dual
     yaw: Dual
     pitch: Dual
     toes: Dual
+    knee: Array | None = None
+
+
+@dataclass(frozen=True)
+class HandPose:
+    """Where a hand is, and with it the whole arm.
+
+    Attributes:
+        wrist: (T, 3) where the wrist is held, m.
+        held: (T,) 1 where it is there, 0 where it hangs from the shoulder.
+        hanging: (3,) shoulder to wrist of the hanging arm in the torso's frame, m.
+        rotation: (T, 3, 3) world rotation of the hand.
+    """
+
+    wrist: Dual
+    held: Dual
+    hanging: Array
+    rotation: Dual
 
 
 @dataclass(frozen=True)
@@ -96,6 +117,7 @@ class InverseKinematics:
         angles: Mapping[str, tuple[Dual, ...]],
         feet: Mapping[str, FootPose],
         start: Dual | None = None,
+        hands: Mapping[str, HandPose] | None = None,
     ) -> Pose:
         """The pose with a given (T, 3) centre of mass, m.
 
@@ -105,35 +127,90 @@ class InverseKinematics:
                 rotations ``{side}_shank`` (x, z; y is not used), rad.
             feet: The feet by side.
             start: Pelvis position from which the iteration starts.
+            hands: The hands whose place is given, by side; of these arms' angles only the forearm's small rotations
+                (x, z) are used.
         """
-        upper = self._upper(angles)
+        hands = hands or {}
+        upper = self._upper(angles, [SIDE_NAMES[side] for side in hands])
         rest = sum((self._weighted(name, *upper) for name in upper[0]), start=Dual.constant(np.zeros(3)))
         upper_mass = sum(self.mass[name] for name in upper[0])
         pelvis = com if start is None else start
         for _ in range(60):
-            legs = self._legs(pelvis, upper[0]["pelvis"], angles, feet)
+            limbs = self._limbs(pelvis, upper, angles, feet, hands)
             below = sum(
-                (self._weighted(name, *legs[:2]) for name in legs[0]), start=Dual.constant(np.zeros(3))
+                (self._weighted(name, *limbs[:2]) for name in limbs[0]), start=Dual.constant(np.zeros(3))
             )
             error = com - (rest + below + pelvis * upper_mass) / self.total_mass
             pelvis = pelvis + error * np.array([1.2, 1.2, 1.1])
             if all(np.abs(e).max() < tol for e, tol in zip(error.orders, (1e-13, 1e-11, 1e-9), strict=True)):
                 break
-        legs = self._legs(pelvis, upper[0]["pelvis"], angles, feet)
-        rotations, origins = {**upper[0], **legs[0]}, {name: p + pelvis for name, p in upper[1].items()}
-        origins.update(legs[1])
+        limbs = self._limbs(pelvis, upper, angles, feet, hands)
+        rotations, origins = {**upper[0], **limbs[0]}, {name: p + pelvis for name, p in upper[1].items()}
+        origins.update(limbs[1])
         hinged = {"neck": angles["neck"][:2], "right_toes": (feet["r"].toes,), "left_toes": (feet["l"].toes,)}
-        return Pose(rotations, origins, hinged, legs[2], legs[3])
+        return Pose(rotations, origins, hinged, limbs[2], limbs[3])
 
     def _weighted(self, name: str, rotations: dict[str, Dual], origins: dict[str, Dual]) -> Dual:
         return (origins[name] + rotations[name].apply(self.com[name])) * self.mass[name]
 
-    def _upper(self, angles: Mapping[str, tuple[Dual, ...]]) -> tuple[dict[str, Dual], dict[str, Dual]]:
-        """World rotations and origins relative to the pelvis's origin, of pelvis, trunk, head and arms."""
+    def _limbs(
+        self,
+        pelvis: Dual,
+        upper: tuple[dict[str, Dual], dict[str, Dual]],
+        angles: Mapping[str, tuple[Dual, ...]],
+        feet: Mapping[str, FootPose],
+        hands: Mapping[str, HandPose],
+    ) -> tuple[dict[str, Dual], dict[str, Dual], Array, Array]:
+        """World rotations and origins of the legs and of arms whose hands' place is given; knees and reach."""
+        rotations, origins, knees, reach = self._legs(pelvis, upper[0]["pelvis"], angles, feet)
+        for side, hand in hands.items():
+            self._arm(
+                SIDE_NAMES[side],
+                pelvis + upper[1]["torso"],
+                upper[0]["torso"],
+                angles,
+                hand,
+                rotations,
+                origins,
+            )
+        return rotations, origins, knees, reach
+
+    def _arm(
+        self,
+        name: str,
+        at: Dual,
+        torso: Dual,
+        angles: Mapping[str, tuple[Dual, ...]],
+        hand: HandPose,
+        rotations: dict[str, Dual],
+        origins: dict[str, Dual],
+    ) -> None:
+        """Adds an arm whose hand's place is given; ``at`` and ``torso`` are the torso's origin and rotation."""
+        shoulder = at + torso.apply(self.offset[f"{name}_upper_arm"])
+        hanging = torso.apply(hand.hanging)
+        span = hanging + (hand.wrist - shoulder - hanging) * hand.held[:, None]
+        lengths = (-self.offset[f"{name}_forearm"][2], -self.offset[f"{name}_hand"][2])
+        across = torso.apply(np.array([0.0, 1.0, 0.0]))
+        upper, lower, _, _ = self._limb(lengths, span, angles[f"{name}_forearm"], across, -1.0)
+        rotations[f"{name}_upper_arm"], origins[f"{name}_upper_arm"] = upper, shoulder
+        rotations[f"{name}_forearm"] = lower
+        origins[f"{name}_forearm"] = shoulder + upper.apply(self.offset[f"{name}_forearm"])
+        rotations[f"{name}_hand"], origins[f"{name}_hand"] = hand.rotation, shoulder + span
+
+    def _upper(
+        self, angles: Mapping[str, tuple[Dual, ...]], without: Sequence[str] = ()
+    ) -> tuple[dict[str, Dual], dict[str, Dual]]:
+        """World rotations and origins relative to the pelvis's origin, of pelvis, trunk, head and arms.
+
+        Args:
+            angles: Joint angles, rad.
+            without: "right", "left": arms left out.
+        """
+        arms = {f"{side}_{part}" for side in without for part in ("upper_arm", "forearm", "hand")}
         rotations = {"pelvis": dual_numbers.euler(angles["pelvis"], order="zyx")}
         origins = {"pelvis": Dual.constant(np.zeros_like(angles["pelvis"][0].value)[:, None] + np.zeros(3))}
         for name, parent in self.parent.items():
-            if parent == "world" or name.endswith(("thigh", "shank", "foot", "toes")):
+            if parent == "world" or name in arms or name.endswith(("thigh", "shank", "foot", "toes")):
                 continue
             if name == "neck":
                 x, y = angles[name][:2]
@@ -157,7 +234,14 @@ class InverseKinematics:
         for side in SIDES:
             name, foot = SIDE_NAMES[side], feet[side]
             hip = pelvis + pelvis_rotation.apply(self.offset[f"{name}_thigh"])
-            thigh, shank, knee, used = self._leg(name, foot.ankle - hip, angles[f"{name}_shank"], foot.yaw)
+            lengths = (-self.offset[f"{name}_shank"][2], -self.offset[f"{name}_foot"][2])
+            if foot.knee is None:
+                across = dual_numbers.stack(
+                    [-dual_numbers.sin(foot.yaw), dual_numbers.cos(foot.yaw), foot.yaw * 0.0]
+                )
+            else:
+                across = dual_numbers.cross(foot.knee - hip, foot.ankle - hip)
+            thigh, shank, knee, used = self._limb(lengths, foot.ankle - hip, angles[f"{name}_shank"], across)
             foot_rotation = dual_numbers.rotation(2, foot.yaw) @ dual_numbers.rotation(1, foot.pitch)
             rotations[f"{name}_thigh"], origins[f"{name}_thigh"] = thigh, hip
             rotations[f"{name}_shank"] = shank
@@ -169,13 +253,26 @@ class InverseKinematics:
             reach = np.maximum(reach, used)
         return rotations, origins, np.stack(knees, axis=-1), reach
 
-    def _leg(
-        self, name: str, span: Dual, knee_xz: tuple[Dual, ...], yaw: Dual
+    def _limb(
+        self,
+        lengths: tuple[float, float],
+        span: Dual,
+        middle_xz: tuple[Dual, ...],
+        across: Dual,
+        bends: float = 1.0,
     ) -> tuple[Dual, Dual, Array, Array]:
-        """Thigh and shank rotations that put the ankle at ``span`` from the hip, knee axis across the foot."""
-        upper, lower = -self.offset[f"{name}_shank"][2], -self.offset[f"{name}_foot"][2]
+        """Rotations of two links that put the far end at ``span`` from the near one, flexion and reach.
+
+        Args:
+            lengths: Of the upper and the lower link, m.
+            span: (T, 3) m.
+            middle_xz: Small rotations of the middle joint about x and z (first and last), rad.
+            across: (T, 3) near which the axis of the middle joint lies.
+            bends: Sign of flexion about that axis: 1 knee, −1 elbow.
+        """
+        upper, lower = lengths
         square = dual_numbers.dot(span, span)
-        cosine = (square - upper**2 - lower**2) / (dual_numbers.cos(knee_xz[0]) * (2 * upper * lower))
+        cosine = (square - upper**2 - lower**2) / (dual_numbers.cos(middle_xz[0]) * (2 * upper * lower))
         limit = float(np.cos(STRAIGHT_RAD))
         cosine = dual_numbers.where(
             (cosine.value < limit) & (cosine.value > -limit),
@@ -183,13 +280,12 @@ class InverseKinematics:
             Dual.constant(np.clip(cosine.value, -limit, limit)),
         )
         flexion = dual_numbers.arccos(cosine)
-        knee = dual_numbers.euler((knee_xz[0], flexion, knee_xz[2]))
-        local = knee.apply(np.array([0.0, 0.0, -lower])) + np.array([0.0, 0.0, -upper])
-        across = dual_numbers.stack([-dual_numbers.sin(yaw), dual_numbers.cos(yaw), yaw * 0.0])
+        middle = dual_numbers.euler((middle_xz[0], flexion * bends, middle_xz[2]))
+        local = middle.apply(np.array([0.0, 0.0, -lower])) + np.array([0.0, 0.0, -upper])
         side_axis = Dual.constant(np.zeros_like(span.value) + np.array([0.0, 1.0, 0.0]))
-        thigh = _frame(span, across) @ _frame(local, side_axis).transposed()
+        first = _frame(span, across) @ _frame(local, side_axis).transposed()
         used = np.sqrt(square.value) / (upper + lower)
-        return thigh, thigh @ knee, flexion.value, used
+        return first, first @ middle, flexion.value, used
 
     def momentum(self, pose: Pose) -> tuple[Dual, Array, Array]:
         """Centre of mass (T, 3), angular momentum about it (T, 3) in N m s and its derivative (T, 3) in N m."""

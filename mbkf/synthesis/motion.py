@@ -45,6 +45,7 @@ class TrueMotion:
             :data:`mbkf.synthesis.support.SEGMENTS`, which also names the segment that takes each wrench.
         support_wrench: (T, S, 6) force N and moment N m about the world origin, world axes, on these segments; 0
             without contact.
+        belts: Belts of a treadmill, each with one plate: 1 under both feet, 2 for one each; 0 on the floor.
     """
 
     name: str
@@ -62,6 +63,7 @@ class TrueMotion:
     flight_s: tuple[float, float] | None = None
     support_names: tuple[str, ...] = ()
     support_wrench: Array = field(default_factory=lambda: np.zeros((0, 0, 6)))
+    belts: int = 0
 
     def __post_init__(self) -> None:
         if not self.support_names:
@@ -123,6 +125,7 @@ def synthesise_motion(
         None if flight is None else (flight.take_off_s, flight.touch_down_s),
         tuple(support.name for support in plan.supports),
         moved.supports[::every],
+        plan.belts,
     )
 
 

@@ -153,6 +153,34 @@ def _sit_to_stand(model: Body, seconds: float, rng: np.random.Generator) -> Moti
     return sit_to_stand_plan(model, seconds, rng)
 
 
+@register_motion("rail", seconds=5.0, stream=10)
+def _rail(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    from mbkf.synthesis.rail import rail_plan
+
+    return rail_plan(model, seconds, rng)
+
+
+@register_motion("kneel", seconds=7.0, stream=11)
+def _kneel(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    from mbkf.synthesis.kneel import kneel_plan
+
+    return kneel_plan(model, seconds, rng)
+
+
+@register_motion("belt_walk", seconds=4.0, stream=12)
+def _belt_walk(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    from mbkf.synthesis.treadmill import treadmill_plan
+
+    return treadmill_plan(model, seconds, rng, belts=1)
+
+
+@register_motion("split_belt_walk", seconds=4.0, stream=13)
+def _split_belt_walk(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    from mbkf.synthesis.treadmill import treadmill_plan
+
+    return treadmill_plan(model, seconds, rng, belts=2)
+
+
 @register_motion("stand", seconds=1.5, stream=2, trial=False)
 def _stand(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
     from mbkf.synthesis.stand import stand_plan

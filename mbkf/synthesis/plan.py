@@ -11,11 +11,14 @@ from mbkf.conventions import Array
 from mbkf.synthesis.contact import LoadPlan
 from mbkf.synthesis.curves import Curve, added, path, ripple
 from mbkf.synthesis.holding import Hold
-from mbkf.synthesis.inverse_kinematics import FootPose
+from mbkf.synthesis.inverse_kinematics import FootPose, HandPose
 from mbkf.synthesis.support import Support
 
 FeetPlan = Callable[[Array], dict[str, FootPose]]
 """(T,) times in s to the feet by side."""
+
+HandsPlan = Callable[[Array], dict[str, HandPose]]
+"""(T,) times in s to the hands whose place is given, by side."""
 
 JOINTS = (
     "torso",
@@ -61,6 +64,9 @@ class MotionPlan:
         flight: The spell in the air, if any.
         supports: What bears besides the feet; not together with a flight.
         hold: What stays in place on its support, if anything.
+        hands: Hands whose place is given, if any.
+        belts: Belts under the feet that move uniformly, the plan standing in the laboratory: 1 for both feet, 2 for one
+            each; 0 on the floor.
     """
 
     start_s: float
@@ -74,6 +80,8 @@ class MotionPlan:
     flight: Flight | None = None
     supports: tuple[Support, ...] = ()
     hold: Hold | None = None
+    hands: HandsPlan | None = None
+    belts: int = 0
 
 
 def degrees(*knots: tuple[float, ...]) -> Curve:

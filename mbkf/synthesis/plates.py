@@ -1,4 +1,4 @@
-"""Force plates under every placement of a foot, and their readings: the truth with noise and offset."""
+"""Force plates under every placement of a foot or under belts, and their readings: the truth with noise and offset."""
 
 from __future__ import annotations
 
@@ -12,6 +12,9 @@ from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N, centre_of_pressure
 
 SIZE_M = (0.50, 0.40)
 GAP_M = 0.005
+BELT_M, BELT_EDGE_M = (1.8, 0.5), 0.1
+"""Usual size of a belt for one foot, and how far at least it reaches beyond the pressures."""
+
 MOST_PLATES = 40
 """A C3D file counts analog channels, six a plate, in one byte; further steps fall on plain floor."""
 
@@ -124,6 +127,49 @@ def _separate(own: Array, p: Placement, other: Array, q: Placement) -> None:
     second[0, axis] = max(second[0, axis], between + GAP_M / 2)
 
 
+def on_spots(wrench: Array, surface_m: Array) -> list[tuple[Array, Array]]:
+    """(S, 6) true wrench about the world origin and (4, 3) corners of the first :data:`MOST_PLATES` plates.
+
+    Args:
+        wrench: (S, 2, 6) true foot wrenches about the world origin.
+        surface_m: (S, 2) heights of the surfaces under the feet.
+    """
+    placed = placements(wrench, surface_m)[:MOST_PLATES]
+    found = []
+    for place, corners in zip(placed, outlines(placed), strict=True):
+        loaded = np.zeros(len(wrench), dtype=bool)
+        for start, end in place.spells:
+            loaded[start:end] = True
+        found.append((np.where(loaded[:, None], wrench[:, place.side], 0.0), corners))
+    return found
+
+
+def on_belts(wrench: Array, surface_m: Array, belts: int) -> list[tuple[Array, Array]]:
+    """(S, 6) true wrench about the world origin and (4, 3) corners of each belt's plate, from right to left.
+
+    Args:
+        wrench: (S, 2, 6) true foot wrenches about the world origin.
+        surface_m: (S, 2) heights of the surfaces under the feet, all the same.
+        belts: 1 for both feet, 2 for one each.
+    """
+    height = float(surface_m[0, 0])
+    low, high = np.full((2, 2), np.inf), np.full((2, 2), -np.inf)
+    for place in placements(wrench, surface_m):
+        low[place.side] = np.minimum(low[place.side], place.low)
+        high[place.side] = np.maximum(high[place.side], place.high)
+    middle = np.array([0.5 * (low[:, 0].min() + high[:, 0].max()), 0.5 * (high[0, 1] + low[1, 1])])
+    half = np.maximum(
+        [0.5 * BELT_M[0], BELT_M[1]], [0.5 * np.ptp([low[:, 0], high[:, 0]]) + BELT_EDGE_M, 0.0]
+    )
+    (x0, y0), (x1, y1) = middle - half, middle + half
+    edges = [(y0, y1)] if belts == 1 else [(y0, middle[1] - GAP_M / 2), (middle[1] + GAP_M / 2, y1)]
+    wholes = [wrench.sum(axis=1)] if belts == 1 else [wrench[:, 0], wrench[:, 1]]
+    return [
+        (whole, np.array([[x, y, height] for x, y in ((x1, a), (x0, a), (x0, b), (x1, b))]))
+        for whole, (a, b) in zip(wholes, edges, strict=True)
+    ]
+
+
 def readings(
     wrench: Array,
     surface_m: Array,
@@ -132,6 +178,7 @@ def readings(
     moment_sd_nm: float,
     offset_n: tuple[float, float],
     rng: np.random.Generator,
+    belts: int = 0,
 ) -> tuple[PlateReadings, ...]:
     """Readings that the first :data:`MOST_PLATES` plates store, offset included.
 
@@ -145,16 +192,13 @@ def readings(
         moment_sd_nm: White noise per moment channel.
         offset_n: Range of the vertical offset.
         rng: Source of noise and offsets.
+        belts: Belts that carry the plates: 1 under both feet, 2 for one each; 0 for a plate on every spot.
     """
-    placed = placements(wrench, surface_m)[:MOST_PLATES]
+    carried = on_belts(wrench, surface_m, belts) if belts else on_spots(wrench, surface_m)
     found = []
-    for number, (place, corners) in enumerate(zip(placed, outlines(placed), strict=True), start=1):
-        origin = corners.mean(axis=0)
-        loaded = np.zeros(len(wrench), dtype=bool)
-        for start, end in place.spells:
-            loaded[start:end] = True
-        force = np.where(loaded[:, None], wrench[:, place.side, :3], 0.0)
-        moment = np.where(loaded[:, None], wrench[:, place.side, 3:], 0.0) - np.cross(origin, force)
+    for number, (whole, corners) in enumerate(carried, start=1):
+        origin, loaded = corners.mean(axis=0), whole[:, 2] > 0
+        force, moment = whole[:, :3], whole[:, 3:] - np.cross(origin, whole[:, :3])
         offset = np.r_[
             rng.uniform(-2, 2, 2), rng.uniform(min(offset_n), max(offset_n)), rng.uniform(-1, 1, 3)
         ]

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from mbkf.conventions import SIDES, Array
 from mbkf.errors import InvalidInput
 from mbkf.model.body import Body
-from mbkf.synthesis.contact import Load, LoadPlan, sole_outline
+from mbkf.synthesis.contact import sole_outline
 from mbkf.synthesis.curves import Curve, added, path, ripple, scaled
 from mbkf.synthesis.dual_numbers import Dual
 from mbkf.synthesis.holding import Hold
 from mbkf.synthesis.inverse_kinematics import InverseKinematics, Pose
 from mbkf.synthesis.plan import MotionPlan, lively, resting
-from mbkf.synthesis.standing import planted, posture, standing_load
+from mbkf.synthesis.standing import planted, posture, shifted, standing_load
 from mbkf.synthesis.support import Support
 
 SEAT_M = (0.43, 0.47)
@@ -96,7 +94,7 @@ def sit_to_stand_plan(model: Body, seconds: float, rng: np.random.Generator) -> 
         angles=lively(posture(resting(), gains, rng), rng, 0.6),
         feet=feet,
         height=added(ripple(0.0, 1.0, 0.0, 0.95 * size), scaled(-0.24 * size, _mirrored(low, off, on))),
-        load=_shifted(standing_load(feet, 0.045 * size, rng), scaled(-HEEL_M * size, leaving)),
+        load=shifted(standing_load(feet, 0.045 * size, rng), scaled(-HEEL_M * size, leaving)),
         straightest_rad=np.deg2rad(10.0),
         supports=(Support("pelvis", lambda times: largest * bears(times).value, point),),
         hold=Hold(
@@ -106,17 +104,6 @@ def sit_to_stand_plan(model: Body, seconds: float, rng: np.random.Generator) -> 
             {"pelvis": (0.0, 0.5, 0.0), "torso": (0.0, 0.5, 0.0), "head": (0.0, -0.5, 0.0)},
         ),
     )
-
-
-def _shifted(load: LoadPlan, forward: Curve) -> LoadPlan:
-    """A load with the pressure under both feet moved ahead, m."""
-
-    def shifted(times: Array) -> Load:
-        planned = load(times)
-        ahead = np.column_stack([forward(times).value, np.zeros(len(times))])
-        return replace(planned, pressure=planned.pressure + ahead[:, None])
-
-    return shifted
 
 
 def _mirrored(curve: Curve, off_s: float, on_s: float) -> Curve:

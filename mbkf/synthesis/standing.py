@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -76,6 +77,17 @@ def standing_load(feet: FeetPlan, forward_m: float, rng: np.random.Generator) ->
         return Load(sway(times).value, pressure, np.ones(len(times), dtype=bool))
 
     return load
+
+
+def shifted(load: LoadPlan, forward: Curve) -> LoadPlan:
+    """A load with the pressure under both feet moved along x, m."""
+
+    def moved(times: Array) -> Load:
+        planned = load(times)
+        ahead = np.column_stack([forward(times).value, np.zeros(len(times))])
+        return replace(planned, pressure=planned.pressure + ahead[:, None])
+
+    return moved
 
 
 def pressed(foot: FootPose, forward_m: Array, left_m: Array | float = 0.0) -> Array:

@@ -60,10 +60,24 @@ def walk_plan(model: Body, seconds: float, rng: np.random.Generator) -> MotionPl
         seconds: Duration of the recorded window, s.
         rng: Source of the differences between persons.
     """
+    return walk_and_speed(model, seconds, rng)[0]
+
+
+def walk_and_speed(
+    model: Body, seconds: float, rng: np.random.Generator, apart_m: float = 0.0
+) -> tuple[MotionPlan, float]:
+    """A walk along +x, in the middle of its course at half time, and its mean speed in m/s.
+
+    Args:
+        model: The body that walks.
+        seconds: Duration of the recorded window, s.
+        rng: Source of the differences between persons.
+        apart_m: How much wider than usual the steps are, m.
+    """
     size = float(model.scale.mean())
     stride_s = rng.uniform(1.02, 1.08) * np.sqrt(size)
     length = rng.uniform(0.60, 0.64) * size
-    steps = _steps(model, seconds, stride_s / 2, length, rng)
+    steps = _steps(model, seconds, stride_s / 2, length, rng, apart_m)
     feet = {SIDES[k]: _Foot(model, k, [s for s in steps if s.side == k], stride_s) for k in (0, 1)}
     phase_s = next(step.strike_s for step in steps if step.side == 0)
     start, end = _middle(steps, 1, stride_s), _middle(steps, len(steps) - 2, stride_s)
@@ -79,7 +93,7 @@ def walk_plan(model: Body, seconds: float, rng: np.random.Generator) -> MotionPl
         -2 * np.pi * step_hz * (phase_s + BOB_LATE * DOUBLE_SUPPORT * stride_s) - np.pi / 2,
         0.97 * size,
     )
-    return MotionPlan(
+    plan = MotionPlan(
         start,
         end,
         lively(_angles(stride_s, phase_s, rng), rng, 0.6),
@@ -89,10 +103,13 @@ def walk_plan(model: Body, seconds: float, rng: np.random.Generator) -> MotionPl
         np.deg2rad(8.5),
         recorded_s=(0.0, seconds),
     )
+    return plan, 2.0 * length / stride_s
 
 
-def _steps(model: Body, seconds: float, step_s: float, length: float, rng: np.random.Generator) -> list[Step]:
-    half_width = 0.055 * float(model.scale.mean()) * rng.uniform(0.85, 1.15)
+def _steps(
+    model: Body, seconds: float, step_s: float, length: float, rng: np.random.Generator, apart_m: float
+) -> list[Step]:
+    half_width = 0.055 * float(model.scale.mean()) * rng.uniform(0.85, 1.15) + 0.5 * apart_m
     yaw = np.deg2rad(rng.uniform(4, 9))
     count = int(np.ceil(seconds / step_s)) + 2 * MARGIN_STEPS
     begin = rng.uniform(-0.5, 0.5) * step_s - MARGIN_STEPS * step_s

@@ -15,6 +15,8 @@ from mbkf.conventions import Array
 
 WIDTH, HEIGHT = 340.0, 150.0
 LEFT, RIGHT, TOP, BOTTOM = 40.0, 8.0, 24.0, 20.0
+BARS_WIDTH, BARS_NAME, BARS_ROW = 1000.0, 60.0, 20.0
+"""Measures of a chart of bars: breadth, room for the names, height of a row."""
 
 
 @dataclass(frozen=True)
@@ -90,6 +92,49 @@ def chart(
         f'<svg class="chart" viewBox="0 0 {width:g} {height:g}" role="img" aria-label="{escape(title)}">'
         f"{hint}{heading}"
         f"{''.join(parts)}</svg>"
+    )
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A stretch of time: its row, its ends in s, and the classes that give it colour and style."""
+
+    row: int
+    start_s: float
+    end_s: float
+    style: str
+
+
+def bar_chart(label: str, names: Sequence[str], bars: Sequence[Bar], span_s: tuple[float, float]) -> str:
+    """Bars over time, a row for each name, as an SVG element.
+
+    Args:
+        label: What the chart shows, for those who do not see it.
+        names: Names of the rows.
+        bars: The bars.
+        span_s: First and last time shown.
+    """
+    first, last = span_s
+    per_second = (BARS_WIDTH - BARS_NAME - 10.0) / (last - first)
+    parts = [
+        f'<text class="name" x="{BARS_NAME - 8:g}" y="{BARS_ROW * row + 13:g}">{escape(name)}</text>'
+        for row, name in enumerate(names)
+    ]
+    parts += [
+        f'<rect class="{bar.style}" x="{BARS_NAME + (bar.start_s - first) * per_second:.1f}" '
+        f'y="{BARS_ROW * bar.row + 4:g}" width="{(bar.end_s - bar.start_s) * per_second:.1f}" '
+        f'height="{BARS_ROW - 8:g}" rx="2"/>'
+        for bar in bars
+    ]
+    found, digits = ticks(first, last, 10)
+    bottom = BARS_ROW * len(names)
+    for value in found:
+        unit = " s" if value == found[-1] else ""
+        x = BARS_NAME + (value - first) * per_second
+        parts.append(f'<text class="x" x="{x:.1f}" y="{bottom + 12:g}">{number(value, digits)}{unit}</text>')
+    return (
+        f'<svg class="feet" viewBox="0 0 {BARS_WIDTH:g} {bottom + 16:g}" role="img" '
+        f'aria-label="{escape(label)}">{"".join(parts)}</svg>'
     )
 
 

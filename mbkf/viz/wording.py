@@ -53,6 +53,36 @@ class Wording:
         return "N m" if self.turns else "N"
 
 
+@dataclass(frozen=True)
+class PartWording:
+    """How a part of the body that bears load is shown.
+
+    Attributes:
+        title: E.g. "Hand".
+        side: "r", "l", or "" on the midline.
+    """
+
+    title: str
+    side: str
+
+    @property
+    def full_title(self) -> str:
+        """The title with its side before it, e.g. "Right hand"."""
+        return f"{SIDE_NAMES[self.side]} {self.title}".capitalize() if self.side else self.title
+
+
+def part_wording(name: str) -> PartWording:
+    """The wording of a part by its name, e.g. "right_hand" or "pelvis"."""
+    for side, word in SIDE_NAMES.items():
+        if name.startswith(f"{word}_"):
+            return PartWording(_plain(name.removeprefix(f"{word}_")), side)
+    return PartWording(_plain(name), "")
+
+
+def _plain(name: str) -> str:
+    return name.replace("_", " ").capitalize()
+
+
 def wordings(joints: Iterable[ClinicalJoint]) -> dict[str, Wording]:
     """The wording of every clinical coordinate of a body's joints, by its name."""
     found = {}

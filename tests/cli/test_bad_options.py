@@ -24,6 +24,11 @@ def test_mass_that_nobody_states(person, refuse_scale):
     refuse_scale([person.trial_trc], "--mass KG")
 
 
+@pytest.mark.parametrize("lag", ["-5", "nan", "inf"])
+def test_lag_that_cannot_be(lag, person, refuse_reconstruct):
+    refuse_reconstruct([person.trial, f"--lag={lag}"], "--lag", "positive")
+
+
 @pytest.mark.parametrize("height", ["-1", "0", "176", "nan"])
 def test_height_that_cannot_be(height, person, refuse_scale):
     refuse_scale(

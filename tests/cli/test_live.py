@@ -85,6 +85,21 @@ def test_a_file_gives_what_reconstruct_gives(person, tmp_path, capsys, expected)
     assert report["source"] == "file"
 
 
+def test_a_lag_is_followed_and_told_apart_from_the_latency(person, tmp_path, capsys):
+    live, offline = tmp_path / "live", tmp_path / "offline"
+    options = ["--subject", person.subject, "--lag", 60]
+    assert run(["live", "--from", f"file:{person.trial}", *options, "--speed", 0, "--out", live]) == 0
+    shown = capsys.readouterr().out
+    assert "(dynamic filter, 60 ms lag)" in shown and "ms besides a lag of 60.0 ms" in shown
+    assert run(["reconstruct", person.trial, *options, "--keep-markers", "--out", offline]) == 0
+    found, expected = read_reconstruction(live), read_reconstruction(offline)
+    for name in ("q", "v", "tau", "foot_wrench", "angles", "moments", "predicted_m"):
+        np.testing.assert_allclose(getattr(found, name), getattr(expected, name), atol=1e-9, err_msg=name)
+    assert (found.foot_wrench_sd >= expected.foot_wrench_sd * (1.0 - 1e-9)).all()
+    assert json.loads((live / "live.json").read_text())["lag_ms"] == pytest.approx(60.0)
+    assert found.lag_ms == expected.lag_ms == 60.0
+
+
 @pytest.mark.parametrize("protocol", ["lsl", "natnet"])
 def test_a_replay_is_followed(person, tmp_path, capsys, protocol):
     out, name, port = tmp_path / "out", f"mbkf-test-{uuid.uuid4().hex[:8]}", free_port()
@@ -310,6 +325,7 @@ def test_bad_input_is_refused(person, tmp_path, refused):
     refused(["live", "--from", "file:none.c3d", *subject, *out], "none.c3d")
     refused(["live", *trial, *subject, *out, "--seconds", "0"], "--seconds 0")
     refused(["live", *trial, *subject, *out, "--speed", "-1"], "--speed -1")
+    refused(["live", *trial, *subject, *out, "--lag", "-1"], "--lag -1")
     refused(["live", *trial, "--subject", "none.toml", *out], "none.toml")
     refused(["live", *trial, *subject, *out, "--preset", "none"], "unknown preset 'none'")
     refused(["live", "--recover", tmp_path / "nothing"], "no such file")

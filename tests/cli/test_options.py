@@ -4,7 +4,14 @@ import argparse
 
 import pytest
 
-from mbkf.cli.options import add_axes_options, axes_options, check_positive, check_share
+from mbkf.cli.options import (
+    add_axes_options,
+    add_lag_option,
+    axes_options,
+    check_positive,
+    check_share,
+    lag_seconds,
+)
 from mbkf.errors import InvalidInput
 
 
@@ -14,6 +21,15 @@ def test_axes_and_unit_are_left_open():
     assert vars(parser.parse_args([])) == {"up": None, "axes": None, "unit": None}
     given = parser.parse_args(["--up=-y", "--unit", "mm", "--axes", "x,-z,y"])
     assert axes_options(given) == vars(given) == {"up": "-y", "axes": "x,-z,y", "unit": "mm"}
+
+
+def test_a_lag_is_given_in_milliseconds():
+    parser = argparse.ArgumentParser()
+    add_lag_option(parser)
+    assert lag_seconds(parser.parse_args([])) == 0.0
+    assert lag_seconds(parser.parse_args(["--lag", "60"])) == pytest.approx(0.06)
+    with pytest.raises(InvalidInput, match="--lag"):
+        lag_seconds(parser.parse_args(["--lag=-5"]))
 
 
 @pytest.mark.parametrize("value", [-1.0, float("nan"), float("inf"), 0.0])

@@ -26,7 +26,8 @@ KEYS = {
     "trial", "protocol", "filter", "smoothed", "version", "direction", "progression", "mass_kg",
     "frames", "rate_hz", "duration_s", "markers_ignored", "markers_explained", "names_exchanged",
     "markers_used", "missing_fraction", "marker_rms_mm", "marker_max_mm", "marker_rms_mm_by_name",
-    "residual_force_rms_n", "residual_moment_rms_nm", "valid_frames", "plate_force_change_rms_n",
+    "residual_force_rms_n", "residual_moment_rms_nm", "valid_frames", "measured_frames", "contacts",
+    "plate_force_change_rms_n",
     "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "nis_per_dof",
     "step_seconds_median", "step_seconds_p99", "realtime_factor", "hidden_marker_rms_mm",
     "hidden_marker_max_mm", "truth", "axes", "warnings", "settings",
@@ -114,6 +115,17 @@ def test_smooth_is_told(name, person, reconstruct):
     smooth = read_reconstruction(reconstruct(person.trial, "--filter", name, "--smooth"))
     assert smooth.smoothed and not plain.smoothed
     assert np.median(smooth.sd_v / plain.sd_v) < 0.9
+
+
+def test_a_lag_is_told_and_known_to_the_readings_after_a_frame(person, reconstruct, capsys):
+    plain = read_reconstruction(reconstruct(person.trial))
+    out = reconstruct(person.trial, "--lag", "60")
+    summary, lagged = read_summary(out), read_reconstruction(out)
+    assert (summary["smoothed"], summary["settings"]["lag_ms"], lagged.lag_ms) == (False, 60.0, 60.0)
+    assert plain.lag_ms == 0.0
+    assert "(dynamic filter, 60 ms lag)" in capsys.readouterr().out
+    assert np.median(lagged.sd_v / plain.sd_v) < 0.99
+    assert not np.array_equal(lagged.q, plain.q)
 
 
 def test_a_second_run_replaces_the_first_and_keeps_other_files(person, reconstruct):

@@ -1,5 +1,7 @@
 """The stated covariance: what is new and what skin repeats, told apart by experiment."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -31,12 +33,16 @@ def test_parts_are_those_of_the_whole(seed, new, rate):
     """What is read off without the whole covariance is what the whole says."""
     rng, P, information = made(seed)
     errors = ErrorCovariance(P, information, np.flatnonzero(rng.random(NV) > 0.3), 0.2, new, rate)
+    free = [(), (0,), (1,), (0, 1)][seed % 4]
+    errors = replace(errors, free=free, sharing=2.0)
     whole, T = errors.covariance(), rng.normal(size=(7, len(P)))
     near = {"rtol": 1e-9, "atol": 1e-9 * np.abs(whole).max()}
     np.testing.assert_allclose(errors.position, whole[:NV, :NV], **near)
     np.testing.assert_allclose(errors.position_variance, np.diag(whole)[:NV], **near)
     np.testing.assert_allclose(errors.velocity_variance, np.diag(whole)[NV : 2 * NV], **near)
     np.testing.assert_allclose(errors.variance_of(T), np.diag(T @ whole @ T.T), **near)
+    np.testing.assert_allclose(errors.wrench_variance, np.diag(whole)[3 * NV :], **near)
+    assert np.linalg.eigvalsh(whole).min() > -near["atol"]
 
 
 def test_a_frame_that_says_nothing_of_a_joint_says_so():
@@ -77,3 +83,22 @@ def test_skin_that_swings_has_the_stated_covariance():
     stated = errors.covariance()[: 3 * NV, : 3 * NV]
     scale = np.sqrt(np.diag(stated))
     np.testing.assert_allclose(measured / scale / scale[:, None], stated / scale / scale[:, None], atol=0.03)
+
+
+def test_reactions_without_a_plate_err_as_accelerations_do():
+    _, P, information = made(3)
+    stated = ErrorCovariance(P, information, EVERYBODY, 0.0, 0.04, 4.0, free=(1,)).covariance()
+    np.testing.assert_allclose(stated[3 * NV + 6 :, 3 * NV + 6 :], 0.04 * P[3 * NV + 6 :, 3 * NV + 6 :])
+    np.testing.assert_array_equal(stated[3 * NV :, 3 * NV :][:6, :6], P[3 * NV :, 3 * NV :][:6, :6])
+
+
+def test_how_two_feet_share_is_known_less_well_than_their_sum():
+    """The spread of the difference is larger by the factor, that of the sum is none the worse."""
+    _, P, information = made(5)
+    usual, wider = (
+        ErrorCovariance(P, information, EVERYBODY, 0.0, 0.04, 4.0, (0, 1), sharing).covariance()
+        for sharing in (1.0, 2.5)
+    )
+    both, apart = (np.hstack([np.zeros((6, 3 * NV)), np.eye(6), sign * np.eye(6)]) for sign in (1.0, -1.0))
+    np.testing.assert_allclose(both @ wider @ both.T, both @ usual @ both.T, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(apart @ wider @ apart.T, 2.5**2 * (apart @ usual @ apart.T), rtol=1e-9)

@@ -5,7 +5,7 @@ import pinocchio as pin
 import pytest
 
 from mbkf.conventions import GRAVITY_M_S2
-from mbkf.filters.inverse_dynamics import inverse_dynamics
+from mbkf.filters.inverse_dynamics import inverse_dynamics, support_torques
 from mbkf.model.newton_euler import NewtonEuler
 from tests.motions import assert_near, moderate_pose, random_model, smooth_motion, track_of, worst
 
@@ -107,6 +107,49 @@ def test_torques_equal_newton_euler_with_forces_on_the_feet(model, rng):
             outside[joint] = data.oMi[joint].actInv(pin.Force(wrench[t, side]))
         expected = pin.rnea(model.pin_model, data, motion.q[t], motion.v[t], motion.a[t], outside)
         assert_near(found.tau[t], expected, 5e-12)
+
+
+def supported(model, motion, rng):
+    """(T, B, 6) loads on all parts that may bear them."""
+    return rng.normal(size=(len(motion.q), len(model.description.bearings), 6)) * [60, 60, 200, 50, 50, 20]
+
+
+def test_loads_on_other_parts_count_as_those_on_the_feet(model, rng):
+    """Against Pinocchio's recursive algorithm with external forces in the segments' own frames."""
+    motion = moving(model, rng)
+    wrench, support = exact_foot_wrenches(model, motion, rng), supported(model, motion, rng)
+    found = inverse_dynamics(model, motion, wrench, support)
+    parts = model.description.bearings.values()
+    data = model.pin_model.createData()
+    for t in range(len(motion.q)):
+        pin.forwardKinematics(model.pin_model, data, motion.q[t])
+        outside = [pin.Force.Zero() for _ in range(model.pin_model.njoints)]
+        loads = [*zip(("right_foot", "left_foot"), wrench[t], strict=True)]
+        loads += [(part.segment, own) for part, own in zip(parts, support[t], strict=True)]
+        for segment, load in loads:
+            joint = model.joint(segment).joint_id
+            outside[joint] += data.oMi[joint].actInv(pin.Force(load))
+        expected = pin.rnea(model.pin_model, data, motion.q[t], motion.v[t], motion.a[t], outside)
+        assert_near(found.tau[t], expected, 5e-12)
+
+
+def test_a_load_on_a_part_does_its_work_where_the_part_moves(model, rng):
+    q, v = moderate_pose(model, rng), rng.normal(size=model.nv)
+    support = rng.normal(size=(len(model.description.bearings), 6))
+    power = sum(
+        load @ model.segment_jacobian(q, part.segment, np.zeros(3)) @ v
+        for part, load in zip(model.description.bearings.values(), support, strict=True)
+    )
+    assert support_torques(model, q, support) @ v == pytest.approx(power, abs=1e-10)
+
+
+def test_parts_that_bear_nothing_or_are_not_asked_change_nothing(model, rng):
+    motion = moving(model, rng, frames=3)
+    wrench = exact_foot_wrenches(model, motion, rng)
+    alone = inverse_dynamics(model, motion, wrench).tau
+    for nothing in (0.0, np.nan):
+        support = np.full((3, len(model.description.bearings), 6), nothing)
+        np.testing.assert_array_equal(inverse_dynamics(model, motion, wrench, support).tau, alone)
 
 
 def test_the_power_of_torques_and_reactions_changes_the_energy(model, rng):

@@ -29,6 +29,8 @@ def made_up(frames=12, seed=0, **changes):
         "rejected": np.zeros((T, M), bool), "foot_wrench": np.concatenate([force, moment], axis=2),
         "foot_cop_m": cop, "foot_free_moment_nm": free, "residual_force_n": rng.normal(size=(T, 3)),
         "residual_moment_nm": rng.normal(size=(T, 3)), "tracked": np.ones(T, bool), "valid": np.ones(T, bool),
+        "support_names": (), "support_wrench": np.zeros((T, 0, 6)), "support_wrench_sd": np.zeros((T, 0, 6)),
+        "support_point_m": np.zeros((T, 0, 3)), "measured": np.ones(T, bool), "foot_source": np.ones((T, 2), int),
         "unobserved_dofs": ("pelvis_5",), "nis": rng.random(T), "nis_readings": np.full(T, 6),
         "step_seconds": np.full(T, 1e-3), "warnings": ("a remark, ünicode",),
         "settings": {"filter": "dynamic", "jerk": 200.0, "hide": ["A"]},
@@ -41,8 +43,10 @@ def made_up(frames=12, seed=0, **changes):
 
 
 def made_up_whole(frames=12, **changes):
-    """One that holds every array, those that are optional as well: 2 plates that are not compared."""
+    """One with every array: 2 plates that are not compared, 3 parts that may bear load; the last one never does."""
     rng = np.random.default_rng(1)
+    parts = 80.0 * rng.normal(size=(frames, 3, 6))
+    parts[:, 2], parts[: frames // 2, 1] = 0.0, 0.0
     optional = {
         "plate_change": np.full((frames, 2, 6), np.nan),
         "foot_wrench_sd": rng.uniform(1.0, 9.0, (frames, 2, 6)),
@@ -51,6 +55,10 @@ def made_up_whole(frames=12, **changes):
         "plate_corners_m": rng.normal(size=(2, 4, 3)),
         "direction": "progression",
         "heading_rad": rng.normal(size=frames),
+        "support_names": ("pelvis", "right_hand", "left_hand"),
+        "support_wrench": parts,
+        "support_wrench_sd": rng.uniform(1.0, 9.0, parts.shape),
+        "support_point_m": rng.normal(size=(*parts.shape[:2], 3)),
         "angles_lab": rng.normal(size=(frames, len(COORDINATES))),
     }
     return made_up(frames, **{**optional, **changes})

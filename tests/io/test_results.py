@@ -44,6 +44,11 @@ def test_values_come_by_name():
     np.testing.assert_array_equal(r.marker("B"), r.predicted_m[:, 1])
 
 
+def test_a_lag_is_read_from_the_settings():
+    assert made_up().lag_ms == 0.0
+    assert made_up(settings={"lag_ms": 60.0}).lag_ms == 60.0
+
+
 def test_a_wrong_name_is_answered_with_near_ones():
     r = made_up()
     with pytest.raises(UnknownName, match="did you mean hip_flexion_r"):

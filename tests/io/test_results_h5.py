@@ -48,6 +48,26 @@ def test_what_a_filter_does_not_estimate_is_not_written_and_comes_back_as_none(t
         assert back.foot_contact is None
 
 
+def test_in_older_files_feet_alone_bear_and_what_is_measured_is_valid(tmp_path):
+    r = made_up_whole(valid=np.arange(12) > 3, foot_contact=np.tile([-1, 2], (12, 1)))
+    for path in ("dynamic.h5", "kinematic.h5"):
+        write_h5(r, tmp_path / path)
+        with h5py.File(tmp_path / path, "a") as file:
+            for name in ("measured", "foot_source", *(key for key in file if key.startswith("support_"))):
+                del file[name]
+    back = read_h5(tmp_path / "dynamic.h5")
+    np.testing.assert_array_equal(back.measured, r.valid)
+    assert (back.foot_source == [3, 2]).all()
+    assert back.support_names == () and back.support_wrench.shape == (12, 0, 6)
+    assert {(one.part, one.how) for one in back.contacts} == {
+        ("right_foot", "estimated"),
+        ("left_foot", "shared"),
+    }
+    with h5py.File(tmp_path / "kinematic.h5", "a") as file:
+        del file["footing"]
+    assert (read_h5(tmp_path / "kinematic.h5").foot_source == 1).all()
+
+
 def test_older_files_have_no_axes(tmp_path):
     write_h5(made_up(file_axes="x,z,y"), tmp_path / "motion.h5")
     with h5py.File(tmp_path / "motion.h5", "a") as file:

@@ -11,7 +11,7 @@ from mbkf.io.results_opensim import (
 )
 from mbkf.io.storage import read_storage
 from mbkf.io.trc import read_trc
-from tests.io.reconstructions import made_up
+from tests.io.reconstructions import made_up, made_up_whole
 
 
 def to_world(vectors):
@@ -76,6 +76,29 @@ def test_a_loaded_foot_has_only_its_free_moment_about_the_vertical():
     torque = vector(reactions_table(r), "ground_torque_r_")
     np.testing.assert_allclose(torque[:, 1], r.foot_free_moment_nm[:, 0], atol=1e-9)
     np.testing.assert_allclose(torque[:, [0, 2]], 0.0, atol=1e-9)
+
+
+def test_other_parts_that_ever_bear_have_columns_of_the_same_kind(tmp_path):
+    r = made_up_whole()
+    write_opensim(r, tmp_path)
+    table = read_storage(tmp_path / "reactions.mot")
+    for k, part in enumerate(("pelvis", "right_hand")):
+        np.testing.assert_allclose(wrench_of(table, part), r.support_wrench[:, k], atol=1e-6)
+        acts = np.isfinite(r.support_point_m[:, k]).all(axis=1)
+        points = to_world(vector(table, f"ground_force_{part}_p"))
+        np.testing.assert_allclose(points[acts], r.support_point_m[acts, k], atol=1e-8)
+    assert not any("left_hand" in name for name in table.names), "it never bears"
+    assert len(table.names) == 4 * 9
+    assert table.header["contacts"] == "right_foot, left_foot, pelvis, right_hand"
+    assert table.header["estimated"] == "pelvis, right_hand"
+
+
+def test_feet_alone_have_the_columns_of_before():
+    names = reactions_table(made_up()).names
+    assert names[:3] == ("ground_force_r_vx", "ground_force_r_vy", "ground_force_r_vz") and len(names) == 18
+    assert reactions_table(made_up()).header["Estimated"] == "none"
+    shared = made_up(foot_source=np.tile([1, 2], (12, 1)))
+    assert reactions_table(shared).header["Estimated"] == "left_foot"
 
 
 def test_a_foot_never_loaded_has_its_point_at_the_origin():

@@ -274,6 +274,19 @@ def test_unknown_names_are_refused(made):
         run(filter="kinematics")
 
 
+@pytest.mark.parametrize(
+    ("settings", "why"),
+    [
+        ({"lag_s": -0.01}, "not possible: give"),
+        ({"lag_s": np.nan}, "not possible: give"),
+        ({"lag_s": 0.06, "smooth": True}, "choose one"),
+    ],
+)
+def test_a_lag_is_a_time_and_stands_alone(settings, why):
+    with pytest.raises(InvalidInput, match=why):
+        ReconstructSettings(**settings)
+
+
 def test_a_capture_of_other_markers_is_refused(made):
     with pytest.raises(NotObservable, match="has 5 of the subject's markers"):
         reconstruct(capture_of(made.names[:5], made.positions[:, :5]), made.subject)

@@ -76,6 +76,19 @@ def test_torques_are_better_than_inverse_dynamics():
     assert rms((made(smooth=True).tau - truth("tau"))[LATE, 6:]) < 0.35 * theirs
 
 
+def test_a_lag_without_plates_lies_between_the_filter_and_its_smoother():
+    """Errors of the feet's forces; what is still to come corrects them most where no plate reads them."""
+    names = tuple(plate.name for plate in capture().plates)
+    true = truth("foot_wrench")[LATE, :, :3]
+    runs = ({}, {"lag_s": 0.02}, {"lag_s": 0.06}, {"smooth": True})
+    found = [made(without_plates=names, **run) for run in runs]
+    causal, short, lagged, smooth = (rms(one.foot_wrench[LATE, :, :3] - true) for one in found)
+    assert smooth < 1.1 * lagged and lagged < short < causal
+    assert lagged < 0.8 * causal
+    assert [one.smoothed for one in found] == [False, False, False, True]
+    assert [one.lag_ms for one in found] == [0.0, 20.0, 60.0, 0.0]
+
+
 def test_newtons_law_holds_with_the_measured_plates():
     """The residual of the plates as measured, not of the estimate."""
     found = made()

@@ -75,6 +75,27 @@ def test_frames_that_wait_are_answered_at_the_end():
     assert [one.number for one in tracker.finish()] == list(range(5))
 
 
+def test_with_a_lag_it_gives_the_frame_before_it_as_reconstruct_does():
+    person, trial, wrenches = squat()
+    settings = ReconstructSettings(lag_s=0.06, correct_markers=False)
+    result = mbkf.reconstruct(trial, person, settings=settings)
+    tracker = mbkf.Tracker(
+        person, trial.markers.names, trial.plates, trial.markers.rate_hz, settings=settings
+    )
+    given = {}
+    for t in range(40):
+        estimate = tracker.push(trial.markers.positions_m[t], wrenches[t])
+        if estimate is not None:
+            given[t] = estimate
+    assert {t: one.number for t, one in given.items()} == {t: t - 6 for t in range(min(given), 40)}
+    assert len(given) > 10
+    for one in given.values():
+        np.testing.assert_array_equal(one.q, result.q[one.number])
+        np.testing.assert_array_equal(one.wrenches, result.foot_wrench[one.number])
+        assert (one.wrenches_sd >= result.foot_wrench_sd[one.number] * (1 - 1e-9)).all()
+    assert [one.number for one in tracker.finish()] == list(range(34, 40))
+
+
 class Barometer(mbkf.Block):
     """A reading of the pelvis's height, with a bias of its own in the state."""
 

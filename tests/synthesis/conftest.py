@@ -17,6 +17,10 @@ SECONDS = {
     "step_up": 3.2,
     "general": 10.0,
     "sit_to_stand": 5.6,
+    "rail": 3.2,
+    "kneel": 6.8,
+    "belt_walk": 2.5,
+    "split_belt_walk": 2.5,
 }
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import GRAVITY_M_S2, SIDES
 from mbkf.errors import InvalidInput
@@ -11,11 +12,13 @@ from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
 from mbkf.synthesis.support import SEGMENTS, Support, fault, wrenches, zero_moment
 
-SHORT_S = {"sit_to_stand": 2.6}
+SHORT_S = {"sit_to_stand": 2.6, "rail": 3.0, "kneel": 6.8}
 SEEDS = (1, 2, 3)
+KNEEL_SEEDS = (1, 3)
+MADE = [(name, seed) for name in SHORT_S for seed in (KNEEL_SEEDS if name == "kneel" else SEEDS)]
 
 
-@pytest.fixture(scope="module", params=[(name, seed) for name in SHORT_S for seed in SEEDS], ids=str)
+@pytest.fixture(scope="module", params=MADE, ids=str)
 def supported(request):
     """A body and its motion, another person for every seed."""
     name, seed = request.param
@@ -140,3 +143,62 @@ def test_who_sits_stays_on_the_seat_and_then_stands(supported):
 def test_standing_up_needs_time():
     with pytest.raises(InvalidInput, match="standing up"):
         synthesise_motion(body_of(synthesise_subject(1)), "sit_to_stand", 1.5)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("supported", [("rail", seed) for seed in SEEDS], indirect=True)
+def test_a_hand_that_holds_a_rail_stays_where_it_is(supported):
+    body, motion = supported
+    (name,) = motion.support_names
+    joint = body.joint(SEGMENTS[name]).joint_id
+    force = np.linalg.norm(motion.support_wrench[:, 0, :3], axis=1)
+    holds = force > 0
+    placed = [body.placements(q) for q in motion.q[holds]]
+    where = np.array([origins[joint] for _, origins in placed])
+    assert np.ptp(where, axis=0).max() < 1e-9
+    assert np.ptp([rotations[joint] for rotations, _ in placed], axis=0).max() < 1e-9
+    assert 0.1 <= force.max() / (body.mass_kg * GRAVITY_M_S2) <= 0.2
+    rested = body.placements(motion.q[0])[1][joint]
+    assert np.linalg.norm(where[0] - rested) > 0.2
+    moment, pushed = motion.support_wrench[holds, 0, 3:], motion.support_wrench[holds, 0, :3]
+    lever = moment - np.cross(where, pushed)
+    assert (np.linalg.norm(lever, axis=1) <= 0.08 * force[holds]).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("supported", [("kneel", seed) for seed in KNEEL_SEEDS], indirect=True)
+def test_who_kneels_rests_on_knee_and_fingertips(supported):
+    body, motion = supported
+    weight = body.mass_kg * GRAVITY_M_S2
+    side = motion.support_names[0].removesuffix("_knee")
+    assert motion.support_names == (f"{side}_knee", f"{side}_hand")
+    knee, hand = (motion.support_wrench[:, k, 2] > 0 for k in range(2))
+    assert (knee | ~hand).all()
+    origins = np.array([body.placements(q)[1] for q in motion.q])
+    at_knee, at_wrist = (origins[:, body.joint(f"{side}_{part}").joint_id] for part in ("shank", "hand"))
+    assert np.ptp(at_knee[knee], axis=0).max() < 0.003
+    assert at_knee[:, 2].min() > at_knee[knee, 2].min() - 0.002
+    assert at_knee[0, 2] - at_knee[knee, 2].mean() > 0.25
+    assert np.ptp(at_wrist[hand], axis=0).max() < 1e-9
+    assert at_wrist[hand, 2].mean() < 0.2
+    for k, bears, above in ((0, knee, at_knee), (1, hand, at_wrist)):
+        force, moment = motion.support_wrench[bears, k, :3], motion.support_wrench[bears, k, 3:]
+        pressed = np.column_stack([-moment[:, 1], moment[:, 0]]) / force[:, 2:]
+        assert np.abs(pressed - above[bears, :2]).max() < 0.01
+    share = motion.support_wrench[:, :, 2].max(axis=0) / weight
+    assert 0.4 < share[0] < 0.7
+    assert 0.08 < share[1] < 0.2
+    rear = motion.foot_wrench[:, 0 if side == "right" else 1, 2]
+    assert rear[hand].max() < 0.12 * weight
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("supported", MADE[3:], indirect=True)
+def test_joints_stay_within_their_limits(supported):
+    body, motion = supported
+    for side in ("right", "left"):
+        for part in ("upper_arm", "forearm", "hand", "thigh", "shank", "foot"):
+            joint = body.joint(f"{side}_{part}")
+            turned = Rotation.from_quat(motion.q[:, joint.q]).as_euler("YXZ", degrees=True)[:, [1, 0, 2]]
+            low, high = np.rad2deg(body.limits[joint.v]).T
+            assert ((turned >= low) & (turned <= high)).all(), f"{side}_{part}"

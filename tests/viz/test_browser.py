@@ -12,7 +12,7 @@ from mbkf.pipelines.results.summary import summarise
 from mbkf.viz.live.page import LivePage
 from mbkf.viz.report.document import write_report
 from mbkf.viz.scene.playback import write_playback
-from tests.recordings import PLATE, broken_walk, walk, walker
+from tests.recordings import PLATE, SEAT, broken_walk, leaning_walk, walk, walker
 from tests.viz.browsing import PATIENCE_S, until
 from tests.viz.streams import feeding
 
@@ -51,6 +51,30 @@ def followed(page):
 
 def plotted(page):
     return page.evaluate("document.querySelector('.card canvas').toDataURL()")
+
+
+def arrows(page):
+    """Of each load's arrow: whether it is seen, whether its shaft is whole, whether it is dashed, and its foot."""
+    return page.evaluate(
+        "mbkf.view.arrows.map(({arrow, whole, dashed}) =>"
+        " [arrow.visible, whole.visible, dashed.visible, arrow.position.toArray()])"
+    )
+
+
+def test_arrows_act_where_loads_do_and_tell_measured_from_estimated(opened, tmp_path):
+    r = leaning_walk()
+    write_playback(r, tmp_path / "walk.html")
+    with opened((tmp_path / "walk.html").as_uri()) as page:
+        followed(page)
+        page.evaluate(f"mbkf.go({SEAT.start + 5})")
+        right, left, pelvis, hand = arrows(page)
+        assert (right[:3], pelvis[:3]) == ([True, True, False], [True, False, True])
+        assert not left[0] and not hand[0], "neither bears then"
+        seat = r.support_point_m[SEAT.start + 5, r.support_names.index("pelvis")]
+        np.testing.assert_allclose(pelvis[3], seat, atol=1e-3)
+        np.testing.assert_allclose(right[3], r.foot_cop_m[SEAT.start + 5, 0], atol=1e-3)
+        page.get_by_label("Force, estimated").uncheck()
+        assert [shown for shown, *_ in arrows(page)] == [True, False, False, False]
 
 
 def test_a_recording_plays_from_a_file_without_any_request(opened, tmp_path):

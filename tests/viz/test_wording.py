@@ -3,7 +3,7 @@
 import numpy as np
 
 from mbkf.model.body_file import load_body
-from mbkf.viz.wording import wordings
+from mbkf.viz.wording import part_wording, wordings
 
 
 def test_every_coordinate_has_its_own_title():
@@ -13,6 +13,13 @@ def test_every_coordinate_has_its_own_title():
     titles = [w.full_title for w in found.values()]
     assert len(set(titles)) == len(titles)
     assert not [title for title in titles if "_" in title or not title[0].isupper()]
+
+
+def test_every_part_that_may_bear_load_has_a_title():
+    found = [part_wording(name) for name in ("right_foot", "left_foot", *load_body().bearings)]
+    assert {one.full_title for one in found} >= {"Right foot", "Left hand", "Pelvis", "Torso", "Right knee"}
+    assert len({one.full_title for one in found}) == len(found)
+    assert {one.side for one in found} == {"r", "l", ""}
 
 
 def test_sides_units_and_joints():

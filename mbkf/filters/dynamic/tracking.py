@@ -18,7 +18,10 @@ from mbkf.filters.filter import Prior, Step
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.tracking import warm_start
 from mbkf.filters.spread import Spread, SpreadReader, root
+from mbkf.numerics.passage import LinearStep
+from mbkf.numerics.smoothing import BackwardPass
 from mbkf.sensors.block import NO_DOFS
+from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.marker_prediction import MarkerPrediction
 from mbkf.sensors.markers import Markers
 
@@ -115,11 +118,24 @@ class DynamicTracking(TrackingFilter):
         readings = 3 * int(np.count_nonzero(notes.trusted))
         over = max(readings - len(seen), readings // 4)
         skin = share * readings / max(over, 1)
-        return ErrorCovariance(P, information, seen, skin, s.errors.new_share, s.errors.skin_rate_rad_s)
+        # A limb out of sight errs as P says, and so does a reaction that rests on its acceleration.
+        all_seen = len(seen) + len(self._unobservable) == self.model.nv
+        contact = notes.contact
+        free = (0, 1) if contact is not None and all_seen else ()
+        return ErrorCovariance(
+            P,
+            information,
+            seen,
+            skin,
+            s.errors.new_share,
+            s.errors.skin_rate_rad_s,
+            tuple(f for f in free if contact is not None and contact.contacts[f] == Contact.UNMEASURED),
+            s.errors.sharing_scale,
+        )
 
     def wrench_sd(self, estimate: Posterior) -> Array:
-        """(2, 6) from the state's covariance."""
-        return np.sqrt(np.diag(_record(estimate).state.P)[self.kalman.layout.wrench]).reshape(2, 6)
+        """(2, 6) standard deviations of the feet's wrenches."""
+        return root(self.errors(estimate).wrench_variance).reshape(2, 6)
 
     def support_sd(self, estimate: Posterior) -> Array:
         """(B, 6) from the state's covariance, and from how the parts that bear share their load."""
@@ -140,6 +156,24 @@ class DynamicTracking(TrackingFilter):
         del recording, first
         states = smooth(self.kalman, [_record(estimate) for estimate in run], ROUNDS, wanted)
         return [self._moved(e, s) for e, s in zip(run, states, strict=False)]
+
+    def linear_step(self, before: Posterior, estimate: Posterior) -> LinearStep:
+        """About the filter's own course."""
+        step = _record(estimate)
+        transition = self.kalman.plant.transition(_record(before).state)
+        known = step.readings
+        return LinearStep(step.state.P, known.whole_matrix, known.whole_vector, transition)
+
+    def corrected(
+        self, estimate: Posterior, later: BackwardPass | None, before: Posterior | None
+    ) -> Posterior:
+        """By one linear pass."""
+        del before
+        if later is None:
+            return estimate
+        state = _record(estimate).state
+        moved = self.kalman.plant.retract(state, *later.corrected(state.P))
+        return self._moved(estimate, moved)
 
     def _moved(self, estimate: Posterior, state: DynamicState) -> Posterior:
         """An estimate whose state the smoother has corrected."""

@@ -14,6 +14,7 @@ from mbkf.filters.filter import Memory, Prior, Step
 from mbkf.filters.kinematic.filter import KinematicFilter, VelocityStep
 from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.filters.spread import Spread, SpreadReader
+from mbkf.numerics.passage import LinearStep
 from mbkf.numerics.smoothing import BackwardPass
 from mbkf.sensors.block import Frame
 from mbkf.sensors.marker_prediction import MarkerPrediction
@@ -188,3 +189,32 @@ class KinematicTracking(TrackingFilter):
             e._replace(q=s.q, v=s.v, a=acc, inner=_record(e)._replace(state=s))
             for e, s, acc in list(zip(run, states, a, strict=True))[:wanted]
         ]
+
+    def linear_step(self, before: Posterior, estimate: Posterior) -> LinearStep:
+        """About the filter's own course.
+
+        Raises:
+            ValueError: The estimate is a start.
+        """
+        step = _record(estimate).step
+        if step is None:
+            raise ValueError("no step leads to a start")
+        transition = self.kalman.plant.transition(_record(before).state)
+        known = step.readings
+        return LinearStep(step.state.P, known.whole_matrix, known.whole_vector, transition)
+
+    def corrected(
+        self, estimate: Posterior, later: BackwardPass | None, before: Posterior | None
+    ) -> Posterior:
+        """By one linear pass; accelerations are differences of corrected velocities, as the filter's own are.
+
+        Torques keep the filter's standard deviations, as when smoothed.
+        """
+        inner = _record(estimate)
+        state = inner.state
+        if later is not None:
+            state = self.kalman.plant.retract(state, *later.corrected(state.P))
+        a = estimate.a
+        if before is not None and inner.since >= len(inner.settling):
+            a = (state.v - before.v) / self.dt_s
+        return estimate._replace(q=state.q, v=state.v, a=a, inner=inner._replace(state=state))

@@ -17,6 +17,7 @@ from mbkf.filters.spread import Spread, SpreadReader
 from mbkf.filters.torque.filter import TorqueFilter, TorqueStep
 from mbkf.filters.torque.plant import ForcedPrediction
 from mbkf.filters.torque.report import TorqueState
+from mbkf.numerics.passage import LinearStep
 from mbkf.numerics.smoothing import BackwardPass
 from mbkf.sensors.block import Frame
 from mbkf.sensors.contact.records import ContactDecision
@@ -135,6 +136,28 @@ class TorqueTracking(TrackingFilter):
                 back.through_readings(here.P, known.whole_matrix, known.whole_vector)
                 back.through_plant(cast(ForcedPrediction, predicted).phi)
         return found[::-1]
+
+    def linear_step(self, before: Posterior, estimate: Posterior) -> LinearStep:
+        """About the filter's own course; a frame in which nothing could be computed changes nothing."""
+        del before
+        inner = _record(estimate)
+        P = inner.state.filtered.P
+        if inner.step is None:
+            n = len(P)
+            return LinearStep(P, np.zeros((n, n)), np.zeros(n), np.eye(n))
+        known, predicted = inner.step.readings, inner.step.prior.state
+        phi = cast(ForcedPrediction, predicted).phi
+        return LinearStep(P, known.whole_matrix, known.whole_vector, phi)
+
+    def corrected(
+        self, estimate: Posterior, later: BackwardPass | None, before: Posterior | None
+    ) -> Posterior:
+        """By one linear pass."""
+        del before
+        if later is None:
+            return estimate
+        P = _record(estimate).state.filtered.P
+        return self._smoothed(estimate, *later.corrected(P))
 
     def _smoothed(self, estimate: Posterior, step: Array, P: Array) -> Posterior:
         state = self.kalman.report(self.kalman.plant.retract(_record(estimate).state.filtered, step, P))

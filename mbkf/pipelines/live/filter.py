@@ -1,14 +1,16 @@
 """The filter on a live stream: frames in as they come, estimates out, with the same steps as on a whole trial.
 
 A start looks a quarter of a second ahead, so the frames it needs are awaited and then caught up with; from then on each
-frame is answered at once. Where no frame was lost the results are those of ``reconstruct`` on the same frames.
+frame is answered at once, or with a fixed lag when the frames of the lag have followed it. Where no frame was lost the
+results are those of ``reconstruct`` on the same frames; only standard deviations stay those without a lag.
 """
 
 from __future__ import annotations
 
 import time
 from collections import deque
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,6 +18,7 @@ from mbkf.conventions import Array
 from mbkf.errors import MbkfError
 from mbkf.filters.estimate import Posterior, Prediction, Recording, TrackingFilter
 from mbkf.filters.kinematic.tracking import warm_up_frames
+from mbkf.filters.lag import FixedLag
 from mbkf.filters.tracking_loop import TrackingLoop
 from mbkf.io.records import MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject, match_names
@@ -48,14 +51,30 @@ class LiveStep:
 
 
 class LiveFilter:
-    """Takes frames in order, one by one, and gives back the steps that are due."""
+    """Takes frames in order, one by one, and gives back the steps that are due.
 
-    def __init__(self, filter: TrackingFilter) -> None:
+    Attributes:
+        loop: The filter's way through the stream; it knows nothing of the lag.
+    """
+
+    def __init__(self, filter: TrackingFilter, lag_s: float = 0.0) -> None:
+        """Prepares the filter.
+
+        Args:
+            filter: The filter.
+            lag_s: How long answers wait for readings that correct them; covariances stay those without a lag.
+        """
         self.loop = TrackingLoop(filter)
-        self._filter = filter
+        self._filter, self._lag = filter, FixedLag(filter, lag_s, covariances=False)
+        self._lagging: deque[LiveStep] = deque()
         self._ahead = warm_up_frames(filter.dt_s)
         self._waiting: deque[tuple[int, Frame]] = deque()
         self._predicting_s = 0.0
+
+    @property
+    def lag_frames(self) -> int:
+        """How many frames later an answer is given."""
+        return self._lag.frames
 
     @property
     def latest(self) -> Posterior | None:
@@ -91,17 +110,51 @@ class LiveFilter:
             Answers to this frame and to those that waited for it.
         """
         self._waiting.append((number, frame))
-        return self._due(self._ahead)
+        return self._lagged(self._due(self._ahead))
 
     def finish(self) -> list[LiveStep]:
         """Answers to the frames that still wait, when no more follow."""
-        return self._due(0)
+        return self._lagged(self._due(0)) + self._corrected(None)
 
     def cut(self) -> list[LiveStep]:
         """The same, before a gap that cannot be bridged: what follows starts anew."""
-        steps = self._due(0)
+        steps = self.finish()
         self.loop.forget()
         return steps
+
+    def _lagged(self, steps: Sequence[LiveStep]) -> list[LiveStep]:
+        """The steps that are due when these are made; a frame without an estimate tells nothing of those before."""
+        due: list[LiveStep] = []
+        for step in steps:
+            if step.estimate is None:
+                due += [*self._corrected(None), step]
+            else:
+                due += self._corrected(step)
+        return due
+
+    def _corrected(self, step: LiveStep | None) -> list[LiveStep]:
+        """Steps whose lag is over with this one; all that wait, for None."""
+        begin = time.perf_counter()
+        try:
+            with np.errstate(all="ignore"):
+                if step is None or step.estimate is None:
+                    found = self._lag.finish()
+                else:
+                    self._lagging.append(step)
+                    found = self._lag.push(step.number, step.estimate)
+        except NUMERICAL as error:
+            return self._uncorrected(str(error))
+        seconds = (time.perf_counter() - begin) / max(len(found), 1)
+        given = [(self._lagging.popleft(), estimate) for _, estimate in found]
+        return [replace(one, estimate=estimate, seconds=one.seconds + seconds) for one, estimate in given]
+
+    def _uncorrected(self, trouble: str) -> list[LiveStep]:
+        """All that waits as the filter found it, where a correction cannot be computed; what follows starts anew."""
+        *others, last = self._lagging
+        self._lagging.clear()
+        self._lag = FixedLag(self._filter, self._lag.frames * self._filter.dt_s, covariances=False)
+        self.loop.forget()
+        return [*others, replace(last, trouble=trouble)]
 
     def _due(self, ahead: int) -> list[LiveStep]:
         awaited, steps = len(self._waiting) > 1, []

@@ -1,4 +1,4 @@
-"""Ground reactions and joint torques of a tracked trial, compared with the plates."""
+"""Loads on the body and joint torques of a tracked trial, compared with the plates."""
 
 from __future__ import annotations
 
@@ -9,10 +9,12 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.inverse_dynamics import inverse_dynamics
 from mbkf.filters.tracking import Track
+from mbkf.io.contacts import Source, bearing, foot_sources
 from mbkf.io.records import PlateReadings
 from mbkf.model.body import Body
+from mbkf.pipelines.results.supports import Supports, supports_of
 from mbkf.sensors.contact.offline import BOTH, FootLoads, assign_feet
-from mbkf.sensors.contact.plates import pressure_and_free_moment, surface_height
+from mbkf.sensors.contact.plates import least_load, pressure_and_free_moment, surface_height
 from mbkf.sensors.contact.records import Contact
 
 PRESSURE_FROM_N = 20.0
@@ -29,11 +31,15 @@ class Reactions:
         wrench_sd: (T, 2, 6) standard deviations, or None.
         centre_of_pressure_m: (T, 2, 3) under each foot.
         free_moment_nm: (T, 2) about the vertical through it.
-        tau: (T, nv) generalised forces with these reactions.
+        supports: Loads on other parts than the feet.
+        tau: (T, nv) generalised forces with all these loads.
         residual_force_n, residual_moment_nm: (T, 3) residual at the pelvis with the measured plates.
         plate_change: (T, P, 6) estimated minus measured wrench about the plate's origin where a foot stands on that
             plate alone; None where the filter estimates none or there are no plates.
-        valid: (T,) every loaded foot on a measured plate.
+        foot_source: (T, 2) :class:`~mbkf.io.contacts.Source` of the feet's wrenches.
+        measured: (T,) every loaded foot on a measured plate, of its own or shared, and no other part bears.
+        accounted: (T,) measured, or what no plate reads is estimated: a foot beside plates or another part; no plate is
+            loaded by something that is no foot.
         warnings: Remarks for the reader.
     """
 
@@ -41,11 +47,14 @@ class Reactions:
     wrench_sd: Array | None
     centre_of_pressure_m: Array
     free_moment_nm: Array
+    supports: Supports
     tau: Array
     residual_force_n: Array
     residual_moment_nm: Array
     plate_change: Array | None
-    valid: BoolArray
+    foot_source: Array
+    measured: BoolArray
+    accounted: BoolArray
     warnings: tuple[str, ...]
 
 
@@ -62,6 +71,7 @@ def reactions(
         plates: The plates it could read.
     """
     loads = assign_feet(model, track.q, times_s, rate_hz, plates)
+    supports = supports_of(model, track)
     measured = inverse_dynamics(model, track, loads.wrench)
     known = np.where(bool(plates), 1.0, np.nan)
     force, moment = measured.residual_force_n * known, measured.residual_moment_nm * known
@@ -71,10 +81,13 @@ def reactions(
             None,
             loads.centre_of_pressure_m,
             loads.free_moment_nm,
+            supports,
             measured.tau * known,
             force,
             moment,
             None,
+            _plate_sources(loads),
+            loads.valid,
             loads.valid,
             (*loads.warnings, *_shared_warning((loads.foot_of_plate == BOTH).any(axis=1)))
             if plates
@@ -82,19 +95,38 @@ def reactions(
         )
     surface = np.mean([surface_height(plate) for plate in plates]) if plates else 0.0
     pressure, free = pressure_and_free_moment(track.wrench, float(surface), PRESSURE_FROM_N)
-    unread = (track.contact == Contact.UNMEASURED).any(axis=1)
+    source = foot_sources(track.contact, track.wrench)
+    estimated = (source == Source.ESTIMATED).any(axis=1) | bearing(supports.wrench).any(axis=1)
+    on_plates = loads.valid & ~estimated
     return Reactions(
         track.wrench,
         track.wrench_sd,
         pressure,
         free,
-        inverse_dynamics(model, track, track.wrench).tau,
+        supports,
+        inverse_dynamics(model, track, track.wrench, track.support).tau,
         force,
         moment,
         _plate_change(track.wrench, loads, plates) if plates else None,
-        loads.valid & ~unread,
+        source,
+        on_plates,
+        on_plates | (estimated & ~_stray(loads, plates)),
         (*loads.warnings, *_contact_warnings(track.contact, plates)),
     )
+
+
+def _plate_sources(loads: FootLoads) -> Array:
+    """(T, 2) sources of the feet's wrenches where plates alone tell them."""
+    foot = loads.foot_of_plate
+    own = np.stack([(foot == side).any(axis=1) for side in range(2)], axis=1)
+    shared = (foot == BOTH).any(axis=1)[:, None]
+    return np.where(shared, Source.SHARED, np.where(own, Source.MEASURED, Source.NONE))
+
+
+def _stray(loads: FootLoads, plates: tuple[PlateReadings, ...]) -> BoolArray:
+    """(T,) frames in which a plate is loaded by something that is no foot."""
+    least = np.array([least_load(plate.threshold_n) for plate in plates])
+    return np.asarray(((loads.plate_wrench[:, :, 2] >= least) & (loads.foot_of_plate < 0)).any(axis=1))
 
 
 def _plate_change(wrench: Array, loads: FootLoads, plates: tuple[PlateReadings, ...]) -> Array:

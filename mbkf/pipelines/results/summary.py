@@ -7,8 +7,9 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.axes import axes_matrix
+from mbkf.io.contacts import ContactInterval
 from mbkf.io.results import Reconstruction
-from mbkf.io.results_folder import AxesTold, Summary
+from mbkf.io.results_folder import AxesTold, ContactTold, Summary
 from mbkf.io.truth import Truth
 from mbkf.model.human import HumanModel, reference_body
 from mbkf.pipelines.results.progression import kind_of
@@ -62,9 +63,11 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "marker_rms_mm_by_name": {name: _rms(seen_mm[:, m]) for m, name in enumerate(r.marker_names)},
         "hidden_marker_rms_mm": _rms(hidden_mm),
         "hidden_marker_max_mm": _largest(hidden_mm),
-        "residual_force_rms_n": _rms_of_norm(r.residual_force_n[r.valid]),
-        "residual_moment_rms_nm": _rms_of_norm(r.residual_moment_nm[r.valid]),
+        "residual_force_rms_n": _rms_of_norm(r.residual_force_n[r.measured]),
+        "residual_moment_rms_nm": _rms_of_norm(r.residual_moment_nm[r.measured]),
         "valid_frames": int(r.valid.sum()),
+        "measured_frames": int(r.measured.sum()),
+        "contacts": [contact_summary(one) for one in r.contacts],
         "plate_force_change_rms_n": _rms(change[..., :3]),
         "plate_moment_change_rms_nm": _rms(change[..., 3:]),
         "torque_peak_nm_per_kg": peaks,
@@ -77,6 +80,18 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "axes": axes_told(r.file_axes, r.file_axes_source),
         "warnings": list(r.warnings),
         "settings": dict(r.settings),
+    }
+
+
+def contact_summary(contact: ContactInterval) -> ContactTold:
+    """A contact as summaries have it."""
+    return {
+        "part": contact.part,
+        "from_s": contact.from_s,
+        "to_s": contact.to_s,
+        "peak_n": contact.peak_n,
+        "sd_n": contact.sd_n if np.isfinite(contact.sd_n) else None,
+        "how": contact.how,
     }
 
 

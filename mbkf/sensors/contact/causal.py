@@ -8,6 +8,7 @@ The limits, and how they differ from the offline ones, are in :mod:`mbkf.sensors
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from mbkf.io.records import PlateReadings
 from mbkf.model.body import Body
 from mbkf.sensors.contact.plates import PlateAreas, least_load, pressed_at, surface_height
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, FreeStance, Planted, Pressed
-from mbkf.sensors.contact.sharing import SharedLoad, expected_stance, share_load
+from mbkf.sensors.contact.sharing import SharedLoad, expected_stance, push_share, share_load
 from mbkf.sensors.contact.soles import Sole, distance_to_sole, nearer_foot, share_along, sole_locals
 from mbkf.sensors.contact.thresholds import (
     FLAT_FROM,
@@ -93,19 +94,33 @@ class ContactDetector:
         )
         for foot in elsewhere.carrying:
             contacts[foot] = Contact.UNMEASURED
+        balls, before = (soles[0][1][2], soles[1][1][2]), memory.lowest_ball_m
+        right, left = (min(balls[f], before[f] if elsewhere.touching_s[f] > 0.0 else inf) for f in (0, 1))
         free = None
         if contacts[0] == contacts[1] == Contact.UNMEASURED:
             surface = min(point[2] for sole in soles for point in sole)
-            free = FreeStance(expected_stance(soles, surface), self._pelvis_m(q))
+            pushes = (
+                push_share(soles[0], right, elsewhere.touching_s[0]),
+                push_share(soles[1], left, elsewhere.touching_s[1]),
+            )
+            free = FreeStance(expected_stance(soles, surface), self._pelvis_m(q), pushes)
         return ContactDecision(
             (contacts[0], contacts[1]),
             wrench,
             0.5 * (positions[:, 0] + positions[:, 2]),
             any(foot_of_plate[k] < 0 for k in loaded),
-            ContactMemory(tuple(foot_of_plate), tuple(latest), elsewhere.sole_height_m, elsewhere.touching_s),
+            ContactMemory(
+                tuple(foot_of_plate),
+                tuple(latest),
+                elsewhere.sole_height_m,
+                elsewhere.touching_s,
+                elsewhere.movement,
+                (right, left),
+            ),
             shared,
             free,
             elsewhere.near,
+            elsewhere.floor_m_s,
         )
 
     def planted(self, decision: ContactDecision, q: Array, foot: int) -> Planted | None:

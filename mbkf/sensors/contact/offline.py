@@ -34,6 +34,7 @@ from mbkf.sensors.contact.thresholds import (
     MIXED_SHARE,
     PARTED_M_S,
     REACH_M,
+    SOLE_ENDS,
     STAND_HEIGHT_M,
     STAND_SPEED_M_S,
     STANDING_SHARE,
@@ -104,14 +105,43 @@ def assign_feet(
         shared = share_load(wrench[t, on].sum(axis=0), soles[t].tolist(), q[t, :3], surface)
         total[t], at_feet[t] = shared.wrench, shared.centres_m
         free[t] = free_moment(shared.wrench, shared.centres_m)
-    touching = _touching(soles, foot, rate_hz)
+    touching = _touching(soles, foot, rate_hz) & ~_over_idle_plate(
+        PlateAreas(plates), soles, pressure, recorded
+    )
     flight = ~touching.any(axis=1) & _falling(q[:, 2], rate_hz)
     valid, warnings = _validity(model, touching, flight, foot, wrench, pressure, recorded)
     valid &= ~_on_silent_plate(PlateAreas(plates), soles, foot, recorded, rate_hz)
-    lowest = soles[..., 2].min(axis=(1, 2))
-    floor = float(np.nanpercentile(lowest, FLOOR_PERCENTILE)) if not np.isnan(lowest).all() else np.nan
     unread = touching & ~_on_plate(foot)
-    return FootLoads(total, at_feet, free, wrench, foot, valid, unread, floor, warnings)
+    return FootLoads(
+        total, at_feet, free, wrench, foot, valid, unread, _floor_height(soles, _on_plate(foot)), warnings
+    )
+
+
+def _floor_height(soles: Array, loaded: BoolArray) -> float:
+    """Height of the floor: the usual one of soles (T, 2, 3, 3) that plates see loaded (T, 2), else of the lowest ones.
+
+    The toe end dips into the floor when the toes bend, so that heel and ball count. NaN where no sole was tracked.
+    """
+    lowest = soles[:, :, :SOLE_ENDS, 2].min(axis=2)
+    known = ~np.isnan(lowest)
+    if (loaded & known).any():
+        return float(np.median(lowest[loaded & known]))
+    return float(np.percentile(lowest[known], FLOOR_PERCENTILE)) if known.any() else np.nan
+
+
+def _over_idle_plate(areas: PlateAreas, soles: Array, pressure: Array, recorded: BoolArray) -> BoolArray:
+    """(T, 2) feet whose sole's middle lies over a plate that is recorded and not loaded: they carry nothing.
+
+    Args:
+        areas: Outlines of the plates.
+        soles: (T, 2, 3, 3) sole points, NaN where untracked.
+        pressure: (T, P, 3) centres of pressure, NaN where not loaded.
+        recorded: (T, P) where plates were recorded.
+    """
+    middles = 0.5 * (soles[:, :, 0, :2] + soles[:, :, 2, :2])
+    idle = recorded & np.isnan(pressure[:, :, 0])
+    inside = areas.contain(middles.reshape(-1, 2)).reshape(len(soles), 2, -1)
+    return np.asarray((inside & idle[:, None]).any(axis=2))
 
 
 def _foot_of_plate(pressure: Array, soles: Array, vertical_n: Array, rate_hz: float) -> Array:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from math import inf
 from typing import NamedTuple
 
 from mbkf.conventions import Array
+from mbkf.sensors.contact.floor import NO_MOVEMENT, Movement
 from mbkf.sensors.contact.sharing import SharedLoad, Stance
 
 
@@ -43,19 +45,30 @@ class ContactMemory:
         pressed: (K,) last centre of pressure on each plate and its foot; None before the plate was loaded.
         sole_height_m: Height at which the body's loaded soles lie, NaN before one was loaded.
         touching_s: For how long right and left foot have touched the floor without a reading.
+        movement: The last frames of the body's movement.
+        lowest_ball_m: Least height of right and left ball while the foot has touched the floor.
     """
 
     foot_of_plate: tuple[int, ...]
     pressed: tuple[Pressed | None, ...]
     sole_height_m: float
     touching_s: tuple[float, float]
+    movement: Movement = NO_MOVEMENT
+    lowest_ball_m: tuple[float, float] = (inf, inf)
 
 
 class FreeStance(NamedTuple):
-    """Both feet on floor that no plate reads: where they are expected to be loaded, and the pelvis (3,)."""
+    """Both feet on floor that no plate reads.
+
+    Attributes:
+        stance: Where they are expected to be loaded.
+        pelvis_m: (3,) the pelvis.
+        push_share: Share of the load on right and left foot while it pushes off; None while it does not.
+    """
 
     stance: Stance
     pelvis_m: Array
+    push_share: tuple[float | None, float | None] = (None, None)
 
 
 @dataclass(frozen=True)
@@ -72,6 +85,7 @@ class ContactDecision:
         shared: How the feet share a plate; None where they do not.
         free: Where both feet stand if both carry weight where no plate reads; None else.
         near: How near right and left foot in the air are to touching a floor that no plate reads, 0 to 1.
+        floor_m_s: Horizontal velocity of the floor: that of a belt, else zero.
     """
 
     contacts: tuple[Contact, Contact]
@@ -82,6 +96,7 @@ class ContactDecision:
     shared: SharedLoad | None = None
     free: FreeStance | None = None
     near: tuple[float, float] = (0.0, 0.0)
+    floor_m_s: tuple[float, float] = (0.0, 0.0)
 
 
 class Planted(NamedTuple):

@@ -21,6 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import exp
 from typing import NamedTuple
 
 import numpy as np
@@ -56,6 +57,15 @@ LEAST_SHARE = 0.05
 """Share of the plate's force that a foot is taken to carry at least where spreads are counted."""
 
 
+PUSH_SHARE, PUSH_RISE_M = 0.8, 0.0125
+"""Share of both feet's load on a foot that pushes off as its ball begins to rise, and the rise over which that falls to
+its e-th part. Set on HC032A and the rajagopal walk; the shares of gaitalytics, HC044A, gait2354 (on a treadmill) and
+Rehazenter's slow walk lie within a third of it."""
+
+HEEL_OFF_M, PUSH_AFTER_S = 0.06, 0.15
+"""A foot pushes off when its heel is higher than its ball by this, and it has stood for this long."""
+
+
 @dataclass(frozen=True)
 class SharedLoad:
     """A plate's reading shared between two feet.
@@ -88,6 +98,20 @@ class Stance(NamedTuple):
     def centres_at(self, share: float) -> Array:
         """(2, 3) expected centres of pressure while the right foot carries this share of the load."""
         return np.asarray(self.centres_m + np.array([[share - 1.0], [share]]) * self.roll_m)
+
+
+def push_share(sole: Sole, lowest_ball_m: float, stood_s: float) -> float | None:
+    """Share of both feet's load on a foot that pushes off, None for one that does not.
+
+    Args:
+        sole: Heel, ball and toe end of its sole.
+        lowest_ball_m: Least height of its ball while it has stood.
+        stood_s: For how long it has.
+    """
+    heel, ball, _ = sole
+    if heel[2] - ball[2] < HEEL_OFF_M or stood_s < PUSH_AFTER_S:
+        return None
+    return PUSH_SHARE * exp(-max(ball[2] - lowest_ball_m, 0.0) / PUSH_RISE_M)
 
 
 def share_load(total: Array, soles: Sequence[Sole], pelvis_m: Array, surface_m: float) -> SharedLoad:

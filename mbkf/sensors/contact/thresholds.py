@@ -18,10 +18,17 @@ which a body in flight falls, and what a body does that legs still support. The 
 acceleration, the offline assignment the curvature of the pelvis's height."""
 
 FALL_WINDOW_S = 0.07
-"""Offline: duration over which that curvature is fitted; long enough for the noise of a differentiated height."""
+"""Duration over which that curvature is fitted; long enough for the noise of a differentiated height. Causal: a fall
+that has been predicted for that long has to show in it."""
 
 FALL_EDGE_S = 0.02
 """Offline: flight begins and ends this much earlier and later, as the window blurs its edges."""
+
+BELT_WINDOW_S = 1.0
+STILL_FLOOR_S = 0.1
+BELT_FROM_M_S = 0.4
+"""Causal: the floor's velocity is the median of what low sole points did over the last second, with a tenth of a
+second's worth of a floor that stands still, and nothing below the last limit, which standing feet may do anyway."""
 
 TOUCH_HEIGHT_M = 0.025
 """Soles within this height of each other, or of the floor, are level with it. Offline, a lower sole point touches."""
@@ -36,6 +43,12 @@ STAND_AFTER_S = 0.025
 """Causal: a foot lower and slower than this for that long carries weight, unless a plate below it reads nothing. The
 limits are wider than offline, since a landing heel is pitched and touches above the level of a flat sole, and since a
 foot held to be in the air would be denied its reaction. The delay gives the foot's plate time to read first."""
+
+ALONE_HEIGHT_M = 0.06
+ALONE_SPEED_M_S = 3.0
+"""Causal: the limits for a foot beside which nothing else carries the body: a runner lands on a foot that is still
+that fast against the floor. Held to be in the air, it would make the body fall; held to bear too early, it is found to
+carry nothing."""
 
 LEAVE_SLACK = 1.7
 """Causal: a standing foot has left the floor when it is higher or faster than the above times this. Hysteresis against

@@ -6,17 +6,20 @@ In the air a body falls. Where both feet are in the air and it does not fall, so
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import exp, hypot, isnan
+from math import exp, hypot, isnan, nan
 from typing import NamedTuple
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
+from mbkf.sensors.contact.floor import Movement
 from mbkf.sensors.contact.plates import PlateAreas
 from mbkf.sensors.contact.records import Contact, ContactMemory, Pressed
 from mbkf.sensors.contact.soles import Sole, distance_to_sole
 from mbkf.sensors.contact.thresholds import (
+    ALONE_HEIGHT_M,
+    ALONE_SPEED_M_S,
     FALL_M_S2,
     FLOOR_SHARE,
     LEAVE_SLACK,
@@ -36,12 +39,16 @@ class Elsewhere(NamedTuple):
         carrying: The feet.
         sole_height_m: Height at which the body's loaded soles lie, NaN before one was loaded.
         touching_s: For how long right and left foot have touched the floor without a reading.
+        movement: The last frames of the body's movement.
+        floor_m_s: Horizontal velocity of the floor.
         near: How near right and left foot in the air are to touching a floor that no plate reads, 0 to 1.
     """
 
     carrying: Sequence[int]
     sole_height_m: float
     touching_s: tuple[float, float]
+    movement: Movement
+    floor_m_s: tuple[float, float]
     near: tuple[float, float] = (0.0, 0.0)
 
 
@@ -84,33 +91,78 @@ class UnmeasuredFeet:
         """
         q, v, a = motion
         height = self._sole_height(memory.sole_height_m, soles, contacts)
+        movement = self._movement(memory.movement, soles, (q, v), height)
+        moves = movement.floor_m_s(self._dt_s)
         if Contact.AIR not in contacts:
-            return Elsewhere((), height, (0.0, 0.0))
-        idle = _Idle(unloaded, memory.pressed)
+            return Elsewhere((), height, (0.0, 0.0), movement._replace(airborne=0), moves)
+        floor = _Floor(height if not isnan(height) else self._floor, *moves)
+        idle = _Idle(unloaded, memory.pressed, moves != (0.0, 0.0))
         before_s = memory.touching_s
         if silent is not None and silent.any():
             before_s = self._carried_on(memory, silent)
-        touching = self._touching(before_s, contacts, soles, (q, v), height, idle)
+        touching = self._touching(before_s, contacts, soles, (q, v), floor, idle)
         carrying = [f for f in (0, 1) if touching[f] > STAND_AFTER_S]
         in_air = contacts[0] == contacts[1] == Contact.AIR
-        if not carrying and in_air and not _falls(q, v, a):
+        quiet = unloaded if silent is None else unloaded | silent
+        if not carrying and in_air and quiet.all():
+            lowest = floor._replace(height=np.fmin(floor.height, self._floor))
+            carrying = self._alone(soles, (q, v), lowest, idle)
+        falls = _falls(q, v, a) and not movement.held_up(self._dt_s)
+        if not carrying and in_air and not falls:
             carrying = self._holding(soles, idle)
+        movement = movement._replace(airborne=movement.airborne + 1 if in_air and not carrying else 0)
+        alone = in_air and not carrying and not unloaded.any()
+        limits = (ALONE_HEIGHT_M, ALONE_SPEED_M_S) if alone else (STAND_HEIGHT_M, STAND_SPEED_M_S)
         near = [
             0.0
             if f in carrying or contacts[f] != Contact.AIR or self._watched(f, soles[f], idle)
-            else self._near(f, soles[f], (q, v), height)
+            else self._near(f, soles[f], (q, v), floor, limits)
             for f in (0, 1)
         ]
-        return Elsewhere(carrying, height, touching, (near[0], near[1]))
+        return Elsewhere(carrying, height, touching, movement, moves, (near[0], near[1]))
 
-    def _near(self, foot: int, sole: Sole, motion: tuple[Array, Array], height: float) -> float:
-        """How near a foot is to touching the floor, 0 to 1: low and slow, as Gaussians of the limits of standing."""
+    def _movement(
+        self, before: Movement, soles: Sequence[Sole], motion: tuple[Array, Array], height: float
+    ) -> Movement:
+        """The movement up to this frame.
+
+        Args:
+            before: That of the frame before.
+            soles: Heel, ball and toe end of both soles.
+            motion: Predicted (nq,) configuration and (nv,) velocity.
+            height: Height of loaded soles, NaN before one was loaded.
+        """
         floor = height if not isnan(height) else self._floor
-        if isnan(floor):
+        foot = min((0, 1), key=lambda f: _height(soles[f]))
+        point = min(soles[foot][:SOLE_ENDS], key=lambda end: end[2])
+        low = (nan, nan)
+        if point[2] < floor + STAND_HEIGHT_M:
+            x, y, _ = self._velocities(foot, [point], motion)[0]
+            low = (x, y)
+        return before.with_frame(low, motion[0][:3], self._dt_s)
+
+    def _near(
+        self,
+        foot: int,
+        sole: Sole,
+        motion: tuple[Array, Array],
+        floor: _Floor,
+        limits: tuple[float, float],
+    ) -> float:
+        """How near a foot is to touching the floor, 0 to 1: low and slow, as Gaussians of limits.
+
+        Args:
+            foot: 0 right, 1 left.
+            sole: Its sole.
+            motion: Predicted (nq,) configuration and (nv,) velocity.
+            floor: The floor.
+            limits: Of height, m, and speed, m/s.
+        """
+        if isnan(floor.height):
             return 0.0
-        speeds = self._speeds(foot, sole, motion)
+        speeds = self._speeds(foot, sole, motion, floor)
         away = [
-            (max(point[2] - floor, 0.0) / STAND_HEIGHT_M) ** 2 + (speed / STAND_SPEED_M_S) ** 2
+            (max(point[2] - floor.height, 0.0) / limits[0]) ** 2 + (speed / limits[1]) ** 2
             for point, speed in zip(sole, speeds, strict=True)
         ]
         return exp(-0.5 * min(away))
@@ -131,21 +183,54 @@ class UnmeasuredFeet:
         contacts: Sequence[Contact],
         soles: Sequence[Sole],
         motion: tuple[Array, Array],
-        height: float,
+        floor: _Floor,
         idle: _Idle,
     ) -> tuple[float, float]:
-        """For how long right and left foot have touched the floor where no plate reads, s."""
+        """For how long right and left foot have touched the floor where no plate reads, s.
+
+        Args:
+            before_s: The same in the frame before.
+            contacts: What right and left foot stand on by the plates.
+            soles: Heel, ball and toe end of both soles.
+            motion: Predicted (nq,) configuration and (nv,) velocity.
+            floor: The floor.
+            idle: Plates that read nothing.
+        """
 
         def since(f: int) -> float:
             if contacts[f] != Contact.AIR:
                 return 0.0
             # A foot that stood must clearly leave the floor.
             slack = LEAVE_SLACK if before_s[f] > STAND_AFTER_S else 1.0
-            touches = self._touches(f, soles[f], motion, height, slack)
+            limits = slack * STAND_HEIGHT_M, slack * STAND_SPEED_M_S
+            touches = self._touches(f, soles[f], motion, floor, limits)
             stands = touches and not self._watched(f, soles[f], idle)
             return before_s[f] + self._dt_s if stands else 0.0
 
         return since(0), since(1)
+
+    def _alone(
+        self, soles: Sequence[Sole], motion: tuple[Array, Array], floor: _Floor, idle: _Idle
+    ) -> list[int]:
+        """Feet low enough to land or to push off, where nothing else carries the body.
+
+        A plate without an outline may lie under any foot but one that another foot pressed.
+
+        Args:
+            soles: Heel, ball and toe end of both soles.
+            motion: Predicted (nq,) configuration and (nv,) velocity.
+            floor: The floor.
+            idle: Plates that read nothing.
+        """
+        limits = ALONE_HEIGHT_M, ALONE_SPEED_M_S
+        latest = [idle.pressed[k] for k in (idle.plates & ~self._areas.known).nonzero()[0].tolist()]
+        return [
+            f
+            for f in (0, 1)
+            if self._touches(f, soles[f], motion, floor, limits)
+            and not self._watched(f, soles[f], idle)
+            and all(place is not None and place.owner == 1 - f for place in latest)
+        ]
 
     def _holding(self, soles: Sequence[Sole], idle: _Idle) -> list[int]:
         """The lower foot, or both where they are level: something carries a body that does not fall."""
@@ -165,7 +250,7 @@ class UnmeasuredFeet:
         return known
 
     def _touches(
-        self, foot: int, sole: Sole, motion: tuple[Array, Array], height: float, slack: float
+        self, foot: int, sole: Sole, motion: tuple[Array, Array], floor: _Floor, limits: tuple[float, float]
     ) -> bool:
         """Whether heel or ball is low and slow enough to touch the floor.
 
@@ -173,21 +258,25 @@ class UnmeasuredFeet:
             foot: 0 right, 1 left.
             sole: Its sole.
             motion: Predicted (nq,) configuration and (nv,) velocity.
-            height: Height of loaded soles, NaN before one was loaded.
-            slack: Factor on the limits.
+            floor: The floor.
+            limits: Of height, m, and speed, m/s.
         """
-        floor = height if not isnan(height) else self._floor
-        low = [point for point in sole[:SOLE_ENDS] if point[2] < floor + slack * STAND_HEIGHT_M]
-        if not low:
-            return False
-        return min(self._speeds(foot, low, motion)) < slack * STAND_SPEED_M_S
+        height, speed = limits
+        low = [point for point in sole[:SOLE_ENDS] if point[2] < floor.height + height]
+        return bool(low) and min(self._speeds(foot, low, motion, floor)) < speed
 
-    def _speeds(self, foot: int, points: Sole, motion: tuple[Array, Array]) -> list[float]:
-        """Speeds of world points that move with a foot."""
+    def _speeds(self, foot: int, points: Sole, motion: tuple[Array, Array], floor: _Floor) -> list[float]:
+        """Speeds against the floor of world points that move with a foot."""
+        return [hypot(x - floor.vx, y - floor.vy, z) for x, y, z in self._velocities(foot, points, motion)]
+
+    def _velocities(
+        self, foot: int, points: Sole, motion: tuple[Array, Array]
+    ) -> list[tuple[float, float, float]]:
+        """Velocities of world points that move with a foot."""
         q, v = motion
         # The foot's velocity at the world's origin, from which each point's follows.
         vx, vy, vz, wx, wy, wz = (self._model.spatial_jacobian(q) @ (v * self._moves[foot])).tolist()
-        return [hypot(vx + wy * z - wz * y, vy + wz * x - wx * z, vz + wx * y - wy * x) for x, y, z in points]
+        return [(vx + wy * z - wz * y, vy + wz * x - wx * z, vz + wx * y - wy * x) for x, y, z in points]
 
     def _watched(self, foot: int, sole: Sole, idle: _Idle) -> bool:
         """Whether an unloaded plate lies under a foot, so that the foot carries nothing.
@@ -201,16 +290,28 @@ class UnmeasuredFeet:
             pressed = idle.pressed[k]
             if pressed is None or pressed.owner != foot:
                 continue
-            if distance_to_sole(pressed.x, pressed.y, sole) <= REACH_M:
+            if idle.belt or distance_to_sole(pressed.x, pressed.y, sole) <= REACH_M:
                 return True
         return False
 
 
+class _Floor(NamedTuple):
+    """Height (NaN where not known) and horizontal velocity of the floor, m and m/s."""
+
+    height: float
+    vx: float
+    vy: float
+
+
 class _Idle(NamedTuple):
-    """Plates (K,) that are recorded and not loaded, and where all were pressed last."""
+    """Plates (K,) that are recorded and not loaded, where all were pressed last, and whether they are belts.
+
+    A belt lies under its foot wherever that steps.
+    """
 
     plates: BoolArray
     pressed: tuple[Pressed | None, ...]
+    belt: bool
 
 
 def _height(sole: Sole) -> float:

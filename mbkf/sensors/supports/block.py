@@ -57,7 +57,7 @@ class SupportDecision(NamedTuple):
 
     Attributes:
         parts: The parts, in the order of the body's bearings; none where only feet bear.
-        fresh: Whether they have just begun to.
+        fresh: Whether they have just begun or ceased to.
         points: Where all parts are.
         about_m: (3,) middle of those that bear, else the pelvis's origin.
     """
@@ -115,11 +115,11 @@ class Supports(Block[LoadedState, None, SupportDecision, tuple[int, ...]]):
         points = self.bearings.at(state.q, state.v)
         middle = points.points_m[list(parts)].mean(axis=0) if parts else state.q[:3]
         notes.supports = parts
-        return SupportDecision(parts, bool(parts) and not memory, points, middle)
+        return SupportDecision(parts, bool(parts) != bool(memory), points, middle)
 
     def inflate(self, P: Array, decision: SupportDecision) -> None:
-        """The wrench's random walk about the middle of what bears; wide in the frame in which it begins."""
-        if not decision.parts:
+        """The wrench's random walk about the middle of what bears; wide where it begins or ends."""
+        if not decision.parts and not decision.fresh:
             return
         shift = about(-decision.about_m) * (self._jump if decision.fresh else self._walk)
         own = P[self._slice, self._slice]

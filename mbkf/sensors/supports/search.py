@@ -17,14 +17,16 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
 from mbkf.numerics.windows import dilated
 from mbkf.sensors.contact.offline import FootLoads, stretches
+from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.sensors.supports.momentum import WholeBody
 
 WINDOW_S, EDGE_WINDOW_S = 0.25, 0.1
 """Durations over which a missing wrench is taken: to see that there is one, and when it begins and ends."""
 
-LEAST_SHARE, EDGE_SHARE = 0.08, 0.04
-"""A missing force of this share of body weight is one, and lasts as long as it is more than the second."""
+LEAST_SHARE, LASTING_SHARE, EDGE_SHARE = 0.08, 0.04, 0.025
+"""A missing force of the first share of body weight is one, lasts as long as it is more than the second over the wide
+window, and begins and ends where it is more than the third over the narrow one."""
 
 LASTING_S = 0.25
 """It lasts at least so long: what bodies' masses are wrong by swings faster in a step."""
@@ -37,6 +39,9 @@ BODY_LEVER_M = 0.02
 
 FITS = 2.0
 """A missing wrench acts on a part whose middle its line of action misses by less than this many deviations."""
+
+SOLE_LEVER_M = 0.1
+"""How far from the middle of a sole its centre of pressure may lie."""
 
 PAIR_PENALTY = 0.5
 """Two parts must fit better than one by this, squared deviations: they have a share that is free."""
@@ -76,9 +81,13 @@ def other_contacts(
     """
     bearings = BearingParts(model)
     points, speeds = _moving(bearings, q, v)
-    judged = read & ~loads.unread.any(axis=1) & ~np.isnan(q).any(axis=1)
-    flags, remarks = _missing(bearings, points, WholeBody.of(model, q, v), rate_hz, loads, judged)
-    return OtherContacts(flags | _lying(bearings, points, speeds, rate_hz, loads.floor_m, judged), remarks)
+    judged = read & loads.valid & ~np.isnan(q).any(axis=1)
+    body, feet = WholeBody.of(model, q, v), sole_points(model, q).mean(axis=2)
+    flags, remarks = _missing(bearings, np.concatenate([points, feet], axis=1), body, rate_hz, loads, judged)
+    lying = _lying(bearings, points, speeds, rate_hz, loads.floor_m)
+    # Beside a part that is seen to bear on the floor, others that lie there bear as well.
+    kneels = (flags & lying).any(axis=1)
+    return OtherContacts(flags | (lying & (kneels | ~judged)[:, None]), remarks)
 
 
 def _moving(bearings: BearingParts, q: Array, v: Array) -> tuple[Array, Array]:
@@ -102,19 +111,20 @@ def _missing(
 
     Args:
         bearings: The parts.
-        points: (T, B, 3) their middles.
+        points: (T, B + 2, 3) their middles, and those of the soles of right and left foot.
         body: The body's momentum.
         rate_hz: Frame rate.
         loads: What the plates give to the feet.
         judged: (T,) frames in which they give all that the feet bear.
     """
-    flags = np.zeros(points.shape[:2], dtype=bool)
+    flags = np.zeros((len(points), len(bearings)), dtype=bool)
     given = np.where(judged[:, None], loads.wrench.sum(axis=1), 0.0)
     weight_n = float(np.linalg.norm(body.weight))
     slow, fast = (body.missing_wrench(given, rate_hz, s) for s in (WINDOW_S, EDGE_WINDOW_S))
     # A window that reaches into frames that cannot be judged cannot be either.
     clear = judged & ~dilated(~judged, round(0.5 * WINDOW_S * rate_hz))
-    lacks = clear & (np.linalg.norm(slow[:, :3], axis=1) > LEAST_SHARE * weight_n)
+    size = np.where(clear, np.linalg.norm(slow[:, :3], axis=1), 0.0)
+    lacks = size > LEAST_SHARE * weight_n
     if lacks.sum() > ALWAYS_SHARE * max(int(clear.sum()), 1):
         share = 100.0 * float(np.mean(slow[lacks, 2])) / weight_n
         return flags, (
@@ -122,16 +132,18 @@ def _missing(
             "plates' scale or the axes may be wrong",
         )
     remarks = []
-    for run in _lasting(lacks, rate_hz):
+    for run in _lasting(size > LASTING_SHARE * weight_n, rate_hz):
         force = slow[run, :3].mean(axis=0)
-        if np.linalg.norm(force) < LEAST_SHARE * weight_n:
+        if lacks[run].sum() < LASTING_S * rate_hz or np.linalg.norm(force) < LASTING_SHARE * weight_n:
             continue
         parts = _fitting(bearings, points[run] - body.centre_m[run, None], slow[run], weight_n)
         frames = _edges(run, fast[:, :3], force, weight_n, rate_hz, judged)
+        if parts is not None and parts[0] >= len(bearings):
+            continue
         if parts is None:
-            size, since = float(np.linalg.norm(force)), run[0] / rate_hz
+            much, since = float(np.linalg.norm(force)), run[0] / rate_hz
             remarks.append(
-                f"from {since:.2f} s for {len(run) / rate_hz:.2f} s the motion asks for {size:.0f} N that neither the "
+                f"from {since:.2f} s for {len(run) / rate_hz:.2f} s the motion asks for {much:.0f} N that neither the "
                 "plates nor a part of the body that could bear it account for"
             )
         else:
@@ -192,15 +204,18 @@ def _edges(
 def _fitting(bearings: BearingParts, arms: Array, missing: Array, weight_n: float) -> tuple[int, ...] | None:
     """Parts through which a stretch's missing wrench leads best; None where it leads through none.
 
+    A foot that no plate was seen to carry may be it as well: B for the right one, B + 1 for the left.
+
     Args:
         bearings: The parts.
-        arms: (n, B, 3) from the centre of mass to their middles.
+        arms: (n, B + 2, 3) from the centre of mass to their middles and those of the soles.
         missing: (n, 6) wrench about the centre of mass.
         weight_n: The body's weight.
     """
     best, least = None, FITS**2
+    levers = np.append(bearings.levers_m, [SOLE_LEVER_M, SOLE_LEVER_M])
     for parts in _groups(bearings, missing[:, :3].mean(axis=0)):
-        lever = float(bearings.levers_m[list(parts)].mean())
+        lever = float(levers[list(parts)].mean())
         off = _off(arms[:, list(parts)], missing, lever, weight_n) + PAIR_PENALTY * (len(parts) - 1)
         if off < least:
             best, least = parts, off
@@ -212,6 +227,8 @@ def _groups(bearings: BearingParts, force: Array) -> Iterator[tuple[int, ...]]:
     pushes = float(force[2]) > 0.5 * float(np.linalg.norm(force))
     usable = [k for k in range(len(bearings)) if pushes or bearings.grips[k]]
     yield from ((k,) for k in usable)
+    if pushes:
+        yield from ((len(bearings),), (len(bearings) + 1,))
     yield from (pair for pair in bearings.pairs if pair[0] in usable and pair[1] in usable)
 
 
@@ -234,10 +251,8 @@ def _off(arms: Array, missing: Array, lever_m: float, weight_n: float) -> float:
     return float((off**2).sum(axis=1).mean())
 
 
-def _lying(
-    bearings: BearingParts, points: Array, speeds: Array, rate_hz: float, floor_m: float, judged: BoolArray
-) -> BoolArray:
-    """(T, B) parts that lie on the floor in frames that plates do not judge.
+def _lying(bearings: BearingParts, points: Array, speeds: Array, rate_hz: float, floor_m: float) -> BoolArray:
+    """(T, B) parts that lie on the floor.
 
     Args:
         bearings: The parts.
@@ -245,11 +260,8 @@ def _lying(
         speeds: (T, B) how fast they move.
         rate_hz: Frame rate.
         floor_m: Height of the floor.
-        judged: (T,) frames in which plates read all that the feet bear.
     """
-    low = (
-        (points[:, :, 2] - bearings.radii_m - floor_m < ON_FLOOR_M) & (speeds < RESTS_M_S) & ~judged[:, None]
-    )
+    low = (points[:, :, 2] - bearings.radii_m - floor_m < ON_FLOOR_M) & (speeds < RESTS_M_S)
     found = np.zeros_like(low)
     for k in range(len(bearings)):
         for run in stretches(low[:, k]):

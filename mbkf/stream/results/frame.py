@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
+import numpy as np
+
 from mbkf.conventions import Array
+from mbkf.io.contacts import Source
 
 
 @dataclass(frozen=True)
@@ -26,11 +29,15 @@ class LiveFrame:
         predicted_m: (M, 3) the same markers on the body.
         unlabelled_m: (N, 3) points without a name.
         angle_sd: (A,) standard deviations of the clinical coordinates, rad; of the pelvis's translations m.
-        latency_s: Time from the frame's arrival to this result.
+        latency_s: Time from the frame's arrival to this result, a lag included.
         lost: Frames lost so far.
         rate_hz: Rate of the frames of the last second.
         tracked: Whether enough markers passed the gate to track the body.
         started: Whether the filter started, or restarted, in this frame.
+        foot_source: (2,) how the wrench of right and left foot is known (:class:`mbkf.io.contacts.Source`).
+        support: (B, 6) estimated wrench on each other part that may bear load (``description.bearings``), NaN or no
+            rows where the filter does not ask.
+        support_sd: (B, 6) their standard deviations.
     """
 
     number: int
@@ -51,6 +58,9 @@ class LiveFrame:
     rate_hz: float
     tracked: bool
     started: bool
+    foot_source: Array = field(default_factory=lambda: np.full(2, Source.MEASURED))
+    support: Array = field(default_factory=lambda: np.zeros((0, 6)))
+    support_sd: Array = field(default_factory=lambda: np.zeros((0, 6)))
 
 
 class FrameSink(Protocol):

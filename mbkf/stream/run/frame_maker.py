@@ -8,6 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
+from mbkf.filters.inverse_dynamics import support_torques
+from mbkf.filters.record import UNASKED
+from mbkf.io.contacts import foot_sources
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.pipelines.live.filter import LiveInputs
 from mbkf.sensors.contact.causal import ContactDetector
@@ -56,7 +59,10 @@ class FrameMaker:
             if np.isnan(wrench).any():
                 wrench = self._measured(q, v, a, ready.plates)
             torques = self._balance.tau(q, v, a, wrench.ravel())
+            if np.nan_to_num(found["support"]).any():
+                torques = torques - support_torques(self._sensor.model, q, found["support"])
             predicted = self._sensor.positions(q)
+        contact = None if found["footing"][0] == UNASKED else found["footing"][None]
         return LiveFrame(
             number=ready.number - self._first,
             time_s=(ready.number - self._first) / self._rate_hz,
@@ -76,6 +82,9 @@ class FrameMaker:
             rate_hz=self._rate(),
             tracked=bool(found["tracked"]),
             started=bool(found["started"]),
+            foot_source=foot_sources(contact, wrench[None])[0],
+            support=found["support"],
+            support_sd=found["support_sd"],
         )
 
     def _rate(self) -> float:

@@ -148,6 +148,10 @@ class FilterLoop:
 
     def _answer(self, steps: list[LiveStep]) -> None:
         """Gives answers to the output, each with its frame."""
+        lag = self._setup.filter.lag_frames
         for step in steps:
             at_start = step.awaited or self._starting_until_s > 0.0
-            self._output.put(self._waiting.popleft(), step, at_start, self._receiver.lost)
+            ready = self._waiting.popleft()
+            told = min(lag, len(self._waiting))
+            last = self._waiting[told - 1] if told else ready
+            self._output.put(ready, step, at_start, self._receiver.lost, last.arrival_s)

@@ -45,7 +45,7 @@ class RunOutput:
         """Counts a frame that arrived, for the rate shown."""
         self._maker.arrived(arrival_s)
 
-    def put(self, ready: ReadyFrame, step: LiveStep, at_start: bool, lost: int) -> None:
+    def put(self, ready: ReadyFrame, step: LiveStep, at_start: bool, lost: int, complete_s: float) -> None:
         """Logs and shows an answered frame.
 
         Args:
@@ -53,15 +53,17 @@ class RunOutput:
             step: The filter's answer.
             at_start: Whether the frame waited for a start of the filter, or until it had caught up.
             lost: Frames lost so far.
+            complete_s: When the last frame arrived that the answer knows: this one, or that at the end of a lag.
         """
         assert ready.markers_m is not None
         if step.trouble is not None:
             self._note("numbers", f"the filter starts anew ({step.trouble})", step.number, 1)
         row, spread = self._rows.row(step.number, ready.markers_m, step.estimate, step.seconds)
-        latency = time.perf_counter() - ready.arrival_s
+        now = time.perf_counter()
+        latency = now - ready.arrival_s
         if not ready.lost:
             row["latency_s"] = latency
-            self._statistics.answered(latency, at_start)
+            self._statistics.answered(now - complete_s, at_start)
         if step.estimate is not None and step.estimate.started:
             self._statistics.starts += 1
             if self._statistics.starts > 1:

@@ -51,7 +51,7 @@ def latency_summary(latencies_s: Sequence[float], at_start_s: Sequence[float]) -
     """Latencies in ms.
 
     Args:
-        latencies_s: Arrival to result, of frames that were answered at once.
+        latencies_s: Arrival to result, of frames that were answered at once, or when their lag was over; without it.
         at_start_s: The same of frames that waited for a start of the filter, which looks a quarter of a second ahead,
             or until it had caught up; where there are no others, the percentiles are theirs.
     """

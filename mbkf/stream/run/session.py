@@ -174,6 +174,7 @@ class LiveSession:
             "source": self._source_name,
             "trial": stream.trial,
             "filter": self._settings.filter,
+            "lag_ms": 1e3 * self.setup.filter.lag_frames / stream.rate_hz,
             **receiver.counts(),
             "frames_processed": statistics.processed,
             **statistics.latencies(recent=state == RUNNING),

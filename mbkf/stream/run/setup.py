@@ -87,7 +87,7 @@ def prepare(
     return LiveSetup(
         stream,
         live,
-        LiveFilter(chosen),
+        LiveFilter(chosen, settings.lag_s),
         FrameMaker(live, stream.rate_hz),
         FrameRecorder(chosen, len(live.names)),
         None if stream.marker_names else PointNames(subject, live.names, 1.0 / stream.rate_hz, patient, note),

@@ -34,7 +34,10 @@ class RunStatistics:
         return before
 
     def answered(self, latency_s: float, at_start: bool) -> None:
-        """Counts the latency of an answered frame, separately for frames that waited for a start of the filter."""
+        """Counts the latency of an answered frame, separately for frames that waited for a start of the filter.
+
+        It is that besides the lag: from the arrival of the last frame that the answer knows.
+        """
         (self._at_start_s if at_start else self._latencies_s).append(latency_s)
 
     def latencies(self, recent: bool) -> dict[str, float | None]:

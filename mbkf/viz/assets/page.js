@@ -4,7 +4,7 @@
 const LEGEND = [
   ["body", "Body", "■", "#8fa0b0"], ["seen", "Measured", "●", COLOURS.measured], ["predicted", "On the body", "○", COLOURS.predicted],
   ["hidden", "Not seen, predicted", "◆", COLOURS.hidden], ["refused", "Refused", "■", COLOURS.refused],
-  ["unlabelled", "Without a name", "▲", COLOURS.unlabelled], ["reactions", "Reaction", "↑", COLOURS.axis],
+  ["unlabelled", "Without a name", "▲", COLOURS.unlabelled], ["reactions", "Force, measured", "↑", COLOURS.axis], ["estimated", "Force, estimated", "⇡", COLOURS.axis],
 ];
 
 class Page {

@@ -18,7 +18,7 @@ class BodyScene {
     this.addFloor(description.plates);
     this.addBody(description.segments);
     this.addMarkers();
-    this.addReactions();
+    this.addLoads(description.loads);
     new ResizeObserver(() => this.resize()).observe(pane);
     this.resize();
   }
@@ -229,28 +229,31 @@ class BodyScene {
       refused: make(new T.BoxGeometry(0.024, 0.024, 0.024), COLOURS.refused, count),
       unlabelled: make(new T.TetrahedronGeometry(0.014), COLOURS.unlabelled, Math.max(1, unlabelled / 3)),
     };
-    this.shown = { body: true, seen: true, predicted: true, hidden: true, refused: true, unlabelled: true, reactions: true };
+    this.shown = { body: true, seen: true, predicted: true, hidden: true, refused: true, unlabelled: true, reactions: true, estimated: true };
   }
 
-  addReactions() {
-    const T = this.THREE;
-    this.arrows = ["r", "l"].map((side) => {
+  // An arrow for each load: its shaft is whole where a plate measures the force, dashed where it is estimated.
+  addLoads(loads) {
+    const T = this.THREE, dashes = 6;
+    const bar = (from, to) => new T.CylinderGeometry(0.011, 0.011, to - from, 16).translate(0, (from + to) / 2, 0);
+    this.arrows = loads.map(({ side }) => {
       const arrow = new T.Group(), solid = new T.MeshStandardMaterial({ color: COLOURS[side], roughness: 0.6 });
       const faint = new T.MeshBasicMaterial({ color: COLOURS[side], transparent: true, opacity: 0.35, depthTest: false });
       const pair = (geometry) => new T.Group().add(new T.Mesh(geometry, solid), new T.Mesh(geometry, faint));
-      const shaft = pair(new T.CylinderGeometry(0.011, 0.011, 1, 16).translate(0, 0.5, 0));
+      const whole = pair(bar(0, 1)), dashed = new T.Group();
+      for (let k = 0; k < dashes; k++) dashed.add(pair(bar(k / dashes, (k + 0.55) / dashes)));
       const head = pair(new T.ConeGeometry(0.032, 0.09, 20).translate(0, 0.045, 0));
-      arrow.add(shaft, head);
+      arrow.add(whole, dashed, head);
       arrow.visible = false;
       this.viewer.scene.add(arrow);
-      return { arrow, shaft, head };
+      return { arrow, whole, dashed, head };
     });
   }
 
   show(row) {
     this.row = row;
     this.placeSegments(row);
-    this.placeReactions(row);
+    this.placeLoads(row);
     this.viewer.set_dirty();
   }
 
@@ -307,17 +310,19 @@ class BodyScene {
     }
   }
 
-  placeReactions(row) {
+  placeLoads(row) {
     const T = this.THREE;
-    this.arrows.forEach(({ arrow, shaft, head }, foot) => {
-      const f = this.parts.force[0] + 3 * foot, p = this.parts.pressure[0] + 3 * foot;
+    this.arrows.forEach(({ arrow, whole, dashed, head }, k) => {
+      const f = this.parts.force[0] + 3 * k, p = this.parts.pressure[0] + 3 * k;
+      const estimated = row[this.parts.source[0] + k] > 1.5; // mbkf.io.contacts.Source: 1 measured, 2 shared, 3 estimated
       const force = new T.Vector3(row[f], row[f + 1], row[f + 2]), length = force.length() / this.newtonPerMetre;
-      arrow.visible = this.shown.reactions && length > 0.02 && !Number.isNaN(row[p]);
+      arrow.visible = this.shown[estimated ? "estimated" : "reactions"] && length > 0.02 && !Number.isNaN(row[p]);
       if (!arrow.visible) return;
       arrow.position.set(row[p], row[p + 1], row[p + 2]);
       arrow.quaternion.setFromUnitVectors(new T.Vector3(0, 1, 0), force.normalize());
       const tip = Math.min(0.09, 0.5 * length);
-      shaft.scale.set(1, length - tip, 1);
+      [whole.visible, dashed.visible] = [!estimated, estimated];
+      for (const shaft of [whole, dashed]) shaft.scale.set(1, length - tip, 1);
       head.position.y = length - tip;
       head.scale.setScalar(tip / 0.09);
     });

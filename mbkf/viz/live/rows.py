@@ -5,9 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.io.contacts import Source, bearing
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
+from mbkf.pipelines.results.supports import Supports, pressed_points
 from mbkf.sensors.contact.plates import pressure_and_free_moment
+from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.viz.scene.channels import Layout, marker_states
 from mbkf.viz.scene.description import segment_poses
@@ -36,7 +39,8 @@ class DisplayRows:
             surface_m: Height of the surface that centres of pressure lie on, m.
         """
         self.clinical = ClinicalAngles(model)
-        self.layout = Layout(len(model.joints), markers, len(self.clinical.names), MOST_UNLABELLED)
+        self._bearings, coordinates = BearingParts(model), len(self.clinical.names)
+        self.layout = Layout(len(model.joints), markers, coordinates, MOST_UNLABELLED, self._bearings.names)
         self._model, self._surface_m = model, surface_m
         self._before: Array | None = None
 
@@ -76,6 +80,20 @@ class DisplayRows:
 
     def _put_reactions(self, rows: Array, frame: LiveFrame) -> None:
         pressure, _ = pressure_and_free_moment(frame.wrench[None], self._surface_m, PRESSURE_FROM_N)
-        self.layout.put(rows, "force", frame.wrench[None, :, :3])
-        self.layout.put(rows, "force_sd", frame.wrench_sd[None, :, :3])
-        self.layout.put(rows, "pressure", pressure)
+        parts = self._parts(frame)
+        for part, feet, others in (
+            ("force", frame.wrench[:, :3], parts.wrench[0, :, :3]),
+            ("force_sd", frame.wrench_sd[:, :3], parts.wrench_sd[0, :, :3]),
+            ("pressure", pressure[0], parts.point_m[0]),
+            ("source", frame.foot_source, np.where(bearing(parts.wrench)[0], Source.ESTIMATED, Source.NONE)),
+        ):
+            self.layout.put(rows, part, np.concatenate([feet, others])[None])
+
+    def _parts(self, frame: LiveFrame) -> Supports:
+        """Loads on other parts than the feet; NaN where the filter does not ask."""
+        names = self._bearings.names
+        unknown = np.full((1, len(names), 6), np.nan)
+        if not names or len(frame.support) != len(names) or not np.isfinite(frame.q).all():
+            return Supports(names, unknown, unknown, unknown[..., :3])
+        points = pressed_points(self._bearings, frame.q, frame.support)
+        return Supports(names, frame.support[None], frame.support_sd[None], points[None])

@@ -1,4 +1,4 @@
-"""One self-contained page about a reconstruction: quality first, then gait, motion, reactions and settings."""
+"""One self-contained page about a reconstruction: quality first, then gait, motion, loads and settings."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ from mbkf.pipelines.results.progression import LABORATORY
 from mbkf.pipelines.results.summary import progression_summary
 from mbkf.viz.markup import folded, paragraph, section, table
 from mbkf.viz.page import asset
+from mbkf.viz.report.contacts import contact_section
 from mbkf.viz.report.gait import gait_section
 from mbkf.viz.report.motion import motion_section, reaction_section
 from mbkf.viz.report.quality import quality_section
 
 NAVIGATION = (
     ("quality", "Quality"), ("gait", "Gait"), ("motion", "Angles and torques"), ("reactions", "Reactions"),
-    ("settings", "Settings"),
+    ("contacts", "Contacts"),    ("settings", "Settings"),
 )  # fmt: skip
 
 
@@ -40,7 +41,8 @@ def report_page(
     gait = find_gait(r) if r.tracked.any() else None
     sections = [quality_section(r, summary, labels)]
     if r.tracked.any():
-        sections += [gait_section(gait, r.times_s), motion_section(r, gait), reaction_section(r, gait)]
+        sections += [gait_section(gait, r.times_s), motion_section(r, gait)]
+        sections += [reaction_section(r, gait), contact_section(r)]
     sections.append(_settings(r, summary))
     there = [entry for entry in NAVIGATION if any(f'<section id="{entry[0]}"' in s for s in sections)]
     links = "".join(f'<a href="#{name}">{title}</a>' for name, title in there)
@@ -111,16 +113,23 @@ def _heading(r: Reconstruction) -> str:
         f"{r.subject.mass_kg:.1f} kg{height}",
         f"{r.frames} frames at {r.rate_hz:g} Hz, {duration:.2f} s",
         f"{len(r.marker_names)} markers, protocol {r.protocol}",
-        f"{r.filter} filter{', smoothed' if r.smoothed else ', frame by frame'}",
+        f"{r.filter} filter, {_later(r)}",
         f"mbkf {r.version}",
     )
     return f"<h1>{escape(r.trial)}</h1><p class='facts'>{' · '.join(escape(fact) for fact in facts)}</p>"
 
 
+def _later(r: Reconstruction) -> str:
+    """Which later frames a frame knows."""
+    if r.smoothed:
+        return "smoothed"
+    return f"fixed lag of {r.lag_ms:g} ms" if r.lag_ms else "frame by frame"
+
+
 def _settings(r: Reconstruction, summary: Mapping[str, object]) -> str:
     speed = summary.get("realtime_factor")
     seconds = summary.get("step_seconds_median")
-    run = [("filter", r.filter), ("smoothed", "yes" if r.smoothed else "no"), ("version", r.version)]
+    run = [("filter", r.filter), ("later frames", _later(r)), ("version", r.version)]
     if speed and isinstance(speed, int | float) and isinstance(seconds, int | float):
         run.append(
             ("computing time", f"{1e3 * seconds:.2f} ms a frame (median), {speed:.1f} times real time")

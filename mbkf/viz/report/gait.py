@@ -8,11 +8,8 @@ from mbkf.conventions import SIDES, Array
 from mbkf.pipelines.gait.cycles import Gait, GaitParameter
 from mbkf.pipelines.gait.events import FootEvents
 from mbkf.viz.markup import paragraph, section, table
-from mbkf.viz.svg import number, ticks
+from mbkf.viz.svg import Bar, bar_chart, number
 from mbkf.viz.wording import SIDE_NAMES
-
-WIDTH, NAME, ROW = 1000.0, 60.0, 20.0
-"""Measures of the drawing of the stance phases."""
 
 DIGITS = {"steps/min": 1, "m/s": 2, "m": 3, "s": 3, "%": 1}
 
@@ -40,27 +37,13 @@ def gait_section(gait: Gait | None, times_s: Array) -> str:
 def stance_chart(gait: Gait, times_s: Array) -> str:
     """When each foot stood, as bars over time; a stance that the trial cuts off is pale."""
     first, last = float(times_s[0]), float(max(times_s[-1], times_s[0] + 1e-3))
-    per_second = (WIDTH - NAME - 10.0) / (last - first)
-    parts = []
-    for row, (side, events) in enumerate(zip(SIDES, gait.events, strict=True)):
-        y = ROW * row
-        parts.append(f'<text class="name" x="{NAME - 8:g}" y="{y + 13:g}">{SIDE_NAMES[side]} foot</text>')
-        for start, end, whole in _stances(events, first, last):
-            x = NAME + (start - first) * per_second
-            cut = "" if whole else " cut"
-            parts.append(
-                f'<rect class="{side}{cut}" x="{x:.1f}" y="{y + 4:g}" width="{(end - start) * per_second:.1f}" '
-                f'height="{ROW - 8:g}" rx="2"/>'
-            )
-    found, digits = ticks(first, last, 10)
-    for value in found:
-        unit = " s" if value == found[-1] else ""
-        x = NAME + (value - first) * per_second
-        parts.append(f'<text class="x" x="{x:.1f}" y="{2 * ROW + 12:g}">{number(value, digits)}{unit}</text>')
-    return (
-        f'<svg class="feet" viewBox="0 0 {WIDTH:g} {2 * ROW + 16:g}" role="img" '
-        f'aria-label="When each foot stood">{"".join(parts)}</svg>'
-    )
+    bars = [
+        Bar(row, start, end, side if whole else f"{side} cut")
+        for row, (side, events) in enumerate(zip(SIDES, gait.events, strict=True))
+        for start, end, whole in _stances(events, first, last)
+    ]
+    names = [f"{SIDE_NAMES[side]} foot" for side in SIDES]
+    return bar_chart("When each foot stood", names, bars, (first, last))
 
 
 def _stances(events: FootEvents, first: float, last: float) -> list[tuple[float, float, bool]]:

@@ -77,8 +77,8 @@ def motion_section(r: Reconstruction, gait: Gait | None) -> str:
     body = [_unobserved(r), _ranges(r)]
     if gait is not None:
         body += _curves(r, "over the gait cycle", partial(cycle_chart, r.times_s, gait), gait, broad=False)
-    against = _curves(r, "against time", partial(time_chart, r.times_s), None, broad=_long(r))
-    body += [folded("Angles and torques against time", *against)] if gait and _long(r) else against
+    against = _curves(r, "against time", partial(time_chart, r.times_s), None, broad=is_long(r))
+    body += [folded("Angles and torques against time", *against)] if gait and is_long(r) else against
     return section("motion", "Joint angles and torques", *body)
 
 
@@ -89,12 +89,12 @@ def _curves(
     parts = [
         f"<h3>Joint angles {how}</h3>",
         _key(gait),
-        _charts(angle_cells(r, names.legs), draw, broad),
-        folded("Trunk, head and arms: angles", _charts(angle_cells(r, names.upper), draw, broad)),
+        charts(angle_cells(r, names.legs), draw, broad),
+        folded("Trunk, head and arms: angles", charts(angle_cells(r, names.upper), draw, broad)),
         f"<h3>Joint torques {how}</h3>",
         paragraph(_TORQUE_NOTE),
-        _charts(torque_cells(r, names.loaded), draw, broad),
-        folded("Trunk, head and arms: torques", _charts(torque_cells(r, names.upper), draw, broad)),
+        charts(torque_cells(r, names.loaded), draw, broad),
+        folded("Trunk, head and arms: torques", charts(torque_cells(r, names.upper), draw, broad)),
     ]
     return parts if names.upper else [part for k, part in enumerate(parts) if k not in (3, 7)]
 
@@ -113,10 +113,10 @@ def reaction_section(r: Reconstruction, gait: Gait | None) -> str:
         cells = reaction_cells(r, 100.0 / weight, "% body weight")
         body += [
             "<h3>Over the gait cycle</h3>",
-            _charts([cells], partial(cycle_chart, r.times_s, gait), False),
+            charts([cells], partial(cycle_chart, r.times_s, gait), False),
         ]
     cells = reaction_cells(r, 1.0, "N")
-    body += ["<h3>Against time</h3>", _charts([cells], partial(time_chart, r.times_s), _long(r))]
+    body += ["<h3>Against time</h3>", charts([cells], partial(time_chart, r.times_s), is_long(r))]
     return section("reactions", "Ground reactions", _key(gait), *body)
 
 
@@ -139,22 +139,39 @@ def reaction_cells(r: Reconstruction, factor: float, unit: str) -> list[Cell]:
         factor: Factor from N to the unit shown.
         unit: The unit shown.
     """
-    axes = _facing(r)
-    force = np.einsum("tij,tfj->tfi", axes, r.foot_wrench[..., :3])
-    sd = np.full_like(force, np.nan)
-    if r.foot_wrench_sd is not None:
-        sd = np.sqrt(np.einsum("tij,tfj->tfi", axes**2, r.foot_wrench_sd[..., :3] ** 2))
-    return [
-        Cell(title, unit, positive, {
-            side: (factor * force[:, foot, axis], factor * sd[:, foot, axis]) for foot, side in enumerate(SIDES)
-        })
-        for title, axis, positive in (
-            ("Vertical", 2, "upward"), ("Fore-aft", 0, "forward"), ("Sideways", 1, "to the left"),
-        )
-    ]  # fmt: skip
+    sd = np.full_like(r.foot_wrench, np.nan) if r.foot_wrench_sd is None else r.foot_wrench_sd
+    feet: dict[str, Curve] = {side: (r.foot_wrench[:, k, :3], sd[:, k, :3]) for k, side in enumerate(SIDES)}
+    return force_cells(facing(r), feet, factor, unit)
 
 
-def _facing(r: Reconstruction) -> Array:
+def force_cells(
+    axes: Array, forces: dict[str, Curve], factor: float, unit: str, part: str = ""
+) -> list[Cell]:
+    """Charts of the three components of forces.
+
+    Args:
+        axes: (T, 3, 3) rows: forward, to the left, up.
+        forces: (T, 3) world force and standard deviations by side.
+        factor: Factor from N to the unit shown.
+        unit: The unit shown.
+        part: What the forces act on, before the charts' titles.
+    """
+    cells = []
+    for title, axis, positive in (
+        ("Vertical", 2, "upward"),
+        ("Fore-aft", 0, "forward"),
+        ("Sideways", 1, "to the left"),
+    ):
+        curves: dict[str, Curve] = {}
+        for side, (force, sd) in forces.items():
+            along = np.einsum("tj,tj->t", axes[:, axis], force)
+            spread = None if sd is None else np.sqrt(np.einsum("tj,tj->t", axes[:, axis] ** 2, sd**2))
+            curves[side] = (factor * along, None if spread is None else factor * spread)
+        cells.append(Cell(f"{part}, {title.lower()}" if part else title, unit, positive, curves))
+    return cells
+
+
+def facing(r: Reconstruction) -> Array:
     """(T, 3, 3) rows: horizontally forward as the pelvis faces on average over a second or so, left, up."""
     from scipy.ndimage import gaussian_filter1d
 
@@ -198,8 +215,14 @@ def _is_unobserved(r: Reconstruction, segment: str) -> bool:
     return any(name.startswith(f"{segment}_") for name in r.unobserved_dofs)
 
 
-def _charts(rows: list[list[Cell]], draw: Callable[[Cell], str], broad: bool) -> str:
-    """Three in a row, as many rows as joints; broad ones one below the other."""
+def charts(rows: list[list[Cell]], draw: Callable[[Cell], str], broad: bool) -> str:
+    """Charts, three in a row; broad ones one below the other.
+
+    Args:
+        rows: The cells of each row.
+        draw: Makes a cell's chart.
+        broad: Whether the charts are as broad as the page.
+    """
     if not rows:
         return paragraph("Not known: no force plate measured this trial.")
     if broad:
@@ -246,7 +269,8 @@ def cycle_chart(times_s: Array, gait: Gait, cell: Cell) -> str:
     return chart(cell.title, cell.unit, [*thin, *bold], (0.0, 100.0), "%", marks=marks, note=note)
 
 
-def _long(r: Reconstruction) -> bool:
+def is_long(r: Reconstruction) -> bool:
+    """Whether curves against time are drawn broad."""
     return float(np.ptp(r.times_s)) > LONG_S
 
 

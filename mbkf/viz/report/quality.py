@@ -105,7 +105,9 @@ def verdicts(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
 
 
 def _tracked(r: Reconstruction, percent: float) -> Verdict:
-    remark = f"all reactions measured in {int(r.valid.sum())} of {r.frames} frames"
+    remark = (
+        f"all loads known in {int(r.valid.sum())} of {r.frames} frames, measured in {int(r.measured.sum())}"
+    )
     return Verdict(
         "Frames tracked",
         f"{percent:.1f} %",
@@ -164,14 +166,14 @@ def _residuals(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
     if force is None or moment is None:
         remark = "needs frames in which plates measure every contact"
         return [Verdict(f"Residual {what}", "–", NONE, remark) for what in ("force", "moment")]
-    external = float(np.nanmax(np.linalg.norm(r.foot_wrench[r.valid, :, :3].sum(axis=1), axis=1)))
+    external = float(np.nanmax(np.linalg.norm(r.foot_wrench[r.measured, :, :3].sum(axis=1), axis=1)))
     height = r.subject.height_m or 1.75
     found = []
     for what, rms, vectors, allowed, unit in (
         ("force", force, r.residual_force_n, FORCE_SHARE * external, "N"),
         ("moment", moment, r.residual_moment_nm, MOMENT_SHARE * external * CENTRE_OF_MASS_SHARE * height, "N m"),
     ):  # fmt: skip
-        peak = float(np.nanmax(np.linalg.norm(vectors[r.valid], axis=1)))
+        peak = float(np.nanmax(np.linalg.norm(vectors[r.measured], axis=1)))
         remark = (
             f"RMS at the pelvis; peak {peak:.1f} {unit}. Accepted practice: peak below {allowed:.0f} {unit}"
         )
@@ -252,7 +254,7 @@ def _curves(r: Reconstruction) -> list[str]:
 
 
 def _norm_where(vectors: Array, r: Reconstruction) -> Array:
-    return np.where(r.valid, np.linalg.norm(vectors, axis=1), np.nan)
+    return np.where(r.measured, np.linalg.norm(vectors, axis=1), np.nan)
 
 
 def _labelling(labels: JsonTable | None) -> str:

@@ -12,20 +12,21 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from mbkf.conventions import SIDES, Array, BoolArray
+from mbkf.io.contacts import FEET
 from mbkf.model.clinical_table import ClinicalJoint
-from mbkf.viz.wording import SIDE_NAMES, wordings
+from mbkf.viz.wording import SIDE_NAMES, part_wording, wordings
 
 SEEN, UNSEEN, REFUSED = 0, 1, 2
 """States of a marker: measured and used, not measured (or hidden), measured but rejected by the gate."""
 
 RESOLUTION = {
     "segments": 2e-4, "measured": 2e-4, "predicted": 2e-4, "force": 0.2, "force_sd": 0.2, "pressure": 5e-4,
-    "angles": 3e-4, "angles_sd": 2e-4, "moments": 0.02, "moments_sd": 0.02,
+    "angles": 3e-4, "angles_sd": 2e-4, "moments": 0.02, "moments_sd": 0.02, "source": 1.0,
 }  # fmt: skip
 """Resolution of a part's numbers on a screen; recordings are rounded to it."""
 
-AXES = (("vertical", "Vertical reaction", 2), ("x", "Reaction along x", 0), ("y", "Reaction along y", 1))
-"""Components of a reaction: name, title, world axis."""
+AXES = (("vertical", "Vertical", "", 2), ("x", "", " along x", 0), ("y", "", " along y", 1))
+"""Components of a force: name, words before and after what it is, world axis."""
 
 STATUS = ("time_s", "number", "latency_ms", "rate_hz", "lost", "tracked")
 """The first numbers of a row."""
@@ -63,12 +64,21 @@ class Layout:
 
     Attributes:
         parts: First column and width of each part, by name: status, segments (position, quaternion x y z w each),
-            measured and predicted markers, state of each marker, force, force_sd and pressure point of the feet,
-            angles, angles_sd, moments, moments_sd, unlabelled points.
+            measured and predicted markers, state of each marker, force, force_sd, pressure point and source
+            (:class:`mbkf.io.contacts.Source`) of the loads on feet and other parts, angles, angles_sd, moments,
+            moments_sd, unlabelled points.
+        loads: Names of the parts of the body with loads, the feet first.
         width: Numbers in a row.
     """
 
-    def __init__(self, segments: int, markers: int, coordinates: int, unlabelled: int = 0) -> None:
+    def __init__(
+        self,
+        segments: int,
+        markers: int,
+        coordinates: int,
+        unlabelled: int = 0,
+        supports: tuple[str, ...] = (),
+    ) -> None:
         """Parts of a row, one after another.
 
         Args:
@@ -76,16 +86,19 @@ class Layout:
             markers: Number of markers.
             coordinates: Number of clinical coordinates.
             unlabelled: Number of points without names, at most.
+            supports: Parts that bear load besides the feet.
         """
+        self.loads = (*FEET, *supports)
         widths = {
             "status": len(STATUS),
             "segments": 7 * segments,
             "measured": 3 * markers,
             "predicted": 3 * markers,
             "state": markers,
-            "force": 6,
-            "force_sd": 6,
-            "pressure": 6,
+            "force": 3 * len(self.loads),
+            "force_sd": 3 * len(self.loads),
+            "pressure": 3 * len(self.loads),
+            "source": len(self.loads),
             "angles": coordinates,
             "angles_sd": coordinates,
             "moments": coordinates,
@@ -168,21 +181,7 @@ def quantities(
                     sd_column=layout.column(f"{part}_sd", a),
                 )
             )
-    for foot, side in enumerate(SIDES):
-        for name, title, axis in AXES:
-            found.append(
-                Quantity(
-                    id=f"reaction:{name}_{side}",
-                    group="Ground reactions",
-                    title=f"{title}, {SIDE_NAMES[side]}",
-                    side=side,
-                    unit="N",
-                    positive="upward" if name == "vertical" else "",
-                    factor=1.0,
-                    column=layout.column("force", 3 * foot + axis),
-                    sd_column=layout.column("force_sd", 3 * foot + axis),
-                )
-            )
+    found += [one for k in range(len(layout.loads)) for one in _of_load(layout, k)]
     if streamed:
         for name, title, unit in (
             ("latency_ms", "Latency", "ms"), ("rate_hz", "Frame rate", "Hz"), ("lost", "Frames lost", ""),
@@ -192,7 +191,28 @@ def quantities(
     return sorted(found, key=lambda q: GROUPS.index(q.group))
 
 
-GROUPS = ("Angles", "Torques", "Ground reactions", "Residuals at the pelvis", "Stream")
+def _of_load(layout: Layout, k: int) -> list[Quantity]:
+    """The components of the k-th load."""
+    is_foot, part = k < len(SIDES), part_wording(layout.loads[k])
+    what = "reaction" if is_foot else "force"
+    return [
+        Quantity(
+            id=f"reaction:{name}_{part.side}" if is_foot else f"load:{name}_{layout.loads[k]}",
+            group="Ground reactions" if is_foot else "Other loads",
+            title=f"{before} {what}{after}".strip().capitalize()
+            + f", {SIDE_NAMES[part.side] if is_foot else part.full_title.lower()}",
+            side=part.side,
+            unit="N",
+            positive="upward" if name == "vertical" else "",
+            factor=1.0,
+            column=layout.column("force", 3 * k + axis),
+            sd_column=layout.column("force_sd", 3 * k + axis),
+        )
+        for name, before, after, axis in AXES
+    ]
+
+
+GROUPS = ("Angles", "Torques", "Ground reactions", "Other loads", "Residuals at the pelvis", "Stream")
 """Headings of the list of quantities, in order."""
 
 

@@ -11,6 +11,7 @@ from mbkf.viz.scene.body_shapes import as_plain as plain_shapes
 from mbkf.viz.scene.body_shapes import segment_shapes
 from mbkf.viz.scene.channels import STATUS, Layout, quantities
 from mbkf.viz.scene.channels import as_plain as plain_quantities
+from mbkf.viz.wording import part_wording
 
 
 def scene_description(
@@ -39,6 +40,7 @@ def scene_description(
         "weight_n": round(float(model.mass_kg * GRAVITY_M_S2), 1),
         "segments": plain_shapes(segment_shapes(model)),
         "markers": list(marker_names),
+        "loads": [{"name": name, "side": part_wording(name).side} for name in layout.loads],
         "plates": np.round(drawn, 4).tolist(),
         "status": list(STATUS),
         "parts": {name: list(place) for name, place in layout.parts.items()},

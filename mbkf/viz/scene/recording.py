@@ -9,6 +9,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
+from mbkf.io.contacts import bearing
 from mbkf.io.results import Reconstruction
 from mbkf.model.human import HumanModel
 from mbkf.viz.scene.channels import Layout, marker_states
@@ -45,7 +46,10 @@ def recorded_scene(r: Reconstruction) -> tuple[dict[str, object], Array, Array]:
     if not r.frames:
         raise InvalidInput(f"the result of '{r.trial}' holds no frames, so there is nothing to play")
     model = HumanModel.of(r.subject)
-    layout = Layout(len(model.joints), len(r.marker_names), len(r.coordinate_names))
+    supports = tuple(
+        name for k, name in enumerate(r.support_names) if bearing(r.support_wrench[:, [k]]).any()
+    )
+    layout = Layout(len(model.joints), len(r.marker_names), len(r.coordinate_names), supports=supports)
     stride = max(1, int(np.ceil(r.rate_hz / MOST_HZ - 1e-9)))
     shown = slice(None, None, stride)
     rows = _rows(r, model, layout, shown)
@@ -73,10 +77,12 @@ def _rows(r: Reconstruction, model: HumanModel, layout: Layout, shown: slice) ->
     layout.put(rows, "measured", np.where(r.hidden[shown][:, :, None], np.nan, r.measured_m[shown]))
     layout.put(rows, "predicted", np.where(tracked[:, None, None], r.predicted_m[shown], np.nan))
     layout.put(rows, "state", state)
-    layout.put(rows, "force", r.foot_wrench[shown, :, :3])
-    if r.foot_wrench_sd is not None:
-        layout.put(rows, "force_sd", r.foot_wrench_sd[shown, :, :3])
-    layout.put(rows, "pressure", r.foot_cop_m[shown])
+    loads = r.loads
+    drawn = [loads.names.index(name) for name in layout.loads]
+    layout.put(rows, "force", loads.wrench[shown][:, drawn, :3])
+    layout.put(rows, "force_sd", loads.wrench_sd[shown][:, drawn, :3])
+    layout.put(rows, "pressure", loads.point_m[shown][:, drawn])
+    layout.put(rows, "source", loads.source[shown][:, drawn])
     for part in ("angles", "angles_sd", "moments", "moments_sd"):
         layout.put(rows, part, getattr(r, part)[shown])
     return rows

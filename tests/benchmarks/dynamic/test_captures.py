@@ -68,12 +68,12 @@ def test_the_plate_under_a_foot_is_found_by_its_load(squat):
 
 
 def test_a_summary_is_held_to_its_bounds_or_to_the_kinematic_filter():
-    kinematic = {"marker_rms_mm": 5.0, "valid_frames": 100}
+    kinematic = {"marker_rms_mm": 5.0, "measured_frames": 100}
     summary = {
         "marker_rms_mm": 5.6,
         "residual_force_rms_n": 4.0,
         "residual_moment_rms_nm": None,
-        "valid_frames": 99,
+        "measured_frames": 99,
         "plate_force_change_rms_n": 1.0,
     }
     rows = summary_rows("x", summary, kinematic, Bounds(5.0, 3.0))

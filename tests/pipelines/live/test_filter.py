@@ -8,7 +8,7 @@ import pytest
 from mbkf.errors import FileFormatError, NotObservable
 from mbkf.filters.kinematic.tracking import warm_up_frames
 from mbkf.filters.record import FrameRecorder, blank
-from mbkf.filters.tracking import track_of
+from mbkf.filters.tracking import track, track_of
 from mbkf.filters.tracking_loop import followed
 from mbkf.io.subject import write_subject
 from mbkf.pipelines.live.filter import LiveFilter, live_inputs
@@ -27,6 +27,7 @@ from mbkf.pipelines.trial.inputs import trial_inputs
 from tests.captures import MASS_KG, made_capture
 
 SETTINGS = ReconstructSettings(correct_markers=False)
+LAG_S = 0.06
 CAPTURE = made_capture(70)
 SUBJECT = scale(made_capture(30, 0.0), mass_kg=MASS_KG)
 
@@ -71,6 +72,59 @@ def test_only_a_start_makes_frames_wait():
     assert due == [0] * ahead + [ahead + 1] + [1] * (69 - ahead)
     assert [step.awaited for step in steps] == [True] * (ahead + 1) + [False] * (69 - ahead)
     assert live.latest is steps[-1].estimate
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["kinematic", "dynamic"])
+def test_lagged_steps_are_those_of_a_whole_trial(name):
+    """Also around a loss, whose frames know nothing of what follows the restart."""
+    positions = np.array(CAPTURE.markers.positions_m)
+    positions[:2] = np.nan
+    positions[20:45] = np.nan
+    inputs, recording = recorded(positions)
+    steps, _ = steps_of(LiveFilter(tracking_filter(name, inputs), LAG_S), recording)
+    expected = track(tracking_filter(name, inputs), recording, lag_s=LAG_S)
+    assert [step.number for step in steps] == list(range(70))
+    assert [step.number for step in steps if step.estimate is None] == [0, 1]
+    for step in steps[2:]:
+        for field in ("q", "v", "a", "wrench"):
+            np.testing.assert_array_equal(
+                getattr(step.estimate, field), getattr(expected, field)[step.number]
+            )
+
+
+def test_a_lagged_frame_is_given_as_late_as_the_lag_and_the_filter_knows_nothing_of_it():
+    inputs, recording = recorded()
+    live, plain = (LiveFilter(tracking_filter("kinematic", inputs), s) for s in (LAG_S, 0.0))
+    ahead = warm_up_frames(0.01)
+    for t in range(60):
+        due = [step.number for step in live.push(t, recording.frame(t))]
+        plain.push(t, recording.frame(t))
+        if t > ahead:
+            assert due == [t - 6]
+            np.testing.assert_array_equal(live.latest.q, plain.latest.q)
+            assert live.latest.q is live.loop.estimate.q
+    assert live.lag_frames == 6 and plain.lag_frames == 0
+    assert [step.number for step in live.cut()] == list(range(54, 60))
+    assert live.latest is None and live.finish() == []
+
+
+def test_a_correction_that_cannot_be_computed_leaves_the_filters_answers(monkeypatch):
+    inputs, recording = recorded()
+    chosen = tracking_filter("kinematic", inputs)
+    linear_step, left = chosen.linear_step, [30]
+
+    def failing(before, estimate):
+        left[0] -= 1
+        if left[0] == 0:
+            raise np.linalg.LinAlgError("singular matrix")
+        return linear_step(before, estimate)
+
+    monkeypatch.setattr(chosen, "linear_step", failing)
+    steps, _ = steps_of(LiveFilter(chosen, LAG_S), recording)
+    assert [step.number for step in steps] == list(range(70))
+    assert [step.number for step in steps if step.trouble] == [30]
+    assert [step.number for step in steps if step.estimate.started] == [0, 31]
 
 
 def test_what_the_filter_cannot_digest_makes_it_start_anew(monkeypatch):

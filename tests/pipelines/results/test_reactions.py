@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from mbkf.conventions import GRAVITY_M_S2
+from mbkf.io.contacts import Source
 from mbkf.pipelines.results.reactions import PRESSURE_FROM_N, reactions
 from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.sensors.contact.records import Contact
@@ -59,7 +60,7 @@ def test_measured_and_estimated_reactions_agree_where_the_estimate_is_exact():
     assert_near(estimated.centre_of_pressure_m, measured.centre_of_pressure_m, 1e-12)
     assert_near(estimated.free_moment_nm, measured.free_moment_nm, 1e-9)
     assert_near(estimated.residual_force_n, measured.residual_force_n, 1e-9)
-    assert estimated.valid.all() and measured.valid.all()
+    assert estimated.measured.all() and measured.measured.all()
     assert estimated.warnings == measured.warnings == ()
 
 
@@ -128,7 +129,7 @@ def test_without_plates_only_estimates_are_known():
     assert guessed.warnings == (
         "no force plates: reactions are estimated from the motion, residuals are not computed",
     )
-    assert not none.valid.any() and not guessed.valid.any()
+    assert not none.measured.any() and not guessed.measured.any()
 
 
 def feet(*changes):
@@ -178,7 +179,7 @@ def test_one_plate_under_both_feet_is_shared_and_that_is_told():
     found = found_with(followed(), one_plate())
     assert_near(found.wrench.sum(axis=1), truly().sum(axis=1), 1e-9)
     assert_near(found.wrench[:, :, 2], truly()[:, :, 2], 0.1 * trial("squat").model.mass_kg * GRAVITY_M_S2)
-    assert (found.wrench[:, :, 2] > 0.0).all() and found.valid.all()
+    assert (found.wrench[:, :, 2] > 0.0).all() and found.measured.all()
     told = f"in {FRAMES} frames both feet stand on one plate: how they share its load is estimated"
     assert any(warning.startswith(told) for warning in found.warnings)
     assert not any("one plate" in warning for warning in found_with(followed(), plates()).warnings)
@@ -189,7 +190,7 @@ def test_one_plate_under_both_feet_is_shared_and_that_is_told():
 def test_frames_with_an_unread_loaded_foot_do_not_count():
     contact = feet((slice(10, 20), LEFT, Contact.UNMEASURED), (slice(30, 33), RIGHT, Contact.AIR))
     found = found_with(followed(truly(), contact), plates())
-    np.testing.assert_array_equal(np.flatnonzero(~found.valid), np.arange(10, 20))
+    np.testing.assert_array_equal(np.flatnonzero(~found.measured), np.arange(10, 20))
 
 
 def test_frames_not_followed_stay_unknown():
@@ -201,3 +202,57 @@ def test_frames_not_followed_stay_unknown():
     assert np.isnan(found.tau[3]).all() and np.isnan(found.residual_force_n[3]).all()
     assert np.isfinite(np.delete(found.tau, 3, axis=0)).all()
     assert np.isnan(found.plate_change[3]).all()
+
+
+def with_load(part, force, frames=slice(20, 40)):
+    """Loads on one part besides the feet, in some frames, and nothing on the others."""
+    names = tuple(trial("squat").model.description.bearings)
+    support = np.zeros((FRAMES, len(names), 6))
+    support[frames, names.index(part), :3] = force
+    return {"support": support, "support_sd": np.where(support != 0.0, 5.0, 0.0)}
+
+
+def test_a_load_on_another_part_changes_the_torques_it_passes_through_and_the_residual_at_the_root():
+    model = trial("squat").model
+    load = with_load("pelvis", [0.0, 0.0, 100.0])
+    alone, borne = found_with(followed(truly()), plates()), found_with(followed(truly(), **load), plates())
+    change = borne.tau - alone.tau
+    assert_near(change[:, 6:], 0.0, 1e-9)
+    assert_near(np.linalg.norm(change[20:40, :3], axis=1), 100.0, 1e-9)
+    assert_near(change[:20], 0.0, 0.0)
+    assert_near(borne.residual_force_n, alone.residual_force_n, 0.0)
+    hand = (
+        found_with(followed(truly(), **with_load("right_hand", [50.0, 0.0, 0.0])), plates()).tau - alone.tau
+    )
+    assert np.abs(hand[25, model.joint("right_upper_arm").v]).max() > 1.0
+    assert_near(hand[25, model.joint("left_upper_arm").v], 0.0, 1e-9)
+
+
+def test_frames_in_which_another_part_bears_are_accounted_for_but_not_measured():
+    found = found_with(followed(truly(), **with_load("pelvis", [0.0, 0.0, 100.0])), plates())
+    np.testing.assert_array_equal(np.flatnonzero(~found.measured), np.arange(20, 40))
+    assert found.accounted.all()
+
+
+def test_a_foot_that_nothing_reads_is_accounted_for_where_the_filter_estimates_it():
+    contact = feet((slice(10, 20), LEFT, Contact.UNMEASURED))
+    found = found_with(followed(truly(), contact), plates())
+    assert found.accounted.all() and not found.measured[10:20].any()
+    assert (found.foot_source[10:20] == [Source.MEASURED, Source.ESTIMATED]).all()
+    assert (found.foot_source[20:] == Source.MEASURED).all()
+    none = found_with(followed())
+    assert not none.accounted.any(), "plates that are not there explain nothing"
+
+
+def test_what_is_no_foot_on_a_plate_is_not_accounted_for():
+    """A third plate, out of reach of the feet, carries something."""
+    stray = replace(plates()[RIGHT], origin_m=np.array([5.0, 5.0, 0.0]), corners_m=None)
+    contact = feet((slice(10, 20), LEFT, Contact.UNMEASURED))
+    found = found_with(followed(truly(), contact), (*plates(), stray))
+    assert not found.accounted.any() and not found.measured.any()
+
+
+def test_a_plate_that_both_feet_share_is_a_source_of_its_own():
+    assert (found_with(followed(), one_plate()).foot_source == Source.SHARED).all()
+    assert (found_with(followed(), plates()).foot_source == Source.MEASURED).all()
+    assert (found_with(followed()).foot_source == Source.NONE).all()

@@ -17,7 +17,8 @@ KEYS = {
     "trial", "protocol", "filter", "smoothed", "version", "direction", "progression", "mass_kg",
     "frames", "rate_hz", "duration_s", "markers_ignored", "markers_explained", "names_exchanged",
     "markers_used", "missing_fraction", "marker_rms_mm", "marker_max_mm", "marker_rms_mm_by_name",
-    "residual_force_rms_n", "residual_moment_rms_nm", "valid_frames", "plate_force_change_rms_n",
+    "residual_force_rms_n", "residual_moment_rms_nm", "valid_frames", "measured_frames", "contacts",
+    "plate_force_change_rms_n",
     "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "nis_per_dof",
     "step_seconds_median", "step_seconds_p99", "realtime_factor", "hidden_marker_rms_mm",
     "hidden_marker_max_mm", "truth", "axes", "warnings", "settings",
@@ -54,14 +55,17 @@ def test_the_frame_of_the_pelvis_is_told_with_its_mean_heading_and_how_far_it_tu
 def test_an_empty_or_untracked_reconstruction_has_no_numbers_but_no_error():
     empty = summarise(made_up(0))
     assert empty["marker_rms_mm"] is empty["nis_per_dof"] is empty["realtime_factor"] is None
-    lost = summarise(made_up(tracked=np.zeros(12, bool), valid=np.zeros(12, bool)))
+    lost = summarise(
+        made_up(tracked=np.zeros(12, bool), measured=np.zeros(12, bool), valid=np.zeros(12, bool))
+    )
     assert (
         lost["marker_rms_mm"]
         is lost["residual_force_rms_n"]
         is lost["torque_peak_nm_per_kg"]["hip_r"]
         is None
     )
-    assert lost["valid_frames"] == 0
+    assert lost["valid_frames"] == lost["measured_frames"] == 0
+    assert lost["contacts"] == empty["contacts"] == []
 
 
 def test_marker_errors_leave_out_hidden_missing_and_untracked_samples():
@@ -84,13 +88,34 @@ def test_marker_errors_leave_out_hidden_missing_and_untracked_samples():
     assert summary["missing_fraction"] == pytest.approx(2 / 24)
 
 
-def test_residual_counts_valid_frames_only_as_a_norm():
-    force, valid = np.zeros((12, 3)), np.ones(12, bool)
+def test_residual_counts_measured_frames_only_as_a_norm():
+    force, measured = np.zeros((12, 3)), np.ones(12, bool)
     force[:6], force[6:] = [3.0, 4.0, 0.0], [0.0, 0.0, 5.0]
-    force[2], valid[2] = 1000.0, False
-    summary = summarise(made_up(residual_force_n=force, valid=valid))
+    force[2], measured[2] = 1000.0, False
+    summary = summarise(made_up(residual_force_n=force, measured=measured))
     assert summary["residual_force_rms_n"] == pytest.approx(5.0)
-    assert summary["valid_frames"] == 11
+    assert (summary["measured_frames"], summary["valid_frames"]) == (11, 12)
+
+
+def test_contacts_are_told_as_plain_data():
+    support = np.zeros((12, 1, 6))
+    support[6:, 0, 2], r = 250.0, made_up()
+    source = np.ones((12, 2), int)
+    source[:, 1] = 2
+    summary = summarise(
+        made_up(
+            foot_source=source, foot_wrench_sd=np.full((12, 2, 6), 3.0), support_names=("pelvis",),
+            support_wrench=support, support_wrench_sd=np.full((12, 1, 6), np.nan),
+            support_point_m=support[..., :3],
+        )
+    )  # fmt: skip
+    right, left, pelvis = summary["contacts"]
+    assert (right["part"], left["part"], pelvis["part"]) == ("right_foot", "left_foot", "pelvis")
+    assert (right["how"], left["how"], pelvis["how"]) == ("measured", "shared", "estimated")
+    assert right["peak_n"] == pytest.approx(np.linalg.norm(r.foot_wrench[:, 0, :3], axis=1).max())
+    assert right["sd_n"] == pytest.approx(3.0) and pelvis["sd_n"] is None
+    assert (pelvis["from_s"], pelvis["to_s"]) == (r.times_s[6], r.times_s[11])
+    assert pelvis["peak_n"] == 250.0
 
 
 def test_plate_changes_are_per_component_and_torques_per_joint():

@@ -83,7 +83,8 @@ def test_a_foot_off_the_plates_is_unmeasured_while_it_carries(name, recorded):
     assert (found[load[:, LEFT] > 100.0, LEFT] == Contact.UNMEASURED).mean() >= 0.9
     assert (found[load[:, RIGHT] >= 40.0, RIGHT] == Contact.MEASURED).all()
     hanging = load[:, LEFT] == 0.0
-    assert not hanging.any() or (found[hanging, LEFT] == Contact.AIR).mean() > 0.5
+    # A foot about to land beside which nothing else carries is taken to bear; its reaction may still be nothing.
+    assert not hanging.any() or (found[hanging, LEFT] == Contact.AIR).mean() > 0.3
 
 
 def stand_on(plates, loads, q=None, frames=1, v=STILL, a=STILL):

@@ -1,6 +1,9 @@
 """The parts of a run put together by hand: every frame is answered once, logged and shown, in order."""
 
 import threading
+from dataclasses import replace
+
+import numpy as np
 
 from mbkf.stream.receiving.receiver import Receiver
 from mbkf.stream.run.events import EventLog
@@ -39,3 +42,25 @@ def test_every_frame_is_answered_once(subject):
     assert (len(failing.frames), kept.closed, failing.closed) == (1, True, False)
     assert (statistics.processed, statistics.starts) == (38, 1)
     assert {event["kind"] for event in events.plain()} == {"lost", "plates lost", "viewer"}
+
+
+def test_latency_counts_from_the_arrival_of_the_last_frame_that_an_answer_knows(subject, monkeypatch):
+    """Frames 10 ms apart with a lag of 60 ms; listeners are told all of it, live.json what comes besides."""
+    stream, frames = frames_of(made_capture(50))
+    events, statistics, rows, counted = EventLog(), RunStatistics(), [], []
+    monkeypatch.setattr(statistics, "answered", lambda latency_s, at_start: counted.append(latency_s))
+    settings = replace(SETTINGS, filter="kinematic", lag_s=0.06)
+    setup = prepare(stream, subject, settings, patient=True, note=events.note)
+    receiver = Receiver(ScriptedSource(stream, frames), stream, setup.columns, lambda _: None, events.note)
+    kept = Collected([])
+    output = RunOutput(setup, [kept], rows.append, statistics, events.note)
+    receiver.start()
+    assert FilterLoop(setup, receiver, output, statistics, events.note).run(threading.Event(), None)
+    receiver.stop()
+    output.close()
+    assert [frame.number for frame in kept.frames] == list(range(50))
+    whole = np.array([float(row["latency_s"][0]) for row in rows])
+    np.testing.assert_array_equal([frame.latency_s for frame in kept.frames], whole)
+    # The frames between are those that arrived meanwhile; the last ones are answered at the end, with what there is.
+    lag = np.minimum(0.06, 0.01 * (49 - np.arange(50)))
+    np.testing.assert_allclose(whole - counted, lag, atol=1e-9)

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput, NotObservable
+from mbkf.filters.inverse_dynamics import support_torques
 from mbkf.filters.record import FrameRecorder
+from mbkf.io.contacts import Source
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.pipelines.live.filter import live_inputs
 from mbkf.pipelines.live.results import live_results
@@ -60,6 +62,27 @@ def test_results_are_those_of_reconstruct(tmp_path, capture, subject, name):
     assert counts == {"frames_in": 80, "frames_lost": 0, "frames_processed": 80, "starts": 1}
     assert report["state"] == "finished"
     assert report["events"] == []
+
+
+def test_lagged_results_are_those_of_reconstruct(tmp_path, capture, subject):
+    """Rows, listeners and files hold the lagged frames under their own numbers; the lag is told apart from latency."""
+    settings, seen = ReconstructSettings(lag_s=0.06, correct_markers=False), Collected([])
+    outcome = follow(tmp_path, *frames_of(capture), subject, settings, sinks=[seen], keep_log=True)
+    expected = offline(capture, subject, settings)
+    found = read_reconstruction(tmp_path)
+    for name, tolerance in (("q", 1e-9), ("v", 1e-9), ("angles", 1e-9), ("tau", 1e-6), ("foot_wrench", 1e-6)):
+        np.testing.assert_allclose(
+            getattr(found, name), getattr(expected, name), atol=tolerance, err_msg=name
+        )
+    plain = offline(capture, subject, ReconstructSettings(correct_markers=False))
+    np.testing.assert_allclose(found.foot_wrench_sd, plain.foot_wrench_sd, rtol=1e-9)  # never too narrow
+    assert outcome.report["lag_ms"] == pytest.approx(60.0)
+    assert read_reconstruction(tmp_path).lag_ms == 60.0
+    assert [frame.number for frame in seen.frames] == list(range(80))
+    np.testing.assert_allclose([frame.q for frame in seen.frames], expected.q, atol=1e-9)
+    again = live_results(tmp_path / LOG_FOLDER)
+    np.testing.assert_allclose(again.q, expected.q, atol=1e-9)
+    assert again.lag_ms == 60.0
 
 
 def test_points_without_names_are_named_in_the_loop(tmp_path, capture, subject):
@@ -124,10 +147,34 @@ def test_the_rate_is_that_of_the_last_second(capture, subject):
     rows = FrameRecorder(tracking_filter("dynamic", live.inputs), len(live.names))
     unseen = np.full((len(live.names), 3), np.nan)
     ready = ReadyFrame(7, 6.0, unseen, np.zeros((0, 3)), np.zeros((2, 6)))
-    shown = maker.frame(ready, rows.row(7, unseen, None, 0.0), 0.001, 3)
+    shown = maker.frame(ready, rows.row(7, unseen, None, 0.0)[0], 0.001, 3)
     assert shown.rate_hz == pytest.approx(2.0)
     assert (shown.number, shown.lost, shown.tracked) == (0, 3, False)
     assert np.isnan(shown.q).all()
+
+
+def test_a_listener_gets_loads_on_all_parts_and_torques_that_count_them(capture, subject):
+    stream, _ = frames_of(capture)
+    live = live_inputs(stream.marker_names, stream.rate_hz, stream.plates, subject, ReconstructSettings())
+    model = live.inputs.sensor.model
+    maker = FrameMaker(live, stream.rate_hz)
+    rows = FrameRecorder(tracking_filter("dynamic", live.inputs), len(live.names))
+    unseen = np.full((len(live.names), 3), np.nan)
+    ready = ReadyFrame(0, 0.0, unseen, np.zeros((0, 3)), np.zeros((2, 6)))
+    row, _ = rows.row(0, unseen, None, 0.0)
+    row["known"], row["q"], row["footing"] = True, model.neutral(), [-1, 1]
+    row["v"] = row["a"] = row["wrench"] = row["support"] = 0.0
+    alone = maker.frame(ready, row, 0.0, 0)
+    row["support"] = np.random.default_rng(0).normal(size=row["support"].shape)
+    row["support_sd"] = 2.0
+    shown = maker.frame(ready, row, 0.0, 0)
+    change = shown.torques - alone.torques
+    np.testing.assert_allclose(
+        change, -support_torques(model, model.neutral(), row["support"][0]), atol=1e-10
+    )
+    assert shown.foot_source.tolist() == [Source.ESTIMATED, Source.MEASURED]
+    np.testing.assert_array_equal(shown.support, row["support"][0])
+    assert (shown.support_sd == 2.0).all()
 
 
 def test_a_listener_that_fails_is_dropped(tmp_path, capture, subject):

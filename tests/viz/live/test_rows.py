@@ -5,10 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mbkf.io.contacts import Source
+from mbkf.pipelines.results.supports import pressed_points
+from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.viz.live.rows import MOST_UNLABELLED, DisplayRows
 from tests.motions import assert_near
 from tests.recordings import walk, walker
+
+UNASKED = np.full((len(walker()[1].description.bearings), 6), np.nan)
 
 
 def frame(k, **changes):
@@ -38,7 +43,7 @@ def test_a_row_tells_what_the_result_of_the_same_frame_tells(rows):
         row = rows.row(frame(k))
         assert_near(part(rows, row, "angles"), r.angles[k], 1e-9)
         assert_near(part(rows, row, "moments"), r.moments[k], 1e-9)
-    assert_near(part(rows, row, "force"), r.foot_wrench[39, :, :3].ravel(), 1e-12)
+    assert_near(part(rows, row, "force")[:6], r.foot_wrench[39, :, :3].ravel(), 1e-12)
     assert_near(part(rows, row, "status"), [0.39, 39, 1.5, 100.0, 2, 1], 1e-12)
     assert (part(rows, row, "state") == 0).all()
 
@@ -59,9 +64,34 @@ def test_pressure_lies_where_the_true_one_does(rows):
     for k in (50, 120):
         row = rows.row(frame(k))
         standing = r.foot_wrench[k, :, 2] > 100.0
-        found = part(rows, row, "pressure").reshape(2, 3)
+        found = part(rows, row, "pressure").reshape(-1, 3)[:2]
         assert_near(found[standing], r.foot_cop_m[k][standing], 1e-6)
         assert np.isnan(found[r.foot_wrench[k, :, 2] == 0]).all()
+
+
+def test_other_parts_have_their_forces_where_they_act(rows):
+    """As in the results of the same frame; a foot that nothing reads and other parts are told apart from measured."""
+    model, names = walker()[1], tuple(walker()[1].description.bearings)
+    support = np.zeros((len(names), 6))
+    hand = names.index("left_hand")
+    support[hand] = [30.0, -20.0, 90.0, 1.0, 2.0, 3.0]
+    source = np.array([Source.MEASURED, Source.ESTIMATED])
+    row = rows.row(frame(50, foot_source=source, support=support, support_sd=0.1 * np.abs(support)))
+    k = 2 + hand
+    assert rows.layout.loads[k] == "left_hand"
+    assert_near(part(rows, row, "force").reshape(-1, 3)[k], support[hand, :3], 0.0)
+    assert_near(part(rows, row, "force_sd").reshape(-1, 3)[k], [3.0, 2.0, 9.0], 1e-12)
+    expected = pressed_points(BearingParts(model), walk().q[50], support)
+    np.testing.assert_array_equal(part(rows, row, "pressure").reshape(-1, 3)[2:], expected)
+    assert part(rows, row, "source").tolist() == [1, 3] + [3 if i == hand else 0 for i in range(len(names))]
+
+
+@pytest.mark.parametrize("changes", [{}, {"support": UNASKED, "support_sd": UNASKED}])
+def test_a_filter_that_asks_for_no_other_parts_shows_none(rows, changes):
+    row = rows.row(frame(50, **changes))
+    assert np.isnan(part(rows, row, "force")[6:]).all()
+    assert np.isnan(part(rows, row, "pressure")[6:]).all()
+    assert part(rows, row, "source").tolist() == [1, 1] + [0] * len(UNASKED)
 
 
 def test_hidden_markers_and_points_without_a_name(rows):

@@ -54,11 +54,16 @@ def test_it_says_in_which_axes_the_pelvis_is_told():
 def test_sections_come_in_order_quality_first():
     text = report(broken_walk())
     outline = Outline(text)
-    assert outline.sections == ["quality", "gait", "motion", "reactions", "settings"]
+    assert outline.sections == ["quality", "gait", "motion", "reactions", "contacts", "settings"]
     assert len(text) < 5_000_000
     whole = " ".join(outline.texts)
     for words in ("walk <1>", "a remark with <b>markup</b>", "dynamic filter, frame by frame", "jerk"):
         assert words in whole
+
+
+def test_a_fixed_lag_is_told():
+    assert "dynamic filter, fixed lag of 60 ms" in report(replace(walk(), settings={"lag_ms": 60.0}))
+    assert "dynamic filter, smoothed" in report(replace(walk(), smoothed=True))
 
 
 def test_the_page_loads_nothing_and_runs_nothing():
@@ -74,7 +79,7 @@ def test_numbers_that_are_not_known_do_not_appear_as_nan():
     bare = replace(
         r, filter="kinematic", moments=unknown, moments_sd=unknown, angles_sd=unknown, foot_wrench_sd=None,
         foot_contact=None, foot_wrench=0.0 * r.foot_wrench, residual_force_n=nothing, residual_moment_nm=nothing,
-        plate_corners_m=None, valid=np.zeros(r.frames, bool),
+        plate_corners_m=None, measured=np.zeros(r.frames, bool),
     )  # fmt: skip
     for page in (report(bare), report(broken_walk())):
         words = " ".join(Outline(page).texts).lower()
@@ -84,7 +89,7 @@ def test_numbers_that_are_not_known_do_not_appear_as_nan():
 
 def test_a_body_never_followed_is_reported_without_curves():
     r = walk()
-    lost = replace(r, tracked=np.zeros(r.frames, bool), valid=np.zeros(r.frames, bool))
+    lost = replace(r, tracked=np.zeros(r.frames, bool), measured=np.zeros(r.frames, bool))
     assert Outline(report(lost)).sections == ["quality", "settings"]
 
 

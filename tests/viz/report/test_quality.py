@@ -52,9 +52,9 @@ def test_one_large_residual_is_noticed():
     force[50], moment[50] = 60.0, 20.0
     found = judged(replace(r, residual_force_n=force, residual_moment_nm=moment))
     assert found["Residual force"].kind == found["Residual moment"].kind == CARE
-    unseen = r.valid.copy()
+    unseen = r.measured.copy()
     unseen[50] = False
-    found = judged(replace(r, residual_force_n=force, residual_moment_nm=moment, valid=unseen))
+    found = judged(replace(r, residual_force_n=force, residual_moment_nm=moment, measured=unseen))
     assert found["Residual force"].kind == GOOD, "only frames with every contact measured are judged"
 
 

@@ -28,6 +28,19 @@ def test_parts_cover_the_row_without_overlap():
     assert layout.parts["status"] == (0, len(STATUS))
 
 
+def test_every_load_has_its_place():
+    layout = Layout(2, 3, 4, supports=("pelvis", "left_hand"))
+    assert layout.loads == ("right_foot", "left_foot", "pelvis", "left_hand")
+    found = {q.id: q for q in quantities(layout, (), [], streamed=False)}
+    rows = layout.blank(1)
+    layout.put(rows, "force", np.arange(12.0))
+    layout.put(rows, "force_sd", np.arange(12.0) + 100.0)
+    hand = found["load:vertical_left_hand"]
+    assert (rows[0, hand.column], rows[0, hand.sd_column]) == (11.0, 111.0)
+    assert (hand.group, hand.side, hand.positive) == ("Other loads", "l", "upward")
+    assert rows[0, found["reaction:y_l"].column] == 4.0
+
+
 def test_what_is_put_in_a_part_is_found_there():
     layout = Layout(2, 3, 4)
     rows = layout.blank(5)

@@ -13,7 +13,7 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from mbkf.errors import InvalidInput
 from mbkf.viz.scene.channels import REFUSED, SEEN, UNSEEN
 from mbkf.viz.scene.recording import MISSING, pack, recorded_scene, recording
-from tests.recordings import LOST, broken_walk, walk
+from tests.recordings import LOST, RAIL, SEAT, broken_walk, leaning_walk, walk
 
 VALUES = st.one_of(st.just(np.nan), st.floats(-1e3, 1e3))
 
@@ -86,6 +86,31 @@ def test_rows_show_the_result():
     np.testing.assert_array_equal(part(scene, rows, "force").reshape(-1, 2, 3), r.foot_wrench[..., :3])
     np.testing.assert_array_equal(part(scene, rows, "pressure").reshape(-1, 2, 3), r.foot_cop_m)
     assert (part(scene, rows, "state") == SEEN).all()
+
+
+def test_parts_that_ever_bear_have_arrows_of_their_own():
+    r = leaning_walk()
+    scene, rows, _ = recorded_scene(r)
+    assert scene["loads"] == [
+        {"name": "right_foot", "side": "r"},
+        {"name": "left_foot", "side": "l"},
+        {"name": "pelvis", "side": ""},
+        {"name": "right_hand", "side": "r"},
+    ]
+    hand = r.support_names.index("right_hand")
+    force, point = (part(scene, rows, name).reshape(-1, 4, 3) for name in ("force", "pressure"))
+    np.testing.assert_array_equal(force[:, 3], r.support_wrench[:, hand, :3])
+    np.testing.assert_array_equal(point[:, 3], r.support_point_m[:, hand])
+    source = part(scene, rows, "source")
+    assert (source[SEAT, 2] == 3).all() and (source[RAIL, 3] == 3).all()
+    assert source[:, 2:].sum() == 3 * (len(source[SEAT]) + len(source[RAIL]))
+    np.testing.assert_array_equal(source[:, :2], r.foot_source)
+    titles = {q["id"]: q["title"] for q in scene["quantities"]}
+    assert titles["load:vertical_right_hand"] == "Vertical force, right hand"
+    assert titles["load:x_pelvis"] == "Force along x, pelvis"
+    assert titles["reaction:vertical_r"] == "Vertical reaction, right"
+    back = unpack(recording(r)["rows"])
+    np.testing.assert_array_equal(part(scene, back, "source"), source)
 
 
 def test_hidden_markers_are_marked_and_a_lost_body_is_not_drawn():

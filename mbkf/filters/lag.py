@@ -1,0 +1,66 @@
+"""Fixed lag: the estimate of every frame waits for the readings of the next few, and then knows them.
+
+One linear backward pass about the filter's own course corrects it (Anderson 1979, chapter 7), with the covariance that
+belongs to it, or in a live filter, which has no time for matrix products, without. Unlike windows
+(:mod:`mbkf.filters.fixed_lag`), every frame is given equally late and linearised once.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+from mbkf.filters.estimate import Posterior, TrackingFilter
+from mbkf.numerics.passage import LaterWindow
+
+
+def lag_frames(lag_s: float, dt_s: float) -> int:
+    """How many later frames lie within a lag."""
+    return int(lag_s / dt_s + 1e-6)
+
+
+class FixedLag:
+    """Takes estimates frame by frame and gives each one back when the frames of the lag have followed it.
+
+    Attributes:
+        filter: The filter.
+        frames: The lag; 0 gives every estimate back at once and unchanged.
+    """
+
+    def __init__(self, filter: TrackingFilter, lag_s: float, covariances: bool = True) -> None:
+        """Gives nothing back yet.
+
+        Args:
+            filter: The filter.
+            lag_s: The lag; what is less than a frame of it does not count.
+            covariances: Whether covariances are those of the lagged estimates; else they stay the filter's own, which
+                are larger, and a frame costs a fifth.
+        """
+        self.filter, self.frames = filter, lag_frames(lag_s, filter.dt_s)
+        self._waiting: deque[tuple[int, Posterior]] = deque()
+        self._window = LaterWindow(covariances)
+        self._given: Posterior | None = None
+
+    def push(self, t: int, estimate: Posterior) -> list[tuple[int, Posterior]]:
+        """Frame t's estimate in, an earlier one out; a restart gives back all before it, with what they know."""
+        done = self.finish() if estimate.started else []
+        if self.frames == 0:
+            return [*done, (t, estimate)]
+        if self._waiting:
+            self._window.append(self.filter.linear_step(self._waiting[-1][1], estimate))
+        self._waiting.append((t, estimate))
+        if len(self._waiting) > self.frames:
+            done.append(self._first())
+        return done
+
+    def finish(self) -> list[tuple[int, Posterior]]:
+        """What still waits, when no more frames follow."""
+        done = [self._first() for _ in range(len(self._waiting))]
+        self._given = None
+        return done
+
+    def _first(self) -> tuple[int, Posterior]:
+        t, estimate = self._waiting.popleft()
+        self._given = self.filter.corrected(estimate, self._window.told(), self._given)
+        if self._waiting:
+            self._window.drop()
+        return t, self._given

@@ -1,0 +1,64 @@
+"""Loads on other parts of the body than the feet, and where on those parts they act."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.filters.tracking import Track
+from mbkf.model.body import Body
+from mbkf.sensors.supports.bearings import BearingParts
+
+LEAST_N = 20.0
+"""Size of a force from which it has a point where it acts."""
+
+
+@dataclass(frozen=True)
+class Supports:
+    """Loads on the B parts that may bear them, none (B = 0) where the filter does not ask; NaN where it is not started.
+
+    Attributes:
+        names: The parts.
+        wrench: (T, B, 6) on each, about the world's origin; 0 where it bears nothing.
+        wrench_sd: (T, B, 6) standard deviations.
+        point_m: (T, B, 3) where its force acts, NaN where it bears nothing.
+    """
+
+    names: tuple[str, ...]
+    wrench: Array
+    wrench_sd: Array
+    point_m: Array
+
+
+def supports_of(model: Body, track: Track) -> Supports:
+    """Loads on other parts than the feet of a tracked trial."""
+    if not np.isfinite(track.support).any():
+        none = np.zeros((len(track.q), 0, 6))
+        return Supports((), none, none, none[..., :3])
+    parts = BearingParts(model)
+    point_m = np.full((*track.support.shape[:2], 3), np.nan)
+    for t in np.flatnonzero(np.nan_to_num(track.support).any(axis=(1, 2))):
+        point_m[t] = pressed_points(parts, track.q[t], track.support[t])
+    return Supports(parts.names, track.support, track.support_sd, point_m)
+
+
+def pressed_points(parts: BearingParts, q: Array, wrench: Array) -> Array:
+    """(B, 3) where loads act on parts: NaN where a part bears less than :data:`LEAST_N`.
+
+    A wrench with force F and moment M about a part's middle has its axis (of least moment) nearest to the middle at
+    F × M / F²; from there the point goes back against the force to the part's surface.
+
+    Args:
+        parts: The parts.
+        q: (nq,) configuration.
+        wrench: (B, 6) wrenches about the world's origin.
+    """
+    middles, force = parts.at(q, np.zeros(parts.model.nv)).points_m, wrench[:, :3]
+    size = np.linalg.norm(force, axis=1)
+    divided = np.where(size >= LEAST_N, size, np.nan)[:, None]
+    moment = wrench[:, 3:] - np.cross(middles, force)
+    return np.asarray(
+        middles + np.cross(force, moment) / divided**2 - parts.radii_m[:, None] * force / divided
+    )

@@ -1,0 +1,99 @@
+"""The floor's own motion, and whether the body falls: what the last second of movement tells of both, causally.
+
+On a belt a loaded sole moves, at the speed of the belt, and the pelvis does not go along. The floor's velocity is the
+median velocity of the lowest point of heels and balls while that is near the floor; a floor that stands still, as on
+the ground, is the default until there is enough evidence. What goes along with the pelvis glides or is carried, and
+its floor stands still.
+
+A filter that takes both feet to be in the air makes the body fall by Newton's law, and must not take that acceleration
+for proof: the height of the pelvis, which markers show, then has to fall, too.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.sensors.contact.thresholds import (
+    BELT_FROM_M_S,
+    BELT_WINDOW_S,
+    FALL_M_S2,
+    FALL_WINDOW_S,
+    STILL_FLOOR_S,
+)
+
+
+class Movement(NamedTuple):
+    """The last frames of a body's movement.
+
+    Attributes:
+        low_m_s: (n, 2) horizontal velocity of the lowest sole point while it was near the floor; NaN else.
+        pelvis_m: (n, 3) the pelvis.
+        airborne: For how many frames both feet have been held to be in the air.
+    """
+
+    low_m_s: Array = np.zeros((0, 2))
+    pelvis_m: Array = np.zeros((0, 3))
+    airborne: int = 0
+
+    def with_frame(self, low_m_s: tuple[float, float], pelvis_m: Array, dt_s: float) -> Movement:
+        """One frame more, and the oldest one forgotten.
+
+        Args:
+            low_m_s: Horizontal velocity of the lowest sole point; NaN where it is not near the floor.
+            pelvis_m: (3,) the pelvis.
+            dt_s: Time between frames.
+        """
+        from_frame = max(0, len(self.low_m_s) + 1 - _frames(BELT_WINDOW_S, dt_s))
+        return Movement(
+            np.concatenate([self.low_m_s[from_frame:], [low_m_s]]),
+            np.concatenate([self.pelvis_m[from_frame:], [pelvis_m]]),
+            self.airborne,
+        )
+
+    def floor_m_s(self, dt_s: float) -> tuple[float, float]:
+        """Horizontal velocity of the floor; zero unless a belt is evident.
+
+        Args:
+            dt_s: Time between frames.
+        """
+        low = self.low_m_s[~np.isnan(self.low_m_s[:, 0])]
+        still = np.zeros((_frames(STILL_FLOOR_S, dt_s), 2))
+        floor = np.median(np.concatenate([low, still]), axis=0)
+        speed = float(np.hypot(*floor))
+        if speed < BELT_FROM_M_S:
+            return 0.0, 0.0
+        pelvis = (self.pelvis_m[-1] - self.pelvis_m[0])[:2] / (len(self.pelvis_m) * dt_s)
+        goes_along = float(np.hypot(*(pelvis - floor))) < 0.5 * speed
+        return (0.0, 0.0) if goes_along else (float(floor[0]), float(floor[1]))
+
+    def held_up(self, dt_s: float) -> bool:
+        """Whether a body whose feet are both held to be in the air was seen not to fall.
+
+        Its pelvis's height, over a window that lies within that time, does not curve down.
+
+        Args:
+            dt_s: Time between frames.
+        """
+        frames = max(4, _frames(FALL_WINDOW_S, dt_s) + 1)
+        if self.airborne < frames:
+            return False
+        return float(_curvature(frames) @ self.pelvis_m[-frames:, 2]) / dt_s**2 > FALL_M_S2
+
+
+NO_MOVEMENT = Movement()
+"""Before the first frame."""
+
+
+def _frames(duration_s: float, dt_s: float) -> int:
+    return max(1, round(duration_s / dt_s))
+
+
+@lru_cache(maxsize=8)
+def _curvature(frames: int) -> Array:
+    """(n,) weights that give the second derivative of a fitted parabola, per squared frame."""
+    steps = np.arange(frames) - 0.5 * (frames - 1)
+    return np.asarray(2.0 * np.linalg.pinv(np.vander(steps, 3))[0])
