@@ -148,7 +148,23 @@ def _missing(
             )
         else:
             flags[frames[:, None], list(parts)] = True
-    return flags, tuple(remarks)
+    return _bridged(flags, judged, rate_hz), tuple(remarks)
+
+
+def _bridged(flags: BoolArray, judged: BoolArray, rate_hz: float) -> BoolArray:
+    """Flags (T, B) that go on through frames that cannot be judged: a contact does not pause for less than it lasts.
+
+    Args:
+        flags: (T, B) parts that bear.
+        judged: (T,) frames that can be judged.
+        rate_hz: Frame rate.
+    """
+    found = flags.copy()
+    for run in stretches(~judged):
+        sides = [t for t in (int(run[0]) - 1, int(run[-1]) + 1) if 0 <= t < len(flags)]
+        if sides and len(run) < LASTING_S * rate_hz:
+            found[run] |= flags[sides].all(axis=0)
+    return found
 
 
 def _lasting(lacks: BoolArray, rate_hz: float) -> list[Array]:

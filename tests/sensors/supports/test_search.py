@@ -24,7 +24,7 @@ HELD = slice(60, 150)
 
 def found(made, wrench, model=None, q=None, **changes):
     """What the search finds in a trial whose plates give wrenches (T, 2, 6) to the feet."""
-    m, read = made.motion, np.full(len(wrench), changes.pop("read", True))
+    m, read = made.motion, np.broadcast_to(changes.pop("read", True), len(wrench))
     q = m.q if q is None else q
     return other_contacts(model or made.model, q, m.v, m.rate_hz, foot_loads(wrench, **changes), read)
 
@@ -153,6 +153,22 @@ def test_untracked_frames_have_no_contacts():
     assert bearing(result.flags) == [SEAT]
     assert not result.flags[40:70].any()
     assert result.flags[10:35, SEAT].all() and result.flags[75:95, SEAT].all()
+
+
+@pytest.mark.parametrize(
+    ("gap", "bears"), [((60, 63), True), ((0, 10), True), ((60, 90), False), ((112, 125), False)]
+)
+def test_a_contact_goes_on_where_plates_fall_silent_for_a_moment(gap, bears):
+    """A seat does not vanish for some frames; whether it is there after a longer time, or at its end, is not known."""
+    made, silent = seated(), np.arange(*gap)
+    read = np.ones(len(made.motion.q), dtype=bool)
+    read[silent] = False
+    wrench = made.motion.foot_wrench.copy()
+    wrench[silent] = 0.0
+    result = found(made, wrench, read=read)
+    assert bearing(result.flags) == [SEAT]
+    assert (result.flags[silent, SEAT] == bears).all()
+    np.testing.assert_array_equal(result.flags[20:50, SEAT], True)
 
 
 # On the floor, without plates.
