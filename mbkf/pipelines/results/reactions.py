@@ -11,12 +11,16 @@ from mbkf.filters.inverse_dynamics import inverse_dynamics
 from mbkf.filters.tracking import Track
 from mbkf.io.records import PlateReadings
 from mbkf.model.body import Body
-from mbkf.sensors.contact.offline import BOTH, FootLoads, assign_feet
+from mbkf.sensors.contact.offline import BOTH, FootLoads, assign_feet, falling
 from mbkf.sensors.contact.plates import pressure_and_free_moment, surface_height
 from mbkf.sensors.contact.records import Contact
 
 PRESSURE_FROM_N = 20.0
 """Vertical force from which an estimated wrench has a centre of pressure."""
+
+
+FLOATING_SHARE = 0.02
+"""Share of frames without any contact, and without a fall, that take-off and landing explain."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +97,11 @@ def reactions(
         moment,
         _plate_change(track.wrench, loads, plates) if plates else None,
         loads.valid & ~unread,
-        (*loads.warnings, *_contact_warnings(track.contact, plates)),
+        (
+            *loads.warnings,
+            *_contact_warnings(track.contact, plates),
+            *_floating_warning(track.contact, ~falling(track.q[:, 2], rate_hz) & track.tracked),
+        ),
     )
 
 
@@ -129,6 +137,22 @@ def _contact_warnings(contact: Array, plates: tuple[PlateReadings, ...]) -> list
             "(see the standard deviations)"
         )
     return [*warnings, *_shared_warning((contact == Contact.SHARED).any(axis=1))]
+
+
+def _floating_warning(contact: Array, supported: BoolArray) -> list[str]:
+    """What is told where both feet were held to be in the air and the body did not fall.
+
+    Args:
+        contact: (T, 2) what the feet stand on.
+        supported: (T,) frames in which the body does not fall.
+    """
+    floating = int(((contact == Contact.AIR).all(axis=1) & supported).sum())
+    if floating <= FLOATING_SHARE * len(contact):
+        return []
+    return [
+        f"in {floating} of {len(contact)} frames no foot was seen to stand on anything, yet the body does not fall: "
+        "reactions and torques there are not to be trusted"
+    ]
 
 
 def _shared_warning(shared: BoolArray) -> list[str]:

@@ -201,3 +201,12 @@ def test_frames_not_followed_stay_unknown():
     assert np.isnan(found.tau[3]).all() and np.isnan(found.residual_force_n[3]).all()
     assert np.isfinite(np.delete(found.tau, 3, axis=0)).all()
     assert np.isnan(found.plate_change[3]).all()
+
+
+@pytest.mark.parametrize(("in_air", "told"), [(0, False), (1, False), (5, True)])
+def test_a_body_that_stands_on_nothing_and_does_not_fall_is_told(in_air, told):
+    """A frame at take-off or landing is none to speak of."""
+    contact = np.full((FRAMES, 2), Contact.UNMEASURED)
+    contact[10 : 10 + in_air] = Contact.AIR
+    warnings = found_with(followed(truly(), contact)).warnings
+    assert any("does not fall" in warning for warning in warnings) == told
