@@ -99,6 +99,7 @@ class AlwaysMeasured(ContactDetector):
         v: Array,  # noqa: ARG002
         a: Array,  # noqa: ARG002
         plate_wrench: Array,
+        supported: bool = False,  # noqa: ARG002
     ) -> ContactDecision:
         """Each foot on its own plate.
 
@@ -108,6 +109,7 @@ class AlwaysMeasured(ContactDetector):
             v: Not used.
             a: Not used.
             plate_wrench: (2, 6) wrenches of the two plates.
+            supported: Not used.
         """
         return ContactDecision((Contact.MEASURED,) * 2, plate_wrench, self.centres_m, False, memory)
 

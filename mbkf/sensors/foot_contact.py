@@ -129,7 +129,8 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
     ) -> FootDecision:
         """Plates to feet, and feet that stand elsewhere."""
         state = at.state
-        notes.contact = self.detector.decide(memory, state.q, state.v, state.a, frame.plates)
+        supported = bool(notes.supports)
+        notes.contact = self.detector.decide(memory, state.q, state.v, state.a, frame.plates, supported)
         return FootDecision(notes.contact)
 
     def inflate(self, P: Array, decision: FootDecision) -> None:

@@ -10,7 +10,7 @@ import pytest
 from mbkf.sensors.block import OperatingPoint
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, FreeStance
 from mbkf.sensors.contact.sharing import SharedLoad, Stance
-from mbkf.sensors.foot_contact import FootContact, FootContactSettings, FootDecision
+from mbkf.sensors.foot_contact import BELT_FORCE, PUSH_LEAST, FootContact, FootContactSettings, FootDecision
 from mbkf.sensors.layout import Layout
 
 FIRST, WEIGHT_N, DT = 6, 700.0, 0.01
@@ -143,6 +143,20 @@ def test_feet_in_double_support_press_where_they_stand_towards_the_pelvis(share_
     np.testing.assert_allclose(values[vertical], expected, rtol=1e-9)
 
 
+def test_a_foot_that_pushes_off_tells_its_share():
+    """Read as zero where the share is right, whatever the load; weakly, as the setting says."""
+    loaded, w = both_free(0.3)
+    free = loaded.free._replace(push_share=(0.3, None))
+    rows, values, _ = filled(replace(loaded, free=free), w)
+    assert values[2] == pytest.approx(0.0, abs=1e-9)
+    assert filled(replace(loaded, free=free), 1.5 * w)[1][2] == pytest.approx(0.0, abs=1e-9)
+    more = w.copy()
+    more[2] += 50.0
+    sd = SETTINGS.free_push_share * (0.3 + PUSH_LEAST) * WEIGHT_N
+    assert filled(replace(loaded, free=free), more)[1][2] == pytest.approx(-50.0 * 0.7 / sd)
+    np.testing.assert_array_equal(np.flatnonzero(rows[2]), [2, 8])
+
+
 def test_their_sum_decides_how_they_share():
     """With the sum of both wrenches known, the levers tell the share, and its spread is that of the levers."""
     loaded, w = both_free(0.3)
@@ -172,6 +186,18 @@ def test_wrenches_wander_about_the_soles():
         wander = P[first : first + 6, first : first + 6]
         to_sole = np.array([about(centre, one) for one in np.eye(6)]).T
         np.testing.assert_allclose(to_sole @ wander @ to_sole.T, np.diag(sd**2), rtol=1e-9, atol=1e-9)
+
+
+def test_a_belt_takes_the_place_of_the_force_along():
+    """The moment of a vertical force changes across the belt's way, beyond the usual wandering."""
+    still = load((Contact.UNMEASURED, Contact.AIR))
+    P, moved = np.zeros((2, FIRST + 12, FIRST + 12))
+    BLOCK.inflate(P, FootDecision(still))
+    BLOCK.inflate(moved, FootDecision(replace(still, floor_m_s=(-3.0, 0.0))))
+    more = (moved - P)[FIRST : FIRST + 6, FIRST : FIRST + 6]
+    expected = np.zeros((6, 6))
+    expected[4, 4] = (BELT_FORCE * WEIGHT_N * 3.0 * DT) ** 2
+    np.testing.assert_allclose(more, expected, atol=1e-6)
 
 
 def test_feet_that_pull_at_the_floor_are_read_anew():

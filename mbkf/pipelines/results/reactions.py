@@ -13,12 +13,16 @@ from mbkf.io.contacts import Source, bearing, foot_sources
 from mbkf.io.records import PlateReadings
 from mbkf.model.body import Body
 from mbkf.pipelines.results.supports import Supports, supports_of
-from mbkf.sensors.contact.offline import BOTH, FootLoads, assign_feet
+from mbkf.sensors.contact.offline import BOTH, FootLoads, assign_feet, falling
 from mbkf.sensors.contact.plates import least_load, pressure_and_free_moment, surface_height
 from mbkf.sensors.contact.records import Contact
 
 PRESSURE_FROM_N = 20.0
 """Vertical force from which an estimated wrench has a centre of pressure."""
+
+
+FLOATING_SHARE = 0.02
+"""Share of frames without any contact, and without a fall, that take-off and landing explain."""
 
 
 @dataclass(frozen=True)
@@ -98,6 +102,7 @@ def reactions(
     source = foot_sources(track.contact, track.wrench)
     estimated = (source == Source.ESTIMATED).any(axis=1) | bearing(supports.wrench).any(axis=1)
     on_plates = loads.valid & ~estimated
+    held = ~falling(track.q[:, 2], rate_hz) & ~bearing(supports.wrench).any(axis=1)
     return Reactions(
         track.wrench,
         track.wrench_sd,
@@ -111,7 +116,11 @@ def reactions(
         source,
         on_plates,
         on_plates | (estimated & ~_stray(loads, plates)),
-        (*loads.warnings, *_contact_warnings(track.contact, plates)),
+        (
+            *loads.warnings,
+            *_contact_warnings(track.contact, plates),
+            *_floating_warning(track.contact, held & track.tracked),
+        ),
     )
 
 
@@ -161,6 +170,22 @@ def _contact_warnings(contact: Array, plates: tuple[PlateReadings, ...]) -> list
             "(see the standard deviations)"
         )
     return [*warnings, *_shared_warning((contact == Contact.SHARED).any(axis=1))]
+
+
+def _floating_warning(contact: Array, supported: BoolArray) -> list[str]:
+    """What is told where both feet were held to be in the air and the body did not fall.
+
+    Args:
+        contact: (T, 2) what the feet stand on.
+        supported: (T,) frames in which the body does not fall.
+    """
+    floating = int(((contact == Contact.AIR).all(axis=1) & supported).sum())
+    if floating <= FLOATING_SHARE * len(contact):
+        return []
+    return [
+        f"in {floating} of {len(contact)} frames no foot was seen to stand on anything, yet the body does not fall: "
+        "reactions and torques there are not to be trusted"
+    ]
 
 
 def _shared_warning(shared: BoolArray) -> list[str]:

@@ -62,7 +62,13 @@ class ContactDetector:
         return ContactMemory((-1,) * plates, (None,) * plates, float("nan"), (STAND_AFTER_S, STAND_AFTER_S))
 
     def decide(
-        self, memory: ContactMemory, q: Array, v: Array, a: Array, plate_wrench: Array
+        self,
+        memory: ContactMemory,
+        q: Array,
+        v: Array,
+        a: Array,
+        plate_wrench: Array,
+        supported: bool = False,
     ) -> ContactDecision:
         """What the feet stand on in one frame.
 
@@ -72,6 +78,7 @@ class ContactDetector:
             v: (nv,) predicted velocity.
             a: (nv,) predicted acceleration.
             plate_wrench: (K, 6) force N and moment N m about the world's origin; NaN where not recorded.
+            supported: Whether another part than the feet bears.
         """
         positions = self._soles.positions(q).reshape(2, 3, 3)
         soles = positions.tolist()
@@ -90,7 +97,7 @@ class ContactDetector:
                 contacts[foot] = Contact.SHARED if owner == 2 else Contact.MEASURED
         shared = self._shared(foot_of_plate, plate_wrench, soles, q)
         elsewhere = self._elsewhere.decide(
-            memory, (q, v, a), soles, contacts, vertical < self._least_n, np.isnan(vertical)
+            memory, (q, v, a), soles, contacts, vertical < self._least_n, np.isnan(vertical), supported
         )
         for foot in elsewhere.carrying:
             contacts[foot] = Contact.UNMEASURED

@@ -22,7 +22,7 @@ from mbkf.sensors.contact.plates import (
     surface_height,
 )
 from mbkf.sensors.contact.sharing import share_load
-from mbkf.sensors.contact.soles import distances_to_soles, nearer_foot, sole_points
+from mbkf.sensors.contact.soles import distances_to_soles, nearer_foot, sole_points, soles_down
 from mbkf.sensors.contact.thresholds import (
     FALL_EDGE_S,
     FALL_M_S2,
@@ -105,10 +105,10 @@ def assign_feet(
         shared = share_load(wrench[t, on].sum(axis=0), soles[t].tolist(), q[t, :3], surface)
         total[t], at_feet[t] = shared.wrench, shared.centres_m
         free[t] = free_moment(shared.wrench, shared.centres_m)
-    touching = _touching(soles, foot, rate_hz) & ~_over_idle_plate(
-        PlateAreas(plates), soles, pressure, recorded
-    )
-    flight = ~touching.any(axis=1) & _falling(q[:, 2], rate_hz)
+    idle = _over_idle_plate(PlateAreas(plates), soles, pressure, recorded)
+    down = np.array([soles_down(model, one) for one in np.nan_to_num(q)]).reshape(-1, 2)
+    touching = _touching(soles, foot, rate_hz) & ~idle & down
+    flight = ~touching.any(axis=1) & falling(q[:, 2], rate_hz)
     valid, warnings = _validity(model, touching, flight, foot, wrench, pressure, recorded)
     valid &= ~_on_silent_plate(PlateAreas(plates), soles, foot, recorded, rate_hz)
     unread = touching & ~_on_plate(foot)
@@ -278,15 +278,15 @@ def _touching(
     return touching
 
 
-def _falling(height_m: Array, rate_hz: float) -> BoolArray:
+def falling(height_m: Array, rate_hz: float) -> BoolArray:
     """(T,) whether the pelvis (height (T,), NaN where untracked) falls faster than a supported body."""
-    falling = np.zeros(len(height_m), dtype=bool)
+    falls = np.zeros(len(height_m), dtype=bool)
     window = 2 * round(0.5 * FALL_WINDOW_S * rate_hz) + 1
     for stretch in stretches(~np.isnan(height_m)):
         if len(stretch) > max(window, 5):
             curve = second_derivative(height_m[stretch], max(window, 5), 1.0 / rate_hz)
-            falling[stretch] = curve < FALL_M_S2
-    return dilated(falling, max(1, round(FALL_EDGE_S * rate_hz)))
+            falls[stretch] = curve < FALL_M_S2
+    return dilated(falls, max(1, round(FALL_EDGE_S * rate_hz)))
 
 
 def _validity(

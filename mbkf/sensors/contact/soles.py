@@ -9,7 +9,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
-from mbkf.sensors.contact.thresholds import KEEP_M, REACH_M
+from mbkf.sensors.contact.thresholds import FACES_DOWN, KEEP_M, REACH_M
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 Sole = Sequence[Sequence[float]]
@@ -34,6 +34,16 @@ def sole_points(model: Body, q: Array) -> Array:
     for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
         points[t] = sensor.positions(q[t]).reshape(2, 3, 3)
     return points
+
+
+def soles_down(model: Body, q: Array) -> list[bool]:
+    """Whether right and left sole face the floor enough to be stood on, at a configuration q (nq,).
+
+    Those of a foot on its side, its instep or the tips of its toes do not.
+    """
+    rotations, _ = model.placements(q)
+    ids = [model.joint(segment).joint_id for segment in model.roles.feet]
+    return [float(rotations[joint][2, 2]) > FACES_DOWN for joint in ids]
 
 
 def share_along(x: float, y: float, sole: Sole) -> float:

@@ -84,3 +84,7 @@ STANDING_SHARE = 0.05
 
 FLAT_FROM, FLAT_TO = 0.1, 0.6
 """Causal: a foot whose load lies between these shares of its sole, from heel to toe end, lies flat."""
+
+FACES_DOWN = 0.25
+"""Cosine of a sole's tilt from level below which nobody stands on it: feet push off at up to 65°, a kneeling foot on
+its toes or its instep is tilted by more than 80°."""

@@ -16,7 +16,7 @@ from mbkf.model.body import Body
 from mbkf.sensors.contact.floor import Movement
 from mbkf.sensors.contact.plates import PlateAreas
 from mbkf.sensors.contact.records import Contact, ContactMemory, Pressed
-from mbkf.sensors.contact.soles import Sole, distance_to_sole
+from mbkf.sensors.contact.soles import Sole, distance_to_sole, soles_down
 from mbkf.sensors.contact.thresholds import (
     ALONE_HEIGHT_M,
     ALONE_SPEED_M_S,
@@ -77,6 +77,7 @@ class UnmeasuredFeet:
         contacts: Sequence[Contact],
         unloaded: BoolArray,
         silent: BoolArray | None = None,
+        supported: bool = False,
     ) -> Elsewhere:
         """Which feet that no plate reads carry weight.
 
@@ -88,6 +89,7 @@ class UnmeasuredFeet:
             unloaded: (K,) plates that are recorded and not loaded.
             silent: (K,) plates that are not recorded, None where all are. A foot that one of them carried stands on,
                 without a delay.
+            supported: Whether another part than the feet bears, so that these need not.
         """
         q, v, a = motion
         height = self._sole_height(memory.sole_height_m, soles, contacts)
@@ -102,7 +104,7 @@ class UnmeasuredFeet:
             before_s = self._carried_on(memory, silent)
         touching = self._touching(before_s, contacts, soles, (q, v), floor, idle)
         carrying = [f for f in (0, 1) if touching[f] > STAND_AFTER_S]
-        in_air = contacts[0] == contacts[1] == Contact.AIR
+        in_air = contacts[0] == contacts[1] == Contact.AIR and not supported
         quiet = unloaded if silent is None else unloaded | silent
         if not carrying and in_air and quiet.all():
             lowest = floor._replace(height=np.fmin(floor.height, self._floor))
@@ -196,9 +198,10 @@ class UnmeasuredFeet:
             floor: The floor.
             idle: Plates that read nothing.
         """
+        down = soles_down(self._model, motion[0])
 
         def since(f: int) -> float:
-            if contacts[f] != Contact.AIR:
+            if contacts[f] != Contact.AIR or not down[f]:
                 return 0.0
             # A foot that stood must clearly leave the floor.
             slack = LEAVE_SLACK if before_s[f] > STAND_AFTER_S else 1.0

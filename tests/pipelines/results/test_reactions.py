@@ -256,3 +256,12 @@ def test_a_plate_that_both_feet_share_is_a_source_of_its_own():
     assert (found_with(followed(), one_plate()).foot_source == Source.SHARED).all()
     assert (found_with(followed(), plates()).foot_source == Source.MEASURED).all()
     assert (found_with(followed()).foot_source == Source.NONE).all()
+
+
+@pytest.mark.parametrize(("in_air", "told"), [(0, False), (1, False), (5, True)])
+def test_a_body_that_stands_on_nothing_and_does_not_fall_is_told(in_air, told):
+    """A frame at take-off or landing is none to speak of."""
+    contact = np.full((FRAMES, 2), Contact.UNMEASURED)
+    contact[10 : 10 + in_air] = Contact.AIR
+    warnings = found_with(followed(truly(), contact)).warnings
+    assert any("does not fall" in warning for warning in warnings) == told

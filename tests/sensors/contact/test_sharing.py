@@ -11,9 +11,11 @@ from mbkf.sensors.contact.sharing import (
     FORWARD,
     LEAST_APART_M,
     MIDDLE,
+    PUSH_SHARE,
     ROLL,
     STEP_M,
     expected_stance,
+    push_share,
     share_load,
 )
 from tests.dynamics import about
@@ -177,3 +179,15 @@ def test_feet_on_one_spot_still_have_finite_shares():
     assert np.isfinite(found.wrench).all() and np.isfinite(found.sd).all()
     assert_near(found.wrench.sum(axis=0), load([0.1, 0.02, 0.0]), 1e-9)
     assert_near(found.wrench[:, 2], np.full(2, 0.5 * WEIGHT_N), 1e-9)
+
+
+def test_a_foot_that_pushes_off_bears_less_the_higher_its_ball():
+    def share(rise_m, heel_m=0.15, stood_s=0.5):
+        sole = [[0.0, 0.0, heel_m], [0.2, 0.0, rise_m], [0.25, 0.0, 0.0]]
+        return push_share(sole, 0.0, stood_s)
+
+    shares = [share(rise) for rise in (0.0, 0.01, 0.02, 0.05)]
+    assert shares == sorted(shares, reverse=True)
+    assert shares[0] == PUSH_SHARE and shares[-1] < 0.02
+    assert share(0.0, heel_m=0.03) is None, "a flat foot does not push off"
+    assert share(0.0, stood_s=0.05) is None, "a foot that has just landed does not either"
