@@ -143,13 +143,14 @@ def added(decision):
     return found
 
 
-def test_a_contact_begins_wide_and_walks_on():
+def test_a_contact_begins_and_ends_wide_and_walks_on_between():
     s, off = SupportSettings(), 1e-6
     jump = np.repeat([s.support_force_n, 0.1 * s.support_force_n], 3) ** 2
     walk = np.repeat([s.support_force, s.support_moment], 3) ** 2 * DT
     np.testing.assert_allclose(added(decided(SEAT)), np.diag(jump), atol=off * jump.max())
     np.testing.assert_allclose(added(decided(SEAT, memory=(SEAT,))), np.diag(walk), atol=off * walk.max())
     np.testing.assert_allclose(added(decided(SEAT, memory=(KNEE,))), np.diag(walk), atol=off * walk.max())
+    np.testing.assert_allclose(added(decided(memory=(SEAT,))), np.diag(jump), atol=off * jump.max())
     np.testing.assert_array_equal(added(decided()), 0.0)
 
 
