@@ -57,6 +57,7 @@ ELSEWHERE = {
     "numerics.levenberg_marquardt.ArrowEquations.frame_gradient": "numerics/test_levenberg_marquardt.py",
     "numerics.windows.second_derivative": "numerics/test_windows.py",
     "numerics.windows.slopes": "numerics/test_windows.py",
+    "numerics.passage.LinearStep.transition": "numerics/test_passage.py",
     "numerics.rotations.log_and_inverse_jacobian": "numerics/test_rotations.py",
     "scaling.problem.ScalingProblem.linearise": "scaling/test_problem.py",
     "scaling.problem.origin_derivatives": "scaling/test_problem.py linearise",

@@ -20,6 +20,7 @@ from mbkf.sensors.contact.offline import FootLoads, stretches
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.sensors.supports.momentum import WholeBody
+from mbkf.sensors.supports.seat import sits
 
 WINDOW_S, EDGE_WINDOW_S = 0.25, 0.1
 """Durations over which a missing wrench is taken: to see that there is one, and when it begins and ends."""
@@ -82,12 +83,18 @@ def other_contacts(
     bearings = BearingParts(model)
     points, speeds = _moving(bearings, q, v)
     judged = read & loads.valid & ~np.isnan(q).any(axis=1)
-    body, feet = WholeBody.of(model, q, v), sole_points(model, q).mean(axis=2)
-    flags, remarks = _missing(bearings, np.concatenate([points, feet], axis=1), body, rate_hz, loads, judged)
+    body, soles = WholeBody.of(model, q, v), sole_points(model, q)
+    reached = np.concatenate([points, soles.mean(axis=2)], axis=1)
+    flags, remarks = _missing(bearings, reached, body, rate_hz, loads, judged)
     lying = _lying(bearings, points, speeds, rate_hz, loads.floor_m)
     # Beside a part that is seen to bear on the floor, others that lie there bear as well.
     kneels = (flags & lying).any(axis=1)
-    return OtherContacts(flags | (lying & (kneels | ~judged)[:, None]), remarks)
+    flags |= lying & (kneels | ~judged)[:, None]
+    if not read.any() and bearings.seat >= 0:
+        k = bearings.seat
+        seated = sits(body, soles, points[:, k], speeds[:, k], rate_hz, loads.floor_m)
+        flags[:, k] |= seated & ~lying.any(axis=1)
+    return OtherContacts(flags, remarks)
 
 
 def _moving(bearings: BearingParts, q: Array, v: Array) -> tuple[Array, Array]:
