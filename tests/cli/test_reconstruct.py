@@ -161,9 +161,9 @@ def test_what_a_withheld_plate_read_is_estimated(person, reconstruct):
     np.testing.assert_allclose(right, whole.foot_wrench[15:, 0, 2], atol=1.0)
     assert (np.abs(left - whole.foot_wrench[15:, 1, 2]) < 3 * part.foot_wrench_sd[15:, 1, 2]).all()
     assert (part.foot_contact[15:] == [1, -1]).all()
-    assert (part.foot_wrench_sd[15:, 1, 2] > 10 * whole.foot_wrench_sd[15:, 1, 2]).all()
-    assert whole.valid.all()
-    assert not part.valid[15:].any()
+    assert (part.foot_wrench_sd[15:, 1, 2] > 5 * whole.foot_wrench_sd[15:, 1, 2]).all()
+    assert whole.measured.all()
+    assert not part.measured[15:].any()
 
 
 def test_forces_of_another_file(person, reconstruct):
@@ -182,16 +182,16 @@ def test_without_forces_the_kinematic_filter_says_nothing_about_torques(person, 
     assert set(summary["torque_peak_nm_per_kg"].values()) == {None}
 
 
-def test_without_forces_torques_are_estimated_with_large_spreads(person, reconstruct):
+def test_without_forces_torques_are_estimated_with_larger_spreads(person, reconstruct):
     """How two feet share the weight is known by where they stand only; residuals need plates."""
     measured, guessed = (read_summary(reconstruct(trial)) for trial in (person.trial, person.trial_trc))
     assert set(guessed) == KEYS
-    assert guessed["valid_frames"] == 0
+    assert guessed["measured_frames"] == 0
     assert guessed["residual_force_rms_n"] is None
     assert guessed["plate_force_change_rms_n"] is None
     assert None not in guessed["torque_peak_nm_per_kg"].values()
     for joint in ("hip_r", "knee_r", "ankle_l"):
-        assert guessed["torque_sd_nm"][joint] > 3 * measured["torque_sd_nm"][joint]
+        assert guessed["torque_sd_nm"][joint] > 1.2 * measured["torque_sd_nm"][joint]
     said = " ".join(guessed["warnings"])
     assert "no force plates: reactions are estimated from the motion" in said
     assert "how they share the load is known by where they stand only" in said

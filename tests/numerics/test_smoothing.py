@@ -43,7 +43,8 @@ def filtered(p):
     for phi, G, H, y in zip(p.phi, p.G, p.H, p.y, strict=True):
         before, prior = phi @ x, phi @ P @ phi.T + G @ G.T
         K = np.linalg.solve(H @ prior @ H.T + np.eye(len(y)), H @ prior).T
-        x, P = before + K @ (y - H @ before), prior - K @ H @ prior
+        kept = np.eye(len(x)) - K @ H
+        x, P = before + K @ (y - H @ before), kept @ prior @ kept.T + K @ K.T
         passed.append((before, prior, x, P))
     return passed
 
@@ -87,8 +88,9 @@ def batch(p):
         rows.append(H @ by)
         values.append(y - H @ mean)
     A, b = np.vstack(rows), np.concatenate(values)
-    z, cov = np.linalg.lstsq(A, b, rcond=None)[0], np.linalg.inv(A.T @ A)
-    return [(mean + by @ z, by @ cov @ by.T) for mean, by in states]
+    Q, R = np.linalg.qr(A)
+    z, root = np.linalg.solve(R, Q.T @ b), np.linalg.inv(R)
+    return [(mean + by @ z, (by @ root) @ (by @ root).T) for mean, by in states]
 
 
 def assert_same(found, expected, tolerance):

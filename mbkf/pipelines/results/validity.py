@@ -17,8 +17,8 @@ TORQUE_SD_NM_PER_KG = 0.3
 """Standard deviation of a flexion torque, per body mass, up to which an estimated load counts, N m/kg.
 
 A fifth of the ankle's and a third of hip's and knee's peak in walking (Winter 2009). With every load measured the worst
-joint of the legs has 0.06 in squats and 0.17 in walking (dynamic filter), with one plate under both feet 0.26, with a
-foot that nothing reads 0.4 to 2.5: then torques are a guess at how the feet share the load."""
+joint of the legs has 0.06 in squats and 0.17 in walking (dynamic filter), with one plate under both feet 0.26. With a
+foot that nothing reads it depends on the movement: frames in which the load changes quickly do not count."""
 
 
 def torques_known(

@@ -8,7 +8,9 @@ import pytest
 
 from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
 from mbkf.filters.dynamic.support_loads import SupportLoads
+from mbkf.filters.error_covariance import ErrorCovariance
 from mbkf.model.newton_euler import NewtonEuler
+from mbkf.sensors.block import NO_DOFS
 from mbkf.sensors.layout import SUPPORT
 from mbkf.sensors.supports.block import Supports
 from mbkf.sensors.supports.sharing import shares
@@ -102,9 +104,14 @@ def test_loads_come_from_the_state():
     np.testing.assert_allclose(told.sum(axis=0), WHOLE, atol=1e-9)
 
 
+def errors(state):
+    """Errors of the filter's own covariance alone."""
+    return ErrorCovariance(state.P, np.eye(NV), NO_DOFS, 0.0, 1.0, 0.0)
+
+
 def test_one_part_has_the_states_spread():
     reader, layout, s = scene()
-    found = reader.sd(reader.of(step((SEAT,))), s.P)
+    found = reader.sd(reader.of(step((SEAT,))), errors(s))
     np.testing.assert_allclose(found[SEAT], np.sqrt(np.diag(s.P)[layout[SUPPORT]]), rtol=1e-6)
     np.testing.assert_array_equal(np.delete(found, SEAT, axis=0), 0.0)
 
@@ -116,7 +123,7 @@ def test_several_parts_have_the_spread_of_their_sharing_besides():
     own = layout[SUPPORT]
     D, C = loads.shares.by_whole.reshape(12, 6), loads.shares.covariance
     expected = np.sqrt(np.diag(D @ s.P[own, own] @ D.T + C))
-    np.testing.assert_allclose(reader.sd(loads, s.P)[[RIGHT, LEFT]].ravel(), expected, rtol=1e-9)
+    np.testing.assert_allclose(reader.sd(loads, errors(s))[[RIGHT, LEFT]].ravel(), expected, rtol=1e-9)
 
 
 def test_where_only_feet_bear_nothing_is_added():
@@ -128,7 +135,7 @@ def test_where_only_feet_bear_nothing_is_added():
     np.testing.assert_array_equal(by_state, plain.by_state)
     np.testing.assert_array_equal(shared, 0.0)
     np.testing.assert_array_equal(reader.wrench(None), np.zeros((8, 6)))
-    np.testing.assert_array_equal(reader.sd(None, s.P), np.zeros((8, 6)))
+    np.testing.assert_array_equal(reader.sd(None, None), np.zeros((8, 6)))
 
 
 def test_a_filter_without_the_state_tells_nothing():

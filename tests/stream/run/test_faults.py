@@ -152,7 +152,7 @@ def test_plates_that_never_speak(tmp_path, capture, subject):
     assert outcome.problem is None
     found = read_reconstruction(tmp_path)
     assert found.tracked.all()
-    assert not found.valid.any()
+    assert not found.measured.any()
     assert (found.foot_contact == -1).any()
 
 
