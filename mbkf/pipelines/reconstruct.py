@@ -30,6 +30,7 @@ from mbkf.pipelines.results.clinical import clinical_motion
 from mbkf.pipelines.results.progression import PELVIS_FRAMES, pelvis_frame
 from mbkf.pipelines.results.reactions import reactions
 from mbkf.pipelines.results.validity import torques_known
+from mbkf.pipelines.results.supports import supports_told
 from mbkf.pipelines.trial.exchanged import exchange_notes, names_put_right
 from mbkf.pipelines.trial.filters import FILTERS, FilterInputs, standard, tracking_filter
 from mbkf.pipelines.trial.inputs import trial_inputs
@@ -179,7 +180,7 @@ def reconstruct(
             found,
             markers_ignored=dict(use.ignored),
             markers_explained=use.share,
-            warnings=(*inferred_set(subject), *found.warnings),
+            warnings=(*inferred_set(subject), *found.warnings, *supports_told(found.contacts)),
             names_exchanged=exchanged,
         )
 

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.filters.tracking import Track
+from mbkf.io.contacts import FEET, ContactInterval
 from mbkf.model.body import Body
 from mbkf.sensors.supports.bearings import BearingParts
+
+TOLD = 6
+"""So many loads are told with their times."""
 
 LEAST_N = 20.0
 """Size of a force from which it has a point where it acts."""
@@ -62,3 +67,16 @@ def pressed_points(parts: BearingParts, q: Array, wrench: Array) -> Array:
     return np.asarray(
         middles + np.cross(force, moment) / divided**2 - parts.radii_m[:, None] * force / divided
     )
+
+
+def supports_told(contacts: Sequence[ContactInterval]) -> tuple[str, ...]:
+    """What is told of loads on other parts than the feet: which, when and how much; nothing where there are none."""
+    others = [one for one in contacts if one.part not in FEET]
+    if not others:
+        return ()
+    listed = [
+        f"{one.part.replace('_', ' ')} {one.from_s:.2f}…{one.to_s:.2f} s (up to {one.peak_n:.0f} N)"
+        for one in others[:TOLD]
+    ]
+    rest = f" and {len(others) - TOLD} more" if len(others) > TOLD else ""
+    return (f"other parts than the feet bear load, estimated from the motion: {', '.join(listed)}{rest}",)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from mbkf.pipelines.results.supports import LEAST_N, pressed_points, supports_of
+from mbkf.io.contacts import ContactInterval
+from mbkf.pipelines.results.supports import LEAST_N, pressed_points, supports_of, supports_told
 from mbkf.sensors.supports.bearings import BearingParts
 from tests.motions import assert_near, moderate_pose, random_model, track_of
 
@@ -86,3 +87,12 @@ def test_a_filter_that_does_not_ask_has_no_parts(model, rng):
     found = supports_of(model, track_of(q, zero, zero, support=unasked, support_sd=unasked))
     assert found.names == ()
     assert found.wrench.shape == (1, 0, 6) and found.point_m.shape == (1, 0, 3)
+
+
+def test_loads_on_other_parts_are_told_with_their_times():
+    feet = [ContactInterval("left_foot", 0.0, 2.0, 800.0, 5.0, "measured")]
+    assert supports_told(feet) == ()
+    (told,) = supports_told([*feet, ContactInterval("right_hand", 0.5, 1.25, 92.4, 8.0, "estimated")])
+    assert told.endswith("right hand 0.50…1.25 s (up to 92 N)")
+    many = [ContactInterval("pelvis", float(k), k + 0.5, 500.0, 9.0, "estimated") for k in range(9)]
+    assert supports_told(many)[0].endswith(" and 3 more")
