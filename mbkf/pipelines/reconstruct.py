@@ -29,8 +29,8 @@ from mbkf.pipelines.imu.on_body import ImuOnBody, with_imus
 from mbkf.pipelines.results.clinical import clinical_motion
 from mbkf.pipelines.results.progression import PELVIS_FRAMES, pelvis_frame
 from mbkf.pipelines.results.reactions import reactions
-from mbkf.pipelines.results.validity import torques_known
 from mbkf.pipelines.results.supports import supports_told
+from mbkf.pipelines.results.validity import torques_known
 from mbkf.pipelines.trial.exchanged import exchange_notes, names_put_right
 from mbkf.pipelines.trial.filters import FILTERS, FilterInputs, standard, tracking_filter
 from mbkf.pipelines.trial.inputs import trial_inputs

@@ -60,7 +60,13 @@ def sits(
 
 
 def centre_on_floor(wrench: Array, centre_m: Array, floor_m: float) -> Array:
-    """(T, 2) where a wrench (T, 6) about points (T, 3) meets the floor: no moment about a horizontal axis is left."""
+    """(T, 2) where wrenches meet the floor: no moment about a horizontal axis is left there.
+
+    Args:
+        wrench: (T, 6) force N and moment N m about the points.
+        centre_m: (T, 3) the points.
+        floor_m: Height of the floor.
+    """
     force, moment, height = wrench[:, :3], wrench[:, 3:], centre_m[:, 2] - floor_m
     x = -(moment[:, 1] + height * force[:, 0]) / force[:, 2]
     y = (moment[:, 0] - height * force[:, 1]) / force[:, 2]
