@@ -13,7 +13,8 @@ def pair(contact, vertical, off, sd):
     wrench, wrong = np.zeros((len(contact), 2, 6)), np.zeros((len(contact), 2, 6))
     wrench[:, :, 2], wrong[:, :, 2] = vertical, vertical + off
     every = np.ones(len(contact), dtype=bool)
-    truth = SimpleNamespace(foot_contact=contact, foot_wrench=wrench, valid=every)
+    times = np.arange(len(contact)) / 100.0
+    truth = SimpleNamespace(foot_contact=contact, foot_wrench=wrench, measured=every, times_s=times)
     return truth, SimpleNamespace(foot_wrench=wrong, foot_wrench_sd=np.full(wrench.shape, sd), tracked=every)
 
 
