@@ -92,6 +92,7 @@ def _rows(one: Archive, data: Path) -> list[Check]:
             rows.append(Check(f"{name}: RMS without the mean", rms, MOST_RMS_DEG, "<=", "°"))
     bare = replace(walk, processing={})
     for told, found in (
+        ("in the ISB's axes", differences(walk, followed(walk, subject, "isb"))),
         ("in the body's own axes", differences(walk, followed(walk, subject, "model"))),
         ("without the file's widths and offsets", differences(walk, followed(bare, subject, "pig"))),
     ):

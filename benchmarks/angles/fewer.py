@@ -36,7 +36,7 @@ def fewer_rows(data: Path) -> list[Check]:
 
 
 def _rows(one: Archive, data: Path) -> list[Check]:
-    pig, model = (_most_apart(one, data, angles) for angles in ("pig", "model"))
+    pig, isb, model = (_most_apart(one, data, angles) for angles in ("pig", "isb", "model"))
     return [
         Check(
             f"{one.name}, full set, legs, 36 markers: most apart in the mean ({pig[0]})",
@@ -45,6 +45,7 @@ def _rows(one: Archive, data: Path) -> list[Check]:
             "<=",
             "°",
         ),
+        information(f"{one.name}, the same in the ISB's axes ({isb[0]})", isb[1], "°"),
         information(f"{one.name}, the same in the body's own axes ({model[0]})", model[1], "°"),
     ]
 

@@ -70,7 +70,8 @@ class ReconstructSettings:
         hide: Markers to hide.
         without_plates: Names of plates to withhold.
         pelvis: The frame of the pelvis's angles: "progression", or "lab" for the laboratory's axes.
-        angles: The axes that angles are read in: "model" for the body's own, "pig" for Plug-in Gait's.
+        angles: The axes that angles are read in: "model" for the body's own, "isb" for the ISB's, "pig" for
+            Plug-in Gait's.
         keep_covariance: Whether full covariances are kept in memory.
         other_contacts: Whether parts besides the feet may bear load: a seat, a knee or a hand on the floor, a load in
             the hands. Only the dynamic filter knows of them.

@@ -13,11 +13,12 @@ from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.angle_reading import AngleReading
 from mbkf.model.body import Body
 from mbkf.model.description import Landmark
+from mbkf.model.isb_axes import isb_axes
 from mbkf.model.plug_in_gait import measured_of, plug_in_gait
 from mbkf.model.protocol import load_protocol, protocol_names
 
-MODEL, PIG = "model", "pig"
-ANGLES = (MODEL, PIG)
+MODEL, ISB, PIG = "model", "isb", "pig"
+ANGLES = (MODEL, ISB, PIG)
 """Ways to read angles that can be asked for."""
 
 
@@ -42,6 +43,7 @@ POINTS = (
     Point("asis", "ASI", "asis"),
     Point("psis", "PSI", "psis"),
     Point("sacrum", "SACR", "sacrum", sided=False),
+    Point("hip_centre", "", "hip_centre"),
     Point("thigh_wand", "THI", ""),
     Point("knee", "KNE", "knee_lateral"),
     Point("knee_medial", "", "knee_medial"),
@@ -78,6 +80,8 @@ def angle_reading(asked: str, model: Body, subject: Subject, processing: Mapping
         raise UnknownName("reading of angles", asked, ANGLES)
     if asked == MODEL:
         return AngleReading()
+    if asked == ISB:
+        return isb_axes(anatomical_places(model, subject))
     return plug_in_gait(anatomical_places(model, subject), measured_of(processing))
 
 

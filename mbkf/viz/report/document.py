@@ -23,6 +23,7 @@ from mbkf.viz.report.quality import quality_section
 
 ANGLES_READ = {
     "model": "Angles are about the body's own axes, in the order of the ISB recommendations",
+    "isb": "Angles are read in the ISB's axes, torques about the body's own",
     "pig": "Angles are read in Plug-in Gait's axes, torques about the body's own",
 }
 

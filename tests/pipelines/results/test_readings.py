@@ -96,6 +96,13 @@ def test_markers_with_other_names_are_known_by_their_sets_landmarks(model):
     np.testing.assert_array_equal(anatomical_places(model, person([marker]))["right_asis"], bare)
 
 
+def test_the_isbs_axes_are_a_reading_of_their_own(model):
+    reading = angle_reading("isb", model, person(worn(model)), {})
+    assert reading.name == "isb" and set(reading.joints) == {
+        "pelvis", "hip_r", "hip_l", "knee_r", "knee_l", "ankle_r", "ankle_l",
+    }  # fmt: skip
+
+
 def test_a_body_without_the_landmarks_is_refused(model):
     left = {name: place for name, place in model.description.landmarks.items() if "knee_medial" not in name}
     bare = HumanModel(replace(model.description, landmarks=left), model.scale, 70.0)
