@@ -142,7 +142,7 @@ def worst(away: dict[str, Array], joint: str, plane: int) -> tuple[float, float]
 
 
 def _coordinate(found: Reconstruction, column: str, side: str, joint: str) -> Array:
-    """(T,) a coordinate in degrees, with Plug-in Gait's sign; of the pelvis the left one's frontal and transverse turn."""
+    """(T,) a coordinate in degrees with Plug-in Gait's sign, which turns round on the left of the pelvis."""
     sign, name = (-1.0, column[1:]) if column.startswith("-") else (1.0, column)
     if joint != "Pelvis":
         name = f"{name}_{side.lower()}"

@@ -93,8 +93,8 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--angles",
         choices=("model", "isb", "pig"),
         default="model",
-        help="axes that joint angles are read in: the body's own (model, the default), the ISB's (isb), or Plug-in Gait's "
-        "(pig), for comparison with a laboratory's archive; moments stay about the body's own",
+        help="axes that joint angles are read in: the body's own (model, the default), the ISB's (isb), or Plug-in "
+        "Gait's (pig), for comparison with a laboratory's archive; moments stay about the body's own",
     )
     add_axes_options(parser)
     parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")

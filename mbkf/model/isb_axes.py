@@ -1,9 +1,10 @@
 """The ISB's axes on a body: pelvis, thighs, shanks and feet from palpable points and joint centres.
 
-G. Wu et al., J. Biomech. 35 (2002) 543-548: pelvis, femur, ankle; E. S. Grood, W. J. Suntay, J. Biomech. Eng. 105 (1983)
-136-144: knee, whose shank has its long axis from knee to ankle centre. Wu's axes are x forward, y up, z right; written
-here in the body's x forward, y left, z up. The foot has no axes of its own points there: in the neutral posture they
-are those of the shank at the knee, so that tibial torsion stays in the ankle's rotation. The upper limb (Wu et al., J. Biomech. 38 (2005) 981-992) is read in the body's own axes.
+G. Wu et al., J. Biomech. 35 (2002) 543-548: pelvis, femur, ankle; E. S. Grood, W. J. Suntay, J. Biomech. Eng. 105
+(1983) 136-144: knee, whose shank has its long axis from knee to ankle centre. Wu's axes are x forward, y up, z right;
+written here in the body's x forward, y left, z up. The foot has no axes of its own points there: in the neutral posture
+they are those of the shank at the knee, so that tibial torsion stays in the ankle's rotation. The upper limb (Wu,
+J. Biomech. 38 (2005) 981-992) is read in the body's own axes.
 """
 
 from __future__ import annotations
