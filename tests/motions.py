@@ -166,7 +166,7 @@ def track_of(q, v, a, **known):
         "support": np.full((frames, 0, 6), np.nan),
         "support_sd": np.full((frames, 0, 6), np.nan),
         "contact": None,
-        "root_covariance": np.zeros((frames, 3, 3)),
+        "ball_covariance": np.zeros((frames, 15, 3, 3)),
         "foot_height_sd": np.zeros((frames, 2)),
         "refused": np.zeros((frames, 0), bool),
         "tracked": np.ones(frames, bool),

@@ -89,6 +89,13 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="axes of the pelvis's angles: along the path of a walk or run, else the mean heading of pelvis and feet "
         "(progression, the default), or the laboratory's",
     )
+    parser.add_argument(
+        "--angles",
+        choices=("model", "isb", "pig"),
+        default="model",
+        help="axes that joint angles are read in: the body's own (model, the default), the ISB's (isb), or Plug-in "
+        "Gait's (pig), for comparison with a laboratory's archive; moments stay about the body's own",
+    )
     add_axes_options(parser)
     parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
     parser.set_defaults(run=run)
@@ -125,6 +132,7 @@ def run(args: argparse.Namespace) -> int:
         hide=hide,
         without_plates=tuple(args.without_plate),
         pelvis=args.pelvis,
+        angles=args.angles,
         keep_covariance=truth is not None,
     )
     if args.preset is not None:

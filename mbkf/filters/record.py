@@ -52,7 +52,7 @@ FIELDS = (
     Field("velocity_sd", "<f8", "nv"),
     Field("angle_sd", "<f8", "A"),
     Field("rate_sd", "<f8", "A"),
-    Field("root_covariance", "<f8", "3 3"),
+    Field("ball_covariance", "<f8", "N 3 3"),
     Field("torque_sd", "<f8", "nv"),
 )
 """The declaration.
@@ -66,7 +66,8 @@ foot, about the world's origin. support, support_sd: the same on the B parts tha
 standard deviations; 0 on one that bears none. The others are standard deviations: of the wrenches, of the height of the
 feet, of position and velocity in the tangent space, of the A clinical coordinates and their rates, of the generalised
 forces.
-root_covariance: of the root's orientation in its own axes, rad², for angles told in other axes than the world's.
+ball_covariance: of the rotations of the N joints with three angles in their distal segments' axes, rad², for angles
+told in other axes than the body file's.
 """
 
 MOTION = ("q", "v", "a", "wrench")
@@ -74,7 +75,7 @@ SPREAD_AT_ONCE, SPREAD_LATER = ("position", "velocity", "torque"), ("angle", "ra
 
 
 def record_dtype(sizes: Mapping[str, int]) -> np.dtype:
-    """Type of a record for these sizes: M markers, nq and nv of the body, A clinical coordinates, B bearing parts."""
+    """Type of a record: M markers, nq and nv of the body, A clinical coordinates, B bearing parts, N ball joints."""
 
     def length(letter: str) -> int:
         return int(letter) if letter.isdigit() else sizes[letter]
@@ -105,7 +106,7 @@ class FrameRecorder:
         self.filter = filter
         model = filter.model
         sizes = {"M": markers, "nq": model.nq, "nv": model.nv, "A": len(filter.clinical.names)}
-        sizes["B"] = len(model.description.bearings)
+        sizes |= {"B": len(model.description.bearings), "N": len(filter.clinical.ball_turns)}
         self.dtype = record_dtype(sizes)
         self._empty = blank(self.dtype, 1)
 
@@ -161,4 +162,4 @@ class FrameRecorder:
         """Standard deviations of clinical coordinates, their rates and the height of the feet."""
         for name in SPREAD_LATER:
             row[f"{name}_sd"] = getattr(spread, name)
-        row["root_covariance"] = spread.root_covariance
+        row["ball_covariance"] = spread.ball_covariance

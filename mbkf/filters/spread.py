@@ -97,10 +97,10 @@ class Spread:
         return root(self._rate_matrix**2 @ self.velocity_variance)
 
     @property
-    def root_covariance(self) -> Array:
-        """(3, 3) covariance of the root's orientation in its own axes, rad²."""
-        turns = self.reader.clinical.root_turns
-        return self._position[turns, turns]
+    def ball_covariance(self) -> Array:
+        """(n, 3, 3) covariances of the rotations of the n joints with three angles, in distal axes, rad²."""
+        turns = self.reader.clinical.ball_turns
+        return self._position[turns[:, :, None], turns[:, None, :]]
 
     @property
     def foot_height(self) -> Array:

@@ -33,7 +33,8 @@ class Track:
         contact: (T, 2) what the feet stand on (``mbkf.sensors.contact.records.Contact``); None where not decided.
         position_sd, velocity_sd: (T, nv) standard deviations in the tangent space.
         angle_sd, rate_sd: (T, A) of the clinical coordinates, the root's in the world's axes, and their rates.
-        root_covariance: (T, 3, 3) covariance of the root's orientation in its own axes, rad².
+        ball_covariance: (T, n, 3, 3) covariances of the rotations of joints with three angles, in the axes of their
+            distal segments, rad².
         torque_sd: (T, nv) of generalised forces; NaN where not known.
         foot_height_sd: (T, 2) of the height of right and left foot, m.
         refused: (T, M) markers seen but refused by the gate.
@@ -58,7 +59,7 @@ class Track:
     velocity_sd: Array
     angle_sd: Array
     rate_sd: Array
-    root_covariance: Array
+    ball_covariance: Array
     torque_sd: Array
     foot_height_sd: Array
     refused: BoolArray

@@ -94,6 +94,7 @@ def read_c3d(
         subject_mass_kg=_mass_kg(parameters),
         axes=axes_text(rotation_to_world(used_up)),
         axes_source=source,
+        processing=parameters.single_numbers("PROCESSING"),
     )
 
 

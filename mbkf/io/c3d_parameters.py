@@ -48,6 +48,11 @@ class C3dParameters:
         values = self.numbers(group, name).ravel()
         return float(values[0]) if len(values) else default
 
+    def single_numbers(self, group: str) -> dict[str, float]:
+        """The parameters of a group that are one finite number each, by their names in capitals."""
+        found = {name: self.numbers(group, name).ravel() for name in self.group(group)}
+        return {name: float(v[0]) for name, v in found.items() if len(v) == 1 and np.isfinite(v[0])}
+
     def texts(self, group: str, name: str) -> list[str]:
         """A parameter as texts without surrounding blanks, its continuations (NAME2, NAME3 …) appended."""
         found: list[str] = []

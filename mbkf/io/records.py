@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -179,6 +180,8 @@ class Capture:
         subject_mass_kg: Body mass stated in the file, or None.
         axes: Axes of the file that became x (forward), y (left) and z (up), as ``"x,-z,y"``.
         axes_source: Where that is known from.
+        processing: Numbers that the laboratory's software stored of the person, by their name in capitals and in its
+            units (C3D's PROCESSING group: widths of joints in mm, offsets of Plug-in Gait in rad).
     """
 
     path: str
@@ -193,3 +196,4 @@ class Capture:
     subject_mass_kg: float | None = None
     axes: str = "x,y,z"
     axes_source: AxesSource = AxesSource.MADE
+    processing: Mapping[str, float] = field(default_factory=dict)

@@ -109,6 +109,8 @@ class Reconstruction:
             pelvis and feet) or "laboratory". Positions and forces are in the laboratory's axes whatever it is.
         heading_rad: (T,) angle of that frame's forward axis about the vertical from the laboratory's x; None is 0.
         angles_lab: (T, A) ``angles`` with the root's in the laboratory's axes; None where they are so themselves.
+        angles_read: The axes that angles and their rates are read in: "model" for the body's own, else the
+            convention's name. Moments are about the body's own axes whatever it is.
         markers_ignored: Why a marker of the capture was not used, by its name there.
         markers_explained: Share of the capture's named markers that the protocol knows, used or not, 0 to 1.
         names_exchanged: Two markers whose names were exchanged and are put right, and in how many frames.
@@ -172,6 +174,7 @@ class Reconstruction:
     direction: str = "laboratory"
     heading_rad: Array | None = None
     angles_lab: Array | None = None
+    angles_read: str = "model"
     markers_ignored: dict[str, str] = field(default_factory=dict)
     markers_explained: float = 1.0
     names_exchanged: tuple[tuple[str, str, int], ...] = ()

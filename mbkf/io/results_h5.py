@@ -37,7 +37,9 @@ UNITS = {
 }  # fmt: skip
 """Unit of each array; the others (flags, counts, the innovation statistic) have none and carry "1"."""
 
-_TEXTS = ("trial", "protocol", "filter", "version", "direction", "file_axes", "file_axes_source")
+_TEXTS = (
+    "trial", "protocol", "filter", "version", "direction", "angles_read", "file_axes", "file_axes_source",
+)  # fmt: skip
 _NAME_LISTS = {
     "dof_names": "dof_names", "coordinate_names": "coordinate_names", "marker_names": "marker_names",
     "unobserved_dofs": "held_dofs", "warnings": "warnings", "support_names": "support_names",
@@ -105,7 +107,7 @@ def read_h5(path: str | Path) -> Reconstruction:
                 raise FileFormatError(source, "not a reconstruction; make it with 'mbkf reconstruct'")
             if file.attrs["format_version"] > FORMAT_VERSION:
                 raise FileFormatError(source, "written by a newer mbkf; upgrade to read it")
-            # Older files name neither direction, axes nor ignored or exchanged markers: theirs are the defaults.
+            # Older files lack direction, reading, axes and ignored or exchanged markers: theirs are the defaults.
             values: dict[str, Any] = {name: str(file.attrs[name]) for name in _TEXTS if name in file.attrs}
             values["smoothed"] = bool(file.attrs["smoothed"])
             values["rate_hz"] = float(file.attrs["rate_hz"])

@@ -59,14 +59,15 @@ def _angles(r: Reconstruction, angles: Array, direction: str) -> Table:
     lengths = np.isin(r.coordinate_names, TRANSLATIONS)
     values = np.where(lengths, angles, np.rad2deg(angles))
     table = _table(r, r.coordinate_names, values, "Coordinates", in_degrees=True)
-    return replace(table, header={**table.header, "Direction": direction})
+    return replace(table, header={**table.header, "Direction": direction, "AnglesRead": r.angles_read})
 
 
 def torques_table(reconstruction: Reconstruction) -> Table:
     """Moments named as OpenSim's inverse dynamics names them; the pelvis's columns are the residual."""
     r = reconstruction
     names = tuple(f"{name}_{'force' if name in TRANSLATIONS else 'moment'}" for name in r.coordinate_names)
-    return _table(r, names, r.moments, "Inverse Dynamics Generalized Forces")
+    table = _table(r, names, r.moments, "Inverse Dynamics Generalized Forces")
+    return replace(table, header={**table.header, "AnglesRead": "model"})
 
 
 def reactions_table(reconstruction: Reconstruction) -> Table:

@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray, read_only
-from mbkf.errors import ShapeError
+from mbkf.errors import InvalidInput, ShapeError
+from mbkf.model.angle_reading import AngleReading, JointAxes
 from mbkf.model.body import Body
 from mbkf.model.clinical_table import Angle, ClinicalJoint
 from mbkf.numerics.cardan import (
@@ -44,16 +45,20 @@ class ClinicalAngles:
 
     Attributes:
         model: The body.
+        reading: The axes that angles are read in.
         joints: The joints' entries of the body file, in the model's order.
         names: (A,) coordinate names, OpenSim's where it has them.
         units: (A,) "rad" or "m".
         rotational: (A,) True for angles, False for the pelvis's translations.
         root_angles: (3,) columns of the root's angles; they are told against the world's axes.
         root_turns: Where the root's rotation stands in the tangent space.
+        ball_turns: (n, 3) where the rotations of the joints with three angles do, in the model's order.
+        ball_columns: (n, 3) columns of these joints' angles.
     """
 
-    def __init__(self, model: Body) -> None:
-        self.model = model
+    def __init__(self, model: Body, reading: AngleReading | None = None) -> None:
+        """Args: the body, and the axes that angles are read in; the body file's own when None."""
+        self.model, self.reading = model, reading or AngleReading()
         self.joints: tuple[ClinicalJoint, ...] = model.description.clinical_joints
         self.names: tuple[str, ...] = tuple(c.name for joint in self.joints for c in joint.coordinates)
         column = {name: i for i, name in enumerate(self.names)}
@@ -67,15 +72,23 @@ class ClinicalAngles:
     def _place_balls(self, column: dict[str, int]) -> None:
         """Rotations by three angles: n of them, each with its order, signs, columns and places in q and v."""
         found = [(joint, self.model.joints[joint.distal]) for joint in self.joints if len(joint.order) == 3]
-        self._order = np.array([[AXES[axis] for axis in joint.order] for joint, _ in found])
+        read: list[JointAxes | None] = [self.reading.joints.get(joint.name) for joint, _ in found]
+        self._axes = [(n, axes) for n, axes in enumerate(read) if axes is not None]
+        orders = [
+            axes.order if axes and axes.order else joint.order
+            for (joint, _), axes in zip(found, read, strict=True)
+        ]
+        angles = [
+            [joint.angles[joint.order.index(axis)] for axis in order]
+            for (joint, _), order in zip(found, orders, strict=True)
+        ]
+        self._order = np.array([[AXES[axis] for axis in order] for order in orders])
         self._parity = np.array([np.linalg.det(np.eye(3)[order]) for order in self._order]).round()
-        self._ball_sign = np.array(
-            [[angle.sign for angle in joint.angles] for joint, _ in found], dtype=float
-        )
-        self._ball_column = np.array([[column[angle.name] for angle in joint.angles] for joint, _ in found])
+        self._ball_sign = np.array([[angle.sign for angle in of_joint] for of_joint in angles], dtype=float)
+        self.ball_columns = np.array([[column[angle.name] for angle in of_joint] for of_joint in angles])
         self._ball_q = np.array([np.arange(place.q.stop - 4, place.q.stop) for _, place in found])
-        rows = np.array([np.arange(place.v.stop - 3, place.v.stop) for _, place in found])
-        self._ball_v = np.take_along_axis(rows, self._order, axis=1)
+        self.ball_turns = np.array([np.arange(place.v.stop - 3, place.v.stop) for _, place in found])
+        self._ball_v = np.take_along_axis(self.ball_turns, self._order, axis=1)
         self._winds = np.array([place.kind == "free" for _, place in found])
 
     def _place_dofs(self, column: dict[str, int]) -> None:
@@ -102,7 +115,6 @@ class ClinicalAngles:
         self._root_v = np.arange(place.v.start, place.v.start + 3)
         self._root_q = slice(place.q.start, place.q.start + 3)
         self._root_quaternion = slice(place.q.start + 3, place.q.start + 7)
-        self._root_ball = int(np.flatnonzero(self._winds)[0])
         self.root_angles = read_only([column[angle.name] for angle in root.angles], dtype=int)
         self.root_turns = slice(place.v.start + 3, place.v.stop)
 
@@ -143,11 +155,13 @@ class ClinicalAngles:
         q = self._checked("q", q, self.model.nq)
         coordinates = np.empty((len(q), len(self.names)))
         R = quaternion_matrices(q[:, self._ball_q])
+        for n, axes in self._axes:
+            R[:, n] = axes.rotations(R[:, n])
         joints = np.arange(len(self._order))[:, None, None]
         R_ijk = R[:, joints, self._order[:, :, None], self._order[:, None, :]]
-        before = None if start is None else self._ball_sign * np.asarray(start)[self._ball_column]
+        before = None if start is None else self._ball_sign * np.asarray(start)[self.ball_columns]
         cardan = follow(cardan_angles(R_ijk, self._parity), self._winds, before)
-        coordinates[:, self._ball_column] = self._ball_sign * cardan
+        coordinates[:, self.ball_columns] = self._ball_sign * cardan
         coordinates[:, self._dof_column] = self._dof_sign * q[:, self._dof_q]
         coordinates[:, self._root_columns] = q[:, self._root_q] @ self._root_axes.T
         return coordinates
@@ -160,7 +174,7 @@ class ClinicalAngles:
         """
         angles = self._checked("angles", angles, len(self.names))
         flags = np.zeros(angles.shape, dtype=bool)
-        flags[:, self._ball_column] = near_singularity(self._cardan(angles))[..., None]
+        flags[:, self.ball_columns] = near_singularity(self._cardan(angles))[..., None]
         return flags
 
     def rate_matrix(self, q: Array, angles: Array | None = None) -> Array:
@@ -182,22 +196,29 @@ class ClinicalAngles:
         """
         q, angles = self._with_angles(q, angles)
         E = np.zeros((len(q), len(self.names), self.model.nv))
-        blocks = self._rate_blocks(angles)
-        E[:, self._ball_column[:, :, None], self._ball_v[:, None, :]] = blocks
+        blocks = self._rate_blocks(q, angles)
+        E[:, self.ball_columns[:, :, None], self._ball_v[:, None, :]] = blocks
         E[:, self._dof_column, self._dof_v] = self._dof_sign
         E[:, self._root_columns[:, None], self._root_v] = self._root_axes @ self._root_rotation(q)
         return E
 
-    def root_rate_matrices(self, angles: Array) -> Array:
-        """(T, 3, 3) the part of these matrices that takes the root's turning to the rates of its angles.
+    def ball_spread(self, q: Array, angles: Array, covariance: Array) -> Array:
+        """Standard deviations of the angles of joints with three of them; NaN for other coordinates.
 
         Args:
-            angles: (T, A) coordinates.
+            q: (T, nq) configurations.
+            angles: (T, A) their coordinates.
+            covariance: (T, n, 3, 3) covariances of these joints' rotations in their distal segments' axes, in the order
+                of the model's joints, rad².
         """
-        blocks = self._rate_blocks(self._checked("angles", angles, len(self.names)))[:, self._root_ball]
-        E = np.empty(blocks.shape)
-        E[:, :, self._order[self._root_ball]] = blocks
-        return E
+        E = self._rate_blocks(
+            self._checked("q", q, self.model.nq), self._checked("angles", angles, len(self.names))
+        )
+        joints = np.arange(len(self._order))[:, None, None]
+        P = covariance[:, joints, self._order[:, :, None], self._order[:, None, :]]
+        spread = np.full(angles.shape, np.nan)
+        spread[:, self.ball_columns] = np.sqrt(np.maximum(np.einsum("tnai,tnij,tnaj->tna", E, P, E), 0.0))
+        return spread
 
     def moments(self, q: Array, tau: Array, angles: Array | None = None) -> Array:
         """Generalised moments conjugate to the coordinates, m = Bᵀ τ: power m·θ̇ equals τ·v in every joint.
@@ -209,12 +230,17 @@ class ClinicalAngles:
 
         Returns:
             (T, A) N m, and N for translations; regular at singularities.
+
+        Raises:
+            InvalidInput: The angles are read in other axes than the body's own.
         """
+        if self._axes:
+            raise InvalidInput("moments belong to the angles in the body's own axes")
         q, angles = self._with_angles(q, angles)
         tau = self._checked("tau", tau, self.model.nv)
         conjugate = np.empty((len(q), len(self.names)))
         B = velocity_map(self._cardan(angles), self._parity)
-        conjugate[:, self._ball_column] = self._ball_sign * np.einsum(
+        conjugate[:, self.ball_columns] = self._ball_sign * np.einsum(
             "tnij,tni->tnj", B, tau[:, self._ball_v]
         )
         conjugate[:, self._dof_column] = self._dof_sign * tau[:, self._dof_v]
@@ -238,12 +264,17 @@ class ClinicalAngles:
         by_axis = [self.moments(q, np.where(axis == one, tau_sd, 0.0), angles) for one in range(3)]
         return np.asarray(np.sqrt(np.square(by_axis).sum(axis=0)))
 
-    def _rate_blocks(self, angles: Array) -> Array:
+    def _rate_blocks(self, q: Array, angles: Array) -> Array:
         """(T, n, 3, 3) rates of a ball's angles per angular velocity about the axes of its order."""
-        return np.asarray(self._ball_sign[:, :, None] * rate_map(self._cardan(angles), self._parity))
+        blocks = np.asarray(self._ball_sign[:, :, None] * rate_map(self._cardan(angles), self._parity))
+        for n, axes in self._axes:
+            order = self._order[n]
+            turning = axes.velocities(quaternion_matrices(q[:, self._ball_q[n]]))
+            blocks[:, n] = blocks[:, n] @ turning[:, order[:, None], order[None, :]]
+        return blocks
 
     def _cardan(self, angles: Array) -> Array:
-        return self._ball_sign * angles[:, self._ball_column]
+        return self._ball_sign * angles[:, self.ball_columns]
 
     def _root_rotation(self, q: Array) -> Array:
         return quaternion_matrices(q[:, self._root_quaternion])

@@ -29,6 +29,7 @@ from mbkf.pipelines.imu.on_body import ImuOnBody, with_imus
 from mbkf.pipelines.results.clinical import clinical_motion
 from mbkf.pipelines.results.progression import PELVIS_FRAMES, pelvis_frame
 from mbkf.pipelines.results.reactions import reactions
+from mbkf.pipelines.results.readings import ANGLES, angle_reading
 from mbkf.pipelines.results.supports import supports_told
 from mbkf.pipelines.results.validity import torques_known
 from mbkf.pipelines.trial.exchanged import exchange_notes, names_put_right
@@ -70,6 +71,8 @@ class ReconstructSettings:
         hide: Markers to hide.
         without_plates: Names of plates to withhold.
         pelvis: The frame of the pelvis's angles: "progression", or "lab" for the laboratory's axes.
+        angles: The axes that angles are read in: "model" for the body's own, "isb" for the ISB's, "pig" for
+            Plug-in Gait's.
         keep_covariance: Whether full covariances are kept in memory.
         other_contacts: Whether parts besides the feet may bear load: a seat, a knee or a hand on the floor, a load in
             the hands. Only the dynamic filter knows of them.
@@ -86,6 +89,7 @@ class ReconstructSettings:
     hide: tuple[Hidden, ...] = ()
     without_plates: tuple[str, ...] = ()
     pelvis: str = "progression"
+    angles: str = "model"
     keep_covariance: bool = False
     other_contacts: bool = True
 
@@ -135,13 +139,16 @@ def reconstruct(
         InvalidInput: The axes or the unit of the capture cannot be right, and it is not clear what they are.
         NotObservable: Too few of the subject's markers to track the body.
         NotConverged: The markers do not fit the subject's body.
-        UnknownName: A hidden marker, a withheld plate, the filter or the frame of the pelvis does not exist.
+        UnknownName: A hidden marker, a withheld plate, the filter, the frame of the pelvis or the reading of angles
+            does not exist.
     """
     settings = settings or ReconstructSettings()
     if settings.filter not in FILTERS:
         raise UnknownName("filter", settings.filter, FILTERS)
     if settings.pelvis not in PELVIS_FRAMES:
         raise UnknownName("frame of the pelvis", settings.pelvis, PELVIS_FRAMES)
+    if settings.angles not in ANGLES:
+        raise UnknownName("reading of angles", settings.angles, ANGLES)
     with single_threaded():
         capture = checked_for_subject(capture, subject)
         measured, exchanged = names_put_right(subject_markers(capture.markers, subject), subject)
@@ -246,7 +253,8 @@ def assemble(
     tau, names = ground.tau, dof_names(model)
     tau_sd = np.where(np.isnan(tau), np.nan, result.torque_sd)
     frame = pelvis_frame(settings.pelvis, model, result.q, measured.times_s)
-    clinical = clinical_motion(model, result, tau, tau_sd, frame)
+    reading = angle_reading(settings.angles, model, subject, capture.processing)
+    clinical = clinical_motion(model, result, tau, tau_sd, frame, reading)
     located = result.tracked & _located(result)
     supports = ground.supports
     bears = bearing(supports.wrench)
@@ -260,7 +268,7 @@ def assemble(
         coordinate_names=clinical.names, angles=clinical.angles, angles_lab=clinical.angles_lab,
         angle_rates=clinical.rates, moments=clinical.moments, angles_sd=clinical.angles_sd,
         angle_rates_sd=clinical.rates_sd, moments_sd=clinical.moments_sd, singular=clinical.singular,
-        direction=frame.direction, heading_rad=frame.heading_rad,
+        direction=frame.direction, heading_rad=frame.heading_rad, angles_read=reading.name,
         marker_names=measured.names, measured_m=measured.positions_m,
         predicted_m=_predicted(inputs.sensor, result, measured, hidden), hidden=hidden,
         rejected=result.refused,

@@ -9,7 +9,7 @@ from mbkf.filters.record import FIELDS, UNASKED, FrameRecorder, blank, record_dt
 from mbkf.filters.tracking import Track, track_of
 from tests.followed import estimates, made_filter, recording, tracked
 
-SIZES = {"M": 3, "nq": 8, "nv": 7, "A": 7, "B": 2}
+SIZES = {"M": 3, "nq": 8, "nv": 7, "A": 7, "B": 2, "N": 4}
 
 
 def test_every_field_has_its_type_and_shape():

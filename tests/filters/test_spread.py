@@ -51,9 +51,10 @@ def test_the_roots_orientation_is_its_own_part_of_the_covariance(case):
     """The spread of the root's angles follows from it alone."""
     _, state, _, spread = case
     clinical = spread.reader.clinical
-    np.testing.assert_array_equal(spread.root_covariance, state.P[3:6, 3:6])
+    root = spread.ball_covariance[0]
+    np.testing.assert_array_equal(root, state.P[3:6, 3:6])
     E = clinical.rate_matrix(state.q)[clinical.root_angles][:, clinical.root_turns]
-    expected = np.sqrt(np.diag(E @ spread.root_covariance @ E.T))
+    expected = np.sqrt(np.diag(E @ root @ E.T))
     np.testing.assert_allclose(spread.angle[clinical.root_angles], expected, rtol=1e-10)
 
 

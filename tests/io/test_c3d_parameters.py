@@ -26,6 +26,17 @@ def test_missing_or_unsuitable_values_are_empty():
     assert parameters(P={"X": ["text"]}).numbers("P", "X").size == 0
 
 
+def test_single_numbers_leave_lists_texts_and_what_is_no_number_out():
+    values = {
+        "LKneeWidth": np.array([124.0]),
+        "Name": ["x"],
+        "Two": np.array([1.0, 2.0]),
+        "Bad": np.array([np.nan]),
+    }
+    assert parameters(Processing=values).single_numbers("PROCESSING") == {"LKNEEWIDTH": 124.0}
+    assert parameters().single_numbers("PROCESSING") == {}
+
+
 def test_blocks_of_plates_follow_fortran_order():
     corners = np.arange(24.0).reshape(3, 4, 2)
     channel = np.arange(12.0).reshape(6, 2)

@@ -86,10 +86,12 @@ def test_older_files_tell_no_ignored_markers(tmp_path):
 
 def test_a_file_without_a_direction_is_told_in_the_laboratory(tmp_path):
     """Files of earlier versions."""
-    write_h5(made_up(direction="heading"), tmp_path / "motion.h5")
+    write_h5(made_up(direction="heading", angles_read="pig"), tmp_path / "motion.h5")
+    assert read_h5(tmp_path / "motion.h5").angles_read == "pig"
     with h5py.File(tmp_path / "motion.h5", "a") as file:
-        del file.attrs["direction"]
-    assert read_h5(tmp_path / "motion.h5").direction == "laboratory"
+        del file.attrs["direction"], file.attrs["angles_read"]
+    back = read_h5(tmp_path / "motion.h5")
+    assert (back.direction, back.angles_read) == ("laboratory", "model")
 
 
 def test_every_quantity_carries_its_unit(tmp_path):

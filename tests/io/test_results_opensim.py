@@ -3,6 +3,7 @@
 import numpy as np
 
 from mbkf.io.results_opensim import (
+    angles_lab_table,
     angles_table,
     reactions_table,
     reconstructed_markers,
@@ -137,3 +138,10 @@ def test_nothing_tracked_writes_empty_files(tmp_path):
     write_opensim(r, tmp_path)
     assert reconstructed_markers(r).frames == 0
     assert len(angles_table(r).times_s) == 0
+
+
+def test_the_header_tells_the_axes_that_angles_are_read_in():
+    """Torques are about the body's own, whichever these are."""
+    r = made_up(angles_read="pig")
+    assert angles_table(r).header["AnglesRead"] == angles_lab_table(r).header["AnglesRead"] == "pig"
+    assert torques_table(r).header["AnglesRead"] == "model"

@@ -4,8 +4,10 @@ import time
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from mbkf.errors import ShapeError
+from mbkf.errors import InvalidInput, ShapeError
+from mbkf.model.angle_reading import AngleReading, JointAxes, Line
 from mbkf.model.clinical import ClinicalAngles, dof_names
 from mbkf.model.human import HumanModel
 
@@ -191,3 +193,96 @@ def test_wrong_shapes_are_refused(model, clinical):
         clinical.moments(model.neutral()[None], np.zeros((1, 3)))
     with pytest.raises(ShapeError, match="angles"):
         clinical.rate_matrices(model.neutral()[None], np.zeros((2, model.nv)))
+
+
+def turned(seed, most=0.4):
+    return Rotation.from_rotvec(np.random.default_rng(seed).uniform(-most, most, 3)).as_matrix()
+
+
+LINE = Line(turned(5), turned(6))
+READING = AngleReading(
+    "made up",
+    {
+        "pelvis": JointAxes(np.eye(3), turned(1)),
+        "hip_r": JointAxes(turned(1), turned(2)),
+        "knee_l": JointAxes(turned(2), turned(3), "xzy"),
+        "ankle_r": JointAxes(turned(3), turned(4), "yzx", LINE),
+    },
+)
+
+
+def test_axes_that_do_not_turn_give_the_models_angles(model, clinical):
+    rng = np.random.default_rng(20)
+    q = np.array([random_posture(model, rng) for _ in range(6)])
+    same = JointAxes(np.eye(3), np.eye(3))
+    other = ClinicalAngles(model, AngleReading("same", {joint.name: same for joint in clinical.joints}))
+    np.testing.assert_allclose(other.angles(q), clinical.angles(q), atol=1e-14)
+    np.testing.assert_allclose(other.rate_matrices(q), clinical.rate_matrices(q), atol=1e-13)
+
+
+def test_only_the_joints_of_a_reading_are_read_otherwise(model, clinical):
+    q = random_posture(model, np.random.default_rng(21))[None]
+    found = ClinicalAngles(model, READING).angles(q)[0] - clinical.angles(q)[0]
+    changed = {
+        name.rsplit("_", 2)[0] for name, by in zip(clinical.names, found, strict=True) if abs(by) > 1e-9
+    }
+    assert {"hip", "knee", "ankle", "pelvis"} & {name.split("_")[0] for name in changed} == {
+        "hip", "knee", "ankle", "pelvis",
+    }  # fmt: skip
+    for name in (
+        "hip_flexion_l",
+        "knee_angle_r",
+        "ankle_angle_l",
+        "lumbar_extension",
+        "pelvis_tx",
+        "mtp_angle_r",
+    ):
+        assert found[clinical.names.index(name)] == 0.0
+
+
+def test_rates_of_a_reading_by_finite_differences(model):
+    """θ̇ = E v with axes turned, an order of their own, and a foot of which a line is read."""
+    rng, h = np.random.default_rng(22), 1e-6
+    read = ClinicalAngles(model, READING)
+    for _ in range(5):
+        q, v = random_posture(model, rng), rng.normal(size=model.nv)
+        before, after = read.angles(np.array([model.integrate(q, s * h * v) for s in (-1, 1)]))
+        np.testing.assert_allclose(read.rate_matrix(q) @ v, (after - before) / (2 * h), rtol=0, atol=2e-7)
+
+
+def test_a_laboratory_turned_about_the_vertical_turns_the_pelvis_only(model):
+    """The pelvis's tilt and list stay, too; its rotation grows by the angle."""
+    rng, angle = np.random.default_rng(23), 0.3
+    read = ClinicalAngles(
+        model, AngleReading("heading first", {"pelvis": JointAxes(np.eye(3), turned(1), "zyx")})
+    )
+    q = np.array([random_posture(model, rng) for _ in range(4)])
+    change = read.angles(read.against(np.full(4, -angle), q)) - read.angles(q)
+    expected = np.zeros_like(change)
+    expected[:, read.names.index("pelvis_rotation")] = angle
+    np.testing.assert_allclose(change, expected, atol=1e-12)
+
+
+def test_spreads_of_a_reading_by_finite_differences(model):
+    """Var θ = J P Jᵀ with the covariance of each joint's rotation."""
+    rng, h = np.random.default_rng(24), 1e-6
+    read = ClinicalAngles(model, READING)
+    q = random_posture(model, rng)
+    A = 0.1 * rng.normal(size=(model.nv, model.nv))
+    P = A @ A.T
+    steps = h * np.eye(model.nv)
+    J = np.column_stack([
+        np.diff(read.angles(np.array([model.integrate(q, s * step) for s in (-1, 1)])), axis=0)[0] / (2 * h)
+        for step in steps
+    ])  # fmt: skip
+    turns = read.ball_turns
+    spread = read.ball_spread(q[None], read.angles(q[None]), P[turns[:, :, None], turns[:, None, :]][None])[0]
+    columns = read.ball_columns.ravel()
+    np.testing.assert_allclose(spread[columns], np.sqrt(np.diag(J @ P @ J.T))[columns], rtol=1e-6)
+    others = np.setdiff1d(np.arange(len(spread)), columns)
+    assert np.isnan(spread[others]).all()
+
+
+def test_moments_belong_to_the_bodys_own_axes(model):
+    with pytest.raises(InvalidInput, match="own axes"):
+        ClinicalAngles(model, READING).moments(model.neutral()[None], np.zeros((1, model.nv)))

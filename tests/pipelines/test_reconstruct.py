@@ -111,6 +111,22 @@ def test_the_pelvis_is_told_against_its_heading_or_the_laboratory_on_request(mad
         kinematic(made.capture, made.subject, pelvis="sideways")
 
 
+def test_angles_are_read_as_plug_in_gait_on_request(made, result):
+    """Motion and torques stay, and the widths that the capture tells are heeded."""
+    told = replace(made.capture, processing={"RKNEEWIDTH": 140.0})
+    bare, found = (kinematic(capture, made.subject, angles="pig") for capture in (made.capture, told))
+    assert (result.angles_read, found.angles_read) == ("model", "pig")
+    assert found.settings["angles"] == "pig"
+    for name in ("q", "v", "tau", "moments"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(result, name))
+    assert np.abs(found.angles - result.angles)[:, found.coordinate_names.index("hip_flexion_r")].max() > 1e-3
+    changed = np.abs(found.angles - bare.angles).max(axis=0) > 1e-6
+    told_apart = {name for name, by in zip(found.coordinate_names, changed, strict=True) if by}
+    assert "hip_adduction_r" in told_apart and not {n for n in told_apart if n.endswith("_l")}
+    with pytest.raises(UnknownName, match="sideways"):
+        kinematic(made.capture, made.subject, angles="sideways")
+
+
 def test_correcting_exact_markers_costs_little(made, result):
     """The correction lets every marker wander by a millimetre: a degree where a joint hangs on few markers."""
     errors = angle_errors(made.model, result.q, made.q)

@@ -8,6 +8,7 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.tracking import Track
+from mbkf.model.angle_reading import AngleReading
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.pipelines.results.progression import LABORATORY, Progression, laboratory
@@ -35,12 +36,18 @@ class ClinicalMotion:
 
 
 def clinical_motion(
-    model: Body, track: Track, tau: Array, tau_sd: Array, frame: Progression | None = None
+    model: Body,
+    track: Track,
+    tau: Array,
+    tau_sd: Array,
+    frame: Progression | None = None,
+    reading: AngleReading | None = None,
 ) -> ClinicalMotion:
     """Coordinates θ, rates E v, moments Bᵀτ, and their spreads by the same linear maps.
 
     The root's angles are told in the frame of progression; its position stays in the laboratory's axes. The heading
     counts as known. Where it turns, rates are those against the turning axes: E (v − ψ̇ e), with e the vertical.
+    Moments stay about the body's own axes, in whatever axes angles are read.
 
     Args:
         model: The body.
@@ -48,25 +55,33 @@ def clinical_motion(
         tau: (T, nv) generalised forces.
         tau_sd: (T, nv) their standard deviations.
         frame: The frame of the root's angles; the laboratory's when None.
+        reading: The axes that angles are read in; the body's own when None.
     """
     frame = frame or laboratory(len(track.q))
-    clinical = ClinicalAngles(model)
+    clinical = ClinicalAngles(model, reading)
     in_laboratory = frame.direction == LABORATORY
+    seen = track.q if in_laboratory else clinical.against(frame.heading_rad, track.q)
     angles_lab = angles = clinical.angles(track.q)
     if not in_laboratory:
-        angles = clinical.angles(clinical.against(frame.heading_rad, track.q))
+        angles = clinical.angles(seen)
     known = np.asarray(np.isfinite(track.q).all(axis=1))
     shape = angles.shape
     rates, moments, moments_sd = (np.full(shape, np.nan) for _ in range(3))
-    angles_sd, rates_sd = track.angle_sd, track.rate_sd
     q, v, theta = track.q[known], track.v[known], angles[known]
     if not in_laboratory:
-        angles_sd, rates_sd = _root_spread(clinical, track, known, theta)
         v = v.copy()
         v[:, clinical.root_turns] -= frame.turning_rad_s[known, None] * clinical.vertical(q)
-    rates[known] = _rates(clinical, q, theta, v)
-    moments[known] = clinical.moments(q, tau[known], theta)
-    moments_sd[known] = clinical.moments_sd(q, tau_sd[known], theta)
+    rates[known], spread = _rates(clinical, q, theta, v, track.velocity_sd[known])
+    renewed = _renewed(clinical, in_laboratory)
+    angles_sd, rates_sd = track.angle_sd.copy(), track.rate_sd.copy()
+    rows = np.ix_(np.flatnonzero(known), renewed)
+    if len(renewed):
+        angles_sd[rows] = clinical.ball_spread(q, theta, track.ball_covariance[known])[:, renewed]
+        rates_sd[rows] = spread[:, renewed]
+    own = ClinicalAngles(model)
+    own_angles = theta if reading is None or not reading.joints else own.angles(seen)[known]
+    moments[known] = own.moments(q, tau[known], own_angles)
+    moments_sd[known] = own.moments_sd(q, tau_sd[known], own_angles)
     singular = np.zeros(shape, dtype=bool)
     singular[known] = clinical.singular(theta)
     return ClinicalMotion(
@@ -74,24 +89,21 @@ def clinical_motion(
     )
 
 
-def _root_spread(
-    clinical: ClinicalAngles, track: Track, known: BoolArray, angles: Array
+def _renewed(clinical: ClinicalAngles, in_laboratory: bool) -> Array:
+    """Columns whose spreads the filter tells in other axes than they are read in."""
+    if clinical.reading.joints:
+        return clinical.ball_columns.ravel()
+    return clinical.root_angles[:0] if in_laboratory else clinical.root_angles
+
+
+def _rates(
+    clinical: ClinicalAngles, q: Array, angles: Array, v: Array, velocity_sd: Array
 ) -> tuple[Array, Array]:
-    """(T, A) spreads of angles and rates, the root's renewed for its known (n, A) angles."""
-    angles_sd, rates_sd = track.angle_sd.copy(), track.rate_sd.copy()
-    rows = np.ix_(np.flatnonzero(known), clinical.root_angles)
-    E = clinical.root_rate_matrices(angles)
-    covariance = track.root_covariance[known]
-    angles_sd[rows] = np.sqrt(np.maximum(np.einsum("tai,tij,taj->ta", E, covariance, E), 0.0))
-    rates_sd[rows] = np.sqrt(
-        np.einsum("tai,ti->ta", E**2, track.velocity_sd[known][:, clinical.root_turns] ** 2)
-    )
-    return angles_sd, rates_sd
-
-
-def _rates(clinical: ClinicalAngles, q: Array, angles: Array, v: Array) -> Array:
-    """(T, A) E v, some frames at a time, because E has (A, nv) numbers per frame."""
-    blocks = [slice(first, first + BLOCK) for first in range(0, len(q), BLOCK)]
-    return np.concatenate(
-        [np.einsum("tai,ti->ta", clinical.rate_matrices(q[b], angles[b]), v[b]) for b in blocks]
-    )
+    """(T, A) E v and √(E² sd²), some frames at a time, because E has (A, nv) numbers per frame."""
+    rates, spreads = [np.empty((0, len(clinical.names)))], [np.empty((0, len(clinical.names)))]
+    for first in range(0, len(q), BLOCK):
+        b = slice(first, first + BLOCK)
+        E = clinical.rate_matrices(q[b], angles[b])
+        rates.append(np.einsum("tai,ti->ta", E, v[b]))
+        spreads.append(np.sqrt(np.einsum("tai,ti->ta", E**2, velocity_sd[b] ** 2)))
+    return np.concatenate(rates), np.concatenate(spreads)

@@ -21,6 +21,12 @@ from mbkf.viz.report.gait import gait_section
 from mbkf.viz.report.motion import motion_section, reaction_section
 from mbkf.viz.report.quality import quality_section
 
+ANGLES_READ = {
+    "model": "Angles are about the body's own axes, in the order of the ISB recommendations",
+    "isb": "Angles are read in the ISB's axes, torques about the body's own",
+    "pig": "Angles are read in Plug-in Gait's axes, torques about the body's own",
+}
+
 NAVIGATION = (
     ("quality", "Quality"), ("gait", "Gait"), ("motion", "Angles and torques"), ("reactions", "Reactions"),
     ("contacts", "Contacts"),    ("settings", "Settings"),
@@ -151,7 +157,7 @@ def _settings(r: Reconstruction, summary: Mapping[str, object]) -> str:
             ),
         ),
         paragraph(
-            f"Angles follow the ISB recommendations; pelvis: {_pelvis_frame(r)}; world axes: x forward, y left, z up."
+            f"{ANGLES_READ[r.angles_read]}; pelvis: {_pelvis_frame(r)}; world axes: x forward, y left, z up."
         ),
     )
 

@@ -4,7 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
+from mbkf.model.angle_reading import AngleReading, JointAxes
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.pipelines.results.clinical import clinical_motion
 from mbkf.pipelines.results.progression import Progression
@@ -97,10 +99,10 @@ def spread_case(case):
     """The case with the covariance of the root's orientation and the velocities' deviations."""
     model, track, tau, sd_tau, found = case
     rng = np.random.default_rng(2)
-    A = 0.1 * rng.normal(size=(FRAMES, 3, 3))
+    A = 0.1 * rng.normal(size=(FRAMES, 15, 3, 3))
     velocity_sd = rng.uniform(0.1, 1.0, track.v.shape)
-    covariance = np.einsum("tij,tkj->tik", A, A)
-    return model, replace(track, root_covariance=covariance, velocity_sd=velocity_sd), tau, sd_tau, found
+    covariance = np.einsum("tnij,tnkj->tnik", A, A)
+    return model, replace(track, ball_covariance=covariance, velocity_sd=velocity_sd), tau, sd_tau, found
 
 
 STEADY = Progression("progression", np.full(FRAMES, 0.8), np.zeros(FRAMES))
@@ -166,7 +168,28 @@ def test_the_roots_spreads_follow_its_own_covariance(spread_case):
         ends = np.array([[model.integrate(track.q[t], s * step) for s in (-1, 1)] for step in steps])
         angles = [clinical.angles(clinical.against(np.full(2, 0.8), pair)) for pair in ends]
         J = np.array([(after - before) / (2 * h) for before, after in angles]).T[clinical.root_angles]
-        variance = np.diag(J @ track.root_covariance[t] @ J.T)
+        variance = np.diag(J @ track.ball_covariance[t, 0] @ J.T)
         np.testing.assert_allclose(found.angles_sd[t, clinical.root_angles] ** 2, variance, rtol=1e-6)
         rate_variance = J**2 @ track.velocity_sd[t, clinical.root_turns] ** 2
         np.testing.assert_allclose(found.rates_sd[t, clinical.root_angles] ** 2, rate_variance, rtol=1e-6)
+
+
+def test_a_reading_changes_angles_their_rates_and_spreads_and_no_moment(spread_case):
+    """Spreads come from the covariance of each joint's rotation, read in the turned axes."""
+    model, track, tau, sd_tau, _ = spread_case
+    hip = JointAxes(*Rotation.from_rotvec([[0.1, 0.2, -0.1], [-0.1, 0.3, 0.2]]).as_matrix())
+    reading = AngleReading("made up", {"hip_r": hip})
+    read, own = ClinicalAngles(model, reading), in_frame(spread_case, STEADY)
+    found = clinical_motion(model, track, tau, sd_tau, STEADY, reading)
+    seen = read.against(STEADY.heading_rad, track.q)
+    np.testing.assert_allclose(found.angles[KNOWN], read.angles(seen)[KNOWN], rtol=1e-14)
+    spread = read.ball_spread(seen[KNOWN], found.angles[KNOWN], track.ball_covariance[KNOWN])
+    columns = read.ball_columns.ravel()
+    np.testing.assert_allclose(found.angles_sd[KNOWN][:, columns], spread[:, columns], rtol=1e-12)
+    for name in ("moments", "moments_sd"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(own, name))
+    h = 1e-6
+    for t in KNOWN:
+        ends = np.array([model.integrate(track.q[t], s * h * track.v[t]) for s in (-1, 1)])
+        before, after = read.angles(read.against(np.full(2, 0.8), ends))
+        np.testing.assert_allclose(found.rates[t], (after - before) / (2 * h), rtol=0, atol=2e-8)
