@@ -207,7 +207,7 @@ def print_summary(summary: Summary, folder: Path) -> None:
         ("frames with all loads known", str(summary["valid_frames"])),
         ("frames with all loads measured", str(summary["measured_frames"])),
         (
-            "residual at the pelvis",
+            "residual at the pelvis" + (" after correction" if summary["filter"] != "kinematic" else ""),
             _pair(summary["residual_force_rms_n"], summary["residual_moment_rms_nm"], "N, N m"),
         ),
         (
@@ -230,12 +230,24 @@ def print_summary(summary: Summary, folder: Path) -> None:
         )
     for name, value in (summary["truth"] or {}).items():
         rows.append((f"against the truth: {name.replace('_', ' ')}", "" if value is None else f"{value:.3f}"))
+    rows += [("checks", line) for line in _checks(summary)]
     for name, text in rows:
         table.add_row(name, text)
     console.print(table)
     for warning in summary["warnings"]:
         console.print(f"note: {warning}", soft_wrap=True)
     console.print(str(folder), soft_wrap=True)
+
+
+def _checks(summary: Summary) -> list[str]:
+    """How many checks ended how, and the names of those that are not inside what noise explains."""
+    lines = []
+    for verdict in ("inside", "doubtful", "outside", "not judged"):
+        names = [str(check["name"]) for check in summary["checks"] if check["verdict"] == verdict]
+        if names:
+            listed = f": {', '.join(names)}" if verdict in ("doubtful", "outside") else ""
+            lines.append(f"{len(names)} {verdict}{listed}")
+    return lines
 
 
 def _ms(seconds: float | None) -> float | None:

@@ -9,6 +9,7 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.errors import ShapeError, UnknownName
 from mbkf.io.contacts import FEET, ContactInterval, Loads, Source, bearing
+from mbkf.io.findings import Finding
 from mbkf.io.subject import Subject
 
 NAMES = (
@@ -114,6 +115,7 @@ class Reconstruction:
         markers_ignored: Why a marker of the capture was not used, by its name there.
         markers_explained: Share of the capture's named markers that the protocol knows, used or not, 0 to 1.
         names_exchanged: Two markers whose names were exchanged and are put right, and in how many frames.
+        checks: What checks found that stand apart from the filter: mass, plates, clocks, floor, markers.
     """
 
     trial: str
@@ -178,6 +180,7 @@ class Reconstruction:
     markers_ignored: dict[str, str] = field(default_factory=dict)
     markers_explained: float = 1.0
     names_exchanged: tuple[tuple[str, str, int], ...] = ()
+    checks: tuple[Finding, ...] = ()
 
     def __post_init__(self) -> None:
         for name in NAMES:

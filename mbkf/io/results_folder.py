@@ -85,6 +85,7 @@ class Summary(TypedDict):
         realtime_factor: Duration over computing time.
         truth: Errors against a synthetic subject's known motion.
         axes: Axes of the capture's file.
+        checks: What checks found that stand apart from the filter (:class:`mbkf.io.findings.Finding`).
         warnings: Remarks for the reader.
         settings: Settings of the run, as plain data.
     """
@@ -125,6 +126,7 @@ class Summary(TypedDict):
     realtime_factor: float | None
     truth: dict[str, float | None] | None
     axes: AxesTold
+    checks: list[dict[str, object]]
     warnings: list[str]
     settings: dict[str, object]
 

@@ -15,6 +15,7 @@ from mbkf.conventions import read_only
 from mbkf.errors import FileFormatError, MbkfError
 from mbkf.io.atomic import replacing
 from mbkf.io.contacts import foot_sources
+from mbkf.io.findings import Finding
 from mbkf.io.results import ARRAYS, DTYPES, Reconstruction
 from mbkf.io.subject import Subject, SubjectMarker
 
@@ -75,6 +76,7 @@ def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
         file.attrs["settings"] = json.dumps(reconstruction.settings, default=_plain)
         file.attrs["markers_ignored"] = json.dumps(reconstruction.markers_ignored)
         file.attrs["names_exchanged"] = json.dumps(reconstruction.names_exchanged)
+        file.attrs["checks"] = json.dumps([check.as_table() for check in reconstruction.checks])
         file.attrs["markers_explained"] = reconstruction.markers_explained
         file.attrs["subject"] = json.dumps(dataclasses.asdict(reconstruction.subject), default=_plain)
         for name, key in _NAME_LISTS.items():
@@ -107,7 +109,7 @@ def read_h5(path: str | Path) -> Reconstruction:
                 raise FileFormatError(source, "not a reconstruction; make it with 'mbkf reconstruct'")
             if file.attrs["format_version"] > FORMAT_VERSION:
                 raise FileFormatError(source, "written by a newer mbkf; upgrade to read it")
-            # Older files lack direction, reading, axes and ignored or exchanged markers: theirs are the defaults.
+            # Older files lack direction, reading, axes, checks, ignored and exchanged markers: theirs are the defaults.
             values: dict[str, Any] = {name: str(file.attrs[name]) for name in _TEXTS if name in file.attrs}
             values["smoothed"] = bool(file.attrs["smoothed"])
             values["rate_hz"] = float(file.attrs["rate_hz"])
@@ -115,6 +117,7 @@ def read_h5(path: str | Path) -> Reconstruction:
             values["markers_ignored"] = json.loads(file.attrs.get("markers_ignored", "{}"))
             exchanged = json.loads(file.attrs.get("names_exchanged", "[]"))
             values["names_exchanged"] = tuple((a, b, int(frames)) for a, b, frames in exchanged)
+            values["checks"] = tuple(Finding(**one) for one in json.loads(file.attrs.get("checks", "[]")))
             values["markers_explained"] = float(file.attrs.get("markers_explained", 1.0))
             values["subject"] = _subject(json.loads(file.attrs["subject"]))
             for name, key in _NAME_LISTS.items():

@@ -12,18 +12,21 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray, StageCallback
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
 from mbkf.filters.dynamic.settings import DynamicSettings
+from mbkf.filters.estimate import Recording
 from mbkf.filters.fixed_lag import SmoothingSettings
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.settings import flat
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.filters.tracking import Track, track
 from mbkf.io.contacts import bearing
+from mbkf.io.findings import Finding
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results import LAG_KEY, Reconstruction
 from mbkf.io.subject import Subject, match_names
 from mbkf.model.clinical import dof_names
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.axes.captures import checked_for_subject
+from mbkf.pipelines.checks.judge import marker_checks, plate_checks, told
 from mbkf.pipelines.coverage import INFERRED_KEY, use_by_subject
 from mbkf.pipelines.imu.on_body import ImuOnBody, with_imus
 from mbkf.pipelines.results.clinical import clinical_motion
@@ -35,12 +38,14 @@ from mbkf.pipelines.results.validity import torques_known
 from mbkf.pipelines.trial.exchanged import exchange_notes, names_put_right
 from mbkf.pipelines.trial.filters import FILTERS, FilterInputs, standard, tracking_filter
 from mbkf.pipelines.trial.inputs import trial_inputs
+from mbkf.pipelines.trial.markers_alone import Motion, markers_alone
 from mbkf.pipelines.trial.other_contacts import with_other_contacts
 from mbkf.scaling.correction import correct_markers
 from mbkf.scaling.frames import MIN_MARKERS
 from mbkf.sensors.block import AnyBlock
 from mbkf.sensors.gap_filling import filled
 from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.sensors.supports.block import BEARING
 from mbkf.version import __version__
 
 FOOT_SD_M = 0.03
@@ -76,6 +81,7 @@ class ReconstructSettings:
         keep_covariance: Whether full covariances are kept in memory.
         other_contacts: Whether parts besides the feet may bear load: a seat, a knee or a hand on the floor, a load in
             the hands. Only the dynamic filter knows of them.
+        checks: Whether mass, plates, clocks and markers are checked against each other (:mod:`mbkf.pipelines.checks`).
     """
 
     filter: str = "dynamic"
@@ -92,6 +98,7 @@ class ReconstructSettings:
     angles: str = "model"
     keep_covariance: bool = False
     other_contacts: bool = True
+    checks: bool = True
 
     def __post_init__(self) -> None:
         """Refuses a lag that is no time, or beside smoothing.
@@ -171,9 +178,12 @@ def reconstruct(
             capture = replace(capture, notes=(*capture.notes, *remarks))
         if readings:
             recording = replace(recording, readings=readings)
-        if settings.other_contacts and settings.filter == "dynamic":
-            searched = None if progress is None else partial(progress, "Looking for other contacts")
-            inputs, recording = with_other_contacts(inputs, recording, shown.times_s, searched)
+        alone = None
+        if _asks_markers_alone(settings, inputs):
+            followed = None if progress is None else partial(progress, "Following markers alone")
+            alone = markers_alone(inputs, recording, followed)
+            if settings.other_contacts and settings.filter == "dynamic":
+                inputs, recording = with_other_contacts(inputs, recording, shown.times_s, alone)
         result = track(
             tracking_filter(settings.filter, inputs, [*standard(inputs), *blocks] if blocks else None),
             recording,
@@ -183,13 +193,53 @@ def reconstruct(
             progress=None if progress is None else lambda done, total: progress("Filtering", done, total),
         )
         found = assemble(capture, subject, settings, measured, hidden, inputs, result)
+        checks = _checks(shown, subject, inputs, recording, alone) if settings.checks else ()
         return replace(
             found,
+            checks=checks,
             markers_ignored=dict(use.ignored),
             markers_explained=use.share,
-            warnings=(*inferred_set(subject), *found.warnings, *supports_told(found.contacts)),
+            warnings=(
+                *told(checks),
+                *inferred_set(subject),
+                *found.warnings,
+                *supports_told(found.contacts),
+            ),
             names_exchanged=exchanged,
         )
+
+
+def _asks_markers_alone(settings: ReconstructSettings, inputs: FilterInputs) -> bool:
+    """Whether the motion of markers alone is needed besides the filter's."""
+    search = settings.other_contacts and settings.filter == "dynamic"
+    return (settings.checks and len(inputs.plates) > 0) or (
+        search and bool(inputs.sensor.model.description.bearings)
+    )
+
+
+def _checks(
+    shown: MarkerTrajectories,
+    subject: Subject,
+    inputs: FilterInputs,
+    recording: Recording,
+    alone: Motion | None,
+) -> tuple[Finding, ...]:
+    """All checks of the trial, those of the plates first.
+
+    Args:
+        shown: The markers that are used.
+        subject: The person.
+        inputs: What the filter was built from.
+        recording: What the instruments read, with what bears besides the feet.
+        alone: The motion of markers alone; None without plates.
+    """
+    found = marker_checks(shown, subject)
+    if alone is None or not inputs.plates:
+        return found
+    others = recording.readings.get(BEARING)
+    bears = None if others is None else np.asarray(np.asarray(others).any(axis=1))
+    model = inputs.sensor.model
+    return (*plate_checks(model, alone, shown.times_s, shown.rate_hz, inputs.plates, bears), *found)
 
 
 def subject_markers(markers: MarkerTrajectories, subject: Subject) -> MarkerTrajectories:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from mbkf.errors import FileFormatError
+from mbkf.io.findings import Finding, not_judged
 from mbkf.io.results import ARRAYS, DTYPES, Reconstruction
 from mbkf.io.results_h5 import UNITS, read_h5, write_h5
 from tests.io.reconstructions import made_up, made_up_whole
@@ -21,6 +22,10 @@ def test_a_round_trip_keeps_everything_but_the_covariance(tmp_path, frames):
         markers_ignored={"X ü": "not known"},
         markers_explained=0.9,
         names_exchanged=(("RTOE", "RMT5", 43),),
+        checks=(
+            Finding("mass", 30.4, 1.0, "%", 5.0, "outside", "weigh ü", 70.0),
+            not_judged("x", "mm", 1.0, "y"),
+        ),
     )
     write_h5(r, tmp_path / "motion.h5")
     back = read_h5(tmp_path / "motion.h5")
@@ -80,8 +85,10 @@ def test_older_files_tell_no_ignored_markers(tmp_path):
     write_h5(made_up(markers_ignored={"X": "not known"}, markers_explained=0.5), tmp_path / "motion.h5")
     with h5py.File(tmp_path / "motion.h5", "a") as file:
         del file.attrs["markers_ignored"], file.attrs["markers_explained"], file.attrs["names_exchanged"]
+        del file.attrs["checks"]
     back = read_h5(tmp_path / "motion.h5")
     assert (back.markers_ignored, back.markers_explained, back.names_exchanged) == ({}, 1.0, ())
+    assert back.checks == ()
 
 
 def test_a_file_without_a_direction_is_told_in_the_laboratory(tmp_path):

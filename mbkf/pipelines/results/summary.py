@@ -78,6 +78,7 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "realtime_factor": r.frames / float(r.rate_hz) / computing if computing > 0 else None,
         "truth": None if truth is None else compare_with_truth(r, truth),
         "axes": axes_told(r.file_axes, r.file_axes_source),
+        "checks": [check.as_table() for check in r.checks],
         "warnings": list(r.warnings),
         "settings": dict(r.settings),
     }

@@ -10,6 +10,7 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, Array, JsonTable
 from mbkf.io.results import Reconstruction
 from mbkf.viz.markup import grid, key, paragraph, section, table
+from mbkf.viz.report.checks import findings_table
 from mbkf.viz.report.marker_chart import CLASSES, LABELS, longest_gap_s, marker_chart, states
 from mbkf.viz.svg import Line, chart, number
 
@@ -44,6 +45,9 @@ MOST_NAMED = 8
 MANY = 6
 """More remarks than this are set in two columns."""
 
+CORRECTING = ("dynamic", "torque")
+"""Filters that impose Newton's law on what they estimate: their residual is one after correction."""
+
 GOOD, CARE, BAD, NONE = "good", "care", "bad", "none"
 
 
@@ -71,6 +75,7 @@ def quality_section(r: Reconstruction, summary: JsonTable, labels: JsonTable | N
     return section(
         "quality",
         "Quality",
+        findings_table(r.checks),
         '<div class="tiles">' + "".join(_tile(v) for v in verdicts(r, summary)) + "</div>",
         f'<div class="beside"><div>{_flags(r)}</div>{_truth(summary)}</div>',
         grid(_curves(r), 3),
@@ -165,7 +170,7 @@ def _residuals(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
     force, moment = summary.get("residual_force_rms_n"), summary.get("residual_moment_rms_nm")
     if force is None or moment is None:
         remark = "needs frames in which plates measure every contact"
-        return [Verdict(f"Residual {what}", "–", NONE, remark) for what in ("force", "moment")]
+        return [Verdict(_residual(r, what), "–", NONE, remark) for what in ("force", "moment")]
     external = float(np.nanmax(np.linalg.norm(r.foot_wrench[r.measured, :, :3].sum(axis=1), axis=1)))
     height = r.subject.height_m or 1.75
     found = []
@@ -177,9 +182,16 @@ def _residuals(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
         remark = (
             f"RMS at the pelvis; peak {peak:.1f} {unit}. Accepted practice: peak below {allowed:.0f} {unit}"
         )
+        if r.filter in CORRECTING:
+            remark += "; the filter makes it small whatever is wrong: see the checks above"
         kind = GOOD if peak <= allowed else CARE
-        found.append(Verdict(f"Residual {what}", f"{rms:.1f} {unit}", kind, remark))
+        found.append(Verdict(_residual(r, what), f"{rms:.1f} {unit}", kind, remark))
     return found
+
+
+def _residual(r: Reconstruction, what: str) -> str:
+    """Title of a residual: whether a filter that makes Newton's law hold has corrected it."""
+    return f"Residual {what}" + (" after correction" if r.filter in CORRECTING else "")
 
 
 def _nis(value: float | None) -> Verdict:
@@ -249,7 +261,9 @@ def _curves(r: Reconstruction) -> list[str]:
     force = _norm_where(r.residual_force_n, r)
     if np.isfinite(force).any():
         share = f"body weight is {number(weight, 0)} N"
-        found.insert(1, chart("Residual force at the pelvis", "N", [Line(t, force)], span, "s", note=share))
+        found.insert(
+            1, chart(f"{_residual(r, 'force')}, at the pelvis", "N", [Line(t, force)], span, "s", note=share)
+        )
     return found
 
 

@@ -15,7 +15,7 @@ from tests.io.reconstructions import made_up
 
 KEYS = {
     "trial", "protocol", "filter", "smoothed", "version", "direction", "progression", "mass_kg",
-    "frames", "rate_hz", "duration_s", "markers_ignored", "markers_explained", "names_exchanged",
+    "frames", "rate_hz", "duration_s", "markers_ignored", "markers_explained", "names_exchanged", "checks",
     "markers_used", "missing_fraction", "marker_rms_mm", "marker_max_mm", "marker_rms_mm_by_name",
     "residual_force_rms_n", "residual_moment_rms_nm", "valid_frames", "measured_frames", "contacts",
     "plate_force_change_rms_n",

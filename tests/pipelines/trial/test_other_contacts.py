@@ -14,6 +14,7 @@ from mbkf.model.newton_euler import NewtonEuler
 from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
 from mbkf.pipelines.trial.filters import tracking_filter
 from mbkf.pipelines.trial.inputs import trial_inputs
+from mbkf.pipelines.trial.markers_alone import markers_alone
 from mbkf.pipelines.trial.other_contacts import with_other_contacts
 from mbkf.sensors.supports.block import BEARING
 from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
@@ -33,7 +34,8 @@ def prepared(name):
     recorded = synthesise_capture(made.subject, made.motion, QUIET, seed=1).trial
     markers = recorded.markers
     inputs, recording = trial_inputs(markers, recorded.plates, made.subject, SETTINGS)
-    return recorded, inputs, recording, with_other_contacts(inputs, recording, markers.times_s)
+    alone = markers_alone(inputs, recording)
+    return recorded, inputs, recording, with_other_contacts(inputs, recording, markers.times_s, alone)
 
 
 @cache
@@ -87,7 +89,7 @@ def test_a_seat_is_found_in_what_instruments_read():
 def test_what_blocks_of_ones_own_read_stays():
     _, inputs, recording, _ = prepared("sit_to_stand")
     own = replace(recording, readings={"mine": np.arange(len(recording))})
-    _, read = with_other_contacts(inputs, own, seated().motion.times_s)
+    _, read = with_other_contacts(inputs, own, seated().motion.times_s, markers_alone(inputs, recording))
     assert set(read.readings) == {"mine", BEARING}
     assert read.readings["mine"] is own.readings["mine"]
 
@@ -97,15 +99,8 @@ def test_a_body_without_such_parts_is_not_searched():
     model = inputs.sensor.model
     bare = type(model)(replace(model.description, bearings={}), model.scale, model.mass_kg)
     inputs = replace(inputs, sensor=type(inputs.sensor)(bare, inputs.sensor.segments, inputs.sensor.local_m))
-    assert with_other_contacts(inputs, recording, seated().motion.times_s) == (inputs, recording)
-
-
-def test_progress_is_told_up_to_the_last_frame():
-    _, inputs, recording, _ = prepared("sit_to_stand")
-    few, told = 25, []
-    short = replace(recording, markers_m=recording.markers_m[:few], plates=recording.plates[:few])
-    with_other_contacts(inputs, short, seated().motion.times_s[:few], lambda *at: told.append(at))
-    assert told[-1] == (few, few)
+    alone = markers_alone(inputs, recording)
+    assert with_other_contacts(inputs, recording, seated().motion.times_s, alone) == (inputs, recording)
 
 
 @pytest.mark.parametrize(("smooth", "share"), [(False, 0.06), (True, 0.03)])

@@ -17,7 +17,7 @@ def judged(r, **changes):
 def test_a_good_result_is_called_good():
     found = judged(walk())
     assert {v.kind for title, v in found.items() if title != "Markers missing"} == {GOOD}
-    assert found["Residual force"].value == "1.7 N", "one newton in each of three axes"
+    assert found["Residual force after correction"].value == "1.7 N", "one newton in each of three axes"
 
 
 @pytest.mark.parametrize(
@@ -31,7 +31,7 @@ def test_a_good_result_is_called_good():
         ({"nis_per_dof": 1.7}, "Innovation (NIS)", CARE),
         ({"nis_per_dof": 0.3}, "Innovation (NIS)", NONE),
         ({"nis_per_dof": None}, "Innovation (NIS)", NONE),
-        ({"residual_force_rms_n": None}, "Residual force", NONE),
+        ({"residual_force_rms_n": None}, "Residual force after correction", NONE),
     ],
 )
 def test_verdicts_follow_their_bounds(changes, title, kind):
@@ -46,22 +46,34 @@ def test_keypoints_are_judged_by_their_noise(rms_mm, kind):
     assert judged(r, marker_rms_mm=rms_mm, marker_max_mm=110.0)["Marker error"].kind == kind
 
 
+def test_only_a_filter_that_imposes_newtons_law_corrects():
+    found = judged(replace(walk(), filter="kinematic"))
+    assert "Residual force" in found and "whatever is wrong" not in found["Residual force"].remark
+    assert "whatever is wrong" in judged(walk())["Residual force after correction"].remark
+
+
 def test_one_large_residual_is_noticed():
     r = walk()
     force, moment = r.residual_force_n.copy(), r.residual_moment_nm.copy()
     force[50], moment[50] = 60.0, 20.0
     found = judged(replace(r, residual_force_n=force, residual_moment_nm=moment))
-    assert found["Residual force"].kind == found["Residual moment"].kind == CARE
+    assert (
+        found["Residual force after correction"].kind
+        == found["Residual moment after correction"].kind
+        == CARE
+    )
     unseen = r.measured.copy()
     unseen[50] = False
     found = judged(replace(r, residual_force_n=force, residual_moment_nm=moment, measured=unseen))
-    assert found["Residual force"].kind == GOOD, "only frames with every contact measured are judged"
+    assert found["Residual force after correction"].kind == GOOD, (
+        "only frames with every contact measured are judged"
+    )
 
 
 def test_a_body_that_does_not_fit_has_no_green_tick():
     found = judged(walk(), marker_rms_mm=38.0)
     assert GOOD not in {v.kind for v in found.values()}
-    assert "tells nothing" in found["Residual force"].remark
+    assert "tells nothing" in found["Residual force after correction"].remark
     page = quality_section(walk(), {**summarise(walk()), "marker_rms_mm": 38.0}, None)
     assert "✓" not in page
     assert 'class="tile bad"' in page

@@ -1,0 +1,70 @@
+"""Markers of one segment against each other: their distances stay, up to the movement of skin.
+
+No body and no filter enters but the list of which segment carries which marker.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.io.findings import Finding, judgement, not_judged
+from mbkf.io.records import MarkerTrajectories
+from mbkf.io.subject import Subject
+
+NAME = "markers stay on their segments"
+
+BOUND_MM = 30.0
+"""A marker whose distances change by more (standard deviation) is told."""
+
+SKIN_MM = 6.0
+"""What skin moves a marker along a line to another one by, at least."""
+
+LEAST_FRAMES = 20
+"""Frames in which two markers are seen together."""
+
+TAIL_PERCENT, TAIL_SD = 5.0, 1.645
+"""The spread is taken between these ends of the distribution, so that few exchanged frames do not make it."""
+
+
+def rigidity_finding(markers: MarkerTrajectories, subject: Subject) -> Finding:
+    """The spread of distances, mm, from the marker that moves most against the others of its segment.
+
+    Args:
+        markers: The subject's markers, under the subject's names.
+        subject: The person.
+    """
+    own = {marker.name: marker for marker in subject.markers}
+    noise_mm = {name: 1e3 * own[name].noise_m for name in markers.names}
+    spreads: dict[str, list[tuple[float, float]]] = {name: [] for name in markers.names}
+    for (a, first), (b, second) in combinations(enumerate(markers.names), 2):
+        if own[first].segment != own[second].segment:
+            continue
+        spread = _spread_mm(markers.positions_m[:, a] - markers.positions_m[:, b])
+        if spread is not None:
+            expected = float(np.hypot(SKIN_MM, np.hypot(noise_mm[first], noise_mm[second])))
+            for name in (first, second):
+                spreads[name].append((spread, expected))
+    # A marker that moves does so against all others, those against it alone: the median tells which.
+    typical = {name: np.median(pairs, axis=0) for name, pairs in spreads.items() if pairs}
+    if not typical:
+        return not_judged(NAME, "mm", BOUND_MM, "no segment carries two markers")
+    name = max(typical, key=lambda one: float(typical[one][0] / typical[one][1]))
+    value, sd = (float(x) for x in typical[name])
+    verdict = judgement(value, sd, BOUND_MM)
+    hint = f"{name} moves most against the others of its segment ({own[name].segment.replace('_', ' ')})"
+    if verdict == "outside":
+        hint += ": it is named wrongly, came loose, or sits on another segment"
+    return Finding(NAME, value, sd, "mm", BOUND_MM, verdict, hint)
+
+
+def _spread_mm(apart: Array) -> float | None:
+    """Spread of the length of vectors (T, 3), mm; None where too few are known."""
+    length = np.linalg.norm(apart, axis=1)
+    length = length[~np.isnan(length)]
+    if len(length) < LEAST_FRAMES:
+        return None
+    low, high = np.percentile(length, [TAIL_PERCENT, 100.0 - TAIL_PERCENT])
+    return 1e3 * float(high - low) / (2.0 * TAIL_SD)

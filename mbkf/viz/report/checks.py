@@ -1,0 +1,40 @@
+"""The report's table of checks that stand apart from the filter, each with what noise explains and a verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+
+from mbkf.io.findings import INSIDE_SD, Finding
+
+SIGNS = {"inside": "✓", "doubtful": "!", "outside": "✗", "not judged": "–"}
+KINDS = {"inside": "good", "doubtful": "care", "outside": "bad", "not judged": "none"}
+ORDER = ("outside", "doubtful", "inside", "not judged")
+
+
+def findings_table(checks: Sequence[Finding]) -> str:
+    """The table, worst first; nothing where nothing was checked."""
+    if not checks:
+        return ""
+    ranked = sorted(checks, key=lambda one: ORDER.index(one.verdict))
+    rows = "".join(_row(one) for one in ranked)
+    heads = "".join(
+        f"<th>{text}</th>" for text in ("Check", "", "found", "noise explains", "bound", "meaning")
+    )
+    return (
+        "<h3>Checks apart from the filter</h3><p>Markers, plates and clocks against each other, before a filter makes "
+        "them agree. A tick means: inside what noise explains.</p>"
+        f'<table class="checks"><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>'
+    )
+
+
+def _row(one: Finding) -> str:
+    value = "–" if one.value is None else f"{one.value:.3g} {one.unit}"
+    noise = "–" if one.expected_sd is None else f"± {INSIDE_SD * one.expected_sd:.2g} {one.unit}"
+    cells = (one.name, SIGNS[one.verdict], value, noise, f"{one.bound:g} {one.unit}", one.hint)
+    kind = KINDS[one.verdict]
+    return (
+        f'<tr class="{kind}" title="{escape(one.verdict)}">'
+        + "".join(f"<td>{escape(text)}</td>" for text in cells)
+        + "</tr>"
+    )

@@ -1,0 +1,50 @@
+"""The motion of markers alone: near the truth, blind to plates, and told frame by frame."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from mbkf.pipelines.reconstruct import ReconstructSettings
+from mbkf.pipelines.trial.inputs import trial_inputs
+from mbkf.pipelines.trial.markers_alone import markers_alone
+from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
+from tests.dynamics import trial
+
+QUIET = CaptureSettings(markers_sd_m=0.001, skin_sd_m=0.0, occlusion=0.0, offset_n=(0.0, 0.0))
+FEW = 60
+
+
+@cache
+def read():
+    made = trial("squat")
+    recorded = synthesise_capture(made.subject, made.motion, QUIET, seed=1).trial
+    inputs, recording = trial_inputs(recorded.markers, recorded.plates, made.subject, ReconstructSettings())
+    return (
+        made,
+        inputs,
+        replace(recording, markers_m=recording.markers_m[:FEW], plates=recording.plates[:FEW]),
+    )
+
+
+def test_it_is_the_true_motion():
+    made, inputs, recording = read()
+    found = markers_alone(inputs, recording)
+    off = [made.model.difference(*pair) for pair in zip(found.q, made.motion.q[:FEW], strict=True)]
+    assert np.sqrt(np.mean(np.square(off))) < 0.02
+    assert np.sqrt(np.mean((found.v - made.motion.v[:FEW])[10:] ** 2)) < 0.25
+
+
+def test_plates_have_no_say():
+    _, inputs, recording = read()
+    found = markers_alone(inputs, recording)
+    other = markers_alone(inputs, replace(recording, plates=recording.plates + 100.0))
+    np.testing.assert_array_equal(found.q, other.q)
+    np.testing.assert_array_equal(found.v, other.v)
+
+
+def test_progress_is_told_up_to_the_last_frame():
+    _, inputs, recording = read()
+    told = []
+    markers_alone(inputs, recording, lambda *at: told.append(at))
+    assert told[-1] == (FEW, FEW)

@@ -1,0 +1,32 @@
+"""The table of checks: worst first, a tick for what noise explains, numbers with units, text escaped."""
+
+from mbkf.io.findings import Finding, not_judged
+from mbkf.viz.report.checks import findings_table
+
+FOUND = (
+    Finding("clocks", 1.0, 2.0, "ms", 8.0, "inside", "plates are 1 ms late"),
+    not_judged("gains", "%", 5.0, "needs <two> plates"),
+    Finding("mass", 30.4, 1.0, "%", 5.0, "outside", "weigh anew"),
+    Finding("soles", -26.0, 12.0, "mm", 30.0, "doubtful", "below"),
+)
+
+
+def test_the_worst_stands_first():
+    page = findings_table(FOUND)
+    places = [page.index(f"<td>{name}</td>") for name in ("mass", "soles", "clocks", "gains")]
+    assert places == sorted(places)
+
+
+def test_signs_and_numbers():
+    page = findings_table(FOUND)
+    for cells in (
+        "<td>mass</td><td>✗</td><td>30.4 %</td><td>± 2 %</td><td>5 %</td><td>weigh anew</td>",
+        "<td>clocks</td><td>✓</td><td>1 ms</td><td>± 4 ms</td><td>8 ms</td>",
+        "<td>gains</td><td>–</td><td>–</td><td>–</td><td>5 %</td><td>needs &lt;two&gt; plates</td>",
+    ):
+        assert cells in page
+    assert page.count("✓") == 1
+
+
+def test_nothing_checked_shows_nothing():
+    assert findings_table(()) == ""
