@@ -10,11 +10,15 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from mbkf.io.subject import Subject
 
+AUTO = "auto"
+"""The mass is what the captures' plates tell."""
+
 _EPILOG = """\
 examples:
   mbkf scale static.trc --mass 85.07 --out subject.toml
   mbkf scale static.c3d --trial walk.c3d --mass 60 --height 1.72 --out subject.toml
   mbkf scale --trial walk.c3d --mass 63.6 --out subject.toml       (no static trial)
+  mbkf scale static.c3d --trial walk.c3d --mass auto --out subject.toml  (weighed by the plates)
   mbkf scale static.c3d --body legs.toml --mass 60 --out subject.toml  (a body of your own)
 """
 
@@ -43,7 +47,10 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--body", metavar="NAME|FILE", help="reference body; by default the one the protocol was written for"
     )
     parser.add_argument(
-        "--mass", metavar="KG", type=float, help="body mass; by default what the capture states"
+        "--mass",
+        metavar="KG|auto",
+        type=mass_option,
+        help="body mass, or auto: what the captures' plates tell; by default what the capture states",
     )
     parser.add_argument("--height", metavar="M", type=float, help="body height, if known")
     add_axes_options(parser)
@@ -64,8 +71,10 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.capture import read_capture
     from mbkf.io.subject import write_subject
     from mbkf.pipelines.scale import scale
+    from mbkf.pipelines.weighing import PROVISIONAL_KG, weighed
 
-    if args.mass is not None and not args.mass > 0:
+    weighs = args.mass == AUTO
+    if args.mass is not None and not weighs and not args.mass > 0:
         raise InvalidInput(f"--mass must be positive, got {args.mass:g}; give the body mass in kg")
     out = Path(args.out)
     if out.is_dir():
@@ -77,16 +86,32 @@ def run(args: argparse.Namespace) -> int:
         subject = scale(
             static,
             trials,
-            mass_kg=args.mass,
+            mass_kg=PROVISIONAL_KG if weighs else args.mass,
             height_m=args.height,
             protocol=args.protocol,
             body=args.body,
             progress=report,
         )
+    if weighs:
+        subject = weighed(subject, [*([] if static is None else [static]), *trials])
     write_subject(subject, out)
     _print(subject.report, subject.protocol, str(out))
     warn_of_markers(subject)
     return 0
+
+
+def mass_option(text: str) -> float | str:
+    """A number of kg, or the word for what plates tell.
+
+    Raises:
+        ArgumentTypeError: It is neither.
+    """
+    if text == AUTO:
+        return AUTO
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"invalid float value: '{text}'") from None
 
 
 def warn_of_markers(subject: Subject) -> None:
@@ -139,6 +164,10 @@ def _print(report: dict[str, Any], protocol: str, out: str) -> None:
     if "inferred" in report:
         console.print(f"note: {report['inferred']['told']}", soft_wrap=True)
     console.print(_use(report["marker_use"]), soft_wrap=True)
+    if "mass" in report:
+        by = report["mass"]
+        line = f"mass {by['kg']:.1f} kg ± {2 * by['sd_percent']:.1f} % by the plates of {by['capture']}"
+        console.print(line, soft_wrap=True)
     for told in report.get("axes", ()):
         console.print(f"note: {told['capture']}: {told['note']}", soft_wrap=True)
     if not report["converged"]:

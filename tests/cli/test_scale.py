@@ -1,11 +1,13 @@
 """`mbkf scale` finds the body and the mass of a made person and writes one readable subject file."""
 
+from argparse import ArgumentTypeError
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from mbkf.cli.main import main
+from mbkf.cli.scale import AUTO, mass_option
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.subject import read_subject
 from mbkf.model.protocol import load_protocol
@@ -88,3 +90,12 @@ def test_ignored_markers_are_shown_and_few_known_ones_inferred(tmp_path, capsys)
     assert "note: marker set inferred: 36 markers on" in capsys.readouterr().out
     assert scale(tmp_path / "few.c3d", "--protocol", "reference36", "--out", out) == 0
     assert "warning: protocol reference36 knows 12 of 36" in capsys.readouterr().err
+
+
+def test_the_mass_is_a_number_or_what_plates_tell(person, tmp_path, capsys):
+    assert (mass_option("71.5"), mass_option(AUTO)) == (71.5, "auto")
+    with pytest.raises(ArgumentTypeError, match="heavy"):
+        mass_option("heavy")
+    assert scale("--trial", person.trial_trc, "--mass", "auto", "--out", tmp_path / "s.toml") == 2
+    assert "the plates do not tell the body mass (no capture has plates)" in capsys.readouterr().err
+    assert not (tmp_path / "s.toml").exists()

@@ -46,16 +46,20 @@ def mass_finding(evidence: Evidence, others: BoolArray, plates_agree: bool = Tru
     for frames in (evidence.accounted, evidence.accounted & ~others):
         parts = _parts(frames, evidence.rate_hz)
         if sum(len(part) - 1 for part in parts) < LEAST_S * evidence.rate_hz:
-            return not_judged(
-                NAME, "%", BOUND_PERCENT, "needs half a second in which only feet on plates bear"
-            )
+            return untold("needs half a second in which only feet on plates bear")
         impulse, per_kg = np.array([_impulses(evidence, part) for part in parts]).T
         ratio = impulse / per_kg / evidence.mass_kg
         mass_kg = float(impulse.sum() / per_kg.sum())
         spread = float(np.sqrt(np.average((ratio - ratio.mean()) ** 2, weights=per_kg)))
         if spread * evidence.mass_kg <= 0.01 * PARTS_PERCENT * mass_kg:
             return _judged(evidence.mass_kg, mass_kg, per_kg, parts, plates_agree)
-    why = f"parts of the trial differ by {100 * spread:.0f} %: something besides the feet may bear, or plates differ"
+    return untold(
+        f"parts of the trial differ by {100 * spread:.0f} %: something besides the feet may bear, or plates differ"
+    )
+
+
+def untold(why: str) -> Finding:
+    """The check where the capture tells no mass."""
     return not_judged(NAME, "%", BOUND_PERCENT, why)
 
 
