@@ -82,6 +82,14 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="take it that nothing but the feet bears load: look for no seat, no hand or knee on the floor, no load in "
         "the hands",
     )
+    _add_angle_options(parser)
+    add_axes_options(parser)
+    parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
+    parser.set_defaults(run=run)
+
+
+def _add_angle_options(parser: argparse.ArgumentParser) -> None:
+    """In which axes angles are told."""
     parser.add_argument(
         "--pelvis",
         choices=("progression", "lab"),
@@ -96,9 +104,13 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="axes that joint angles are read in: the body's own (model, the default), the ISB's (isb), or Plug-in "
         "Gait's (pig), for comparison with a laboratory's archive; moments stay about the body's own",
     )
-    add_axes_options(parser)
-    parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
-    parser.set_defaults(run=run)
+    parser.add_argument(
+        "--angles-zero",
+        choices=("axes", "static"),
+        default="axes",
+        help="what is zero in joint angles: both segments' axes as one (axes, the default), or the posture of the "
+        "static trial that the subject was scaled with (static)",
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -133,6 +145,7 @@ def run(args: argparse.Namespace) -> int:
         without_plates=tuple(args.without_plate),
         pelvis=args.pelvis,
         angles=args.angles,
+        angles_zero=args.angles_zero,
         keep_covariance=truth is not None,
     )
     if args.preset is not None:

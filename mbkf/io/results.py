@@ -112,6 +112,7 @@ class Reconstruction:
         angles_lab: (T, A) ``angles`` with the root's in the laboratory's axes; None where they are so themselves.
         angles_read: The axes that angles and their rates are read in: "model" for the body's own, else the
             convention's name. Moments are about the body's own axes whatever it is.
+        angles_zero: What is zero in them: "axes", or "static" for the posture of the static trial.
         markers_ignored: Why a marker of the capture was not used, by its name there.
         markers_explained: Share of the capture's named markers that the protocol knows, used or not, 0 to 1.
         names_exchanged: Two markers whose names were exchanged and are put right, and in how many frames.
@@ -177,6 +178,7 @@ class Reconstruction:
     heading_rad: Array | None = None
     angles_lab: Array | None = None
     angles_read: str = "model"
+    angles_zero: str = "axes"
     markers_ignored: dict[str, str] = field(default_factory=dict)
     markers_explained: float = 1.0
     names_exchanged: tuple[tuple[str, str, int], ...] = ()

@@ -39,7 +39,8 @@ UNITS = {
 """Unit of each array; the others (flags, counts, the innovation statistic) have none and carry "1"."""
 
 _TEXTS = (
-    "trial", "protocol", "filter", "version", "direction", "angles_read", "file_axes", "file_axes_source",
+    "trial", "protocol", "filter", "version", "direction", "angles_read", "angles_zero", "file_axes",
+    "file_axes_source",
 )  # fmt: skip
 _NAME_LISTS = {
     "dof_names": "dof_names", "coordinate_names": "coordinate_names", "marker_names": "marker_names",

@@ -59,7 +59,8 @@ def _angles(r: Reconstruction, angles: Array, direction: str) -> Table:
     lengths = np.isin(r.coordinate_names, TRANSLATIONS)
     values = np.where(lengths, angles, np.rad2deg(angles))
     table = _table(r, r.coordinate_names, values, "Coordinates", in_degrees=True)
-    return replace(table, header={**table.header, "Direction": direction, "AnglesRead": r.angles_read})
+    told = {"Direction": direction, "AnglesRead": r.angles_read, "AnglesZero": r.angles_zero}
+    return replace(table, header={**table.header, **told})
 
 
 def torques_table(reconstruction: Reconstruction) -> Table:

@@ -15,6 +15,9 @@ from mbkf.conventions import Array, read_only
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.atomic import replacing
 
+STANDING_KEY = "standing_q"
+"""Key of a subject's report under which the posture of the static trial stands: its configuration, nq numbers."""
+
 
 @dataclass(frozen=True)
 class SubjectMarker:
@@ -71,6 +74,12 @@ class Subject:
         """Names of the markers that scaling saw; None where the report does not list them."""
         found = self.report.get("markers")
         return found if isinstance(found, Collection) else None
+
+    @property
+    def standing_q(self) -> Array | None:
+        """(nq,) configuration in the static trial; None for a person scaled without one, or by an older version."""
+        found = self.report.get(STANDING_KEY)
+        return None if found is None else read_only(found)
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.mass_kg) and self.mass_kg > 0):

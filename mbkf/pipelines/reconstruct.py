@@ -32,7 +32,7 @@ from mbkf.pipelines.imu.on_body import ImuOnBody, with_imus
 from mbkf.pipelines.results.clinical import clinical_motion
 from mbkf.pipelines.results.progression import PELVIS_FRAMES, pelvis_frame
 from mbkf.pipelines.results.reactions import reactions
-from mbkf.pipelines.results.readings import ANGLES, angle_reading
+from mbkf.pipelines.results.readings import ANGLES, angle_reading, zero_posture
 from mbkf.pipelines.results.supports import supports_told
 from mbkf.pipelines.results.validity import torques_known
 from mbkf.pipelines.trial.exchanged import exchange_notes, names_put_right
@@ -78,6 +78,7 @@ class ReconstructSettings:
         pelvis: The frame of the pelvis's angles: "progression", or "lab" for the laboratory's axes.
         angles: The axes that angles are read in: "model" for the body's own, "isb" for the ISB's, "pig" for
             Plug-in Gait's.
+        angles_zero: What is zero: "axes" where a joint's axes coincide, "static" for the posture of the static trial.
         keep_covariance: Whether full covariances are kept in memory.
         other_contacts: Whether parts besides the feet may bear load: a seat, a knee or a hand on the floor, a load in
             the hands. Only the dynamic filter knows of them.
@@ -96,6 +97,7 @@ class ReconstructSettings:
     without_plates: tuple[str, ...] = ()
     pelvis: str = "progression"
     angles: str = "model"
+    angles_zero: str = "axes"
     keep_covariance: bool = False
     other_contacts: bool = True
     checks: bool = True
@@ -143,7 +145,8 @@ def reconstruct(
         progress: Called with the stage, items done and items in all.
 
     Raises:
-        InvalidInput: The axes or the unit of the capture cannot be right, and it is not clear what they are.
+        InvalidInput: The axes or the unit of the capture cannot be right, and it is not clear what they are; or angles
+            are to be zero in a static trial that the person was not scaled with.
         NotObservable: Too few of the subject's markers to track the body.
         NotConverged: The markers do not fit the subject's body.
         UnknownName: A hidden marker, a withheld plate, the filter, the frame of the pelvis or the reading of angles
@@ -156,6 +159,7 @@ def reconstruct(
         raise UnknownName("frame of the pelvis", settings.pelvis, PELVIS_FRAMES)
     if settings.angles not in ANGLES:
         raise UnknownName("reading of angles", settings.angles, ANGLES)
+    zero_posture(settings.angles_zero, subject)
     with single_threaded():
         capture = checked_for_subject(capture, subject)
         measured, exchanged = names_put_right(subject_markers(capture.markers, subject), subject)
@@ -304,7 +308,8 @@ def assemble(
     tau_sd = np.where(np.isnan(tau), np.nan, result.torque_sd)
     frame = pelvis_frame(settings.pelvis, model, result.q, measured.times_s)
     reading = angle_reading(settings.angles, model, subject, capture.processing)
-    clinical = clinical_motion(model, result, tau, tau_sd, frame, reading)
+    zero_q = zero_posture(settings.angles_zero, subject)
+    clinical = clinical_motion(model, result, tau, tau_sd, frame, reading, zero_q)
     located = result.tracked & _located(result)
     supports = ground.supports
     bears = bearing(supports.wrench)
@@ -319,6 +324,7 @@ def assemble(
         angle_rates=clinical.rates, moments=clinical.moments, angles_sd=clinical.angles_sd,
         angle_rates_sd=clinical.rates_sd, moments_sd=clinical.moments_sd, singular=clinical.singular,
         direction=frame.direction, heading_rad=frame.heading_rad, angles_read=reading.name,
+        angles_zero=settings.angles_zero,
         marker_names=measured.names, measured_m=measured.positions_m,
         predicted_m=_predicted(inputs.sensor, result, measured, hidden), hidden=hidden,
         rejected=result.refused,

@@ -10,7 +10,8 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput, NotConverged
 from mbkf.io.records import MarkerTrajectories
-from mbkf.io.subject import Subject, SubjectMarker
+from mbkf.io.subject import STANDING_KEY, Subject, SubjectMarker
+from mbkf.model.body import Body
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.levenberg_marquardt import Solution, minimise
 from mbkf.scaling.frames import MIN_MARKERS, ScalingFrames, choose_frames
@@ -87,8 +88,19 @@ def scale_subject(
         raise NotConverged(
             f"markers fit the body only to {1e3 * rms:.0f} mm; is '{protocol.name}' their protocol?"
         )
-    _require_upright(solution.state.poses[frames.trial < len(static)])
-    return _subject(problem, solution, frames, dropped, protocol, mass_kg, height_m, settings)
+    standing = solution.state.poses[frames.trial < len(static)]
+    _require_upright(standing)
+    subject = _subject(problem, solution, frames, dropped, protocol, mass_kg, height_m, settings)
+    if len(standing):
+        model = problem.posture.model
+        subject.report[STANDING_KEY] = [round(float(x), 7) for x in _middle(model, standing)]
+    return subject
+
+
+def _middle(model: Body, poses: Array) -> Array:
+    """(nq,) mean of poses (N, nq) that are alike: the mean of their differences from the first."""
+    away = np.mean([model.difference(poses[0], pose) for pose in poses], axis=0)
+    return model.integrate(poses[0], away)
 
 
 def _require_upright(standing: Array) -> None:

@@ -93,12 +93,13 @@ def test_older_files_tell_no_ignored_markers(tmp_path):
 
 def test_a_file_without_a_direction_is_told_in_the_laboratory(tmp_path):
     """Files of earlier versions."""
-    write_h5(made_up(direction="heading", angles_read="pig"), tmp_path / "motion.h5")
-    assert read_h5(tmp_path / "motion.h5").angles_read == "pig"
-    with h5py.File(tmp_path / "motion.h5", "a") as file:
-        del file.attrs["direction"], file.attrs["angles_read"]
+    write_h5(made_up(direction="heading", angles_read="pig", angles_zero="static"), tmp_path / "motion.h5")
     back = read_h5(tmp_path / "motion.h5")
-    assert (back.direction, back.angles_read) == ("laboratory", "model")
+    assert (back.angles_read, back.angles_zero) == ("pig", "static")
+    with h5py.File(tmp_path / "motion.h5", "a") as file:
+        del file.attrs["direction"], file.attrs["angles_read"], file.attrs["angles_zero"]
+    back = read_h5(tmp_path / "motion.h5")
+    assert (back.direction, back.angles_read, back.angles_zero) == ("laboratory", "model", "axes")
 
 
 def test_every_quantity_carries_its_unit(tmp_path):

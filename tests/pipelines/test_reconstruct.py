@@ -12,6 +12,7 @@ import pytest
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
 from mbkf.io.records import PlateReadings
+from mbkf.io.subject import STANDING_KEY
 from mbkf.model.clinical import ClinicalAngles, dof_names
 from mbkf.pipelines.reconstruct import Hidden, ReconstructSettings, reconstruct
 from tests.motions import (
@@ -125,6 +126,23 @@ def test_angles_are_read_as_plug_in_gait_on_request(made, result):
     assert "hip_adduction_r" in told_apart and not {n for n in told_apart if n.endswith("_l")}
     with pytest.raises(UnknownName, match="sideways"):
         kinematic(made.capture, made.subject, angles="sideways")
+
+
+def test_joint_angles_are_zero_in_the_static_trial_on_request_only(made, result):
+    """Angles of the pelvis, positions and moments stay; a person without a static trial is refused."""
+    clinical, standing = ClinicalAngles(made.model), made.q[10]
+    stood = replace(made.subject, report={**made.subject.report, STANDING_KEY: standing.tolist()})
+    found = kinematic(made.capture, stood, angles_zero="static")
+    taken_off = result.angles - found.angles
+    expected = clinical.angles(standing[None])[0] * clinical.rotational
+    expected[clinical.root_angles] = 0.0
+    np.testing.assert_allclose(taken_off, np.broadcast_to(expected, taken_off.shape), atol=1e-12)
+    np.testing.assert_array_equal(found.moments, result.moments)
+    assert (result.angles_zero, found.angles_zero) == ("axes", "static")
+    with pytest.raises(InvalidInput, match="static trial"):
+        kinematic(made.capture, made.subject, angles_zero="static")
+    with pytest.raises(UnknownName, match="sideways"):
+        kinematic(made.capture, made.subject, angles_zero="sideways")
 
 
 def test_correcting_exact_markers_costs_little(made, result):

@@ -132,6 +132,22 @@ def test_more_frames_make_smaller_standard_errors(person):
     assert (found_factors(many)[1] < found_factors(few)[1]).all()
 
 
+def test_the_posture_of_the_static_trial_is_kept(person, subject):
+    """A person who stands with bent knees is told to; one scaled from movement alone stands nowhere."""
+    model, bent = person.model, person.model.neutral()
+    for segment in ("right_shank", "left_shank"):
+        away = np.zeros(model.nv)
+        away[model.joint(segment).v.start + 1] = 0.2
+        bent = model.integrate(bent, away)
+    found = scale_subject(
+        [person.trial([bent] * 4, 0.0)], [person.moving()], PROTOCOL, mass_kg=72.0
+    ).standing_q
+    knees = [model.joint(segment).v.start + 1 for segment in ("right_shank", "left_shank")]
+    np.testing.assert_allclose(model.difference(model.neutral(), found)[knees], 0.2, atol=0.03)
+    np.testing.assert_allclose(model.difference(model.neutral(), subject.standing_q)[knees], 0.0, atol=0.03)
+    assert scale_subject([], [person.moving()], PROTOCOL, mass_kg=72.0).standing_q is None
+
+
 def test_a_known_height_sets_the_overall_size():
     """Standing still with a few pelvis and trunk markers, the stated height decides about the limbs."""
     one = Person(4, spread=0.0)

@@ -42,6 +42,7 @@ def clinical_motion(
     tau_sd: Array,
     frame: Progression | None = None,
     reading: AngleReading | None = None,
+    zero_q: Array | None = None,
 ) -> ClinicalMotion:
     """Coordinates θ, rates E v, moments Bᵀτ, and their spreads by the same linear maps.
 
@@ -56,6 +57,7 @@ def clinical_motion(
         tau_sd: (T, nv) their standard deviations.
         frame: The frame of the root's angles; the laboratory's when None.
         reading: The axes that angles are read in; the body's own when None.
+        zero_q: (nq,) posture in which the angles of joints are to be zero; the root's are not changed.
     """
     frame = frame or laboratory(len(track.q))
     clinical = ClinicalAngles(model, reading)
@@ -84,9 +86,25 @@ def clinical_motion(
     moments_sd[known] = own.moments_sd(q, tau_sd[known], own_angles)
     singular = np.zeros(shape, dtype=bool)
     singular[known] = clinical.singular(theta)
+    zero = 0.0 if zero_q is None else _of_joints(clinical, zero_q)
     return ClinicalMotion(
-        clinical.names, angles_lab, angles, rates, moments, angles_sd, rates_sd, moments_sd, singular
+        clinical.names,
+        angles_lab - zero,
+        angles - zero,
+        rates,
+        moments,
+        angles_sd,
+        rates_sd,
+        moments_sd,
+        singular,
     )
+
+
+def _of_joints(clinical: ClinicalAngles, q: Array) -> Array:
+    """(A,) angles of the joints in a posture (nq,), 0 for the root's coordinates."""
+    angles = np.where(clinical.rotational, clinical.angles(q[None])[0], 0.0)
+    angles[clinical.root_angles] = 0.0
+    return angles
 
 
 def _renewed(clinical: ClinicalAngles, in_laboratory: bool) -> Array:

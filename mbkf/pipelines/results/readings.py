@@ -22,6 +22,11 @@ ANGLES = (MODEL, ISB, PIG)
 """Ways to read angles that can be asked for."""
 
 
+AXES, STATIC = "axes", "static"
+ANGLES_ZERO = (AXES, STATIC)
+"""What is zero: a joint whose two sets of axes coincide, or the posture of the static trial."""
+
+
 @dataclass(frozen=True)
 class Point:
     """A point that axes are made of.
@@ -83,6 +88,25 @@ def angle_reading(asked: str, model: Body, subject: Subject, processing: Mapping
     if asked == ISB:
         return isb_axes(anatomical_places(model, subject))
     return plug_in_gait(anatomical_places(model, subject), measured_of(processing))
+
+
+def zero_posture(asked: str, subject: Subject) -> Array | None:
+    """(nq,) the posture in which angles are to be zero; None where that is so by the axes.
+
+    Raises:
+        UnknownName: There is no such zero.
+        InvalidInput: The person was scaled without a static trial.
+    """
+    if asked not in ANGLES_ZERO:
+        raise UnknownName("zero of angles", asked, ANGLES_ZERO)
+    if asked == AXES:
+        return None
+    if subject.standing_q is None:
+        raise InvalidInput(
+            "the subject holds no standing posture that angles could be zero in; scale it anew with a static trial "
+            "('mbkf scale STATIC'), or leave --angles-zero out"
+        )
+    return subject.standing_q
 
 
 def anatomical_places(model: Body, subject: Subject) -> dict[str, Array]:
