@@ -153,12 +153,9 @@ def reconstruct(
             does not exist.
     """
     settings = settings or ReconstructSettings()
-    if settings.filter not in FILTERS:
-        raise UnknownName("filter", settings.filter, FILTERS)
-    if settings.pelvis not in PELVIS_FRAMES:
-        raise UnknownName("frame of the pelvis", settings.pelvis, PELVIS_FRAMES)
-    if settings.angles not in ANGLES:
-        raise UnknownName("reading of angles", settings.angles, ANGLES)
+    _check_names(settings)
+    if imus is not None and settings.filter != "dynamic":
+        raise InvalidInput(f"the {settings.filter} filter reads no inertial sensors; use --filter dynamic")
     zero_posture(settings.angles_zero, subject)
     with single_threaded():
         capture = checked_for_subject(capture, subject)
@@ -174,10 +171,6 @@ def reconstruct(
             subject = correct_markers(subject, shown)
         inputs, recording = trial_inputs(shown, plates, subject, settings)
         if imus is not None:
-            if settings.filter != "dynamic":
-                raise InvalidInput(
-                    f"the {settings.filter} filter reads no inertial sensors; use --filter dynamic"
-                )
             inputs, recording, remarks = with_imus(inputs, recording, shown.times_s, imus)
             capture = replace(capture, notes=(*capture.notes, *remarks))
         if readings:
@@ -203,14 +196,19 @@ def reconstruct(
             checks=checks,
             markers_ignored=dict(use.ignored),
             markers_explained=use.share,
-            warnings=(
-                *told(checks),
-                *inferred_set(subject),
-                *found.warnings,
-                *supports_told(found.contacts),
-            ),
+            warnings=(*told(checks), *inferred_set(subject), *found.warnings, *supports_told(found.contacts)),
             names_exchanged=exchanged,
         )
+
+
+def _check_names(settings: ReconstructSettings) -> None:
+    """Refuses a filter, a frame or a reading that does not exist."""
+    if settings.filter not in FILTERS:
+        raise UnknownName("filter", settings.filter, FILTERS)
+    if settings.pelvis not in PELVIS_FRAMES:
+        raise UnknownName("frame of the pelvis", settings.pelvis, PELVIS_FRAMES)
+    if settings.angles not in ANGLES:
+        raise UnknownName("reading of angles", settings.angles, ANGLES)
 
 
 def _asks_markers_alone(settings: ReconstructSettings, inputs: FilterInputs) -> bool:
