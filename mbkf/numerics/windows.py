@@ -74,6 +74,11 @@ def dilated(mask: BoolArray, samples: int) -> BoolArray:
     return np.asarray(counts[2 * samples + 1 :] > counts[: len(mask)])
 
 
+def bridged(mask: BoolArray, samples: int) -> BoolArray:
+    """(T,) a mask (T,) across whose gaps of up to twice so many samples runs of True go on."""
+    return ~dilated(~dilated(mask, samples), samples)
+
+
 def local_lines(samples: Array, known: BoolArray, dt: float, width: float) -> tuple[Array, Array]:
     """Value and slope at each sample of the straight line that fits the known ones around it best.
 

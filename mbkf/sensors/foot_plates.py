@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.model.human_dynamics import HumanDynamics, cross_matrix
+from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.numerics.kalman import Information, information
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
 from mbkf.sensors.contact.causal import ContactDetector
@@ -30,6 +30,7 @@ from mbkf.sensors.contact.sharing import SharedLoad
 from mbkf.sensors.foot_wrench import FootWrenchSensor
 from mbkf.sensors.layout import Layout
 from mbkf.sensors.states import ForceState
+from mbkf.sensors.supports.sharing import about
 
 
 @dataclass(frozen=True)
@@ -194,8 +195,8 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
             points_m: (2, 3) about which the moments of right and left foot are taken.
         """
         rows = np.zeros((12, 12))
-        rows[:6, :6], rows[:6, 6:] = np.eye(6), _moved(points_m[1] - points_m[0])
-        rows[6:, :6] = _moved(points_m[0] - shared.centres_m[0])
+        rows[:6, :6], rows[:6, 6:] = np.eye(6), about(points_m[0] - points_m[1])
+        rows[6:, :6] = about(shared.centres_m[0] - points_m[0])
         return rows / np.concatenate([self._plate, shared.sd])[:, None]
 
     def sd(self, feet: FootReading) -> Array:
@@ -214,10 +215,3 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
         if decision.reading.shared is not None:
             return 2.0 * float(np.log(self._plate).sum() + np.log(decision.reading.shared.sd).sum())
         return 2.0 * float(np.log(self.sd(decision.reading)[np.repeat(decision.reading.known, 6)]).sum())
-
-
-def _moved(arm_m: Array) -> Array:
-    """(6, 6) that takes a wrench about a point to one about another, from which the arm (3,) leads to the first."""
-    moved = np.eye(6)
-    moved[3:, :3] = cross_matrix(arm_m)
-    return moved

@@ -191,7 +191,7 @@ def test_without_forces_torques_are_estimated_with_larger_spreads(person, recons
     assert guessed["plate_force_change_rms_n"] is None
     assert None not in guessed["torque_peak_nm_per_kg"].values()
     for joint in ("hip_r", "knee_r", "ankle_l"):
-        assert guessed["torque_sd_nm"][joint] > 1.2 * measured["torque_sd_nm"][joint]
+        assert guessed["torque_sd_nm"][joint] > 1.3 * measured["torque_sd_nm"][joint]
     said = " ".join(guessed["warnings"])
     assert "no force plates: reactions are estimated from the motion" in said
     assert "how they share the load is known by where they stand only" in said

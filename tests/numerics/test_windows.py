@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.ndimage import binary_dilation, median_filter
+from scipy.ndimage import binary_closing, binary_dilation, median_filter
 from scipy.signal import savgol_filter
 
-from mbkf.numerics.windows import dilated, local_lines, majority, second_derivative, slopes
+from mbkf.numerics.windows import bridged, dilated, local_lines, majority, second_derivative, slopes
 
 masks = st.lists(st.booleans(), min_size=1, max_size=60).map(lambda values: np.array(values, dtype=bool))
 
@@ -106,3 +106,14 @@ def test_a_lonely_sample_has_no_slope_and_far_from_any_there_is_nothing():
     value, slope = local_lines(samples, known, 0.1, 0.5)
     assert (value[10, 0], slope[10, 0]) == (3.0, 0.0)
     assert np.isnan(value[60]).all() and np.isnan(slope[60]).all()
+
+
+@given(st.lists(st.booleans(), min_size=1, max_size=40), st.integers(1, 5))
+def test_bridged_is_binary_closing(values, samples):
+    mask = np.array(values)
+    padded = np.pad(mask, 2 * samples)
+    closed = binary_closing(padded, np.ones(2 * samples + 1))[2 * samples : -2 * samples]
+    found = bridged(mask, samples)
+    inner = slice(samples, max(len(mask) - samples, samples))
+    np.testing.assert_array_equal(found[inner], closed[inner])
+    assert found[mask].all()

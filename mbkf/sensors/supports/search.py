@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.model.body import Body
-from mbkf.numerics.windows import dilated
+from mbkf.numerics.windows import bridged, dilated
 from mbkf.sensors.contact.offline import FootLoads, stretches
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.supports.bearings import BearingParts
@@ -177,8 +177,7 @@ def _bridged(flags: BoolArray, judged: BoolArray, rate_hz: float) -> BoolArray:
 def _lasting(lacks: BoolArray, rate_hz: float) -> list[Array]:
     """Stretches of a mask (T,) that last, across gaps shorter than that."""
     gap = max(1, round(0.5 * LASTING_S * rate_hz))
-    closed = ~dilated(~dilated(lacks, gap), gap)
-    return [run for run in stretches(closed) if len(run) >= LASTING_S * rate_hz]
+    return [run for run in stretches(bridged(lacks, gap)) if len(run) >= LASTING_S * rate_hz]
 
 
 def _edges(

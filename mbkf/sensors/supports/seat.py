@@ -12,7 +12,7 @@ from itertools import combinations
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.numerics.windows import dilated
+from mbkf.numerics.windows import bridged
 from mbkf.sensors.contact.offline import stretches
 from mbkf.sensors.supports.momentum import WholeBody
 
@@ -54,7 +54,7 @@ def sits(
         may = loaded & along & (speed_m_s < STILL_M_S) & (beside > NEAR_M)
     found = np.zeros(len(may), dtype=bool)
     gap = max(1, round(0.5 * LASTING_S * rate_hz))
-    for run in stretches(~dilated(~dilated(may, gap), gap)):
+    for run in stretches(bridged(may, gap)):
         found[run] = (beside[run] > BESIDE_M).sum() >= LASTING_S * rate_hz
     return found
 
