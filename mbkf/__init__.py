@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from mbkf.model.protocol import load_protocol
     from mbkf.numerics.kalman import Information
     from mbkf.pipelines.imu.orient import orient
+    from mbkf.pipelines.inertia.estimate import InertiaEstimate, estimate_inertia
     from mbkf.pipelines.label import label
     from mbkf.pipelines.reconstruct import Hidden, ReconstructSettings, reconstruct
     from mbkf.pipelines.results.summary import summarise
@@ -39,6 +40,7 @@ _HOMES = {
     "Frame": "mbkf.sensors.block",
     "Hidden": "mbkf.pipelines.reconstruct",
     "HumanModel": "mbkf.model.human",
+    "InertiaEstimate": "mbkf.pipelines.inertia.estimate",
     "Information": "mbkf.numerics.kalman",
     "Layout": "mbkf.sensors.layout",
     "Notes": "mbkf.sensors.block",
@@ -46,6 +48,7 @@ _HOMES = {
     "ReconstructSettings": "mbkf.pipelines.reconstruct",
     "Rows": "mbkf.sensors.block",
     "Tracker": "mbkf.pipelines.tracker",
+    "estimate_inertia": "mbkf.pipelines.inertia.estimate",
     "label": "mbkf.pipelines.label",
     "load_body": "mbkf.model.body_file",
     "load_protocol": "mbkf.model.protocol",
@@ -71,6 +74,7 @@ __all__ = [
     "Frame",
     "Hidden",
     "HumanModel",
+    "InertiaEstimate",
     "Information",
     "Layout",
     "MbkfError",
@@ -80,6 +84,7 @@ __all__ = [
     "Rows",
     "Tracker",
     "__version__",
+    "estimate_inertia",
     "label",
     "load_body",
     "load_protocol",

@@ -36,6 +36,9 @@ TomlTable: TypeAlias = dict[str, Any]
 JsonTable: TypeAlias = Mapping[str, Any]
 """An object of a JSON file, of this version or an older one; readers check each value that they take."""
 
+READING_KINDS = ("markers", "plates", "law", "other")
+"""Kinds of readings by which innovations are told: markers, force plates, Newton's law, all else."""
+
 StageCallback = Callable[[str, int, int], None]
 """What a pipeline calls as it goes: name of the stage, items done, items in all."""
 

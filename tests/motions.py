@@ -160,6 +160,7 @@ def track_of(q, v, a, **known):
         name: np.zeros((frames, nv))
         for name in ("position_sd", "velocity_sd", "angle_sd", "rate_sd", "torque_sd")
     }
+    fields |= {name.replace("_sd", "_offset"): values for name, values in fields.items()}
     fields |= {
         "wrench": np.full((frames, 2, 6), np.nan),
         "wrench_sd": np.full((frames, 2, 6), np.nan),
@@ -167,11 +168,17 @@ def track_of(q, v, a, **known):
         "support_sd": np.full((frames, 0, 6), np.nan),
         "contact": None,
         "ball_covariance": np.zeros((frames, 15, 3, 3)),
+        "ball_offset": np.zeros((frames, 15, 3, 3)),
+        "wrench_offset": np.zeros((frames, 2, 6)),
         "foot_height_sd": np.zeros((frames, 2)),
         "refused": np.zeros((frames, 0), bool),
         "tracked": np.ones(frames, bool),
         "nis": np.zeros(frames),
         "readings": np.zeros(frames, int),
+        "nis_by_kind": np.zeros((frames, 4)),
+        "readings_by_kind": np.zeros((frames, 4), int),
+        "marker_nis": np.zeros((frames, 0)),
+        "marker_spread_m": np.zeros((frames, 0)),
         "step_seconds": np.zeros(frames),
         "starts": (0,),
         "smoothed": False,

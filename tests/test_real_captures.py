@@ -31,12 +31,13 @@ def followed(
     forces: Path | None = None,
     **settings,
 ) -> Reconstruction:
-    """The trial of a person scaled from the static, or from the trial itself where there is none."""
+    """The trial of a person scaled from the static, or from the trial itself where there is none; causally followed."""
     capture = read_capture(trial, forces=forces)
     subject = scale(
         None if static is None else read_capture(static), [] if static else [capture], mass_kg=mass_kg
     )
-    return reconstruct(capture, subject, settings=ReconstructSettings(**settings))
+    chosen = ReconstructSettings(**{"smooth": False, **settings})
+    return reconstruct(capture, subject, settings=chosen)
 
 
 def marker_rms_mm(found: Reconstruction) -> float:

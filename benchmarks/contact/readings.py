@@ -170,7 +170,7 @@ def fault_rows(label: str, capture: Capture, subject: Subject, chosen: str) -> l
         subject: Its person.
         chosen: Name of the filter.
     """
-    settings = ReconstructSettings(filter=chosen)
+    settings = ReconstructSettings(filter=chosen, smooth=False)
     clean = reconstruct(capture, subject, settings=settings)
     rows = []
     for fault in FAULTS:

@@ -25,7 +25,7 @@ from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
 from mbkf.sensors.contact.records import Contact
 
 MODES = {
-    "causal": ReconstructSettings(),
+    "causal": ReconstructSettings(smooth=False),
     "60 ms": ReconstructSettings(lag_s=0.06),
     "smoothed": ReconstructSettings(smooth=True),
 }

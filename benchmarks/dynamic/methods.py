@@ -11,7 +11,7 @@ import multiprocessing
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -92,18 +92,11 @@ class Method:
         return f"{self.filter}, smoothed" if self.smooth else self.filter
 
     def settings(self, **more: Any) -> ReconstructSettings:
-        """Settings of a run that keeps the subject's marker positions.
-
-        Raises:
-            InvalidInput: Smoothing is asked for and there is none.
-        """
-        words: dict[str, Any] = {"filter": self.filter, "correct_markers": False, **self.extra, **more}
+        """Settings of a run that keeps the subject's marker positions."""
+        known = {"filter": self.filter, "smooth": self.smooth, "correct_markers": False}
+        words: dict[str, Any] = {**known, **self.extra, **more}
         if self.filter == "kinematic":
             words.setdefault("kinematic", KinematicSettings(acceleration_scale=self.scale))
-        if self.smooth:
-            if "smooth" not in {f.name for f in fields(ReconstructSettings)}:
-                raise InvalidInput("this version of mbkf has no smoother")
-            words["smooth"] = True
         return ReconstructSettings(**words)
 
     def run(self, capture: Capture, subject: Subject, **more: Any) -> Reconstruction:

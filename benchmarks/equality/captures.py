@@ -63,8 +63,8 @@ class Captured:
         subject = ("--subject", SUBJECT, "--filter", run.filter)
         if run.mode == "live":
             return ("live", "--from", f"file:{self.trial}", "--speed", "0", *subject, *self.options)
-        smooth = ("--smooth",) if run.mode == "smoothed" else ()
-        return ("reconstruct", self.trial, *subject, *smooth, *self.options, *self.extra)
+        later = ("--smooth",) if run.mode == "smoothed" else ("--lag", "0")  # older trees know no --causal
+        return ("reconstruct", self.trial, *subject, *later, *self.options, *self.extra)
 
 
 def scaled(

@@ -95,7 +95,7 @@ def rajagopal_walk(context: Context) -> Worn:
     static = read_capture(folder / str(source.static))
     subject = scale(static, mass_kg=source.mass_kg)
     made = reconstruct(capture, subject, settings=ReconstructSettings(smooth=True))
-    stood = reconstruct(static, subject, settings=ReconstructSettings(filter="kinematic"))
+    stood = reconstruct(static, subject, settings=ReconstructSettings(filter="kinematic", smooth=False))
     model = HumanModel.of(subject)
     known = np.isfinite(made.q).all(axis=1)
     motion = BodyMotion(model, made.times_s[known], made.q[known], made.v[known], made.a[known])
@@ -218,7 +218,8 @@ def _hidden_error(
     """(T, M) distance of reconstructed and measured markers, m, when some are hidden."""
     markers = capture.trial.markers
     shown = replace(markers, positions_m=np.where(hidden[:, :, None], np.nan, markers.positions_m))
-    made = reconstruct(replace(capture.trial, markers=shown), subject, imus=imus)
+    settings = ReconstructSettings(smooth=False)
+    made = reconstruct(replace(capture.trial, markers=shown), subject, settings=settings, imus=imus)
     error = np.full(hidden.shape, np.nan)
     own = [markers.names.index(name) for name in made.marker_names]
     error[:, own] = np.linalg.norm(made.predicted_m - markers.positions_m[:, own], axis=2)

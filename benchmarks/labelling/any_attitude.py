@@ -39,7 +39,7 @@ from mbkf.model.protocol import load_protocol
 from mbkf.pipelines.label import labelled_capture
 from mbkf.pipelines.label_unscaled import label_unscaled
 from mbkf.pipelines.labelling.score import LabelScore, score
-from mbkf.pipelines.reconstruct import reconstruct
+from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
 from mbkf.pipelines.scale import scale
 
 FOLDER = "autolabel_unlabelled_fullbody"
@@ -127,7 +127,7 @@ def kneeling_rows(folder: Path) -> list[Check]:
     pieces = kept_shares(raw.markers, found.label_of_point, 0.0)
     tracks = kept_shares(raw.markers, found.label_of_point, LEAP_M)
     columns = kept_shares(raw.markers, found.label_of_point, math.inf)
-    result = reconstruct(labelled_capture(raw, found), subject)
+    result = reconstruct(labelled_capture(raw, found), subject, settings=ReconstructSettings(smooth=False))
     distance = np.linalg.norm(result.predicted_m - result.measured_m, axis=2)
     ordered, clusters = in_order(subject, folder / MARKER_SET)
     name = "S09_KneeltoRun02"

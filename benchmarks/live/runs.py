@@ -144,7 +144,7 @@ def play(trial: Trial, protocol: str, folder: Path, *, view: bool = False, speed
 
 
 def difference(run: Run) -> float:
-    """Largest difference between a run's results and `reconstruct` on the frames it received.
+    """Largest difference between a run's results and the causal ones of `reconstruct` on the frames it received.
 
     Relative to the value where that is larger than one; NaN where different samples are known.
     """
@@ -153,7 +153,8 @@ def difference(run: Run) -> float:
     markers = MarkerTrajectories(logged.names, logged.rows["measured_m"], logged.stream.rate_hz, start_s)
     capture = Capture(logged.stream.trial, markers, logged.stream.plates)
     subject = read_subject(run.folder / LOG_FOLDER / SUBJECT_FILE)
-    again = reconstruct(capture, subject, settings=ReconstructSettings(correct_markers=False))
+    settings = ReconstructSettings(smooth=False, correct_markers=False)
+    again = reconstruct(capture, subject, settings=settings)
     return largest_difference(read_reconstruction(run.folder), again)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from benchmarks.checks import Check, Context
 from benchmarks.quality.faults import fault_rows
+from benchmarks.quality.noise import law_rows, noise_rows
 from benchmarks.quality.spoilt import known_persons, prepared, shown_persons
 
 
@@ -12,5 +13,7 @@ def run(context: Context) -> list[Check]:
     rows: list[Check] = []
     for bounded, persons in ((True, known_persons(context)), (False, shown_persons(context))):
         for person in persons:
-            rows += fault_rows(prepared(person), bounded)
-    return rows
+            one = prepared(person)
+            rows += fault_rows(one, bounded)
+            rows += law_rows(one.name, one.judged, bounded)
+    return rows + noise_rows(context)

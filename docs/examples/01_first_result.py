@@ -1,7 +1,7 @@
 """First result: a synthetic squat with known truth, from markers and plates to angles and torques.
 
 No files are needed. A random person performs a motion that obeys Newton's law exactly; imperfect cameras and force
-plates record it; the default (dynamic) filter reconstructs it.
+plates record it; the default (dynamic) filter reconstructs it, and later frames correct earlier ones.
 """
 
 import numpy as np

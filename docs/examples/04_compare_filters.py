@@ -1,4 +1,4 @@
-"""Compare the three filters, and the smoother, on one capture with known truth.
+"""Compare the three filters, causal, and the smoother, on one capture with known truth.
 
 ``kinematic`` follows markers and solves for torques afterwards, ``torque`` is the thesis's filter with torques as
 states, ``dynamic`` (the default) has accelerations and foot wrenches as states and Newton's law as a reading.
@@ -9,10 +9,10 @@ import mbkf
 subject, recorded = mbkf.synthesise("squat", seconds=1.5, seed=2)
 
 runs = {
-    "kinematic": mbkf.ReconstructSettings(filter="kinematic"),
-    "torque": mbkf.ReconstructSettings(filter="torque"),
-    "dynamic": mbkf.ReconstructSettings(filter="dynamic"),
-    "dynamic, smoothed": mbkf.ReconstructSettings(filter="dynamic", smooth=True),
+    "kinematic": mbkf.ReconstructSettings(filter="kinematic", smooth=False),
+    "torque": mbkf.ReconstructSettings(filter="torque", smooth=False),
+    "dynamic": mbkf.ReconstructSettings(filter="dynamic", smooth=False),
+    "dynamic, smoothed": mbkf.ReconstructSettings(filter="dynamic"),
 }
 print(f"{'':18} {'markers mm':>10} {'residual N':>10} {'torques N m':>11} {'step ms':>8}")
 torque_rms_nm = {}

@@ -50,20 +50,20 @@ def add_lag_option(parser: argparse._ActionsContainer) -> None:
     parser.add_argument(
         "--lag",
         type=float,
-        default=0.0,
         metavar="MS",
         help="give each frame so many ms later, with what the readings until then tell of it (try 60)",
     )
 
 
 def lag_seconds(args: argparse.Namespace) -> float:
-    """What :func:`add_lag_option` was given, in s.
+    """What :func:`add_lag_option` was given, in s; 0 if nothing.
 
     Raises:
         InvalidInput: It is not a time.
     """
-    check_positive("--lag", args.lag, or_zero=True)
-    return float(args.lag) / 1e3
+    lag_ms = 0.0 if args.lag is None else float(args.lag)
+    check_positive("--lag", lag_ms, or_zero=True)
+    return lag_ms / 1e3
 
 
 def check_positive(option: str, value: float, or_zero: bool = False) -> None:

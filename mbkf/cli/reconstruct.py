@@ -17,7 +17,11 @@ examples:
   mbkf reconstruct walk.trc --subject subject.toml --forces grf.mot --out result
   mbkf reconstruct walk.c3d --subject subject.toml --filter torque --preset FDMC --out result
   mbkf reconstruct walk.c3d --subject subject.toml --imu imus.csv --imu-mounts imus.toml --out result
+  mbkf reconstruct walk.c3d --subject subject.toml --causal --out as_live
   mbkf reconstruct walk.c3d --subject subject.toml --hide RKNE,RTIB@1.2:1.5 --without-plate 2 --out result
+
+By default all later frames correct earlier ones (smoothing). With --causal a frame knows itself and those before it,
+as in 'mbkf live'; with --lag MS also those of the next MS milliseconds. Every file but markers.trc says which it was.
 
 writes summary.json, motion.h5, angles.mot, angles_lab.mot, torques.sto, reactions.mot and markers.trc to the folder
 """
@@ -50,7 +54,10 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     later = parser.add_mutually_exclusive_group()
     later.add_argument(
-        "--smooth", action="store_true", help="let later frames correct earlier ones (not for live use)"
+        "--smooth", action="store_true", help="let all later frames correct earlier ones (the default)"
+    )
+    later.add_argument(
+        "--causal", action="store_true", help="use no later frame: the answer that a live run gives"
     )
     add_lag_option(later)
     parser.add_argument(
@@ -137,7 +144,7 @@ def run(args: argparse.Namespace) -> int:
     folder, imus = check_folder(args.out), _imus(args)
     settings = ReconstructSettings(
         filter=args.filter or "dynamic",
-        smooth=args.smooth,
+        smooth=not args.causal and args.lag is None,  # a lag of 0 is causal
         lag_s=lag_seconds(args),
         correct_markers=not args.keep_markers,
         other_contacts=not args.feet_only,
@@ -199,17 +206,15 @@ def print_summary(summary: Summary, folder: Path) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from mbkf.io.results import LAG_KEY
     from mbkf.pipelines.coverage import listed
 
     console = Console(highlight=False, markup=False)
-    lag = summary["settings"].get(LAG_KEY)
-    later = f", {lag:g} ms lag" if isinstance(lag, float) and lag else ""
-    title = f"{summary['trial']} ({summary['filter']} filter{later})"
+    title = f"{summary['trial']} ({summary['filter']} filter)"
     table = Table(title=title, title_justify="left", show_header=False)
     table.add_column()
     table.add_column(justify="right")
     rows = [
+        ("later frames", summary["later_frames"]),
         ("frames", f"{summary['frames']} at {summary['rate_hz']:g} Hz"),
         ("markers", f"{summary['markers_used']}, {100 * (summary['missing_fraction'] or 0):.1f} % missing"),
         ("marker RMS / max", _pair(summary["marker_rms_mm"], summary["marker_max_mm"], "mm")),
@@ -228,12 +233,12 @@ def print_summary(summary: Summary, folder: Path) -> None:
             _pair(_ms(summary["step_seconds_median"]), _ms(summary["step_seconds_p99"]), "ms"),
         ),
         (
-            "times real time",
+            "times real time" + (", smoothing not counted" if summary["smoothed"] else ""),
             "" if summary["realtime_factor"] is None else f"{summary['realtime_factor']:.1f}",
         ),
     ]
     if summary["markers_ignored"]:
-        rows.insert(2, ("markers ignored", listed(summary["markers_ignored"])))
+        rows.insert(3, ("markers ignored", listed(summary["markers_ignored"])))
     if summary["hidden_marker_rms_mm"] is not None:
         rows.append(
             (

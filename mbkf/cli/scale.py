@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from mbkf.io.subject import Subject
 
 AUTO = "auto"
@@ -19,6 +21,7 @@ examples:
   mbkf scale static.c3d --trial walk.c3d --mass 60 --height 1.72 --out subject.toml
   mbkf scale --trial walk.c3d --mass 63.6 --out subject.toml       (no static trial)
   mbkf scale static.c3d --trial walk.c3d --mass auto --out subject.toml  (weighed by the plates)
+  mbkf scale static.c3d --trial walk.c3d --mass 60 --inertia --out subject.toml  (segments' masses by the plates)
   mbkf scale static.c3d --body legs.toml --mass 60 --out subject.toml  (a body of your own)
 """
 
@@ -53,6 +56,12 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="body mass, or auto: what the captures' plates tell; by default what the capture states",
     )
     parser.add_argument("--height", metavar="M", type=float, help="body height, if known")
+    parser.add_argument(
+        "--inertia",
+        action="store_true",
+        help="find segments' masses and centres of mass by the captures' plates, and write them where the evidence "
+        "is for them",
+    )
     add_axes_options(parser)
     parser.add_argument("--out", required=True, metavar="SUBJECT.toml", help="file to write")
     parser.set_defaults(run=run)
@@ -70,6 +79,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
     from mbkf.io.subject import write_subject
+    from mbkf.pipelines.inertia.estimate import with_inertia
     from mbkf.pipelines.scale import scale
     from mbkf.pipelines.weighing import PROVISIONAL_KG, weighed
 
@@ -94,6 +104,8 @@ def run(args: argparse.Namespace) -> int:
         )
     if weighs:
         subject = weighed(subject, [*([] if static is None else [static]), *trials])
+    if args.inertia:
+        subject = with_inertia(subject, [*([] if static is None else [static]), *trials])
     write_subject(subject, out)
     _print(subject.report, subject.protocol, str(out))
     warn_of_markers(subject)
@@ -168,6 +180,8 @@ def _print(report: dict[str, Any], protocol: str, out: str) -> None:
         by = report["mass"]
         line = f"mass {by['kg']:.1f} kg ± {2 * by['sd_percent']:.1f} % by the plates of {by['capture']}"
         console.print(line, soft_wrap=True)
+    if "inertia" in report:
+        _print_inertia(console, report["inertia"])
     for told in report.get("axes", ()):
         console.print(f"note: {told['capture']}: {told['note']}", soft_wrap=True)
     if not report["converged"]:
@@ -177,3 +191,25 @@ def _print(report: dict[str, Any], protocol: str, out: str) -> None:
         f"{report['marker_rms_mm']:.1f} mm RMS",
         soft_wrap=True,
     )
+
+
+def _print_inertia(console: Console, found: dict[str, Any]) -> None:
+    """Prints segments' masses and centres with their standard deviations, and what speaks for them.
+
+    Args:
+        console: Where to.
+        found: What the subject's report has of it.
+    """
+    from rich.table import Table
+
+    if "segments" in found:
+        table = Table(title="Segments by the plates, against the table", title_justify="left")
+        for heading in ("segment", "mass %", "centre x mm", "centre y mm", "centre z mm"):
+            table.add_column(heading, justify="left" if heading == "segment" else "right")
+        for name, own in found["segments"].items():
+            shifts = zip(own["centre_shift_mm"], own["centre_shift_sd_mm"], strict=True)
+            cells = [f"{shift:+.0f} ± {sd:.0f}" for shift, sd in shifts]
+            mass = f"{own['mass_percent']:+.0f} ± {own['mass_percent_sd']:.0f}"
+            table.add_row(name.replace("_", " "), mass, *cells)
+        console.print(table)
+    console.print(found["told"], soft_wrap=True)

@@ -3,25 +3,31 @@
 Its marker noise is wide, because a frame of skin-borne markers is no independent reading, and its plant as wide to
 keep up; gains depend on their ratio, but P on their size. So P is not what the errors are like. They have two parts:
 
-    what is new in every frame    κ P, κ the share of the marker noise that is new
+    what is new in every frame    K P K, κ = K² the share of the marker noise that is new
     what skin repeats             C of positions and, moving about as ω, ω² C of velocities, ω⁴ C of accelerations
 
 with C the covariance of a pose fitted to one frame whose markers err as much as the innovations show; a sine of
 amplitude 1 has q, v and a of size 1, ω and −ω², the first and the last in opposition. Joints that nothing observes owe
-their spread to neither, and wrenches theirs to plates: they keep what P states. The wrench of a foot that no plate
-reads follows from the accelerations by Newton's law, and errs as they do. Of two such feet only the sum does; how they
-share it is known by where they stand and how they push off, which errs alike for a whole double support:
+their spread to neither and keep what P states. κ is not the same for positions, velocities and accelerations, since
+P's process noise is as wide as its marker noise, and later frames take away more of it.
+
+The wrench of a foot on a plate, or in the air, is known as well as the plate reads: P's part times the noise that the
+readings show over the noise that the filter gives them. The wrench of a foot that no plate reads follows from the
+accelerations by Newton's law, and errs as they do. Of two such feet only the sum does; how they share it is known by
+where they stand and how they push off, which errs alike for a whole double support:
 
     (c² − 1) κ [D, −D; −D, D] is added,  D = covariance of half the difference of both wrenches in P
 
 Where no plate reads at all, a quick change is known only after a while, causally, and with its corners cut, smoothed:
-l lᵀ is added, l = the rates of change of accelerations and wrenches times a lag. And whether a foot that carries hardly
-anything still bears is not known: e² is added to the variance of its vertical force.
+l lᵀ is added, l = the rates of change of accelerations and wrenches times a lag. Last, e eᵀ is added for every
+wrench e that may be there or not: a small vertical force at the middle of the sole of a foot without a plate that
+carries hardly anything; what a plate reads below its threshold under a foot that counts as in the air; and a share of
+the change since the frame before on a plate, whose reading is a mean over the frame.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -33,22 +39,31 @@ from mbkf.conventions import Array
 
 @dataclass(frozen=True)
 class ErrorSettings:
-    """How errors repeat. Set on synthetic captures with 3 to 5 mm of skin so that 95 % intervals cover 94 to 100 %.
+    """How errors repeat. Set on synthetic walks, squats and jumps of two persons with 0 to 5 mm of skin.
 
     Attributes:
-        new_share: Share κ of the marker noise that is new in every frame.
-        skin_rate_rad_s: How fast the rest changes, ω.
+        new_share: Share κ of the marker noise that is new in every frame, for positions and wrenches without plates.
+        new_rates, smoothed_new_rates: The same for velocities and accelerations, causally and smoothed.
+        skin_share: Share of what innovations show that is skin; the rest are misplaced markers, which the offset by
+            the body has (:mod:`mbkf.filters.body_errors`).
+        skin_rate_rad_s: How fast skin moves, ω.
         sharing_scale: Factor c on the spread of how two feet share a load that no plate reads.
         lag_s, smoothed_lag_s: Time by which reactions without plates lag behind, causally and smoothed.
         edge_force_n: Spread e of the vertical force on a foot without a plate that carries next to nothing.
+        frame_share: Share of a plate's change since the frame before, and of the change of that change, by which its
+            mean over a frame may be off.
     """
 
     new_share: float = 0.035
-    skin_rate_rad_s: float = 4.0
+    new_rates: tuple[float, float] = (0.09, 0.02)
+    smoothed_new_rates: tuple[float, float] = (0.1, 0.004)
+    skin_share: float = 0.65
+    skin_rate_rad_s: float = 3.4
     sharing_scale: float = 1.3
     lag_s: float = 0.033
     smoothed_lag_s: float = 0.008
     edge_force_n: float = 60.0
+    frame_share: tuple[float, float] = (0.005, 0.15)
 
 
 @dataclass(frozen=True)
@@ -60,12 +75,14 @@ class ErrorCovariance:
         information: (nv, nv) of one frame on the configuration, as the filter weighs it.
         seen: (n,) dofs that markers observe.
         skin: Variance of the markers over what the filter takes for it.
-        new: Share κ of what the filter takes for it that is new in every frame.
+        new: Share κ of what the filter takes for it that is new in every frame, for positions and unread wrenches.
+        new_rates: The same for velocities and accelerations.
         rate_rad_s: ω.
         free: Feet whose wrenches follow from Newton's law alone, 0 right and 1 left.
         sharing: Factor c where both do.
         lag: (nv + 12 or more,) l of accelerations and wrenches; None for none.
-        edge_n: e of right and left foot, N.
+        edges: (n, 12) every e, on both feet's wrenches about the world's origin, N, N m.
+        plates: Noise of plates over what the filter takes for it.
         supports: Slice of the wrench on other parts that bear, which Newton's law alone tells, too; None where none do.
     """
 
@@ -78,17 +95,20 @@ class ErrorCovariance:
     free: tuple[int, ...] = ()
     sharing: float = 1.0
     lag: Array | None = None
-    edge_n: tuple[float, float] = (0.0, 0.0)
+    edges: Array = field(default_factory=lambda: np.zeros((0, 12)))
     supports: slice | None = None
+    new_rates: tuple[float, float] | None = None
+    plates: float = 1.0
 
     @cached_property
     def size(self) -> Array:
         """(N,) by which errors of the filter's kind are smaller than P says, √κ."""
         nv, size = len(self.information), np.ones(len(self.P))
-        for first in (0, nv, 2 * nv):
-            size[first + self.seen] = self.new**0.5
-        for foot in self.free:
-            size[3 * nv + 6 * foot : 3 * nv + 6 * foot + 6] = self.new**0.5
+        for n, new in enumerate((self.new, *(self.new_rates or (self.new, self.new)))):
+            size[n * nv + self.seen] = new**0.5
+        for foot in (0, 1):
+            known = self.new**0.5 if foot in self.free else self.plates
+            size[3 * nv + 6 * foot : 3 * nv + 6 * foot + 6] = known
         if self.supports is not None:
             size[self.supports] = self.new**0.5
         return size
@@ -175,7 +195,7 @@ class ErrorCovariance:
             variance += np.einsum("ij,ij->i", apart @ self._difference, apart)
         if self.lag is not None:
             variance += (T[:, 2 * nv :] @ self.lag[: n - 2 * nv]) ** 2
-        return variance + (T[:, [3 * nv + 2, 3 * nv + 8]] * self.edge_n) ** 2 @ np.ones(2)
+        return variance + np.square(T[:, 3 * nv : 3 * nv + 12] @ self.edges.T).sum(axis=1)
 
     @property
     def wrench_variance(self) -> Array:
@@ -184,7 +204,7 @@ class ErrorCovariance:
         found: Array = np.diagonal(self.P)[mine] * self.size[mine] ** 2
         if self._difference is not None:
             found += np.tile(np.diagonal(self._difference), 2)
-        found[[2, 8]] += np.square(self.edge_n)
+        found += np.square(self.edges).sum(axis=0)
         nv = len(self.information)
         return found if self.lag is None else found + self.lag[nv : nv + 12] ** 2
 
@@ -202,6 +222,6 @@ class ErrorCovariance:
         if self.lag is not None:
             late = slice(2 * nv, 2 * nv + len(self.lag))
             whole[late, late] += np.outer(self.lag, self.lag)
-        vertical = 3 * nv + np.array([2, 8])
-        whole[vertical, vertical] += np.square(self.edge_n)
+        feet = slice(3 * nv, 3 * nv + 12)
+        whole[feet, feet] += self.edges.T @ self.edges
         return whole

@@ -9,12 +9,14 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
+from mbkf.filters.innovations import Innovations
 from mbkf.filters.spread import Spread
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.numerics.passage import LinearStep
 from mbkf.numerics.smoothing import BackwardPass
 from mbkf.sensors.block import NO_READINGS, Frame
+from mbkf.sensors.contact.plate_noise import PlateNoise
 from mbkf.sensors.marker_prediction import MarkerPrediction
 
 
@@ -77,6 +79,10 @@ class Posterior(NamedTuple):
             (``description.bearings``), 0 on one that bears none; None where the filter does not ask.
         lag: (nv + 12 or more,) by how much accelerations, the feet's wrenches and those on other parts may lag behind a
             change; None where that is not stated.
+        changes: (2, 2, 6) change of the feet's wrenches since the frame before, and of that change, as they were known
+            at once; None where they are not.
+        later: Whether later frames have corrected it and its covariance.
+        plate_noise: What is known of the plates' noise; None where the filter does not ask, or at a start.
     """
 
     q: Array
@@ -90,6 +96,9 @@ class Posterior(NamedTuple):
     inner: object
     support: Array | None = None
     lag: Array | None = None
+    changes: Array | None = None
+    later: bool = False
+    plate_noise: PlateNoise | None = None
 
 
 class Prediction(NamedTuple):
@@ -156,8 +165,8 @@ class TrackingFilter(Protocol):
         del estimate
         return np.full((len(self.model.description.bearings), 6), np.nan)
 
-    def innovation(self, estimate: Posterior) -> tuple[float, int]:
-        """Normalised innovation squared of an estimate's frame and the number of readings in it; NaN at a start."""
+    def innovations(self, estimate: Posterior) -> Innovations | None:
+        """Of an estimate's frame against what is expected of them; None at a start."""
 
     def smooth(
         self, run: Sequence[Posterior], recording: Recording, first: int, wanted: int

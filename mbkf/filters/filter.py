@@ -15,9 +15,11 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
+from mbkf.filters.innovations import Innovations, InnovationSpreads
 from mbkf.filters.readings import Readings, summed
 from mbkf.numerics.information_update import informed_with_rows
 from mbkf.numerics.kalman import correct
+from mbkf.numerics.running_spread import RunningSpread
 from mbkf.sensors.block import AnyBlock, Block, Frame, Notes, OperatingPoint, State
 from mbkf.sensors.layout import Layout
 
@@ -73,10 +75,11 @@ class Plant(Protocol[StateT]):
 
 
 class Memory(NamedTuple):
-    """What a frame leaves for the next besides its estimate: the plant's memory and each block's."""
+    """What a frame leaves for the next besides its estimate: memories of plant and blocks, and spreads of readings."""
 
     plant: Any
     blocks: Sequence[Any]
+    spreads: RunningSpread
 
 
 class Prior(NamedTuple, Generic[StateT]):
@@ -116,6 +119,7 @@ class Step(NamedTuple, Generic[StateT]):
         decisions: What the frame's readings were taken to be.
         readings: They, linearised at the prior.
         recall: Makes the memory for the next step, once, when it is first asked for: after the answer.
+        judge: Makes its innovations against what is expected of them, and the spreads for the next step, once.
     """
 
     state: StateT
@@ -123,11 +127,17 @@ class Step(NamedTuple, Generic[StateT]):
     decisions: Decisions
     readings: Readings
     recall: Callable[[], Memory]
+    judge: Callable[[], tuple[Innovations, RunningSpread]]
 
     @property
     def memory(self) -> Memory:
         """For the next step."""
         return self.recall()
+
+    @property
+    def innovations(self) -> Innovations:
+        """The frame's innovations against what one frame's are expected to be."""
+        return self.judge()[0]
 
     @property
     def tracked(self) -> bool:
@@ -147,7 +157,7 @@ class Step(NamedTuple, Generic[StateT]):
 
     @property
     def nis(self) -> float:
-        """Normalised innovation squared of instruments and laws; priors are no readings."""
+        """Normalised innovation squared of instruments and laws in the filter's own P and R; priors are no readings."""
         (rows, values), known, P = self.readings.counted, self.readings.instruments, self.prior.state.P
         if not len(values):
             n = len(known.vector)
@@ -178,6 +188,7 @@ class Filter(Generic[StateT]):
             update: Arithmetic of the update; all give the same up to rounding, and differ in speed.
         """
         self.plant, self.blocks, self.layout, self.update = plant, tuple(blocks), plant.layout, update
+        self._spreads = InnovationSpreads(self.blocks, plant.dt_s)
         for block in self.blocks:
             block.bind(self.layout)
         # Blocks that have something of their own to do; at these sizes empty calls count.
@@ -193,7 +204,7 @@ class Filter(Generic[StateT]):
 
     def begin(self) -> Memory:
         """Memory before the first frame."""
-        return Memory(self.plant.begin(), [block.begin() for block in self.blocks])
+        return Memory(self.plant.begin(), [block.begin() for block in self.blocks], self._spreads.begin())
 
     def predict(self, state: StateT, memory: Memory) -> Prior[StateT]:
         """All that can be worked out before the frame is there."""
@@ -267,16 +278,22 @@ class Filter(Generic[StateT]):
             posterior = self._updated(state, readings)
 
         made: list[Memory] = []
+        judged: list[tuple[Innovations, RunningSpread]] = []
+
+        def judge() -> tuple[Innovations, RunningSpread]:
+            if not judged:
+                judged.append(self._spreads.after(memory.spreads, chosen, said))
+            return judged[0]
 
         def recall() -> Memory:
             if not made:
                 kept = list(memory.blocks)
                 for k, block in self._remembering:
                     kept[k] = block.remember(posterior, points[k], chosen[k], kept[k])
-                made.append(Memory(self.plant.remember(posterior, notes, memory.plant), kept))
+                made.append(Memory(self.plant.remember(posterior, notes, memory.plant), kept, judge()[1]))
             return made[0]
 
-        return Step(posterior, prior, Decisions(prior.noise, chosen, notes), readings, recall)
+        return Step(posterior, prior, Decisions(prior.noise, chosen, notes), readings, recall, judge)
 
     def inflate(self, P: Array, chosen: Sequence[Any]) -> None:
         """Adds to a predicted covariance, in place, the process noise that depends on the blocks' decisions."""

@@ -6,13 +6,16 @@ much again and is not waited for, by :meth:`FrameRecorder.spread` and :meth:`Fra
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
+from mbkf.filters.body_errors import BodyErrorRoots, BodyErrors
 from mbkf.filters.estimate import Posterior, TrackingFilter
 from mbkf.filters.spread import Spread
 
@@ -40,6 +43,10 @@ FIELDS = (
     Field("latency_s", "<f8"),
     Field("step_seconds", "<f8"),
     Field("nis", "<f8"),
+    Field("nis_by_kind", "<f8", "4"),
+    Field("readings_by_kind", "<i8", "4"),
+    Field("marker_nis", "<f8", "M"),
+    Field("marker_spread_m", "<f8", "M"),
     Field("q", "<f8", "nq"),
     Field("v", "<f8", "nv"),
     Field("a", "<f8", "nv"),
@@ -54,21 +61,33 @@ FIELDS = (
     Field("rate_sd", "<f8", "A"),
     Field("ball_covariance", "<f8", "N 3 3"),
     Field("torque_sd", "<f8", "nv"),
+    Field("position_offset", "<f8", "nv"),
+    Field("velocity_offset", "<f8", "nv"),
+    Field("torque_offset", "<f8", "nv"),
+    Field("angle_offset", "<f8", "A"),
+    Field("rate_offset", "<f8", "A"),
+    Field("ball_offset", "<f8", "N 3 3"),
+    Field("wrench_offset", "<f8", "2 6"),
 )
 """The declaration.
 
 number: of the frame. known: whether there is an estimate. started: whether the filter was (re)started in it. tracked:
 whether enough instruments read. readings, nis: numbers in the normalised innovation squared, and its value, NaN at a
-start. footing: what right and left foot stand on (:class:`mbkf.sensors.contact.records.Contact`). refused: markers seen
-but outside their gate. measured_m: markers, NaN where missing. latency_s, step_seconds: from arrival to answer, and
-the computing time of the step. q, v, a: configuration, velocity, acceleration. wrench: of the ground on right and left
-foot, about the world's origin. support, support_sd: the same on the B parts that may bear load besides the feet, and
-standard deviations; 0 on one that bears none. The others are standard deviations: of the wrenches, of the height of the
-feet, of position and velocity in the tangent space, of the A clinical coordinates and their rates, of the generalised
-forces.
+start; readings_by_kind, nis_by_kind: the same by :data:`mbkf.conventions.READING_KINDS`; marker_nis, marker_spread_m:
+of each marker per coordinate, and the spread it is in units of (:mod:`mbkf.filters.innovations`). footing: what right
+and left foot stand on (:class:`mbkf.sensors.contact.records.Contact`). refused: markers seen but outside their gate.
+measured_m: markers, NaN where missing. latency_s, step_seconds: from arrival to answer, and the computing time of the
+step. q, v, a: configuration, velocity, acceleration. wrench: of the ground on right and left foot, about the world's
+origin. support, support_sd: the same on the B parts that may bear load besides the feet, and standard deviations; 0 on
+one that bears none. The others are standard deviations: of the wrenches, of the height of the feet, of position and
+velocity in the tangent space, of the A clinical coordinates and their rates, of the generalised forces.
 ball_covariance: of the rotations of the N joints with three angles in their distal segments' axes, rad², for angles
-told in other axes than the body file's.
+told in other axes than the body file's. …_offset: the part of a standard deviation (covariance) that repeats in the
+same posture, since the person's body is not known exactly (:mod:`mbkf.filters.body_errors`).
 """
+
+OFFSETS_HELD_S = 0.1
+"""Offsets change with the posture and are worked out once in such a time."""
 
 MOTION = ("q", "v", "a", "wrench")
 SPREAD_AT_ONCE, SPREAD_LATER = ("position", "velocity", "torque"), ("angle", "rate", "foot_height")
@@ -93,6 +112,35 @@ def blank(dtype: np.dtype, rows: int) -> NDArray:
     return empty
 
 
+class HeldErrors:
+    """Errors by the body along a trial: worked out once in a while, and only when asked for."""
+
+    def __init__(self, body: BodyErrors | None, dt_s: float) -> None:
+        """Args: the errors by the body, None where they are not told, and the time between frames."""
+        self._body, self._held = body, max(1, round(OFFSETS_HELD_S / dt_s))
+        self._first, self._due, self._roots = 0, -1, _untold
+
+    def of(self, number: int, posterior: Posterior) -> Callable[[], BodyErrorRoots | None]:
+        """What works out the roots for a frame: those of the first frame of its stretch of time since the start.
+
+        Args:
+            number: The frame; frames come in order.
+            posterior: The filter's estimate.
+        """
+        if posterior.started or self._due < 0:
+            self._first, self._due = number, -1
+        due = (number - self._first) // self._held
+        if self._body is not None and self._due != due:
+            found, body = posterior, self._body
+            self._due = due
+            self._roots = cache(lambda: body.at(found.q, found.v, found.a, found.wrench, found.contact))
+        return self._roots
+
+
+def _untold() -> BodyErrorRoots | None:
+    return None
+
+
 class FrameRecorder:
     """Fills records of a filter's posteriors.
 
@@ -101,9 +149,15 @@ class FrameRecorder:
         dtype: Type of a record.
     """
 
-    def __init__(self, filter: TrackingFilter, markers: int) -> None:
-        """Args: the filter, and the number of markers."""
-        self.filter = filter
+    def __init__(self, filter: TrackingFilter, markers: int, body: BodyErrors | None = None) -> None:
+        """Makes it.
+
+        Args:
+            filter: The filter.
+            markers: Number of markers.
+            body: What estimates err by because the person's body is not known exactly; None where that is not told.
+        """
+        self.filter, self._body = filter, HeldErrors(body, filter.dt_s)
         model = filter.model
         sizes = {"M": markers, "nq": model.nq, "nv": model.nv, "A": len(filter.clinical.names)}
         sizes |= {"B": len(model.description.bearings), "N": len(filter.clinical.ball_turns)}
@@ -149,17 +203,28 @@ class FrameRecorder:
         row["wrench_sd"] = self.filter.wrench_sd(posterior)
         row["support"] = np.nan if posterior.support is None else posterior.support
         row["support_sd"] = self.filter.support_sd(posterior)
-        spread = self.filter.spread(posterior)
+        by_body = self._body.of(int(row["number"][0]), posterior)
+        spread = replace(self.filter.spread(posterior), body=by_body())
         for name in SPREAD_AT_ONCE:
             row[f"{name}_sd"] = getattr(spread, name)
+            row[f"{name}_offset"] = getattr(spread, f"{name}_offset")
+        row["wrench_offset"] = spread.wrench_offset
+        row["wrench_sd"] = np.hypot(row["wrench_sd"], row["wrench_offset"])
         return spread
 
     def innovation(self, row: NDArray, posterior: Posterior) -> None:
         """How well the frame was predicted."""
-        row["nis"], row["readings"] = self.filter.innovation(posterior)
+        found = self.filter.innovations(posterior)
+        if found is None:
+            return
+        row["nis_by_kind"], row["readings_by_kind"] = found.squared, found.readings
+        row["nis"], row["readings"] = found.squared.sum(), found.readings.sum()
+        row["marker_nis"], row["marker_spread_m"] = found.markers, found.marker_spread_m
 
     def spread(self, row: NDArray, spread: Spread) -> None:
         """Standard deviations of clinical coordinates, their rates and the height of the feet."""
         for name in SPREAD_LATER:
             row[f"{name}_sd"] = getattr(spread, name)
-        row["ball_covariance"] = spread.ball_covariance
+        for name in ("angle", "rate"):
+            row[f"{name}_offset"] = getattr(spread, f"{name}_offset")
+        row["ball_covariance"], row["ball_offset"] = spread.ball_covariance, spread.ball_offset

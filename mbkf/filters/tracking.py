@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import NotObservable
+from mbkf.filters.body_errors import BodyErrors
 from mbkf.filters.estimate import Posterior, Recording, TrackingFilter
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
 from mbkf.filters.lag import FixedLag
@@ -36,11 +37,17 @@ class Track:
         ball_covariance: (T, n, 3, 3) covariances of the rotations of joints with three angles, in the axes of their
             distal segments, rad².
         torque_sd: (T, nv) of generalised forces; NaN where not known.
+        position_offset, velocity_offset, torque_offset, angle_offset, rate_offset, wrench_offset: The part of each of
+            these standard deviations that repeats in the same posture, since the body is not known exactly.
+        ball_offset: (T, n, 3, 3) likewise of the covariances.
         foot_height_sd: (T, 2) of the height of right and left foot, m.
         refused: (T, M) markers seen but refused by the gate.
         tracked: (T,) whether enough markers passed the gate.
         nis: (T,) normalised innovation squared; NaN at a start.
         readings: (T,) numbers in it.
+        nis_by_kind, readings_by_kind: (T, 4) the same by :data:`mbkf.conventions.READING_KINDS`.
+        marker_nis: (T, M) of each marker per coordinate, NaN where it was not used.
+        marker_spread_m: (T, M) the spread it is told in units of, m.
         step_seconds: (T,) computing time of each step.
         starts: Frames at which the filter was started or restarted.
         smoothed: Whether it was smoothed, with all later frames that matter.
@@ -61,11 +68,22 @@ class Track:
     rate_sd: Array
     ball_covariance: Array
     torque_sd: Array
+    position_offset: Array
+    velocity_offset: Array
+    torque_offset: Array
+    angle_offset: Array
+    rate_offset: Array
+    ball_offset: Array
+    wrench_offset: Array
     foot_height_sd: Array
     refused: BoolArray
     tracked: BoolArray
     nis: Array
     readings: Array
+    nis_by_kind: Array
+    readings_by_kind: Array
+    marker_nis: Array
+    marker_spread_m: Array
     step_seconds: Array
     starts: tuple[int, ...]
     smoothed: bool
@@ -78,6 +96,7 @@ def track(
     *,
     smoothing: SmoothingSettings | None = None,
     lag_s: float = 0.0,
+    body: BodyErrors | None = None,
     keep_covariance: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> Track:
@@ -88,13 +107,14 @@ def track(
         recording: What the instruments read.
         smoothing: How to smooth; None for the filter alone.
         lag_s: Without smoothing, how far later readings may correct a frame.
+        body: What estimates err by because the person's body is not known exactly; None where that is not told.
         keep_covariance: Whether to keep the full covariance of (q, v) of every frame.
         progress: Called with frames done and frames in all.
 
     Raises:
         NotObservable: In no frame do the markers fit the body.
     """
-    recorder, frames = FrameRecorder(filter, recording.markers_m.shape[1]), len(recording)
+    recorder, frames = FrameRecorder(filter, recording.markers_m.shape[1], body), len(recording)
     rows = blank(recorder.dtype, frames)
     rows["number"] = np.arange(frames)
     size = 2 * filter.model.nv
@@ -102,9 +122,10 @@ def track(
 
     def keep(found: Sequence[tuple[int, Posterior]]) -> None:
         for t, posterior in found:
-            recorder.spread(rows[t : t + 1], recorder.motion(rows[t : t + 1], posterior))
+            spread = recorder.motion(rows[t : t + 1], posterior)
+            recorder.spread(rows[t : t + 1], spread)
             if covariance is not None:
-                covariance[t] = filter.covariance(posterior)
+                covariance[t] = filter.covariance(posterior) + spread.offset_covariance
 
     later: FixedLag | FixedLagSmoother = FixedLag(filter, lag_s)
     if smoothing is not None:

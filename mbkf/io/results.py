@@ -1,8 +1,13 @@
-"""The result of a reconstruction: motion, torques and reactions, each with its standard deviation."""
+"""The result of a reconstruction: motion, torques and reactions, each with its standard deviation.
+
+A standard deviation has two independent parts: what varies within a trial (noise, skin), and the offset that repeats
+whenever the posture is the same, because the person's body is not known exactly.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -25,20 +30,35 @@ SHAPES: dict[str, str] = {
     "measured_m": "T M 3", "predicted_m": "T M 3", "hidden": "T M", "rejected": "T M",
     "foot_wrench": "T 2 6", "foot_cop_m": "T 2 3", "foot_free_moment_nm": "T 2",
     "residual_force_n": "T 3", "residual_moment_nm": "T 3", "tracked": "T", "measured": "T", "valid": "T",
-    "nis": "T", "nis_readings": "T", "step_seconds": "T", "plate_change": "T P 6",
+    "nis": "T", "nis_readings": "T", "nis_by_kind": "T 4", "nis_readings_by_kind": "T 4",
+    "marker_nis": "T M", "marker_spread_m": "T M", "step_seconds": "T", "plate_change": "T P 6",
     "foot_wrench_sd": "T 2 6", "foot_contact": "T 2", "covariance": "T 2nv 2nv", "plate_corners_m": "P 4 3",
     "heading_rad": "T", "angles_lab": "T A", "foot_source": "T 2",
     "support_wrench": "T B 6", "support_wrench_sd": "T B 6", "support_point_m": "T B 3",
 }  # fmt: skip
 """Dimensions of every array: T frames, nv dofs, A coordinates, M markers, P plates, B parts that may bear load."""
 
+OFFSETS = {
+    f"{name}_offset": name
+    for name in ("sd_q", "sd_v", "sd_tau", "angles_sd", "angle_rates_sd", "moments_sd", "foot_wrench_sd")
+}
+"""Arrays of the offset's part of standard deviations, and the arrays of the totals."""
+
+SHAPES |= {name: SHAPES[total] for name, total in OFFSETS.items()}
+
+SdPart = Literal["total", "offset", "varying"]
+"""What of a standard deviation is asked for: all of it, the offset that repeats, or what varies within the trial."""
+
 _FLAGS = ("singular", "hidden", "rejected", "tracked", "valid", "measured")
 DTYPES: dict[str, type] = {name: np.bool_ for name in _FLAGS}
-DTYPES |= {name: np.int64 for name in ("nis_readings", "foot_contact", "foot_source")}
+DTYPES |= {name: np.int64 for name in ("nis_readings", "nis_readings_by_kind", "foot_contact", "foot_source")}
 """Arrays that are not floating-point."""
 
 LAG_KEY = "lag_ms"
 """The fixed lag among the settings of a result."""
+
+SMOOTHED, CAUSAL = "smoothed (all later frames known)", "causal (as live)"
+"""How results without a lag are told."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +78,8 @@ class Reconstruction:
         q: (T, nq) configurations.
         v, a: (T, nv) tangent velocities and accelerations.
         tau: (T, nv) generalised forces; the first six are the residual at the pelvis in its axes.
-        sd_q, sd_v, sd_tau: (T, nv) standard deviations in the tangent space, NaN where not known.
+        sd_q, sd_v, sd_tau: (T, nv) standard deviations in the tangent space, NaN where not known. They are totals,
+            like all others here; see ``sd_q_offset``.
         coordinate_names: (A,) clinical coordinates, OpenSim's names where it has them.
         angles, angle_rates, moments: (T, A) coordinates, their rates and conjugate moments: rad, rad/s, N m;
             the pelvis's translations m, m/s, N.
@@ -91,8 +112,12 @@ class Reconstruction:
         support_wrench_sd: (T, B, 6) standard deviations.
         support_point_m: (T, B, 3) where the force acts on the part's surface, NaN where it bears nothing.
         unobserved_dofs: Names of dofs that no marker of the capture moves with.
-        nis: (T,) normalised innovation squared.
+        nis: (T,) normalised innovation squared, each reading in units of the spread that its innovations had before.
         nis_readings: (T,) number of scalar readings in it.
+        nis_by_kind, nis_readings_by_kind: (T, 4) the same by kind (:data:`mbkf.conventions.READING_KINDS`); None
+            in older files.
+        marker_nis: (T, M) of each marker per coordinate, NaN where it was not used; None in older files.
+        marker_spread_m: (T, M) the spread it is in units of, m; None in older files.
         step_seconds: (T,) computing time of a frame.
         warnings: Remarks for the reader.
         settings: Settings of the run, as plain data.
@@ -117,6 +142,10 @@ class Reconstruction:
         markers_explained: Share of the capture's named markers that the protocol knows, used or not, 0 to 1.
         names_exchanged: Two markers whose names were exchanged and are put right, and in how many frames.
         checks: What checks found that stand apart from the filter: mass, plates, clocks, floor, markers.
+        sd_q_offset, sd_v_offset, sd_tau_offset, angles_sd_offset, angle_rates_sd_offset, moments_sd_offset,
+            foot_wrench_sd_offset: The part of each standard deviation that repeats whenever the posture is the same,
+            because the body is not known exactly (:mod:`mbkf.filters.body_errors`); 0 where the subject file has no
+            covariance, and in older files. What varies within the trial is √(total² − offset²).
     """
 
     trial: str
@@ -176,6 +205,10 @@ class Reconstruction:
     file_axes_source: str = ""
     direction: str = "laboratory"
     heading_rad: Array | None = None
+    nis_by_kind: Array | None = None
+    nis_readings_by_kind: Array | None = None
+    marker_nis: Array | None = None
+    marker_spread_m: Array | None = None
     angles_lab: Array | None = None
     angles_read: str = "model"
     angles_zero: str = "axes"
@@ -183,6 +216,13 @@ class Reconstruction:
     markers_explained: float = 1.0
     names_exchanged: tuple[tuple[str, str, int], ...] = ()
     checks: tuple[Finding, ...] = ()
+    sd_q_offset: Array | None = None
+    sd_v_offset: Array | None = None
+    sd_tau_offset: Array | None = None
+    angles_sd_offset: Array | None = None
+    angle_rates_sd_offset: Array | None = None
+    moments_sd_offset: Array | None = None
+    foot_wrench_sd_offset: Array | None = None
 
     def __post_init__(self) -> None:
         for name in NAMES:
@@ -196,9 +236,13 @@ class Reconstruction:
             "M": len(self.marker_names),
         }
         for name, dimensions in SHAPES.items():
-            if getattr(self, name) is None:
+            value = getattr(self, name)
+            if value is None and name in OFFSETS:
+                total = getattr(self, OFFSETS[name])
+                value = None if total is None else np.where(np.isnan(total), np.nan, 0.0)
+            if value is None:
                 continue
-            array = read_only(getattr(self, name), dtype=DTYPES.get(name, np.float64))
+            array = read_only(value, dtype=DTYPES.get(name, np.float64))
             wanted = [sizes.get(d) if not d.isdigit() else int(d) for d in dimensions.split()]
             if len(wanted) != array.ndim or any(
                 n not in (None, m) for n, m in zip(wanted, array.shape, strict=True)
@@ -219,6 +263,13 @@ class Reconstruction:
         """How far later readings could correct a frame, ms; 0 without a fixed lag."""
         lag = self.settings.get(LAG_KEY, 0.0)
         return float(lag) if isinstance(lag, int | float) else 0.0
+
+    @property
+    def later_frames(self) -> str:
+        """Which later frames an estimate knows, in words: all, none, or those of a fixed lag."""
+        if self.smoothed:
+            return SMOOTHED
+        return f"fixed lag {self.lag_ms:g} ms" if self.lag_ms else CAUSAL
 
     @property
     def present(self) -> BoolArray:
@@ -254,25 +305,29 @@ class Reconstruction:
         """
         return self.angles[:, self._coordinate(name)]
 
-    def angle_sd(self, name: str) -> Array:
-        """(T,) its standard deviation, NaN where not known."""
-        return self.angles_sd[:, self._coordinate(name)]
+    def angle_sd(self, name: str, part: SdPart = "total") -> Array:
+        """(T,) its standard deviation or a part of it, NaN where not known.
+
+        Raises:
+            UnknownName: There is no such coordinate or part.
+        """
+        return self._sd("angles_sd", name, part)
 
     def angle_rate(self, name: str) -> Array:
         """(T,) a coordinate's rate: rad/s, m/s for translations."""
         return self.angle_rates[:, self._coordinate(name)]
 
-    def angle_rate_sd(self, name: str) -> Array:
-        """(T,) its standard deviation, NaN where not known."""
-        return self.angle_rates_sd[:, self._coordinate(name)]
+    def angle_rate_sd(self, name: str, part: SdPart = "total") -> Array:
+        """(T,) its standard deviation or a part of it, as :meth:`angle_sd`."""
+        return self._sd("angle_rates_sd", name, part)
 
     def moment(self, name: str) -> Array:
         """(T,) the moment conjugate to a coordinate: N m, N for translations (the pelvis's are residuals)."""
         return self.moments[:, self._coordinate(name)]
 
-    def moment_sd(self, name: str) -> Array:
-        """(T,) its standard deviation, NaN where not known."""
-        return self.moments_sd[:, self._coordinate(name)]
+    def moment_sd(self, name: str, part: SdPart = "total") -> Array:
+        """(T,) its standard deviation or a part of it, as :meth:`angle_sd`."""
+        return self._sd("moments_sd", name, part)
 
     torque = moment
     torque_sd = moment_sd
@@ -287,10 +342,23 @@ class Reconstruction:
             raise UnknownName("marker", name, self.marker_names)
         return self.predicted_m[:, self.marker_names.index(name)]
 
+    def _sd(self, array: str, name: str, part: SdPart) -> Array:
+        if part not in get_args(SdPart):
+            raise UnknownName("part of a standard deviation", part, get_args(SdPart))
+        at = self._coordinate(name)
+        total, offset = getattr(self, array)[:, at], getattr(self, f"{array}_offset")[:, at]
+        found = {"total": total, "offset": offset}
+        return found[part] if part in found else varying_sd(total, offset)
+
     def _coordinate(self, name: str) -> int:
         if name not in self.coordinate_names:
             raise UnknownName("coordinate", name, self.coordinate_names)
         return self.coordinate_names.index(name)
+
+
+def varying_sd(total: Array, offset: Array) -> Array:
+    """What of standard deviations varies within the trial, the offset being independent of it: √(total² − offset²)."""
+    return np.asarray(np.sqrt(np.maximum(total**2 - offset**2, 0.0)))
 
 
 ARRAYS = tuple(f.name for f in fields(Reconstruction) if f.name in SHAPES)

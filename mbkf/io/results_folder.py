@@ -59,7 +59,8 @@ class Summary(TypedDict):
 
     Attributes:
         trial, protocol, filter: Names of capture, protocol and filter.
-        smoothed: Whether all later frames that matter were used; a fixed lag stands in ``settings``.
+        smoothed: Whether all later frames that matter were used.
+        later_frames: The same in words: "smoothed (all later frames known)", "causal (as live)" or "fixed lag 60 ms".
         version: Version of mbkf.
         direction: What the frame of the pelvis's angles follows: "progression", "heading" or "laboratory".
         progression: That frame's kind in words, its heading, and how far it turns.
@@ -79,8 +80,11 @@ class Summary(TypedDict):
         measured_frames: Frames in which plates measure every contact.
         contacts: Which part of the body bore load from when to when, how much, and how that is known.
         plate_force_change_rms_n, plate_moment_change_rms_nm: Estimated minus measured plate wrenches.
-        torque_peak_nm_per_kg, torque_sd_nm: Flexion torques by joint, and their standard deviations.
+        torque_peak_nm_per_kg, torque_sd_nm, torque_sd_offset_nm, torque_sd_varying_nm: Flexion torques by joint, their
+            standard deviations, and the two parts of these (:data:`mbkf.io.results.SdPart`).
         nis_per_dof: Normalised innovation squared per reading.
+        nis: The same by kind of reading, and of Newton's law before correction.
+        marker_noise_mm_by_name: Spread of one reading of each marker, as its innovations show it.
         step_seconds_median, step_seconds_p99: Computing time of a frame.
         realtime_factor: Duration over computing time.
         truth: Errors against a synthetic subject's known motion.
@@ -94,6 +98,7 @@ class Summary(TypedDict):
     protocol: str
     filter: str
     smoothed: bool
+    later_frames: str
     version: str
     direction: str
     progression: dict[str, str | float]
@@ -120,7 +125,11 @@ class Summary(TypedDict):
     plate_moment_change_rms_nm: float | None
     torque_peak_nm_per_kg: dict[str, float | None]
     torque_sd_nm: dict[str, float | None]
+    torque_sd_offset_nm: dict[str, float | None]
+    torque_sd_varying_nm: dict[str, float | None]
     nis_per_dof: float | None
+    nis: dict[str, float]
+    marker_noise_mm_by_name: dict[str, float | None]
     step_seconds_median: float | None
     step_seconds_p99: float | None
     realtime_factor: float | None

@@ -14,9 +14,10 @@ import numpy as np
 from mbkf.conventions import read_only
 from mbkf.errors import FileFormatError, MbkfError
 from mbkf.io.atomic import replacing
+from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.contacts import foot_sources
 from mbkf.io.findings import Finding
-from mbkf.io.results import ARRAYS, DTYPES, Reconstruction
+from mbkf.io.results import ARRAYS, DTYPES, OFFSETS, Reconstruction
 from mbkf.io.subject import Subject, SubjectMarker
 
 FORMAT = "mbkf reconstruction"
@@ -34,8 +35,9 @@ UNITS = {
     "step_seconds": "s", "plate_change": "N, N m", "foot_wrench_sd": "N, N m about the world's origin",
     "plate_corners_m": "m", "heading_rad": "rad", "angles_lab": _ANGLE,
     "support_wrench": "N, N m about the world's origin", "support_wrench_sd": "N, N m about the world's origin",
-    "support_point_m": "m",
+    "support_point_m": "m", "marker_spread_m": "m",
 }  # fmt: skip
+UNITS |= {name: UNITS[total] for name, total in OFFSETS.items()}
 """Unit of each array; the others (flags, counts, the innovation statistic) have none and carry "1"."""
 
 _TEXTS = (
@@ -56,6 +58,8 @@ _KEYS = {"foot_contact": "footing"}
 
 _NEVER_WRITTEN = ("covariance",)
 
+_COVARIANCE = "subject_covariance"
+
 
 def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
     """Writes a reconstruction, whole or not at all.
@@ -73,13 +77,16 @@ def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
         for name in _TEXTS:
             file.attrs[name] = getattr(reconstruction, name)
         file.attrs["smoothed"] = reconstruction.smoothed
+        file.attrs["later_frames"] = reconstruction.later_frames  # for readers; it follows from the rest
         file.attrs["rate_hz"] = reconstruction.rate_hz
         file.attrs["settings"] = json.dumps(reconstruction.settings, default=_plain)
         file.attrs["markers_ignored"] = json.dumps(reconstruction.markers_ignored)
         file.attrs["names_exchanged"] = json.dumps(reconstruction.names_exchanged)
         file.attrs["checks"] = json.dumps([check.as_table() for check in reconstruction.checks])
         file.attrs["markers_explained"] = reconstruction.markers_explained
-        file.attrs["subject"] = json.dumps(dataclasses.asdict(reconstruction.subject), default=_plain)
+        subject = dataclasses.replace(reconstruction.subject, covariance=None)
+        file.attrs["subject"] = json.dumps(dataclasses.asdict(subject), default=_plain)
+        _write_covariance(file, reconstruction.subject.covariance)
         for name, key in _NAME_LISTS.items():
             file.create_dataset(key, data=list(getattr(reconstruction, name)), dtype=h5py.string_dtype())
         for name in ARRAYS:
@@ -120,7 +127,7 @@ def read_h5(path: str | Path) -> Reconstruction:
             values["names_exchanged"] = tuple((a, b, int(frames)) for a, b, frames in exchanged)
             values["checks"] = tuple(Finding(**one) for one in json.loads(file.attrs.get("checks", "[]")))
             values["markers_explained"] = float(file.attrs.get("markers_explained", 1.0))
-            values["subject"] = _subject(json.loads(file.attrs["subject"]))
+            values["subject"] = _subject(json.loads(file.attrs["subject"]), _read_covariance(file))
             for name, key in _NAME_LISTS.items():
                 values[name] = tuple(file[key].asstr()[:]) if key in file or name not in _LATER else ()
             for name in ARRAYS:
@@ -141,11 +148,29 @@ def read_h5(path: str | Path) -> Reconstruction:
         raise FileFormatError(source, f"damaged: {error}") from error
 
 
-def _subject(table: dict[str, Any]) -> Subject:
+def _write_covariance(file: h5py.File, known: BodyCovariance | None) -> None:
+    """What is not known of the subject's body: the root of its covariance, with the names it belongs to."""
+    if known is None:
+        return
+    packed = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
+    dataset = file.create_dataset(_COVARIANCE, data=known.root, **packed)
+    dataset.attrs["unit"] = "1; rows of markers m"
+    for name in ("factors", "markers"):
+        dataset.attrs[name] = json.dumps(getattr(known, name))
+
+
+def _read_covariance(file: h5py.File) -> BodyCovariance | None:
+    if _COVARIANCE not in file:
+        return None
+    factors, markers = (tuple(json.loads(file[_COVARIANCE].attrs[name])) for name in ("factors", "markers"))
+    return BodyCovariance(factors, markers, np.asarray(file[_COVARIANCE][()], dtype=np.float64))
+
+
+def _subject(table: dict[str, Any], covariance: BodyCovariance | None) -> Subject:
     markers = tuple(
         SubjectMarker(**{**entry, "position_m": read_only(entry["position_m"])}) for entry in table["markers"]
     )
-    return Subject(**{**table, "markers": markers})
+    return Subject(**{**table, "markers": markers, "covariance": covariance})
 
 
 def _plain(value: Any) -> Any:

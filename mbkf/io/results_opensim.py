@@ -117,7 +117,7 @@ def _table(
     known = np.logical_or.reduce(np.isfinite(values[r.tracked]), axis=0)
     rows = r.tracked & np.isfinite(values[:, known]).all(axis=1)
     kept = tuple(name for name, finite in zip(names, known, strict=True) if finite)
-    header = {"Trial": r.trial, "Software": f"mbkf {r.version}"}
+    header = {"Trial": r.trial, "Software": f"mbkf {r.version}", "LaterFrames": r.later_frames}
     return Table(kept, r.times_s[rows], values[rows][:, known], in_degrees, title, header)
 
 

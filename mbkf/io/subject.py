@@ -14,6 +14,9 @@ import numpy as np
 from mbkf.conventions import Array, read_only
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.atomic import replacing
+from mbkf.io.body_covariance import BodyCovariance, read_covariance
+from mbkf.io.inertia import SegmentInertia, inertia_lines, parse_inertia
+from mbkf.io.text import toml_text
 
 STANDING_KEY = "standing_q"
 """Key of a subject's report under which the posture of the static trial stands: its configuration, nq numbers."""
@@ -58,6 +61,9 @@ class Subject:
         protocol: Name of the marker protocol.
         height_m: Body height where it was given.
         report: Plain data about how the subject was found (see ``mbkf.scaling``).
+        inertia: By segment, how its mass and centre of mass differ from the table; none: the table's.
+        covariance: What scaling left unknown of scale factors and marker places; None for a body that counts as known
+            exactly, or that an older version scaled.
     """
 
     body: str
@@ -68,6 +74,8 @@ class Subject:
     height_m: float | None = None
     report: dict[str, object] = field(default_factory=dict)
     body_text: str = ""
+    inertia: dict[str, SegmentInertia] = field(default_factory=dict)
+    covariance: BodyCovariance | None = field(default=None, repr=False)
 
     @property
     def scaled_markers(self) -> Collection[str] | None:
@@ -130,32 +138,39 @@ def write_subject(subject: Subject, path: str | Path) -> None:
     """Writes a subject as TOML, whole or not at all."""
     lines = [
         "# A scaled subject, written by mbkf. Lengths in m, mass in kg; positions in the segment's frame.",
-        f"body = {_text(subject.body)}",
+        f"body = {toml_text(subject.body)}",
         f"mass_kg = {float(subject.mass_kg)!r}",
     ]
     if subject.height_m is not None:
         lines.append(f"height_m = {float(subject.height_m)!r}")
-    lines += [f"protocol = {_text(subject.protocol)}", "", "[scale_factors]"]
+    lines += [f"protocol = {toml_text(subject.protocol)}", "", "[scale_factors]"]
     lines += [f"{name} = {float(value)!r}" for name, value in subject.scale_factors.items()]
+    lines += inertia_lines(subject.inertia)
     for marker in subject.markers:
         position = ", ".join(repr(float(x)) for x in marker.position_m)
         lines += [
             "",
             "[[marker]]",
-            f"name = {_text(marker.name)}",
-            f"segment = {_text(marker.segment)}",
+            f"name = {toml_text(marker.name)}",
+            f"segment = {toml_text(marker.segment)}",
             f"position_m = [{position}]",
             f"noise_m = {float(marker.noise_m)!r}",
             f"session_sd_m = {float(marker.session_sd_m)!r}",
-            f"aliases = [{', '.join(_text(alias) for alias in marker.aliases)}]",
+            f"aliases = [{', '.join(toml_text(alias) for alias in marker.aliases)}]",
         ]
         if marker.correlated_m:
             lines += [
                 f"correlated_m = {float(marker.correlated_m)!r}",
                 f"correlation_s = {float(marker.correlation_s)!r}",
             ]
+    if subject.covariance is not None:
+        lines += ["", *subject.covariance.as_toml()]
     if subject.report:
-        lines += ["", "# How it was found: one JSON object.", f"report = {_text(json.dumps(subject.report))}"]
+        lines += [
+            "",
+            "# How it was found: one JSON object.",
+            f"report = {toml_text(json.dumps(subject.report))}",
+        ]
         lines.insert(1, lines.pop())
         lines.insert(1, lines.pop())
     if subject.body_text:
@@ -184,6 +199,8 @@ def read_subject(path: str | Path) -> Subject:
             height_m=table.get("height_m"),
             report=json.loads(table.get("report", "{}")),
             body_text=str(table.get("body_text", "")),
+            inertia=parse_inertia(table.get("inertia", {})),
+            covariance=read_covariance(table["covariance"]) if "covariance" in table else None,
         )
     except FileNotFoundError as error:
         raise FileFormatError(source, "no such file; make it with 'mbkf scale'") from error
@@ -217,9 +234,4 @@ def _marker(entry: dict[str, Any]) -> SubjectMarker:
 def _long_text(value: str) -> str:
     """A text of several lines, as it stands where TOML can hold that."""
     plain = "'''" not in value and value.replace("\n", "").replace("\t", "").isprintable()
-    return f"'''\n{value}'''" if plain and not value.endswith("'") else _text(value)
-
-
-def _text(value: str) -> str:
-    """A TOML basic string: JSON's, with DEL escaped, too."""
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return f"'''\n{value}'''" if plain and not value.endswith("'") else toml_text(value)

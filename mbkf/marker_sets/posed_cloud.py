@@ -20,7 +20,8 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.marker_sets.places import WornPlaces
 from mbkf.model.human import HumanModel
-from mbkf.scaling.problem import FACTOR_BOUNDS, origin_derivatives
+from mbkf.model.scale_derivatives import origin_derivatives
+from mbkf.scaling.problem import FACTOR_BOUNDS
 from mbkf.sensors.marker_sensor import MarkerReading, MarkerSensor
 from mbkf.sensors.posture_sensor import PostureSensor
 

@@ -16,6 +16,7 @@ from numpy.lib.stride_tricks import as_strided
 
 from mbkf.conventions import GRAVITY_M_S2, Array, read_only
 from mbkf.errors import InvalidInput, ShapeError, UnknownName
+from mbkf.io.inertia import SegmentInertia
 from mbkf.io.subject import Subject
 from mbkf.model.body import SegmentJoint
 from mbkf.model.body_file import load_body, parse_body
@@ -30,6 +31,7 @@ class HumanModel:
         roles: What its segments are to the algorithms (root, feet, toes, ...).
         scale: (K,) independent scale factors.
         mass_kg: Body mass.
+        inertia: By segment, the person's own mass and centre of mass, where they differ from the table.
         pin_model: The Pinocchio model (gravity along −z).
         joints: One :class:`SegmentJoint` per segment, by segment name, in depth-first order.
         nq, nv: Dimensions of configuration and tangent space.
@@ -40,19 +42,29 @@ class HumanModel:
         supports: (joints, nv) True where a dof moves a joint's segment.
     """
 
-    def __init__(self, description: BodyDescription, scale: Array, mass_kg: float) -> None:
+    def __init__(
+        self,
+        description: BodyDescription,
+        scale: Array,
+        mass_kg: float,
+        inertia: Mapping[str, SegmentInertia] | None = None,
+    ) -> None:
         """Scales a reference body to one person.
 
         Args:
             description: The reference body.
             scale: (K,) independent scale factors.
             mass_kg: Body mass.
+            inertia: By segment, the person's own mass and centre of mass; the table's where there is none. The whole
+                body keeps its mass.
 
         Raises:
             ShapeError: The scale factors are not as many as the body has.
             InvalidInput: Mass or a factor is not positive.
+            UnknownName: An inertia belongs to no segment.
         """
         self.description = description
+        self.inertia, self._unit_kg = _own_inertia(description, inertia or {})
         self.roles: Roles = description.roles
         self.scale = read_only(scale)
         if self.scale.shape != (len(description.scale_factors),):
@@ -86,6 +98,7 @@ class HumanModel:
         factors: Mapping[str, float] | None = None,
         mass_kg: float | None = None,
         body: str | Path | BodyDescription = "human18",
+        inertia: Mapping[str, SegmentInertia] | None = None,
     ) -> HumanModel:
         """A body from named scale factors and mass.
 
@@ -93,9 +106,10 @@ class HumanModel:
             factors: Scale factor by name; 1 where there is none.
             mass_kg: Body mass; that of the reference body when None.
             body: The reference body: its name, its file, or what :func:`~mbkf.model.body_file.load_body` read.
+            inertia: By segment, the person's own mass and centre of mass; the table's where there is none.
 
         Raises:
-            UnknownName: The body or a factor is unknown.
+            UnknownName: The body, a factor or a segment is unknown.
         """
         description = body if isinstance(body, BodyDescription) else load_body(body)
         scale = np.ones(len(description.scale_factors))
@@ -103,7 +117,8 @@ class HumanModel:
             if name not in description.scale_factors:
                 raise UnknownName("scale factor", name, description.scale_factors)
             scale[description.scale_factors.index(name)] = value
-        return cls(description, scale, description.reference_mass_kg if mass_kg is None else mass_kg)
+        whole_kg = description.reference_mass_kg if mass_kg is None else mass_kg
+        return cls(description, scale, whole_kg, inertia)
 
     @classmethod
     def of(cls, subject: Subject) -> HumanModel:
@@ -113,7 +128,8 @@ class HumanModel:
             UnknownName: The subject's reference body or a scale factor is unknown.
             FileFormatError: The body file that the subject carries is damaged.
         """
-        return cls.scaled(subject.scale_factors, subject.mass_kg, reference_body(subject))
+        body = reference_body(subject)
+        return cls.scaled(subject.scale_factors, subject.mass_kg, body, subject.inertia)
 
     @property
     def root(self) -> SegmentJoint:
@@ -154,9 +170,12 @@ class HumanModel:
 
     def _inertia(self, segment: Segment) -> pin.Inertia:
         """Mass by the mass factor k_m, centre of mass by the axes' factors, moments by k_m k², k the length factor."""
-        k_m = self.mass_kg / self.description.reference_mass_kg
+        k_m = self.mass_kg / self._unit_kg
         k = self.scale[segment.length_index]
         com = self.axis_scale(segment) * segment.com_m
+        if segment.name in self.inertia:
+            own = self.inertia[segment.name]
+            k_m, com = k_m * own.mass_factor, com + own.centre_shift_m
         return pin.Inertia(k_m * segment.mass_kg, com, np.diag(k_m * k**2 * segment.inertia_kg_m2))
 
     def _supports(self) -> np.ndarray:
@@ -268,6 +287,21 @@ class HumanModel:
         jacobian = np.where(self.supports[self.joint(segment).joint_id], jacobian, 0.0)
         jacobian[:3] += np.cross(jacobian[3:].T, point_m).T
         return jacobian
+
+
+def _own_inertia(
+    description: BodyDescription, inertia: Mapping[str, SegmentInertia]
+) -> tuple[dict[str, SegmentInertia], float]:
+    """The segments that have inertia of their own, and the reference body's mass with their factors, kg."""
+    names = [segment.name for segment in description.segments]
+    for name in inertia:
+        if name not in names:
+            raise UnknownName("segment", name, names)
+    if not inertia:
+        return {}, description.reference_mass_kg
+    kept = SegmentInertia()
+    whole = sum(inertia.get(s.name, kept).mass_factor * s.mass_kg for s in description.segments)
+    return dict(inertia), float(whole)
 
 
 def reference_body(subject: Subject) -> BodyDescription:

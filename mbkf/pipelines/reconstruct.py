@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -11,17 +11,12 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray, StageCallback
 from mbkf.errors import InvalidInput, NotObservable, UnknownName
-from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.estimate import Recording
-from mbkf.filters.fixed_lag import SmoothingSettings
-from mbkf.filters.kinematic.settings import KinematicSettings
-from mbkf.filters.settings import flat
-from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.filters.tracking import Track, track
 from mbkf.io.contacts import bearing
 from mbkf.io.findings import Finding
 from mbkf.io.records import Capture, MarkerTrajectories
-from mbkf.io.results import LAG_KEY, Reconstruction
+from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject, match_names
 from mbkf.model.clinical import dof_names
 from mbkf.numerics.threads import single_threaded
@@ -29,6 +24,8 @@ from mbkf.pipelines.axes.captures import checked_for_subject
 from mbkf.pipelines.checks.judge import marker_checks, plate_checks, told
 from mbkf.pipelines.coverage import INFERRED_KEY, use_by_subject
 from mbkf.pipelines.imu.on_body import ImuOnBody, with_imus
+from mbkf.pipelines.reconstruct_settings import Hidden, ReconstructSettings, recorded
+from mbkf.pipelines.results import innovations
 from mbkf.pipelines.results.clinical import clinical_motion
 from mbkf.pipelines.results.progression import PELVIS_FRAMES, pelvis_frame
 from mbkf.pipelines.results.reactions import reactions
@@ -52,77 +49,6 @@ FOOT_SD_M = 0.03
 """A foot whose height is known no better than this may or may not touch the floor."""
 
 
-@dataclass(frozen=True)
-class Hidden:
-    """Markers to take away between two times, s, to see what occlusion does."""
-
-    names: tuple[str, ...]
-    from_s: float
-    to_s: float
-
-
-@dataclass(frozen=True)
-class ReconstructSettings:
-    """How a trial is reconstructed.
-
-    Attributes:
-        filter: Which filter; "kinematic" is the marker filter followed by inverse dynamics, "torque" the thesis's
-            dynamic filter, "dynamic" ours.
-        smooth: Whether later frames correct earlier ones.
-        smoothing: How far they do.
-        lag_s: Instead of smoothing, the fixed lag: how long a frame waits for readings that correct it; 0 for none.
-        kinematic, dynamic, torque: Settings of each filter.
-        correct_markers: Whether marker positions are corrected on the trial first (thesis 4.1.1).
-        hide: Markers to hide.
-        without_plates: Names of plates to withhold.
-        pelvis: The frame of the pelvis's angles: "progression", or "lab" for the laboratory's axes.
-        angles: The axes that angles are read in: "model" for the body's own, "isb" for the ISB's, "pig" for
-            Plug-in Gait's.
-        angles_zero: What is zero: "axes" where a joint's axes coincide, "static" for the posture of the static trial.
-        keep_covariance: Whether full covariances are kept in memory.
-        other_contacts: Whether parts besides the feet may bear load: a seat, a knee or a hand on the floor, a load in
-            the hands. Only the dynamic filter knows of them.
-        checks: Whether mass, plates, clocks and markers are checked against each other (:mod:`mbkf.pipelines.checks`).
-    """
-
-    filter: str = "dynamic"
-    smooth: bool = False
-    smoothing: SmoothingSettings = field(default_factory=SmoothingSettings)
-    lag_s: float = 0.0
-    kinematic: KinematicSettings = field(default_factory=KinematicSettings)
-    dynamic: DynamicSettings = field(default_factory=DynamicSettings)
-    torque: TorqueSettings = field(default_factory=TorqueSettings)
-    correct_markers: bool = True
-    hide: tuple[Hidden, ...] = ()
-    without_plates: tuple[str, ...] = ()
-    pelvis: str = "progression"
-    angles: str = "model"
-    angles_zero: str = "axes"
-    keep_covariance: bool = False
-    other_contacts: bool = True
-    checks: bool = True
-
-    def __post_init__(self) -> None:
-        """Refuses a lag that is no time, or beside smoothing.
-
-        Raises:
-            InvalidInput: It is so.
-        """
-        if not 0.0 <= self.lag_s < np.inf:
-            raise InvalidInput(f"a lag of {self.lag_s:g} s is not possible: give a positive time")
-        if self.smooth and self.lag_s > 0.0:
-            raise InvalidInput(
-                "smoothing uses all later frames, so a lag is not possible beside it; choose one"
-            )
-
-
-def recorded(settings: ReconstructSettings) -> dict[str, object]:
-    """The settings as result files hold them: the dynamic filter's by their leaves' names, the lag in ms."""
-    found: dict[str, object] = {**asdict(settings), "dynamic": flat(settings.dynamic)}
-    del found["lag_s"]
-    return {**found, LAG_KEY: round(1e3 * settings.lag_s, 6)}
-
-
 def reconstruct(
     capture: Capture,
     subject: Subject,
@@ -138,7 +64,7 @@ def reconstruct(
     Args:
         capture: Markers and plates.
         subject: The scaled person.
-        settings: The filter and its settings; the defaults are the same for every capture.
+        settings: The filter and its settings; the defaults are the same for every capture, and smooth.
         imus: Inertial sensors on the body, for the dynamic filter.
         blocks: Blocks of one's own, for the dynamic filter, besides the standard ones.
         readings: (T, …) readings of instruments of one's own, by the name that their block knows.
@@ -184,8 +110,9 @@ def reconstruct(
         result = track(
             tracking_filter(settings.filter, inputs, [*standard(inputs), *blocks] if blocks else None),
             recording,
-            smoothing=settings.smoothing if settings.smooth else None,
+            smoothing=settings.smoothing if settings.smooths else None,
             lag_s=settings.lag_s,
+            body=inputs.body,
             keep_covariance=settings.keep_covariance,
             progress=None if progress is None else lambda done, total: progress("Filtering", done, total),
         )
@@ -196,7 +123,7 @@ def reconstruct(
             checks=checks,
             markers_ignored=dict(use.ignored),
             markers_explained=use.share,
-            warnings=(*told(checks), *inferred_set(subject), *found.warnings, *supports_told(found.contacts)),
+            warnings=_remarks(checks, subject, found),
             names_exchanged=exchanged,
         )
 
@@ -303,7 +230,9 @@ def assemble(
     model, unobservable = inputs.sensor.model, inputs.unobservable
     ground = reactions(model, result, measured.times_s, measured.rate_hz, inputs.plates)
     tau, names = ground.tau, dof_names(model)
-    tau_sd = np.where(np.isnan(tau), np.nan, result.torque_sd)
+    tau_sd, tau_offset = (
+        np.where(np.isnan(tau), np.nan, sd) for sd in (result.torque_sd, result.torque_offset)
+    )
     frame = pelvis_frame(settings.pelvis, model, result.q, measured.times_s)
     reading = angle_reading(settings.angles, model, subject, capture.processing)
     zero_q = zero_posture(settings.angles_zero, subject)
@@ -317,16 +246,20 @@ def assemble(
         smoothed=result.smoothed, version=__version__, subject=subject, rate_hz=measured.rate_hz,
         times_s=measured.times_s,
         dof_names=names, q=result.q, v=result.v, a=result.a, tau=tau, sd_q=result.position_sd,
-        sd_v=result.velocity_sd, sd_tau=tau_sd,
+        sd_v=result.velocity_sd, sd_tau=tau_sd, sd_q_offset=result.position_offset,
+        sd_v_offset=result.velocity_offset, sd_tau_offset=tau_offset,
         coordinate_names=clinical.names, angles=clinical.angles, angles_lab=clinical.angles_lab,
         angle_rates=clinical.rates, moments=clinical.moments, angles_sd=clinical.angles_sd,
         angle_rates_sd=clinical.rates_sd, moments_sd=clinical.moments_sd, singular=clinical.singular,
+        angles_sd_offset=clinical.angles_offset, angle_rates_sd_offset=clinical.rates_offset,
+        moments_sd_offset=clinical.moments_offset,
         direction=frame.direction, heading_rad=frame.heading_rad, angles_read=reading.name,
         angles_zero=settings.angles_zero,
         marker_names=measured.names, measured_m=measured.positions_m,
         predicted_m=_predicted(inputs.sensor, result, measured, hidden), hidden=hidden,
         rejected=result.refused,
         foot_wrench=ground.wrench, foot_wrench_sd=ground.wrench_sd, foot_cop_m=ground.centre_of_pressure_m,
+        foot_wrench_sd_offset=None if ground.wrench_sd is None else result.wrench_offset,
         foot_free_moment_nm=ground.free_moment_nm, foot_contact=result.contact,
         foot_source=ground.foot_source,
         support_names=supports.names, support_wrench=supports.wrench,
@@ -335,6 +268,8 @@ def assemble(
         plate_change=ground.plate_change, plate_corners_m=_corners(capture),
         tracked=result.tracked, measured=ground.measured & located, valid=ground.accounted & located & known,
         nis=result.nis, nis_readings=result.readings, step_seconds=result.step_seconds,
+        nis_by_kind=result.nis_by_kind, nis_readings_by_kind=result.readings_by_kind,
+        marker_nis=result.marker_nis, marker_spread_m=result.marker_spread_m,
         covariance=result.covariance,
         unobserved_dofs=tuple(name for name, without in zip(names, unobservable, strict=True) if without),
         warnings=(*capture.notes, *inputs.remarks, *ground.warnings, *_warnings(result, names, unobservable)),
@@ -359,6 +294,12 @@ def _predicted(sensor: MarkerSensor, result: Track, measured: MarkerTrajectories
     positions = np.where(shown[:, :, None], measured.positions_m, np.nan)
     on_body, with_skin = filled(sensor, result.q, positions, 1.0 / measured.rate_hz, result.smoothed)
     return np.where(shown[:, :, None], on_body, with_skin)
+
+
+def _remarks(checks: Sequence[Finding], subject: Subject, found: Reconstruction) -> tuple[str, ...]:
+    """All that is to be told: of checks first, then of innovations, then of the trial."""
+    first = (*told(tuple(checks)), *innovations.told(found), *inferred_set(subject))
+    return (*first, *found.warnings, *supports_told(found.contacts))
 
 
 def inferred_set(subject: Subject) -> tuple[str, ...]:

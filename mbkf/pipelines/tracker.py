@@ -6,22 +6,24 @@ first frames are answered together when it has succeeded.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.errors import ShapeError
+from mbkf.filters.body_errors import BodyErrorRoots
 from mbkf.filters.estimate import Posterior, TrackingFilter
+from mbkf.filters.record import HeldErrors
 from mbkf.filters.spread import Spread
 from mbkf.io.records import PlateReadings
 from mbkf.io.subject import Subject
 from mbkf.model.clinical import dof_names
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.live.filter import LiveFilter, LiveInputs, live_inputs
+from mbkf.pipelines.live.filter import LiveFilter, LiveInputs, live_inputs, live_settings
 from mbkf.pipelines.reconstruct import ReconstructSettings
 from mbkf.pipelines.trial.filters import standard, tracking_filter
 from mbkf.sensors.block import NO_READINGS, AnyBlock, Frame
@@ -32,15 +34,17 @@ from mbkf.sensors.contact.possible import without_impossible
 class Estimate:
     """A frame's estimate; what is not asked for is not computed.
 
+    Standard deviations (``…_sd``) are totals. ``…_sd_offset`` is the part that repeats whenever the posture is the
+    same, because the body is not known exactly; the rest, √(sd² − offset²), varies from frame to frame.
+
     Attributes:
         number: Number of the frame, counted from 0 at the first one pushed.
         q: (nq,) configuration (:class:`mbkf.HumanModel`).
         v, a: (nv,) velocity and acceleration in the tangent space.
         wrenches: (2, 6) of the ground on right and left foot: force N, moment N m about the world's origin; NaN where
             the filter estimates none.
-        wrenches_sd: (2, 6) their standard deviations.
         tracked: Whether enough instruments read to follow the body.
-        nis: Normalised innovation squared of the frame per reading; about 1 where noise is as the settings say, NaN
+        nis: Normalised innovation squared of the frame per reading; about 1 where readings err as they did before, NaN
             at a start.
         posterior: The filter's own record.
     """
@@ -50,17 +54,28 @@ class Estimate:
     v: Array
     a: Array
     wrenches: Array
-    wrenches_sd: Array
     tracked: bool
     posterior: Posterior
     _filter: TrackingFilter
     _balance: NewtonEuler
+    _by_body: Callable[[], BodyErrorRoots | None]
 
     @property
     def nis(self) -> float:
         """Normalised innovation squared per reading; NaN at a start."""
-        found, readings = self._filter.innovation(self.posterior)
-        return found / readings if readings else np.nan
+        found = self._filter.innovations(self.posterior)
+        readings = 0 if found is None else int(found.readings.sum())
+        return np.nan if found is None or not readings else float(found.squared.sum()) / readings
+
+    @cached_property
+    def wrenches_sd(self) -> Array:
+        """(2, 6) standard deviations of the wrenches."""
+        return np.hypot(self._filter.wrench_sd(self.posterior), self.wrenches_sd_offset)
+
+    @property
+    def wrenches_sd_offset(self) -> Array:
+        """(2, 6) the offset's part of them."""
+        return self._spread.wrench_offset
 
     @cached_property
     def tau(self) -> Array:
@@ -73,15 +88,30 @@ class Estimate:
         """(nv,) their standard deviations, NaN where not known."""
         return self._spread.torque
 
+    @property
+    def tau_sd_offset(self) -> Array:
+        """(nv,) the offset's part of them."""
+        return self._spread.torque_offset
+
     @cached_property
     def q_sd(self) -> Array:
         """(nv,) standard deviations of the configuration in its tangent space."""
         return self._spread.position
 
+    @property
+    def q_sd_offset(self) -> Array:
+        """(nv,) the offset's part of them."""
+        return self._spread.position_offset
+
     @cached_property
     def v_sd(self) -> Array:
         """(nv,) standard deviations of the velocity."""
         return self._spread.velocity
+
+    @property
+    def v_sd_offset(self) -> Array:
+        """(nv,) the offset's part of them."""
+        return self._spread.velocity_offset
 
     @property
     def angles(self) -> dict[str, float]:
@@ -92,6 +122,11 @@ class Estimate:
     def angles_sd(self) -> dict[str, float]:
         """Their standard deviations."""
         return dict(zip(self._names, self._spread.angle.tolist(), strict=True))
+
+    @property
+    def angles_sd_offset(self) -> dict[str, float]:
+        """The offset's part of them."""
+        return dict(zip(self._names, self._spread.angle_offset.tolist(), strict=True))
 
     @property
     def rates(self) -> dict[str, float]:
@@ -108,13 +143,21 @@ class Estimate:
     @property
     def torques_sd(self) -> dict[str, float]:
         """Their standard deviations."""
-        found = self._filter.clinical.moments_sd(self.q[None], self.tau_sd[None], self._angles)
-        return dict(zip(self._names, found[0].tolist(), strict=True))
+        return self._moments_sd(self.tau_sd)
+
+    @property
+    def torques_sd_offset(self) -> dict[str, float]:
+        """The offset's part of them."""
+        return self._moments_sd(self.tau_sd_offset)
 
     @property
     def dofs(self) -> tuple[str, ...]:
         """(nv,) names of the tangent dofs."""
         return dof_names(self._filter.model)
+
+    def _moments_sd(self, tau_sd: Array) -> dict[str, float]:
+        found = self._filter.clinical.moments_sd(self.q[None], tau_sd[None], self._angles)
+        return dict(zip(self._names, found[0].tolist(), strict=True))
 
     @cached_property
     def _angles(self) -> Array:
@@ -122,7 +165,7 @@ class Estimate:
 
     @cached_property
     def _spread(self) -> Spread:
-        return self._filter.spread(self.posterior)
+        return replace(self._filter.spread(self.posterior), body=self._by_body())
 
     @property
     def _names(self) -> tuple[str, ...]:
@@ -155,14 +198,14 @@ class Tracker:
                 Names that the subject does not know are left out.
             plates: The force plates; only their places and thresholds are used (``capture.plates`` will do).
             rate_hz: Frame rate.
-            settings: Filter and its settings.
+            settings: Filter and its settings. It answers causally, or with their lag, since later frames are not known.
             blocks: Blocks of the dynamic filter, :func:`standard_blocks` and one's own; None for the standard ones.
 
         Raises:
             NotObservable: Too few of the subject's markers are among the markers.
-            InvalidInput: Blocks are given for another filter than the dynamic one.
+            InvalidInput: Blocks are given for another filter than the dynamic one, or smoothing is asked for.
         """
-        settings = settings or ReconstructSettings()
+        settings = live_settings(settings or ReconstructSettings())
         live = _inputs(subject, markers, plates, rate_hz, settings)
         self._given = len(_marker_names(subject, markers))
         self.names, self._columns, self._plates = live.names, live.columns, tuple(plates)
@@ -171,6 +214,7 @@ class Tracker:
             self._filter = tracking_filter(settings.filter, live.inputs, blocks)
         self._live = LiveFilter(self._filter, settings.lag_s)
         self._balance = NewtonEuler(self._filter.model)
+        self._body = HeldErrors(live.inputs.body, self._filter.dt_s)
         self._number = 0
         self.answers: list[Estimate] = []
 
@@ -227,11 +271,11 @@ class Tracker:
             posterior.v,
             posterior.a,
             posterior.wrench,
-            self._filter.wrench_sd(posterior),
             posterior.tracked,
             posterior,
             self._filter,
             self._balance,
+            self._body.of(number, posterior),
         )
 
 

@@ -22,16 +22,18 @@ from mbkf.io.subject import Subject, SubjectMarker
 from mbkf.model.human import reference_body
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.levenberg_marquardt import minimise
+from mbkf.scaling.covariance import corrected_covariance
+from mbkf.scaling.evidence import learnt_prior
 from mbkf.scaling.frames import choose_frames
-from mbkf.scaling.problem import KEYPOINT_POSTURE_FRAMES, ScalingPrior, ScalingProblem
+from mbkf.scaling.problem import KEYPOINT_POSTURE_FRAMES, FrameWeights, ScalingPrior, ScalingProblem
 from mbkf.sensors.pose_fit import segment_by_segment
 
 FRAMES = 40
 LOOKS = 10.0
 """Effective number of independent readings of a marker in the frames of one trial (skin moves slowly)."""
 
-POSTURE_LOOKS = 40.0
-"""The same for the posture; it keeps a knee from taking the skin's sideways movement for its own."""
+POSTURE_LOOKS = 1.0
+"""The same for the posture: the mean posture of a movement is as far from neutral as one posture is."""
 
 OUTLIER_M = 0.06
 """A sample further than this from the fitted body is a wrong point and left out."""
@@ -59,7 +61,8 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
     problem = _problem(subject, trial)
     sensor = problem.sensor(problem.start(np.zeros((0, problem.posture.model.nq))))
     state = problem.start(np.array([segment_by_segment(sensor, frame) for frame in problem.measured_m]))
-    state = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3).state
+    solution = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3)
+    state = solution.state
     outliers = problem.outliers(state, OUTLIER_M)
     if outliers.sum() > 0.5 * problem.seen.sum():
         raise NotConverged(
@@ -70,12 +73,21 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
     if outliers.any() or strange.any():
         precision = _offset_precision(problem.markers, subject, problem.body.roles.steady, ~strange)
         problem = problem.without(outliers).expecting(precision)
-        state = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3).state
+        solution = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3)
+        state = solution.state
+    learnt = learnt_prior(problem, state, solution.equations.schur_complement())
+    problem = problem.expecting(learnt.offset_precision)
+    solution = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3)
+    state = solution.state
     local = problem.local_m(state.factors, state.offsets_m)
     moved = {marker.name: position for marker, position in zip(problem.markers, local, strict=True)}
+    before = subject.covariance
+    if before is not None:
+        before = corrected_covariance(before, problem, solution.equations.schur_complement())
     return replace(
         subject,
         markers=tuple(replace(m, position_m=moved.get(m.name, m.position_m)) for m in subject.markers),
+        covariance=before,
     )
 
 
@@ -86,12 +98,10 @@ def _problem(subject: Subject, trial: MarkerTrajectories) -> ScalingProblem:
     own = tuple(_as_protocol_marker(marker) for marker in subject.markers)
     frames = choose_frames([trial], Protocol(subject.protocol, subject.protocol, body, own), FRAMES)
     count = len(frames.measured_m)
-    blur = np.sqrt(max(1.0, count / LOOKS))
     markers = tuple(
         replace(
             m,
             position_m=m.position_m / (body.segment(m.segment).scale_matrix @ factors),
-            noise_m=m.noise_m * blur,
         )
         for m in frames.markers
     )
@@ -105,8 +115,7 @@ def _problem(subject: Subject, trial: MarkerTrajectories) -> ScalingProblem:
     )
     keypoints = any(marker.correlated_m > 0.0 for marker in subject.markers)
     looks = KEYPOINT_POSTURE_FRAMES if keypoints else POSTURE_LOOKS
-    weight = np.full(count, min(1.0, looks / count))
-    return ScalingProblem(body, markers, frames.measured_m, weight, prior)
+    return ScalingProblem(body, markers, frames.measured_m, FrameWeights.moving(count, LOOKS, looks), prior)
 
 
 def _offset_precision(

@@ -12,12 +12,17 @@ from mbkf.errors import InvalidInput, NotConverged
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import STANDING_KEY, Subject, SubjectMarker
 from mbkf.model.body import Body
+from mbkf.model.description import BodyDescription
 from mbkf.model.protocol import Protocol, ProtocolMarker
+from mbkf.model.sides import mirrored
 from mbkf.numerics.levenberg_marquardt import Solution, minimise
+from mbkf.scaling.covariance import body_covariance
+from mbkf.scaling.evidence import learnt_prior
 from mbkf.scaling.frames import MIN_MARKERS, ScalingFrames, choose_frames
 from mbkf.scaling.problem import (
     FACTOR_BOUNDS,
     KEYPOINT_POSTURE_FRAMES,
+    FrameWeights,
     ScalingPrior,
     ScalingProblem,
     ScalingSettings,
@@ -82,6 +87,9 @@ def scale_subject(
     if dropped.any():
         problem = problem.without(dropped)
         solution = _minimise(problem, solution.state, progress)
+    learnt = learnt_prior(problem, solution.state, solution.equations.schur_complement())
+    problem = problem.believing(learnt)
+    solution = _minimise(problem, solution.state, progress)
     errors = np.linalg.norm(problem.errors_m(solution.state), axis=2)
     rms = float(np.sqrt(np.nanmean(errors**2)))
     if rms > max(MAX_RMS_M, MAX_RMS_PER_NOISE * float(np.sqrt((problem.noise_m**2).mean()))):
@@ -131,30 +139,48 @@ def scaling_problem(
         settings: Weights of the priors.
     """
     body = protocol.body
-    counts = np.bincount(frames.trial)
-    looks = np.where(
-        np.arange(len(counts)) < static_trials,
-        settings.static_posture_frames,
-        settings.dynamic_posture_frames,
-    )
-    keypoints = any(marker.kind == "keypoint" for marker in frames.markers)
-    if keypoints:
-        looks = np.where(np.arange(len(counts)) < static_trials, looks, KEYPOINT_POSTURE_FRAMES)
-    weight = np.minimum(looks / counts, 1.0)[frames.trial]
+    weights = _weights(frames, static_trials, settings)
     expected = 1.0 if height_m is None else height_m / body.reference_height_m
     stature = settings.stature_sd if height_m is None else settings.known_stature_sd
     count = len(body.scale_factors)
-    standing = None
-    if keypoints:
-        standing = np.where(frames.trial < static_trials, 1.0, 0.0)
     prior = ScalingPrior(
         factors=np.full(count, expected),
-        factor_covariance=settings.proportion_sd**2 * np.eye(count) + stature**2 * np.ones((count, count)),
+        factor_covariance=factor_covariance(body, stature, settings),
         offsets_m=np.zeros((len(frames.markers), 3)),
         offset_precision=np.diag(np.repeat([m.placement_sd_m**-2 for m in frames.markers], 3)),
-        standing=standing,
     )
-    return ScalingProblem(body, frames.markers, frames.measured_m, weight, prior)
+    return ScalingProblem(body, frames.markers, frames.measured_m, weights, prior, settings.standing_sd_rad)
+
+
+def factor_covariance(body: BodyDescription, stature_sd: float, settings: ScalingSettings) -> Array:
+    """(K, K) prior covariance of the scale factors: overall size, proportion, and the difference of left and right.
+
+    Args:
+        body: The reference body, whose factors they are.
+        stature_sd: Spread of overall size.
+        settings: Spread of proportions and of one side.
+    """
+    names = np.array(body.scale_factors)
+    other = np.array([mirrored(name) for name in names])
+    alike = np.eye(len(names)) + ((names[:, None] == other) & (names != other))
+    one_side = settings.side_sd**2 * np.diag((names != other).astype(np.float64))
+    return np.asarray(stature_sd**2 + settings.proportion_sd**2 * alike + one_side)
+
+
+def _weights(frames: ScalingFrames, static_trials: int, settings: ScalingSettings) -> FrameWeights:
+    """What each frame counts for, in standing and in movement."""
+    counts = np.bincount(frames.trial)
+    stands = np.arange(len(counts)) < static_trials
+    keypoints = any(marker.kind == "keypoint" for marker in frames.markers)
+    moving = KEYPOINT_POSTURE_FRAMES if keypoints else settings.dynamic_posture_frames
+    posture = np.where(stands, settings.static_posture_frames, moving)
+    markers = np.where(stands | keypoints, counts, settings.dynamic_marker_frames)
+    return FrameWeights(
+        np.minimum(markers / counts, 1.0)[frames.trial],
+        np.minimum(posture / counts, 1.0)[frames.trial],
+        stands[frames.trial],
+        np.where(stands & keypoints, 1.0, 0.0)[frames.trial],
+    )
 
 
 def first_poses(problem: ScalingProblem) -> Array:
@@ -229,6 +255,7 @@ def _subject(
         height_m=height_m,
         report=_report(problem, solution, frames, dropped, settings),
         body_text=body.text,
+        covariance=body_covariance(problem, solution.equations.schur_complement()),
     )
 
 

@@ -31,6 +31,9 @@ Indices = NDArray[np.intp]
 FRAMES = 12
 """Frames that names are judged on; skin moves slowly, so that a short trial has hardly more independent looks."""
 
+SETTINGS = ScalingSettings(dynamic_posture_frames=10.0, dynamic_marker_frames=FRAMES)
+"""Names are told apart by how well a person fits them, in an ordinary posture: both count fully."""
+
 STILL_WORN = 0.05
 """Odds that a marker meant for static trials only is worn in a moving one."""
 
@@ -97,7 +100,7 @@ class NamingProblem:
         self._samples = np.maximum((~np.isnan(self._shown_m[:, :, 0])).sum(axis=0), 1)
         nothing = np.full((len(self._shown_m), len(names), 3), np.nan)
         every = ScalingFrames(self.markers, nothing, frames.trial, {})
-        self._problem = scaling_problem(every, 0, protocol, height_m, settings or ScalingSettings())
+        self._problem = scaling_problem(every, 0, protocol, height_m, settings or SETTINGS)
         self.body = self._problem.body
         self._noise_m = noise
         self._placement_m = np.array([marker.placement_sd_m for marker in self.markers])

@@ -6,8 +6,8 @@ reference place, shared by all frames. Residuals, each divided by its standard d
     markers    r_b(x, k) + A_b(x) (D_b(k) m̄ + δ) − measured
     placement  δ − δ₀                (tight for anatomical markers, loose for technical ones)
     factors    k − k₀                (bodies are alike in proportion, less so in size)
-    posture    joint rotations       (dofs without markers stay near standing)
-    standing   inclination of feet and root, where keypoints are scaled from standing (:mod:`mbkf.scaling.standing`)
+    posture    joint rotations       (dofs without markers stay near standing, :mod:`mbkf.scaling.usual_posture`)
+    upright    inclination of feet and root, where keypoints are scaled from standing (:mod:`mbkf.scaling.standing`)
 """
 
 from __future__ import annotations
@@ -18,12 +18,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray, read_only
-from mbkf.model.body import Body
 from mbkf.model.description import BodyDescription
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import ProtocolMarker
+from mbkf.model.scale_derivatives import origin_derivatives
 from mbkf.numerics.levenberg_marquardt import ArrowEquations
 from mbkf.scaling.standing import Standing
+from mbkf.scaling.usual_posture import UsualPosture
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.posture_sensor import PostureSensor
 
@@ -44,19 +45,26 @@ class ScalingSettings:
 
     Attributes:
         proportion_sd: Spread of a factor about the person's overall size.
+        side_sd: Spread of a factor about that of both sides; limbs of one person differ by a hundredth in length.
         stature_sd: Spread of overall size when no height is given.
         known_stature_sd: Spread of overall size when the height is given.
+        standing_sd_rad: Spread of a joint's angle about neutral in a static trial, rad.
         static_posture_frames: How many independent looks at the posture a static trial counts for.
         dynamic_posture_frames: The same for a dynamic trial.
+        dynamic_marker_frames: How many independent looks at the markers a dynamic trial counts for: skin moves with the
+            posture and not anew in every frame.
         frames_per_trial: Most frames taken from one trial.
         outlier_m: A sample further than this from the fitted body is left out, m.
     """
 
     proportion_sd: float = 0.06
+    side_sd: float = 0.015
     stature_sd: float = 0.20
     known_stature_sd: float = 0.02
-    static_posture_frames: float = 2.0
-    dynamic_posture_frames: float = 10.0
+    standing_sd_rad: float = 0.14
+    static_posture_frames: float = 1.0
+    dynamic_posture_frames: float = 1.0
+    dynamic_marker_frames: float = 15.0
     frames_per_trial: int = 40
     outlier_m: float = 0.06
 
@@ -71,6 +79,35 @@ class ScalingState:
 
 
 @dataclass(frozen=True)
+class FrameWeights:
+    """What each of N frames counts for.
+
+    Attributes:
+        markers: (N,) independent looks at the markers.
+        posture: (N,) independent looks at the posture.
+        stands: (N,) whether the person stands straight.
+        upright: (N,) weight of flat feet and an upright root.
+    """
+
+    markers: Array
+    posture: Array
+    stands: BoolArray
+    upright: Array
+
+    @classmethod
+    def moving(cls, frames: int, markers: float, posture: float) -> FrameWeights:
+        """Frames of a movement.
+
+        Args:
+            frames: How many.
+            markers: Looks at the markers in all of them, at most one in each.
+            posture: The same for the posture.
+        """
+        shares = [np.full(frames, min(1.0, looks / max(1, frames))) for looks in (markers, posture)]
+        return cls(shares[0], shares[1], np.zeros(frames, dtype=bool), np.zeros(frames))
+
+
+@dataclass(frozen=True)
 class ScalingPrior:
     """Prior knowledge of factors and offsets.
 
@@ -79,14 +116,12 @@ class ScalingPrior:
         factor_covariance: (K, K) their covariance.
         offsets_m: (M, 3) expected offsets δ₀ of the markers.
         offset_precision: (3 M, 3 M) inverse covariance of the offsets, 1/m², marker by marker.
-        standing: (N,) weight of upright standing in each frame; None where it is not used.
     """
 
     factors: Array
     factor_covariance: Array
     offsets_m: Array
     offset_precision: Array
-    standing: Array | None = None
 
 
 class ScalingProblem:
@@ -96,7 +131,7 @@ class ScalingProblem:
         body: The reference body.
         markers: The M protocol markers.
         measured_m: (N, M, 3) measured positions, NaN where missing.
-        posture_weight: (N,) weight of each frame's posture prior.
+        weights: What each frame counts for.
         prior: Prior of factors and offsets.
         seen: (N, M) whether a marker is there.
     """
@@ -106,12 +141,22 @@ class ScalingProblem:
         body: BodyDescription,
         markers: tuple[ProtocolMarker, ...],
         measured_m: Array,
-        posture_weight: Array,
+        weights: FrameWeights,
         prior: ScalingPrior,
+        standing_sd_rad: float = ScalingSettings.standing_sd_rad,
     ) -> None:
-        self.body, self.markers, self.prior = body, markers, prior
+        """Makes the problem.
+
+        Args:
+            body: The reference body.
+            markers: The M protocol markers.
+            measured_m: (N, M, 3) measured positions, NaN where missing.
+            weights: What each frame counts for.
+            prior: Prior of factors and offsets.
+            standing_sd_rad: Spread of a joint's angle about neutral in straight standing.
+        """
+        self.body, self.markers, self.prior, self.weights = body, markers, prior, weights
         self.measured_m = read_only(measured_m)
-        self.posture_weight = read_only(posture_weight)
         self.seen = np.asarray(~np.isnan(self.measured_m).any(axis=2))
         self.noise_m = np.array([m.noise_m for m in markers])
         self.reference_m = np.array([m.position_m for m in markers])
@@ -119,8 +164,8 @@ class ScalingProblem:
         self.factor_root = np.linalg.cholesky(np.linalg.inv(prior.factor_covariance)).T
         self._segment_scale = np.array([body.segment(name).scale_matrix for name in self.segments])
         self.posture = PostureSensor(HumanModel.scaled(body=body))
+        self._usual = UsualPosture(self.posture, standing_sd_rad)
         self._standing = Standing(HumanModel.scaled(body=body))
-        self._upright = np.zeros(len(self.measured_m)) if prior.standing is None else prior.standing
 
     def start(self, poses: Array) -> ScalingState:
         """State with factors and offsets as expected."""
@@ -129,6 +174,17 @@ class ScalingProblem:
     def local_m(self, factors: Array, offsets_m: Array) -> Array:
         """(M, 3) marker positions in their segments' frames: D_b(k) m̄ + δ."""
         return np.einsum("mak,k->ma", self._segment_scale, factors) * self.reference_m + offsets_m
+
+    def places_by_factors_and_offsets(self) -> Array:
+        """(K + 3 M, K + 3 M) derivative of (factors, marker places) by (factors, offsets)."""
+        count = len(self.body.scale_factors)
+        derivative = np.eye(count + 3 * len(self.markers))
+        derivative[count:, :count] = self.places_by_factors().reshape(-1, count)
+        return derivative
+
+    def places_by_factors(self) -> Array:
+        """(M, 3, K) derivative of :meth:`local_m` by the factors."""
+        return np.asarray(self.reference_m[:, :, None] * self._segment_scale)
 
     def sensor(self, state: ScalingState) -> MarkerSensor:
         """The markers on the body as the state has it."""
@@ -148,7 +204,7 @@ class ScalingProblem:
     def without(self, samples: BoolArray) -> ScalingProblem:
         """The same problem without some samples (N, M)."""
         kept = np.where(samples[:, :, None], np.nan, self.measured_m)
-        return ScalingProblem(self.body, self.markers, kept, self.posture_weight, self.prior)
+        return self.measuring(kept)
 
     def measuring(self, measured_m: Array) -> ScalingProblem:
         """The same problem with other samples (N, M, 3)."""
@@ -159,20 +215,28 @@ class ScalingProblem:
 
     def expecting(self, offset_precision: Array) -> ScalingProblem:
         """The same problem with another precision (3 M, 3 M) of the offsets."""
-        prior = replace(self.prior, offset_precision=offset_precision)
-        return ScalingProblem(self.body, self.markers, self.measured_m, self.posture_weight, prior)
+        other = copy(self)
+        other.prior = replace(self.prior, offset_precision=offset_precision)
+        return other
+
+    def believing(self, prior: ScalingPrior) -> ScalingProblem:
+        """The same problem with another prior."""
+        other = copy(self)
+        other.prior = prior
+        other.factor_root = np.linalg.cholesky(np.linalg.inv(prior.factor_covariance)).T
+        return other
 
     def cost(self, state: ScalingState) -> float:
         """Sum of squared residuals."""
         errors = np.where(self.seen[:, :, None], self.errors_m(state), 0.0) / self.noise_m[:, None]
-        deviations = np.array([self.posture.reading(q).deviation for q in state.poses]) / self.posture.sd
-        posture = float((self.posture_weight[:, None] * deviations**2).sum())
-        standing = sum(
-            weight * float((self._standing.residuals(self.posture.model, q) ** 2).sum())
-            for q, weight in zip(state.poses, self._upright, strict=True)
-            if weight
-        )
-        return float((errors**2).sum()) + posture + standing + self._shared_cost(state)
+        total = float(self.weights.markers @ (errors**2).sum(axis=(1, 2))) + self._shared_cost(state)
+        for t, q in enumerate(state.poses):
+            if self.weights.posture[t]:
+                total += self.weights.posture[t] * self._usual.cost(q, bool(self.weights.stands[t]))
+            if self.weights.upright[t]:
+                tilt = self._standing.residuals(self.posture.model, q)
+                total += self.weights.upright[t] * float(tilt @ tilt)
+        return total
 
     def _shared_cost(self, state: ScalingState) -> float:
         factors = self.factor_root @ (state.factors - self.prior.factors)
@@ -204,17 +268,14 @@ class ScalingProblem:
         corner, corner_gradient = self._prior_equations(state)
         for t, q in enumerate(state.poses):
             errors, by_pose, by_shared = self._frame(sensor, q, t)
-            prior = self.posture.reading(q)
-            weighted = prior.jacobian / self.posture.sd[:, None]
-            weight = self.posture_weight[t]
-            frames[t] = by_pose.T @ by_pose + weight * (weighted.T @ weighted) + 1e-9 * np.eye(nv)
-            frame_gradient[t] = by_pose.T @ errors + weight * (
-                weighted.T @ (prior.deviation / self.posture.sd)
-            )
-            if self._upright[t]:
+            usual, pull = self._usual.equations(q, bool(self.weights.stands[t]))
+            frames[t] = by_pose.T @ by_pose + self.weights.posture[t] * usual + 1e-9 * np.eye(nv)
+            frame_gradient[t] = by_pose.T @ errors + self.weights.posture[t] * pull
+            upright = self.weights.upright[t]
+            if upright:
                 tilt, by_tilt = self._standing.linearised(self.posture.model, q)
-                frames[t] += self._upright[t] * (by_tilt.T @ by_tilt)
-                frame_gradient[t] += self._upright[t] * (by_tilt.T @ tilt)
+                frames[t] += upright * (by_tilt.T @ by_tilt)
+                frame_gradient[t] += upright * (by_tilt.T @ tilt)
             border[t] = by_pose.T @ by_shared
             corner += by_shared.T @ by_shared
             corner_gradient += by_shared.T @ errors
@@ -236,7 +297,7 @@ class ScalingProblem:
         seen = np.flatnonzero(self.seen[t])
         reading = sensor.reading(q)
         rotations, _ = sensor.model.placements(q)
-        whiten = 1.0 / self.noise_m[seen, None]
+        whiten = np.sqrt(self.weights.markers[t]) / self.noise_m[seen, None]
         errors = (reading.positions_m[seen] - self.measured_m[t, seen]) * whiten
         by_pose = reading.jacobian[seen] * whiten[:, :, None]
         count = len(self.body.scale_factors)
@@ -244,7 +305,7 @@ class ScalingProblem:
         axes = rotations[sensor.joint_ids[seen]] * whiten[:, :, None]
         origins = origin_derivatives(sensor.model, rotations)
         by_shared[:, :, :count] = origins[sensor.joint_ids[seen]] * whiten[:, :, None]
-        by_shared[:, :, :count] += axes @ (self.reference_m[seen, :, None] * self._segment_scale[seen])
+        by_shared[:, :, :count] += axes @ self.places_by_factors()[seen]
         for column in range(3):
             by_shared[np.arange(len(seen)), :, count + 3 * seen + column] = axes[:, :, column]
         size = 3 * len(seen)
@@ -253,22 +314,3 @@ class ScalingProblem:
             by_pose.reshape(size, by_pose.shape[2]),
             by_shared.reshape(size, by_shared.shape[2]),
         )
-
-
-def origin_derivatives(model: Body, rotations: Array) -> Array:
-    """(J, 3, K) derivative of every joint's world origin by the scale factors, along the chain.
-
-    Args:
-        model: The scaled body.
-        rotations: (J, 3, 3) world rotations of its joints.
-    """
-    body = model.description
-    derivatives = np.zeros((len(rotations), 3, len(body.scale_factors)))
-    for segment in body.segments:
-        if segment.parent == "world":
-            continue
-        parent = model.joint(segment.parent).joint_id
-        lever = segment.origin_m[:, None] * body.segment(segment.parent).scale_matrix
-        joint = model.joint(segment.name).joint_id
-        derivatives[joint] = derivatives[parent] + rotations[parent] @ lever
-    return derivatives

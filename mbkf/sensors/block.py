@@ -116,6 +116,18 @@ class Rows(NamedTuple):
     vector: Array | None = None
 
 
+class Channels(NamedTuple):
+    """A frame's innovations by channel: readings whose spread is the same.
+
+    Attributes:
+        mean_square: (n,) mean of their squares; any finite number in a channel that did not read.
+        readings: (n,) how many numbers each channel read, 0 for none.
+    """
+
+    mean_square: Array
+    readings: NDArray[np.int_]
+
+
 Statement = Information | Rows | Sequence[Rows] | None
 """What a block says in a frame; None for nothing."""
 
@@ -140,9 +152,14 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
 
     Attributes:
         prior: Whether the block is a prior rather than an instrument or a law; priors count in no NIS.
+        kind: Which of :data:`mbkf.conventions.READING_KINDS` its readings are.
+        quantities: Its readings alternate in threes between so many quantities with a spread of their own: force and
+            moment.
     """
 
     prior: bool = False
+    kind: str = "other"
+    quantities: int = 1
 
     def states(self) -> Sequence[ExtraState]:
         """States that the block adds to the filter's."""
@@ -200,6 +217,14 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
             memory: Of the frame before.
         """
         return memory
+
+    def expected_spread(self) -> Array | None:
+        """(n,) expected spread of one reading by channel; None where channels are the whitened ``quantities``."""
+        return None
+
+    def channels(self, decision: DecisionT) -> Channels | None:
+        """The frame's innovations by channel; None where they are those of the whitened readings."""
+        return None
 
     def log_noise(self, decision: DecisionT) -> float:
         """Log det R of the readings that NIS and likelihood count."""

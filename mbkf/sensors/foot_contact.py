@@ -90,6 +90,9 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         settings: Noise.
     """
 
+    kind = "plates"
+    quantities = 2
+
     def __init__(
         self,
         detector: ContactDetector,

@@ -109,6 +109,8 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
 
     columns: NDArray[np.intp]
 
+    kind = "plates"
+
     def __init__(
         self,
         body: HumanDynamics,

@@ -36,6 +36,11 @@ class ObservedDofs:
         """Dofs of the joints whose segments carry any of the ``markers`` (M,)."""
         return np.flatnonzero(markers @ self._on_segment)
 
+    def carried_by(self, dofs: NDArray[np.intp]) -> BoolArray:
+        """(M,) markers on segments whose joints have any of the ``dofs``."""
+        found: BoolArray = self._on_segment[:, dofs].any(axis=1)
+        return found
+
     def unmarked(self, trusted: BoolArray) -> NDArray[np.intp]:
         """Dofs whose segment carries markers none of which is ``trusted`` (M,) now."""
         asked = trusted.tobytes()

@@ -39,6 +39,8 @@ class InertialSensors(Block[AcceleratedState, None, Array | None, None]):
         observed: (nv,) dofs of the joints that carry a segment with a sensor.
     """
 
+    quantities = 2
+
     def __init__(self, sensor: InertialSensor, settings: InertialSettings = InertialSettings()) -> None:
         self.sensor, self.settings = sensor, settings
         deviations = np.repeat([settings.imu_rate_sd_rad_s, settings.imu_force_sd_mps2], 3)

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.numerics.kalman import Information
-from mbkf.sensors.block import NO_DOFS, Block, Frame, Notes, OperatingPoint, State
+from mbkf.sensors.block import NO_DOFS, Block, Channels, Frame, Notes, OperatingPoint, State
 from mbkf.sensors.gating import ObservedDofs, gated
 from mbkf.sensors.marker_sensor import JacobianInformation, MarkerInformation, MarkerReading, MarkerSensor
 from mbkf.sensors.skin import SkinMarkers
@@ -98,7 +98,10 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         sensor: The markers on the body.
         noise_m: (M,) standard deviation of each.
         settings: Noise and gate.
+        expected_m: (M,) expected spread of one reading.
     """
+
+    kind = "markers"
 
     def __init__(
         self,
@@ -129,10 +132,11 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         s = settings
         self.sensor, self.settings, self.noise_m = sensor, s, noise_m * s.marker_noise_scale
         self._inflate, self._track_loss = inflate, track_loss
-        expected = self.noise_m * s.innovation_share**0.5
+        expected = self.noise_m * (s.innovation_share or 1.0) ** 0.5
         if spread_m is not None and s.innovation_share > 0.0:
             expected = spread_m * s.marker_noise_scale
-        self._certainty = 1.0 / np.maximum(expected, 1e-9)[:, None]
+        self.expected_m = np.maximum(expected, 1e-9)
+        self._certainty = 1.0 / self.expected_m[:, None]
         self._information = compress(sensor, self.noise_m)
         self._skin: SkinMarkers | None = None
         if s.skin_memory_s > 0.0:
@@ -211,6 +215,18 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         low, high = self.settings.noise_range
         wanted = min(max(squared, low**2), high**2)
         return decision.noise_scale + self._forget * (wanted - decision.noise_scale)
+
+    def expected_spread(self) -> Array:
+        """(M,) of one coordinate of each marker, m."""
+        return self.expected_m
+
+    def channels(self, decision: MarkerDecision) -> Channels:
+        """Of each marker; those of a limb found elsewhere are the state's error and not theirs."""
+        used = decision.trusted
+        if len(decision.displaced):
+            used = used & ~self._observed.carried_by(decision.displaced)
+        squared = np.vecdot(decision.innovation_m, decision.innovation_m) / 3.0
+        return Channels(np.where(used, squared, 0.0), 3 * used)
 
     def log_noise(self, decision: MarkerDecision) -> float:
         """Log det R of the used markers."""

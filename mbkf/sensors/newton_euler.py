@@ -40,6 +40,9 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
         settings: How exactly they hold.
     """
 
+    kind = "law"
+    quantities = 2
+
     def __init__(self, balance: NewtonEuler, settings: NewtonEulerSettings = NewtonEulerSettings()) -> None:
         self.balance, self.settings = balance, settings
         self._support: slice | None = None

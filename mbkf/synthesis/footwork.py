@@ -50,6 +50,16 @@ class Spot:
 
 
 @dataclass(frozen=True)
+class Waypoint:
+    """Where a swinging foot is at a time: (3,) ankle m, pitch (heel up) and roll (left side up), rad."""
+
+    at_s: float
+    ankle_m: Array
+    pitch: float
+    roll: float
+
+
+@dataclass(frozen=True)
 class Swing:
     """One foot off the ground.
 
@@ -63,6 +73,7 @@ class Swing:
         held: None for a step; (from s, to s, forward m, pitch deg) of a foot held in the air beside the other.
         unload_s: Time before in which its load is handed over.
         reload_s: Time after in which it takes its part again, unless the other foot's unloading comes sooner.
+        way: What the foot passes in the air, in order of time; where there is any, clearance does not count.
     """
 
     side: int
@@ -74,6 +85,7 @@ class Swing:
     held: tuple[float, float, float, float] | None = None
     unload_s: float = 0.55
     reload_s: float = 0.5
+    way: tuple[Waypoint, ...] = ()
 
 
 @dataclass
@@ -170,14 +182,27 @@ class Footwork:
             loaded_s = swing.land_s + swing.reload_s
         return path([*knots, (loaded_s, 0.5)]) if knots else ripple(0.0, 1.0, 0.0, 0.5)
 
-    def _pitch(self, side: int) -> Curve:
+    def _pitch(self, side: int, *, in_air: bool = True) -> Curve:
+        """Pitch of a foot; without ``in_air`` as the toes follow it, which bend on the floor only."""
         knots = [(BEFORE_S, 0.0)]
         for _, swing in self._own(side):
             knots += [(swing.lift_s - HEEL_OFF_S, 0.0), (swing.lift_s, np.deg2rad(swing.heel_deg))]
             if swing.held:
                 knots += [(at, np.deg2rad(swing.held[3])) for at in swing.held[:2]]
+            knots += [(point.at_s, point.pitch) for point in swing.way if in_air]
             knots.append((swing.land_s, 0.0))
         return path([*knots, (knots[-1][0] + 1.0, 0.0)])
+
+    def _roll(self, side: int) -> Curve | None:
+        """Turn of a foot about its length; None where it never turns so."""
+        own = [swing for swing in self.swings if swing.side == side and swing.way]
+        if not own:
+            return None
+        knots = [(BEFORE_S, 0.0)]
+        for swing in own:
+            turned = [(point.at_s, point.roll) for point in swing.way]
+            knots += [(swing.lift_s, 0.0), *turned, (swing.land_s, 0.0)]
+        return path(knots)
 
     def _pose(self, side: int, times: Array) -> FootPose:
         outline, ball = sole_outline(self.model, SIDES[side]), self.balls[side]
@@ -202,12 +227,18 @@ class Footwork:
             ankle = dual_numbers.where(times > swing.land_s, standing(swing.to, rolled), ankle)
             yaw_knots += [(swing.lift_s, spot.yaw), (swing.land_s, swing.to.yaw)]
         yaw = path([*yaw_knots, (yaw_knots[-1][0] + 1.0, yaw_knots[-1][1])])(times)
-        return FootPose(ankle, yaw, pitch, self.toes[side](times) - pitch)
+        toes, roll = self.toes[side](times), self._roll(side)
+        if roll is None:
+            return FootPose(ankle, yaw, pitch, toes - pitch)
+        return FootPose(ankle, yaw, pitch, toes - self._pitch(side, in_air=False)(times), roll=roll(times))
 
     def _flight(self, swing: Swing, start: Array, end: Array) -> Curve:
         """(T, 3) ankle between leaving the ground and coming down."""
         top = max(start[2], end[2]) + swing.clearance_m
         lift, land = swing.lift_s, swing.land_s
+        if swing.way:
+            knots = [(point.at_s, point.ankle_m) for point in swing.way]
+            return path([(lift, start), *knots, (land, end)])
         if swing.held is None:
             plane = path([(lift + LATE * (land - lift), start[:2]), (land, end[:2])])
             upward = path([(lift, start[2]), (lift + PEAK * (land - lift), top), (land, end[2])])

@@ -28,7 +28,8 @@ STRAIGHT_RAD = np.deg2rad(2.5)
 class FootPose:
     """Where a foot is: ``ankle`` (T, 3) m, (T,) ``yaw`` and ``pitch`` (heel up positive) and ``toes`` hinge, rad.
 
-    The knee bends towards the heading of the foot, or towards a point ``knee`` (3,), m.
+    The knee bends towards the heading of the foot, or towards a point ``knee`` (3,), m. ``roll`` (T,) is the foot's
+    turn about its length (its left side up), rad; None for none.
     """
 
     ankle: Dual
@@ -36,6 +37,7 @@ class FootPose:
     pitch: Dual
     toes: Dual
     knee: Array | None = None
+    roll: Dual | None = None
 
 
 @dataclass(frozen=True)
@@ -243,6 +245,8 @@ class InverseKinematics:
                 across = dual_numbers.cross(foot.knee - hip, foot.ankle - hip)
             thigh, shank, knee, used = self._limb(lengths, foot.ankle - hip, angles[f"{name}_shank"], across)
             foot_rotation = dual_numbers.rotation(2, foot.yaw) @ dual_numbers.rotation(1, foot.pitch)
+            if foot.roll is not None:
+                foot_rotation = foot_rotation @ dual_numbers.rotation(0, foot.roll)
             rotations[f"{name}_thigh"], origins[f"{name}_thigh"] = thigh, hip
             rotations[f"{name}_shank"] = shank
             origins[f"{name}_shank"] = hip + thigh.apply(self.offset[f"{name}_shank"])

@@ -181,6 +181,13 @@ def _split_belt_walk(model: Body, seconds: float, rng: np.random.Generator) -> M
     return treadmill_plan(model, seconds, rng, belts=2)
 
 
+@register_motion("star_arc", seconds=24.0, stream=14)
+def _star_arc(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
+    from mbkf.synthesis.star_arc import star_arc_plan
+
+    return star_arc_plan(model, seconds, rng)
+
+
 @register_motion("stand", seconds=1.5, stream=2, trial=False)
 def _stand(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
     from mbkf.synthesis.stand import stand_plan

@@ -1,4 +1,4 @@
-"""Curves with ±2σ bands as small inline SVG; colours come from the page's style sheet."""
+"""Curves with bands of ±2 standard deviations as small inline SVG; colours come from the page's style sheet."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ class Line:
     Attributes:
         x, y: (N,) points; NaN breaks the line.
         sd: (N,) standard deviations for the band of ±2, or None.
+        inner_sd: (N,) part of them for a darker band inside, or None.
         side: "r", "l" or "" for its colour.
         thin: Drawn lightly, as one of several.
     """
@@ -35,6 +36,7 @@ class Line:
     sd: Array | None = None
     side: str = ""
     thin: bool = False
+    inner_sd: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -82,7 +84,8 @@ def chart(
         for m in marks
         if x_range[0] <= m.x <= x_range[1]
     ]
-    parts += [_band(box, line) for line in lines if line.sd is not None]
+    parts += [_band(box, one, one.sd, "band" if one.inner_sd is None else "band outer") for one in lines]
+    parts += [_band(box, one, one.inner_sd, "band inner") for one in lines]
     parts += [_path(box, line) for line in lines]
     heading = (
         f'<text class="title" x="2" y="12">{escape(title)}<tspan class="unit"> {escape(unit)}</tspan></text>'
@@ -254,16 +257,17 @@ def _path(box: _Box, line: Line) -> str:
     )
 
 
-def _band(box: _Box, line: Line) -> str:
-    assert line.sd is not None
+def _band(box: _Box, line: Line, sd: Array | None, kind: str) -> str:
+    if sd is None:
+        return ""
     d = ""
-    for run in _runs(np.isfinite(line.y) & np.isfinite(line.sd)):
+    for run in _runs(np.isfinite(line.y) & np.isfinite(sd)):
         if run.stop - run.start < 2:
             continue
         step = max(1, 2 * (run.stop - run.start) // round(box.width))
-        x, y, wide = line.x[run][::step], line.y[run][::step], 2.0 * line.sd[run][::step]
+        x, y, wide = line.x[run][::step], line.y[run][::step], 2.0 * sd[run][::step]
         d += box.path(np.concatenate([x, x[::-1]]), np.concatenate([y + wide, (y - wide)[::-1]])) + "z"
-    return f'<path {_TENTHS} class="band {_side(line.side)}" d="{d}"/>' if d else ""
+    return f'<path {_TENTHS} class="{kind} {_side(line.side)}" d="{d}"/>' if d else ""
 
 
 def _thinned(x: Array, y: Array, width: float) -> tuple[Array, Array]:

@@ -62,7 +62,15 @@ def test_misread_captures_give_the_right_persons_numbers(misread, tmp_path, caps
         assert run("scale", misread / f"static_{which}.trc", "--mass", MASS_KG, "--out", subject) == 0
         shown = capsys.readouterr().out
         assert (told in shown) == (which == name)
-        words = ["--forces", misread / f"{which}.mot", "--subject", subject, "--filter", "kinematic"]
+        words = [
+            "--forces",
+            misread / f"{which}.mot",
+            "--subject",
+            subject,
+            "--filter",
+            "kinematic",
+            "--causal",
+        ]
         assert run("reconstruct", misread / f"{which}.trc", *words, "--out", out) == 0
         numbers[which] = read_summary(out)
     assert numbers[name]["axes"] == {**axes, "source": "body"}
@@ -120,7 +128,7 @@ def test_a_mirrored_c3d_with_plates_is_put_right(person, tmp_path):
     """Points and corners mirrored along the floor, channels as the plates read: as if plates faced downwards."""
     there = turned(made_capture(), MIRROR, AxesSource.BODY)
     write_c3d(there, tmp_path / "mirrored.c3d")
-    words = ["--subject", person.subject, "--filter", "kinematic", "--out"]
+    words = ["--subject", person.subject, "--filter", "kinematic", "--causal", "--out"]
     assert run("reconstruct", tmp_path / "mirrored.c3d", *words, tmp_path / "mirrored") == 0
     assert run("reconstruct", person.trial, *words, tmp_path / "right") == 0
     mirrored, right = (read_summary(tmp_path / name) for name in ("mirrored", "right"))

@@ -29,6 +29,18 @@ def test_lag_that_cannot_be(lag, person, refuse_reconstruct):
     refuse_reconstruct([person.trial, f"--lag={lag}"], "--lag", "positive")
 
 
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--causal", "--lag", "60"], "argument --lag: not allowed with argument --causal"),
+        (["--smooth", "--lag", "60"], "argument --lag: not allowed with argument --smooth"),
+        (["--causal", "--smooth"], "argument --smooth: not allowed with argument --causal"),
+    ],
+)
+def test_which_later_frames_count_is_said_once(person, refuse_reconstruct, words, told):
+    refuse_reconstruct([person.trial, *words], told)
+
+
 @pytest.mark.parametrize("height", ["-1", "0", "176", "nan"])
 def test_height_that_cannot_be(height, person, refuse_scale):
     refuse_scale(

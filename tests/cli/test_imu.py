@@ -105,7 +105,7 @@ def test_synth_writes_readings_and_mounts(tmp_path):
         "--hide",
         "LASI@0.5:0.7",
     ]
-    code = main([*words[:-2], "--out", str(tmp_path / "r")])
+    code = main([*words[:-2], "--causal", "--out", str(tmp_path / "r")])
     assert code == 0
     assert json.loads((tmp_path / "r" / "summary.json").read_text())["marker_rms_mm"] < 10.0
 

@@ -19,7 +19,7 @@ from mbkf.cli.main import main
 from mbkf.cli.stopping import stopped_by_signal
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture import read_capture
-from mbkf.io.results_folder import read_reconstruction
+from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.subject import read_subject
 from mbkf.pipelines.live.results import live_results
 from mbkf.stream.run.folder import LOG_FOLDER
@@ -46,11 +46,10 @@ def run(words):
 
 @pytest.fixture(scope="module")
 def expected(person, tmp_path_factory):
-    """What reconstruct makes of the trial with the subject's own marker positions."""
+    """The causal answer of reconstruct to the trial with the subject's own marker positions."""
     out = tmp_path_factory.mktemp("expected")
-    assert (
-        run(["reconstruct", person.trial, "--subject", person.subject, "--keep-markers", "--out", out]) == 0
-    )
+    words = ["reconstruct", person.trial, "--subject", person.subject, "--keep-markers", "--causal"]
+    assert run([*words, "--out", out]) == 0
     return read_reconstruction(out)
 
 
@@ -60,7 +59,7 @@ def free_port():
         return one.getsockname()[1]
 
 
-def test_a_file_gives_what_reconstruct_gives(person, tmp_path, capsys, expected):
+def test_a_file_gives_the_causal_answer_of_reconstruct(person, tmp_path, capsys, expected):
     out = tmp_path / "out"
     words = [
         "live",
@@ -80,6 +79,9 @@ def test_a_file_gives_what_reconstruct_gives(person, tmp_path, capsys, expected)
     found = read_reconstruction(out)
     for name in ("q", "v", "tau", "foot_wrench", "angles", "moments", "sd_q", "predicted_m"):
         np.testing.assert_allclose(getattr(found, name), getattr(expected, name), atol=1e-9, err_msg=name)
+    assert (
+        found.later_frames == expected.later_frames == read_summary(out)["later_frames"] == "causal (as live)"
+    )
     report = json.loads((out / "live.json").read_text())
     assert {"latency_ms_median", "latency_ms_p99", "latency_ms_max", "rate_hz"} <= set(report)
     assert report["source"] == "file"
@@ -90,7 +92,7 @@ def test_a_lag_is_followed_and_told_apart_from_the_latency(person, tmp_path, cap
     options = ["--subject", person.subject, "--lag", 60]
     assert run(["live", "--from", f"file:{person.trial}", *options, "--speed", 0, "--out", live]) == 0
     shown = capsys.readouterr().out
-    assert "(dynamic filter, 60 ms lag)" in shown and "ms besides a lag of 60.0 ms" in shown
+    assert "fixed lag 60 ms" in shown and "ms besides a lag of 60.0 ms" in shown
     assert run(["reconstruct", person.trial, *options, "--keep-markers", "--out", offline]) == 0
     found, expected = read_reconstruction(live), read_reconstruction(offline)
     for name in ("q", "v", "tau", "foot_wrench", "angles", "moments", "predicted_m"):

@@ -5,9 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 from mbkf.cli.main import main
-from mbkf.cli.scale import AUTO, mass_option
+from mbkf.cli.scale import AUTO, _print_inertia, mass_option
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.subject import read_subject
 from mbkf.model.protocol import load_protocol
@@ -47,8 +48,10 @@ def test_mass_comes_from_the_capture_where_it_is_stated(person, tmp_path):
     assert read_subject(tmp_path / "s.toml").mass_kg == MASS_KG
 
 
-def test_report_is_kept_with_the_subject(person, tmp_path):
-    assert scale(person.static, "--out", tmp_path / "s.toml", "--height", "1.75") == 0
+def test_report_is_kept_with_the_subject(person, tmp_path, capsys):
+    """Inertia, where it is asked for and no plate shows it, is the table's and says so."""
+    assert scale(person.static, "--out", tmp_path / "s.toml", "--height", "1.75", "--inertia") == 0
+    assert "inertia by the table: no trial shows the inertia of segments" in capsys.readouterr().out
     subject = read_subject(tmp_path / "s.toml")
     assert subject.height_m == 1.75
     assert subject.report["converged"]
@@ -99,3 +102,18 @@ def test_the_mass_is_a_number_or_what_plates_tell(person, tmp_path, capsys):
     assert scale("--trial", person.trial_trc, "--mass", "auto", "--out", tmp_path / "s.toml") == 2
     assert "the plates do not tell the body mass (no capture has plates)" in capsys.readouterr().err
     assert not (tmp_path / "s.toml").exists()
+
+
+def test_segments_are_told_with_their_standard_deviations(capsys):
+    own = {
+        "mass_percent": 7.6,
+        "mass_percent_sd": 2.1,
+        "centre_shift_mm": [3.0, -4.0, 5.0],
+        "centre_shift_sd_mm": [1.0, 2.0, 3.0],
+    }
+    _print_inertia(Console(width=100), {"segments": {"right_thigh": own}, "told": "as told"})
+    shown = capsys.readouterr().out
+    assert "right thigh" in shown
+    assert "+8 ± 2" in shown
+    assert "-4 ± 2" in shown
+    assert shown.splitlines()[-1] == "as told"

@@ -65,7 +65,7 @@ def test_a_preset_is_saved_and_used(trial, person, tune, presets, tmp_path, caps
     assert set(saved.likelihood) == {"tuned_before", "tuned_after", "held_out_before", "held_out_after"}
     out = tmp_path / "out"
     words = ["reconstruct", str(person.trial), "--subject", str(person.subject), "--out", str(out)]
-    assert main([*words, "--preset", "lab"]) == 0
+    assert main([*words, "--preset", "lab", "--causal"]) == 0
     settings = json.loads((out / "summary.json").read_text())["settings"]
     assert settings["dynamic"]["acceleration_scale"] == saved.values["acceleration_scale"]
 
@@ -83,7 +83,7 @@ def test_several_trials_of_the_kinematic_filter(trial, tune, presets, tmp_path):
 def test_presets_of_the_torque_filter(person, tmp_path):
     out = tmp_path / "out"
     words = ["reconstruct", str(person.trial), "--subject", str(person.subject), "--out", str(out)]
-    assert main([*words, "--preset", "FDMC"]) == 0
+    assert main([*words, "--preset", "FDMC", "--causal"]) == 0
     summary = json.loads((out / "summary.json").read_text())
     assert summary["filter"] == "torque"
     assert summary["settings"]["torque"]["scheme"]["integrator"] == "FE"

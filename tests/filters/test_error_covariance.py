@@ -34,7 +34,15 @@ def test_parts_are_those_of_the_whole(seed, new, rate):
     rng, P, information = made(seed)
     errors = ErrorCovariance(P, information, np.flatnonzero(rng.random(NV) > 0.3), 0.2, new, rate)
     free = [(), (0,), (1,), (0, 1)][seed % 4]
-    errors = replace(errors, free=free, sharing=2.0, lag=rng.normal(size=NV + 12), edge_n=(3.0, 0.5))
+    errors = replace(
+        errors,
+        free=free,
+        sharing=2.0,
+        lag=rng.normal(size=NV + 12),
+        edges=rng.normal(size=(3, 12)),
+        new_rates=(0.3 * new, 2.0 * new),
+        plates=0.4,
+    )
     whole, T = errors.covariance(), rng.normal(size=(7, len(P)))
     near = {"rtol": 1e-9, "atol": 1e-9 * np.abs(whole).max()}
     np.testing.assert_allclose(errors.position, whole[:NV, :NV], **near)

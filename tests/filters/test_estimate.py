@@ -69,7 +69,7 @@ def test_the_first_estimate_already_moves_as_the_body_does(name):
     assert (first.started, second.started) == (True, False)
     assert first.tracked and second.tracked
     off = made().model.difference(truth.q[FRAMES.start], first.q)
-    assert worst(off / one.spread(first).position) < 4.0
+    assert worst(off / one.spread(first).position) < 5.0
     assert np.linalg.norm(first.v - truth.v[FRAMES.start]) < np.linalg.norm(truth.v[FRAMES.start])
 
 
@@ -134,13 +134,15 @@ def test_wrenches_have_a_spread_where_there_are_wrenches(name):
 
 @every_filter
 def test_innovations(name):
-    """Of 36 markers, and 12 numbers of plates and 6 of Newton's law where they are read; none at a start."""
+    """Of 36 markers, and 12 numbers of plates and 6 of Newton's law where they were read before; none at a start."""
     one, first, second = two(name)
-    nis, readings = one.innovation(first)
-    assert np.isnan(nis) and readings == 0
-    nis, readings = one.innovation(second)
-    assert readings == 3 * 36 + {"kinematic": 0, "torque": 12, "dynamic": 18}[name]
-    assert 0 < nis < 4 * readings
+    assert one.innovations(first) is None
+    judged = one.innovations(second)
+    assert judged.readings[0] == 3 * 36 and 0.0 < judged.squared[0] < 5.0 * 3 * 36
+    # Nothing is known of the spread of loads before the first of them.
+    later = one.innovations(one.step(second, recording(), 2))
+    loads = {"kinematic": [0, 0, 0], "torque": [12, 0, 0], "dynamic": [12, 6, 0]}[name]
+    np.testing.assert_array_equal(later.readings, [3 * 36, *loads])
 
 
 @every_filter
@@ -238,7 +240,7 @@ def test_after_half_a_second_without_markers_the_filter_starts_anew(name):
     truth = made().motion.q[LONG.start : LONG.stop]
     assert np.isfinite(found.q).all()
     off = angle_errors(made().model, found.q, truth) / found.position_sd
-    assert worst(off[GAP.stop :]) < 5.0
+    assert worst(off[GAP.stop :]) < 5.5
 
 
 @pytest.mark.slow
@@ -280,7 +282,7 @@ def test_what_is_expected_is_as_far_off_as_stated(name):
 )
 def test_a_body_that_is_suddenly_elsewhere_is_found_there(name, jump_m):
     """Another person, or a recording that begins anew: no plant gets there, so the filter starts once more."""
-    there = FRAMES.stop // 4
+    there = 30  # the start looks a quarter of a second ahead
     read = recording(LONG)
     moved = read.markers_m.copy()
     moved[there:] += np.array([jump_m, 0.0, 0.0])

@@ -5,9 +5,19 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from mbkf.filters.record import FIELDS, UNASKED, FrameRecorder, blank, record_dtype
+from mbkf.filters.body_errors import BodyErrors
+from mbkf.filters.record import (
+    FIELDS,
+    OFFSETS_HELD_S,
+    UNASKED,
+    FrameRecorder,
+    HeldErrors,
+    blank,
+    record_dtype,
+)
 from mbkf.filters.tracking import Track, track_of
-from tests.followed import estimates, made_filter, recording, tracked
+from tests.dynamics import DT
+from tests.followed import estimates, inputs, made_filter, recording, tracked
 
 SIZES = {"M": 3, "nq": 8, "nv": 7, "A": 7, "B": 2, "N": 4}
 
@@ -53,3 +63,51 @@ def test_a_frame_without_an_estimate_stays_blank():
     row, spread = recorder.row(7, recording().markers_m[0], None, 0.0)
     assert spread is None and not row["known"][0] and row["number"][0] == 7
     np.testing.assert_array_equal(row["measured_m"][0], recording().markers_m[0])
+
+
+@pytest.fixture(scope="module")
+def body():
+    """Errors by 2 % of every factor and 5 mm of every marker's place."""
+    sensor = inputs().sensor
+    sd = np.concatenate([np.full(17, 0.02), np.full(3 * len(sensor.segments), 0.005)])
+    return BodyErrors(sensor, inputs().noise_m, np.diag(sd))
+
+
+@pytest.mark.parametrize("name", ["kinematic", "dynamic"])
+def test_spreads_are_totals_with_the_offset_beside_them(name, body):
+    """The offset is the body's alone; what varies is the filter's, as without it."""
+    tracking, found = estimates(name)
+    told, plain = (FrameRecorder(tracking, recording().markers_m.shape[1], one) for one in (body, None))
+    rows = []
+    for recorder in (told, plain):
+        row, spread = recorder.row(20, recording().markers_m[20], found[20], 0.001)
+        recorder.spread(row, spread)
+        rows.append(row)
+    roots = body.at(found[20].q, found[20].v, found[20].a, found[20].wrench, found[20].contact)
+    np.testing.assert_allclose(
+        rows[0]["position_offset"][0] ** 2, (roots.position**2).sum(axis=1), rtol=1e-12
+    )
+    for part in ("position", "velocity", "torque", "angle", "rate", "wrench"):
+        total, offset, alone = (
+            np.square(row)
+            for row in (rows[0][f"{part}_sd"], rows[0][f"{part}_offset"], rows[1][f"{part}_sd"])
+        )
+        np.testing.assert_allclose(
+            total, alone + offset, rtol=1e-9, atol=1e-12 * np.nanmax(total, initial=0.0)
+        )
+        assert not rows[1][f"{part}_offset"].any()
+
+
+def test_errors_by_the_body_are_held_for_a_while_and_found_when_asked(body, monkeypatch):
+    _, found = estimates("dynamic")
+    asked = []
+    monkeypatch.setattr(body, "at", lambda q, *others: asked.append(q) or q)
+    held, frames = HeldErrors(body, DT), round(OFFSETS_HELD_S / DT)
+    later = [held.of(t, found[t]) for t in range(2 * frames)]
+    assert not asked
+    for t, one in enumerate(later):
+        assert one() is found[t // frames * frames].q
+    assert len(asked) == 2
+    anew = found[frames + 1]._replace(started=True)
+    assert held.of(frames + 1, anew)() is anew.q
+    assert HeldErrors(None, DT).of(0, found[0])() is None

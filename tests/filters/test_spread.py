@@ -1,8 +1,11 @@
 """Standard deviations of angles, rates, torques and foot heights from a filter's covariance."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from mbkf.filters.body_errors import BodyErrorRoots
 from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.filters.spread import Spread, SpreadReader
 from mbkf.model.clinical import ClinicalAngles
@@ -21,7 +24,7 @@ def case():
     B = 0.01 * rng.normal(size=(model.nv, model.nv))
     state = KinematicState(source.q(0.4), source.v(0.4), A @ A.T)
     reader, nv = SpreadReader(model), model.nv
-    torque = reader.torque(state.q, B @ B.T, DT_S)
+    torque = reader.torque_variance(state.q, B @ B.T, DT_S)
     variances = np.split(np.diag(state.P), 2)
     return model, state, B, Spread(reader, state.q, *variances, torque, lambda: state.P[:nv, :nv])
 
@@ -80,3 +83,45 @@ def test_torques_are_the_velocity_difference_through_the_mass_matrix(case):
     changes = (B @ np.random.default_rng(0).normal(size=(model.nv, 4000))) / DT_S
     tau = model.mass_matrix(state.q) @ changes
     np.testing.assert_allclose(spread.torque, tau.std(axis=1), rtol=0.05)
+
+
+@pytest.fixture(scope="module")
+def shifted(case):
+    """Random roots of errors by the body, and the spread with them."""
+    model, _, _, spread = case
+    rng = np.random.default_rng(7)
+    roots = BodyErrorRoots(*(rng.normal(size=(n, 5)) for n in (model.nv, model.nv, model.nv, 12)))
+    return roots, replace(spread, body=roots)
+
+
+def test_without_errors_by_the_body_offsets_are_zero(case):
+    spread = case[-1]
+    for name in ("position", "velocity", "torque", "angle", "rate", "wrench", "ball"):
+        assert not getattr(spread, f"{name}_offset").any()
+
+
+@pytest.mark.parametrize("name", ["position", "velocity", "torque", "angle", "rate"])
+def test_totals_are_both_independent_parts(case, shifted, name):
+    alone, (_, both) = getattr(case[-1], name), shifted
+    total, offset = getattr(both, name), getattr(both, f"{name}_offset")
+    np.testing.assert_allclose(total**2, alone**2 + offset**2, rtol=1e-12)
+    assert (offset > 0.0).all()
+
+
+def test_offsets_are_those_of_errors_drawn_from_the_roots(case, shifted):
+    """Of dofs, and of angles and rates through the same linear map, with all that is common to the dofs."""
+    roots, both = shifted
+    E = ClinicalAngles(case[0]).rate_matrix(case[1].q)
+    for name, root in (("position", roots.position), ("velocity", roots.velocity), ("torque", roots.torque)):
+        np.testing.assert_allclose(getattr(both, f"{name}_offset") ** 2, np.diag(root @ root.T), rtol=1e-12)
+    for name, root in (("angle", E @ roots.position), ("rate", E @ roots.velocity)):
+        np.testing.assert_allclose(getattr(both, f"{name}_offset") ** 2, np.diag(root @ root.T), rtol=1e-9)
+    np.testing.assert_allclose(
+        both.wrench_offset.ravel() ** 2, np.diag(roots.wrench @ roots.wrench.T), rtol=1e-12
+    )
+
+
+def test_the_offset_of_a_ball_is_in_its_covariance(case, shifted):
+    roots, both = shifted
+    np.testing.assert_allclose(both.ball_offset[0], roots.position[3:6] @ roots.position[3:6].T, rtol=1e-12)
+    np.testing.assert_allclose(both.ball_covariance - both.ball_offset, case[-1].ball_covariance, atol=1e-12)

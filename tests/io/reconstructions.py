@@ -59,6 +59,10 @@ def made_up_whole(frames=12, **changes):
         "support_wrench": parts,
         "support_wrench_sd": rng.uniform(1.0, 9.0, parts.shape),
         "support_point_m": rng.normal(size=(*parts.shape[:2], 3)),
+        "nis_by_kind": rng.random((frames, 4)),
+        "nis_readings_by_kind": np.full((frames, 4), 6),
+        "marker_nis": rng.random((frames, 2)),
+        "marker_spread_m": rng.random((frames, 2)),
         "angles_lab": rng.normal(size=(frames, len(COORDINATES))),
     }
     return made_up(frames, **{**optional, **changes})

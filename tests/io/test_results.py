@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.errors import ShapeError, UnknownName
-from mbkf.io.results import ARRAYS, SHAPES
+from mbkf.io.results import ARRAYS, SHAPES, varying_sd
 from tests.io.reconstructions import made_up, made_up_whole
 
 
@@ -49,6 +49,19 @@ def test_a_lag_is_read_from_the_settings():
     assert made_up(settings={"lag_ms": 60.0}).lag_ms == 60.0
 
 
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({}, "causal (as live)"),
+        ({"settings": {"lag_ms": 0.0}}, "causal (as live)"),
+        ({"settings": {"lag_ms": 60.0}}, "fixed lag 60 ms"),
+        ({"settings": {"lag_ms": 0.0}, "smoothed": True}, "smoothed (all later frames known)"),
+    ],
+)
+def test_which_later_frames_an_estimate_knows_is_told_in_words(changes, told):
+    assert made_up(**changes).later_frames == told
+
+
 def test_a_wrong_name_is_answered_with_near_ones():
     r = made_up()
     with pytest.raises(UnknownName, match="did you mean hip_flexion_r"):
@@ -62,3 +75,32 @@ def test_present_leaves_out_hidden_and_missing_samples():
     measured[3, 0, 1], hidden[4, 1] = np.nan, True
     present = made_up(measured_m=measured, hidden=hidden).present
     assert np.argwhere(~present).tolist() == [[3, 0], [4, 1]]
+
+
+@pytest.mark.parametrize(
+    ("read", "array"),
+    [("angle_sd", "angles_sd"), ("angle_rate_sd", "angle_rates_sd"), ("moment_sd", "moments_sd")],
+)
+def test_a_standard_deviation_has_two_parts(read, array):
+    """The offset as it is told, and what varies: both squared are the total squared."""
+    total = np.abs(getattr(made_up(), array))
+    r = made_up(**{array: total, f"{array}_offset": 0.6 * total})
+    whole, offset, varying = (getattr(r, read)("pelvis_tx", part) for part in ("total", "offset", "varying"))
+    np.testing.assert_array_equal(whole, total[:, 1])
+    np.testing.assert_allclose(varying, 0.8 * whole, rtol=1e-12)
+    np.testing.assert_allclose(offset, 0.6 * whole, rtol=1e-12)
+    with pytest.raises(UnknownName, match="did you mean offset"):
+        getattr(r, read)("pelvis_tx", "ofset")
+
+
+def test_offsets_that_are_not_told_are_zero_where_the_total_is_known():
+    total = made_up().sd_tau.copy()
+    total[3] = np.nan
+    r = made_up(sd_tau=total)
+    assert np.isnan(r.sd_tau_offset[3]).all() and (r.sd_tau_offset[:3] == 0.0).all()
+    assert r.foot_wrench_sd_offset is None
+    np.testing.assert_array_equal(made_up_whole().foot_wrench_sd_offset, np.zeros((12, 2, 6)))
+
+
+def test_rounding_never_makes_what_varies_imaginary():
+    np.testing.assert_array_equal(varying_sd(np.array([5.0, 1.0]), np.array([4.0, 1.0 + 1e-12])), [3.0, 0.0])

@@ -7,16 +7,19 @@ import numpy as np
 import pytest
 
 from mbkf.errors import FileFormatError
+from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.findings import Finding, not_judged
-from mbkf.io.results import ARRAYS, DTYPES, Reconstruction
+from mbkf.io.results import ARRAYS, DTYPES, OFFSETS, Reconstruction
 from mbkf.io.results_h5 import UNITS, read_h5, write_h5
 from tests.io.reconstructions import made_up, made_up_whole
 
 
 @pytest.mark.parametrize("frames", [0, 1, 40])
 def test_a_round_trip_keeps_everything_but_the_covariance(tmp_path, frames):
+    known = BodyCovariance(("head",), ("A", "ü"), np.tril(np.random.default_rng(2).normal(size=(7, 7))))
     r = made_up_whole(
         frames,
+        subject=dataclasses.replace(made_up().subject, covariance=known),
         file_axes="x,z,y",
         file_axes_source="body",
         markers_ignored={"X ü": "not known"},
@@ -73,6 +76,25 @@ def test_in_older_files_feet_alone_bear_and_what_is_measured_is_valid(tmp_path):
     assert (read_h5(tmp_path / "kinematic.h5").foot_source == 1).all()
 
 
+def test_older_files_say_which_later_frames_they_know_by_the_rest(tmp_path):
+    write_h5(made_up(smoothed=True), tmp_path / "motion.h5")
+    with h5py.File(tmp_path / "motion.h5", "a") as file:
+        assert file.attrs["later_frames"] == "smoothed (all later frames known)"
+        del file.attrs["later_frames"]
+    assert read_h5(tmp_path / "motion.h5").later_frames == "smoothed (all later frames known)"
+
+
+def test_in_older_files_spreads_have_no_offset_and_the_body_no_covariance(tmp_path):
+    write_h5(made_up_whole(sd_tau_offset=np.ones((12, 6))), tmp_path / "motion.h5")
+    with h5py.File(tmp_path / "motion.h5", "a") as file:
+        for name in OFFSETS:
+            del file[name]
+    back = read_h5(tmp_path / "motion.h5")
+    assert back.subject.covariance is None
+    for name, total in OFFSETS.items():
+        np.testing.assert_array_equal(getattr(back, name), np.zeros_like(getattr(back, total)))
+
+
 def test_older_files_have_no_axes(tmp_path):
     write_h5(made_up(file_axes="x,z,y"), tmp_path / "motion.h5")
     with h5py.File(tmp_path / "motion.h5", "a") as file:
@@ -104,7 +126,7 @@ def test_a_file_without_a_direction_is_told_in_the_laboratory(tmp_path):
 
 def test_every_quantity_carries_its_unit(tmp_path):
     write_h5(made_up_whole(), tmp_path / "motion.h5")
-    assert set(UNITS) | set(DTYPES) | {"nis", "covariance"} == set(ARRAYS)
+    assert set(UNITS) | set(DTYPES) | {"nis", "nis_by_kind", "marker_nis", "covariance"} == set(ARRAYS)
     with h5py.File(tmp_path / "motion.h5") as file:
         assert set(ARRAYS) - set(file) == {"covariance", "foot_contact"}  # the latter as "footing"
         for name in ARRAYS:

@@ -140,6 +140,12 @@ def test_nothing_tracked_writes_empty_files(tmp_path):
     assert len(angles_table(r).times_s) == 0
 
 
+def test_every_header_tells_which_later_frames_are_known():
+    r = made_up(settings={"lag_ms": 20.0})
+    for table in (angles_table(r), angles_lab_table(r), torques_table(r), reactions_table(r)):
+        assert table.header["LaterFrames"] == "fixed lag 20 ms"
+
+
 def test_the_header_tells_the_axes_that_angles_are_read_in():
     """Torques are about the body's own, whichever these are."""
     r = made_up(angles_read="pig")

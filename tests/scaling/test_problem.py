@@ -1,17 +1,20 @@
 """The scaling problem: every derivative against finite differences of residuals written out here."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
-from mbkf.scaling.problem import FACTOR_BOUNDS, ScalingPrior, ScalingProblem, ScalingState
+from mbkf.scaling.problem import FACTOR_BOUNDS, FrameWeights, ScalingPrior, ScalingProblem, ScalingState
 from tests.motions import assert_near, moderate_pose, protocol_sensor, random_scale, reference_model
 
 MODEL = reference_model()
 BODY = MODEL.description
 MARKERS = load_protocol("reference36").markers[:20]
 FRAMES = 3
+ONE_FRAME = FrameWeights.moving(1, 1.0, 1.0)
 
 
 def random_covariance(rng, size):
@@ -21,7 +24,7 @@ def random_covariance(rng, size):
 
 @pytest.fixture(scope="module")
 def problem():
-    """Some markers in some frames, one not at all, correlated prior, unequal posture weights."""
+    """Some markers in some frames, one not at all, correlated prior, unequal weights of frames."""
     rng = np.random.default_rng(1)
     measured = rng.uniform(-1, 1, (FRAMES, len(MARKERS), 3))
     measured[rng.random((FRAMES, len(MARKERS))) < 0.3] = np.nan
@@ -32,7 +35,10 @@ def problem():
         offsets_m=rng.uniform(-0.02, 0.02, (len(MARKERS), 3)),
         offset_precision=np.linalg.inv(0.01 * random_covariance(rng, 3 * len(MARKERS))),
     )
-    return ScalingProblem(BODY, MARKERS, measured, np.array([0.0, 0.3, 1.0]), prior)
+    weights = FrameWeights(
+        np.array([1.0, 0.5, 0.2]), np.array([0.0, 0.3, 1.0]), np.zeros(FRAMES, dtype=bool), np.zeros(FRAMES)
+    )
+    return ScalingProblem(BODY, MARKERS, measured, weights, prior)
 
 
 @pytest.fixture(scope="module")
@@ -55,9 +61,10 @@ def residuals(problem, state):
                     model.axis_scale(BODY.segment(marker.segment)) * marker.position_m + state.offsets_m[i]
                 )
                 at = origins[joint] + rotations[joint] @ local
-                rows.append((at - problem.measured_m[t, i]) / marker.noise_m)
+                noise_m = marker.noise_m / np.sqrt(problem.weights.markers[t])
+                rows.append((at - problem.measured_m[t, i]) / noise_m)
         deviation = problem.posture.reading(q).deviation / problem.posture.sd
-        rows.append(np.sqrt(problem.posture_weight[t]) * deviation)
+        rows.append(np.sqrt(problem.weights.posture[t]) * deviation)
     whiten = np.linalg.inv(np.linalg.cholesky(problem.prior.factor_covariance))
     rows.append(whiten @ (state.factors - problem.prior.factors))
     offsets = (state.offsets_m - problem.prior.offsets_m).ravel()
@@ -95,8 +102,11 @@ def test_gradient_by_poses_factors_and_offsets(problem, state, jacobian):
     assert_near(found / np.abs(expected).max(), expected / np.abs(expected).max(), 1e-9)
 
 
-def test_gradient_is_half_the_slope_of_the_cost(problem, state):
+@pytest.mark.parametrize("stands", [False, True])
+def test_gradient_is_half_the_slope_of_the_cost(problem, state, stands):
     rng, h = np.random.default_rng(3), 1e-6
+    weights = replace(problem.weights, stands=np.full(FRAMES, stands), upright=np.full(FRAMES, 0.7 * stands))
+    problem = ScalingProblem(BODY, MARKERS, problem.measured_m, weights, problem.prior)
     equations = problem.linearise(state)
     for _ in range(5):
         own, shared = rng.normal(size=(FRAMES, MODEL.nv)), rng.normal(size=17 + 3 * len(MARKERS))
@@ -125,7 +135,7 @@ def test_missing_markers_say_nothing(problem, state):
 
 def test_other_samples_make_the_problem_that_they_alone_would(problem, state):
     other = np.where(np.isnan(problem.measured_m), 0.1, np.nan)
-    alone = ScalingProblem(BODY, MARKERS, other, problem.posture_weight, problem.prior)
+    alone = ScalingProblem(BODY, MARKERS, other, problem.weights, problem.prior)
     found = problem.measuring(other)
     assert (found.seen == alone.seen).all()
     assert (found.seen != problem.seen).all()
@@ -135,16 +145,15 @@ def test_other_samples_make_the_problem_that_they_alone_would(problem, state):
 def test_at_the_expected_state_only_the_markers_cost(problem, state):
     start = problem.start(np.repeat(MODEL.neutral()[None], FRAMES, axis=0))
     noise = np.array([m.noise_m for m in MARKERS])
-    assert problem.cost(start) == pytest.approx(
-        np.nansum((problem.errors_m(start) / noise[:, None]) ** 2), rel=1e-12
-    )
+    squares = np.nansum((problem.errors_m(start) / noise[:, None]) ** 2, axis=(1, 2))
+    assert problem.cost(start) == pytest.approx(problem.weights.markers @ squares, rel=1e-12)
 
 
 def test_with_unit_factors_and_no_offsets_markers_are_the_protocols():
     sensor, names = protocol_sensor(MODEL)
     prior = ScalingPrior(np.ones(17), np.eye(17), np.zeros((len(names), 3)), np.ones(len(names)))
     markers = load_protocol("reference36").markers
-    problem = ScalingProblem(BODY, markers, np.full((1, len(names), 3), np.nan), np.ones(1), prior)
+    problem = ScalingProblem(BODY, markers, np.full((1, len(names), 3), np.nan), ONE_FRAME, prior)
     own = problem.sensor(problem.start(np.zeros((0, 67))))
     q = moderate_pose(MODEL, np.random.default_rng(4))
     assert_near(own.positions(q), sensor.positions(q), 1e-15)

@@ -178,4 +178,5 @@ def test_a_segment_none_of_whose_markers_is_used_is_unmarked():
     trusted[np.isin(sensor.segments, ["right_hand"])] = False
     np.testing.assert_array_equal(observed.unmarked(trusted), hand[1:])
     np.testing.assert_array_equal(observed.carriers(~trusted), hand[1:])
+    np.testing.assert_array_equal(observed.carried_by(hand[1:]), ~trusted)
     assert len(observed.unmarked(np.ones_like(trusted))) == 0

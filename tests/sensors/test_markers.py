@@ -76,6 +76,21 @@ def test_a_limb_that_comes_back_elsewhere_is_less_well_known(inflates):
     np.testing.assert_array_equal(P, np.diag(expected))
 
 
+def test_channels_are_used_markers_and_not_those_of_a_limb_found_elsewhere():
+    places, forearm = SENSOR.positions(STATE.q), np.isin(SENSOR.segments, ["right_forearm"])
+    markers = places + 0.003
+    markers[forearm] = places[forearm] + 0.4
+    markers[HAND] = np.nan
+    block = block_with()
+    read = block.channels(decided(block, markers)[1])
+    np.testing.assert_array_equal(read.readings, 3 * ~(HAND | forearm))
+    np.testing.assert_allclose(read.mean_square[read.readings > 0], 0.003**2, rtol=1e-10)
+    np.testing.assert_array_equal(read.mean_square[read.readings == 0], 0.0)
+    np.testing.assert_allclose(
+        block.expected_spread(), MARKER_SD_M * MarkerSettings().innovation_share ** 0.5, rtol=1e-14
+    )
+
+
 def test_the_noise_scale_divides_the_information():
     block, markers = block_with(), SENSOR.positions(STATE.q) + 0.003
     plain, wide = (

@@ -94,7 +94,8 @@ def with_hidden(capture: Capture, frames) -> Capture:
 
 
 def offline(capture: Capture, subject: Subject, settings=SETTINGS) -> Reconstruction:
-    return reconstruct(capture, subject, settings=settings)
+    """What `reconstruct` gives with the live run's settings: causally, or with their lag."""
+    return reconstruct(capture, subject, settings=replace(settings, smooth=False))
 
 
 def assert_same(folder: Path, expected: Reconstruction, but=()) -> None:

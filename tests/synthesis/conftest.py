@@ -21,6 +21,7 @@ SECONDS = {
     "kneel": 6.8,
     "belt_walk": 2.5,
     "split_belt_walk": 2.5,
+    "star_arc": 5.8,
 }
 
 

@@ -22,7 +22,7 @@ def registry(monkeypatch):
 
 def test_built_in_motions_are_named_and_those_of_static_captures_only_on_request():
     feet = ("squat", "walk", "jump", "turn", "one_foot", "reach", "step_up", "general")
-    trials = (*feet, "sit_to_stand", "rail", "kneel", "belt_walk", "split_belt_walk")
+    trials = (*feet, "sit_to_stand", "rail", "kneel", "belt_walk", "split_belt_walk", "star_arc")
     assert motion_names() == trials
     assert motion_names(static=True) == (*trials, "stand")
 

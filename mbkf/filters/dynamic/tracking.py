@@ -15,18 +15,23 @@ from mbkf.filters.dynamic.support_loads import SupportLoads
 from mbkf.filters.error_covariance import ErrorCovariance
 from mbkf.filters.estimate import Posterior, Prediction, Recording, TrackingFilter
 from mbkf.filters.filter import Prior, Step
+from mbkf.filters.innovations import Innovations
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.tracking import warm_start
 from mbkf.filters.spread import Spread, SpreadReader, root
 from mbkf.numerics.passage import LinearStep
 from mbkf.numerics.smoothing import BackwardPass
 from mbkf.sensors.block import NO_DOFS
+from mbkf.sensors.contact.plate_noise import PlateNoise
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.marker_prediction import MarkerPrediction
 from mbkf.sensors.markers import Markers
 
 DynamicStep = Step[DynamicState]
 """A step of the dynamic filter."""
+
+LATER_FADES_S = 0.1
+"""Time in which a later frame's influence fades; without later frames an estimate is as late as a causal one."""
 
 ROUNDS = 2
 """How often a smoothed window is linearised; a third round changes the residual by less than 0.1 N."""
@@ -42,6 +47,7 @@ class DynamicTracking(TrackingFilter):
 
     def __init__(self, kalman: DynamicFilter, starter: KinematicFilter) -> None:
         self.kalman, self._starter = kalman, starter
+        self._plate_noise = PlateNoise(kalman.settings.contact.plate_force_n)
         self.model, self.dt_s = kalman.model, kalman.dt_s
         self.restart_after_s = starter.settings.restart_after_s
         self._reader, self.loads = SpreadReader(self.model), SupportLoads(self.model, kalman.layout)
@@ -72,7 +78,11 @@ class DynamicTracking(TrackingFilter):
         """One frame on."""
         was = _record(before)
         prior = None if prediction is None else cast("Prior[DynamicState] | None", prediction.prior)
-        return self._estimate(self.kalman.step(was.state, was.memory, recording.frame(t), prior))
+        now = self._estimate(self.kalman.step(was.state, was.memory, recording.frame(t), prior))
+        change = now.wrench - before.wrench
+        bend = np.zeros((2, 6)) if before.changes is None else change - before.changes[0]
+        noise = (before.plate_noise or self._plate_noise).after(recording.plates[t])
+        return now._replace(changes=np.array([change, bend]), plate_noise=noise)
 
     def covariance(self, estimate: Posterior) -> Array:
         """(2 nv, 2 nv) of (q, v); dofs that no marker moves with may be anywhere a posture is."""
@@ -93,7 +103,7 @@ class DynamicTracking(TrackingFilter):
             state.q,
             variance,
             errors.velocity_variance,
-            root(errors.variance_of(by_state) + shared),
+            errors.variance_of(by_state) + shared,
             lambda: self._configuration(errors.position),
         )
 
@@ -117,7 +127,7 @@ class DynamicTracking(TrackingFilter):
         # A pose takes up part of what its markers err by, so innovations show less than that.
         readings = 3 * int(np.count_nonzero(notes.trusted))
         over = max(readings - len(seen), readings // 4)
-        skin = share * readings / max(over, 1)
+        skin = s.errors.skin_share * share * readings / max(over, 1)
         # A limb out of sight errs as P says, and so does a reaction that rests on its acceleration.
         all_seen = len(seen) + len(self._unobservable) == self.model.nv
         contacts = () if notes.contact is None or not all_seen else notes.contact.contacts
@@ -133,16 +143,31 @@ class DynamicTracking(TrackingFilter):
             free,
             s.errors.sharing_scale,
             estimate.lag if unread or notes.supports else None,
-            (self._edge(estimate, 0, free), self._edge(estimate, 1, free)),
+            self._edges(estimate, free),
             self.loads.slice if notes.supports and all_seen else None,
+            s.errors.smoothed_new_rates if estimate.later else s.errors.new_rates,
+            min(1.0, estimate.plate_noise.force_n / s.contact.plate_force_n) if estimate.plate_noise else 1.0,
         )
 
-    def _edge(self, estimate: Posterior, foot: int, free: tuple[int, ...]) -> float:
-        """Spread of what a foot carries that may or may not bear, N."""
-        edge = self.kalman.settings.errors.edge_force_n
-        if foot not in free or edge <= 0.0:
-            return 0.0
-        return edge * float(np.exp(-0.5 * (estimate.wrench[foot, 2] / (2.0 * edge)) ** 2))
+    def _edges(self, estimate: Posterior, free: tuple[int, ...]) -> Array:
+        """(n, 12) wrenches that feet may carry or not: see :mod:`mbkf.filters.error_covariance`."""
+        contact, s = _record(estimate).decisions.notes.contact, self.kalman.settings.errors
+        if contact is None:
+            return np.zeros((0, 12))
+        edges = np.zeros((4, 2, 6))
+        for foot in (0, 1):
+            if foot in free:
+                size = 0.0
+                if s.edge_force_n > 0.0:
+                    size = float(np.exp(-0.5 * (estimate.wrench[foot, 2] / (2.0 * s.edge_force_n)) ** 2))
+                x, y, _ = contact.centres_m[foot]
+                edges[foot, foot] = s.edge_force_n * size * np.array([0.0, 0.0, 1.0, y, -x, 0.0])
+            elif contact.contacts[foot] == Contact.AIR:
+                edges[foot, foot] = 0.0 if contact.below is None else contact.below
+            elif estimate.changes is not None:
+                edges[foot, foot] = s.frame_share[0] * estimate.changes[0, foot]
+                edges[2 + foot, foot] = s.frame_share[1] * estimate.changes[1, foot]
+        return edges.reshape(4, 12)
 
     def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) standard deviations of the feet's wrenches."""
@@ -153,12 +178,9 @@ class DynamicTracking(TrackingFilter):
         loads = self.loads.of(_record(estimate))
         return self.loads.sd(loads, self.errors(estimate) if loads is not None else None)
 
-    def innovation(self, estimate: Posterior) -> tuple[float, int]:
+    def innovations(self, estimate: Posterior) -> Innovations | None:
         """Of markers, plates and Newton's law."""
-        if estimate.started:
-            return np.nan, 0
-        step = _record(estimate)
-        return step.nis, step.nis_readings
+        return None if estimate.started else _record(estimate).innovations
 
     def smooth(
         self, run: Sequence[Posterior], recording: Recording, first: int, wanted: int
@@ -167,7 +189,11 @@ class DynamicTracking(TrackingFilter):
         del recording, first
         states = list(smooth(self.kalman, [_record(estimate) for estimate in run], ROUNDS, wanted))
         befores = [states[0], *states[:-1]] if states else []
-        return [self._moved(e, s, before) for e, s, before in zip(run, states, befores, strict=False)]
+        last = (len(run) - 1) * self.dt_s
+        return [
+            self._moved(e, s, before, last - k * self.dt_s)
+            for k, (e, s, before) in enumerate(zip(run, states, befores, strict=False))
+        ]
 
     def linear_step(self, before: Posterior, estimate: Posterior) -> LinearStep:
         """About the filter's own course."""
@@ -186,16 +212,20 @@ class DynamicTracking(TrackingFilter):
         moved = self.kalman.plant.retract(state, *later.corrected(state.P))
         return self._moved(estimate, moved, moved if before is None else _record(before).state)
 
-    def _moved(self, estimate: Posterior, state: DynamicState, before: DynamicState) -> Posterior:
+    def _moved(
+        self, estimate: Posterior, state: DynamicState, before: DynamicState, ahead_s: float = np.inf
+    ) -> Posterior:
         """An estimate whose state later frames have corrected.
 
         Args:
             estimate: The filter's own.
             state: The corrected state.
             before: That of the frame before.
+            ahead_s: Time over which later frames are known; at the end of a trial there are none.
         """
-        inner = _record(estimate)._replace(state=state)
-        steps = self.kalman.settings.errors.smoothed_lag_s / self.dt_s
+        inner, s = _record(estimate)._replace(state=state), self.kalman.settings.errors
+        unknown = float(np.exp(-ahead_s / LATER_FADES_S))
+        steps = (s.smoothed_lag_s + unknown * (s.lag_s - s.smoothed_lag_s)) / self.dt_s
         return estimate._replace(
             q=state.q,
             v=state.v,
@@ -205,6 +235,7 @@ class DynamicTracking(TrackingFilter):
             support=self.loads.wrench(self.loads.of(inner)),
             lag=steps
             * np.concatenate([state.a - before.a, state.w - before.w, self.loads.change(before, state)]),
+            later=state.P is not _record(estimate).state.P,
         )
 
     def _estimate(self, step: DynamicStep) -> Posterior:

@@ -11,6 +11,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.estimate import NO_WRENCH, Posterior, Prediction, Recording, TrackingFilter
 from mbkf.filters.filter import Memory, Prior, Step
+from mbkf.filters.innovations import Innovations
 from mbkf.filters.kinematic.filter import KinematicFilter, VelocityStep
 from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.filters.spread import Spread, SpreadReader
@@ -151,7 +152,7 @@ class KinematicTracking(TrackingFilter):
         torque = np.full(nv, np.nan)
         if inner.step is not None and inner.before is not None:
             change = VelocityStep(inner.before, inner.step, self.kalman.plant).covariance
-            torque = self._reader.torque(q, change, self.dt_s)
+            torque = self._reader.torque_variance(q, change, self.dt_s)
         return Spread(self._reader, q, np.diagonal(P)[:nv], np.diagonal(P)[nv:], torque, lambda: P[:nv, :nv])
 
     def wrench_sd(self, estimate: Posterior) -> Array:
@@ -159,10 +160,10 @@ class KinematicTracking(TrackingFilter):
         del estimate
         return NO_WRENCH
 
-    def innovation(self, estimate: Posterior) -> tuple[float, int]:
+    def innovations(self, estimate: Posterior) -> Innovations | None:
         """Of the markers."""
         step = _record(estimate).step
-        return (np.nan, 0) if step is None else (step.nis, step.nis_readings)
+        return None if step is None else step.innovations
 
     def smooth(
         self, run: Sequence[Posterior], recording: Recording, first: int, wanted: int

@@ -21,7 +21,7 @@ from mbkf.filters.torque.report import TorqueState, reported
 from mbkf.filters.torque.settings import MASS_OF_TABLE_KG, TorqueSettings
 from mbkf.filters.torque.start import TorqueStart
 from mbkf.model.human_dynamics import HumanDynamics
-from mbkf.numerics.kalman import correct, informed_whole
+from mbkf.numerics.kalman import informed_whole
 from mbkf.sensors.block import AnyBlock, Frame, Notes, OperatingPoint
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import ContactDecision
@@ -210,17 +210,7 @@ class TorqueFilter(Filter[ForcedState]):
 
     def _with_plates(self, memory: Memory, plates: PlateMemory) -> Memory:
         blocks = zip(self.blocks, memory.blocks, strict=True)
-        return Memory(memory.plant, tuple(plates if one is self.plates else kept for one, kept in blocks))
-
-    def nis(self, step: TorqueStep) -> float:
-        """Normalised innovation squared of markers and plates, from the components that they read.
-
-        Equal to the step's own up to rounding, which the many silent components of the whole state make larger.
-        """
-        columns, known = self.plates.columns, step.readings.instruments
-        whole = np.ix_(columns, columns)
-        read = known._replace(matrix=known.matrix[whole], vector=known.vector[columns])
-        return correct(step.prior.state.P[whole], read).nis
+        return memory._replace(blocks=tuple(plates if one is self.plates else kept for one, kept in blocks))
 
     def report(self, state: ForcedState) -> TorqueState:
         """What a mean and covariance of (q, v, u) say of motion and forces."""

@@ -11,6 +11,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.estimate import Posterior, Prediction, Recording, TrackingFilter
 from mbkf.filters.filter import Memory
+from mbkf.filters.innovations import Innovations
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.tracking import warm_start
 from mbkf.filters.spread import Spread, SpreadReader
@@ -33,13 +34,11 @@ class TorqueRecord:
         state: Its state, with what follows from it.
         memory: For the next step.
         step: The step to it; None at a start, and where nothing could be computed.
-        nis: Normalised innovation squared of markers and plates in the step.
     """
 
     state: TorqueState
     memory: Memory
     step: TorqueStep | None
-    nis: float = np.nan
 
 
 def _record(estimate: Posterior) -> TorqueRecord:
@@ -89,7 +88,7 @@ class TorqueTracking(TrackingFilter):
     def _advanced(self, was: TorqueRecord, frame: Frame) -> TorqueRecord:
         step = self.kalman.step(was.state.filtered, was.memory, frame)
         state = self.kalman.report(step.state)
-        return TorqueRecord(state, step.memory, step, self.kalman.nis(step))
+        return TorqueRecord(state, step.memory, step)
 
     def _untouched(self, record: TorqueRecord, contact: ContactDecision, recording: Recording) -> Posterior:
         """A posterior that no step led to."""
@@ -107,17 +106,22 @@ class TorqueTracking(TrackingFilter):
         state = _record(estimate).state
         P, nv = self.covariance(estimate), self.model.nv
         return Spread(
-            self._reader, state.q, np.diagonal(P)[:nv], np.diagonal(P)[nv:], state.tau_sd, lambda: P[:nv, :nv]
+            self._reader,
+            state.q,
+            np.diagonal(P)[:nv],
+            np.diagonal(P)[nv:],
+            state.tau_sd**2,
+            lambda: P[:nv, :nv],
         )
 
     def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) of the state's wrenches, carried to the world's origin."""
         return _record(estimate).state.foot_wrench_sd
 
-    def innovation(self, estimate: Posterior) -> tuple[float, int]:
+    def innovations(self, estimate: Posterior) -> Innovations | None:
         """Of markers and plates."""
-        record = _record(estimate)
-        return record.nis, 0 if record.step is None else record.step.nis_readings
+        step = _record(estimate).step
+        return None if step is None else step.innovations
 
     def smooth(
         self, run: Sequence[Posterior], recording: Recording, first: int, wanted: int

@@ -2,7 +2,7 @@
 
 A start looks a quarter of a second ahead, so the frames it needs are awaited and then caught up with; from then on each
 frame is answered at once, or with a fixed lag when the frames of the lag have followed it. Where no frame was lost the
-results are those of ``reconstruct`` on the same frames; only standard deviations stay those without a lag.
+results are the causal ones of ``reconstruct`` on the same frames; only standard deviations stay those without a lag.
 """
 
 from __future__ import annotations
@@ -15,20 +15,33 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.errors import MbkfError
+from mbkf.errors import InvalidInput, MbkfError
 from mbkf.filters.estimate import Posterior, Prediction, Recording, TrackingFilter
 from mbkf.filters.kinematic.tracking import warm_up_frames
 from mbkf.filters.lag import FixedLag
 from mbkf.filters.tracking_loop import TrackingLoop
 from mbkf.io.records import MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject, match_names
-from mbkf.pipelines.reconstruct import subject_markers
+from mbkf.pipelines.reconstruct import ReconstructSettings, subject_markers
 from mbkf.pipelines.trial.filters import FilterInputs
 from mbkf.pipelines.trial.inputs import FilterSettings, trial_inputs
 from mbkf.sensors.block import Frame
 
 NUMERICAL = (np.linalg.LinAlgError, ArithmeticError, ValueError, MbkfError)
 """Errors of arithmetic on unusable readings; the filter then starts anew."""
+
+
+def live_settings(settings: ReconstructSettings) -> ReconstructSettings:
+    """The settings as a live filter takes them: causal, or with their lag.
+
+    Raises:
+        InvalidInput: Smoothing is asked for.
+    """
+    if settings.smooth:
+        raise InvalidInput(
+            "smooth=True needs frames that a live filter has not seen yet; leave it out, or give a lag (lag_s)"
+        )
+    return replace(settings, smooth=False)
 
 
 @dataclass(frozen=True)

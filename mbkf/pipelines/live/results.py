@@ -1,4 +1,4 @@
-"""The results of a live run from its log, equal to those of ``reconstruct`` on the same frames."""
+"""The results of a live run from its log, equal to the causal ones of ``reconstruct`` on the same frames."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ def live_results(folder: Path, notes: tuple[str, ...] = ()) -> Reconstruction:
     """
     logged = read_live_log(folder)
     subject = read_subject(folder / SUBJECT_FILE)
-    settings = ReconstructSettings(filter=str(logged.settings["filter"]), correct_markers=False)
+    chosen = str(logged.settings["filter"])
+    settings = ReconstructSettings(filter=chosen, smooth=False, correct_markers=False)
     result = track_of(logged.rows)
     if not result.starts:
         raise NotObservable(

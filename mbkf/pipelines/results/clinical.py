@@ -22,6 +22,7 @@ class ClinicalMotion:
     """Coordinates, rates and conjugate moments (T, A) with standard deviations; NaN where untracked.
 
     In ``angles_lab`` the root's angles are in the laboratory's axes, in the others in the frame of progression.
+    ``…_offset`` is the part of a standard deviation that repeats in the same posture.
     """
 
     names: tuple[str, ...]
@@ -32,6 +33,9 @@ class ClinicalMotion:
     angles_sd: Array
     rates_sd: Array
     moments_sd: Array
+    angles_offset: Array
+    rates_offset: Array
+    moments_offset: Array
     singular: BoolArray
 
 
@@ -68,22 +72,27 @@ def clinical_motion(
         angles = clinical.angles(seen)
     known = np.asarray(np.isfinite(track.q).all(axis=1))
     shape = angles.shape
-    rates, moments, moments_sd = (np.full(shape, np.nan) for _ in range(3))
+    rates, moments, moments_sd, moments_offset = (np.full(shape, np.nan) for _ in range(4))
     q, v, theta = track.q[known], track.v[known], angles[known]
     if not in_laboratory:
         v = v.copy()
         v[:, clinical.root_turns] -= frame.turning_rad_s[known, None] * clinical.vertical(q)
-    rates[known], spread = _rates(clinical, q, theta, v, track.velocity_sd[known])
+    velocity_spreads = np.stack([track.velocity_sd[known], track.velocity_offset[known]])
+    rates[known], rate_spreads = _rates(clinical, q, theta, v, velocity_spreads)
     renewed = _renewed(clinical, in_laboratory)
     angles_sd, rates_sd = track.angle_sd.copy(), track.rate_sd.copy()
+    angles_offset, rates_offset = track.angle_offset.copy(), track.rate_offset.copy()
     rows = np.ix_(np.flatnonzero(known), renewed)
     if len(renewed):
         angles_sd[rows] = clinical.ball_spread(q, theta, track.ball_covariance[known])[:, renewed]
-        rates_sd[rows] = spread[:, renewed]
+        angles_offset[rows] = clinical.ball_spread(q, theta, track.ball_offset[known])[:, renewed]
+        rates_sd[rows], rates_offset[rows] = rate_spreads[..., renewed]
     own = ClinicalAngles(model)
     own_angles = theta if reading is None or not reading.joints else own.angles(seen)[known]
     moments[known] = own.moments(q, tau[known], own_angles)
     moments_sd[known] = own.moments_sd(q, tau_sd[known], own_angles)
+    tau_offset = np.where(np.isnan(tau_sd), np.nan, track.torque_offset)
+    moments_offset[known] = own.moments_sd(q, tau_offset[known], own_angles)
     singular = np.zeros(shape, dtype=bool)
     singular[known] = clinical.singular(theta)
     zero = 0.0 if zero_q is None else _of_joints(clinical, zero_q)
@@ -96,6 +105,9 @@ def clinical_motion(
         angles_sd,
         rates_sd,
         moments_sd,
+        angles_offset,
+        rates_offset,
+        moments_offset,
         singular,
     )
 
@@ -115,13 +127,22 @@ def _renewed(clinical: ClinicalAngles, in_laboratory: bool) -> Array:
 
 
 def _rates(
-    clinical: ClinicalAngles, q: Array, angles: Array, v: Array, velocity_sd: Array
+    clinical: ClinicalAngles, q: Array, angles: Array, v: Array, velocity_spreads: Array
 ) -> tuple[Array, Array]:
-    """(T, A) E v and √(E² sd²), some frames at a time, because E has (A, nv) numbers per frame."""
-    rates, spreads = [np.empty((0, len(clinical.names)))], [np.empty((0, len(clinical.names)))]
+    """(T, A) E v and (S, T, A) √(E² sd²) of S spreads, some frames at a time, because E is large.
+
+    Args:
+        clinical: The coordinates.
+        q: (T, nq) configurations.
+        angles: (T, A) their coordinates.
+        v: (T, nv) velocities.
+        velocity_spreads: (S, T, nv) standard deviations of these, or parts of them.
+    """
+    width = len(clinical.names)
+    rates, spreads = [np.empty((0, width))], [np.empty((len(velocity_spreads), 0, width))]
     for first in range(0, len(q), BLOCK):
         b = slice(first, first + BLOCK)
         E = clinical.rate_matrices(q[b], angles[b])
         rates.append(np.einsum("tai,ti->ta", E, v[b]))
-        spreads.append(np.sqrt(np.einsum("tai,ti->ta", E**2, velocity_sd[b] ** 2)))
-    return np.concatenate(rates), np.concatenate(spreads)
+        spreads.append(np.sqrt(np.einsum("tai,sti->sta", E**2, velocity_spreads[:, b] ** 2)))
+    return np.concatenate(rates), np.concatenate(spreads, axis=1)

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.axes import axes_matrix
 from mbkf.io.contacts import ContactInterval
-from mbkf.io.results import Reconstruction
+from mbkf.io.results import Reconstruction, SdPart
 from mbkf.io.results_folder import AxesTold, ContactTold, Summary
 from mbkf.io.truth import Truth
 from mbkf.model.human import HumanModel, reference_body
+from mbkf.pipelines.results import innovations
 from mbkf.pipelines.results.progression import kind_of
-
-SETTLING_S = 0.5
-"""Innovations within this time after the start are left out, while the filter settles."""
 
 ROOT_DOFS = 6
 _MM = 1e3
@@ -39,13 +39,14 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
     missing = ~r.present
     seen_mm, hidden_mm = _marker_errors(r)
     change = np.full((0, 1, 6), np.nan) if r.plate_change is None else r.plate_change
-    peaks, sd = _torques(r)
+    peaks, sd, sd_offset, sd_varying = _torques(r)
     computing = float(np.nansum(r.step_seconds))
     return {
         "trial": r.trial,
         "protocol": r.protocol,
         "filter": r.filter,
         "smoothed": bool(r.smoothed),
+        "later_frames": r.later_frames,
         "version": r.version,
         "direction": r.direction,
         "progression": progression_summary(r),
@@ -72,7 +73,11 @@ def summarise(reconstruction: Reconstruction, truth: Truth | None = None) -> Sum
         "plate_moment_change_rms_nm": _rms(change[..., 3:]),
         "torque_peak_nm_per_kg": peaks,
         "torque_sd_nm": sd,
-        "nis_per_dof": _nis_per_reading(r),
+        "torque_sd_offset_nm": sd_offset,
+        "torque_sd_varying_nm": sd_varying,
+        "nis_per_dof": innovations.per_reading(r),
+        "nis": innovations.by_kind(r),
+        "marker_noise_mm_by_name": innovations.marker_noise_mm(r),
         "step_seconds_median": _quantile(r.step_seconds, 50),
         "step_seconds_p99": _quantile(r.step_seconds, 99),
         "realtime_factor": r.frames / float(r.rate_hz) / computing if computing > 0 else None,
@@ -125,24 +130,20 @@ def _marker_errors(r: Reconstruction) -> tuple[Array, Array]:
     return np.where(r.present & r.tracked[:, None], distance, np.nan), np.where(r.hidden, distance, np.nan)
 
 
-def _torques(r: Reconstruction) -> tuple[dict[str, float | None], dict[str, float | None]]:
-    """Flexion torque of every joint but the root by the joint's name: peak in N m/kg, mean deviation in N m."""
+def _torques(r: Reconstruction) -> list[dict[str, float | None]]:
+    """Flexion torque of every joint but the root by the joint's name: peak in N m/kg; mean deviations in N m."""
     main = {
         j.name: j.main
         for j in reference_body(r.subject).clinical_joints
         if j.proximal != "world" and j.main in r.coordinate_names
     }
     peaks = {joint: _largest(np.abs(r.moment(name)[r.tracked])) for joint, name in main.items()}
-    sd = {joint: _mean(r.moment_sd(name)[r.tracked]) for joint, name in main.items()}
+    spreads = [
+        {joint: _mean(r.moment_sd(name, part)[r.tracked]) for joint, name in main.items()}
+        for part in get_args(SdPart)
+    ]
     per_kg = {joint: None if peak is None else peak / r.subject.mass_kg for joint, peak in peaks.items()}
-    return per_kg, sd
-
-
-def _nis_per_reading(r: Reconstruction) -> float | None:
-    """Mean over frames after the first half second of the innovation squared per reading."""
-    settled = r.times_s >= (r.times_s[0] + SETTLING_S if r.frames else 0.0)
-    counted = settled & (r.nis_readings > 0) & np.isfinite(r.nis)
-    return _mean(r.nis[counted] / r.nis_readings[counted])
+    return [per_kg, *spreads]
 
 
 def compare_with_truth(reconstruction: Reconstruction, truth: Truth) -> dict[str, float | None]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput, UnknownName
+from mbkf.filters.body_errors import BodyErrors
 from mbkf.filters.dynamic.filter import DynamicFilter, dynamic_blocks
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.dynamic.tracking import DynamicTracking
@@ -42,6 +43,7 @@ class FilterInputs:
         spread_m: (M,) spread of one reading where noise stays for a while, None where no marker's does.
         remarks: What was refused of the plates' readings, in words.
         other_contacts: Whether parts besides the feet bear load somewhere in the trial.
+        body: What estimates err by because the person's body is not known exactly; None where that is not told.
     """
 
     sensor: MarkerSensor
@@ -56,6 +58,7 @@ class FilterInputs:
     spread_m: Array | None = None
     remarks: tuple[str, ...] = ()
     other_contacts: bool = False
+    body: BodyErrors | None = None
 
 
 def _kinematic(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:

@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.filters.body_errors import BodyErrors
 from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.estimate import Recording
 from mbkf.filters.kinematic.settings import KinematicSettings
@@ -70,9 +71,28 @@ def trial_inputs(
         settings.torque,
         spread_m=spread_m,
         remarks=remarks,
+        body=_body_errors(sensor, noise_m, shown.names, subject),
     )
     wrenches = plate_wrenches(plates, shown.times_s, shown.rate_hz)
     return inputs, Recording(shown.positions_m, wrenches, inputs.dt_s)
+
+
+def _body_errors(
+    sensor: MarkerSensor, noise_m: Array, names: Sequence[str], subject: Subject
+) -> BodyErrors | None:
+    """Errors by what scaling left unknown; a marker that it did not see may be anywhere that its session allows.
+
+    Args:
+        sensor: The markers on the body.
+        noise_m: (M,) standard deviation that filters weigh each with.
+        names: Their names.
+        subject: The person.
+    """
+    known = subject.covariance
+    if known is None:
+        return None
+    session = {marker.name: marker.session_sd_m for marker in subject.markers}
+    return BodyErrors(sensor, noise_m, known.rows(names, session))
 
 
 def _noise(markers: Sequence[SubjectMarker], dt_s: float, share: float) -> tuple[Array, Array | None]:

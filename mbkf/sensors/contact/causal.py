@@ -128,7 +128,13 @@ class ContactDetector:
             free,
             elsewhere.near,
             elsewhere.floor_m_s,
+            self._below(plate_wrench),
         )
+
+    def _below(self, plate_wrench: Array) -> Array | None:
+        """(6,) sum of the wrenches (K, 6) that are smaller than what counts as a load; None for nothing."""
+        small = (plate_wrench[:, 2] > 0.0) & (plate_wrench[:, 2] < self._least_n)
+        return plate_wrench[small].sum(axis=0) if small.any() else None
 
     def planted(self, decision: ContactDecision, q: Array, foot: int) -> Planted | None:
         """The point at which a loaded foot does not slide; None for a foot in the air.

@@ -86,6 +86,8 @@ class ContactDecision:
         free: Where both feet stand if both carry weight where no plate reads; None else.
         near: How near right and left foot in the air are to touching a floor that no plate reads, 0 to 1.
         floor_m_s: Horizontal velocity of the floor: that of a belt, else zero.
+        below: (6,) sum of what plates read below the threshold from which they count as loaded, N, N m about the
+            world's origin; None for nothing.
     """
 
     contacts: tuple[Contact, Contact]
@@ -97,6 +99,7 @@ class ContactDecision:
     free: FreeStance | None = None
     near: tuple[float, float] = (0.0, 0.0)
     floor_m_s: tuple[float, float] = (0.0, 0.0)
+    below: Array | None = None
 
 
 class Planted(NamedTuple):

@@ -29,6 +29,8 @@ class LiveFrame:
         predicted_m: (M, 3) the same markers on the body.
         unlabelled_m: (N, 3) points without a name.
         angle_sd: (A,) standard deviations of the clinical coordinates, rad; of the pelvis's translations m.
+        angle_offset, torques_offset, wrench_offset: The part of ``angle_sd``, ``torques_sd`` and ``wrench_sd`` that
+            repeats whenever the posture is the same, because the body is not known exactly.
         latency_s: Time from the frame's arrival to this result, a lag included.
         lost: Frames lost so far.
         rate_hz: Rate of the frames of the last second.
@@ -53,6 +55,9 @@ class LiveFrame:
     predicted_m: Array
     unlabelled_m: Array
     angle_sd: Array
+    angle_offset: Array
+    torques_offset: Array
+    wrench_offset: Array
     latency_s: float
     lost: int
     rate_hz: float

@@ -16,7 +16,7 @@ class ResultValues:
     """Turns frames into rows of named numbers, one after another.
 
     Angles in rad (the pelvis's translations in m), moments in N m (N), reactions in N and N m about the world's origin,
-    z up.
+    z up. ``…_sd_offset`` is the part of a standard deviation that repeats whenever the posture is the same.
 
     Attributes:
         names: Of the numbers.
@@ -38,6 +38,9 @@ class ResultValues:
             ([f"{name}_moment_sd" for name in angles], nm),
             (loads, newton),
             ([f"{name}_sd" for name in loads], newton),
+            ([f"{name}_sd_offset" for name in angles], rad),
+            ([f"{name}_moment_sd_offset" for name in angles], nm),
+            ([f"{name}_sd_offset" for name in loads], newton),
         ]
         self.names: tuple[str, ...] = tuple(name for names, _ in groups for name in names)
         self.units: tuple[str, ...] = tuple(unit for _, units in groups for unit in units)
@@ -47,15 +50,14 @@ class ResultValues:
 
         Angles stay continuous with the row before.
         """
-        count = len(self._clinical.names)
-        values = np.full(len(self.names), np.nan)
+        told = np.full((6, len(self._clinical.names)), np.nan)
         if np.isfinite(frame.q).all():
-            q = frame.q[None]
-            angles = self._clinical.angles(q, self._before)
+            q, clinical = frame.q[None], self._clinical
+            angles = clinical.angles(q, self._before)
             self._before = angles[0]
-            values[:count] = angles[0]
-            values[count : 2 * count] = frame.angle_sd
-            values[2 * count : 3 * count] = self._clinical.moments(q, frame.torques[None], angles)[0]
-            values[3 * count : 4 * count] = self._clinical.moments_sd(q, frame.torques_sd[None], angles)[0]
-        values[4 * count :] = np.concatenate([frame.wrench.ravel(), frame.wrench_sd.ravel()])
-        return values
+            moments = clinical.moments(q, frame.torques[None], angles)[0]
+            moments_sd = clinical.moments_sd(q, frame.torques_sd[None], angles)[0]
+            moments_offset = clinical.moments_sd(q, frame.torques_offset[None], angles)[0]
+            told[:] = angles[0], frame.angle_sd, moments, moments_sd, frame.angle_offset, moments_offset
+        loads = frame.wrench.ravel(), frame.wrench_sd.ravel()
+        return np.concatenate([told[:4].ravel(), *loads, told[4:].ravel(), frame.wrench_offset.ravel()])

@@ -10,6 +10,7 @@ from pathlib import Path
 from mbkf.io.results_folder import Summary
 from mbkf.io.subject import Subject
 from mbkf.numerics.threads import single_threaded
+from mbkf.pipelines.live.filter import live_settings
 from mbkf.pipelines.reconstruct import ReconstructSettings
 from mbkf.stream.receiving.receiver import Receiver
 from mbkf.stream.results.frame import FrameSink
@@ -61,12 +62,15 @@ class LiveSession:
         Args:
             source: Where frames come from.
             subject: The scaled person.
-            settings: The filter and its settings.
+            settings: The filter and its settings; the answer is causal, or has their lag.
             folder: For the results.
             source_name: Name of the source, for messages and live.json.
             scaling: How the person was scaled from the stream, for live.json.
+
+        Raises:
+            InvalidInput: Smoothing is asked for.
         """
-        self._source, self._subject, self._settings = source, subject, settings
+        self._source, self._subject, self._settings = source, subject, live_settings(settings)
         self._folder, self._source_name = folder, source_name
         self._scaling = {} if scaling is None else {"scaling": dict(scaling)}
         self._events = EventLog()

@@ -10,7 +10,8 @@ import numpy as np
 from mbkf.io.contacts import ContactInterval, bearing
 from mbkf.io.results import Reconstruction
 from mbkf.viz.markup import folded, key, paragraph, section, table
-from mbkf.viz.report.motion import Cell, Curve, charts, facing, force_cells, is_long, time_chart
+from mbkf.viz.report.motion import Cell, charts, facing, force_cells, is_long, time_chart
+from mbkf.viz.report.spreads import Curve, band_key
 from mbkf.viz.svg import Bar, bar_chart, number
 from mbkf.viz.wording import part_wording
 
@@ -67,7 +68,7 @@ def support_cells(r: Reconstruction) -> list[list[Cell]]:
         if bears[:, k].any():
             words = part_wording(name)
             sd = np.where(bears[:, [k]], r.support_wrench_sd[:, k, :3], np.nan)
-            kinds.setdefault(words.title, {})[words.side] = (r.support_wrench[:, k, :3], sd)
+            kinds.setdefault(words.title, {})[words.side] = Curve(r.support_wrench[:, k, :3], sd)
     return [force_cells(axes, forces, 1.0, "N", title) for title, forces in kinds.items()]
 
 
@@ -80,7 +81,7 @@ def _forces(r: Reconstruction) -> list[str]:
     entries = [(f"swatch {side or 'm'}", word) for side, word in sides if side in there]
     return [
         "<h3>Forces on other parts than the feet, against time</h3>",
-        key(*entries, ("swatch band", "± 2 standard deviations")),
+        key(*entries, *band_key(False)),
         charts(cells, partial(time_chart, r.times_s), is_long(r)),
     ]
 

@@ -119,27 +119,19 @@ def _heading(r: Reconstruction) -> str:
         f"{r.subject.mass_kg:.1f} kg{height}",
         f"{r.frames} frames at {r.rate_hz:g} Hz, {duration:.2f} s",
         f"{len(r.marker_names)} markers, protocol {r.protocol}",
-        f"{r.filter} filter, {_later(r)}",
+        f"{r.filter} filter, {r.later_frames}",
         f"mbkf {r.version}",
     )
     return f"<h1>{escape(r.trial)}</h1><p class='facts'>{' · '.join(escape(fact) for fact in facts)}</p>"
 
 
-def _later(r: Reconstruction) -> str:
-    """Which later frames a frame knows."""
-    if r.smoothed:
-        return "smoothed"
-    return f"fixed lag of {r.lag_ms:g} ms" if r.lag_ms else "frame by frame"
-
-
 def _settings(r: Reconstruction, summary: Mapping[str, object]) -> str:
     speed = summary.get("realtime_factor")
     seconds = summary.get("step_seconds_median")
-    run = [("filter", r.filter), ("later frames", _later(r)), ("version", r.version)]
+    run = [("filter", r.filter), ("later frames", r.later_frames), ("version", r.version)]
     if speed and isinstance(speed, int | float) and isinstance(seconds, int | float):
-        run.append(
-            ("computing time", f"{1e3 * seconds:.2f} ms a frame (median), {speed:.1f} times real time")
-        )
+        told = f"{1e3 * seconds:.2f} ms a frame (median), {speed:.1f} times real time"
+        run.append(("computing time", f"{told}; smoothing not counted" if r.smoothed else told))
     chosen = r.settings.get(r.filter, {})
     others = {k: v for k, v in r.settings.items() if k not in ("kinematic", "dynamic", "torque", "filter")}
     return section(

@@ -15,8 +15,9 @@ from mbkf.model.human import reference_body
 from mbkf.pipelines.gait.cycles import POINTS, Gait, over_cycle
 from mbkf.pipelines.gait.events import feet_in_motion
 from mbkf.viz.markup import folded, grid, key, paragraph, section, table
+from mbkf.viz.report.spreads import Curve, band_key, cycle_sd, offsets_told, spread_note
 from mbkf.viz.svg import WIDTH, Line, Mark, chart, number
-from mbkf.viz.wording import SIDE_NAMES, wordings
+from mbkf.viz.wording import SIDE_NAMES, Wording, wordings
 
 MOST_SINGLE = 8
 """Of more cycles than this, so many are drawn one by one, evenly chosen; the mean is that of all."""
@@ -53,10 +54,6 @@ def joint_names(body: BodyDescription) -> JointNames:
     return JointNames(tuple(legs), tuple(name for name in legs if name not in unloaded), tuple(upper))
 
 
-Curve = tuple[Array, Array | None]
-"""(T,) values and (T,) standard deviations, or None."""
-
-
 @dataclass(frozen=True)
 class Cell:
     """One chart: a quantity of both sides, or of the midline.
@@ -74,7 +71,7 @@ class Cell:
 
 def motion_section(r: Reconstruction, gait: Gait | None) -> str:
     """Angles and torques: over the cycle where there is gait, then against time."""
-    body = [_unobserved(r), _ranges(r)]
+    body = [_unobserved(r), paragraph(spread_note(r)), _ranges(r)]
     if gait is not None:
         body += _curves(r, "over the gait cycle", partial(cycle_chart, r.times_s, gait), gait, broad=False)
     against = _curves(r, "against time", partial(time_chart, r.times_s), None, broad=is_long(r))
@@ -88,7 +85,7 @@ def _curves(
     names = joint_names(reference_body(r.subject))
     parts = [
         f"<h3>Joint angles {how}</h3>",
-        _key(gait),
+        _key(r, gait),
         charts(angle_cells(r, names.legs), draw, broad),
         folded("Trunk, head and arms: angles", charts(angle_cells(r, names.upper), draw, broad)),
         f"<h3>Joint torques {how}</h3>",
@@ -117,18 +114,29 @@ def reaction_section(r: Reconstruction, gait: Gait | None) -> str:
         ]
     cells = reaction_cells(r, 1.0, "N")
     body += ["<h3>Against time</h3>", charts([cells], partial(time_chart, r.times_s), is_long(r))]
-    return section("reactions", "Ground reactions", _key(gait), *body)
+    return section("reactions", "Ground reactions", _key(r, gait), *body)
 
 
 def angle_cells(r: Reconstruction, joints: Sequence[str]) -> list[list[Cell]]:
     """Charts of angles, one row for each joint."""
-    return _cells(r, joints, "", lambda name, w: (w.factor * r.angle(name), w.factor * r.angle_sd(name)))
+    told = offsets_told(r)
+
+    def curve(name: str, words: Wording) -> Curve:
+        sd, offset = r.angle_sd(name), r.angle_sd(name, "offset")
+        return Curve(*(words.factor * one for one in (r.angle(name), sd, *([offset] if told else []))))
+
+    return _cells(r, joints, "", curve)
 
 
 def torque_cells(r: Reconstruction, joints: Sequence[str]) -> list[list[Cell]]:
     """Charts of torques per body mass, one row for each joint."""
-    per_kg = 1.0 / r.subject.mass_kg
-    return _cells(r, joints, "N m/kg", lambda name, _: (per_kg * r.moment(name), per_kg * r.moment_sd(name)))
+    told, mass = offsets_told(r), r.subject.mass_kg
+
+    def curve(name: str, _: Wording) -> Curve:
+        sd, offset = r.moment_sd(name), r.moment_sd(name, "offset")
+        return Curve(*(one / mass for one in (r.moment(name), sd, *([offset] if told else []))))
+
+    return _cells(r, joints, "N m/kg", curve)
 
 
 def reaction_cells(r: Reconstruction, factor: float, unit: str) -> list[Cell]:
@@ -140,7 +148,11 @@ def reaction_cells(r: Reconstruction, factor: float, unit: str) -> list[Cell]:
         unit: The unit shown.
     """
     sd = np.full_like(r.foot_wrench, np.nan) if r.foot_wrench_sd is None else r.foot_wrench_sd
-    feet: dict[str, Curve] = {side: (r.foot_wrench[:, k, :3], sd[:, k, :3]) for k, side in enumerate(SIDES)}
+    offset = r.foot_wrench_sd_offset if offsets_told(r) else None
+    feet = {
+        side: Curve(r.foot_wrench[:, k, :3], sd[:, k, :3], None if offset is None else offset[:, k, :3])
+        for k, side in enumerate(SIDES)
+    }
     return force_cells(facing(r), feet, factor, unit)
 
 
@@ -151,7 +163,7 @@ def force_cells(
 
     Args:
         axes: (T, 3, 3) rows: forward, to the left, up.
-        forces: (T, 3) world force and standard deviations by side.
+        forces: (T, 3) world force with its spread by side.
         factor: Factor from N to the unit shown.
         unit: The unit shown.
         part: What the forces act on, before the charts' titles.
@@ -163,10 +175,14 @@ def force_cells(
         ("Sideways", 1, "to the left"),
     ):
         curves: dict[str, Curve] = {}
-        for side, (force, sd) in forces.items():
+        for side, (force, *spreads) in forces.items():
             along = np.einsum("tj,tj->t", axes[:, axis], force)
-            spread = None if sd is None else np.sqrt(np.einsum("tj,tj->t", axes[:, axis] ** 2, sd**2))
-            curves[side] = (factor * along, None if spread is None else factor * spread)
+            shown = [
+                factor * np.sqrt(np.einsum("tj,tj->t", axes[:, axis] ** 2, sd**2))
+                for sd in spreads
+                if sd is not None
+            ]
+            curves[side] = Curve(factor * along, *shown)
         cells.append(Cell(f"{part}, {title.lower()}" if part else title, unit, positive, curves))
     return cells
 
@@ -204,7 +220,7 @@ def _cells(
             names = {"r": angle.name, "l": angle.name[:-2] + "_l"} if w.side else {"": angle.name}
             known = {side: name for side, name in names.items() if name in r.coordinate_names}
             curves = {side: curve(name, words[name]) for side, name in known.items()}
-            if any(np.isfinite(values).any() for values, _ in curves.values()):
+            if any(np.isfinite(one.values).any() for one in curves.values()):
                 row.append(Cell(w.title, unit or w.unit, w.positive, curves))
         if row:
             rows.append(row)
@@ -232,7 +248,9 @@ def charts(rows: list[list[Cell]], draw: Callable[[Cell], str], broad: bool) -> 
 
 def time_chart(times_s: Array, cell: Cell) -> str:
     """A cell against time; as broad as the page where the trial is long."""
-    lines = [Line(times_s, values, sd, side) for side, (values, sd) in cell.curves.items()]
+    lines = [
+        Line(times_s, one.values, one.sd, side, inner_sd=one.inner_sd) for side, one in cell.curves.items()
+    ]
     span = (float(times_s[0]), float(max(times_s[-1], times_s[0] + 1e-3)))
     width = BROAD if span[1] - span[0] > LONG_S else WIDTH
     return chart(cell.title, cell.unit, lines, span, "s", note=f"positive: {cell.positive}", width=width)
@@ -250,19 +268,16 @@ def cycle_chart(times_s: Array, gait: Gait, cell: Cell) -> str:
     """
     percent = np.linspace(0.0, 100.0, POINTS)
     thin, bold, marks = [], [], []
-    for side, (values, sd) in cell.curves.items():
+    for side, curve in cell.curves.items():
         cycles = gait.of(SIDES.index(side)) if side else gait.of(0) or gait.of(1)
         if not cycles:
             continue
-        each = np.array([over_cycle(times_s, values, cycle) for cycle in cycles])
-        wide = None
-        if sd is not None:
-            variances = np.array([over_cycle(times_s, sd, cycle) ** 2 for cycle in cycles])
-            wide = np.sqrt(variances.mean(axis=0))
+        each = np.array([over_cycle(times_s, curve.values, cycle) for cycle in cycles])
+        wide, inner = (cycle_sd(times_s, sd, cycles) for sd in (curve.sd, curve.inner_sd))
         if len(cycles) > 1:
             some = np.unique(np.linspace(0, len(cycles) - 1, MOST_SINGLE).astype(int))
             thin += [Line(percent, one, None, side, thin=True) for one in each[some]]
-        bold.append(Line(percent, each.mean(axis=0), wide, side))
+        bold.append(Line(percent, each.mean(axis=0), wide, side, inner_sd=inner))
         if side:
             marks.append(Mark(float(np.mean([cycle.off_percent for cycle in cycles])), side))
     note = f"positive: {cell.positive}"
@@ -274,8 +289,8 @@ def is_long(r: Reconstruction) -> bool:
     return float(np.ptp(r.times_s)) > LONG_S
 
 
-def _key(gait: Gait | None) -> str:
-    entries = [("swatch r", "right"), ("swatch l", "left"), ("swatch band", "± 2 standard deviations")]
+def _key(r: Reconstruction, gait: Gait | None) -> str:
+    entries = [("swatch r", "right"), ("swatch l", "left"), *band_key(offsets_told(r))]
     if gait is not None:
         counts = " and ".join(f"{_some(len(gait.of(i)))} {SIDE_NAMES[side]}" for i, side in enumerate(SIDES))
         if len(gait.cycles) > 2:
@@ -307,15 +322,18 @@ def _ranges(r: Reconstruction) -> str:
     if not rows:
         return ""
     heads = ("", "least angle °", "greatest angle °", "least torque N m/kg", "greatest torque N m/kg")
-    return "<h3>Ranges (± 2 standard deviations)</h3>" + table(heads, rows)
+    shift = "; in brackets, by how much of it the whole curve could be shifted" if offsets_told(r) else ""
+    return f"<h3>Ranges (± 2 standard deviations{shift})</h3>" + table(heads, rows)
 
 
 def _extremes(curve: Curve | None, digits: int) -> tuple[str, str]:
-    if curve is None or not np.isfinite(curve[0]).any():
+    if curve is None or not np.isfinite(curve.values).any():
         return "–", "–"
-    values, sd = curve
+    values, sd, offset = curve
     found = []
     for at in (int(np.nanargmin(values)), int(np.nanargmax(values))):
-        band = "" if sd is None or not np.isfinite(sd[at]) else f" ± {number(2 * sd[at], digits)}"
+        band = "" if not np.isfinite(sd[at]) else f" ± {number(2 * sd[at], digits)}"
+        if band and offset is not None:
+            band += f" ({number(2 * offset[at], digits)})"
         found.append(number(float(values[at]), digits) + band)
     return found[0], found[1]

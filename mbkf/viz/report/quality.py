@@ -36,8 +36,8 @@ LEAST_EXPLAINED = 0.6
 CENTRE_OF_MASS_SHARE = 0.55
 """Height of a standing person's centre of mass over body height."""
 
-NIS_RANGE = (0.4, 1.6)
-"""Normalised innovation squared per reading: 1 where the stated noise is right."""
+NIS_RANGE = (0.7, 1.4)
+"""Normalised innovation squared per reading: 1 where readings err as they did just before."""
 
 MOST_NAMED = 8
 """Ignored markers that are named, of each reason."""
@@ -95,7 +95,7 @@ def verdicts(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
     missing = summary.get("missing_fraction") or 0.0
     tracked = 100.0 * float(r.tracked.mean()) if r.frames else 0.0
     fit = [_markers(r, summary), _tracked(r, tracked), *_ignored(summary)]
-    others = [*_residuals(r, summary), _nis(summary.get("nis_per_dof"))]
+    others = [*_residuals(r, summary), _nis(summary)]
     if any(one.kind == BAD for one in fit):
         others = [_doubted(one) for one in others]
         fit = [_doubted(one) for one in fit]
@@ -194,19 +194,22 @@ def _residual(r: Reconstruction, what: str) -> str:
     return f"Residual {what}" + (" after correction" if r.filter in CORRECTING else "")
 
 
-def _nis(value: float | None) -> Verdict:
-    title = "Innovation (NIS)"
+def _nis(summary: JsonTable) -> Verdict:
+    """Innovations as a whole; by kind in the remark."""
+    title, value = "Innovation (NIS)", summary.get("nis_per_dof")
     if value is None:
         return Verdict(title, "–", NONE, "not known")
+    kinds = [f"{name.replace('_', ' ')} {nis:.2f}" for name, nis in (summary.get("nis") or {}).items()]
+    remark = "per reading" + (f": {', '.join(kinds)}" if kinds else "")
     if value > NIS_RANGE[1]:
         return Verdict(
-            title, f"{value:.2f}", CARE, "per reading; above 1: readings stray more than the stated noise"
+            title, f"{value:.2f}", CARE, f"{remark}; above 1: readings err more than they did before"
         )
     if value < NIS_RANGE[0]:
         return Verdict(
-            title, f"{value:.2f}", NONE, "per reading; below 1: the stated noise is larger than the real one"
+            title, f"{value:.2f}", NONE, f"{remark}; below 1: readings err less than any expected of them"
         )
-    return Verdict(title, f"{value:.2f}", GOOD, "per reading; 1 where the stated noise is right")
+    return Verdict(title, f"{value:.2f}", GOOD, f"{remark}; 1 where the trial is coherent")
 
 
 def _tile(v: Verdict) -> str:

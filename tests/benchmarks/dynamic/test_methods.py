@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from benchmarks.checks import Check
-from benchmarks.dynamic import methods
 from benchmarks.dynamic.methods import (
     Method,
     best,
@@ -23,7 +22,6 @@ from mbkf.errors import InvalidInput, MbkfError
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.io.records import Capture
 from mbkf.model.protocol import load_protocol
-from mbkf.pipelines.reconstruct import ReconstructSettings
 from tests.captures import made_markers, made_plates
 
 
@@ -39,15 +37,8 @@ def test_a_method_keeps_marker_positions_and_scales_the_kinematic_filter_only():
 
 def test_the_pair_of_a_filter_is_causal_and_smoothed():
     causal, smoothed = dynamic_pair("dynamic")
-    assert (causal.smooth, smoothed.smooth) == (False, True)
+    assert (causal.settings().smooth, smoothed.settings().smooth) == (False, True)
     assert (causal.label, smoothed.label) == ("dynamic", "dynamic, smoothed")
-
-
-def test_a_smoother_that_does_not_exist_is_named(monkeypatch):
-    none = [one for one in methods.fields(ReconstructSettings) if one.name != "smooth"]
-    monkeypatch.setattr(methods, "fields", lambda _: none)
-    with pytest.raises(InvalidInput, match="no smoother"):
-        Method("kinematic", smooth=True).settings()
 
 
 def test_the_offset_of_a_plate_that_is_free_half_the_time_is_removed():

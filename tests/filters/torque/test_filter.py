@@ -191,13 +191,6 @@ def test_a_step_gives_a_smoother_what_it_needs(model, motions):
     np.testing.assert_array_equal(prior.u, before.u)
 
 
-def test_nis_is_the_steps_own(model, motions):
-    """From the components that are read as from the whole state, up to rounding."""
-    run = Run(model, motions["squat"], TorqueSettings(), frames=5)
-    for step in run.steps:
-        assert run.filter.nis(step) == pytest.approx(step.nis, rel=1e-5)
-
-
 def test_contact_is_decided_where_the_state_before_leads(model, motions):
     """Not at the prediction by forces; it goes on where nothing else can be computed."""
     run = Run(model, motions["squat"], TorqueSettings(), frames=3)

@@ -84,7 +84,7 @@ def test_a_foot_without_a_plate_is_inferred():
     sd = np.array([tracking.wrench_sd(one)[LEFT, 2] for one in found])
     assert rms(vertical[20:]) < 80.0
     assert (sd[20:] > 10.0).all()
-    assert tracking.innovation(found[20])[1] == 3 * 36 + 6
+    assert tracking.innovations(found[20]).readings.sum() == 3 * 36 + 6
 
 
 def test_a_loss_of_markers_leaves_the_plates():
@@ -92,7 +92,7 @@ def test_a_loss_of_markers_leaves_the_plates():
     blind = replace(recording(), markers_m=np.full_like(recording().markers_m, np.nan))
     step = tracking.step(found[20], blind, 21)
     assert not step.tracked
-    assert tracking.innovation(step)[1] == 12
+    assert tracking.innovations(step).readings.sum() == 12
     assert step.contact == found[21].contact
 
 
@@ -107,7 +107,7 @@ def test_what_cannot_be_computed_is_untracked():
     assert step.q is broken.inner.state.q
     assert step.contact == found[21].contact
     assert not step.refused.any()
-    assert np.isnan(tracking.innovation(step)[0]) and tracking.innovation(step)[1] == 0
+    assert tracking.innovations(step) is None
     smoothed = tracking.smooth(
         [found[20], step._replace(inner=replace(step.inner, state=record.state))], recording(), 20, 2
     )

@@ -96,7 +96,8 @@ def test_events_are_those_the_laboratory_stored(real_data):
     folder = real_data / "gaitalytics_walk"
     capture = read_capture(folder / "overground_fullbody_4plates.c3d")
     subject = scale(None, trials=(capture,), mass_kg=63.6)
-    found = foot_events(reconstruct(capture, subject, settings=ReconstructSettings(filter="kinematic")))
+    settings = ReconstructSettings(filter="kinematic", smooth=False)
+    found = foot_events(reconstruct(capture, subject, settings=settings))
     for side, context in enumerate(("Right", "Left")):
         for label, ours in (("Foot Strike", found[side].strikes_s), ("Foot Off", found[side].offs_s)):
             theirs = [e.time_s for e in capture.events if (e.context, e.label) == (context, label)]

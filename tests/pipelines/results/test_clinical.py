@@ -193,3 +193,18 @@ def test_a_reading_changes_angles_their_rates_and_spreads_and_no_moment(spread_c
         ends = np.array([model.integrate(track.q[t], s * h * track.v[t]) for s in (-1, 1)])
         before, after = read.angles(read.against(np.full(2, 0.8), ends))
         np.testing.assert_allclose(found.rates[t], (after - before) / (2 * h), rtol=0, atol=2e-8)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_offsets_go_the_way_of_their_totals(spread_case, turned):
+    """A fixed share of every spread is the same share in every frame and reading."""
+    model, track, tau, sd_tau, _ = spread_case
+    told = {f"{name}_offset": 0.6 * getattr(track, f"{name}_sd") for name in ("angle", "rate", "velocity")}
+    track = replace(track, **told, ball_offset=0.36 * track.ball_covariance, torque_offset=0.6 * sd_tau)
+    hip = JointAxes(*Rotation.from_rotvec([[0.1, 0.2, -0.1], [-0.1, 0.3, 0.2]]).as_matrix())
+    how = (STEADY, AngleReading("made up", {"hip_r": hip})) if turned else ()
+    found = clinical_motion(model, track, tau, sd_tau, *how)
+    for name in ("angles", "rates", "moments"):
+        total, offset = getattr(found, f"{name}_sd"), getattr(found, f"{name}_offset")
+        np.testing.assert_allclose(offset, 0.6 * total, rtol=1e-12)
+        assert np.isnan(offset[2]).all() and (offset[KNOWN] > 0.0).all()

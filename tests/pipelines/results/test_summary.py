@@ -19,7 +19,8 @@ KEYS = {
     "markers_used", "missing_fraction", "marker_rms_mm", "marker_max_mm", "marker_rms_mm_by_name",
     "residual_force_rms_n", "residual_moment_rms_nm", "valid_frames", "measured_frames", "contacts",
     "plate_force_change_rms_n",
-    "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "nis_per_dof",
+    "plate_moment_change_rms_nm", "torque_peak_nm_per_kg", "torque_sd_nm", "torque_sd_offset_nm",
+    "torque_sd_varying_nm", "nis_per_dof", "nis", "marker_noise_mm_by_name", "later_frames",
     "step_seconds_median", "step_seconds_p99", "realtime_factor", "hidden_marker_rms_mm",
     "hidden_marker_max_mm", "truth", "axes", "warnings", "settings",
 }  # fmt: skip
@@ -128,12 +129,8 @@ def test_plate_changes_are_per_component_and_torques_per_joint():
     assert summary["plate_moment_change_rms_nm"] == pytest.approx(3.0)
     assert summary["torque_peak_nm_per_kg"] == {"hip_r": pytest.approx(2.0)}
     assert summary["torque_sd_nm"] == {"hip_r": pytest.approx(2.0)}
-
-
-def test_innovations_count_after_the_first_half_second_per_reading():
-    nis, readings = np.full(100, 20.0), np.full(100, 10)
-    nis[:50], nis[60], readings[70] = 1e6, np.nan, 0
-    assert summarise(made_up(100, nis=nis, nis_readings=readings))["nis_per_dof"] == pytest.approx(2.0)
+    assert summary["torque_sd_offset_nm"] == {"hip_r": 0.0}
+    assert summary["torque_sd_varying_nm"] == {"hip_r": pytest.approx(2.0)}
 
 
 @pytest.fixture(scope="module")

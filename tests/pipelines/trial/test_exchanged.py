@@ -15,7 +15,7 @@ from tests.walker import walker
 
 pytestmark = pytest.mark.slow
 
-KINEMATIC = ReconstructSettings(filter="kinematic")
+KINEMATIC = ReconstructSettings(filter="kinematic", smooth=False)
 
 
 def exchanged(capture, a, b, frames):

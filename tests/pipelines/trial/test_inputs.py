@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from mbkf.io.body_covariance import BodyCovariance
+from mbkf.model.clinical import dof_names
 from mbkf.pipelines.reconstruct import ReconstructSettings
 from mbkf.pipelines.trial.inputs import MIN_PRESENT, trial_inputs
 from tests.walker import walker
@@ -70,3 +72,19 @@ def test_filters_and_inverse_dynamics_read_the_same_cleaned_plates():
     assert "plate '2'" in remark
     assert np.abs(inputs.plates[1].force_n - plates[1].force_n).max() < 20.0
     np.testing.assert_allclose(repaired.plates, recording.plates, atol=20.0)
+
+
+def test_a_marker_that_scaling_did_not_see_may_be_anywhere_its_session_allows():
+    """All else being known, it turns the leg that it is on."""
+    markers, plates, subject = shown(walker().trial.markers.names)
+    settings, factors = ReconstructSettings(), tuple(subject.scale_factors)
+    assert trial_inputs(markers, plates, replace(subject, covariance=None), settings)[0].body is None
+    q, found = walker().truth.q[50], []
+    for unseen in (None, "RKNE"):
+        names = tuple(marker.name for marker in subject.markers if marker.name != unseen)
+        known = BodyCovariance(factors, names, 1e-9 * np.eye(len(factors) + 3 * len(names)))
+        inputs, _ = trial_inputs(markers, plates, replace(subject, covariance=known), settings)
+        found.append(np.linalg.norm(inputs.body.pose_root(q), axis=1))
+    assert found[0].max() < 1e-5
+    largest = dof_names(inputs.sensor.model)[int(found[1].argmax())]
+    assert largest.startswith(("right_thigh", "right_shank")) and found[1].max() > 0.01

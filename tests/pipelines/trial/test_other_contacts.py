@@ -22,7 +22,7 @@ from tests.dynamics import trial
 from tests.supported import SEAT, seat, seated
 
 QUIET = CaptureSettings(markers_sd_m=0.001, skin_sd_m=0.0, occlusion=0.0, offset_n=(0.0, 0.0))
-SETTINGS = ReconstructSettings(correct_markers=False)
+SETTINGS = ReconstructSettings(smooth=False, correct_markers=False)
 SETTLED = slice(15, None)
 """Frames in which the filter no longer settles."""
 

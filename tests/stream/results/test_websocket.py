@@ -36,6 +36,9 @@ def shown_frame(model, number=0, followed=True):
         predicted_m=np.zeros((3, 3)),
         unlabelled_m=np.zeros((0, 3)),
         angle_sd=rng.uniform(0.01, 0.02, nv),
+        angle_offset=rng.uniform(0.0, 0.01, nv),
+        torques_offset=rng.uniform(0.0, 1.0, nv),
+        wrench_offset=rng.uniform(0.0, 1.0, (2, 6)),
         latency_s=0.002,
         lost=0,
         rate_hz=100.0,
@@ -81,6 +84,10 @@ def test_values_are_clinical_and_carry_their_spread():
     expected = np.sqrt(B.T**2 @ frame.torques_sd**2)
     found = [row[f"{name}_moment_sd"] for name in clinical.names]
     np.testing.assert_allclose(found, expected, atol=1e-12)
+    assert row["knee_angle_r_sd_offset"] == frame.angle_offset[k]
+    assert row["reaction_l_mx_sd_offset"] == frame.wrench_offset[1, 3]
+    found = [row[f"{name}_moment_sd_offset"] for name in clinical.names]
+    np.testing.assert_allclose(found, np.sqrt(B.T**2 @ frame.torques_offset**2), atol=1e-12)
     assert len(values.units) == len(values.names) == len(set(values.names))
 
 
@@ -88,6 +95,7 @@ def test_where_nobody_is_followed_there_are_no_angles():
     row = ResultValues(MODEL).row(shown_frame(MODEL, followed=False))
     assert np.isnan(row[: 4 * MODEL.nv]).all()
     assert np.isfinite(row[4 * MODEL.nv : 4 * MODEL.nv + 12]).all()
+    assert np.isnan(row[-2 * MODEL.nv - 12 : -12]).all() and np.isfinite(row[-12:]).all()
 
 
 def test_a_client_gets_names_and_then_frames(served):

@@ -22,6 +22,7 @@ def frame(k, **changes):
         number=k, time_s=k / 100.0, q=r.q[k], v=r.v[k], torques=r.tau[k], torques_sd=rng.uniform(1, 5, r.tau.shape[1]),
         wrench=r.foot_wrench[k], wrench_sd=np.full((2, 6), 4.0), plates=np.zeros((2, 6)), measured_m=r.measured_m[k],
         predicted_m=r.predicted_m[k], unlabelled_m=np.zeros((0, 3)), angle_sd=rng.uniform(0.01, 0.05, r.v.shape[1]),
+        angle_offset=r.sd_q_offset[k], torques_offset=r.sd_tau_offset[k], wrench_offset=np.zeros((2, 6)),
         latency_s=0.0015, lost=2, rate_hz=100.0, tracked=True, started=k == 0,
     )  # fmt: skip
     return replace(made, **changes)

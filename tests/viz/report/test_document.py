@@ -57,13 +57,18 @@ def test_sections_come_in_order_quality_first():
     assert outline.sections == ["quality", "gait", "motion", "reactions", "contacts", "settings"]
     assert len(text) < 5_000_000
     whole = " ".join(outline.texts)
-    for words in ("walk <1>", "a remark with <b>markup</b>", "dynamic filter, frame by frame", "jerk"):
+    for words in ("walk <1>", "a remark with <b>markup</b>", "dynamic filter, causal (as live)", "jerk"):
         assert words in whole
 
 
-def test_a_fixed_lag_is_told():
-    assert "dynamic filter, fixed lag of 60 ms" in report(replace(walk(), settings={"lag_ms": 60.0}))
-    assert "dynamic filter, smoothed" in report(replace(walk(), smoothed=True))
+def test_which_later_frames_are_known_is_told():
+    lagged, smoothed = (
+        report(replace(walk(), settings={"lag_ms": 60.0})),
+        report(replace(walk(), smoothed=True)),
+    )
+    assert "dynamic filter, fixed lag 60 ms" in lagged
+    assert "dynamic filter, smoothed (all later frames known)" in smoothed
+    assert ("smoothing not counted" in smoothed, "smoothing not counted" in lagged) == (True, False)
 
 
 def test_the_page_loads_nothing_and_runs_nothing():

@@ -1,0 +1,185 @@
+"""What an estimate errs by because the person's body is not known exactly: the part that repeats.
+
+Scaling leaves scale factors and marker places p with a covariance Σ = L Lᵀ. A filter takes them for known. In a posture
+q, markers that are weighed with R, beside a prior of information Π, then put the pose wrong by
+
+    δq = W δp,   W = −(Hᵀ R⁻¹ H + Π)⁻¹ Hᵀ R⁻¹ H_p,
+
+H and H_p the derivatives of marker positions by q and p. These are consider parameters (S. F. Schmidt 1966): never
+estimated, their share of the error is carried along. Pose errors that hold whenever the posture is the same change
+while the body moves, so velocities and accelerations err by the rates of W δp along the motion. Generalised forces
+τ(x, k) err by ∂τ/∂x δx + ∂τ/∂k δk.
+
+All is kept as B = (∂·/∂p) L, so that a covariance is B Bᵀ.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+
+from mbkf.conventions import Array
+from mbkf.model.body import Body
+from mbkf.model.human import HumanModel
+from mbkf.model.newton_euler import ROOT, JointTorques, NewtonEuler
+from mbkf.model.scale_derivatives import origin_derivatives
+from mbkf.sensors.contact.records import Contact
+from mbkf.sensors.marker_sensor import MarkerSensor
+
+LOOK_S = 0.02
+"""Half the stretch of the motion over which rates of pose errors are taken, s."""
+
+TURN_S = 1e-4
+"""Step of the difference quotient by time, s."""
+
+FACTOR_STEP = 1e-4
+"""Step of the difference quotients by scale factors."""
+
+POSTURES, POSTURE_RAD = 12, 0.4
+"""Errors by the body are compared in so many postures, joints turned from neutral by such angles (1 sd)."""
+
+KEPT_VARIANCE = 0.995
+"""Share of the variance kept: half of the columns of L move no joint."""
+
+LOOSE = 1e-6
+"""Information on every dof besides markers and posture, 1/rad²: what nothing determines has no error by the body."""
+
+
+@dataclass(frozen=True)
+class BodyErrorRoots:
+    """Roots B of errors by the body at one instant; each has r columns, and B Bᵀ is its covariance.
+
+    Those of the motion have nv rows.
+
+    Attributes:
+        position: Of the configuration, in its tangent space.
+        velocity: Of the velocity.
+        torque: Of the generalised forces.
+        wrench: (12, r) of the feet's wrenches; 0 for a foot whose plate reads it.
+    """
+
+    position: Array
+    velocity: Array
+    torque: Array
+    wrench: Array
+
+
+class BodyErrors:
+    """Errors by the body, for the markers of a trial.
+
+    Attributes:
+        sensor: The markers on the body.
+    """
+
+    def __init__(self, sensor: MarkerSensor, noise_m: Array, root: Array) -> None:
+        """Makes it.
+
+        Args:
+            sensor: The markers on the body.
+            noise_m: (M,) standard deviation that the filter weighs each marker with, m.
+            root: (K + 3 M, r) L of the covariance of scale factors and marker places.
+        """
+        model = sensor.model
+        self.sensor, self._model = sensor, model
+        self._weight = noise_m**-2.0
+        posture = np.asarray(model.posture_sd)
+        self._prior = LOOSE + np.where(posture > 0.0, 1.0 / np.where(posture > 0.0, posture, 1.0) ** 2, 0.0)
+        self._balance = NewtonEuler(model)
+        self._varied = [NewtonEuler(one) for one in _varied(model)]
+        self._take(root)
+        self._take(root @ self._directions())
+
+    def _take(self, root: Array) -> None:
+        count = len(self._model.scale)
+        self._factors, self._places = root[:count], root[count:].reshape(len(self._weight), 3, -1)
+
+    def _directions(self) -> Array:
+        """(r, n) orthonormal directions of L's columns in which nearly all of every dof's variance lies."""
+        model, rng = self._model, np.random.default_rng(0)
+        rows = [self._factors]
+        for _ in range(POSTURES):
+            moved = np.where(np.arange(model.nv) < ROOT, 0.0, POSTURE_RAD * rng.normal(size=model.nv))
+            rows.append(self.pose_root(model.integrate(model.neutral(), moved)))
+        stacked = np.concatenate(rows)
+        size = np.linalg.norm(stacked, axis=1)
+        known = size > 1e-9 * size.max(initial=0.0)
+        _, sizes, directions = np.linalg.svd(stacked[known] / size[known, None], full_matrices=False)
+        shares = np.cumsum(sizes**2) / np.sum(sizes**2)
+        return np.asarray(directions[: 1 + int(np.searchsorted(shares, KEPT_VARIANCE))].T)
+
+    def pose_root(self, q: Array) -> Array:
+        """(nv, r) W L at a configuration q (nq,)."""
+        rotations, _ = self._model.placements(q)
+        joints, nv = self.sensor.joint_ids, self._model.nv
+        H = self.sensor.reading(q).jacobian
+        by_places = rotations[joints] @ self._places
+        by_factors = origin_derivatives(self._model, rotations)[joints] @ self._factors
+        moved = (by_places + by_factors).reshape(H.shape[0] * 3, -1)
+        H = H.reshape(len(moved), nv)
+        weighed = H * np.repeat(self._weight, 3)[:, None]
+        information = H.T @ weighed
+        information[np.diag_indices(nv)] += self._prior
+        return -np.asarray(cho_solve(cho_factor(information, overwrite_a=True), weighed.T @ moved))
+
+    def at(
+        self, q: Array, v: Array, a: Array, wrenches: Array, contact: tuple[int, int] | None
+    ) -> BodyErrorRoots:
+        """Roots of all errors by the body at an estimate.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            a: (nv,) acceleration.
+            wrenches: (2, 6) right and left foot's wrenches about the world's origin; NaN where unknown.
+            contact: What the feet stand on (:class:`mbkf.sensors.contact.records.Contact`); None where not decided.
+        """
+        here, model, h = self.pose_root(q), self._model, LOOK_S
+        around = []
+        for sign in (1.0, -1.0):
+            step = sign * h * v + 0.5 * h * h * a
+            there = model.integrate(q, step)
+            back, _ = model.integration_derivatives(there, -step)
+            around.append(back @ self.pose_root(there))
+        velocity = (around[0] - around[1]) / (2.0 * h)
+        acceleration = (around[0] - 2.0 * here + around[1]) / h**2
+        # The dofs' own axes turn while the error changes.
+        turned, _ = model.integration_derivatives(q, TURN_S * v)
+        acceleration += (turned @ velocity - velocity) / TURN_S
+        loads = np.nan_to_num(wrenches).ravel()
+        balance = self._balance.torques(q, v, a, loads)
+        by_factor = np.array([one.tau(q, v, a, loads) - balance.tau for one in self._varied]).T / FACTOR_STEP
+        torque = balance.by_q @ here + balance.by_v @ velocity + balance.by_a @ acceleration
+        torque += by_factor @ self._factors
+        wrench = self._unread(balance, torque[:ROOT], loads, contact)
+        return BodyErrorRoots(here, velocity, torque + balance.by_wrench @ wrench, wrench)
+
+    def _unread(
+        self, balance: JointTorques, residual: Array, loads: Array, contact: tuple[int, int] | None
+    ) -> Array:
+        """(12, r) of the wrenches that no plate reads: Newton's law holds at the root with the errors of the motion.
+
+        Args:
+            balance: The equations.
+            residual: (6, r) root of the law's residual with wrenches as they are.
+            loads: (12,) the wrenches.
+            contact: What the feet stand on.
+        """
+        found = np.zeros((12, residual.shape[1]))
+        free = [] if contact is None else [foot for foot in (0, 1) if contact[foot] == Contact.UNMEASURED]
+        if not free:
+            return found
+        total = -np.linalg.solve(balance.by_wrench[:ROOT, :6], residual)
+        vertical = np.maximum(loads[[6 * foot + 2 for foot in free]], 1.0)
+        for foot, share in zip(free, vertical / vertical.sum(), strict=True):
+            found[6 * foot : 6 * foot + 6] = share * total
+        return found
+
+
+def _varied(model: Body) -> Sequence[HumanModel]:
+    """The body with each of its scale factors a little larger."""
+    steps = FACTOR_STEP * np.eye(len(model.scale))
+    inertia = model.inertia if isinstance(model, HumanModel) else None
+    return [HumanModel(model.description, model.scale + step, model.mass_kg, inertia) for step in steps]

@@ -1,0 +1,134 @@
+"""Innovations against what one frame's are expected to be, by kind of reading: markers, plates, Newton's law, others.
+
+A filter of skin-borne markers weighs readings by a noise R that is wider than one frame's errors, and its P is as wide;
+yᵀ(H P Hᵀ + R)⁻¹y is then small by construction and tells nothing. Here each channel of readings (a marker; forces and
+moments of plates and of Newton's law) has the spread that its own innovations had before (:mod:`running_spread`):
+
+    y² / σ²(frames before),   σ within a range of what is expected of a reading of that kind
+
+Its mean is one where the spread lies in that range and lasts; components are normalised one by one, so the mean is one
+whether they are correlated or not. It is above one where readings err more than anything expected of their kind, and
+while they suddenly do.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mbkf.conventions import READING_KINDS, Array
+from mbkf.numerics.kalman import Information
+from mbkf.numerics.running_spread import RunningSpread
+from mbkf.sensors.block import AnyBlock, Rows, Statement
+
+MEMORY_S = 0.3
+"""Time over which a spread is taken: skin and movement last for about as long."""
+
+LEAST, MOST = 0.1, 3.0
+"""Range of a spread over what is expected of it; plates and law, whose loads may change by any amount, have no most."""
+
+EXPECTED_FRAMES = 2.0
+"""So many frames the expected spread of a marker counts as."""
+
+
+class Innovations(NamedTuple):
+    """A frame's innovations.
+
+    Attributes:
+        squared: (4,) sum of normalised squares by :data:`mbkf.conventions.READING_KINDS`.
+        readings: (4,) how many numbers those are.
+        markers: (M,) mean of each marker's, NaN where it was not used.
+        marker_spread_m: (M,) σ of each marker, per coordinate, m.
+    """
+
+    squared: Array
+    readings: NDArray[np.int_]
+    markers: Array
+    marker_spread_m: Array
+
+
+class InnovationSpreads:
+    """The running spreads of all channels of a filter's blocks."""
+
+    def __init__(self, blocks: Sequence[AnyBlock], dt_s: float) -> None:
+        """Args: the filter's blocks, and the time between frames."""
+        self._forget = 1.0 - math.exp(-dt_s / MEMORY_S)
+        self._readers: list[tuple[int, AnyBlock, slice]] = []
+        kinds: list[int] = []
+        sd: list[Array] = []
+        known: list[Array] = []
+        self._markers = slice(0)
+        for number, block in enumerate(blocks):
+            if block.prior:
+                continue
+            expected, first = block.expected_spread(), len(kinds)
+            sd.append(np.ones(block.quantities) if expected is None else expected)
+            known.append(np.full(len(sd[-1]), expected is not None))
+            kinds += len(sd[-1]) * [READING_KINDS.index(block.kind)]
+            self._readers.append((number, block, slice(first, len(kinds))))
+            if block.kind == "markers":
+                self._markers = slice(first, len(kinds))
+        self._kinds = np.array(kinds, dtype=int)
+        spread, is_known = (np.concatenate([np.zeros(0), *parts]) for parts in (sd, known))
+        self._first = RunningSpread(spread**2, EXPECTED_FRAMES * is_known)
+        self._least = (LEAST * spread) ** 2
+        self._most = np.where(is_known > 0.0, (MOST * spread) ** 2, np.inf)
+
+    def begin(self) -> RunningSpread:
+        """Before the first frame: what blocks expect of a reading, or nothing."""
+        return self._first
+
+    def after(
+        self, before: RunningSpread, chosen: Sequence[object], said: Sequence[Statement]
+    ) -> tuple[Innovations, RunningSpread]:
+        """A frame's innovations, and the spreads that they leave for the next.
+
+        Args:
+            before: Of the frames before.
+            chosen: What the blocks decided.
+            said: What they said.
+        """
+        square, readings = np.zeros(len(self._kinds)), np.zeros(len(self._kinds), dtype=int)
+        for number, block, mine in self._readers:
+            read = block.channels(chosen[number])
+            if read is None:
+                _fill(square[mine], readings[mine], said[number])
+            else:
+                square[mine], readings[mine] = read
+        variance = np.minimum(np.maximum(before.mean_square, self._least), self._most)
+        counted = readings * (before.frames > 0.0)
+        ratio = square / variance
+        kinds, own = len(READING_KINDS), self._markers
+        found = Innovations(
+            np.bincount(self._kinds, ratio * counted, kinds).astype(float),
+            np.bincount(self._kinds, counted, kinds).astype(int),
+            np.where(counted[own] > 0, ratio[own], np.nan),
+            np.sqrt(variance[own]),
+        )
+        return found, before.followed(square, readings > 0, self._forget)
+
+
+def _fill(square: Array, readings: NDArray[np.int_], said: Statement) -> None:
+    """Mean square and number of the counted readings of whitened rows, which alternate in threes, and of information.
+
+    Args:
+        square: (n,) mean square by channel, to be filled.
+        readings: (n,) numbers, to be filled.
+        said: What the block said.
+    """
+    if said is None:
+        return
+    if isinstance(said, Information):
+        square[0], readings[0] = said.innovation / max(said.readings, 1), said.readings
+        return
+    for rows in (said,) if isinstance(said, Rows) else said:
+        for first in range(0, rows.readings, 3):
+            values = rows.innovation[first : min(first + 3, rows.readings)]
+            channel = first // 3 % len(square)
+            square[channel] += float(values @ values)
+            readings[channel] += len(values)
+    square /= np.maximum(readings, 1)

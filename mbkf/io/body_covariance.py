@@ -1,0 +1,117 @@
+"""What scaling leaves unknown of a person's body: the covariance of scale factors and marker places."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypedDict
+
+import numpy as np
+
+from mbkf.conventions import Array, read_only
+from mbkf.errors import ShapeError
+from mbkf.io.text import toml_text
+
+DIGITS = 6
+"""Significant digits of a number in a subject file."""
+
+
+class CovarianceTable(TypedDict):
+    """The table ``[covariance]`` of a subject file: names, and the rows of L's lower triangle."""
+
+    factors: list[str]
+    markers: list[str]
+    root: list[list[float]]
+
+
+@dataclass(frozen=True)
+class BodyCovariance:
+    """Covariance Σ = L Lᵀ of p, the K scale factors and then the places of M markers in their segments' frames.
+
+    Attributes:
+        factors: (K,) names of the scale factors.
+        markers: (M,) names of the markers.
+        root: (K + 3 M, K + 3 M) L, lower triangular; rows of factors are pure numbers, of markers m.
+    """
+
+    factors: tuple[str, ...]
+    markers: tuple[str, ...]
+    root: Array
+
+    def __post_init__(self) -> None:
+        """Raises: ShapeError: the root has not the size that the names ask for."""
+        size = len(self.factors) + 3 * len(self.markers)
+        object.__setattr__(self, "root", read_only(self.root))
+        if self.root.shape != (size, size):
+            raise ShapeError("root", f"({size}, {size})", self.root.shape)
+
+    @classmethod
+    def of(cls, factors: tuple[str, ...], markers: tuple[str, ...], covariance: Array) -> BodyCovariance:
+        """From Σ itself, which may be singular.
+
+        Args:
+            factors: (K,) names of the scale factors.
+            markers: (M,) names of the markers.
+            covariance: (K + 3 M, K + 3 M) Σ.
+        """
+        values, vectors = np.linalg.eigh(0.5 * (covariance + covariance.T))
+        wide = vectors * np.sqrt(np.maximum(values, 0.0))
+        lower = np.asarray(np.linalg.qr(wide.T, mode="r")).T
+        return cls(factors, markers, lower * np.where(np.diag(lower) < 0.0, -1.0, 1.0))
+
+    @property
+    def covariance(self) -> Array:
+        """(K + 3 M, K + 3 M) Σ."""
+        return self.root @ self.root.T
+
+    def rows(self, markers: Sequence[str], unseen_sd_m: Mapping[str, float]) -> Array:
+        """(K + 3 n, r) a root of the covariance of factors and the places of some markers.
+
+        Args:
+            markers: (n,) their names.
+            unseen_sd_m: Standard deviation of the place of one that scaling did not see, per coordinate, m.
+        """
+        count, known = len(self.factors), {name: n for n, name in enumerate(self.markers)}
+        unseen = [name for name in markers if name not in known]
+        rows = np.zeros((count + 3 * len(markers), len(self.root) + 3 * len(unseen)))
+        width = len(self.root)
+        rows[:count, :width] = self.root[:count]
+        for n, name in enumerate(markers):
+            mine = slice(count + 3 * n, count + 3 * n + 3)
+            if name in known:
+                first = count + 3 * known[name]
+                rows[mine, :width] = self.root[first : first + 3]
+            else:
+                first = width + 3 * unseen.index(name)
+                rows[mine, first : first + 3] = unseen_sd_m[name] * np.eye(3)
+        return rows
+
+    def as_toml(self) -> list[str]:
+        """Lines of a TOML table ``[covariance]``: names, and the lower triangle row by row."""
+        rows = [", ".join(f"{x:.{DIGITS}g}" for x in row[: n + 1]) for n, row in enumerate(self.root)]
+        return [
+            "[covariance]",
+            "# Lower triangular L; L Lᵀ is the covariance of scale factors and marker places (m).",
+            f"factors = [{', '.join(toml_text(name) for name in self.factors)}]",
+            f"markers = [{', '.join(toml_text(name) for name in self.markers)}]",
+            "root = [",
+            *(f"  [{row}]," for row in rows),
+            "]",
+        ]
+
+
+def read_covariance(table: CovarianceTable) -> BodyCovariance:
+    """The record of a TOML table that :meth:`BodyCovariance.as_toml` wrote.
+
+    Raises:
+        KeyError: An entry is missing.
+        ValueError: A row has not as many numbers as its place asks for, or one is not finite.
+        ShapeError: There are not as many rows as names ask for.
+    """
+    rows = [[float(x) for x in row] for row in table["root"]]
+    root = np.zeros((len(rows), len(rows)))
+    for n, row in enumerate(rows):
+        if len(row) != n + 1 or not np.isfinite(row).all():
+            raise ValueError(f"row {n} of the covariance needs {n + 1} finite numbers")
+        root[n, : n + 1] = row
+    return BodyCovariance(tuple(map(str, table["factors"])), tuple(map(str, table["markers"])), root)

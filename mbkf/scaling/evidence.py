@@ -1,0 +1,84 @@
+"""How far this person's markers and proportions stray from the protocol and the table: told by the fit itself.
+
+A prior states how far markers of people sit from their landmarks and how proportions differ, wide enough for anybody.
+How careful this laboratory was shows in the fit. With residuals u of a group of unknowns (markers at landmarks, markers
+anywhere, proportions) under the prior precision Λ₀, posterior covariance Σ and prior covariance Λ₀⁻¹, the evidence of
+the data is largest where the prior's variance is multiplied by
+
+    s² = (b + uᵀ Λ₀ u) / (b + γ),   γ = n − tr(Σ Λ₀ / s²),
+
+γ the number of unknowns that the data determine (MacKay 1992), drawn to 1 as by b more of them. Near the
+minimum the cost is quadratic, so u and Σ follow from s² without another fit, and the equation is solved by repetition.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.scaling.problem import ScalingPrior, ScalingProblem, ScalingState
+
+BELIEF = 2.0
+"""b: the prior's own spread counts as so many unknowns that the data determine."""
+
+RANGE = (0.2, 2.0)
+"""Least and greatest factor s on a spread."""
+
+ROUNDS = 12
+"""How often s² is found anew; the last rounds change it by a few percent."""
+
+
+def learnt_prior(problem: ScalingProblem, state: ScalingState, information: Array) -> ScalingPrior:
+    """The prior with the spreads that a fit has shown.
+
+    Args:
+        problem: The problem that was solved; offsets of markers of different kinds are independent beforehand.
+        state: Its solution.
+        information: (K + 3 M, K + 3 M) information on factors and offsets there, frames eliminated.
+    """
+    prior, count = problem.prior, len(problem.body.scale_factors)
+    precision = np.zeros_like(information)
+    precision[:count, :count] = np.linalg.inv(prior.factor_covariance)
+    precision[count:, count:] = prior.offset_precision
+    kinds = np.array([""] * count + [m.kind for m in problem.markers for _ in range(3)])
+    groups = [kinds == kind for kind in np.unique(kinds)]
+    away = np.concatenate([state.factors - prior.factors, (state.offsets_m - prior.offsets_m).ravel()])
+    squares = learnt_squares(information, precision, away, groups)
+    learnt = prior.offset_precision.copy()
+    factor = 1.0
+    for group, square in zip(groups, squares, strict=True):
+        if group[0]:
+            factor = square
+        else:
+            mine = group[count:]
+            learnt[np.ix_(mine, mine)] /= square
+    return replace(prior, factor_covariance=factor * prior.factor_covariance, offset_precision=learnt)
+
+
+def learnt_squares(information: Array, precision: Array, away: Array, groups: list[BoolArray]) -> list[float]:
+    """s² of each group of unknowns.
+
+    Args:
+        information: (n, n) on all unknowns at the minimum, the prior's included.
+        precision: (n, n) Λ₀, block by block by groups.
+        away: (n,) the unknowns at the minimum minus what the prior expects.
+        groups: Masks (n,) of the groups.
+    """
+    data, pull = information - precision, information @ away
+    squares = np.ones(len(groups))
+    for _ in range(ROUNDS):
+        scaled = precision / (np.array(groups).T @ squares)[:, None]
+        covariance = np.linalg.inv(data + scaled)
+        u = covariance @ pull
+        determined = 1.0 - np.einsum("ij,ji->i", covariance, scaled)
+        strayed = u * (precision @ u)
+        squares = np.array(
+            [
+                (BELIEF + max(0.0, strayed[group].sum())) / (BELIEF + max(0.0, determined[group].sum()))
+                for group in groups
+            ]
+        )
+        squares = np.clip(squares, RANGE[0] ** 2, RANGE[1] ** 2)
+    return [float(square) for square in squares]

@@ -1,0 +1,84 @@
+"""What is not known of a body: read back as written, singular or not, and told for markers in any order."""
+
+import tomllib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mbkf.errors import FileFormatError, ShapeError
+from mbkf.io.body_covariance import DIGITS, BodyCovariance, read_covariance
+from mbkf.io.subject import read_subject, write_subject
+from tests.io.reconstructions import made_up
+
+NAMES = st.lists(
+    st.text(st.characters(exclude_categories=["C"]), min_size=1, max_size=6), unique=True, max_size=3
+)
+
+
+def made(factors, markers, seed=0, rank=None):
+    """A covariance of random errors, of full rank unless told."""
+    rng, size = np.random.default_rng(seed), len(factors) + 3 * len(markers)
+    some = rng.normal(size=(size, size if rank is None else rank)) * 10.0 ** rng.uniform(-4, 0, (size, 1))
+    return BodyCovariance.of(tuple(factors), tuple(markers), some @ some.T), some @ some.T
+
+
+@given(NAMES, NAMES, st.integers(0, 99))
+@settings(max_examples=30, deadline=None)
+def test_it_is_read_back_to_the_digits_written(factors, markers, seed):
+    known, _ = made(factors, markers, seed)
+    found = read_covariance(tomllib.loads("\n".join(known.as_toml()))["covariance"])
+    assert (found.factors, found.markers) == (known.factors, known.markers)
+    np.testing.assert_allclose(found.root, known.root, rtol=10.0 ** (1 - DIGITS))
+
+
+@pytest.mark.parametrize("rank", [None, 3, 0])
+def test_the_root_is_lower_triangular_and_the_covariance_its_square(rank):
+    known, covariance = made(["a", "b"], ["A", "B"], rank=rank)
+    assert not np.triu(known.root, 1).any() and (np.diag(known.root) >= 0.0).all()
+    np.testing.assert_allclose(known.covariance, covariance, atol=1e-12 * np.abs(covariance).max(initial=1.0))
+
+
+def test_markers_come_in_any_order_and_one_that_scaling_did_not_see_by_itself():
+    known, covariance = made(["a"], ["A", "B", "C"])
+    rows = known.rows(["C", "new", "A"], {"A": 9.0, "new": 0.02})
+    found = rows @ rows.T
+    place = [0, 7, 8, 9, 1, 2, 3]
+    seen = [0, 1, 2, 3, 7, 8, 9]
+    np.testing.assert_allclose(
+        found[np.ix_(seen, seen)], covariance[np.ix_(place, place)], rtol=1e-9, atol=1e-12
+    )
+    np.testing.assert_allclose(found[4:7, 4:7], 0.02**2 * np.eye(3), rtol=1e-12)
+    assert not found[4:7][:, seen].any()
+
+
+@pytest.mark.parametrize(
+    ("change", "error"),
+    [
+        ({"root": [[1.0], [1.0]]}, ValueError),
+        ({"root": [[float("nan")]]}, ValueError),
+        ({"root": [[1.0]], "markers": ["A"]}, ShapeError),
+        ({"root": [["x"]]}, ValueError),
+    ],
+)
+def test_a_table_that_is_no_covariance_is_refused(change, error):
+    table = {"factors": ["a"], "markers": [], "root": [[1.0]]}
+    assert read_covariance(table).covariance == [[1.0]]
+    with pytest.raises(error):
+        read_covariance({**table, **change})
+
+
+def test_subject_files_have_it_or_not(tmp_path):
+    """A file without it, older or edited, counts as a body known exactly; a cut row is refused in one line."""
+    subject, path = made_up().subject, tmp_path / "subject.toml"
+    write_subject(subject, path)
+    assert read_subject(path).covariance is None
+    known, _ = made(["head"], ["A", "B"])
+    write_subject(replace(subject, covariance=known), path)
+    np.testing.assert_allclose(read_subject(path).covariance.root, known.root, rtol=1e-5)
+    text = path.read_text(encoding="utf-8").replace(f"{known.root[1, 1]:.6g}]", "]")
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(FileFormatError, match="row 1 of the covariance needs 2"):
+        read_subject(path)

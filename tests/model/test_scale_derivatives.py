@@ -1,0 +1,23 @@
+"""Joints of a scaled body against bodies whose scale factors are a little larger and smaller."""
+
+import numpy as np
+
+from mbkf.model.human import HumanModel
+from mbkf.model.scale_derivatives import origin_derivatives
+from tests.motions import assert_near, moderate_pose, random_model
+
+
+def test_origin_derivatives_are_differences_of_scaled_bodies():
+    rng, h = np.random.default_rng(3), 1e-6
+    model = random_model(rng)
+    q = moderate_pose(model, rng)
+
+    def origins(scale):
+        return HumanModel(model.description, scale, model.mass_kg).placements(q)[1]
+
+    slopes = [
+        (origins(model.scale + h * one) - origins(model.scale - h * one)) / (2 * h) for one in np.eye(17)
+    ]
+    found = origin_derivatives(model, model.placements(q)[0])
+    joints = [joint.joint_id for joint in model.joints.values()]
+    assert_near(found[joints], np.moveaxis(slopes, 0, -1)[joints], 1e-9)

@@ -1,0 +1,73 @@
+"""What scaling leaves unknown, by differences of places and by scaling again with other noise."""
+
+import numpy as np
+import pytest
+
+from mbkf.numerics.levenberg_marquardt import minimise
+from mbkf.scaling.covariance import body_covariance
+from mbkf.scaling.problem import ScalingPrior, ScalingProblem, ScalingState
+from tests.motions import assert_near, moderate_pose, reference_model
+from tests.scaling.test_problem import BODY, MARKERS, ONE_FRAME, random_covariance
+
+COUNT, SIZE = len(BODY.scale_factors), len(BODY.scale_factors) + 3 * len(MARKERS)
+
+
+@pytest.fixture(scope="module")
+def problem():
+    """A scaling problem of one frame, with a prior in which factors, and in which offsets, belong together."""
+    rng = np.random.default_rng(4)
+    prior = ScalingPrior(
+        factors=np.ones(COUNT),
+        factor_covariance=0.1 * random_covariance(rng, COUNT),
+        offsets_m=np.zeros((len(MARKERS), 3)),
+        offset_precision=np.linalg.inv(0.01 * random_covariance(rng, SIZE - COUNT)),
+    )
+    return ScalingProblem(BODY, MARKERS, np.zeros((1, len(MARKERS), 3)), ONE_FRAME, prior)
+
+
+def test_places_follow_factors_and_offsets(problem):
+    rng, h = np.random.default_rng(5), 1e-6
+    factors, offsets = rng.uniform(0.9, 1.1, COUNT), 0.01 * rng.normal(size=(len(MARKERS), 3))
+
+    def told(x):
+        return np.r_[x[:COUNT], problem.local_m(x[:COUNT], x[COUNT:].reshape(-1, 3)).ravel()]
+
+    at = np.r_[factors, offsets.ravel()]
+    slopes = [(told(at + h * one) - told(at - h * one)) / (2 * h) for one in np.eye(SIZE)]
+    assert_near(problem.places_by_factors_and_offsets(), np.array(slopes).T, 1e-9)
+
+
+def test_the_covariance_is_that_of_the_places_of_drawn_errors(problem):
+    """Σ = T J⁻¹ Tᵀ, so the information about places is T⁻ᵀ J T⁻¹, whatever the units."""
+    information = np.linalg.inv(random_covariance(np.random.default_rng(6), SIZE))
+    found = body_covariance(problem, information)
+    assert found.factors == tuple(BODY.scale_factors)
+    assert found.markers == tuple(marker.name for marker in MARKERS)
+    T = problem.places_by_factors_and_offsets()
+    np.testing.assert_allclose(T.T @ np.linalg.inv(found.covariance) @ T, information, rtol=1e-6, atol=1e-6)
+
+
+def test_scaling_errs_as_it_says(problem):
+    """Bodies drawn from the prior, noise from the markers': squared errors are of the size of the covariance."""
+    rng, errors, trials = np.random.default_rng(7), [], 4
+    roots = [
+        np.linalg.cholesky(problem.prior.factor_covariance),
+        np.linalg.cholesky(np.linalg.inv(problem.prior.offset_precision)),
+    ]
+    noise_m = np.array([marker.noise_m for marker in MARKERS])[:, None]
+    model = reference_model()
+    for _ in range(trials):
+        factors = problem.prior.factors + roots[0] @ rng.normal(size=COUNT)
+        offsets = (roots[1] @ rng.normal(size=SIZE - COUNT)).reshape(-1, 3)
+        q = moderate_pose(model, rng, 0.0)
+        true = ScalingState(q[None], factors, offsets)
+        seen = problem.sensor(true).positions(q) + noise_m * rng.normal(size=(len(MARKERS), 3))
+        one = problem.measuring(seen[None])
+        solution = minimise(true, one.linearise, one.cost, one.move, tolerance=1e-4)
+        found, known = solution.state, body_covariance(one, solution.equations.schur_complement())
+        away = np.r_[
+            found.factors - factors,
+            (one.local_m(found.factors, found.offsets_m) - one.local_m(factors, offsets)).ravel(),
+        ]
+        errors.append(away @ np.linalg.solve(known.covariance, away) / SIZE)
+    assert np.mean(errors) == pytest.approx(1.0, abs=4.0 * np.sqrt(2.0 / (SIZE * trials)))
