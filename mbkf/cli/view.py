@@ -52,8 +52,8 @@ def run(args: argparse.Namespace) -> int:
         print(args.html)
         return 0
     server = PageServer(playback_page(result), address=args.address, port=port)
-    print(f"{server.url}\nCtrl-C ends", flush=True)
     try:
+        print(f"{server.url}\nCtrl-C ends", flush=True)
         if not args.no_browser:
             webbrowser.open(server.url)
         server.wait()

@@ -44,6 +44,16 @@ def until_plotted_anew(page, before):
         page.wait_for_timeout(30)
 
 
+def once_still(page):
+    """The plot as it is once two looks 300 ms apart see the same."""
+    ends, before = time.monotonic() + PATIENCE_S, None
+    while (now := plotted(page)) != before:
+        assert time.monotonic() < ends, "the plot never stood still"
+        before = now
+        page.wait_for_timeout(300)
+    return now
+
+
 def followed(page):
     until(page, "Boolean(window.mbkf && mbkf.view && mbkf.view.seenPelvis)")
     page.wait_for_timeout(200)
@@ -131,8 +141,8 @@ def test_the_live_page_moves_and_pauses_and_trains(opened, live):
         before = plotted(page)
         until_plotted_anew(page, before)
         page.click("#pause")
-        page.wait_for_timeout(300)
-        held, frozen = plotted(page), page.evaluate("mbkf.stream.rows.length")
+        until(page, "document.getElementById('state').textContent === 'paused'")
+        held, frozen = once_still(page), page.evaluate("mbkf.stream.rows.length")
         page.wait_for_timeout(400)
         assert (plotted(page), page.evaluate("mbkf.stream.rows.length")) == (held, frozen)
         assert page.text_content("#state") == "paused"

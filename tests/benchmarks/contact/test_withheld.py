@@ -29,7 +29,7 @@ def pair():
 
 
 def test_modes_are_bounded_from_worst_to_best():
-    assert [(one.smooth, one.lag_s) for one in MODES.values()] == [(False, 0.0), (False, 0.06), (True, 0.0)]
+    assert [(one.smooth, one.lag_s) for one in MODES.values()] == [(False, 0.0), (None, 0.06), (True, 0.0)]
     bounds = [TOTAL_PERCENT[mode] for mode in MODES]
     assert bounds == sorted(bounds, reverse=True)
 
