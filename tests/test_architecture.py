@@ -18,6 +18,7 @@ TESTS = ROOT / "tests"
 LAYERS = (
     {"errors", "conventions", "version"},
     {"numerics"},
+    {"kernel"},
     {"io"},
     {"model"},
     {"sensors"},
@@ -40,7 +41,9 @@ LONG_FILES: dict[str, str] = {}
 """Files allowed to be longer, each with its reason: {"mbkf/io/c3d.py": "why it holds one idea"}."""
 LONG_FUNCTIONS: dict[str, str] = {}
 """Functions allowed to be longer, each with its reason: {"mbkf/io/c3d.py:read": "why"}."""
-UNTESTED: dict[str, str] = {}
+UNTESTED: dict[str, str] = {
+    "mbkf/kernel/build_hook.py": "hatchling runs it; tests/test_packaging.py builds with it",
+}
 """Modules without a test of their own, each with its reason: {"mbkf/io/x.py": "where it is tested"}."""
 
 SOURCES = sorted(PACKAGE.rglob("*.py"))

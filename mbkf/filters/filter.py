@@ -17,7 +17,7 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.innovations import Innovations, InnovationSpreads
 from mbkf.filters.readings import Readings, summed
-from mbkf.numerics.information_update import informed_with_rows
+from mbkf.kernel.covariance import informed_with_rows
 from mbkf.numerics.kalman import correct
 from mbkf.numerics.running_spread import RunningSpread
 from mbkf.sensors.block import AnyBlock, Block, Frame, Notes, OperatingPoint, State

@@ -20,6 +20,7 @@ from scipy.linalg import expm
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.filter import Plant
+from mbkf.kernel.covariance import CompiledPrediction
 from mbkf.model.body import Body
 from mbkf.numerics.diagonals import block_diagonals
 from mbkf.sensors.block import Notes
@@ -111,6 +112,9 @@ class SingerPlant(Plant[DynamicState]):
         self._quiet = (s.quiet_share * self.acceleration_sd) ** 2
         self._busiest = self.acceleration_sd * np.where(np.arange(nv) < 3, *s.busy_shares)
         self._walk = self.layout.walk_variance(dt_s)
+        singer = np.array([dt_s, self.c1, self.c2, self.rho])
+        dofs = [joint.v for joint in model.joints.values()]
+        self._compiled = CompiledPrediction.where_built(dofs, singer, self.covariance)
 
     def begin(self) -> Array | None:
         """No motion was seen yet."""
@@ -159,9 +163,12 @@ class SingerPlant(Plant[DynamicState]):
         step = self.dt_s * state.v + self.c2 * state.a
         A, B = self.model.integration_derivatives(state.q, step)
         sd = self.acceleration_sd if noise is None else noise
-        P = self._carried(A, B, state.P if state.P.flags.c_contiguous else state.P.T)
-        diagonals = block_diagonals(P, 3, self.model.nv)
-        diagonals += self.covariance[:, :, None] * (sd * sd)
+        if self._compiled is None:
+            P = self._carried(A, B, state.P if state.P.flags.c_contiguous else state.P.T)
+            diagonals = block_diagonals(P, 3, self.model.nv)
+            diagonals += self.covariance[:, :, None] * (sd * sd)
+        else:
+            P = self._compiled.carried(state.P, A, B, sd)
         if len(self._walk):
             P.reshape(-1)[:: len(P) + 1][-len(self._walk) :] += self._walk
         q = self.model.integrate(state.q, step)

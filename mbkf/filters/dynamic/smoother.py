@@ -15,7 +15,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.filter import Decisions, Filter, Readings, Step
-from mbkf.numerics.information_update import informed_with_rows
+from mbkf.kernel.covariance import informed_with_rows
 from mbkf.numerics.smoothing import BackwardPass
 
 FURTHEST_RAD = 0.5

@@ -1,0 +1,26 @@
+/* Prediction and update of a covariance P (N x N); see covariance.c. Symmetric matrices have no order. */
+#ifndef MBKF_COVARIANCE_H
+#define MBKF_COVARIANCE_H
+
+/* Steps of position, velocity and acceleration (mbkf/filters/dynamic/plant.py). */
+typedef struct {
+    double dt, c1, c2, rho;
+} Singer;
+
+/* carried = Phi P Phi' + Q for a state (q, v, a, rest) with Phi_q = [A, B dt, B c2, 0], A and B block diagonal.
+ *
+ * joints: (n_joints x 2) first dof and number of dofs of each joint; A, B: (nv x nv); noise: (3 x 3) covariance
+ * of (q, v, a) for a unit acceleration; sd: (nv) accelerations; work: carry_work(nv, N) numbers. */
+void carry(int nv, int N, const double *P, const double *A, const double *B, const int *joints, int n_joints,
+           const Singer *singer, const double *noise, const double *sd, double *carried, double *work);
+long carry_work(int nv, int N);
+
+/* informed = (P^-1 + L on the first n components + rows' rows)^-1.
+ *
+ * information: L (n x n); rows: (m x N), row by row; work: inform_work(n, m, N) numbers.
+ * Returns 0, or which factorisation failed: the information's (1), or one of the covariance's (2, 3). */
+int inform(int N, const double *P, int n, const double *information, int m, const double *rows, double *informed,
+           double *work);
+long inform_work(int n, int m, int N);
+
+#endif

@@ -1,0 +1,74 @@
+"""Prediction and update of a covariance by the compiled kernel (``covariance.c``), or by numpy where there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.kernel.loading import Library, library
+from mbkf.numerics import information_update
+
+
+class CompiledPrediction:
+    """P' = Φ P Φᵀ + Q of a state (q, v, a, rest) with Φ_q = [A, B Δt, B c₂, 0], as the Singer plant states it.
+
+    ``None`` takes its place where there is no kernel: see :meth:`where_built`.
+    """
+
+    def __init__(self, kernel: Library, joints: Iterable[slice], singer: Array, noise: Array) -> None:
+        """Keeps what does not change from step to step.
+
+        Args:
+            kernel: The compiled kernel.
+            joints: Dofs of each joint: A and B are zero between joints.
+            singer: (4,) Δt, c₁, c₂, ρ.
+            noise: (3, 3) covariance of (q, v, a) for σ_a = 1.
+        """
+        self._kernel, self._singer, self._noise = kernel, np.ascontiguousarray(singer), noise
+        self._joints = np.array([(dofs.start, dofs.stop - dofs.start) for dofs in joints], dtype=np.int32)
+
+    @classmethod
+    def where_built(cls, joints: Iterable[slice], singer: Array, noise: Array) -> CompiledPrediction | None:
+        """One, or None where there is no compiled kernel.
+
+        Args:
+            joints: Dofs of each joint.
+            singer: (4,) Δt, c₁, c₂, ρ.
+            noise: (3, 3) covariance of (q, v, a) for σ_a = 1.
+        """
+        kernel = library()
+        return None if kernel is None else cls(kernel, joints, singer, noise)
+
+    def carried(self, P: Array, A: Array, B: Array, sd: Array) -> Array:
+        """(N, N) covariance one step later, exactly symmetric.
+
+        Args:
+            P: (N, N) symmetric covariance.
+            A: (nv, nv) derivative of the next configuration by this one.
+            B: (nv, nv) by the step.
+            sd: (nv,) σ_a of the step.
+        """
+        carried = np.empty(P.shape)
+        A, B = np.ascontiguousarray(A), np.ascontiguousarray(B)
+        self._kernel.carry(P, A, B, self._joints, self._singer, self._noise, sd, carried)
+        return carried
+
+
+def informed_with_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
+    """(N, N) as :func:`mbkf.numerics.information_update.informed_with_rows`, by the compiled kernel where there is one.
+
+    What the kernel cannot factorise is the reference's, which knows what to do with it.
+
+    Args:
+        covariance: (N, N) prior covariance P.
+        matrix: (n, n) information Λ on the first n components.
+        rows: (m, N) whitened Jacobian of the other readings; their values do not enter.
+    """
+    kernel = library()
+    if kernel is not None:
+        informed = np.empty(covariance.shape)
+        if kernel.inform(covariance, matrix, np.ascontiguousarray(rows), informed) == 0:
+            return informed.T
+    return information_update.informed_with_rows(covariance, matrix, rows)

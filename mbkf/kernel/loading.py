@@ -1,0 +1,105 @@
+"""Whether the compiled kernel is used: where it was built, unless the variable ``MBKF_KERNEL`` says ``reference``."""
+
+from __future__ import annotations
+
+import importlib
+import os
+from functools import cache
+from typing import Protocol
+
+from mbkf.conventions import Array
+from mbkf.errors import InvalidInput
+
+SWITCH = "MBKF_KERNEL"
+"""Environment variable: ``compiled`` asks for the kernel, ``reference`` for numpy and Pinocchio."""
+
+COMPILED, REFERENCE = "compiled", "reference"
+
+
+class Library(Protocol):
+    """The functions of ``mbkf/kernel/module.c``. Arrays are in C order unless they are symmetric."""
+
+    def carry(
+        self,
+        P: Array,
+        A: Array,
+        B: Array,
+        joints: Array,
+        singer: Array,
+        noise: Array,
+        sd: Array,
+        carried: Array,
+        /,
+    ) -> None:
+        """Fills ``carried`` (N, N): see :class:`mbkf.kernel.covariance.CompiledPrediction`.
+
+        Args:
+            P: (N, N) covariance.
+            A: (nv, nv) derivative of the next configuration by this one.
+            B: (nv, nv) by the step.
+            joints: (J, 2) first dof and number of dofs of each joint, 32-bit integers.
+            singer: (4,) Δt, c₁, c₂, ρ.
+            noise: (3, 3) covariance of (q, v, a) for σ_a = 1.
+            sd: (nv,) σ_a.
+            carried: (N, N) filled.
+        """
+
+    def inform(self, P: Array, information: Array, rows: Array, informed: Array, /) -> int:
+        """Fills ``informed`` (N, N): see :func:`mbkf.kernel.covariance.informed_with_rows`.
+
+        Args:
+            P: (N, N) covariance.
+            information: (n, n) on the first n components.
+            rows: (m, N) whitened.
+            informed: (N, N) filled.
+
+        Returns:
+            0, or which factorisation failed.
+        """
+
+    def vectors(self) -> int:
+        """Bits of the vectors that products are made with; 0 where BLAS makes them."""
+
+
+@cache
+def library() -> Library | None:
+    """The compiled kernel; None where it was not built, or is not wanted.
+
+    Raises:
+        InvalidInput: ``MBKF_KERNEL`` is neither, or asks for a kernel that is not there.
+    """
+    wanted = os.environ.get(SWITCH, "")
+    if wanted not in {"", COMPILED, REFERENCE}:
+        raise InvalidInput(f"{SWITCH}={wanted} is not known; it is {COMPILED}, {REFERENCE} or not set")
+    if wanted == REFERENCE:
+        return None
+    try:
+        return _connected()
+    except ImportError as error:
+        if wanted == COMPILED:
+            raise InvalidInput(
+                f"there is no compiled kernel ({error}); install mbkf where a C compiler is, or unset {SWITCH}"
+            ) from error
+        return None
+
+
+def told() -> str:
+    """Which arithmetic is used, for people: ``compiled kernel (512-bit vectors)``, ``reference kernel (numpy)``."""
+    found = library()
+    if found is None:
+        return f"{REFERENCE} kernel (numpy)"
+    bits = found.vectors()
+    return f"{COMPILED} kernel ({f'{bits}-bit vectors' if bits else 'BLAS'})"
+
+
+def _connected() -> Library:
+    """The kernel with SciPy's BLAS and LAPACK.
+
+    Raises:
+        ImportError: It was not built, or SciPy offers other routines.
+    """
+    from scipy.linalg import cython_blas, cython_lapack
+
+    module = importlib.import_module("mbkf.kernel._kernel")
+    module.connect({**cython_blas.__pyx_capi__, **cython_lapack.__pyx_capi__})
+    return module  # type: ignore[return-value]

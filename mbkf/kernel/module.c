@@ -1,0 +1,207 @@
+/* The Python module mbkf.kernel._kernel: arrays in, arrays filled. Callers are mbkf/kernel/__init__.py only, which
+ * says what the arguments mean; what is checked here is that no memory is read that is not theirs. */
+#define PY_SSIZE_T_CLEAN
+#ifndef Py_LIMITED_API
+#define Py_LIMITED_API 0x030B0000 /* one build for every Python from 3.11 on */
+#endif
+#include <Python.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "blas.h"
+#include "covariance.h"
+#include "product.h"
+
+Blas blas;
+
+/* Arrays of a call, released together. */
+enum { MOST_ARRAYS = 16 };
+typedef struct {
+    Py_buffer views[MOST_ARRAYS];
+    int held;
+} Arrays;
+
+static void release(Arrays *arrays)
+{
+    while (arrays->held)
+        PyBuffer_Release(&arrays->views[--arrays->held]);
+}
+
+/* Memory of an array in one piece, of numbers of some bytes, as many as said or more; NULL with an error set. */
+static void *array(Arrays *arrays, PyObject *object, int flags, Py_ssize_t bytes, Py_ssize_t count)
+{
+    Py_buffer *view = &arrays->views[arrays->held];
+    if (PyObject_GetBuffer(object, view, flags | PyBUF_ND) < 0)
+        return NULL;
+    arrays->held++;
+    if (view->itemsize != bytes || view->len < count * bytes) {
+        PyErr_SetString(PyExc_ValueError, "an array of another type or size is needed");
+        return NULL;
+    }
+    return view->buf;
+}
+
+static double *numbers(Arrays *arrays, PyObject *object, Py_ssize_t count)
+{
+    return array(arrays, object, PyBUF_C_CONTIGUOUS, sizeof(double), count);
+}
+
+/* Of a symmetric matrix, whose order does not matter. */
+static double *symmetric(Arrays *arrays, PyObject *object, Py_ssize_t size)
+{
+    return array(arrays, object, PyBUF_ANY_CONTIGUOUS, sizeof(double), size * size);
+}
+
+static double *filled(Arrays *arrays, PyObject *object, Py_ssize_t count)
+{
+    return array(arrays, object, PyBUF_ANY_CONTIGUOUS | PyBUF_WRITABLE, sizeof(double), count);
+}
+
+/* Rows or first dimension of the array taken last. */
+static int length(const Arrays *arrays)
+{
+    const Py_buffer *view = &arrays->views[arrays->held - 1];
+    return view->ndim ? (int)view->shape[0] : 1;
+}
+
+/* Memory to work in; it stays from call to call, since fresh pages cost more than the work. The interpreter's lock is
+ * held meanwhile. */
+static double *workspace(long count)
+{
+    static double *memory;
+    static long size;
+    if (count > size) {
+        double *larger = realloc(memory, sizeof(double) * count);
+        if (!larger) {
+            PyErr_NoMemory();
+            return NULL;
+        }
+        memory = larger;
+        size = count;
+    }
+    return memory;
+}
+
+static int expects(Py_ssize_t given, Py_ssize_t wanted)
+{
+    if (given == wanted)
+        return 1;
+    PyErr_SetString(PyExc_TypeError, "another number of arguments is needed");
+    return 0;
+}
+
+/* carry(P, A, B, joints, singer, noise, sd, carried) */
+static PyObject *py_carry(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    Arrays held = {.held = 0};
+    PyObject *done = NULL;
+    (void)self;
+    if (!expects(given, 8))
+        return NULL;
+    const double *sd = numbers(&held, args[6], 0);
+    const int nv = sd ? length(&held) : 0;
+    const double *P = sd ? symmetric(&held, args[0], 0) : NULL;
+    const int N = P ? length(&held) : 0;
+    const double *A = P ? numbers(&held, args[1], (Py_ssize_t)nv * nv) : NULL;
+    const double *B = A ? numbers(&held, args[2], (Py_ssize_t)nv * nv) : NULL;
+    const int *joints = B ? array(&held, args[3], PyBUF_C_CONTIGUOUS, sizeof(int), 0) : NULL;
+    const int n_joints = joints ? length(&held) : 0;
+    const double *singer = joints ? numbers(&held, args[4], 4) : NULL;
+    const double *noise = singer ? numbers(&held, args[5], 9) : NULL;
+    double *carried = noise ? filled(&held, args[7], (Py_ssize_t)N * N) : NULL;
+    double *work = carried ? workspace(carry_work(nv, N)) : NULL;
+    if (work) {
+        if (N < 3 * nv)
+            PyErr_SetString(PyExc_ValueError, "the covariance is smaller than the state");
+        else {
+            const Singer s = {singer[0], singer[1], singer[2], singer[3]};
+            carry(nv, N, P, A, B, joints, n_joints, &s, noise, sd, carried, work);
+            done = Py_NewRef(Py_None);
+        }
+    }
+    release(&held);
+    return done;
+}
+
+/* inform(P, information, rows, informed) -> 0, or which factorisation failed */
+static PyObject *py_inform(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    Arrays held = {.held = 0};
+    PyObject *done = NULL;
+    (void)self;
+    if (!expects(given, 4))
+        return NULL;
+    const double *P = symmetric(&held, args[0], 0);
+    const int N = P ? length(&held) : 0;
+    const double *information = P ? symmetric(&held, args[1], 0) : NULL;
+    const int n = information ? length(&held) : 0;
+    const double *rows = information ? numbers(&held, args[2], 0) : NULL;
+    const int m = rows ? length(&held) : 0;
+    double *informed = rows ? filled(&held, args[3], (Py_ssize_t)N * N) : NULL;
+    double *work = informed ? workspace(inform_work(n, m, N)) : NULL;
+    if (work) {
+        if (n > N || (m && held.views[2].len != (Py_ssize_t)sizeof(double) * m * N))
+            PyErr_SetString(PyExc_ValueError, "the arrays' sizes do not fit");
+        else
+            done = PyLong_FromLong(inform(N, P, n, information, m, rows, informed, work));
+    }
+    release(&held);
+    return done;
+}
+
+/* vectors() -> bits of the vectors that products are made with; 0 where BLAS makes them */
+static PyObject *py_vectors(PyObject *self, PyObject *nothing)
+{
+    (void)self;
+    (void)nothing;
+    return PyLong_FromLong(product_is_own() ? 512 : 0);
+}
+
+/* The routine of a capsule of SciPy's, where its arguments are what we take them to be. */
+static void *routine(PyObject *capsules, const char *name, const char *begins)
+{
+    PyObject *capsule = PyDict_GetItemString(capsules, name);
+    const char *signature = capsule ? PyCapsule_GetName(capsule) : NULL;
+    if (!signature || strncmp(signature, begins, strlen(begins)) != 0) {
+        PyErr_Format(PyExc_ImportError, "SciPy offers no %s as it is known here", name);
+        return NULL;
+    }
+    return PyCapsule_GetPointer(capsule, signature);
+}
+
+/* connect(capsules): takes BLAS and LAPACK routines from SciPy's, by name */
+static PyObject *py_connect(PyObject *self, PyObject *capsules)
+{
+    (void)self;
+    if (!PyDict_Check(capsules)) {
+        PyErr_SetString(PyExc_TypeError, "a dictionary of capsules is needed");
+        return NULL;
+    }
+    void *dgemm = routine(capsules, "dgemm", "void (char *, char *, int *, int *, int *, ");
+    void *dsyrk = dgemm ? routine(capsules, "dsyrk", "void (char *, char *, int *, int *, ") : NULL;
+    void *dtrsm = dsyrk ? routine(capsules, "dtrsm", "void (char *, char *, char *, char *, int *, int *, ") : NULL;
+    void *dpotrf = dtrsm ? routine(capsules, "dpotrf", "void (char *, int *, ") : NULL;
+    if (!dpotrf)
+        return NULL;
+    memcpy(&blas.dgemm, &dgemm, sizeof dgemm);
+    memcpy(&blas.dsyrk, &dsyrk, sizeof dsyrk);
+    memcpy(&blas.dtrsm, &dtrsm, sizeof dtrsm);
+    memcpy(&blas.dpotrf, &dpotrf, sizeof dpotrf);
+    return Py_NewRef(Py_None);
+}
+
+static PyMethodDef methods[] = {
+    {"connect", py_connect, METH_O, "Takes BLAS and LAPACK routines from a dictionary of capsules."},
+    {"carry", (PyCFunction)(void (*)(void))py_carry, METH_FASTCALL, "A covariance, one step later."},
+    {"inform", (PyCFunction)(void (*)(void))py_inform, METH_FASTCALL, "A covariance after readings."},
+    {"vectors", py_vectors, METH_NOARGS, "Bits of the vectors that products are made with; 0: BLAS makes them."},
+    {NULL, NULL, 0, NULL},
+};
+
+static struct PyModuleDef definition = {
+    PyModuleDef_HEAD_INIT, "mbkf.kernel._kernel", "Compiled arithmetic of a filter's step.", -1, methods,
+    NULL,                  NULL,                  NULL,                                      NULL,
+};
+
+PyMODINIT_FUNC PyInit__kernel(void) { return PyModule_Create(&definition); }

@@ -1,0 +1,110 @@
+/* Products of the size of a body's state: for 512-bit vectors in tiles that stay in registers, else by BLAS. At 50 to
+ * 200 rows BLAS spends as much on packing its operands as on their product, and not every BLAS knows every processor. */
+#include "product.h"
+
+#include "blas.h"
+
+#if defined(__GNUC__) && defined(__x86_64__)
+#define HAS_TILES 1
+#else
+#define HAS_TILES 0
+#endif
+
+static void by_blas(int part, int rows, int columns, int inner, double factor, const double *A, int lda,
+                    const double *B, int ldb, double keep, double *C, int ldc)
+{
+    if (part == LOWER && A == B && lda == ldb)
+        blas.dsyrk("l", "n", &rows, &inner, &factor, (double *)A, &lda, &keep, C, &ldc);
+    else
+        blas.dgemm("n", "t", &rows, &columns, &inner, &factor, (double *)A, &lda, (double *)B, &ldb, &keep, C,
+                   &ldc);
+}
+
+#if HAS_TILES
+#include <immintrin.h>
+
+#define WIDE __attribute__((target("avx512f,fma")))
+
+enum { LANES = 8, VECTORS = 3, HEIGHT = LANES * VECTORS, BREADTH = 8 };
+
+/* A tile of up to HEIGHT x breadth; breadth is a constant where this is inlined, so that all sums stay in registers. */
+WIDE static inline __attribute__((always_inline)) void tile(int breadth, const __mmask8 *mask, int inner,
+                                                            double factor, const double *A, int lda,
+                                                            const double *B, int ldb, double keep, double *C,
+                                                            int ldc)
+{
+    __m512d sum[BREADTH][VECTORS];
+    for (int j = 0; j < breadth; j++)
+        for (int v = 0; v < VECTORS; v++)
+            sum[j][v] = _mm512_setzero_pd();
+    for (int p = 0; p < inner; p++) {
+        __m512d a[VECTORS];
+        for (int v = 0; v < VECTORS; v++)
+            a[v] = _mm512_maskz_loadu_pd(mask[v], A + (long)p * lda + v * LANES);
+        for (int j = 0; j < breadth; j++) {
+            const __m512d b = _mm512_set1_pd(B[(long)p * ldb + j]);
+            for (int v = 0; v < VECTORS; v++)
+                sum[j][v] = _mm512_fmadd_pd(a[v], b, sum[j][v]);
+        }
+    }
+    for (int j = 0; j < breadth; j++)
+        for (int v = 0; v < VECTORS; v++) {
+            double *c = C + (long)j * ldc + v * LANES;
+            __m512d found = _mm512_mul_pd(_mm512_set1_pd(factor), sum[j][v]);
+            if (keep != 0.0)
+                found = _mm512_fmadd_pd(_mm512_set1_pd(keep), _mm512_maskz_loadu_pd(mask[v], c), found);
+            _mm512_mask_storeu_pd(c, mask[v], found);
+        }
+}
+
+WIDE static void by_tiles(int part, int rows, int columns, int inner, double factor, const double *A, int lda,
+                          const double *B, int ldb, double keep, double *C, int ldc)
+{
+    for (int j = 0; j < columns; j += BREADTH) {
+        const int breadth = j + BREADTH < columns ? BREADTH : columns - j;
+        for (int i = part == LOWER ? j : 0; i < rows; i += HEIGHT) {
+            __mmask8 mask[VECTORS];
+            for (int v = 0; v < VECTORS; v++) {
+                const int left = rows - i - v * LANES;
+                mask[v] = left >= LANES ? 0xff : left > 0 ? (__mmask8)((1 << left) - 1) : 0;
+            }
+            const double *a = A + i, *b = B + j;
+            double *c = C + (long)j * ldc + i;
+            switch (breadth) {
+#define OF_BREADTH(n)                                                    \
+    case n:                                                              \
+        tile(n, mask, inner, factor, a, lda, b, ldb, keep, c, ldc);      \
+        break;
+                OF_BREADTH(1)
+                OF_BREADTH(2)
+                OF_BREADTH(3)
+                OF_BREADTH(4)
+                OF_BREADTH(5)
+                OF_BREADTH(6)
+                OF_BREADTH(7)
+                OF_BREADTH(8)
+#undef OF_BREADTH
+            }
+        }
+    }
+}
+
+int product_is_own(void) { return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("fma"); }
+
+#else
+#define by_tiles by_blas
+
+int product_is_own(void) { return 0; }
+#endif
+
+void product(int part, int rows, int columns, int inner, double factor, const double *A, int lda, const double *B,
+             int ldb, double keep, double *C, int ldc)
+{
+    static int own = -1;
+    if (own < 0)
+        own = product_is_own();
+    if (own)
+        by_tiles(part, rows, columns, inner, factor, A, lda, B, ldb, keep, C, ldc);
+    else
+        by_blas(part, rows, columns, inner, factor, A, lda, B, ldb, keep, C, ldc);
+}

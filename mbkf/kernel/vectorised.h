@@ -1,0 +1,11 @@
+/* Loops compiled for several instruction sets, of which the best is taken at run time, where the compiler can. */
+#ifndef MBKF_VECTORISED_H
+#define MBKF_VECTORISED_H
+
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__gnu_linux__)
+#define VECTORISED __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define VECTORISED
+#endif
+
+#endif
