@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from mbkf.kernel.loading import COMPILED, REFERENCE, SWITCH, library
 from mbkf.numerics.threads import single_threaded
 
 STUDIES = Path(__file__).parent / "benchmarks"
@@ -37,3 +38,25 @@ def one_thread():
     """Small matrices on one thread, as the pipelines run them."""
     with single_threaded():
         yield
+
+
+@pytest.fixture(params=[COMPILED, REFERENCE])
+def either_kernel(request, monkeypatch) -> str:
+    """The test runs twice: with the compiled kernel, skipped where none is built, and with the reference."""
+    monkeypatch.delenv(SWITCH, raising=False)
+    library.cache_clear()
+    if request.param == COMPILED and library() is None:
+        pytest.skip("the kernel is not compiled here")
+    monkeypatch.setenv(SWITCH, request.param)
+    library.cache_clear()
+    yield request.param
+    library.cache_clear()
+
+
+@pytest.fixture
+def reference_kernel(monkeypatch) -> None:
+    """No compiled kernel, as where none is built."""
+    monkeypatch.setenv(SWITCH, REFERENCE)
+    library.cache_clear()
+    yield
+    library.cache_clear()

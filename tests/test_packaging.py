@@ -1,6 +1,7 @@
 """The wheel, installed away from the source tree, runs and finds its data."""
 
 import os
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from mbkf.conventions import data_folder
+from mbkf.kernel.loading import told
 from mbkf.version import __version__
 
 pytestmark = pytest.mark.slow
@@ -55,6 +57,18 @@ def run_installed(site: Path, cwd: Path, *words: str) -> str:
     return done.stdout.strip()
 
 
+def test_without_a_compiler_the_wheel_has_no_kernel_and_serves_every_machine(tmp_path, monkeypatch):
+    monkeypatch.setenv("CC", "no-compiler-has-this-name")
+    tree = tmp_path / "tree"
+    shutil.copytree(
+        ROOT, tree, ignore=shutil.ignore_patterns(".git", ".venv", "*.so", "*_cache", "docs", "tests")
+    )
+    pip("wheel", str(tree), "--no-deps", "-w", str(tmp_path))
+    (built,) = tmp_path.glob("mbkf-*.whl")
+    assert built.name.endswith("-py3-none-any.whl")
+    assert not [name for name in zipfile.ZipFile(built).namelist() if name.endswith((".so", ".pyd"))]
+
+
 def test_wheel_holds_the_package_its_data_and_nothing_else(wheel):
     tops = {name.split("/")[0] for name in zipfile.ZipFile(wheel).namelist()}
     assert tops == {"mbkf", f"mbkf-{__version__}.dist-info"}
@@ -87,5 +101,5 @@ def test_public_names_of_the_installed_package_can_be_imported(site, tmp_path):
 
 
 def test_installed_command_gives_its_version_and_help(site, tmp_path):
-    assert run_installed(site, tmp_path, "-m", "mbkf", "--version") == f"mbkf {__version__}"
+    assert run_installed(site, tmp_path, "-m", "mbkf", "--version") == f"mbkf {__version__}, {told()}"
     assert "reconstruct" in run_installed(site, tmp_path, "-m", "mbkf", "--help")

@@ -44,6 +44,16 @@ class OneLineParser(argparse.ArgumentParser):
         self.exit(EXIT_BAD_INPUT, f"{self.prog}: error: {_one_line(message)} (see {self.prog} --help)\n")
 
 
+class _Version(argparse.Action):
+    """Prints version and kernel; the kernel is looked for only when asked."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from mbkf.kernel.loading import told
+
+        print(f"mbkf {__version__}, {told()}")
+        parser.exit()
+
+
 def build_parser(commands: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
     """The parser of the whole command line, or of a few of its commands.
 
@@ -56,7 +66,7 @@ def build_parser(commands: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
         "from motion capture.",
         epilog="example:\n  mbkf demo\n\n`mbkf COMMAND --help` explains a command and gives an example.",
     )
-    parser.add_argument("--version", action="version", version=f"mbkf {__version__}")
+    parser.add_argument("--version", action=_Version, nargs=0, help="show version and kernel, and end")
     subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, title="commands")
     for name in commands:
         importlib.import_module(f"mbkf.cli.{name}").add_parser(subparsers)

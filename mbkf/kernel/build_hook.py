@@ -20,7 +20,7 @@ NAME = "_kernel"
 class KernelHook(BuildHookInterface):
     """Puts the compiled kernel beside its sources, and from there into the wheel."""
 
-    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:  # noqa: ARG002, the hook's signature
         """Called before a wheel is made, also that of an editable installation."""
         folder = Path(self.root) / FOLDER
         try:

@@ -7,6 +7,9 @@ import os
 from functools import cache
 from typing import Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 
@@ -24,7 +27,7 @@ class Library(Protocol):
         P: Array,
         A: Array,
         B: Array,
-        joints: Array,
+        joints: NDArray[np.int32],
         singer: Array,
         noise: Array,
         sd: Array,
@@ -102,4 +105,4 @@ def _connected() -> Library:
 
     module = importlib.import_module("mbkf.kernel._kernel")
     module.connect({**cython_blas.__pyx_capi__, **cython_lapack.__pyx_capi__})
-    return module  # type: ignore[return-value]
+    return module

@@ -13,6 +13,7 @@ from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.settings import flat
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.io.results import LAG_KEY
+from mbkf.kernel.loading import told
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,8 @@ class ReconstructSettings:
 
 
 def recorded(settings: ReconstructSettings) -> dict[str, object]:
-    """The settings as result files hold them: the dynamic filter's by their leaves' names, the lag in ms."""
+    """The settings as files hold them: the dynamic filter's by their leaves' names, the lag in ms, the kernel."""
     found: dict[str, object] = {**asdict(settings), "dynamic": flat(settings.dynamic)}
     del found["lag_s"]
-    return {**found, "smooth": settings.smooths, LAG_KEY: round(1e3 * settings.lag_s, 6)}
+    lag_ms = round(1e3 * settings.lag_s, 6)
+    return {**found, "smooth": settings.smooths, LAG_KEY: lag_ms, "kernel": told()}

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from mbkf.filters.dynamic.plant import DynamicState, SingerPlant, SingerSettings
-from mbkf.numerics.information_update import informed_with_rows
+from mbkf.kernel.covariance import informed_with_rows
+from mbkf.model.body import SegmentJoint
 from mbkf.sensors.block import Frame
 from tests.dynamics import follow, trial
 
@@ -23,6 +24,7 @@ class Slider:
     """A mass on a rail: as much of a body as the plant asks for."""
 
     nv = 1
+    joints = {"mass": SegmentJoint("mass", "slider", "x", 1, slice(0, 1), slice(0, 1))}  # noqa: RUF012
     movement_sd = np.array([300.0])
 
     def integrate(self, q, dv):
@@ -70,7 +72,7 @@ def followed_slider(steps):
         yield P
 
 
-def test_covariances_survive_100_000_steps():
+def test_covariances_survive_100_000_steps(either_kernel):
     """Readings over twelve decades, wrenches tied together, and long stretches without any reading."""
     lowest = 1.0
     for t, P in enumerate(followed_slider(STEPS)):

@@ -1,0 +1,129 @@
+"""Prediction and update by the kernel are the textbook's; what it cannot factorise the reference does."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
+from mbkf.kernel.covariance import informed_with_rows
+from mbkf.kernel.loading import library
+from mbkf.numerics import information_update
+from tests.dynamics import DT
+from tests.motions import random_model, reference_model, worst
+
+needs_kernel = pytest.mark.skipif(library() is None, reason="the kernel is not compiled here")
+
+
+def covariance(rng, size):
+    """(size, size) exactly symmetric, over two decades and more."""
+    root = rng.normal(size=(size, size + 3)) * 10 ** rng.uniform(-1, 1, (size, 1))
+    P = root @ root.T
+    return np.tril(P) + np.tril(P, -1).T
+
+
+def information(rng, size, readings):
+    H = rng.normal(size=(readings, size)) * 10 ** rng.uniform(-1, 1, (readings, 1))
+    H[:, rng.random(size) < 0.2] = 0.0
+    matrix = H.T @ H
+    return np.tril(matrix) + np.tril(matrix, -1).T
+
+
+def banded_rows(rng, readings, size):
+    """Rows that are zero outside of a few columns, as those of plates, and full ones."""
+    rows = rng.normal(size=(readings, size))
+    for row in rows:
+        first, last = np.sort(rng.integers(0, size + 1, 2))
+        row[:first] = row[last:] = 0.0
+    return rows
+
+
+@needs_kernel
+@settings(max_examples=60, deadline=None)
+@given(
+    st.integers(0, 10**6), st.integers(1, 61), st.integers(0, 30), st.integers(0, 30), st.sampled_from("CF")
+)
+def test_the_update_is_the_textbook_s(seed, n, further, readings, order):
+    """Any sizes: those of tiles, less and more."""
+    rng = np.random.default_rng(seed)
+    N = n + further
+    P, matrix = np.array(covariance(rng, N), order=order), information(rng, n, n + 4)
+    rows = banded_rows(rng, readings, N)
+    kept = P.copy()
+    found = informed_with_rows(P, matrix, rows)
+    whole = rows.T @ rows
+    whole[:n, :n] += matrix
+    # P - P (I + L P)^-1 L P, which needs no inverse of P, in scaled components.
+    scale = np.sqrt(np.diag(P))
+    C, L = P / scale / scale[:, None], whole * scale * scale[:, None]
+    expected = (C - C @ np.linalg.solve(np.eye(N) + L @ C, L @ C)) * scale * scale[:, None]
+    bound = 1e-9 * np.outer(scale, scale)
+    assert (np.abs(found - expected) <= bound).all()
+    np.testing.assert_array_equal(found, found.T)
+    np.testing.assert_array_equal(P, kept)
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 10**6), st.integers(1, 61), st.integers(0, 20), st.integers(0, 20))
+def test_the_update_is_the_reference_s(seed, n, further, readings):
+    rng = np.random.default_rng(seed)
+    P, matrix = covariance(rng, n + further), information(rng, n, n + 4)
+    rows = banded_rows(rng, readings, n + further)
+    expected = information_update.informed_with_rows(P, matrix, rows)
+    scale = np.sqrt(np.diag(P))
+    assert (np.abs(informed_with_rows(P, matrix, rows) - expected) <= 1e-10 * np.outer(scale, scale)).all()
+
+
+def test_information_without_a_factor_and_covariances_spoilt_by_rounding_are_the_reference_s(either_kernel):
+    rng = np.random.default_rng(3)
+    P, rows = covariance(rng, 9), banded_rows(rng, 4, 9)
+    H = rng.normal(size=(2, 6))
+    spoilt = P - 1.001 * np.linalg.eigvalsh(P)[0] * np.eye(9)
+    for prior in (P, spoilt):
+        found = informed_with_rows(prior, H.T @ H, rows)
+        expected = information_update.informed_with_rows(prior, H.T @ H, rows)
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-8 * worst(P))
+
+
+@needs_kernel
+def test_arrays_that_do_not_fit_are_refused():
+    kernel = library()
+    P = np.eye(4)
+    with pytest.raises(ValueError, match="sizes"):
+        kernel.inform(P, np.eye(5), np.zeros((1, 4)), np.empty((4, 4)))
+    with pytest.raises(ValueError, match="sizes"):
+        kernel.inform(P, np.eye(2), np.zeros((1, 3)), np.empty((4, 4)))
+    with pytest.raises(ValueError, match="type or size"):
+        kernel.inform(P, np.eye(2), np.zeros((1, 4)), np.empty((3, 4)))
+    with pytest.raises(ValueError, match="type or size"):
+        kernel.inform(P.astype(np.float32), np.eye(2), np.zeros((1, 4)), np.empty((4, 4)))
+    with pytest.raises(TypeError):
+        kernel.inform(P, np.eye(2))
+
+
+MODELS = {"reference": reference_model(), "random": random_model(np.random.default_rng(4))}
+
+
+@pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
+@pytest.mark.parametrize("order", ["C", "F"])
+def test_the_prediction_is_phi_p_phi_and_noise(either_kernel, model, order):
+    rng = np.random.default_rng(5)
+    nv = model.nv
+    plant = SingerPlant(model, DT, np.arange(nv) == 7)
+    N = plant.layout.size
+    P = np.array(covariance(rng, N), order=order)
+    q = model.integrate(model.neutral(), rng.normal(size=nv))
+    state = DynamicState(q, rng.normal(size=nv), 20.0 * rng.normal(size=nv), np.zeros(12), P)
+    sd = rng.uniform(0.0, 30.0, nv)
+    found = plant.predict(state, sd).P
+    Q = np.zeros((N, N))
+    Q[: 3 * nv, : 3 * nv] = np.kron(plant.covariance, np.diag(sd**2))
+    phi = plant.transition(state)
+    expected = phi @ P @ phi.T + Q
+    scale = np.sqrt(np.diag(expected))
+    assert (np.abs(found - expected) <= 1e-13 * np.outer(scale, scale)).all()
+    np.testing.assert_array_equal(found, found.T)
+    assert found.flags.f_contiguous
+    assert replace(state, P=found).P is found
