@@ -8,7 +8,7 @@ from __future__ import annotations
 import shutil
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import cast
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 from packaging.tags import sys_tags
@@ -20,7 +20,7 @@ NAME = "_kernel"
 class KernelHook(BuildHookInterface):
     """Puts the compiled kernel beside its sources, and from there into the wheel."""
 
-    def initialize(self, version: str, build_data: dict[str, Any]) -> None:  # noqa: ARG002, the hook's signature
+    def initialize(self, version: str, build_data: dict[str, object]) -> None:  # noqa: ARG002, the hook's signature
         """Called before a wheel is made, also that of an editable installation."""
         folder = Path(self.root) / FOLDER
         try:
@@ -32,7 +32,7 @@ class KernelHook(BuildHookInterface):
             return
         build_data["pure_python"] = False
         build_data["tag"] = f"cp311-abi3-{_platform()}"
-        build_data["artifacts"].append(f"/{built.relative_to(self.root).as_posix()}")
+        cast(list[str], build_data["artifacts"]).append(f"/{built.relative_to(self.root).as_posix()}")
 
 
 def compiled(folder: Path) -> Path:
