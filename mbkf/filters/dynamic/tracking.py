@@ -146,8 +146,14 @@ class DynamicTracking(TrackingFilter):
             self._edges(estimate, free),
             self.loads.slice if notes.supports and all_seen else None,
             s.errors.smoothed_new_rates if estimate.later else s.errors.new_rates,
-            min(1.0, estimate.plate_noise.force_n / s.contact.plate_force_n) if estimate.plate_noise else 1.0,
+            self._plates(estimate, contacts),
         )
+
+    def _plates(self, estimate: Posterior, contacts: Sequence[Contact]) -> float:
+        """Noise of plates over what the filter takes for it; how two feet share a plate is no reading of it."""
+        if estimate.plate_noise is None or Contact.SHARED in contacts:
+            return 1.0
+        return min(1.0, estimate.plate_noise.force_n / self.kalman.settings.contact.plate_force_n)
 
     def _edges(self, estimate: Posterior, free: tuple[int, ...]) -> Array:
         """(n, 12) wrenches that feet may carry or not: see :mod:`mbkf.filters.error_covariance`."""

@@ -131,3 +131,17 @@ def test_markers_on_skin_with_a_memory_leave_the_spreads_their_places():
     assert (spread.torque[6:] > 0).all()
     smoothed = one.smooth(found, recording(), 0, len(found))
     assert worst(smoothed[0].q - found[0].q) < 0.2
+
+
+def test_quiet_plates_narrow_the_wrenches_that_they_read_not_how_two_feet_share_one():
+    tracking, found = estimates("dynamic")
+    quiet = found[30]._replace(plate_noise=replace(tracking._plate_noise, force_n=0.3))
+    contact = quiet.inner.decisions.notes.contact
+    assert contact.contacts == (Contact.MEASURED, Contact.MEASURED)
+    sd = tracking.wrench_sd(quiet)
+    notes = replace(quiet.inner.decisions.notes, contact=replace(contact, contacts=(Contact.SHARED,) * 2))
+    decisions = quiet.inner.decisions._replace(notes=notes)
+    shared = tracking.wrench_sd(quiet._replace(inner=quiet.inner._replace(decisions=decisions)))
+    own = np.sqrt(np.diag(quiet.inner.state.P)[tracking.kalman.layout.wrench]).reshape(2, 6)
+    assert (shared >= own).all()
+    assert (sd[:, 2] < 0.5 * own[:, 2]).all()
