@@ -16,7 +16,7 @@ import numpy as np
 from benchmarks.checks import Check, information
 from benchmarks.dynamic.methods import Method, tared
 from benchmarks.full_body.filters import CAUSAL, DYNAMIC, FCDI, FDMC, FDMC_PRINTED
-from benchmarks.speed import PRODUCT_SIZE
+from benchmarks.speed.products import SIZE as PRODUCT_SIZE
 from benchmarks.thesis_report.contents import OPEN, Band, Claim, Findings, Row, Sheet, judged
 from benchmarks.thesis_report.figures import BLUE, GREEN, GREY, ORANGE, Drawing, axes, labelled, legend
 from mbkf.conventions import Array

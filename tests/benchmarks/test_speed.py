@@ -5,40 +5,75 @@ import pytest
 
 from benchmarks import speed
 from benchmarks.checks import Context
+from benchmarks.speed.products import Times, joined
+from benchmarks.speed.steps import (
+    INVERSE_DYNAMICS,
+    NIS,
+    RECORD,
+    SPREADS,
+    STEP,
+    dynamic_times,
+    kinematic_times,
+)
+from benchmarks.speed.walks import synthetic, with_plates
+
+FRAMES_LEFT_OUT = 11
+
+
+@pytest.fixture(scope="module")
+def walk():
+    return synthetic(speed.QUICK_SECONDS)
 
 
 def test_a_quick_run_gives_the_bounded_ratios_and_their_parts(tmp_path):
     checks = speed.run(Context(None, tmp_path, quick=True))
     assert [check.name for check in checks if check.bounded] == [
-        "kinematic + inverse dynamics step, median",
-        "dynamic step, median",
-        "dynamic step, 99th percentile",
+        "synthetic walk: dynamic step",
+        "synthetic walk: its 99th percentile over it",
+        "synthetic walk: all that a frame costs",
+        "synthetic walk: kinematic step and inverse dynamics",
     ]
-    assert {check.unit for check in checks} == {"P", "µs"}
     assert all(check.value > 0 for check in checks)
-    whole, filtering, solving = (check.value for check in checks[:3])
-    assert whole > max(filtering, solving)
+    by_name = {check.name.partition(": ")[2]: check.value for check in checks}
+    assert by_name["all that a frame costs"] > by_name["dynamic step"]
 
 
 def test_ratios_are_of_medians_of_sums():
-    times = speed.Times(
-        np.array([1.0, 2.0, 9.0]), {"a": np.array([1.0, 5.0, 2.0]), "b": np.array([3.0, 0.0, 9.0])}
-    )
+    times = Times(np.array([1.0, 2.0, 9.0]), {"a": np.array([1.0, 5.0, 2.0]), "b": np.array([3.0, 0.0, 9.0])})
     assert times.in_products("a") == pytest.approx(1.0)
     assert times.in_products("a", "b") == pytest.approx(2.5)
+    assert len(joined([times, times]).product) == 6
 
 
-def test_all_frames_but_the_warm_up_are_timed():
-    walk = speed.make_walk(speed.QUICK_SECONDS)
-    times = speed.time_kinematic(walk)
-    assert set(times.parts) == {"filter", "inverse dynamics"}
+def test_all_frames_but_the_warm_up_are_timed(walk):
+    times, frames = kinematic_times(walk, least=1), walk.capture.markers.frames
+    assert set(times.parts) == {STEP, INVERSE_DYNAMICS}
     for seconds in (times.product, *times.parts.values()):
-        assert len(seconds) == len(walk.measured_m) - 1 - speed.WARM_UP_FRAMES
+        assert len(seconds) == frames - FRAMES_LEFT_OUT
         assert (seconds > 0).all()
 
 
-def test_the_dynamic_filter_is_timed_over_all_rounds():
-    walk = speed.make_walk(speed.QUICK_SECONDS)
-    times = speed.time_dynamic(walk, 2)
-    assert len(times.product) == 2 * (len(walk.measured_m) - 1) - speed.WARM_UP_FRAMES
-    assert times.in_products("filter", percentile=99.0) >= times.in_products("filter") > 0
+def test_the_dynamic_filter_is_timed_over_all_rounds(walk):
+    once = walk.capture.markers.frames - FRAMES_LEFT_OUT
+    times = dynamic_times(walk, least=once + 1)
+    assert set(times.parts) == {STEP, NIS, SPREADS, RECORD}
+    assert len(times.product) == 2 * once
+    assert times.in_products(STEP, percentile=99.0) >= times.in_products(STEP) > 0
+
+
+@pytest.mark.parametrize("markers", [20, 80])
+def test_a_person_wears_as_many_markers_as_asked_and_is_followed(markers):
+    walk = synthetic(speed.QUICK_SECONDS, markers)
+    tracking, recording, _ = walk.dynamic()
+    assert recording.markers_m.shape[1] == len(walk.subject.markers) == markers
+    assert tracking.start(recording, 0, None) is not None
+
+
+def test_further_plates_read_nothing(walk):
+    own = len(walk.capture.plates)
+    more = with_plates(walk, own + 2)
+    assert [plate.name for plate in more.capture.plates[own:]] == ["far 1", "far 2"]
+    _, recording, _ = more.dynamic()
+    assert recording.plates.shape[1] == own + 2
+    assert not recording.plates[:, own:].any()
+    assert len(with_plates(walk, 1).capture.plates) == 1

@@ -1,0 +1,58 @@
+"""Whole commands from the shell: `mbkf reconstruct` of a five-second walk."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+
+from benchmarks.checks import Check
+from mbkf.errors import InvalidInput
+from mbkf.pipelines.synth import synthesise, write_folder
+
+SECONDS = 5.0
+CAUSAL_S, SMOOTHED_S = 1.5, 2.2
+RUNS = 5
+
+
+def rows(folder: Path, runs: int = RUNS) -> list[Check]:
+    """Median wall time of the command, causal and smoothed, in turn.
+
+    Args:
+        folder: For the capture and the results.
+        runs: How often each is run.
+    """
+    person, recorded = synthesise("walk", seconds=SECONDS)
+    written = {path.name: path for path in write_folder(person, recorded, folder)}
+    trial = next(path for name, path in written.items() if name.startswith("trial"))
+    words = ("reconstruct", trial, "--subject", written["subject.toml"])
+    times: dict[str, list[float]] = {"--causal": [], "--smooth": []}
+    for _ in range(runs):
+        for option, taken in times.items():
+            taken.append(_seconds(*words, option, "--out", folder / option.strip("-")))
+    return [
+        Check(
+            "reconstruct of a 5 s walk, causal, wall time",
+            float(np.median(times["--causal"])),
+            CAUSAL_S,
+            "<=",
+            "s",
+        ),
+        Check("… smoothed", float(np.median(times["--smooth"])), SMOOTHED_S, "<=", "s"),
+    ]
+
+
+def _seconds(*words: str | Path) -> float:
+    """Wall time of a command.
+
+    Raises:
+        InvalidInput: It fails.
+    """
+    begin = perf_counter()
+    done = subprocess.run([sys.executable, "-m", "mbkf", *words], capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise InvalidInput(done.stderr.strip().splitlines()[-1])
+    return perf_counter() - begin
