@@ -8,20 +8,30 @@
 #include "product.h"
 #include "vectorised.h"
 
-enum { TILE = 4 };
+enum { TILE = 8 };
+
+/* The columns of a tile of X become rows of another, on the other side of the diagonal. */
+static inline void mirror_tile(int N, const double *from, double *to)
+{
+    for (int b = 0; b < TILE; b++)
+        for (int a = 0; a < TILE; a++)
+            to[(long)b * N + a] = from[(long)a * N + b];
+}
 
 /* Copies what stands right of the diagonal, row by row, to the left of it. */
 VECTORISED static void mirror(int N, double *X)
 {
-    for (int i = 0; i < N; i += TILE) {
-        int rows = i + TILE < N ? TILE : N - i;
-        for (int j = i; j < N; j += TILE) {
-            int columns = j + TILE < N ? TILE : N - j;
-            for (int b = 0; b < columns; b++)
-                for (int a = 0; a < rows && i + a < j + b; a++)
-                    X[(long)(j + b) * N + i + a] = X[(long)(i + a) * N + j + b];
-        }
+    const int whole = N - N % TILE;
+    for (int i = 0; i < whole; i += TILE) {
+        for (int b = 1; b < TILE; b++)
+            for (int a = 0; a < b; a++)
+                X[(long)(i + b) * N + i + a] = X[(long)(i + a) * N + i + b];
+        for (int j = i + TILE; j < whole; j += TILE)
+            mirror_tile(N, X + (long)i * N + j, X + (long)j * N + i);
     }
+    for (int j = whole; j < N; j++)
+        for (int i = 0; i < j; i++)
+            X[(long)j * N + i] = X[(long)i * N + j];
 }
 
 /* out = A P + B S of one joint's rows, from first on, for all columns. */
@@ -216,10 +226,10 @@ static int reduced_by_rows(int N, const double *P, int n, const double *K, const
     for (Band b = {0, 0, 0, 0}; b.end < m;) {
         b = band_from(b.end, m, N, rows);
         product(WHOLE, N, b.end - b.start, b.last - b.first, 1.0, P + (long)b.first * N, N,
-                R + (long)b.first * m + b.start, m, 0.0, W + (long)b.start * N, N);
+                R + (long)b.first * m + b.start, m, 0.0, NULL, W + (long)b.start * N, N);
     }
     blas.dgemm("t", "n", &m, &n, &n, &one, W, &N, (double *)K, &n, &zero, Y, &m);
-    product(WHOLE, N, m, n, -1.0, F, N, Y, m, 1.0, W, N);
+    product(WHOLE, N, m, n, -1.0, F, N, Y, m, 1.0, W, W, N);
     for (Band b = {0, 0, 0, 0}; b.end < m;) {
         b = band_from(b.end, m, N, rows);
         int count = b.end - b.start, width = b.last - b.first;
@@ -242,16 +252,15 @@ int inform(int N, const double *P, int n, const double *information, int m, cons
     if (square_root(n, information, G))
         return 1;
     transposed(n, n, G, n, across);
-    product(WHOLE, n, n, n, 1.0, across, n, P, N, 0.0, T, n);
-    product(LOWER, n, n, n, 1.0, T, n, across, n, 0.0, S, n);
+    product(WHOLE, n, n, n, 1.0, across, n, P, N, 0.0, NULL, T, n);
+    product(LOWER, n, n, n, 1.0, T, n, across, n, 0.0, NULL, S, n);
     if (half(n, n, G, S))
         return 2;
     transposed(n, n, G, n, across);
-    product(WHOLE, N, n, n, 1.0, P, N, across, n, 0.0, F, N);
+    product(WHOLE, N, n, n, 1.0, P, N, across, n, 0.0, NULL, F, N);
     if (m && reduced_by_rows(N, P, n, G, F, m, rows, W, Y, Q, Q + (long)m * m))
         return 3;
-    memcpy(informed, P, sizeof(double) * N * N);
-    product(LOWER, N, N, n + m, -1.0, F, N, F, N, 1.0, informed, N);
+    product(LOWER, N, N, n + m, -1.0, F, N, F, N, 1.0, P, informed, N);
     mirror(N, informed);
     return 0;
 }

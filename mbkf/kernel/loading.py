@@ -60,6 +60,9 @@ class Library(Protocol):
             0, or which factorisation failed.
         """
 
+    def choose(self, own: bool, /) -> None:
+        """Whether products are made with instructions of the kernel's own, where the processor has them, or by BLAS."""
+
     def vectors(self) -> int:
         """Bits of the vectors that products are made with; 0 where BLAS makes them."""
 

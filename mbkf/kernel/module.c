@@ -158,6 +158,17 @@ static PyObject *py_vectors(PyObject *self, PyObject *nothing)
     return PyLong_FromLong(product_is_own() ? 512 : 0);
 }
 
+/* choose(own): products by instructions of their own, where the processor has them, or by BLAS */
+static PyObject *py_choose(PyObject *self, PyObject *own)
+{
+    (void)self;
+    const int wanted = PyObject_IsTrue(own);
+    if (wanted < 0)
+        return NULL;
+    product_choose(wanted);
+    return Py_NewRef(Py_None);
+}
+
 /* The routine of a capsule of SciPy's, where its arguments are what we take them to be. */
 static void *routine(PyObject *capsules, const char *name, const char *begins)
 {
@@ -195,6 +206,7 @@ static PyMethodDef methods[] = {
     {"connect", py_connect, METH_O, "Takes BLAS and LAPACK routines from a dictionary of capsules."},
     {"carry", (PyCFunction)(void (*)(void))py_carry, METH_FASTCALL, "A covariance, one step later."},
     {"inform", (PyCFunction)(void (*)(void))py_inform, METH_FASTCALL, "A covariance after readings."},
+    {"choose", py_choose, METH_O, "Products by instructions of their own, where they can be, or by BLAS."},
     {"vectors", py_vectors, METH_NOARGS, "Bits of the vectors that products are made with; 0: BLAS makes them."},
     {NULL, NULL, 0, NULL},
 };

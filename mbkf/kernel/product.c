@@ -2,6 +2,8 @@
  * 200 rows BLAS spends as much on packing its operands as on their product, and not every BLAS knows every processor. */
 #include "product.h"
 
+#include <string.h>
+
 #include "blas.h"
 
 #if defined(__GNUC__) && defined(__x86_64__)
@@ -11,8 +13,11 @@
 #endif
 
 static void by_blas(int part, int rows, int columns, int inner, double factor, const double *A, int lda,
-                    const double *B, int ldb, double keep, double *C, int ldc)
+                    const double *B, int ldb, double keep, const double *D, double *C, int ldc)
 {
+    if (keep != 0.0 && D != C)
+        for (int j = 0; j < columns; j++)
+            memcpy(C + (long)j * ldc, D + (long)j * ldc, sizeof(double) * rows);
     if (part == LOWER && A == B && lda == ldb)
         blas.dsyrk("l", "n", &rows, &inner, &factor, (double *)A, &lda, &keep, C, &ldc);
     else
@@ -30,8 +35,8 @@ enum { LANES = 8, VECTORS = 3, HEIGHT = LANES * VECTORS, BREADTH = 8 };
 /* A tile of up to HEIGHT x breadth; breadth is a constant where this is inlined, so that all sums stay in registers. */
 WIDE static inline __attribute__((always_inline)) void tile(int breadth, const __mmask8 *mask, int inner,
                                                             double factor, const double *A, int lda,
-                                                            const double *B, int ldb, double keep, double *C,
-                                                            int ldc)
+                                                            const double *B, int ldb, double keep, const double *D,
+                                                            double *C, int ldc)
 {
     __m512d sum[BREADTH][VECTORS];
     for (int j = 0; j < breadth; j++)
@@ -52,13 +57,13 @@ WIDE static inline __attribute__((always_inline)) void tile(int breadth, const _
             double *c = C + (long)j * ldc + v * LANES;
             __m512d found = _mm512_mul_pd(_mm512_set1_pd(factor), sum[j][v]);
             if (keep != 0.0)
-                found = _mm512_fmadd_pd(_mm512_set1_pd(keep), _mm512_maskz_loadu_pd(mask[v], c), found);
+                found = _mm512_fmadd_pd(_mm512_set1_pd(keep), _mm512_maskz_loadu_pd(mask[v], D + (long)j * ldc + v * LANES), found);
             _mm512_mask_storeu_pd(c, mask[v], found);
         }
 }
 
 WIDE static void by_tiles(int part, int rows, int columns, int inner, double factor, const double *A, int lda,
-                          const double *B, int ldb, double keep, double *C, int ldc)
+                          const double *B, int ldb, double keep, const double *D, double *C, int ldc)
 {
     for (int j = 0; j < columns; j += BREADTH) {
         const int breadth = j + BREADTH < columns ? BREADTH : columns - j;
@@ -69,11 +74,12 @@ WIDE static void by_tiles(int part, int rows, int columns, int inner, double fac
                 mask[v] = left >= LANES ? 0xff : left > 0 ? (__mmask8)((1 << left) - 1) : 0;
             }
             const double *a = A + i, *b = B + j;
+            const double *d = keep != 0.0 ? D + (long)j * ldc + i : NULL;
             double *c = C + (long)j * ldc + i;
             switch (breadth) {
 #define OF_BREADTH(n)                                                    \
     case n:                                                              \
-        tile(n, mask, inner, factor, a, lda, b, ldb, keep, c, ldc);      \
+        tile(n, mask, inner, factor, a, lda, b, ldb, keep, d, c, ldc);      \
         break;
                 OF_BREADTH(1)
                 OF_BREADTH(2)
@@ -89,22 +95,30 @@ WIDE static void by_tiles(int part, int rows, int columns, int inner, double fac
     }
 }
 
-int product_is_own(void) { return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("fma"); }
+static int possible(void) { return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("fma"); }
 
 #else
 #define by_tiles by_blas
 
-int product_is_own(void) { return 0; }
+static int possible(void) { return 0; }
 #endif
 
-void product(int part, int rows, int columns, int inner, double factor, const double *A, int lda, const double *B,
-             int ldb, double keep, double *C, int ldc)
+static int own = -1; /* not asked yet */
+
+int product_is_own(void)
 {
-    static int own = -1;
     if (own < 0)
-        own = product_is_own();
-    if (own)
-        by_tiles(part, rows, columns, inner, factor, A, lda, B, ldb, keep, C, ldc);
+        own = possible();
+    return own;
+}
+
+void product_choose(int wanted) { own = wanted && possible(); }
+
+void product(int part, int rows, int columns, int inner, double factor, const double *A, int lda, const double *B,
+             int ldb, double keep, const double *D, double *C, int ldc)
+{
+    if (product_is_own())
+        by_tiles(part, rows, columns, inner, factor, A, lda, B, ldb, keep, D, C, ldc);
     else
-        by_blas(part, rows, columns, inner, factor, A, lda, B, ldb, keep, C, ldc);
+        by_blas(part, rows, columns, inner, factor, A, lda, B, ldb, keep, D, C, ldc);
 }

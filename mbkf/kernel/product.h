@@ -1,15 +1,18 @@
-/* C = keep C + factor A B' of matrices stored column by column; see product.c. */
+/* C = keep D + factor A B' of matrices stored column by column; see product.c. */
 #ifndef MBKF_PRODUCT_H
 #define MBKF_PRODUCT_H
 
 enum { WHOLE = 0, LOWER = 1 };
 
 /* A: (rows x inner), B: (columns x inner), C: (rows x columns), each with the distance of its columns.
- * part: LOWER, of a square C, leaves what stands above the diagonal undefined. */
+ * D: as C, may be C, and is not read where keep is 0. part: LOWER, of a square C, leaves what stands above the diagonal undefined. */
 void product(int part, int rows, int columns, int inner, double factor, const double *A, int lda, const double *B,
-             int ldb, double keep, double *C, int ldc);
+             int ldb, double keep, const double *D, double *C, int ldc);
 
 /* Whether product has instructions of its own here, rather than BLAS's. */
 int product_is_own(void);
+
+/* Chooses: instructions of its own, where the processor has them, or BLAS's. */
+void product_choose(int wanted);
 
 #endif

@@ -40,7 +40,20 @@ def banded_rows(rng, readings, size):
     return rows
 
 
-@needs_kernel
+@pytest.fixture(params=[True, False], ids=["own vectors", "BLAS"], scope="module")
+def products(request):
+    """Matrices multiplied by instructions of the kernel's own, where the processor has them, and by BLAS."""
+    kernel = library()
+    if kernel is None:
+        pytest.skip("the kernel is not compiled here")
+    kernel.choose(request.param)
+    if request.param and not kernel.vectors():
+        pytest.skip("the processor has no 512-bit vectors")
+    yield
+    kernel.choose(True)
+
+
+@pytest.mark.usefixtures("products")
 @settings(max_examples=60, deadline=None)
 @given(
     st.integers(0, 10**6), st.integers(1, 61), st.integers(0, 30), st.integers(0, 30), st.sampled_from("CF")
