@@ -11,7 +11,8 @@ followed again by the old tree with the mass and the marker positions of the sub
 and down, and each array's difference is shown beside what that moves. The bound stays as it is.
 
 This is no benchmark of ``python -m benchmarks``, which measures one tree: it needs a second one, and an
-hour. Run it as ``python -m benchmarks.equality --old TREE``. Exit code 0: all equal; 1: something differs;
+hour. Run it as ``python -m benchmarks.equality --old TREE``, or with ``--kernels`` to compare this tree's compiled
+kernel with its reference. Exit code 0: all equal; 1: something differs;
 2: wrong usage.
 """
 
@@ -23,7 +24,7 @@ import os
 import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from benchmarks.equality.captures import CAPTURES, LEFT_OUT, Captured
@@ -31,6 +32,7 @@ from benchmarks.equality.compare import BOUND
 from benchmarks.equality.comparison import Comparison, Row
 from benchmarks.equality.runs import Tree
 from mbkf.errors import InvalidInput, MbkfError, UnknownName
+from mbkf.kernel.loading import COMPILED, REFERENCE
 
 HERE = Path(__file__).resolve().parents[2]
 
@@ -78,7 +80,11 @@ def _parser() -> argparse.ArgumentParser:
         epilog="example:\n  python -m benchmarks.equality --old ../mbkf-before --data captures --out equality",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--old", type=Path, required=True, metavar="TREE", help="the tree that is right")
+    which = parser.add_mutually_exclusive_group(required=True)
+    which.add_argument("--old", type=Path, metavar="TREE", help="the tree that is right")
+    which.add_argument(
+        "--kernels", action="store_true", help="compare the compiled kernel with the reference, in one tree"
+    )
     parser.add_argument(
         "--new", type=Path, default=HERE, metavar="TREE", help="the tree to compare (default: this one)"
     )
@@ -123,9 +129,11 @@ def _compared(args: argparse.Namespace) -> Iterator[Row]:
     captures = _chosen(args.only)
     renamed = dict(pair.split("=", 1) for pair in args.renamed if "=" in pair)
     out, data = args.out.resolve(), args.data.resolve()
-    old = Tree(args.old.resolve(), out / "old", data, cached=True)
-    new = old if args.baseline else Tree(args.new.resolve(), out / "new", data, cached=False)
-    nudged = Tree(old.source, out / "nudged", data, cached=True)
+    right, tried = (REFERENCE, COMPILED) if args.kernels else ("", "")
+    source = args.new if args.old is None else args.old
+    old = Tree(source.resolve(), out / "old", data, cached=True, kernel=right)
+    new = old if args.baseline else Tree(args.new.resolve(), out / "new", data, cached=False, kernel=tried)
+    nudged = replace(old, out=out / "nudged")
     comparison = Comparison(old, new, renamed, args.keep, nudged if args.rounding else None)
     for tree in {old, new, nudged} if args.rounding else {old, new}:
         tree.check()

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from benchmarks.equality.captures import Captured, Run
 from mbkf.errors import InvalidInput
+from mbkf.kernel.loading import SWITCH
 
 MAX_SECONDS = 1800.0
 TREE_FILE = "tree.json"
@@ -36,12 +37,14 @@ class Tree:
         out: Its results: per capture ``made`` with what was prepared, and one folder for each run.
         data: The reference captures.
         cached: Whether results that are there already are taken as they are.
+        kernel: The kernel that its commands use; "" for what they choose themselves.
     """
 
     source: Path
     out: Path
     data: Path
     cached: bool
+    kernel: str = ""
 
     def check(self) -> None:
         """Makes sure that commands run in this tree, and that cached results come from it as it is now.
@@ -121,7 +124,9 @@ class Tree:
     def _environment(self) -> dict[str, str]:
         """One thread per process, so that sums are taken in one order and workers do not disturb each other."""
         threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-        return {**os.environ, **threads, "PYTHONPATH": str(self.source), "PYTHONDONTWRITEBYTECODE": "1"}
+        kernel = {SWITCH: self.kernel} if self.kernel else {}
+        source = {"PYTHONPATH": str(self.source), "PYTHONDONTWRITEBYTECODE": "1"}
+        return {**os.environ, **threads, **kernel, **source}
 
     def _filled(self, word: str, made: Path) -> str:
         return word.replace("{data}", str(self.data)).replace("{made}", str(made))
@@ -131,4 +136,5 @@ class Tree:
         state = sha256()
         for path in sorted(p for p in files if p.is_file() and p.suffix != ".pyc"):
             state.update(path.relative_to(self.source).as_posix().encode() + b"\0" + path.read_bytes())
+        state.update(self.kernel.encode())
         return state.hexdigest()

@@ -1,0 +1,52 @@
+"""The comparison of kernels sees a difference, and leaves the environment as it was."""
+
+import os
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks import kernel
+from benchmarks.kernel import NEAR, differences, moved, using
+from mbkf.kernel.loading import REFERENCE, SWITCH, library
+from tests.recordings import walk
+
+
+def test_a_difference_is_a_share_of_the_array_s_largest_value():
+    r = walk()
+    assert set(differences(r, r).values()) == {0.0}
+    q = r.q.copy()
+    q[3, 0] += 1e-6 * np.abs(q).max()
+    found = differences(r, replace(r, q=q, step_seconds=r.step_seconds + 1.0))
+    assert found["q"] == pytest.approx(1e-6, rel=1e-3)
+    assert "step_seconds" not in found
+
+
+def test_a_subject_is_moved_by_the_last_digit():
+    before = walk().subject
+    after = moved(before, np.inf)
+    places = [np.array([m.position_m for m in one.markers]) for one in (before, after)]
+    np.testing.assert_array_equal(places[1], np.nextafter(places[0], np.inf))
+
+
+@pytest.mark.parametrize("before", ["", None])
+def test_the_environment_is_left_as_it_was(monkeypatch, before):
+    if before is None:
+        monkeypatch.delenv(SWITCH, raising=False)
+    else:
+        monkeypatch.setenv(SWITCH, before)
+    with using(REFERENCE):
+        assert os.environ[SWITCH] == REFERENCE
+        assert library() is None
+    assert os.environ.get(SWITCH) == before
+
+
+def test_every_motion_is_followed_causally_and_smoothed(monkeypatch, tmp_path):
+    if library() is None:
+        pytest.skip("the kernel is not compiled here")
+    monkeypatch.setattr(kernel, "QUICK_MOTIONS", ("squat",))
+    monkeypatch.setattr(kernel, "SECONDS", 0.6)
+    rows = kernel.run(kernel.Context(None, tmp_path, quick=True))
+    names = [row.name.partition(": ") for row in rows]
+    assert [name for name, _, what in names if "last digit" in what] == ["squat, causal", "squat, smoothed"]
+    assert all(row.passed for row in rows if row.bound == NEAR)
