@@ -58,7 +58,11 @@ def data_folder(kind: str) -> Path:
 
 
 def read_only(array: object, dtype: type = np.float64) -> NDArray:
-    """A contiguous copy of an array that cannot be written to."""
+    """A contiguous copy of an array that cannot be written to, or the array itself where it is one already."""
+    if type(array) is np.ndarray and array.dtype == dtype:
+        flags = array.flags
+        if flags.owndata and flags.c_contiguous and not flags.writeable:
+            return array
     copy: NDArray = np.array(array, dtype=dtype, copy=True, order="C")
     copy.setflags(write=False)
     return copy

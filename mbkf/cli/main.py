@@ -7,6 +7,7 @@ sets ``run`` as default, and ``run(args) -> int``. Libraries that load slowly ar
 from __future__ import annotations
 
 import argparse
+import gc
 import importlib
 import os
 import sys
@@ -29,6 +30,10 @@ EXIT_PIPE_CLOSED = 141  # 128 + SIGPIPE
 
 TRACEBACK_VARIABLE = "MBKF_TRACEBACK"
 """Environment variable that, when set, shows where an unforeseen error came from."""
+
+GARBAGE_AFTER = 50_000
+"""New objects after which Python looks for circles among them. Its own 700 suit programs whose objects come and go;
+what a command's libraries make while they load stays."""
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -85,6 +90,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Raises:
         SystemExit: By argparse: 2 on wrong usage, 0 after ``--help`` and ``--version``.
     """
+    gc.set_threshold(GARBAGE_AFTER)
     words = list(sys.argv[1:] if arguments is None else arguments)
     named = words[:1] if words[:1] and words[0] in COMMANDS else COMMANDS
     args = build_parser(named).parse_args(words)

@@ -5,11 +5,12 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+from typing import TYPE_CHECKING
 
 from mbkf.conventions import StageCallback
+
+if TYPE_CHECKING:
+    from rich.progress import TaskID
 
 Advance = Callable[[int], None]
 """Tells how many more items are done."""
@@ -52,6 +53,9 @@ def stages() -> Iterator[StageCallback]:
     if not sys.stderr.isatty():
         yield _ignore
         return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bars:
         tasks: dict[str, TaskID] = {}

@@ -96,8 +96,11 @@ def integrals_between(samples: Array, low: Array, high: Array, span: float) -> A
         return only[None]
     total = np.zeros((len(low), samples.shape[1]))
     for k, weight in zip(places, weights, strict=True):
-        counted = np.flatnonzero(weight > 0.0)
-        total[counted] += weight[counted, None] * samples[k[counted]]
+        counted = weight > 0.0
+        if counted.all():  # all but the outermost samples of a window
+            total += weight[:, None] * samples.take(k, axis=0)
+        else:
+            total[counted] += weight[counted, None] * samples[k[counted]]
     return total
 
 

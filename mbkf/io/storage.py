@@ -119,8 +119,9 @@ def write_storage(table: Table, path: str | Path) -> None:
     lines += ["endheader", "\t".join(["time", *table.names])]
     with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="\n") as file:
         file.write("\n".join(lines) + "\n")
-        for time_s, row in zip(table.times_s, table.columns, strict=True):
-            file.write("\t".join([f"{time_s:.10g}", *(f"{value:.12g}" for value in row)]) + "\n")
+        line = "\t".join(["%.10g", *["%.12g"] * len(table.names)]) + "\n"
+        for time_s, row in zip(table.times_s.tolist(), table.columns.tolist(), strict=True):
+            file.write(line % (time_s, *row))
 
 
 def _is_end(line: str) -> bool:

@@ -130,9 +130,9 @@ def write_trc(markers: MarkerTrajectories, path: str | Path) -> None:
         file.write(f"{rate}\t{rate}\t{frames}\t{count}\tmm\t{rate}\t1\t{frames}\n")
         file.write("Frame#\tTime\t" + "\t\t\t".join(markers.names) + "\t\t\n")
         file.write("\t\t" + "\t".join(f"{axis}{i + 1}" for i in range(count) for axis in "XYZ") + "\n\n")
-        for number, (time_s, row) in enumerate(zip(markers.times_s, table, strict=True), start=1):
-            cells = "\t".join("NaN" if math.isnan(value) else f"{value:.6f}" for value in row)
-            file.write(f"{number}\t{time_s:.8f}\t{cells}\n")
+        line = "\t".join(["%.6f"] * (3 * count)) + "\n"
+        for number, (time_s, row) in enumerate(zip(markers.times_s, table.tolist(), strict=True), start=1):
+            file.write(f"{number}\t{time_s:.8f}\t" + (line % tuple(row)).replace("nan", "NaN"))
 
 
 def _file(path: Path) -> TextFile:

@@ -10,14 +10,17 @@ markers that only move do not. The likeliest sequence of stored and exchanged fr
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.labelling.assignment import Indices
+from mbkf.numerics.percentiles import known_percentiles
 from mbkf.sensors.marker_sensor import MarkerSensor
+
+if TYPE_CHECKING:
+    from mbkf.labelling.assignment import Indices
 
 POSTURES = 48
 """Postures by which it is learnt how far the distance of two markers varies."""
@@ -119,9 +122,7 @@ def observed_distances(positions_m: Array, distances: Distances) -> Distances:
     """
     looks = np.unique(np.linspace(0, len(positions_m) - 1, LOOKS).astype(int))
     apart = np.sqrt(np.maximum(_squared(positions_m[looks]), 0.0))
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "All-NaN slice", RuntimeWarning)
-        low, middle, high = np.nanpercentile(apart, (10.0, 50.0, 90.0), axis=0)
+    low, middle, high = known_percentiles(apart, (10.0, 50.0, 90.0))
     seen = (~np.isnan(apart)).sum(axis=0) >= FEW
     spread = np.hypot(OBSERVED_SD_M, high - low)
     return Distances(

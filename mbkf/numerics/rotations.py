@@ -16,6 +16,25 @@ def skew(vectors: Array) -> Array:
     )
 
 
+def quaternion_of(rotation: Array) -> Array:
+    """(4,) unit quaternion (x, y, z, w) of a rotation matrix (3, 3), its largest component positive.
+
+    All products q_i q_j of its components are sums of the matrix's elements; the row of the largest q_i is that of most
+    digits (S. W. Shepperd, J. Guidance and Control 1, 1978, 223-224).
+    """
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation
+    trace = xx + yy + zz
+    products = (  # 4 q_i q_j
+        (1.0 - trace + 2.0 * xx, xy + yx, xz + zx, zy - yz),
+        (xy + yx, 1.0 - trace + 2.0 * yy, yz + zy, xz - zx),
+        (xz + zx, yz + zy, 1.0 - trace + 2.0 * zz, yx - xy),
+        (zy - yz, xz - zx, yx - xy, 1.0 + trace),
+    )
+    largest = int(np.argmax((xx, yy, zz, trace)))
+    row = np.array(products[largest])
+    return np.asarray(row / np.sqrt(sum(row**2)))
+
+
 def quaternion_log(quaternions: Array) -> Array:
     """(…, 3) rotation vectors, of angle at most π, of unit quaternions (…, 4) in (x, y, z, w) order."""
     signed = np.where(quaternions[..., 3:] < 0, -quaternions, quaternions)

@@ -165,7 +165,8 @@ class ScalingProblem:
         self._segment_scale = np.array([body.segment(name).scale_matrix for name in self.segments])
         self.posture = PostureSensor(HumanModel.scaled(body=body))
         self._usual = UsualPosture(self.posture, standing_sd_rad)
-        self._standing = Standing(HumanModel.scaled(body=body))
+        self._standing = Standing(self.posture.model)
+        self._built: tuple[ScalingState, MarkerSensor] | None = None
 
     def start(self, poses: Array) -> ScalingState:
         """State with factors and offsets as expected."""
@@ -187,9 +188,15 @@ class ScalingProblem:
         return np.asarray(self.reference_m[:, :, None] * self._segment_scale)
 
     def sensor(self, state: ScalingState) -> MarkerSensor:
-        """The markers on the body as the state has it."""
-        model = HumanModel(self.body, state.factors, self.body.reference_mass_kg)
-        return MarkerSensor(model, self.segments, self.local_m(state.factors, state.offsets_m))
+        """The markers on the body as the state has it.
+
+        The last one is kept: a state whose cost was good is linearised next, and building a body takes milliseconds.
+        """
+        if self._built is None or self._built[0] is not state:
+            model = HumanModel(self.body, state.factors, self.body.reference_mass_kg)
+            local_m = self.local_m(state.factors, state.offsets_m)
+            self._built = state, MarkerSensor(model, self.segments, local_m)
+        return self._built[1]
 
     def errors_m(self, state: ScalingState) -> Array:
         """(N, M, 3) modelled minus measured, NaN where a marker is missing."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import Array
 from mbkf.numerics.levenberg_marquardt import ArrowEquations, minimise
+from mbkf.numerics.rotations import quaternion_of
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.posture_sensor import PostureSensor
 
@@ -63,7 +63,7 @@ def segment_by_segment(sensor: MarkerSensor, measured_m: Array) -> Array:
     rotation = _nearest_rotation(attitude + 1e-9 * np.eye(3))
     root = model.root
     q[root.q][:3] = centre_to - rotation @ centre_from
-    q[root.q][3:] = _quaternion(rotation)
+    q[root.q][3:] = quaternion_of(rotation)
     for joint in model.joints.values():
         if joint.kind != "spherical":
             continue
@@ -72,7 +72,7 @@ def segment_by_segment(sensor: MarkerSensor, measured_m: Array) -> Array:
         parent = rotations[joint.joint_id]
         arms = sensor.local_m[mine]
         attitude = (target[mine] - origins[joint.joint_id]).T @ arms + _NEUTRAL_PULL * parent
-        q[joint.q] = _quaternion(parent.T @ _nearest_rotation(attitude))
+        q[joint.q] = quaternion_of(parent.T @ _nearest_rotation(attitude))
     return q
 
 
@@ -157,7 +157,3 @@ def fit_most_markers(
 def _nearest_rotation(matrix: Array) -> Array:
     u, _, vt = np.linalg.svd(matrix)
     return u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt
-
-
-def _quaternion(rotation: Array) -> Array:
-    return Rotation.from_matrix(rotation).as_quat()

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from mbkf.numerics.rotations import log_and_inverse_jacobian, quaternion_log, skew
+from mbkf.numerics.rotations import log_and_inverse_jacobian, quaternion_log, quaternion_of, skew
 
 VECTORS = st.tuples(*[st.floats(-1, 1)] * 3).map(np.array).filter(lambda v: np.linalg.norm(v) > 1e-3)
 ANGLES = st.floats(0, np.pi - 1e-6)
@@ -97,3 +97,18 @@ def test_inverse_jacobian_has_its_series_at_small_angles(angle):
     cross = skew(phi)
     second = jacobian[0] - np.eye(3) - 0.5 * cross
     np.testing.assert_allclose(second, cross @ cross / 12, rtol=0, atol=1e-15 + 1e-3 * angle**4)
+
+
+@given(VECTORS, st.floats(0, np.pi))
+def test_the_quaternion_of_a_matrix_turns_as_the_matrix_does(direction, angle):
+    matrix = Rotation.from_rotvec(rotation_vector(direction, angle)).as_matrix()
+    quaternion = quaternion_of(matrix)
+    np.testing.assert_allclose(Rotation.from_quat(quaternion).as_matrix(), matrix, rtol=0, atol=1e-14)
+    assert np.linalg.norm(quaternion) == pytest.approx(1.0, rel=1e-15)
+    assert quaternion[np.abs(quaternion).argmax()] > 0.0
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_half_a_turn_about_an_axis_has_no_scalar_part(axis):
+    matrix = 2.0 * np.diag(np.eye(3)[axis]) - np.eye(3)
+    np.testing.assert_array_equal(quaternion_of(matrix), np.eye(4)[axis])

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.pipelines.checks.clocks import clock_finding, delayed
+from mbkf.pipelines.checks.clocks import clock_finding, delayed, together
 from tests.checked import evidence, plates
 
 
@@ -42,3 +42,24 @@ def test_delayed_plates_read_the_same_later():
     before, after = plates()[0], delayed(plates(), 0.02)[0]
     np.testing.assert_allclose(after.times_s, before.times_s + 0.02)
     np.testing.assert_array_equal(after.force_n, before.force_n)
+
+
+def test_plates_of_one_clock_are_shifted_as_one():
+    one, other = plates()[:2]
+    later = replace(one, start_time_s=one.start_time_s + 0.1)
+    both, alone = together((one, later, other))
+    np.testing.assert_array_equal(both.force_n, one.force_n + other.force_n)
+    np.testing.assert_array_equal(alone.force_n, later.force_n)
+    assert (both.start_time_s, alone.start_time_s) == (one.start_time_s, later.start_time_s)
+
+
+def test_shifted_together_they_give_the_sum_of_what_they_give():
+    given = evidence()
+    shifted = delayed(given.plates, 0.013)
+    assert len(shifted) > 1
+    np.testing.assert_allclose(
+        given.gives(together(shifted))[:, :, :3].sum(axis=1),
+        given.gives(shifted)[:, :, :3].sum(axis=1),
+        rtol=0,
+        atol=1e-9,
+    )

@@ -1,0 +1,34 @@
+"""Commands load the libraries that they use and no other: what a command does not need, its start does not wait for."""
+
+import subprocess
+import sys
+
+UNUSED = {
+    "casadi", "matplotlib", "meshcat", "pylsl", "rich.progress", "scipy.interpolate", "scipy.io", "scipy.ndimage",
+    "scipy.optimize", "scipy.signal", "scipy.spatial", "scipy.special", "scipy.stats", "sphinx", "websockets",
+    "yourdfpy",
+}  # fmt: skip
+"""What no reconstruction of a C3D file needs; ``rich.progress`` is for terminals."""
+
+REPORT = "\nprint(*sorted(set(sys.modules)), file=sys.stderr)"
+
+
+def loaded_by(code, *words):
+    """Modules that a Python of its own has loaded once the code is done."""
+    command = [sys.executable, "-c", "import sys\n" + code + REPORT, *map(str, words)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return set(done.stderr.split())
+
+
+def test_the_command_line_itself_needs_the_standard_library_alone():
+    loaded = loaded_by("import mbkf.cli.main")
+    assert not (UNUSED | {"ezc3d", "h5py", "numpy", "pinocchio", "rich", "scipy"}) & loaded
+
+
+def test_a_reconstruction_loads_nothing_that_it_does_not_use(person, tmp_path):
+    code = "from mbkf.cli.main import main\nassert main(sys.argv[1:]) == 0"
+    words = ["reconstruct", person.trial, "--subject", person.subject, "--out", tmp_path / "out"]
+    loaded = loaded_by(code, *words)
+    assert {"ezc3d", "h5py", "pinocchio", "rich.table"} <= loaded, "it was looked after the work"
+    assert not UNUSED & loaded
