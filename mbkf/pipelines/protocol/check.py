@@ -9,9 +9,12 @@ import numpy as np
 from mbkf.conventions import StageCallback
 from mbkf.errors import MbkfError
 from mbkf.io.records import Capture
+from mbkf.io.subject import Subject
+from mbkf.model.human import HumanModel
 from mbkf.model.protocol import Protocol
 from mbkf.pipelines.coverage import LEAST_SHARE, MarkerUse, listed, use_by_protocol
 from mbkf.pipelines.protocol.standing import scale_nominally
+from mbkf.sensors.posture_sensor import PostureSensor
 
 OK, DOUBTFUL, BAD = "ok", "doubtful", "bad"
 
@@ -28,6 +31,10 @@ POOR_MARKER_MM = 40.0
 FAR_SHARE, FAR_MM = 2.7, 80.0
 """A marker that scaling moved by more than both, the first as a multiple of what the set allows for, is far from where
 the set says. A standing trial shows this where its single posture fits anything."""
+
+TWISTED_RAD = np.deg2rad(45.0)
+"""A standing person none of whose joints can turn so far beyond its limits carries markers elsewhere than the set says:
+with both knees' outer markers exchanged, both thighs face backwards and every marker fits."""
 
 WRONG_SHARE, WRONG_MM = 4.0, 250.0
 """Beyond either, a marker that is far is not where the set says at all."""
@@ -106,15 +113,15 @@ def check_set(protocol: Protocol, capture: Capture, progress: StageCallback | No
     absent = [m.name for m in protocol.markers if m.name not in there and m.kind != "computed"]
     carried = {m.segment for m in protocol.markers if m.name in there and m.kind != "computed"}
     bare = [s.name for s in protocol.body.segments if s.name not in carried]
-    rms, fits, trouble = None, [], ""
+    rms, fits, twisted, trouble = None, [], dict[str, float](), ""
     try:
-        report = scale_nominally(capture, protocol, progress).report
+        subject = scale_nominally(capture, protocol, progress)
     except MbkfError as error:
         trouble = str(error)
     else:
-        rms = float(str(report["marker_rms_mm"]))
-        fits = _fits(report["markers"], protocol)
-    verdict, reasons = _judged(use, rms, fits, trouble)
+        rms = float(str(subject.report["marker_rms_mm"]))
+        fits, twisted = _fits(subject.report["markers"], protocol), _twisted(subject)
+    verdict, reasons = _judged(use, rms, fits, twisted, trouble)
     return SetCheck(use, tuple(absent), tuple(bare), rms, tuple(fits), trouble, verdict, tuple(reasons))
 
 
@@ -132,8 +139,29 @@ def _fits(report: object, protocol: Protocol) -> list[MarkerFit]:
     return sorted(found, key=lambda one: -one.badness)
 
 
-def _judged(use: MarkerUse, rms: float | None, fits: list[MarkerFit], trouble: str) -> tuple[str, list[str]]:
-    """The verdict and its reasons."""
+def _twisted(subject: Subject) -> dict[str, float]:
+    """Segments that a standing person turns too far beyond their joints' limits, rad; none without a standing trial."""
+    if subject.standing_q is None:
+        return {}
+    model = HumanModel.of(subject)
+    deviation, _ = PostureSensor(model).deviation(subject.standing_q)
+    beyond = np.abs(deviation - np.clip(deviation, *model.limits.T))
+    turned = {name: float(beyond[joint.v].max()) for name, joint in model.joints.items()}
+    return {name: angle for name, angle in turned.items() if angle > TWISTED_RAD}
+
+
+def _judged(
+    use: MarkerUse, rms: float | None, fits: list[MarkerFit], twisted: dict[str, float], trouble: str
+) -> tuple[str, list[str]]:
+    """The verdict and its reasons.
+
+    Args:
+        use: What the set knows of the capture.
+        rms: RMS distance of the markers, mm.
+        fits: Every marker's fit, the worst first.
+        twisted: Segments turned beyond their joints' limits, rad.
+        trouble: Why no person could be scaled.
+    """
     bad, doubtful = [], []
     if trouble:
         bad.append(trouble)
@@ -146,6 +174,10 @@ def _judged(use: MarkerUse, rms: float | None, fits: list[MarkerFit], trouble: s
     if rms is not None and rms > GOOD_RMS_MM:
         told = f"markers fit to {rms:.0f} mm RMS, a right set to {GOOD_RMS_MM:.0f}: see which are worst"
         (bad if rms > POOR_RMS_MM else doubtful).append(told)
+    if twisted:
+        turned = listed([f"{name} ({np.rad2deg(angle):.0f}°)" for name, angle in twisted.items()])
+        worst = listed([one.name for one in fits if one.segment in twisted][:3])
+        bad.append(f"turned beyond what joints allow: {turned}; are markers exchanged, {worst} among them?")
     for wrong, into in ((True, bad), (False, doubtful)):
         far = [f"{one.name} ({one.moved_mm:.0f} mm)" for one in fits if one.far and one.wrong == wrong]
         if far:
