@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left, insort
+from collections.abc import Sequence
 from math import isnan
 from typing import NamedTuple
 
@@ -12,11 +13,11 @@ class RunningMedian(NamedTuple):
 
     Attributes:
         latest: They, the latest last; NaN where there was none.
-        ranked: Those that are numbers, in ascending order.
+        ranked: Those that are numbers, in ascending order; never written into.
     """
 
     latest: tuple[float, ...] = ()
-    ranked: tuple[float, ...] = ()
+    ranked: Sequence[float] = ()
 
     def followed(self, value: float, most: int) -> RunningMedian:
         """With the next number, NaN for none, and of at most so many."""
@@ -26,7 +27,7 @@ class RunningMedian(NamedTuple):
                 del ranked[bisect_left(ranked, old)]
         if not isnan(value):
             insort(ranked, value)
-        return RunningMedian((*self.latest[outgoing:], value), tuple(ranked))
+        return RunningMedian((*self.latest[outgoing:], value), ranked)
 
     def median(self, zeros: int = 0) -> float:
         """Median of the numbers and of so many zeros besides.

@@ -8,7 +8,7 @@ The limits, and how they differ from the offline ones, are in :mod:`mbkf.sensors
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import dist, inf, isnan
+from math import dist, inf
 
 import numpy as np
 
@@ -85,9 +85,7 @@ class ContactDetector:
         """
         feet = self._feet.at(q, v)
         forces = plate_wrench[:, 2].tolist()
-        loaded = [k for k, force in enumerate(forces) if force >= self._least_n[k]]
-        unloaded = [k for k, force in enumerate(forces) if force < self._least_n[k]]
-        silent = [k for k, force in enumerate(forces) if isnan(force)]
+        loaded, unloaded, silent = self._by_load(forces)
         pressed, foot_of_plate = list(memory.pressed), [-1] * len(forces)
         wrench, contacts = np.zeros((2, 6)), [Contact.AIR, Contact.AIR]
         for k in loaded:
@@ -120,6 +118,15 @@ class ContactDetector:
             elsewhere.floor_m_s,
             _below(plate_wrench, [k for k in unloaded if forces[k] > 0.0]),
         )
+
+    def _by_load(self, forces_n: Sequence[float]) -> tuple[list[int], list[int], list[int]]:
+        """Plates that are loaded, not loaded and not recorded, by their vertical forces (K), NaN where not recorded."""
+        loaded: list[int] = []
+        unloaded: list[int] = []
+        silent: list[int] = []
+        for k, (force, least) in enumerate(zip(forces_n, self._least_n, strict=True)):
+            (loaded if force >= least else unloaded if force < least else silent).append(k)
+        return loaded, unloaded, silent
 
     def planted(self, decision: ContactDecision, q: Array, foot: int) -> Planted | None:
         """The point at which a loaded foot does not slide; None for a foot in the air.
