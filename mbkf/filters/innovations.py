@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from mbkf.conventions import READING_KINDS, Array
 from mbkf.numerics.kalman import Information
 from mbkf.numerics.running_spread import RunningSpread
-from mbkf.sensors.block import AnyBlock, Rows, Statement
+from mbkf.sensors.block import AnyBlock, Channels, Rows, Statement
 
 MEMORY_S = 0.3
 """Time over which a spread is taken: skin and movement last for about as long."""
@@ -57,7 +57,7 @@ class InnovationSpreads:
     def __init__(self, blocks: Sequence[AnyBlock], dt_s: float) -> None:
         """Args: the filter's blocks, and the time between frames."""
         self._forget = 1.0 - math.exp(-dt_s / MEMORY_S)
-        self._readers: list[tuple[int, AnyBlock, slice]] = []
+        self._readers: list[tuple[int, AnyBlock, int]] = []
         kinds: list[int] = []
         sd: list[Array] = []
         known: list[Array] = []
@@ -69,10 +69,10 @@ class InnovationSpreads:
             sd.append(np.ones(block.quantities) if expected is None else expected)
             known.append(np.full(len(sd[-1]), expected is not None))
             kinds += len(sd[-1]) * [READING_KINDS.index(block.kind)]
-            self._readers.append((number, block, slice(first, len(kinds))))
+            self._readers.append((number, block, len(sd[-1])))
             if block.kind == "markers":
                 self._markers = slice(first, len(kinds))
-        self._kinds = np.array(kinds, dtype=int)
+        self._of_kind = np.equal.outer(np.arange(len(READING_KINDS)), kinds).astype(float)
         spread, is_known = (np.concatenate([np.zeros(0), *parts]) for parts in (sd, known))
         self._first = RunningSpread(spread**2, EXPECTED_FRAMES * is_known)
         self._least = (LEAST * spread) ** 2
@@ -92,43 +92,50 @@ class InnovationSpreads:
             chosen: What the blocks decided.
             said: What they said.
         """
-        square, readings = np.zeros(len(self._kinds)), np.zeros(len(self._kinds), dtype=int)
-        for number, block, mine in self._readers:
-            read = block.channels(chosen[number])
-            if read is None:
-                _fill(square[mine], readings[mine], said[number])
-            else:
-                square[mine], readings[mine] = read
+        read = [self._read(block, chosen[k], said[k], channels) for k, block, channels in self._readers]
+        square = np.concatenate([np.zeros(0), *(one.mean_square for one in read)])
+        readings = np.concatenate([np.zeros(0), *(one.readings for one in read)])
         variance = np.minimum(np.maximum(before.mean_square, self._least), self._most)
         counted = readings * (before.frames > 0.0)
-        ratio = square / variance
-        kinds, own = len(READING_KINDS), self._markers
+        ratio, own = square / variance, self._markers
+        used = counted[own] > 0.0
         found = Innovations(
-            np.bincount(self._kinds, ratio * counted, kinds).astype(float),
-            np.bincount(self._kinds, counted, kinds).astype(int),
-            np.where(counted[own] > 0, ratio[own], np.nan),
+            self._of_kind @ (ratio * counted),
+            (self._of_kind @ counted).astype(int),
+            np.where(used, ratio[own], np.nan),
             np.sqrt(variance[own]),
         )
-        return found, before.followed(square, readings > 0, self._forget)
+        return found, before.followed(square, readings > 0.0, self._forget)
+
+    @staticmethod
+    def _read(block: AnyBlock, decision: object, said: Statement, channels: int) -> Channels:
+        """A block's innovations by channel.
+
+        Args:
+            block: The block.
+            decision: What it decided.
+            said: What it said.
+            channels: How many it has.
+        """
+        own = block.channels(decision)
+        return _whitened(said, channels) if own is None else own
 
 
-def _fill(square: Array, readings: NDArray[np.int_], said: Statement) -> None:
-    """Mean square and number of the counted readings of whitened rows, which alternate in threes, and of information.
+def _whitened(said: Statement, channels: int) -> Channels:
+    """The counted readings of whitened rows, which alternate in threes between the channels, or of information.
 
     Args:
-        square: (n,) mean square by channel, to be filled.
-        readings: (n,) numbers, to be filled.
-        said: What the block said.
+        said: What a block said.
+        channels: How many channels it has.
     """
-    if said is None:
-        return
+    sums, readings = [0.0] * channels, [0] * channels
     if isinstance(said, Information):
-        square[0], readings[0] = said.innovation / max(said.readings, 1), said.readings
-        return
-    for rows in (said,) if isinstance(said, Rows) else said:
-        for first in range(0, rows.readings, 3):
-            values = rows.innovation[first : min(first + 3, rows.readings)]
-            channel = first // 3 % len(square)
-            square[channel] += float(values @ values)
-            readings[channel] += len(values)
-    square /= np.maximum(readings, 1)
+        sums[0], readings[0] = said.innovation, said.readings
+    elif said is not None:
+        for rows in (said,) if isinstance(said, Rows) else said:
+            for k, value in enumerate(rows.innovation[: rows.readings].tolist()):
+                channel = k // 3 % channels
+                sums[channel] += value * value
+                readings[channel] += 1
+    mean_square = [total / max(count, 1) for total, count in zip(sums, readings, strict=True)]
+    return Channels(np.array(mean_square), np.array(readings))

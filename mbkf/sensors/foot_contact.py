@@ -22,7 +22,14 @@ from mbkf.conventions import Array
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, FreeStance
-from mbkf.sensors.contact.sharing import LEAST_SHARE, LEVER_M, STEP_M, TWIST_M, SharedLoad
+from mbkf.sensors.contact.sharing import (
+    LEAST_SHARE,
+    LEVER_M,
+    STEP_M,
+    TWIST_M,
+    SharedLoad,
+    shear_to_pelvis,
+)
 from mbkf.sensors.layout import Layout
 from mbkf.sensors.states import LoadedState
 
@@ -117,11 +124,12 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         self._pulling[2] = 1.0 / s.pulling_force_n
         self._landing = np.repeat([s.landing_force_n, s.landing_moment_nm], 3)
         self._walk = np.repeat([s.wrench_force, s.wrench_moment], 3) * dt_s**0.5
-        self._first = 0
+        self._first, self._feet = 0, (slice(0, 6), slice(6, 12))
 
     def bind(self, layout: Layout) -> None:
         """Where the wrenches stand in the state."""
-        self._first = layout.wrench.start
+        first = self._first = layout.wrench.start
+        self._feet = slice(first, first + 6), slice(first + 6, first + 12)
 
     def begin(self) -> ContactMemory:
         """No plate was loaded yet."""
@@ -144,29 +152,24 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         if x or y:
             carried = BELT_FORCE * self._weight_n * self._dt_s * np.array([y, -x])
             walk[:, 3:5, 3:5] += np.outer(carried, carried)
-        for foot in (0, 1):
-            mine = slice(self._first + 6 * foot, self._first + 6 * foot + 6)
+        for mine, added in zip(self._feet, walk, strict=True):
             own = P[mine, mine]
-            own += walk[foot]
+            own += added
 
     def linearise(self, at: OperatingPoint[LoadedState, None], decision: FootDecision) -> Rows:
         """Twelve rows; readings of plates come first."""
-        w, contact, lifted = at.state.w, decision.contact, decision.lifted
-        kinds, rows, values, plates = contact.contacts, np.zeros((12, 12)), np.empty(12), 0
+        contact, lifted, w = decision.contact, decision.lifted, at.state.w.reshape(2, 6)
         if contact.shared is not None:
             return self._shared(w, contact, contact.shared)
         if contact.free is not None and not lifted:
-            return self._both_unmeasured(w, contact, contact.free)
-        about = _about(contact.centres_m)
-        only_left = kinds[0] != Contact.MEASURED and kinds[1] == Contact.MEASURED
-        for place, foot in enumerate((1, 0) if only_left else (0, 1)):
-            wrench, mine = w[6 * foot : 6 * foot + 6], slice(6 * place, 6 * place + 6)
-            pulls = wrench[2] < 0.0 or foot in lifted
-            X = about[foot] * self._weight(kinds[foot], pulls, contact.near[foot])[:, None]
-            rows[mine, 6 * foot : 6 * foot + 6] = X
-            values[mine] = X @ (self._expected(contact, foot, pulls) - wrench)
-            plates += 6 * (kinds[foot] == Contact.MEASURED)
-        return Rows(rows, values, self._first, plates)
+            return self._both_unmeasured(w, contact.free)
+        pulls = [w[foot, 2] < 0.0 or foot in lifted for foot in (0, 1)]
+        X = _about(contact.centres_m)
+        X *= np.array([self._weight(contact, foot, pulls[foot]) for foot in (0, 1)])[:, :, None]
+        away = np.array([self._expected(contact, foot, pulls[foot]) for foot in (0, 1)]) - w
+        measured = [kind == Contact.MEASURED for kind in contact.contacts]
+        rows, values = _stacked(X, np.vecdot(X, away[:, None]), left_first=measured == [False, True])
+        return Rows(rows, values, self._first, 6 * sum(measured))
 
     def review(self, posterior: LoadedState, decision: FootDecision) -> FootDecision | None:
         """Unmeasured feet whose force pulls at the floor, clearly more than it is kept from that, carry nothing."""
@@ -206,21 +209,22 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         x, y, _ = contact.centres_m[foot].tolist()
         return np.array([0.0, 0.0, rest, y * rest, -x * rest, 0.0])
 
-    def _weight(self, kind: Contact, pulls: bool, near: float) -> Array:
-        """(6,) 1/sd of a foot's rows; an unmeasured foot that would pull at the floor is held at no vertical force.
+    def _weight(self, contact: ContactDecision, foot: int, pulls: bool) -> Array:
+        """(6,) 1/sd of a foot's rows.
 
         Args:
-            kind: What the foot stands on.
-            pulls: Whether it would pull.
-            near: How near a foot in the air is to touching a floor that no plate reads, 0 to 1.
+            contact: The frame's decision.
+            foot: 0 right, 1 left.
+            pulls: Whether it would pull at the floor; unmeasured, it is then held at no vertical force.
         """
+        kind, near = contact.contacts[foot], contact.near[foot]
         if kind == Contact.MEASURED:
             return self._plate
         if kind == Contact.AIR:
-            return 1.0 / (1.0 / self._air + near * self._landing)
+            return 1.0 / (1.0 / self._air + near * self._landing) if near else self._air
         return self._pulling if pulls else self._free
 
-    def _both_unmeasured(self, w: Array, contact: ContactDecision, free: FreeStance) -> Rows:
+    def _both_unmeasured(self, w: Array, free: FreeStance) -> Rows:
         """Both feet on floor that no plate reads: Newton's law knows the sum, geometry where and whither each presses.
 
         About its expected centre of pressure each foot's horizontal moment is 0 to a lever, the forces differ as those
@@ -229,37 +233,37 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         behind at its toes.
         """
         s, weight = self.settings, self._weight_n
-        carried = np.maximum(w[[2, 8]], LEAST_SHARE * weight)
-        centres = free.stance.centres_at(float(carried[0] / carried.sum()))
-        about, arms = _about(centres), free.pelvis_m - centres
-        x, y = free.stance.forward
-        turned = np.array([[x, y], [-y, x]])
-        ahead = abs(float((centres[0] - centres[1])[:2] @ free.stance.forward))
+        right, left = (max(force, LEAST_SHARE * weight) for force in w[:, 2].tolist())
+        centres = free.stance.centres_at(right / (right + left))
+        x, y = free.stance.forward.tolist()
+        X = _about(centres)
+        X[:, :2, 2] -= shear_to_pelvis(free.pelvis_m, centres)
+        X[:, 3:5] = np.array([[x, y], [-y, x]]) @ X[:, 3:5]
+        (x_right, y_right, _), (x_left, y_left, _) = centres.tolist()
+        ahead = abs((x_right - x_left) * x + (y_right - y_left) * y)
         along = LEVER_M + s.free_sway_m * (1.0 - min(ahead / STEP_M, 1.0))
-        rows, values = np.zeros((12, 12)), np.empty(12)
-        for foot in (0, 1):
-            mine = slice(6 * foot, 6 * foot + 6)
-            X, force = about[foot], carried[foot]
-            X[:2, 2] -= arms[foot, :2] / arms[foot, 2]
-            X[3:5] = turned @ X[3:5]
-            shear = s.free_shear_share * 0.5 * carried.sum()
-            sd = np.array(
-                [shear, shear, s.free_force_share * weight, LEVER_M * force, along * force, TWIST_M * force]
-            )
-            rows[mine, mine] = X / sd[:, None]
-            values[mine] = -rows[mine, mine] @ w[mine]
-            values[6 * foot + 2] += 0.5 * weight / sd[2]
-            share = free.push_share[foot]
+        shear, vertical = s.free_shear_share * 0.5 * (right + left), s.free_force_share * weight
+        sd = np.array(
+            [
+                (shear, shear, vertical, LEVER_M * force, along * force, TWIST_M * force)
+                for force in (right, left)
+            ]
+        )
+        X /= sd[:, :, None]
+        values = -np.vecdot(X, w[:, None])
+        values[:, 2] += 0.5 * weight / vertical
+        rows, values = _stacked(X, values)
+        for foot, share in enumerate(free.push_share):
             if share is not None:
-                row = mine.start + 2
-                rows[row] = 0.0
-                rows[row, [mine.start + 2, 8 - mine.start]] = 1.0 - share, -share
-                rows[row] /= s.free_push_share * (share + PUSH_LEAST) * weight
-                values[row] = -rows[row] @ w
+                own, row = 6 * foot + 2, rows[6 * foot + 2]
+                row[:] = 0.0
+                row[own], row[10 - own] = 1.0 - share, -share
+                row /= s.free_push_share * (share + PUSH_LEAST) * weight
+                values[own] = -row @ w.ravel()
         # Of the shear of both feet together Newton's law knows more than the direction to the pelvis.
         for kept in (rows, values):
-            right, left = kept[:2].copy(), kept[6:8].copy()
-            kept[:2], kept[6:8] = right - left, TOGETHER * (right + left)
+            of_right, of_left = kept[:2].copy(), kept[6:8].copy()
+            kept[:2], kept[6:8] = of_right - of_left, TOGETHER * (of_right + of_left)
         return Rows(rows, values, self._first, 0)
 
     def _shared(self, w: Array, contact: ContactDecision, shared: SharedLoad) -> Rows:
@@ -267,11 +271,27 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         rows, values = np.zeros((12, 12)), np.empty(12)
         middle = _about(contact.centres_m.mean(axis=0, keepdims=True))[0] * self._plate[:, None]
         rows[:6, :6] = rows[:6, 6:] = middle
-        values[:6] = middle @ (shared.wrench.sum(axis=0) - w[:6] - w[6:])
+        values[:6] = middle @ (shared.wrench.sum(axis=0) - w.sum(axis=0))
         right = _about(shared.centres_m[:1])[0] / shared.sd[:, None]
         rows[6:, :6] = right
-        values[6:] = right @ (shared.wrench[0] - w[:6])
+        values[6:] = right @ (shared.wrench[0] - w[0])
         return Rows(rows, values, self._first, 6)
+
+
+def _stacked(X: Array, values: Array, left_first: bool = False) -> tuple[Array, Array]:
+    """(12, 12) rows on both wrenches and (12,) innovations.
+
+    Args:
+        X: (2, 6, 6) rows on the wrench of right and left foot.
+        values: (2, 6) their innovations.
+        left_first: Whether the rows of the left foot come first.
+    """
+    rows = np.zeros((2, 6, 2, 6))
+    if left_first:
+        rows[0, :, 1], rows[1, :, 0] = X[1], X[0]
+        return rows.reshape(12, 12), values[::-1].ravel()
+    rows[0, :, 0], rows[1, :, 1] = X
+    return rows.reshape(12, 12), values.ravel()
 
 
 def _about(points_m: Array) -> Array:

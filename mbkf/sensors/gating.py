@@ -55,10 +55,12 @@ class Gated(NamedTuple):
 
     ``displaced`` markers are all that are seen of a segment and lie far from where it was predicted, so that the state
     is wrong there and not they; None where there are none. ``lost``: most markers lie far from their prediction.
+    ``squared_m2`` (M,): squared length of the innovation of the trusted ones, 0 of others.
     """
 
     seen: BoolArray
     trusted: BoolArray
+    squared_m2: Array
     displaced: BoolArray | None
     lost: bool = False
 
@@ -74,7 +76,7 @@ def gated(
     """Sorts the markers of a frame.
 
     When more than half of the markers fall outside, the state is wrong and not the markers, and all are used.
-    The Jacobian is asked for only of markers outside the radius.
+    The Jacobian is asked for only of markers that are too far off for any prediction that is exact.
 
     Args:
         innovation_m: (M, 3) measured minus predicted, NaN where missing.
@@ -88,15 +90,19 @@ def gated(
     near = squared <= radius_m**2
     seen = squared == squared  # noqa: PLR0124, a missing marker's is NaN
     if near.tobytes() == seen.tobytes():
-        return Gated(seen, seen, None)
+        return Gated(seen, seen, np.where(seen, squared, 0.0), None)
     lost = bool(2 * np.count_nonzero(squared > TRACK_LOSS_M**2) > np.count_nonzero(seen))
+    # S is no less than R, so that what R alone lets pass passes.
+    near |= squared <= gate * noise_m**2
     far = seen & ~near
+    if not far.any():
+        return Gated(seen, seen, np.where(seen, squared, 0.0), None, lost)
     distance = _distance(innovation_m[far], reading.only(far).jacobian, covariance, noise_m[far])
-    trusted = _with_far(seen, near, far, distance, gate)
-    if trusted.all():
-        return Gated(seen, trusted, None, lost)
-    displaced = _whole_segments(seen, trusted, reading.moves)
-    return Gated(seen, trusted | displaced, displaced if displaced.any() else None, lost)
+    trusted, displaced = _with_far(seen, near, far, distance, gate), None
+    if trusted.tobytes() != seen.tobytes():
+        displaced = _whole_segments(seen, trusted, reading.moves)
+        trusted, displaced = trusted | displaced, displaced if displaced.any() else None
+    return Gated(seen, trusted, np.where(trusted, squared, 0.0), displaced, lost)
 
 
 def _whole_segments(seen: BoolArray, trusted: BoolArray, moves: Array) -> BoolArray:

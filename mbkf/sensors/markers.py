@@ -77,6 +77,7 @@ class MarkerDecision(NamedTuple):
     Attributes:
         measured_m: (M, 3) the frame's markers.
         innovation_m: (M, 3) they, minus the predicted ones.
+        squared_m2: (M,) squared length of that of the markers used, 0 of others.
         trusted: (M,) markers used.
         noise_scale: Square of the factor on their noise.
         displaced: Dofs of limbs found elsewhere than predicted.
@@ -85,6 +86,7 @@ class MarkerDecision(NamedTuple):
 
     measured_m: Array
     innovation_m: Array
+    squared_m2: Array
     trusted: BoolArray
     noise_scale: float
     displaced: NDArray[np.intp]
@@ -136,7 +138,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         if spread_m is not None and s.innovation_share > 0.0:
             expected = spread_m * s.marker_noise_scale
         self.expected_m = np.maximum(expected, 1e-9)
-        self._certainty = 1.0 / self.expected_m[:, None]
+        self._certainty = self.expected_m**-2.0
         self._information = compress(sensor, self.noise_m)
         self._skin: SkinMarkers | None = None
         if s.skin_memory_s > 0.0:
@@ -160,7 +162,9 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         innovation, s = frame.markers_m - at.prepared.positions_m, self.settings
         noise = self.noise_m if memory.noise_scale == 1.0 else self.noise_m * memory.noise_scale**0.5
         P = at.state.P[: self._nv, : self._nv]
-        seen, trusted, displaced, lost = gated(innovation, at.prepared, P, noise, s.gate, s.gate_radius_m)
+        seen, trusted, squared, displaced, lost = gated(
+            innovation, at.prepared, P, noise, s.gate, s.gate_radius_m
+        )
         notes.seen, notes.trusted = seen, trusted
         notes.unmarked = notes.unobserved = self._observed.unmarked(trusted)
         notes.observed = trusted.tobytes().count(1) >= s.min_markers
@@ -170,7 +174,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
             moved = self._observed.carriers(displaced)
             moved = moved[moved >= 6]
         return MarkerDecision(
-            frame.markers_m, innovation, trusted, memory.noise_scale, moved, memory.before_m
+            frame.markers_m, innovation, squared, trusted, memory.noise_scale, moved, memory.before_m
         )
 
     def inflate(self, P: Array, decision: MarkerDecision) -> None:
@@ -208,10 +212,10 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
 
     def _next_noise_scale(self, decision: MarkerDecision) -> float:
         share, trusted = self.settings.innovation_share, decision.trusted
-        if share <= 0.0 or not np.count_nonzero(trusted):
+        used = trusted.tobytes().count(1)
+        if share <= 0.0 or not used:
             return decision.noise_scale
-        scaled = decision.innovation_m[trusted] * self._certainty[trusted]
-        squared = float(np.vdot(scaled, scaled)) / scaled.size
+        squared = float(decision.squared_m2 @ self._certainty) / (3 * used)
         low, high = self.settings.noise_range
         wanted = min(max(squared, low**2), high**2)
         return decision.noise_scale + self._forget * (wanted - decision.noise_scale)
@@ -225,8 +229,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         used = decision.trusted
         if len(decision.displaced):
             used = used & ~self._observed.carried_by(decision.displaced)
-        squared = np.vecdot(decision.innovation_m, decision.innovation_m) / 3.0
-        return Channels(np.where(used, squared, 0.0), 3 * used)
+        return Channels(used * decision.squared_m2 / 3.0, 3 * used)
 
     def log_noise(self, decision: MarkerDecision) -> float:
         """Log det R of the used markers."""

@@ -143,6 +143,17 @@ def test_feet_in_double_support_press_where_they_stand_towards_the_pelvis(share_
     np.testing.assert_allclose(values[vertical], expected, rtol=1e-9)
 
 
+@pytest.mark.parametrize("height_m", [0.0, -0.5])
+def test_a_pelvis_no_higher_than_the_soles_leaves_finite_rows(height_m):
+    """As of a track so far away that numbers no longer resolve the body."""
+    loaded, w = both_free(0.5)
+    free = loaded.free
+    for pelvis in (free.stance.centres_m[0], np.array([0.3, 0.0, 0.0])):
+        low = free._replace(pelvis_m=pelvis + np.array([0.0, 0.0, height_m]))
+        rows, values, _ = filled(replace(loaded, free=low), w)
+        assert np.isfinite(rows).all() and np.isfinite(values).all()
+
+
 def test_a_foot_that_pushes_off_tells_its_share():
     """Read as zero where the share is right, whatever the load; weakly, as the setting says."""
     loaded, w = both_free(0.3)

@@ -12,11 +12,13 @@ for proof: the height of the pelvis, which markers show, then has to fall, too.
 from __future__ import annotations
 
 from functools import lru_cache
+from math import hypot
 from typing import NamedTuple
 
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.numerics.running_median import RunningMedian
 from mbkf.sensors.contact.thresholds import (
     BELT_FROM_M_S,
     BELT_WINDOW_S,
@@ -30,27 +32,30 @@ class Movement(NamedTuple):
     """The last frames of a body's movement.
 
     Attributes:
-        low_m_s: (n, 2) horizontal velocity of the lowest sole point while it was near the floor; NaN else.
-        pelvis_m: (n, 3) the pelvis.
+        low_m_s: Horizontal velocity, x and y, of the lowest sole point while it was near the floor; NaN else.
+        pelvis_m: The pelvis, x, y, z.
         airborne: For how many frames both feet have been held to be in the air.
     """
 
-    low_m_s: Array = np.zeros((0, 2))
-    pelvis_m: Array = np.zeros((0, 3))
+    low_m_s: tuple[RunningMedian, RunningMedian] = (RunningMedian(), RunningMedian())
+    pelvis_m: tuple[tuple[float, float, float], ...] = ()
     airborne: int = 0
 
-    def with_frame(self, low_m_s: tuple[float, float], pelvis_m: Array, dt_s: float) -> Movement:
+    def with_frame(
+        self, low_m_s: tuple[float, float], pelvis_m: tuple[float, float, float], dt_s: float
+    ) -> Movement:
         """One frame more, and the oldest one forgotten.
 
         Args:
             low_m_s: Horizontal velocity of the lowest sole point; NaN where it is not near the floor.
-            pelvis_m: (3,) the pelvis.
+            pelvis_m: The pelvis.
             dt_s: Time between frames.
         """
-        from_frame = max(0, len(self.low_m_s) + 1 - _frames(BELT_WINDOW_S, dt_s))
+        most = _frames(BELT_WINDOW_S, dt_s)
+        low_x, low_y = self.low_m_s
         return Movement(
-            np.concatenate([self.low_m_s[from_frame:], [low_m_s]]),
-            np.concatenate([self.pelvis_m[from_frame:], [pelvis_m]]),
+            (low_x.followed(low_m_s[0], most), low_y.followed(low_m_s[1], most)),
+            (*self.pelvis_m[max(0, len(self.pelvis_m) + 1 - most) :], pelvis_m),
             self.airborne,
         )
 
@@ -60,15 +65,14 @@ class Movement(NamedTuple):
         Args:
             dt_s: Time between frames.
         """
-        low = self.low_m_s[~np.isnan(self.low_m_s[:, 0])]
-        still = np.zeros((_frames(STILL_FLOOR_S, dt_s), 2))
-        floor = np.median(np.concatenate([low, still]), axis=0)
-        speed = float(np.hypot(*floor))
+        still = _frames(STILL_FLOOR_S, dt_s)
+        x, y = (low.median(still) for low in self.low_m_s)
+        speed = hypot(x, y)
         if speed < BELT_FROM_M_S:
             return 0.0, 0.0
-        pelvis = (self.pelvis_m[-1] - self.pelvis_m[0])[:2] / (len(self.pelvis_m) * dt_s)
-        goes_along = float(np.hypot(*(pelvis - floor))) < 0.5 * speed
-        return (0.0, 0.0) if goes_along else (float(floor[0]), float(floor[1]))
+        (x0, y0, _), (x1, y1, _), lasted_s = self.pelvis_m[0], self.pelvis_m[-1], len(self.pelvis_m) * dt_s
+        goes_along = hypot((x1 - x0) / lasted_s - x, (y1 - y0) / lasted_s - y) < 0.5 * speed
+        return (0.0, 0.0) if goes_along else (x, y)
 
     def held_up(self, dt_s: float) -> bool:
         """Whether a body whose feet are both held to be in the air was seen not to fall.
@@ -81,7 +85,8 @@ class Movement(NamedTuple):
         frames = max(4, _frames(FALL_WINDOW_S, dt_s) + 1)
         if self.airborne < frames:
             return False
-        return float(_curvature(frames) @ self.pelvis_m[-frames:, 2]) / dt_s**2 > FALL_M_S2
+        heights = np.array(self.pelvis_m[-frames:])[:, 2]
+        return float(_curvature(frames) @ heights) / dt_s**2 > FALL_M_S2
 
 
 NO_MOVEMENT = Movement()

@@ -103,9 +103,25 @@ class PlateAreas:
             if plate.corners_m is not None:
                 own[:] = plate.corners_m[:, :2]
         self._from, self._along = corners, np.roll(corners, -1, axis=1) - corners
+        self._edges = np.concatenate([self._from, self._along], axis=2).tolist()
+        self._boxes = np.concatenate([corners.min(axis=1), corners.max(axis=1)], axis=1).tolist()
 
     def contain(self, points_m: Array) -> BoolArray:
         """(n, K) whether points (n, 2) lie over each plate; never over one whose corners are not known."""
         away = points_m[:, None, None] - self._from
         left = self._along[:, :, 0] * away[..., 1] - self._along[:, :, 1] * away[..., 0] >= 0.0
         return np.asarray((left.all(axis=-1) | ~left.any(axis=-1)) & self.known)
+
+    def over(self, plate: int, x: float, y: float) -> bool:
+        """Whether a point lies over a plate, as :meth:`contain`; quicker for a single one.
+
+        Args:
+            plate: Number of the plate.
+            x: World coordinate of the point, m.
+            y: The other one.
+        """
+        x_least, y_least, x_most, y_most = self._boxes[plate]
+        if not (x_least <= x <= x_most and y_least <= y <= y_most and self.known[plate]):
+            return False
+        left = [ax * (y - y0) - ay * (x - x0) >= 0.0 for x0, y0, ax, ay in self._edges[plate]]
+        return all(left) or not any(left)

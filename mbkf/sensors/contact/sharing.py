@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import exp
+from math import exp, hypot
 from typing import NamedTuple
 
 import numpy as np
@@ -49,6 +49,10 @@ LEVER_M = 0.02
 
 LEAST_APART_M = 0.05
 """Feet are not taken to be nearer to each other than this."""
+
+LEAST_RISE_M = 0.1
+"""The pelvis is taken to be at least this far above a centre of pressure: near the floor, as of a person who lies down
+or of a track that is lost, it does not tell where forces point."""
 
 SHEAR_SHARE, TWIST_M = 0.03, 0.01
 """Spread of a foot's shear force and of its free moment's arm, as shares of the plate's vertical force."""
@@ -114,6 +118,12 @@ def push_share(sole: Sole, lowest_ball_m: float, stood_s: float) -> float | None
     return PUSH_SHARE * exp(-max(ball[2] - lowest_ball_m, 0.0) / PUSH_RISE_M)
 
 
+def shear_to_pelvis(pelvis_m: Array, centres_m: Array) -> Array:
+    """(k, 2) horizontal force per vertical force that points from centres of pressure (k, 3) to the pelvis (3,)."""
+    arms = pelvis_m - centres_m
+    return np.asarray(arms[:, :2] / np.maximum(arms[:, 2:], LEAST_RISE_M))
+
+
 def share_load(total: Array, soles: Sequence[Sole], pelvis_m: Array, surface_m: float) -> SharedLoad:
     """Shares a plate's reading between two feet.
 
@@ -133,8 +143,7 @@ def share_load(total: Array, soles: Sequence[Sole], pelvis_m: Array, surface_m: 
     shares = np.array([share, 1.0 - share])
     centres = stance.centres_at(share)
     centres = centres + (pressed - shares @ centres)
-    arms = pelvis_m - centres
-    towards = (shares * force / arms[:, 2])[:, None] * arms[:, :2]
+    towards = (shares * force)[:, None] * shear_to_pelvis(pelvis_m, centres)
     left = np.outer(shares**0.5 / (shares**0.5).sum(), total[:2] - towards.sum(axis=0))
     forces = np.column_stack([towards + left, shares * force])
     moments = np.cross(centres, forces)
@@ -168,16 +177,16 @@ def expected_stance(soles: Sequence[Sole], surface_m: float) -> Stance:
         soles: Heel, ball and toe end of both soles.
         surface_m: Height of the surface.
     """
-    ends = np.array([[sole[0], sole[2]] for sole in soles])
-    along = ends[:, 1, :2] - ends[:, 0, :2]
-    heading = along.sum(axis=0)
-    heading = heading / max(float(np.hypot(*heading)), 1e-9)
-    middles = ends[:, :, :2].mean(axis=1)
-    ahead = min(max(float((middles[0] - middles[1]) @ heading) / STEP_M, -1.0), 1.0)
-    places = MIDDLE + FORWARD * ahead * np.array([-1.0, 1.0])
-    centres = ends[:, 0, :2] + places[:, None] * along
-    return Stance(
-        np.column_stack([centres, np.full(2, surface_m)]),
-        np.column_stack([ROLL * ahead * along, np.zeros(2)]),
-        heading,
-    )
+    along = [(toe[0] - heel[0], toe[1] - heel[1]) for heel, _, toe in soles]
+    right, left = ((0.5 * (heel[0] + toe[0]), 0.5 * (heel[1] + toe[1])) for heel, _, toe in soles)
+    x, y = along[0][0] + along[1][0], along[0][1] + along[1][1]
+    length = max(hypot(x, y), 1e-9)
+    x, y = x / length, y / length
+    ahead = min(max(((right[0] - left[0]) * x + (right[1] - left[1]) * y) / STEP_M, -1.0), 1.0)
+    places = MIDDLE - FORWARD * ahead, MIDDLE + FORWARD * ahead
+    centres = [
+        (heel[0] + place * way[0], heel[1] + place * way[1], surface_m)
+        for (heel, _, _), place, way in zip(soles, places, along, strict=True)
+    ]
+    roll = [(ROLL * ahead * way[0], ROLL * ahead * way[1], 0.0) for way in along]
+    return Stance(np.array(centres), np.array(roll), np.array([x, y]))

@@ -217,10 +217,19 @@ class CoordinationPrior(Block[State, Mapping[int, Coordination], CoordinationDec
 
     def features(self, q: Array, v: Array) -> Array:
         """(p,) pose of trunk and legs and its rates, wherever the body is and whichever way it faces."""
-        up = self._model.placements(q)[0][self._root.joint_id][2, :2]
-        turn = v[self._root.v][3:]
-        rates = np.concatenate([turn, v[self._leading]])
-        return np.concatenate([up, self.posture(q)[self._leading], PACE_S * rates])
+        return self._features(q, v, self.posture(q))
+
+    def _features(self, q: Array, v: Array, posture: Array) -> Array:
+        """:meth:`features` with the rotation of every joint from neutral (nv,).
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            posture: (nv,) :meth:`posture` at q.
+        """
+        up = self._model.frames(q)[4 * self._root.joint_id : 4 * self._root.joint_id + 2, 2]
+        rates = np.concatenate([v[self._root.v][3:], v[self._leading]])
+        return np.concatenate([up, posture[self._leading], PACE_S * rates])
 
     def posture(self, q: Array) -> Array:
         """(nv,) rotation of every joint from neutral."""
@@ -273,6 +282,7 @@ class CoordinationPrior(Block[State, Mapping[int, Coordination], CoordinationDec
     def _noted(self, frame: int, state: State, unobserved: NDArray[np.intp]) -> NotedFrame:
         observed = np.ones(self._model.nv, dtype=bool)
         observed[unobserved] = False
-        movement = np.concatenate([self.posture(state.q), state.v])
+        posture = self.posture(state.q)
+        movement = np.concatenate([posture, state.v])
         block = frame // (self._every * self._block)
-        return NotedFrame(block, self.features(state.q, state.v), movement, observed)
+        return NotedFrame(block, self._features(state.q, state.v, posture), movement, observed)

@@ -10,6 +10,7 @@ from mbkf.sensors.contact.sharing import (
     ALONG_SD_M,
     FORWARD,
     LEAST_APART_M,
+    LEAST_RISE_M,
     MIDDLE,
     PUSH_SHARE,
     ROLL,
@@ -17,6 +18,7 @@ from mbkf.sensors.contact.sharing import (
     expected_stance,
     push_share,
     share_load,
+    shear_to_pelvis,
 )
 from tests.dynamics import about
 from tests.motions import assert_near
@@ -191,3 +193,15 @@ def test_a_foot_that_pushes_off_bears_less_the_higher_its_ball():
     assert shares[0] == PUSH_SHARE and shares[-1] < 0.02
     assert share(0.0, heel_m=0.03) is None, "a flat foot does not push off"
     assert share(0.0, stood_s=0.05) is None, "a foot that has just landed does not either"
+
+
+def test_forces_point_to_the_pelvis_and_are_bounded_where_that_is_near_the_floor():
+    centres = np.array([[0.2, -0.1, 0.0], [-0.3, 0.1, 0.0]])
+    pelvis = np.array([0.1, 0.0, 0.9])
+    forces = np.column_stack([shear_to_pelvis(pelvis, centres), np.ones(2)])
+    np.testing.assert_allclose(np.cross(forces, pelvis - centres), 0.0, atol=1e-12)
+    low = np.array([0.1, 0.0, LEAST_RISE_M])
+    np.testing.assert_array_equal(
+        shear_to_pelvis(centres[0], centres), shear_to_pelvis(centres[0] + [0.0, 0.0, LEAST_RISE_M], centres)
+    )
+    np.testing.assert_allclose(shear_to_pelvis(low, centres), (low - centres)[:, :2] / LEAST_RISE_M)

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from mbkf.sensors.contact.feet import FeetOnBody
 from mbkf.sensors.contact.plates import PlateAreas
 from mbkf.sensors.contact.records import Contact, ContactMemory
-from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.contact.thresholds import STAND_AFTER_S
 from mbkf.sensors.contact.unmeasured import UnmeasuredFeet
 from tests.dynamics import DT, plates_under, standing
@@ -14,14 +14,13 @@ from tests.motions import reference_model
 
 MODEL = reference_model()
 STILL = np.zeros(MODEL.nv)
+FEET = FeetOnBody(MODEL)
 AIR = (Contact.AIR, Contact.AIR)
-NO_PLATES = np.zeros(0, dtype=bool)
 
 
-def decided(q, memory, a=STILL, plates=(), unloaded=NO_PLATES, contacts=AIR, silent=None):
-    feet = UnmeasuredFeet(MODEL, PlateAreas(plates), 0.0 if plates else np.nan, DT)
-    soles = sole_points(MODEL, q[None])[0].tolist()
-    return feet.decide(memory, (q, STILL, a), soles, contacts, unloaded, silent)
+def decided(q, memory, a=STILL, plates=(), unloaded=(), contacts=AIR, silent=()):
+    detector = UnmeasuredFeet(PlateAreas(plates), 0.0 if plates else np.nan, DT)
+    return detector.decide(memory, (q, STILL, a), FEET.at(q, STILL), contacts, unloaded, silent)
 
 
 def memory(touching_s, plates=0):
@@ -47,7 +46,7 @@ def test_feet_high_above_the_floor_carry_where_the_body_does_not_fall():
 def test_over_an_unloaded_plate_a_foot_carries_nothing():
     q = standing(MODEL)
     plates = plates_under(MODEL, q)
-    found = decided(q, memory((1.0, 1.0), 2), plates=plates, unloaded=np.ones(2, dtype=bool))
+    found = decided(q, memory((1.0, 1.0), 2), plates=plates, unloaded=(0, 1))
     assert list(found.carrying) == [] and found.touching_s == (0.0, 0.0)
 
 
@@ -63,16 +62,12 @@ def test_a_foot_whose_plate_falls_silent_stands_on_at_once():
     q = standing(MODEL)
     plates = plates_under(MODEL, q)
     before = ContactMemory((0, 1), (None, None), 0.0, (0.0, 0.0))
-    right_silent = np.array([True, False])
     contacts = (Contact.AIR, Contact.MEASURED)
-    idle = np.zeros(2, dtype=bool)
-    found = decided(q, before, plates=plates, unloaded=idle, contacts=contacts, silent=right_silent)
+    found = decided(q, before, plates=plates, contacts=contacts, silent=(0,))
     assert list(found.carrying) == [0]
-    waiting = decided(q, before, plates=plates, unloaded=idle, contacts=contacts)
+    waiting = decided(q, before, plates=plates, contacts=contacts)
     assert list(waiting.carrying) == []
-    lifted = decided(
-        standing(MODEL, 0.5), before, plates=plates, unloaded=idle, contacts=contacts, silent=right_silent
-    )
+    lifted = decided(standing(MODEL, 0.5), before, plates=plates, contacts=contacts, silent=(0,))
     assert list(lifted.carrying) == []
 
 
@@ -95,8 +90,9 @@ def test_a_foot_on_the_floor_carries_at_once_where_nothing_else_does():
     """Else it would be denied its reaction, and the body would fall."""
     assert list(decided(standing(MODEL), memory((0.0, 0.0)), falling_freely()).carrying) == [0, 1]
     plates = plates_under(MODEL, standing(MODEL))
-    idle = np.ones(2, dtype=bool)
-    watched = decided(standing(MODEL), memory((0.0, 0.0), 2), falling_freely(), plates=plates, unloaded=idle)
+    watched = decided(
+        standing(MODEL), memory((0.0, 0.0), 2), falling_freely(), plates=plates, unloaded=(0, 1)
+    )
     assert list(watched.carrying) == []
 
 
@@ -122,7 +118,7 @@ def test_a_body_that_does_fall_is_not_held():
 def test_a_foot_over_an_idle_plate_is_not_near_to_bearing():
     q = standing(MODEL)
     plates = plates_under(MODEL, q)
-    assert decided(q, memory((0.0, 0.0), 2), plates=plates, unloaded=np.ones(2, dtype=bool)).near == (
+    assert decided(q, memory((0.0, 0.0), 2), plates=plates, unloaded=(0, 1)).near == (
         0.0,
         0.0,
     )
