@@ -170,19 +170,19 @@ def test_points_that_are_nobody_are_told_and_it_keeps_trying(tmp_path, visit, mo
     monkeypatch.setattr(prompting, "AGAIN_S", 1000.0)
     monkeypatch.setattr(prompting, "TELL_S", 1000.0)
     said = []
-    names = tuple(f"M{k}" for k in range(36))
-    scattered = np.random.default_rng(4).uniform([-0.4, -0.4, 0.0], [0.4, 0.4, 1.7], (36, 3))
-    places = np.broadcast_to(scattered, visit.markers.positions_m.shape)
+    names = tuple(f"M{k}" for k in range(18))
+    scattered = np.random.default_rng(4).uniform([-0.4, -0.4, 0.0], [0.4, 0.4, 1.7], (len(names), 3))
+    places = np.broadcast_to(scattered, (visit.markers.frames, *scattered.shape))
     strange = replace(visit, markers=replace(visit.markers, names=names, positions_m=places), plates=())
     stream, frames = frames_of(strange)
     still = frames[COMES : COMES + STANDS]
     with pytest.raises(InvalidInput, match=r"scaling failed: .*--protocol"):
-        begin(tmp_path, ScriptedSource(stream, 3 * still), say=said.append)
+        begin(tmp_path, ScriptedSource(stream, 2 * still), say=said.append)
     assert len([line for line in said if "scaling failed" in line]) == 1, (
         "the same thing is not said at once again"
     )
     report = report_of(tmp_path)
-    assert report["scaling"]["attempts"] == 3
+    assert report["scaling"]["attempts"] == 2
     assert {event["kind"] for event in report["events"]} == {"scaling"}
 
 
