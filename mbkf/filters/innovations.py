@@ -82,30 +82,34 @@ class InnovationSpreads:
         """Before the first frame: what blocks expect of a reading, or nothing."""
         return self._first
 
-    def after(
-        self, before: RunningSpread, chosen: Sequence[object], said: Sequence[Statement]
-    ) -> tuple[Innovations, RunningSpread]:
-        """A frame's innovations, and the spreads that they leave for the next.
+    def read(self, chosen: Sequence[object], said: Sequence[Statement]) -> Channels:
+        """A frame's readings by channel.
 
         Args:
-            before: Of the frames before.
             chosen: What the blocks decided.
             said: What they said.
         """
         read = [self._read(block, chosen[k], said[k], channels) for k, block, channels in self._readers]
-        square = np.concatenate([np.zeros(0), *(one.mean_square for one in read)])
-        readings = np.concatenate([np.zeros(0), *(one.readings for one in read)])
+        return Channels(
+            np.concatenate([np.zeros(0), *(one.mean_square for one in read)]),
+            np.concatenate([np.zeros(0, dtype=int), *(one.readings for one in read)]),
+        )
+
+    def innovations(self, before: RunningSpread, read: Channels) -> Innovations:
+        """A frame's readings in units of their spread in the frames before."""
         variance = np.minimum(np.maximum(before.mean_square, self._least), self._most)
-        counted = readings * (before.frames > 0.0)
-        ratio, own = square / variance, self._markers
-        used = counted[own] > 0.0
-        found = Innovations(
+        counted = read.readings * (before.frames > 0.0)
+        ratio, own = read.mean_square / variance, self._markers
+        return Innovations(
             self._of_kind @ (ratio * counted),
             (self._of_kind @ counted).astype(int),
-            np.where(used, ratio[own], np.nan),
+            np.where(counted[own] > 0, ratio[own], np.nan),
             np.sqrt(variance[own]),
         )
-        return found, before.followed(square, readings > 0.0, self._forget)
+
+    def after(self, before: RunningSpread, read: Channels) -> RunningSpread:
+        """The spreads that a frame's readings leave for the next."""
+        return before.followed(read.mean_square, read.readings > 0, self._forget)
 
     @staticmethod
     def _read(block: AnyBlock, decision: object, said: Statement, channels: int) -> Channels:
