@@ -132,14 +132,13 @@ def _whitened(said: Statement, channels: int) -> Channels:
         said: What a block said.
         channels: How many channels it has.
     """
-    sums, readings = [0.0] * channels, [0] * channels
     if isinstance(said, Information):
-        sums[0], readings[0] = said.innovation, said.readings
-    elif said is not None:
-        for rows in (said,) if isinstance(said, Rows) else said:
-            for k, value in enumerate(rows.innovation[: rows.readings].tolist()):
-                channel = k // 3 % channels
-                sums[channel] += value * value
-                readings[channel] += 1
-    mean_square = [total / max(count, 1) for total, count in zip(sums, readings, strict=True)]
-    return Channels(np.array(mean_square), np.array(readings))
+        first = np.arange(channels) == 0
+        return Channels(first * (said.innovation / max(said.readings, 1)), first * said.readings)
+    own: list[list[float]] = [[] for _ in range(channels)]
+    for rows in (said,) if isinstance(said, Rows) else said or ():
+        values = rows.innovation[: rows.readings].tolist()
+        for k in range(0, len(values), 3):
+            own[k // 3 % channels] += values[k : k + 3]
+    mean_square = [sum(y * y for y in values) / max(len(values), 1) for values in own]
+    return Channels(np.array(mean_square), np.array([len(values) for values in own]))
