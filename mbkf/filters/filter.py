@@ -10,6 +10,7 @@ The kinematic, torque and dynamic filters are this class with another plant and 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
@@ -119,7 +120,7 @@ class Step(NamedTuple, Generic[StateT]):
         decisions: What the frame's readings were taken to be.
         readings: They, linearised at the prior.
         recall: Makes the memory for the next step, once, when it is first asked for: after the answer.
-        judge: Makes its innovations against what is expected of them, and the spreads for the next step, once.
+        judge: Makes its innovations against what is expected of them, once, when they are first asked for.
     """
 
     state: StateT
@@ -127,7 +128,7 @@ class Step(NamedTuple, Generic[StateT]):
     decisions: Decisions
     readings: Readings
     recall: Callable[[], Memory]
-    judge: Callable[[], tuple[Innovations, RunningSpread]]
+    judge: Callable[[], Innovations]
 
     @property
     def memory(self) -> Memory:
@@ -137,7 +138,7 @@ class Step(NamedTuple, Generic[StateT]):
     @property
     def innovations(self) -> Innovations:
         """The frame's innovations against what one frame's are expected to be."""
-        return self.judge()[0]
+        return self.judge()
 
     @property
     def tracked(self) -> bool:
@@ -277,21 +278,16 @@ class Filter(Generic[StateT]):
             readings = summed(self.blocks, said, self.layout)
             posterior = self._updated(state, readings)
 
-        made: list[Memory] = []
-        judged: list[tuple[Innovations, RunningSpread]] = []
+        read = cache(lambda: self._spreads.read(chosen, said))
+        judge = cache(lambda: self._spreads.innovations(memory.spreads, read()))
 
-        def judge() -> tuple[Innovations, RunningSpread]:
-            if not judged:
-                judged.append(self._spreads.after(memory.spreads, chosen, said))
-            return judged[0]
-
+        @cache
         def recall() -> Memory:
-            if not made:
-                kept = list(memory.blocks)
-                for k, block in self._remembering:
-                    kept[k] = block.remember(posterior, points[k], chosen[k], kept[k])
-                made.append(Memory(self.plant.remember(posterior, notes, memory.plant), kept, judge()[1]))
-            return made[0]
+            kept = list(memory.blocks)
+            for k, block in self._remembering:
+                kept[k] = block.remember(posterior, points[k], chosen[k], kept[k])
+            spreads = self._spreads.after(memory.spreads, read())
+            return Memory(self.plant.remember(posterior, notes, memory.plant), kept, spreads)
 
         return Step(posterior, prior, Decisions(prior.noise, chosen, notes), readings, recall, judge)
 

@@ -82,30 +82,34 @@ class InnovationSpreads:
         """Before the first frame: what blocks expect of a reading, or nothing."""
         return self._first
 
-    def after(
-        self, before: RunningSpread, chosen: Sequence[object], said: Sequence[Statement]
-    ) -> tuple[Innovations, RunningSpread]:
-        """A frame's innovations, and the spreads that they leave for the next.
+    def read(self, chosen: Sequence[object], said: Sequence[Statement]) -> Channels:
+        """A frame's readings by channel.
 
         Args:
-            before: Of the frames before.
             chosen: What the blocks decided.
             said: What they said.
         """
         read = [self._read(block, chosen[k], said[k], channels) for k, block, channels in self._readers]
-        square = np.concatenate([np.zeros(0), *(one.mean_square for one in read)])
-        readings = np.concatenate([np.zeros(0), *(one.readings for one in read)])
+        return Channels(
+            np.concatenate([np.zeros(0), *(one.mean_square for one in read)]),
+            np.concatenate([np.zeros(0, dtype=int), *(one.readings for one in read)]),
+        )
+
+    def innovations(self, before: RunningSpread, read: Channels) -> Innovations:
+        """A frame's readings in units of their spread in the frames before."""
         variance = np.minimum(np.maximum(before.mean_square, self._least), self._most)
-        counted = readings * (before.frames > 0.0)
-        ratio, own = square / variance, self._markers
-        used = counted[own] > 0.0
-        found = Innovations(
+        counted = read.readings * (before.frames > 0.0)
+        ratio, own = read.mean_square / variance, self._markers
+        return Innovations(
             self._of_kind @ (ratio * counted),
             (self._of_kind @ counted).astype(int),
-            np.where(used, ratio[own], np.nan),
+            np.where(counted[own] > 0, ratio[own], np.nan),
             np.sqrt(variance[own]),
         )
-        return found, before.followed(square, readings > 0.0, self._forget)
+
+    def after(self, before: RunningSpread, read: Channels) -> RunningSpread:
+        """The spreads that a frame's readings leave for the next."""
+        return before.followed(read.mean_square, read.readings > 0, self._forget)
 
     @staticmethod
     def _read(block: AnyBlock, decision: object, said: Statement, channels: int) -> Channels:
@@ -128,14 +132,13 @@ def _whitened(said: Statement, channels: int) -> Channels:
         said: What a block said.
         channels: How many channels it has.
     """
-    sums, readings = [0.0] * channels, [0] * channels
     if isinstance(said, Information):
-        sums[0], readings[0] = said.innovation, said.readings
-    elif said is not None:
-        for rows in (said,) if isinstance(said, Rows) else said:
-            for k, value in enumerate(rows.innovation[: rows.readings].tolist()):
-                channel = k // 3 % channels
-                sums[channel] += value * value
-                readings[channel] += 1
-    mean_square = [total / max(count, 1) for total, count in zip(sums, readings, strict=True)]
-    return Channels(np.array(mean_square), np.array(readings))
+        first = np.arange(channels) == 0
+        return Channels(first * (said.innovation / max(said.readings, 1)), first * said.readings)
+    own: list[list[float]] = [[] for _ in range(channels)]
+    for rows in (said,) if isinstance(said, Rows) else said or ():
+        values = rows.innovation[: rows.readings].tolist()
+        for k in range(0, len(values), 3):
+            own[k // 3 % channels] += values[k : k + 3]
+    mean_square = [sum(y * y for y in values) / max(len(values), 1) for values in own]
+    return Channels(np.array(mean_square), np.array([len(values) for values in own]))

@@ -72,6 +72,7 @@ def gated(
     noise_m: Array,
     gate: float,
     radius_m: float,
+    noise_scale: float = 1.0,
 ) -> Gated:
     """Sorts the markers of a frame.
 
@@ -85,6 +86,7 @@ def gated(
         noise_m: (M,) marker noise.
         gate: Largest squared Mahalanobis distance (3 readings).
         radius_m: Distance below which no marker is refused.
+        noise_scale: Factor on the square of the noise.
     """
     squared = np.vecdot(innovation_m, innovation_m)
     near = squared <= radius_m**2
@@ -92,12 +94,13 @@ def gated(
     if near.tobytes() == seen.tobytes():
         return Gated(seen, seen, np.where(seen, squared, 0.0), None)
     lost = bool(2 * np.count_nonzero(squared > TRACK_LOSS_M**2) > np.count_nonzero(seen))
+    variance = noise_scale * noise_m**2
     # S is no less than R, so that what R alone lets pass passes.
-    near |= squared <= gate * noise_m**2
+    near |= squared <= gate * variance
     far = seen & ~near
     if not far.any():
         return Gated(seen, seen, np.where(seen, squared, 0.0), None, lost)
-    distance = _distance(innovation_m[far], reading.only(far).jacobian, covariance, noise_m[far])
+    distance = _distance(innovation_m[far], reading.only(far).jacobian, covariance, variance[far])
     trusted, displaced = _with_far(seen, near, far, distance, gate), None
     if trusted.tobytes() != seen.tobytes():
         displaced = _whole_segments(seen, trusted, reading.moves)
@@ -114,10 +117,17 @@ def _whole_segments(seen: BoolArray, trusted: BoolArray, moves: Array) -> BoolAr
     return seen & lost & ~(same & trusted).any(axis=1)
 
 
-def _distance(y: Array, H: Array, covariance: Array, noise_m: Array) -> Array:
-    """(m,) yᵀ S⁻¹ y of innovations (m, 3) with Jacobians (m, 3, nv)."""
+def _distance(y: Array, H: Array, covariance: Array, variance_m2: Array) -> Array:
+    """(m,) yᵀ S⁻¹ y of innovations (m, 3) with Jacobians (m, 3, nv).
+
+    Args:
+        y: The innovations.
+        H: The Jacobians.
+        covariance: (nv, nv) predicted covariance P⁻ of the configuration.
+        variance_m2: (m,) variance of the markers' noise.
+    """
     S = (H @ covariance) @ H.transpose(0, 2, 1)
-    S[:, np.arange(3), np.arange(3)] += noise_m[:, None] ** 2
+    S[:, np.arange(3), np.arange(3)] += variance_m2[:, None]
     found: Array = (y * np.linalg.solve(S, y[:, :, None])[:, :, 0]).sum(axis=1)
     return found
 

@@ -160,10 +160,9 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
     ) -> MarkerDecision:
         """Gates the markers and notes which dofs they leave unobserved."""
         innovation, s = frame.markers_m - at.prepared.positions_m, self.settings
-        noise = self.noise_m if memory.noise_scale == 1.0 else self.noise_m * memory.noise_scale**0.5
         P = at.state.P[: self._nv, : self._nv]
         seen, trusted, squared, displaced, lost = gated(
-            innovation, at.prepared, P, noise, s.gate, s.gate_radius_m
+            innovation, at.prepared, P, self.noise_m, s.gate, s.gate_radius_m, memory.noise_scale
         )
         notes.seen, notes.trusted = seen, trusted
         notes.unmarked = notes.unobserved = self._observed.unmarked(trusted)

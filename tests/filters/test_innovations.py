@@ -57,7 +57,8 @@ def judged(y, loads=None, expected=1.0):
     before, found = spreads.begin(), []
     for t, points in enumerate(y):
         said = None if loads is None else blocks[1].linearise(None, loads[t])
-        one, before = spreads.after(before, [points, None], [None, said])
+        read = spreads.read([points, None], [None, said])
+        one, before = spreads.innovations(before, read), spreads.after(before, read)
         found.append(one)
     return found
 
