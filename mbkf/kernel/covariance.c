@@ -141,6 +141,31 @@ void carry(int nv, int N, const double *P, const double *A, const double *B, con
     mirror(N, carried);
 }
 
+void carry_velocities(int nv, const double *P, const double *A, const double *B, const int *joints, int n_joints,
+                      double dt, const double *noise, double *carried, double *work)
+{
+    const int N = 2 * nv;
+    double *S = work, *R = work + (long)nv * N;
+    for (long i = 0; i < (long)nv * N; i++)
+        S[i] = dt * P[(long)nv * N + i];
+    for (int k = 0; k < n_joints; k++)
+        joint_rows(joints[2 * k], joints[2 * k + 1], nv, N, A, B, P, S, R);
+    for (int i = 0; i < nv; i++)
+        for (int j = 0; j < nv; j++)
+            S[(long)i * nv + j] = dt * R[(long)i * N + nv + j];
+    for (int k = 0; k < n_joints; k++)
+        joint_columns(joints[2 * k], joints[2 * k + 1], nv, N, A, B, R, S, carried);
+    for (int i = 0; i < nv; i++) {
+        memcpy(carried + (long)i * N + nv, R + (long)i * N + nv, sizeof(double) * nv);
+        memcpy(carried + (long)(nv + i) * N + nv, P + (long)(nv + i) * N + nv, sizeof(double) * nv);
+    }
+    for (int row = 0; row < 2; row++)
+        for (int column = row; column < 2; column++)
+            for (int i = 0; i < nv; i++)
+                carried[(long)(row * nv + i) * N + column * nv + i] += noise[(2 * row + column) * nv + i];
+    mirror(N, carried);
+}
+
 /* B (columns x rows) = A' of a matrix (rows x columns), both stored column by column. */
 static void transposed(int rows, int columns, const double *A, int lda, double *B)
 {

@@ -15,6 +15,12 @@ void carry(int nv, int N, const double *P, const double *A, const double *B, con
            const Singer *singer, const double *noise, const double *sd, double *carried, double *work);
 long carry_work(int nv, int N);
 
+/* The same for a state (q, v) with Phi_q = [A, B dt] and velocities that stay.
+ *
+ * noise: (2 x 2 x nv) diagonals of Q's blocks; work: carry_work(nv, 2 nv) numbers. */
+void carry_velocities(int nv, const double *P, const double *A, const double *B, const int *joints, int n_joints,
+                      double dt, const double *noise, double *carried, double *work);
+
 /* informed = (P^-1 + L on the first n components + rows' rows)^-1.
  *
  * information: L (n x n); rows: (m x N), row by row; work: inform_work(n, m, N) numbers.

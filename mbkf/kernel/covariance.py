@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.kernel.loading import Library, library
@@ -27,7 +28,7 @@ class CompiledPrediction:
             noise: (3, 3) covariance of (q, v, a) for σ_a = 1.
         """
         self._kernel, self._singer, self._noise = kernel, np.ascontiguousarray(singer), noise
-        self._joints = np.array([(dofs.start, dofs.stop - dofs.start) for dofs in joints], dtype=np.int32)
+        self._joints = _first_and_number(joints)
 
     @classmethod
     def where_built(cls, joints: Iterable[slice], singer: Array, noise: Array) -> CompiledPrediction | None:
@@ -56,6 +57,54 @@ class CompiledPrediction:
         return carried
 
 
+class CompiledVelocityPrediction:
+    """P' = Φ P Φᵀ + Q of a state (q, v) with Φ_q = [A, B Δt] and velocities that stay."""
+
+    def __init__(self, kernel: Library, joints: Iterable[slice], dt_s: float, noise: Array) -> None:
+        """Keeps what does not change from step to step.
+
+        Args:
+            kernel: The compiled kernel.
+            joints: Dofs of each joint: A and B are zero between joints.
+            dt_s: Δt.
+            noise: (2, 2, nv) diagonals of the blocks of Q.
+        """
+        self._kernel, self._dt_s, self._noise = kernel, dt_s, np.ascontiguousarray(noise)
+        self._joints = _first_and_number(joints)
+
+    @classmethod
+    def where_built(
+        cls, joints: Iterable[slice], dt_s: float, noise: Array
+    ) -> CompiledVelocityPrediction | None:
+        """One, or None where there is no compiled kernel.
+
+        Args:
+            joints: Dofs of each joint.
+            dt_s: Δt.
+            noise: (2, 2, nv) diagonals of the blocks of Q.
+        """
+        kernel = library()
+        return None if kernel is None else cls(kernel, joints, dt_s, noise)
+
+    def carried(self, P: Array, A: Array, B: Array) -> Array:
+        """(2 nv, 2 nv) covariance one step later, exactly symmetric.
+
+        Args:
+            P: (2 nv, 2 nv) symmetric covariance.
+            A: (nv, nv) derivative of the next configuration by this one.
+            B: (nv, nv) by the step.
+        """
+        carried = np.empty(P.shape)
+        A, B = np.ascontiguousarray(A), np.ascontiguousarray(B)
+        self._kernel.carry_velocities(P, A, B, self._joints, self._dt_s, self._noise, carried)
+        return carried
+
+
+def _first_and_number(joints: Iterable[slice]) -> NDArray[np.int32]:
+    """(J, 2) first dof and number of dofs of each joint."""
+    return np.array([(dofs.start, dofs.stop - dofs.start) for dofs in joints], dtype=np.int32)
+
+
 def informed_with_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
     """(N, N) as :func:`mbkf.numerics.information_update.informed_with_rows`, by the compiled kernel where there is one.
 
@@ -72,3 +121,16 @@ def informed_with_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
         if kernel.inform(covariance, matrix, np.ascontiguousarray(rows), informed) == 0:
             return informed.T
     return information_update.informed_with_rows(covariance, matrix, rows)
+
+
+def informed_after_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
+    """(N, N) as :func:`mbkf.numerics.information_update.informed_after_rows`, by the kernel where there is one.
+
+    Args:
+        covariance: (N, N) prior covariance P.
+        matrix: (n, n) information Λ on the first n components.
+        rows: (m, N) whitened Jacobian of the other readings; the values do not enter.
+    """
+    if library() is None:
+        return information_update.informed_after_rows(covariance, matrix, rows)
+    return informed_with_rows(covariance, matrix, rows)

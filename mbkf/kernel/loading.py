@@ -47,6 +47,29 @@ class Library(Protocol):
             carried: (N, N) filled.
         """
 
+    def carry_velocities(
+        self,
+        P: Array,
+        A: Array,
+        B: Array,
+        joints: NDArray[np.int32],
+        dt: float,
+        noise: Array,
+        carried: Array,
+        /,
+    ) -> None:
+        """Fills ``carried`` (2 nv, 2 nv): see :class:`mbkf.kernel.covariance.CompiledVelocityPrediction`.
+
+        Args:
+            P: (2 nv, 2 nv) covariance of positions and velocities.
+            A: (nv, nv) derivative of the next configuration by this one.
+            B: (nv, nv) by the step.
+            joints: (J, 2) first dof and number of dofs of each joint, 32-bit integers.
+            dt: Δt.
+            noise: (2, 2, nv) diagonals of the blocks of Q.
+            carried: (2 nv, 2 nv) filled.
+        """
+
     def inform(self, P: Array, information: Array, rows: Array, informed: Array, /) -> int:
         """Fills ``informed`` (N, N): see :func:`mbkf.kernel.covariance.informed_with_rows`.
 

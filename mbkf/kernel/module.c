@@ -124,6 +124,32 @@ static PyObject *py_carry(PyObject *self, PyObject *const *args, Py_ssize_t give
     return done;
 }
 
+/* carry_velocities(P, A, B, joints, dt, noise, carried) */
+static PyObject *py_carry_velocities(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    Arrays held = {.held = 0};
+    PyObject *done = NULL;
+    (void)self;
+    if (!expects(given, 7))
+        return NULL;
+    const double dt = PyFloat_AsDouble(args[4]);
+    const double *A = PyErr_Occurred() ? NULL : numbers(&held, args[1], 0);
+    const int nv = A ? length(&held) : 0, N = 2 * nv;
+    const double *B = A ? numbers(&held, args[2], (Py_ssize_t)nv * nv) : NULL;
+    const double *P = B ? symmetric(&held, args[0], N) : NULL;
+    const int *joints = P ? array(&held, args[3], PyBUF_C_CONTIGUOUS, sizeof(int), 0) : NULL;
+    const int n_joints = joints ? length(&held) : 0;
+    const double *noise = joints ? numbers(&held, args[5], 4 * (Py_ssize_t)nv) : NULL;
+    double *carried = noise ? filled(&held, args[6], (Py_ssize_t)N * N) : NULL;
+    double *work = carried ? workspace(carry_work(nv, N)) : NULL;
+    if (work) {
+        carry_velocities(nv, P, A, B, joints, n_joints, dt, noise, carried, work);
+        done = Py_NewRef(Py_None);
+    }
+    release(&held);
+    return done;
+}
+
 /* inform(P, information, rows, informed) -> 0, or which factorisation failed */
 static PyObject *py_inform(PyObject *self, PyObject *const *args, Py_ssize_t given)
 {
@@ -205,6 +231,8 @@ static PyObject *py_connect(PyObject *self, PyObject *capsules)
 static PyMethodDef methods[] = {
     {"connect", py_connect, METH_O, "Takes BLAS and LAPACK routines from a dictionary of capsules."},
     {"carry", (PyCFunction)(void (*)(void))py_carry, METH_FASTCALL, "A covariance, one step later."},
+    {"carry_velocities", (PyCFunction)(void (*)(void))py_carry_velocities, METH_FASTCALL,
+     "The same for positions and velocities alone."},
     {"inform", (PyCFunction)(void (*)(void))py_inform, METH_FASTCALL, "A covariance after readings."},
     {"choose", py_choose, METH_O, "Products by instructions of their own, where they can be, or by BLAS."},
     {"vectors", py_vectors, METH_NOARGS, "Bits of the vectors that products are made with; 0: BLAS makes them."},

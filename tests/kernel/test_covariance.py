@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
+from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
 from mbkf.kernel.covariance import informed_with_rows
 from mbkf.kernel.loading import library
 from mbkf.numerics import information_update
@@ -140,3 +141,24 @@ def test_the_prediction_is_phi_p_phi_and_noise(either_kernel, model, order):
     np.testing.assert_array_equal(found, found.T)
     assert found.flags.f_contiguous
     assert replace(state, P=found).P is found
+
+
+@pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
+def test_the_prediction_of_positions_and_velocities_is_phi_p_phi_and_noise(either_kernel, model):
+    rng = np.random.default_rng(6)
+    nv = model.nv
+    plant = WhiteAccelerationPlant(model, DT, rng.uniform(0.0, 30.0, nv))
+    P = covariance(rng, 2 * nv)
+    state = KinematicState(model.integrate(model.neutral(), rng.normal(size=nv)), rng.normal(size=nv), P)
+    found, phi = plant.predict(state).P, plant.transition(state)
+    Q = np.block(
+        [
+            [np.diag(plant.position_noise), np.diag(plant.cross_noise)],
+            [np.diag(plant.cross_noise), np.diag(plant.velocity_noise)],
+        ]
+    )
+    expected = phi @ P @ phi.T + Q
+    scale = np.sqrt(np.diag(expected))
+    assert (np.abs(found - expected) <= 1e-13 * np.outer(scale, scale)).all()
+    np.testing.assert_array_equal(found, found.T)
+    assert found.flags.f_contiguous

@@ -10,7 +10,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.filters.filter import Filter, Step
 from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
 from mbkf.filters.kinematic.settings import KinematicSettings
-from mbkf.numerics.information_update import informed_after_rows
+from mbkf.kernel.covariance import informed_after_rows
 from mbkf.sensors.block import AnyBlock
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers, MarkerSettings
