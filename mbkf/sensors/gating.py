@@ -128,7 +128,11 @@ def _distance(y: Array, H: Array, covariance: Array, variance_m2: Array) -> Arra
     """
     S = (H @ covariance) @ H.transpose(0, 2, 1)
     S[:, np.arange(3), np.arange(3)] += variance_m2[:, None]
-    found: Array = (y * np.linalg.solve(S, y[:, :, None])[:, :, 0]).sum(axis=1)
+    try:
+        found: Array = (y * np.linalg.solve(S, y[:, :, None])[:, :, 0]).sum(axis=1)
+    except np.linalg.LinAlgError:
+        # Of a lost track P⁻ may be so large that S no longer holds R: then no marker is too far off.
+        return np.zeros(len(y))
     return found
 
 

@@ -180,3 +180,11 @@ def test_a_segment_none_of_whose_markers_is_used_is_unmarked():
     np.testing.assert_array_equal(observed.carriers(~trusted), hand[1:])
     np.testing.assert_array_equal(observed.carried_by(hand[1:]), ~trusted)
     assert len(observed.unmarked(np.ones_like(trusted))) == 0
+
+
+def test_a_prediction_that_knows_nothing_refuses_no_marker(problem):
+    """Of a lost track the covariance may be so large that noise is lost in rounding, and S is singular."""
+    y, H, _, noise = problem
+    one = np.zeros(NV)
+    one[0] = 1e20
+    assert believable(y + 1.0, H, np.outer(one, one), noise, SETTINGS).all()
