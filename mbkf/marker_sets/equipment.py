@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.marker_sets.places import WornPlaces
 
 
@@ -28,6 +28,10 @@ class Equipment:
     share: float
     top_m: tuple[float, ...]
     bottom_m: float = 0.03
+
+    def bare(self, places: WornPlaces) -> BoolArray:
+        """(C,) components on segments that carry no markers."""
+        return np.array([segment.endswith(self.without) for segment in places.segments], dtype=bool)
 
 
 _ARMS = ("upper_arm", "forearm", "hand")
@@ -71,8 +75,7 @@ EQUIPMENTS = (
 
 def equipped_weight(places: WornPlaces, equipment: Equipment) -> Array:
     """(C,) shares of the components where only these segments carry markers; they sum to 1."""
-    bare = np.array([segment.endswith(equipment.without) for segment in places.segments])
-    weight = np.where(bare, 0.0, places.weight)
+    weight = np.where(equipment.bare(places), 0.0, places.weight)
     return np.asarray(weight / weight.sum())
 
 

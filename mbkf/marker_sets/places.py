@@ -11,12 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mbkf.conventions import Array, read_only
+from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.model.description import BodyDescription, SegmentShape
 from mbkf.model.protocol import DEFAULT_NOISE_M, ProtocolMarker, load_protocol, protocol_names
 
@@ -67,11 +67,26 @@ class WornPlaces:
     weight: Array
     noise_m: Array
 
-    @property
+    @cached_property
     def segment_index(self) -> NDArray[np.intp]:
         """(C,) place of each component's segment among the body's."""
-        names = [segment.name for segment in self.body.segments]
-        return np.array([names.index(name) for name in self.segments], dtype=np.intp)
+        place = {segment.name: k for k, segment in enumerate(self.body.segments)}
+        index = np.array([place[name] for name in self.segments], dtype=np.intp)
+        index.setflags(write=False)
+        return index
+
+    def only(self, components: BoolArray) -> WornPlaces:
+        """Some of the components, (C,) set; their weights then sum to less than 1."""
+        kept = np.flatnonzero(components)
+        return WornPlaces(
+            self.body,
+            tuple(self.segments[c] for c in kept),
+            read_only(self.position_m[kept]),
+            tuple(self.landmarks[c] for c in kept),
+            read_only(self.sd_m[kept]),
+            read_only(self.weight[kept]),
+            read_only(self.noise_m[kept]),
+        )
 
 
 @dataclass

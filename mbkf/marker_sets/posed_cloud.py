@@ -75,12 +75,25 @@ class CloudProblem:
         weight: (C,) share of each component in this cloud, or (N, C) for each of its points.
     """
 
-    def __init__(self, places: WornPlaces, points_m: Array, weight: Array) -> None:
+    def __init__(
+        self, places: WornPlaces, points_m: Array, weight: Array, model: HumanModel | None = None
+    ) -> None:
+        """A body of any pose and size.
+
+        Args:
+            places: Where markers are worn.
+            points_m: (N, 3) the points.
+            weight: (C,) or (N, C) shares.
+            model: The reference body, where it has been built already.
+        """
         self.places, self.points_m = places, points_m
         with np.errstate(divide="ignore"):
             self._log_weight = np.log(weight)
         body = places.body
-        self.model = HumanModel(body, np.ones(len(body.scale_factors)), body.reference_mass_kg)
+        self.model = model or HumanModel(body, np.ones(len(body.scale_factors)), body.reference_mass_kg)
+        joints = [self.model.joint(segment.name).joint_id for segment in body.segments]
+        self._moves = self.model.supports[joints].astype(float)[:, None]
+        self._carried = (np.arange(len(joints))[:, None] == places.segment_index).astype(float)
         self._posture = PostureSensor(self.model)
         self._reference = MarkerSensor(self.model, places.segments, places.position_m)
         self._scale = np.array([body.segment(name).scale_matrix for name in places.segments])
@@ -107,13 +120,22 @@ class CloudProblem:
         """
         points = self.points_m if points_m is None else points_m
         variance = width_m**2 + self.places.sd_m**2
-        squared = (
-            (points**2).sum(axis=1)[:, None] - 2.0 * points @ positions_m.T + (positions_m**2).sum(axis=1)
+        # −|p − m|² / 2 s² + logarithm of the height, as one product (N, 5) (5, C)
+        square = (points**2).sum(axis=1)
+        by_point = np.column_stack([points, square, np.ones(len(points))])
+        by_component = np.empty((5, len(variance)))
+        by_component[:3] = positions_m.T / variance
+        by_component[3] = -0.5 / variance
+        by_component[4] = by_component[3] * (positions_m**2).sum(axis=1) - 1.5 * np.log(
+            2.0 * np.pi * variance
         )
-        height = self._log_weight - 1.5 * np.log(2.0 * np.pi * variance)
-        density = (1.0 - NO_BODY) * np.exp(height - 0.5 * squared / variance)
+        density = by_point @ by_component
+        density += self._log_weight
+        np.exp(density, out=density)
+        density *= 1.0 - NO_BODY
         total = density.sum(axis=1) + NO_BODY / ROOM_M3
-        return density / total[:, None], float(np.log(total).sum())
+        density /= total[:, None]
+        return density, float(np.log(total).sum())
 
     def priors(self, q: Array, factors: Array) -> float:
         """Logarithm of the priors of a pose (nq,) and scale factors (K,), but for a constant."""
@@ -214,20 +236,30 @@ class CloudProblem:
         active = total > LEAST_SHARE
         pull = total[active] / (width_m**2 + self.places.sd_m[active] ** 2)
         target = (shares[:, active].T @ points_m) / total[active, None]
-        errors = target - reading.positions_m[active]
-        root = np.sqrt(pull)[:, None]
-        rows = reading.only(active).jacobian
+        positions = reading.positions_m[active]
+        errors = pull[:, None] * (target - positions)
+        model = self.model if sized is None else sized[0].model
+        nv, size = self.model.nv, self.model.nv + (0 if sized is None else len(sized[1]))
+        matrix, gradient = np.zeros((size, size)), np.zeros(size)
+        moved = model.spatial_jacobian(q) * self._moves
+        carried = self._carried[:, active]
+        flat = moved.reshape(-1, nv)
+        matrix[:nv, :nv] = flat.T @ (_inertia(carried, positions, pull) @ moved).reshape(-1, nv)
+        gradient[:nv] = (carried @ _wrenches(positions, errors[:, :, None])[..., 0]).ravel() @ flat
         if sized is not None:
             sensor, factors = sized
-            rows = np.concatenate([rows, self._by_factors(sensor, q, active)], axis=2)
-        nv, size = self.model.nv, rows.shape[2]
-        flat = (rows * root[:, :, None]).reshape(-1, size)
-        matrix = flat.T @ flat
-        gradient = flat.T @ (errors * root).ravel()
+            by_factors = self._by_factors(sensor, q, active)
+            weighted = by_factors * pull[:, None, None]
+            wrenches = _wrenches(positions, weighted).reshape(len(pull), -1)
+            across = flat.T @ (carried @ wrenches).reshape(len(flat), -1)
+            matrix[:nv, nv:], matrix[nv:, :nv] = across, across.T
+            by_factors = by_factors.reshape(-1, size - nv)
+            matrix[nv:, nv:] = by_factors.T @ weighted.reshape(-1, size - nv)
+            gradient[nv:] = errors.ravel() @ by_factors
         prior = self._posture.reading(q)
-        weighted = prior.jacobian / self._posture.sd[:, None]
-        matrix[:nv, :nv] += weighted.T @ weighted
-        gradient[:nv] -= weighted.T @ (prior.deviation / self._posture.sd)
+        rows = prior.jacobian / self._posture.sd[:, None]
+        matrix[:nv, :nv] += rows.T @ rows
+        gradient[:nv] -= rows.T @ (prior.deviation / self._posture.sd)
         turned, by_pose = self._posture.deviation(q)
         beyond = self._beyond(turned)
         passed = by_pose[beyond != 0.0] / LIMIT_SD_RAD
@@ -254,3 +286,34 @@ class CloudProblem:
         joints = sensor.joint_ids[active]
         own = self._scale[active] * self.places.position_m[active, :, None]
         return np.asarray(origin_derivatives(sensor.model, rotations)[joints] + rotations[joints] @ own)
+
+
+def _inertia(carried: Array, positions_m: Array, masses: Array) -> Array:
+    """(S, 6, 6) Σ m XᵀX of the points on every segment, X = [1, −p×] taking its spatial velocity to a point's.
+
+    Args:
+        carried: (S, A) 1 where a segment carries a point.
+        positions_m: (A, 3) points p in the world.
+        masses: (A,) their masses m.
+    """
+    first = masses[:, None] * positions_m
+    second = first[:, :, None] * positions_m[:, None]
+    mass, first, second = carried @ masses, carried @ first, carried @ second.reshape(-1, 9)
+    second = second.reshape(-1, 3, 3)
+    matrix, one = np.zeros((len(carried), 6, 6)), np.eye(3)
+    matrix[:, :3, :3] = mass[:, None, None] * one
+    matrix[:, 3:, :3] = _wrenches(first, np.broadcast_to(one, (len(carried), 3, 3)))[:, 3:]
+    matrix[:, :3, 3:] = np.swapaxes(matrix[:, 3:, :3], 1, 2)
+    matrix[:, 3:, 3:] = np.trace(second, axis1=1, axis2=2)[:, None, None] * one - second
+    return matrix
+
+
+def _wrenches(positions_m: Array, forces: Array) -> Array:
+    """(A, 6, n) XᵀF = [F, p × F] of forces F (A, 3, n) at points p (A, 3), about the world's origin."""
+    found = np.empty((len(forces), 6, forces.shape[2]))
+    found[:, :3] = forces
+    p = positions_m[:, :, None]
+    for k in range(3):
+        after, last = (k + 1) % 3, (k + 2) % 3
+        found[:, 3 + k] = p[:, after] * forces[:, last] - p[:, last] * forces[:, after]
+    return found

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, read_only
 from mbkf.errors import NotObservable
 from mbkf.marker_sets.equipment import EQUIPMENTS, Equipment, count_worth, equipped_weight
 from mbkf.marker_sets.places import WornPlaces
 from mbkf.marker_sets.posed_cloud import CloudProblem, PosedBody
 from mbkf.marker_sets.starts import starts
+from mbkf.model.human import HumanModel
 
 FEWEST_POINTS = 12
 """Fewer points do not show which part of which body they are on."""
@@ -70,9 +71,41 @@ def find_body(places: WornPlaces, points_m: Array, named: Array | None = None) -
             f"a frame shows {len(points_m)} points; fewer than {FEWEST_POINTS} do not show "
             "which part of a body they are on"
         )
+    if named is not None:
+        named = None if (named == 1.0).all() else named.copy()
+    return _searched(_Frame(places, points_m.copy(), named))
+
+
+@dataclass(frozen=True, eq=False)
+class _Frame:
+    """A frame as a key: who decides about its axes and who infers a set search the same one."""
+
+    places: WornPlaces
+    points_m: Array
+    named: Array | None
+
+    @cached_property
+    def _content(self) -> tuple[bytes, bytes]:
+        return self.points_m.tobytes(), b"" if self.named is None else self.named.tobytes()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Frame) and self.places is other.places and self._content == other._content
+
+    def __hash__(self) -> int:
+        return hash(self._content)
+
+
+@lru_cache(maxsize=8)
+def _searched(frame: _Frame) -> FoundBody:
+    """What :func:`find_body` finds; its arrays are not to be changed."""
+    places, points_m, named = frame.places, frame.points_m, frame.named
     rough: list[_Candidate] = []
+    reference: HumanModel | None = None
     for equipment in EQUIPMENTS:
-        problem = CloudProblem(places, points_m, weights(places, equipment, named))
+        worn = ~equipment.bare(places)
+        weight = weights(places, equipment, named)[..., worn]
+        problem = CloudProblem(places.only(worn), points_m, weight, reference)
+        reference = problem.model
         own = [
             _Candidate(problem.posed(start.q, start.size, COARSE_M), problem, equipment)
             for start in starts(problem.model, points_m, equipment)
@@ -89,7 +122,10 @@ def find_body(places: WornPlaces, points_m: Array, named: Array | None = None) -
     rivals = [one.worth for one in others if _apart(best.problem, best.body.q, one.body.q) > math.pi / 4.0]
     evidence = _evidence(places, points_m, best.body, best.equipment)
     odds = len(points_m) * evidence + best.prior
-    return FoundBody(best.body, best.equipment, best.worth, max(rivals, default=-math.inf), evidence, odds)
+    body = PosedBody(
+        read_only(best.body.q), read_only(best.body.factors), _all_shares(places, best), best.body.worth
+    )
+    return FoundBody(body, best.equipment, best.worth, max(rivals, default=-math.inf), evidence, odds)
 
 
 @dataclass(frozen=True)
@@ -112,6 +148,13 @@ class _Candidate:
     def _equipped(self) -> float:
         count = count_worth(self.problem.places, self.equipment, self.body.shares)
         return math.log(self.equipment.share) + count
+
+
+def _all_shares(places: WornPlaces, found: _Candidate) -> Array:
+    """(N, C) shares of all components, 0 where the equipment leaves a segment bare."""
+    shares = np.zeros((len(found.body.shares), len(places.segments)))
+    shares[:, ~found.equipment.bare(places)] = found.body.shares
+    return read_only(shares)
 
 
 def _evidence(places: WornPlaces, points_m: Array, body: PosedBody, equipment: Equipment) -> float:

@@ -124,6 +124,23 @@ class ScalingPrior:
     offset_precision: Array
 
 
+@dataclass(frozen=True)
+class _Shown:
+    """What N frames of M markers show, whitened; 0 where a marker is missing.
+
+    Attributes:
+        errors: (N, M, 3) modelled minus measured.
+        by_pose: (N, M, 3, nv) derivative by the frame's pose.
+        by_factors: (N, M, 3, K) by the scale factors.
+        axes: (N, M, 3, 3) by the marker's own offset.
+    """
+
+    errors: Array
+    by_pose: Array
+    by_factors: Array
+    axes: Array
+
+
 class ScalingProblem:
     """Residuals of N frames of M markers.
 
@@ -236,7 +253,11 @@ class ScalingProblem:
     def cost(self, state: ScalingState) -> float:
         """Sum of squared residuals."""
         errors = np.where(self.seen[:, :, None], self.errors_m(state), 0.0) / self.noise_m[:, None]
-        total = float(self.weights.markers @ (errors**2).sum(axis=(1, 2))) + self._shared_cost(state)
+        markers = float(self.weights.markers @ (errors**2).sum(axis=(1, 2)))
+        return markers + self._shared_cost(state) + self._posture_cost(state)
+
+    def _posture_cost(self, state: ScalingState) -> float:
+        total = 0.0
         for t, q in enumerate(state.poses):
             if self.weights.posture[t]:
                 total += self.weights.posture[t] * self._usual.cost(q, bool(self.weights.stands[t]))
@@ -266,27 +287,46 @@ class ScalingProblem:
 
     def linearise(self, state: ScalingState) -> ArrowEquations:
         """Gauss–Newton equations; frames border only factors and offsets."""
-        sensor = self.sensor(state)
-        nv, count = sensor.model.nv, len(self.body.scale_factors)
-        shared = count + 3 * len(self.markers)
-        frames = np.empty((len(state.poses), nv, nv))
-        border = np.empty((len(state.poses), nv, shared))
-        frame_gradient = np.empty((len(state.poses), nv))
-        corner, corner_gradient = self._prior_equations(state)
+        shown = self._shown(state)
+        count, markers = len(self.body.scale_factors), len(self.markers)
+        by_pose = shown.by_pose.reshape(len(state.poses), 3 * markers, -1)
+        by_factors = shown.by_factors.reshape(len(state.poses), 3 * markers, count)
+        errors = shown.errors.reshape(len(state.poses), 3 * markers, 1)
+        across = np.swapaxes(by_pose, 1, 2)
+        nv = by_pose.shape[2]
+        frames, frame_gradient = across @ by_pose + 1e-9 * np.eye(nv), (across @ errors)[:, :, 0]
+        # a marker's offset moves that marker only: (nv, 3) (3, 3) for each, not (nv, 3 M) (3 M, 3 M)
+        by_offset = np.swapaxes(shown.by_pose, 2, 3) @ shown.axes
+        border = np.concatenate(
+            [across @ by_factors, np.swapaxes(by_offset, 1, 2).reshape(len(state.poses), nv, -1)], axis=2
+        )
         for t, q in enumerate(state.poses):
-            errors, by_pose, by_shared = self._frame(sensor, q, t)
             usual, pull = self._usual.equations(q, bool(self.weights.stands[t]))
-            frames[t] = by_pose.T @ by_pose + self.weights.posture[t] * usual + 1e-9 * np.eye(nv)
-            frame_gradient[t] = by_pose.T @ errors + self.weights.posture[t] * pull
+            frames[t] += self.weights.posture[t] * usual
+            frame_gradient[t] += self.weights.posture[t] * pull
             upright = self.weights.upright[t]
             if upright:
                 tilt, by_tilt = self._standing.linearised(self.posture.model, q)
                 frames[t] += upright * (by_tilt.T @ by_tilt)
                 frame_gradient[t] += upright * (by_tilt.T @ tilt)
-            border[t] = by_pose.T @ by_shared
-            corner += by_shared.T @ by_shared
-            corner_gradient += by_shared.T @ errors
-        return ArrowEquations(frames, border, corner, frame_gradient, corner_gradient, self.cost(state))
+        corner, corner_gradient = self._prior_equations(state)
+        self._add_shared(shown, corner, corner_gradient)
+        cost = float((errors**2).sum()) + self._shared_cost(state) + self._posture_cost(state)
+        return ArrowEquations(frames, border, corner, frame_gradient, corner_gradient, cost)
+
+    def _add_shared(self, shown: _Shown, corner: Array, gradient: Array) -> None:
+        """Adds what the markers say about factors and offsets: the offsets of two markers have no term in common."""
+        count, markers = len(self.body.scale_factors), np.arange(len(self.markers))
+        flat = shown.by_factors.reshape(-1, count)
+        corner[:count, :count] += flat.T @ flat
+        gradient[:count] += shown.errors.ravel() @ flat
+        back = np.swapaxes(shown.axes, 2, 3)
+        across = np.swapaxes((back @ shown.by_factors).sum(axis=0).reshape(-1, count), 0, 1)
+        corner[:count, count:] += across
+        corner[count:, :count] += across.T
+        offsets = corner[count:, count:].reshape(len(markers), 3, len(markers), 3)
+        offsets[markers, :, markers] += (back @ shown.axes).sum(axis=0)
+        gradient[count:] += (back @ shown.errors[..., None]).sum(axis=0).ravel()
 
     def _prior_equations(self, state: ScalingState) -> tuple[Array, Array]:
         count = len(self.body.scale_factors)
@@ -299,25 +339,23 @@ class ScalingProblem:
         gradient[count:] = self.prior.offset_precision @ (state.offsets_m - self.prior.offsets_m).ravel()
         return corner, gradient
 
-    def _frame(self, sensor: MarkerSensor, q: Array, t: int) -> tuple[Array, Array, Array]:
-        """Whitened errors (3S,) of the S markers seen and their Jacobians by pose (3S, nv) and shared unknowns."""
-        seen = np.flatnonzero(self.seen[t])
-        reading = sensor.reading(q)
-        rotations, _ = sensor.model.placements(q)
-        whiten = np.sqrt(self.weights.markers[t]) / self.noise_m[seen, None]
-        errors = (reading.positions_m[seen] - self.measured_m[t, seen]) * whiten
-        by_pose = reading.jacobian[seen] * whiten[:, :, None]
-        count = len(self.body.scale_factors)
-        by_shared = np.zeros((len(seen), 3, count + 3 * len(self.markers)))
-        axes = rotations[sensor.joint_ids[seen]] * whiten[:, :, None]
-        origins = origin_derivatives(sensor.model, rotations)
-        by_shared[:, :, :count] = origins[sensor.joint_ids[seen]] * whiten[:, :, None]
-        by_shared[:, :, :count] += axes @ self.places_by_factors()[seen]
-        for column in range(3):
-            by_shared[np.arange(len(seen)), :, count + 3 * seen + column] = axes[:, :, column]
-        size = 3 * len(seen)
-        return (
-            errors.ravel(),
-            by_pose.reshape(size, by_pose.shape[2]),
-            by_shared.reshape(size, by_shared.shape[2]),
+    def _shown(self, state: ScalingState) -> _Shown:
+        """Whitened errors of all frames and their derivatives."""
+        sensor = self.sensor(state)
+        model = sensor.model
+        readings = [sensor.reading(q) for q in state.poses]
+        rotations = [model.placements(q)[0] for q in state.poses]
+        axes = np.array(rotations)[:, sensor.joint_ids]
+        origins = np.array([origin_derivatives(model, one) for one in rotations])[:, sensor.joint_ids]
+        errors = np.array([one.positions_m for one in readings]) - self.measured_m
+        whiten = np.where(self.seen, np.sqrt(self.weights.markers)[:, None] / self.noise_m, 0.0)[..., None]
+        by_pose = np.array([one.jacobian for one in readings])
+        by_pose *= whiten[..., None]
+        by_factors = origins + axes @ self.places_by_factors()
+        by_factors *= whiten[..., None]
+        return _Shown(
+            np.where(self.seen[..., None], errors, 0.0) * whiten,
+            by_pose,
+            by_factors,
+            axes * whiten[..., None],
         )
