@@ -60,6 +60,55 @@ class Library(Protocol):
             0, or which factorisation failed.
         """
 
+    def tree(
+        self, whole: NDArray[np.int32], numbers: Array, gravity: Array, sizes: NDArray[np.int32], /
+    ) -> object:
+        """A handle of a tree of joints: see :class:`mbkf.kernel.tree.CompiledTree`.
+
+        Args:
+            whole: (J, 4) parent, kind, first of q and first of v of each joint, the world's first.
+            numbers: (J, 28) axis (3), rotation by columns (9), origin (3), mass (1), centre of mass (3), inertia about
+                it (9).
+            gravity: (6,) its acceleration, linear and angular.
+            sizes: (2,) nq and nv.
+
+        Raises:
+            ValueError: The joints do not make a tree.
+        """
+
+    def place(self, tree: object, q: Array, frames: Array, jacobian: Array, /) -> None:
+        """Fills frames and Jacobian.
+
+        Args:
+            tree: The handle.
+            q: (nq,) configuration.
+            frames: (4 J, 3) filled.
+            jacobian: (6, nv) filled, in Fortran order.
+        """
+
+    def root(
+        self,
+        tree: object,
+        q: Array,
+        v: Array,
+        a: Array,
+        wrench: Array,
+        residual: Array,
+        by_state: Array,
+        /,
+    ) -> None:
+        """Fills the root's equations.
+
+        Args:
+            tree: The handle.
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            a: (nv,) acceleration.
+            wrench: (6,) about the world's origin.
+            residual: (6,) filled.
+            by_state: (6, 3 nv + 12) filled.
+        """
+
     def choose(self, own: bool, /) -> None:
         """Whether products are made with instructions of the kernel's own, where the processor has them, or by BLAS."""
 
