@@ -109,6 +109,61 @@ class Library(Protocol):
             by_state: (6, 3 nv + 12) filled.
         """
 
+    def step(self, tree: object, q: Array, step: Array, stepped: Array, /) -> None:
+        """Fills a configuration one step further.
+
+        Args:
+            tree: The handle.
+            q: (nq,) configuration.
+            step: (nv,) tangent vector.
+            stepped: (nq,) filled.
+        """
+
+    def step_derivatives(self, tree: object, step: Array, by_q: Array, by_step: Array, /) -> None:
+        """Fills the derivatives of a step.
+
+        Args:
+            tree: The handle.
+            step: (nv,) tangent vector.
+            by_q: (nv, nv) filled.
+            by_step: (nv, nv) filled.
+        """
+
+    def deviation(self, tree: object, q: Array, deviation: Array, jacobian: Array, /) -> None:
+        """Fills rotations from neutral.
+
+        Args:
+            tree: The handle.
+            q: (nq,) configuration.
+            deviation: (nv,) filled.
+            jacobian: (nv, nv) filled.
+        """
+
+    def posture(
+        self, tree: object, residual: Array, jacobian: Array, weights: Array, matrix: Array, vector: Array, /
+    ) -> None:
+        """Fills the information of readings of rotations.
+
+        Args:
+            tree: The handle.
+            residual: (nv,) rotation less what is read.
+            jacobian: (nv, nv) of the rotations.
+            weights: (nv,) 1/sd.
+            matrix: (nv, nv) filled.
+            vector: (nv,) filled.
+        """
+
+    def beyond(self, tree: object, deviation: Array, lower: Array, upper: Array, beyond: Array, /) -> int:
+        """Fills how far rotations lie beyond limits; how many do.
+
+        Args:
+            tree: The handle.
+            deviation: (nv,) rotations.
+            lower: (nv,) least.
+            upper: (nv,) greatest.
+            beyond: (nv,) filled.
+        """
+
     def choose(self, own: bool, /) -> None:
         """Whether products are made with instructions of the kernel's own, where the processor has them, or by BLAS."""
 

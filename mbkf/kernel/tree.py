@@ -33,7 +33,7 @@ class CompiledTree:
             kernel: The compiled kernel.
             model: One whose joints :data:`KINDS` has.
         """
-        self._kernel, self._nv = kernel, model.nv
+        self._kernel, self._nq, self._nv = kernel, model.nq, model.nv
         self._frames = (4 * model.njoints, 3)
         whole, numbers = np.zeros((model.njoints, 4), dtype=np.int32), np.zeros((model.njoints, 28))
         for i in range(1, model.njoints):
@@ -78,6 +78,52 @@ class CompiledTree:
         residual, by_state = np.empty(6), np.empty((6, 3 * self._nv + 12))
         self._kernel.root(self._tree, _read(q), _read(v), _read(a), _read(wrench), residual, by_state)
         return residual, by_state
+
+    def integrate(self, q: Array, dv: Array) -> Array:
+        """(nq,) configuration reached from q by the tangent vector dv (nv,)."""
+        stepped = np.empty(self._nq)
+        self._kernel.step(self._tree, _read(q), _read(dv), stepped)
+        return stepped
+
+    def integration_derivatives(self, dv: Array) -> tuple[Array, Array]:
+        """(nv, nv) derivatives of :meth:`integrate` by q and by dv; the configuration does not matter."""
+        by_q, by_step = np.empty((self._nv, self._nv)), np.empty((self._nv, self._nv))
+        self._kernel.step_derivatives(self._tree, _read(dv), by_q, by_step)
+        return by_q, by_step
+
+    def deviation(self, q: Array) -> tuple[Array, Array]:
+        """(nv,) rotation of every joint from Pinocchio's neutral configuration, rad, and its Jacobian (nv, nv).
+
+        Both are zero for free joints.
+        """
+        deviation, jacobian = np.empty(self._nv), np.empty((self._nv, self._nv))
+        self._kernel.deviation(self._tree, _read(q), deviation, jacobian)
+        return deviation, jacobian
+
+    def posture_information(self, residual: Array, jacobian: Array, weights: Array) -> tuple[Array, Array]:
+        """Information matrix JᵀW²J (nv, nv) and vector −JᵀW²r (nv,) of readings of the joints' rotations.
+
+        Args:
+            residual: (nv,) r, rotation less what is read, rad.
+            jacobian: (nv, nv) J, that of :meth:`deviation`: entries between joints are not read.
+            weights: (nv,) W's diagonal, 1/sd of each reading, 1/rad.
+        """
+        matrix, vector = np.empty((self._nv, self._nv)), np.empty(self._nv)
+        self._kernel.posture(self._tree, residual, _read(jacobian), _read(weights), matrix, vector)
+        return matrix, vector
+
+    def beyond(self, deviation: Array, lower: Array, upper: Array) -> Array | None:
+        """(nv,) how far each rotation lies beyond its limits, rad; None where none does.
+
+        A spherical joint that is within them the other way round, beyond half a turn, is within them.
+
+        Args:
+            deviation: (nv,) rotations, rad.
+            lower: (nv,) least, rad.
+            upper: (nv,) greatest, rad.
+        """
+        beyond = np.empty(self._nv)
+        return beyond if self._kernel.beyond(self._tree, _read(deviation), lower, upper, beyond) else None
 
 
 def _read(values: Array) -> Array:

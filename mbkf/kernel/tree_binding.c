@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "dynamics.h"
+#include "manifold.h"
+#include "posture.h"
 
 #define CAPSULE "mbkf.kernel.tree"
 
@@ -114,11 +116,118 @@ static PyObject *py_root(PyObject *self, PyObject *const *args, Py_ssize_t given
     return done;
 }
 
+/* step(tree, q, step, stepped) */
+static PyObject *py_step(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    Arrays held = {.held = 0};
+    PyObject *done = NULL;
+    (void)self;
+    const Tree *tree = expects(given, 4) ? tree_in(args[0]) : NULL;
+    if (!tree)
+        return NULL;
+    const double *q = numbers(&held, args[1], tree->nq);
+    const double *step = q ? numbers(&held, args[2], tree->nv) : NULL;
+    double *stepped = step ? filled(&held, args[3], tree->nq) : NULL;
+    if (stepped) {
+        tree_stepped(tree, q, step, stepped);
+        done = Py_NewRef(Py_None);
+    }
+    release(&held);
+    return done;
+}
+
+/* step_derivatives(tree, step, by_q, by_step) */
+static PyObject *py_step_derivatives(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    Arrays held = {.held = 0};
+    PyObject *done = NULL;
+    (void)self;
+    const Tree *tree = expects(given, 4) ? tree_in(args[0]) : NULL;
+    if (!tree)
+        return NULL;
+    const double *step = numbers(&held, args[1], tree->nv);
+    double *by_q = step ? filled(&held, args[2], (Py_ssize_t)tree->nv * tree->nv) : NULL;
+    double *by_step = by_q ? filled(&held, args[3], (Py_ssize_t)tree->nv * tree->nv) : NULL;
+    if (by_step) {
+        tree_step_derivatives(tree, step, by_q, by_step);
+        done = Py_NewRef(Py_None);
+    }
+    release(&held);
+    return done;
+}
+
+/* deviation(tree, q, deviation, jacobian) */
+static PyObject *py_deviation(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    Arrays held = {.held = 0};
+    PyObject *done = NULL;
+    (void)self;
+    const Tree *tree = expects(given, 4) ? tree_in(args[0]) : NULL;
+    if (!tree)
+        return NULL;
+    const double *q = numbers(&held, args[1], tree->nq);
+    double *deviation = q ? filled(&held, args[2], tree->nv) : NULL;
+    double *jacobian = deviation ? filled(&held, args[3], (Py_ssize_t)tree->nv * tree->nv) : NULL;
+    if (jacobian) {
+        tree_deviation(tree, q, deviation, jacobian);
+        done = Py_NewRef(Py_None);
+    }
+    release(&held);
+    return done;
+}
+
+/* posture(tree, residual, jacobian, weights, matrix, vector) */
+static PyObject *py_posture(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    Arrays held = {.held = 0};
+    PyObject *done = NULL;
+    (void)self;
+    const Tree *tree = expects(given, 6) ? tree_in(args[0]) : NULL;
+    if (!tree)
+        return NULL;
+    const Py_ssize_t nv = tree->nv;
+    const double *residual = numbers(&held, args[1], nv);
+    const double *jacobian = residual ? numbers(&held, args[2], nv * nv) : NULL;
+    const double *weights = jacobian ? numbers(&held, args[3], nv) : NULL;
+    double *matrix = weights ? filled(&held, args[4], nv * nv) : NULL;
+    double *vector = matrix ? filled(&held, args[5], nv) : NULL;
+    if (vector) {
+        tree_posture(tree, residual, jacobian, weights, matrix, vector);
+        done = Py_NewRef(Py_None);
+    }
+    release(&held);
+    return done;
+}
+
+/* beyond(tree, deviation, lower, upper, beyond) -> how many */
+static PyObject *py_beyond(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    Arrays held = {.held = 0};
+    PyObject *done = NULL;
+    (void)self;
+    const Tree *tree = expects(given, 5) ? tree_in(args[0]) : NULL;
+    if (!tree)
+        return NULL;
+    const double *deviation = numbers(&held, args[1], tree->nv);
+    const double *lower = deviation ? numbers(&held, args[2], tree->nv) : NULL;
+    const double *upper = lower ? numbers(&held, args[3], tree->nv) : NULL;
+    double *beyond = upper ? filled(&held, args[4], tree->nv) : NULL;
+    if (beyond)
+        done = PyLong_FromLong(tree_beyond(tree, deviation, lower, upper, beyond));
+    release(&held);
+    return done;
+}
+
 #define QUICK(function) (PyCFunction)(void (*)(void)) function, METH_FASTCALL
 
 PyMethodDef tree_functions[] = {
     {"tree", QUICK(py_tree), "A body as a tree of joints."},
     {"place", QUICK(py_place), "Frames and Jacobian of a tree."},
     {"root", QUICK(py_root), "The root's equations of motion."},
+    {"step", QUICK(py_step), "A configuration, one step further."},
+    {"step_derivatives", QUICK(py_step_derivatives), "Derivatives of a step."},
+    {"deviation", QUICK(py_deviation), "Turns of a tree's joints from neutral."},
+    {"posture", QUICK(py_posture), "Information of readings of turns."},
+    {"beyond", QUICK(py_beyond), "How far turns lie beyond limits."},
     {NULL, NULL, 0, NULL},
 };

@@ -206,6 +206,8 @@ class HumanModel:
 
     def integrate(self, q: Array, dv: Array) -> Array:
         """(nq,) configuration reached from q by the tangent vector dv (nv,)."""
+        if (tree := self.tree) is not None:
+            return tree.integrate(q, dv)
         return pin.integrate(self.pin_model, q, dv)
 
     def difference(self, q0: Array, q1: Array) -> Array:
@@ -214,6 +216,8 @@ class HumanModel:
 
     def integration_derivatives(self, q: Array, dv: Array) -> tuple[Array, Array]:
         """(nv, nv) derivatives of :meth:`integrate` by q and by dv, block-diagonal over joints."""
+        if (tree := self.tree) is not None:
+            return tree.integration_derivatives(dv)
         return pin.dIntegrate(self.pin_model, q, dv)
 
     def difference_derivative(self, q0: Array, q1: Array) -> Array:

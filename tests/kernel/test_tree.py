@@ -5,12 +5,15 @@ from types import SimpleNamespace
 import numpy as np
 import pinocchio as pin
 import pytest
+import scipy.linalg
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbkf.kernel.loading import library
 from mbkf.kernel.tree import CompiledTree
 from mbkf.model.human import HumanModel
+from mbkf.sensors.joint_limits import JointLimits
+from mbkf.sensors.posture_sensor import PostureSensor
 from tests.motions import random_model, reference_model, worst
 
 pytestmark = pytest.mark.skipif(library() is None, reason="the kernel is not compiled here")
@@ -140,3 +143,83 @@ def test_arrays_and_trees_that_do_not_fit_are_refused():
     beyond = np.array([[0, 0, 0, 0], [0, 0, 1, 0]], dtype=np.int32)
     with pytest.raises(ValueError, match="make a tree"):
         kernel.tree(beyond, np.zeros((2, 28)), gravity, sizes)
+
+
+@often
+@seeds
+def test_steps_and_their_derivatives_are_pinocchio_s(seed):
+    """Short steps and steps beyond half a turn."""
+    s = moving(seed)
+    for size in (0.0, 1e-4, 0.04, 0.2, 1.0, 3.0):
+        step = size * s.rng.normal(size=s.model.nv)
+        assert_same(s.tree.integrate(s.q, step), pin.integrate(s.model, s.q, step))
+        by_q, by_step = s.tree.integration_derivatives(step)
+        expected_by_q, expected_by_step = pin.dIntegrate(s.model, s.q, step)
+        assert_same(by_q, expected_by_q)
+        assert_same(by_step[6:], expected_by_step[6:])
+        # Pinocchio's is off by 1e-9 here for small turns; the series is not.
+        assert_same(by_step[:6], np.hstack([right_jacobian(step[:6]), np.zeros((6, s.model.nv - 6))]))
+
+
+def right_jacobian(step):
+    """(6, 6) of exp6: Σ (−ad)ᵏ / (k + 1)!, by scaling and squaring of a larger exponential."""
+    v, w = pin.skew(step[:3]), pin.skew(step[3:])
+    ad = np.block([[w, v], [np.zeros((3, 3)), w]])
+    return scipy.linalg.expm(np.block([[-ad, np.eye(6)], [np.zeros((6, 12))]]))[:6, 6:]
+
+
+@often
+@seeds
+def test_deviations_are_pinocchio_s_differences_from_neutral(seed):
+    """With the inverse of the turn's right Jacobian; Pinocchio's own is off by 1e-9 for small turns."""
+    s = moving(seed)
+    neutral = pin.neutral(s.model)
+    for size in (0.0, 1e-9, 3e-4, 0.02, 0.4):
+        q = pin.integrate(s.model, neutral, size * s.rng.normal(size=s.model.nv))
+        q[:7] = neutral[:7]
+        deviation, jacobian = s.tree.deviation(q)
+        np.testing.assert_allclose(deviation, pin.difference(s.model, neutral, q), rtol=0, atol=1e-14)
+        expected = np.eye(s.model.nv)
+        expected[:6, :6] = 0.0
+        for joint in s.model.joints[2:]:
+            if joint.nv == 3:
+                dofs = slice(joint.idx_v, joint.idx_v + 3)
+                turn = np.r_[np.zeros(3), deviation[dofs]]
+                expected[dofs, dofs] = np.linalg.inv(right_jacobian(turn)[3:, 3:])
+        assert_same(jacobian, expected)
+    deviation, jacobian = s.tree.deviation(s.q)
+    assert not deviation[:6].any()
+    assert not jacobian[:6].any()
+
+
+@often
+@seeds
+def test_information_of_turns_is_that_of_their_stacked_readings(seed):
+    s = moving(seed)
+    deviation, jacobian = s.tree.deviation(s.q)
+    weights = s.rng.uniform(0.0, 30.0, s.model.nv) * (s.rng.random(s.model.nv) < 0.7)
+    matrix, vector = s.tree.posture_information(deviation, jacobian, weights)
+    rows = weights[:, None] * jacobian
+    np.testing.assert_array_equal(matrix, matrix.T)
+    assert_same(matrix, rows.T @ rows)
+    assert_same(vector, -(deviation * weights) @ rows)
+
+
+@often
+@seeds
+def test_limits_are_passed_as_the_reference_says(seed):
+    """Narrow limits and wide ones; some spherical joints lie within theirs only the other way round."""
+    rng = np.random.default_rng(seed)
+    sensor, nothing = PostureSensor(reference_model()), np.zeros(reference_model().nv, dtype=bool)
+    limits = JointLimits(sensor, nothing)
+    limits.lower, limits.upper = limits.lower * rng.uniform(0.2, 2.0), limits.upper * rng.uniform(0.2, 2.0)
+    q = reference_model().integrate(
+        reference_model().neutral(), rng.uniform(0.1, 2.0) * rng.normal(size=len(nothing))
+    )
+    deviation, jacobian = sensor.deviation(q)
+    found, sensor.tree = limits.information(deviation, jacobian), None
+    expected = limits.information(deviation, jacobian)
+    assert (found is None) == (expected is None)
+    if found is not None and expected is not None:
+        assert_same(found.matrix, expected.matrix)
+        assert_same(found.vector, expected.vector)
