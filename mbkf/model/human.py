@@ -239,7 +239,9 @@ class HumanModel:
     @property
     def tree(self) -> CompiledTree | None:
         """Its equations in compiled code, None where there is no compiled kernel."""
-        if self._tree is None or library() is None:
+        if library() is None:
+            return None
+        if self._tree is None:
             self._tree = CompiledTree.where_built(self.pin_model)
         return self._tree
 
