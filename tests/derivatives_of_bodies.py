@@ -6,7 +6,7 @@ import numpy as np
 import pinocchio as pin
 
 from mbkf.model.human_dynamics import FORCE_STATES, WRENCH_FRAMES, HumanDynamics
-from mbkf.model.newton_euler import NewtonEuler, RootBalance
+from mbkf.model.newton_euler import NewtonEuler
 from tests.derivatives import along, checks, named, slope
 from tests.dynamics import LOAD, random_state
 from tests.motions import central_difference, moderate_pose, random_model
@@ -73,25 +73,24 @@ def segments(rng):
 # Newton–Euler.
 
 
-@checks(*(f"model.newton_euler.RootBalance.by_{x}" for x in ("q", "v", "a", "wrench")), tolerance=1e-6)
+@checks(
+    *(f"model.newton_euler.RootBalance.by_{x}" for x in ("q", "v", "a", "wrench", "state")), tolerance=1e-6
+)
 def newton_euler_root(rng):
     model = random_model(rng)
     balance, s = NewtonEuler(model), random_state(model, rng)
     found = balance.root(s.q, s.v, s.a, s.w)
-    found = RootBalance(*(part.copy() for part in found))
     by_w = slope(lambda w: balance.root(s.q, s.v, s.a, w).residual, s.w, 1e-2)
     np.testing.assert_allclose(by_w[:, :6], by_w[:, 6:], atol=1e-6)
-    return named(
-        "model.newton_euler.RootBalance",
-        (
-            "by_q",
-            found.by_q,
-            central_difference(model, lambda q: balance.root(q, s.v, s.a, s.w).residual, s.q),
-        ),
+    by_q = central_difference(model, lambda q: balance.root(q, s.v, s.a, s.w).residual, s.q)
+    pairs = (
+        ("by_q", found.by_q, by_q),
         ("by_v", found.by_v, slope(lambda v: balance.root(s.q, v, s.a, s.w).residual, s.v)),
         ("by_a", found.by_a, slope(lambda a: balance.root(s.q, s.v, a, s.w).residual, s.a, 1e-3)),
         ("by_wrench", found.by_wrench, by_w[:, :6]),
     )
+    whole = ("by_state", found.by_state, np.hstack([*(numeric for _, _, numeric in pairs), by_w[:, 6:]]))
+    return named("model.newton_euler.RootBalance", *pairs, whole)
 
 
 @checks(

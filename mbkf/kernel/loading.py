@@ -83,6 +83,110 @@ class Library(Protocol):
             0, or which factorisation failed.
         """
 
+    def tree(
+        self, whole: NDArray[np.int32], numbers: Array, gravity: Array, sizes: NDArray[np.int32], /
+    ) -> object:
+        """A handle of a tree of joints: see :class:`mbkf.kernel.tree.CompiledTree`.
+
+        Args:
+            whole: (J, 4) parent, kind, first of q and first of v of each joint, the world's first.
+            numbers: (J, 28) axis (3), rotation by columns (9), origin (3), mass (1), centre of mass (3), inertia about
+                it (9).
+            gravity: (6,) its acceleration, linear and angular.
+            sizes: (2,) nq and nv.
+
+        Raises:
+            ValueError: The joints do not make a tree.
+        """
+
+    def place(self, tree: object, q: Array, frames: Array, jacobian: Array, /) -> None:
+        """Fills frames and Jacobian.
+
+        Args:
+            tree: The handle.
+            q: (nq,) configuration.
+            frames: (4 J, 3) filled.
+            jacobian: (6, nv) filled, in Fortran order.
+        """
+
+    def root(
+        self,
+        tree: object,
+        q: Array,
+        v: Array,
+        a: Array,
+        wrench: Array,
+        residual: Array,
+        by_state: Array,
+        /,
+    ) -> None:
+        """Fills the root's equations.
+
+        Args:
+            tree: The handle.
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            a: (nv,) acceleration.
+            wrench: (6,) about the world's origin.
+            residual: (6,) filled.
+            by_state: (6, 3 nv + 12) filled.
+        """
+
+    def step(self, tree: object, q: Array, step: Array, stepped: Array, /) -> None:
+        """Fills a configuration one step further.
+
+        Args:
+            tree: The handle.
+            q: (nq,) configuration.
+            step: (nv,) tangent vector.
+            stepped: (nq,) filled.
+        """
+
+    def step_derivatives(self, tree: object, step: Array, by_q: Array, by_step: Array, /) -> None:
+        """Fills the derivatives of a step.
+
+        Args:
+            tree: The handle.
+            step: (nv,) tangent vector.
+            by_q: (nv, nv) filled.
+            by_step: (nv, nv) filled.
+        """
+
+    def deviation(self, tree: object, q: Array, deviation: Array, jacobian: Array, /) -> None:
+        """Fills rotations from neutral.
+
+        Args:
+            tree: The handle.
+            q: (nq,) configuration.
+            deviation: (nv,) filled.
+            jacobian: (nv, nv) filled.
+        """
+
+    def posture(
+        self, tree: object, residual: Array, jacobian: Array, weights: Array, matrix: Array, vector: Array, /
+    ) -> None:
+        """Fills the information of readings of rotations.
+
+        Args:
+            tree: The handle.
+            residual: (nv,) rotation less what is read.
+            jacobian: (nv, nv) of the rotations.
+            weights: (nv,) 1/sd.
+            matrix: (nv, nv) filled.
+            vector: (nv,) filled.
+        """
+
+    def beyond(self, tree: object, deviation: Array, lower: Array, upper: Array, beyond: Array, /) -> int:
+        """Fills how far rotations lie beyond limits; how many do.
+
+        Args:
+            tree: The handle.
+            deviation: (nv,) rotations.
+            lower: (nv,) least.
+            upper: (nv,) greatest.
+            beyond: (nv,) filled.
+        """
+
     def choose(self, own: bool, /) -> None:
         """Whether products are made with instructions of the kernel's own, where the processor has them, or by BLAS."""
 

@@ -1,10 +1,6 @@
 /* The Python module mbkf.kernel._kernel: arrays in, arrays filled. Callers are mbkf/kernel/__init__.py only, which
  * says what the arguments mean; what is checked here is that no memory is read that is not theirs. */
-#define PY_SSIZE_T_CLEAN
-#ifndef Py_LIMITED_API
-#define Py_LIMITED_API 0x030B0000 /* one build for every Python from 3.11 on */
-#endif
-#include <Python.h>
+#include "arrays.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,58 +8,9 @@
 #include "blas.h"
 #include "covariance.h"
 #include "product.h"
+#include "tree_binding.h"
 
 Blas blas;
-
-/* Arrays of a call, released together. */
-enum { MOST_ARRAYS = 16 };
-typedef struct {
-    Py_buffer views[MOST_ARRAYS];
-    int held;
-} Arrays;
-
-static void release(Arrays *arrays)
-{
-    while (arrays->held)
-        PyBuffer_Release(&arrays->views[--arrays->held]);
-}
-
-/* Memory of an array in one piece, of numbers of some bytes, as many as said or more; NULL with an error set. */
-static void *array(Arrays *arrays, PyObject *object, int flags, Py_ssize_t bytes, Py_ssize_t count)
-{
-    Py_buffer *view = &arrays->views[arrays->held];
-    if (PyObject_GetBuffer(object, view, flags | PyBUF_ND) < 0)
-        return NULL;
-    arrays->held++;
-    if (view->itemsize != bytes || view->len < count * bytes) {
-        PyErr_SetString(PyExc_ValueError, "an array of another type or size is needed");
-        return NULL;
-    }
-    return view->buf;
-}
-
-static double *numbers(Arrays *arrays, PyObject *object, Py_ssize_t count)
-{
-    return array(arrays, object, PyBUF_C_CONTIGUOUS, sizeof(double), count);
-}
-
-/* Of a symmetric matrix, whose order does not matter. */
-static double *symmetric(Arrays *arrays, PyObject *object, Py_ssize_t size)
-{
-    return array(arrays, object, PyBUF_ANY_CONTIGUOUS, sizeof(double), size * size);
-}
-
-static double *filled(Arrays *arrays, PyObject *object, Py_ssize_t count)
-{
-    return array(arrays, object, PyBUF_ANY_CONTIGUOUS | PyBUF_WRITABLE, sizeof(double), count);
-}
-
-/* Rows or first dimension of the array taken last. */
-static int length(const Arrays *arrays)
-{
-    const Py_buffer *view = &arrays->views[arrays->held - 1];
-    return view->ndim ? (int)view->shape[0] : 1;
-}
 
 /* Memory to work in; it stays from call to call, since fresh pages cost more than the work. The interpreter's lock is
  * held meanwhile. */
@@ -81,14 +28,6 @@ static double *workspace(long count)
         size = count;
     }
     return memory;
-}
-
-static int expects(Py_ssize_t given, Py_ssize_t wanted)
-{
-    if (given == wanted)
-        return 1;
-    PyErr_SetString(PyExc_TypeError, "another number of arguments is needed");
-    return 0;
 }
 
 /* carry(P, A, B, joints, singer, noise, sd, carried) */
@@ -244,4 +183,10 @@ static struct PyModuleDef definition = {
     NULL,                  NULL,                  NULL,                                      NULL,
 };
 
-PyMODINIT_FUNC PyInit__kernel(void) { return PyModule_Create(&definition); }
+PyMODINIT_FUNC PyInit__kernel(void)
+{
+    PyObject *module = PyModule_Create(&definition);
+    if (module && PyModule_AddFunctions(module, tree_functions) < 0)
+        Py_CLEAR(module);
+    return module;
+}

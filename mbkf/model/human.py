@@ -18,6 +18,8 @@ from mbkf.conventions import GRAVITY_M_S2, Array, read_only
 from mbkf.errors import InvalidInput, ShapeError, UnknownName
 from mbkf.io.inertia import SegmentInertia
 from mbkf.io.subject import Subject
+from mbkf.kernel.loading import library
+from mbkf.kernel.tree import CompiledTree
 from mbkf.model.body import SegmentJoint
 from mbkf.model.body_file import load_body, parse_body
 from mbkf.model.description import JOINT_DOF, BodyDescription, Roles, Segment
@@ -91,6 +93,7 @@ class HumanModel:
         self.limits = read_only(np.concatenate([s.limits_rad for s in segments]))
         self.supports = self._supports()
         self._frames = _frames_in(self._data)
+        self._tree: CompiledTree | None = None
 
     @classmethod
     def scaled(
@@ -203,6 +206,8 @@ class HumanModel:
 
     def integrate(self, q: Array, dv: Array) -> Array:
         """(nq,) configuration reached from q by the tangent vector dv (nv,)."""
+        if (tree := self.tree) is not None:
+            return tree.integrate(q, dv)
         return pin.integrate(self.pin_model, q, dv)
 
     def difference(self, q0: Array, q1: Array) -> Array:
@@ -211,6 +216,8 @@ class HumanModel:
 
     def integration_derivatives(self, q: Array, dv: Array) -> tuple[Array, Array]:
         """(nv, nv) derivatives of :meth:`integrate` by q and by dv, block-diagonal over joints."""
+        if (tree := self.tree) is not None:
+            return tree.integration_derivatives(dv)
         return pin.dIntegrate(self.pin_model, q, dv)
 
     def difference_derivative(self, q0: Array, q1: Array) -> Array:
@@ -219,33 +226,45 @@ class HumanModel:
 
     def placements(self, q: Array) -> tuple[Array, Array]:
         """World rotations (J, 3, 3) and origins (J, 3) of all Pinocchio joints at q (index 0 is the world)."""
-        pin.forwardKinematics(self.pin_model, self._data, q)
-        return _rotations_and_origins(self._frames.copy())
+        return _rotations_and_origins(self.frames(q))
 
     def placements_and_jacobian(self, q: Array) -> tuple[Array, Array, Array]:
         """Placements as :meth:`placements`, and J (6, nv): each dof's spatial velocity at the world origin.
 
         Rows are (linear, angular) in world axes; a column counts for a joint only where ``supports`` says so.
         """
-        jacobian = self.spatial_jacobian(q)
-        return (*_rotations_and_origins(self._frames.copy()), jacobian)
+        frames, jacobian = self.frames_and_jacobian(q)
+        return (*_rotations_and_origins(frames), jacobian)
+
+    @property
+    def tree(self) -> CompiledTree | None:
+        """Its equations in compiled code, None where there is no compiled kernel."""
+        if library() is None:
+            return None
+        if self._tree is None:
+            self._tree = CompiledTree.where_built(self.pin_model)
+        return self._tree
 
     def frames(self, q: Array) -> Array:
         """(4 J, 3): of every Pinocchio joint its world x, y, z axes and its origin, one below the other.
 
         A point m̄ of joint j lies at [m̄, 1] · (rows 4 j to 4 j + 3).
         """
+        if (tree := self.tree) is not None:
+            return tree.frames_and_jacobian(q)[0]
         pin.forwardKinematics(self.pin_model, self._data, q)
         return self._frames.copy()
 
     def frames_and_jacobian(self, q: Array) -> tuple[Array, Array]:
         """:meth:`frames` and :meth:`spatial_jacobian` in one pass."""
-        jacobian = self.spatial_jacobian(q)
+        if (tree := self.tree) is not None:
+            return tree.frames_and_jacobian(q)
+        jacobian = pin.computeJointJacobians(self.pin_model, self._data, q)
         return self._frames.copy(), jacobian
 
     def spatial_jacobian(self, q: Array) -> Array:
         """J (6, nv) of :meth:`placements_and_jacobian` alone."""
-        return pin.computeJointJacobians(self.pin_model, self._data, q)
+        return self.frames_and_jacobian(q)[1]
 
     def inverse_dynamics(self, q: Array, v: Array, a: Array) -> Array:
         """(nv,) generalised forces M a − Q_g without contact, Q_g from gravity and velocities.

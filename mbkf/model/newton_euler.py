@@ -9,32 +9,53 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
+from mbkf.kernel.tree import CompiledTree
 from mbkf.model.body import Body
 
 ROOT = 6
 
 
-class RootBalance(NamedTuple):
-    """The pelvis's six equations, in pelvis axes; force N, moment N m. Valid until the next call.
+@dataclass(frozen=True)
+class RootBalance:
+    """The pelvis's six equations, in pelvis axes; force N, moment N m.
 
     Attributes:
         residual: (6,) ID(q, v, a) − Σ J_fᵀ w_f.
-        by_q, by_v, by_a: (6, nv) derivatives; by q in the tangent space.
-        by_wrench: (6, 6) by either foot's wrench.
+        by_state: (6, 3 nv + 12) its derivatives by q (in the tangent space), v, a and the feet's wrenches.
     """
 
     residual: Array
-    by_q: Array
-    by_v: Array
-    by_a: Array
-    by_wrench: Array
+    by_state: Array
+
+    @property
+    def by_q(self) -> Array:
+        """(6, nv) by the configuration."""
+        return self.by_state[:, : self._nv]
+
+    @property
+    def by_v(self) -> Array:
+        """(6, nv) by the velocity."""
+        return self.by_state[:, self._nv : 2 * self._nv]
+
+    @property
+    def by_a(self) -> Array:
+        """(6, nv) by the acceleration."""
+        return self.by_state[:, 2 * self._nv : 3 * self._nv]
+
+    @property
+    def by_wrench(self) -> Array:
+        """(6, 6) by either foot's wrench."""
+        return self.by_state[:, -ROOT:]
+
+    @property
+    def _nv(self) -> int:
+        return (self.by_state.shape[1] - 2 * ROOT) // 3
 
 
 @dataclass(frozen=True)
@@ -80,6 +101,7 @@ class NewtonEuler:
         self._chains = [np.flatnonzero(model.supports[j]) for j in ids]
         self._moves = [model.supports[j].astype(float) for j in ids]
         self._after = [_moved_by(model, chain) for chain in self._chains]
+        self._tree = CompiledTree.where_built(model.pin_model)
         self._others: dict[int, tuple[NDArray[np.intp], Array]] = {}
 
     def root(self, q: Array, v: Array, a: Array, wrenches: Array) -> RootBalance:
@@ -91,13 +113,18 @@ class NewtonEuler:
             a: (nv,) acceleration.
             wrenches: (12,) right and left foot's wrenches: force N and moment N m about the world's origin.
         """
+        wrench = wrenches[:ROOT] + wrenches[ROOT:]
+        if self._tree is not None:
+            return RootBalance(*self._tree.root(q, v, a, wrench))
         by_q, by_v, by_a = self._inverse_dynamics(q, v, a)
-        data = self._data
+        data, nv = self._data, self.model.nv
+        by_state = np.empty((ROOT, 3 * nv + 2 * ROOT))
         by_wrench = -data.J[:, :ROOT].T
         # What stands still in the world turns in the pelvis's axes when these turn.
-        own = by_wrench @ (wrenches[:6] + wrenches[6:])
-        by_q[:ROOT, :ROOT] += _turned_wrench(own)
-        return RootBalance(data.tau[:ROOT] + own, by_q[:ROOT], by_v[:ROOT], by_a[:ROOT], by_wrench)
+        own = by_wrench @ wrench
+        np.concatenate([by_q[:ROOT], by_v[:ROOT], by_a[:ROOT], by_wrench, by_wrench], axis=1, out=by_state)
+        by_state[:, :ROOT] += _turned_wrench(own)
+        return RootBalance(data.tau[:ROOT] + own, by_state)
 
     def torques(self, q: Array, v: Array, a: Array, wrenches: Array) -> JointTorques:
         """All generalised forces with derivatives, for the feet's wrenches (12,).

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
+from mbkf.kernel.tree import CompiledTree
 from mbkf.numerics.kalman import Information
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, State
 from mbkf.sensors.posture_sensor import PostureSensor
@@ -75,6 +76,8 @@ class JointLimits(Block[State, Information | None, None, None]):
             deviation: (nv,) rotation of every joint from neutral, rad (``PostureSensor.deviation``).
             jacobian: (nv, nv) its derivative.
         """
+        if self._sensor.tree is not None:
+            return self._compiled(self._sensor.tree, deviation, jacobian)
         beyond = deviation - np.minimum(np.maximum(deviation, self.lower), self.upper)
         if not np.count_nonzero(beyond):
             return None
@@ -86,6 +89,13 @@ class JointLimits(Block[State, Information | None, None, None]):
             return None
         rows = jacobian[passed] / self.sd_rad
         return Information(rows.T @ rows, -(beyond[passed] / self.sd_rad) @ rows, 0.0, 0)
+
+    def _compiled(self, tree: CompiledTree, deviation: Array, jacobian: Array) -> Information | None:
+        beyond = tree.beyond(deviation, self.lower, self.upper)
+        if beyond is None:
+            return None
+        weights = (beyond != 0.0) / self.sd_rad
+        return Information(*tree.posture_information(beyond, jacobian, weights), 0.0, 0)
 
     def _is_within(self, rotation: Array, dofs: slice) -> bool:
         return bool(((rotation >= self.lower[dofs]) & (rotation <= self.upper[dofs])).all())

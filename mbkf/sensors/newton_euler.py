@@ -62,13 +62,12 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
             wrenches = wrenches.copy()
             wrenches[:6] += state.extra[self._extra]
         root, sharp = self.balance.root(state.q, state.v, state.a, wrenches), self._sharp[:, None]
-        rows = np.zeros((6, 3 * nv + 12 if support is None else support.stop))
-        if support is not None:
-            rows[:, support] = root.by_wrench * sharp
-        np.multiply(root.by_q, sharp, out=rows[:, :nv])
-        np.multiply(root.by_v, sharp, out=rows[:, nv : 2 * nv])
-        np.multiply(root.by_a, sharp, out=rows[:, 2 * nv : 3 * nv])
-        rows[:, 3 * nv : 3 * nv + 6] = rows[:, 3 * nv + 6 : 3 * nv + 12] = root.by_wrench * sharp
+        if support is None:
+            rows = root.by_state * sharp
+        else:
+            rows = np.zeros((6, support.stop))
+            np.multiply(root.by_state, sharp, out=rows[:, : 3 * nv + 12])
+            np.multiply(root.by_wrench, sharp, out=rows[:, support])
         return Rows(rows, -root.residual * self._sharp, readings=6)
 
     def decide(

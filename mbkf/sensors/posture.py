@@ -82,7 +82,7 @@ class PosturePrior(Block[State, PreparedPosture, Notes, None]):
     def prepare(self, state: State, memory: None) -> PreparedPosture:
         """What the prior says while every segment is observed."""
         deviation, jacobian = self.sensor.deviation(state.q)
-        return PreparedPosture(deviation, jacobian, posture_information(deviation, jacobian, self._weights))
+        return PreparedPosture(deviation, jacobian, self._information(deviation, jacobian, self._weights))
 
     def decide(
         self, at: OperatingPoint[State, PreparedPosture], frame: Frame, memory: None, notes: Notes
@@ -97,4 +97,9 @@ class PosturePrior(Block[State, PreparedPosture, Notes, None]):
             return prepared.information
         weights = self._weights.copy()
         weights[unobserved] *= self.settings.unseen_posture
-        return posture_information(prepared.deviation, prepared.jacobian, weights)
+        return self._information(prepared.deviation, prepared.jacobian, weights)
+
+    def _information(self, deviation: Array, jacobian: Array, weights: Array) -> Information:
+        if (tree := self.sensor.tree) is None:
+            return posture_information(deviation, jacobian, weights)
+        return Information(*tree.posture_information(deviation, jacobian, weights), 0.0, 0)

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import pinocchio as pin
 
 from mbkf.conventions import Array, BoolArray
+from mbkf.kernel.tree import CompiledTree
 from mbkf.model.body import Body
 
 
@@ -24,6 +26,7 @@ class PostureSensor:
     Attributes:
         dofs: (n,) tangent indices with a prior.
         sd: (n,) spread of each, rad.
+        tree: The body's compiled equations; None where there is no kernel, or neutral is not Pinocchio's.
     """
 
     def __init__(self, model: Body) -> None:
@@ -33,6 +36,8 @@ class PostureSensor:
         self._neutral = model.neutral()
         root = next(joint for joint in model.joints.values() if joint.kind == "free")
         self._root, self._root_dofs = root.q, root.v
+        usual = np.array_equal(self._neutral, pin.neutral(model.pin_model))
+        self.tree = CompiledTree.where_built(model.pin_model) if usual else None
         self._last: tuple[Array, tuple[Array, Array]] | None = None
 
     def reading(self, q: Array) -> PostureReading:
@@ -55,10 +60,13 @@ class PostureSensor:
         """
         if self._last is not None and self._last[0] is q:
             return self._last[1]
+        found = self._deviation(q) if self.tree is None else self.tree.deviation(q)
+        self._last = (q, found)
+        return found
+
+    def _deviation(self, q: Array) -> tuple[Array, Array]:
         posture = q.copy()
         posture[self._root] = self._neutral[self._root]
         jacobian = self.model.difference_derivative(self._neutral, posture)
         jacobian[self._root_dofs, self._root_dofs] = 0.0
-        found = self.model.difference(self._neutral, posture), jacobian
-        self._last = (q, found)
-        return found
+        return self.model.difference(self._neutral, posture), jacobian

@@ -1,0 +1,157 @@
+/* Steps on the manifold of configurations, joint by joint, as Pinocchio takes them: q + step = q exp(step). */
+#include "manifold.h"
+
+#include <string.h>
+
+#include "rotation.h"
+
+/* Left Jacobian V of a turn w times u: how far exp6(u, w) goes. */
+static void travelled(const double *w, const double *u, double *p)
+{
+    double c[3], across[3], twice[3];
+    coefficients(w, c);
+    cross(w, u, across);
+    cross(w, across, twice);
+    for (int i = 0; i < 3; i++)
+        p[i] = u[i] + c[1] * across[i] + c[2] * twice[i];
+}
+
+/* v turned by a quaternion of unit length. */
+static void turned_by(const double *q, const double *v, double *found)
+{
+    double across[3], twice[3];
+    cross(q, v, across);
+    cross(q, across, twice);
+    for (int i = 0; i < 3; i++)
+        found[i] = v[i] + 2.0 * (q[3] * across[i] + twice[i]);
+}
+
+static void step_free(const double *q, const double *step, double *stepped)
+{
+    double own[3], moved[3], turn[4];
+    travelled(step + 3, step, own);
+    turned_by(q + 3, own, moved);
+    for (int i = 0; i < 3; i++)
+        stepped[i] = q[i] + moved[i];
+    exponential(step + 3, turn);
+    joined(q + 3, turn, stepped + 3);
+    if (turn[3] < 0.0) /* of two quaternions of a rotation the one near the old */
+        for (int i = 3; i < 7; i++)
+            stepped[i] = -stepped[i];
+}
+
+void tree_stepped(const Tree *tree, const double *q, const double *step, double *stepped)
+{
+    for (int i = 1; i < tree->joints; i++) {
+        const Joint *joint = &tree->joint[i];
+        const double *from = q + joint->at_q, *by = step + joint->at_v;
+        double *to = stepped + joint->at_q, turn[4];
+        if (joint->kind == FREE)
+            step_free(from, by, to);
+        else if (joint->kind == SPHERICAL) {
+            exponential(by, turn);
+            joined(from, turn, to);
+        } else
+            to[0] = from[0] + by[0];
+    }
+}
+
+/* A 3 x 3 block of an nv x nv matrix. */
+static void put(const double *block, double *matrix, long nv, long row, long column)
+{
+    for (int i = 0; i < 3; i++)
+        memcpy(matrix + (row + i) * nv + column, block + 3 * i, 3 * sizeof *block);
+}
+
+/* exp(-[w]x) and the right Jacobian of a turn w. */
+static void turn_derivatives(const double *w, double *by_q, double *by_step)
+{
+    double c[3];
+    coefficients(w, c);
+    series(w, -c[0], c[1], by_q);
+    series(w, -c[1], c[2], by_step);
+}
+
+/* How the travel of exp6(u, w) changes with w, in its own axes: T. Barfoot, State Estimation for Robotics, 2017,
+ * eq. 7.86, of (-u, -w). */
+static void travel_by_turn(const double *u, const double *w, double *found)
+{
+    const double t2 = dot3(w, w), t = sqrt(t2), s = sin(t), c = cos(t), back_u[3] = {-u[0], -u[1], -u[2]};
+    const double back_w[3] = {-w[0], -w[1], -w[2]};
+    double c1 = 1.0 / 6.0 - t2 / 120.0 * (1.0 - t2 / 42.0 * (1.0 - t2 / 72.0));
+    double c2 = 1.0 / 24.0 - t2 / 720.0 * (1.0 - t2 / 56.0 * (1.0 - t2 / 90.0));
+    double c3 = 1.0 / 120.0 - t2 / 2520.0 * (1.0 - t2 / 48.0 * (1.0 - t2 * 7.0 / 550.0));
+    double U[9], W[9], WU[9], UW[9], WUW[9], WWU[9], UWW[9], WUWW[9], WWUW[9];
+    if (t > 0.15) {
+        c1 = (t - s) / (t2 * t);
+        c2 = (t2 + 2.0 * c - 2.0) / (2.0 * t2 * t2);
+        c3 = (2.0 * t - 3.0 * s + t * c) / (2.0 * t2 * t2 * t);
+    }
+    cross_matrix(back_u, U);
+    cross_matrix(back_w, W);
+    multiplied(W, U, WU);
+    multiplied(U, W, UW);
+    multiplied(WU, W, WUW);
+    multiplied(W, WU, WWU);
+    multiplied(UW, W, UWW);
+    multiplied(WUW, W, WUWW);
+    multiplied(W, WUW, WWUW);
+    for (int i = 0; i < 9; i++)
+        found[i] = 0.5 * U[i] + c1 * (WU[i] + UW[i] + WUW[i]) + c2 * (WWU[i] + UWW[i] - 3.0 * WUW[i]) +
+                   c3 * (WUWW[i] + WWUW[i]);
+}
+
+static void free_derivatives(const double *step, double *by_q, double *by_step, long nv, long first)
+{
+    double back[9], right[9], p[3], P[9], swing[9];
+    const long turn = first + 3;
+    turn_derivatives(step + 3, back, right);
+    put(back, by_q, nv, first, first), put(back, by_q, nv, turn, turn);
+    put(right, by_step, nv, first, first), put(right, by_step, nv, turn, turn);
+    travelled(step + 3, step, p);
+    for (int i = 0; i < 3; i++)
+        p[i] = -p[i];
+    cross_matrix(p, P);
+    multiplied(back, P, swing);
+    put(swing, by_q, nv, first, turn);
+    travel_by_turn(step, step + 3, swing);
+    put(swing, by_step, nv, first, turn);
+}
+
+void tree_step_derivatives(const Tree *tree, const double *step, double *by_q, double *by_step)
+{
+    const long nv = tree->nv;
+    memset(by_q, 0, nv * nv * sizeof *by_q);
+    memset(by_step, 0, nv * nv * sizeof *by_step);
+    for (int i = 1; i < tree->joints; i++) {
+        const long first = tree->joint[i].at_v;
+        double back[9], right[9];
+        if (tree->joint[i].kind == FREE)
+            free_derivatives(step + first, by_q, by_step, nv, first);
+        else if (tree->joint[i].kind == SPHERICAL) {
+            turn_derivatives(step + first, back, right);
+            put(back, by_q, nv, first, first);
+            put(right, by_step, nv, first, first);
+        } else
+            by_q[first * (nv + 1)] = by_step[first * (nv + 1)] = 1.0;
+    }
+}
+
+void tree_deviation(const Tree *tree, const double *q, double *deviation, double *jacobian)
+{
+    const long nv = tree->nv;
+    memset(deviation, 0, nv * sizeof *deviation);
+    memset(jacobian, 0, nv * nv * sizeof *jacobian);
+    for (int i = 1; i < tree->joints; i++) {
+        const Joint *joint = &tree->joint[i];
+        const long first = joint->at_v;
+        double block[9];
+        if (joint->kind == SPHERICAL) {
+            logarithm(q + joint->at_q, deviation + first, block);
+            put(block, jacobian, nv, first, first);
+        } else if (joint->kind == HINGE) {
+            deviation[first] = q[joint->at_q];
+            jacobian[first * (nv + 1)] = 1.0;
+        }
+    }
+}
