@@ -104,8 +104,9 @@ class ErrorCovariance:
     def size(self) -> Array:
         """(N,) by which errors of the filter's kind are smaller than P says, √κ."""
         nv, size = len(self.information), np.ones(len(self.P))
+        everything = len(self.seen) == nv
         for n, new in enumerate((self.new, *(self.new_rates or (self.new, self.new)))):
-            size[n * nv + self.seen] = new**0.5
+            size[slice(n * nv, n * nv + nv) if everything else n * nv + self.seen] = new**0.5
         for foot in (0, 1):
             known = self.new**0.5 if foot in self.free else self.plates
             size[3 * nv + 6 * foot : 3 * nv + 6 * foot + 6] = known
@@ -194,7 +195,8 @@ class ErrorCovariance:
             apart = T[:, 3 * nv : 3 * nv + 6] - T[:, 3 * nv + 6 : 3 * nv + 12]
             variance += np.einsum("ij,ij->i", apart @ self._difference, apart)
         if self.lag is not None:
-            variance += (T[:, 2 * nv :] @ self.lag[: n - 2 * nv]) ** 2
+            late = T[:, 2 * nv : 2 * nv + len(self.lag)]
+            variance += (late @ self.lag[: late.shape[1]]) ** 2
         return variance + np.square(T[:, 3 * nv : 3 * nv + 12] @ self.edges.T).sum(axis=1)
 
     @property
