@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.kernel.loading import library
 from mbkf.model.clinical import ClinicalAngles
 
 
@@ -23,14 +24,13 @@ class CoordinateVariances:
 
     def __init__(self, clinical: ClinicalAngles) -> None:
         """Args: the coordinates, read in the body file's own axes."""
-        self._clinical, turns = clinical, clinical.root_turns.start
-        self.dofs = np.vstack([clinical.ball_turns, np.arange(turns - 3, turns)])
-        self._columns = np.vstack([clinical.ball_columns, np.flatnonzero(~clinical.rotational)])
-        self._rows, self._joints = self._columns[:, :, None], self.dofs[:, None, :]
-        self._single = np.setdiff1d(np.arange(len(clinical.names)), self._columns)
-        # Such a coordinate is one dof in every posture, up to its sign.
-        E = clinical.rate_matrix(clinical.model.neutral())
-        self._single_dofs = np.abs(E[self._single]).argmax(axis=1)
+        self._clinical, self._layout = clinical, clinical.rate_layout
+        where = self._layout
+        self.dofs = where.dofs
+        self._columns = np.concatenate([where.columns.ravel(), where.single_columns])
+        self._places = np.column_stack([where.quaternions, where.order]).astype(np.int32)
+        self._signs = np.column_stack([where.parity, where.signs]).astype(float)
+        self._axes = np.ascontiguousarray(where.root_axes, dtype=float)
 
     def of(self, q: Array, blocks: Sequence[Array], diagonals: Sequence[Array]) -> Array:
         """(k, A) for k covariances of the dofs.
@@ -40,8 +40,19 @@ class CoordinateVariances:
             blocks: k times (n + 1, 3, 3), the covariances' blocks of :attr:`dofs`.
             diagonals: k times (nv,), their diagonals.
         """
-        E = self._clinical.rate_matrix(q)[self._rows, self._joints]
-        found = np.empty((len(blocks), len(self._clinical.names)))
-        found[:, self._columns] = ((E @ np.array(blocks)) * E).sum(axis=-1)
-        found[:, self._single] = np.array(diagonals)[:, self._single_dofs]
+        covariance = np.array(blocks)
+        variance = np.empty(covariance.shape[:-1])
+        kernel = library()
+        if kernel is None:
+            where = self._layout
+            E = self._clinical.rate_matrix(q)[where.columns[:, :, None], where.dofs[:, None, :]]
+            variance[:] = ((E @ covariance) * E).sum(axis=-1)
+        else:
+            root = self._layout.root_quaternion
+            kernel.joint_variances(q, self._places, self._signs, root, self._axes, covariance, variance)
+        found = np.empty((len(covariance), len(self._columns)))
+        joined = variance.reshape(len(covariance), -1)
+        found[:, self._columns[: joined.shape[1]]] = joined
+        for own, diagonal in zip(found, diagonals, strict=True):
+            own[self._layout.single_columns] = diagonal[self._layout.single_dofs]
         return found

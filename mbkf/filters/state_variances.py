@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.filters.error_covariance import ErrorCovariance
+from mbkf.kernel.loading import library
 
 
 class StateVariances(NamedTuple):
@@ -34,7 +35,7 @@ class StateVariances(NamedTuple):
 def state_variances(
     errors: ErrorCovariance, by_state: Array, by_position: Array, dofs: NDArray[np.intp]
 ) -> StateVariances:
-    """Variances of a state's errors.
+    """Variances of a state's errors, by the compiled kernel where there is one.
 
     Args:
         errors: The errors.
@@ -45,6 +46,9 @@ def state_variances(
     Raises:
         numpy.linalg.LinAlgError: A frame does not determine the joints that its markers observe.
     """
+    found = _compiled(errors, by_state, by_position, dofs)
+    if found is not None:
+        return found
     position = errors.position
     return StateVariances(
         errors.position_variance,
@@ -53,4 +57,50 @@ def state_variances(
         errors.variance_of(by_state),
         ((by_position @ position) * by_position).sum(axis=1),
         position[dofs[:, :, None], dofs[:, None, :]],
+    )
+
+
+def _compiled(
+    errors: ErrorCovariance, by_state: Array, by_position: Array, dofs: NDArray[np.intp]
+) -> StateVariances | None:
+    """By the kernel; None where there is none, or where it cannot factorise the information.
+
+    Args:
+        errors: The errors.
+        by_state: (m, n) derivative of quantities by the state's first n components.
+        by_position: (l, nv) derivative of others by the configuration.
+        dofs: (b, 3) dofs of each block.
+    """
+    kernel = library()
+    if kernel is None:
+        return None
+    nv, N = len(errors.information), len(errors.P)
+    m, heights = len(by_state), len(by_position)
+    found = np.empty(N + m + heights + 9 * len(dofs))
+    failed = kernel.errors(
+        errors.P,
+        np.ascontiguousarray(errors.information),
+        errors.seen.astype(np.int32),
+        errors.size,
+        np.array([errors.skin, errors.rate_rad_s]),
+        errors.added,
+        np.asfortranarray(by_state),
+        np.asfortranarray(by_position),
+        dofs[:, 0].astype(np.int32),
+        found,
+    )
+    if failed:
+        return None
+    wrench, torque = found[3 * nv : 3 * nv + 12], found[N : N + m]
+    if errors.difference is not None:
+        wrench += np.tile(np.diagonal(errors.difference), 2)
+        apart = by_state[:, 3 * nv : 3 * nv + 6] - by_state[:, 3 * nv + 6 : 3 * nv + 12]
+        torque += np.einsum("ij,ij->i", apart @ errors.difference, apart)
+    return StateVariances(
+        found[:nv],
+        found[nv : 2 * nv],
+        wrench,
+        torque,
+        found[N + m : N + m + heights],
+        found[N + m + heights :].reshape(-1, 3, 3),
     )

@@ -1,4 +1,4 @@
-"""Variances of clinical coordinates are those by the whole rates' matrix."""
+"""Variances of clinical coordinates are those by the whole rates' matrix, by the kernel and without it."""
 
 import numpy as np
 import pytest
@@ -21,6 +21,7 @@ def read(clinical, q, covariances):
     return reader.of(q, blocks, [np.diag(P) for P in covariances])
 
 
+@pytest.mark.usefixtures("either_kernel")
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("turned", [False, True])
 def test_they_are_the_diagonal_of_the_whole(seed, turned):
@@ -35,16 +36,17 @@ def test_they_are_the_diagonal_of_the_whole(seed, turned):
         np.testing.assert_allclose(variance, np.square(E @ A).sum(axis=1), rtol=1e-9)
 
 
+@pytest.mark.usefixtures("either_kernel")
 def test_at_a_singularity_they_are_very_large_and_finite():
     """Both other angles of the joint; all that moves another joint stays what it is."""
     _, model, clinical = case(0)
-    q, ball = model.neutral(), 5
-    name = clinical.names[clinical.ball_columns[ball, 1]]
-    joint = next(j for j in clinical.joints if name in [angle.name for angle in j.angles])
+    where, q = clinical.rate_layout, model.neutral()
+    ball, axis = 5, where.order[5, 1]
     step = np.zeros(model.nv)
-    step[clinical.ball_turns[ball, "xyz".index(joint.order[1].lower())]] = 0.5 * np.pi
-    plain, found = (read(clinical, at, [np.eye(model.nv)])[0] for at in (q, model.integrate(q, step)))
+    step[where.dofs[ball, axis]] = 0.5 * np.pi
+    there = model.integrate(q, step)
+    plain, found = (read(clinical, at, [np.eye(model.nv)])[0] for at in (q, there))
     assert np.isfinite(found).all()
-    large = np.isin(np.arange(len(found)), clinical.ball_columns[ball, [0, 2]])
+    large = np.isin(np.arange(len(found)), where.columns[ball, [0, 2]])
     assert (found[large] > 1e12).all()
     np.testing.assert_allclose(found[~large], plain[~large], rtol=1e-9)

@@ -1,4 +1,4 @@
-"""Variances worked out together are those of the whole error covariance."""
+"""Variances worked out together are those of the whole error covariance, by the kernel and without it."""
 
 from dataclasses import replace
 
@@ -26,7 +26,7 @@ def errors(seed, unseen=0.0):
         3.0,
         free,
         2.0,
-        None if seed % 2 else rng.normal(size=NV + 12),
+        None if seed % 2 else rng.normal(size=NV + 18),
         rng.normal(size=(4, 12)),
         new_rates=(0.2, 0.4),
         plates=0.4,
@@ -49,6 +49,7 @@ def assert_diagonals(errors, by_state, by_position):
         np.testing.assert_allclose(variance, expected, rtol=1e-10, atol=1e-10 * np.abs(expected).max())
 
 
+@pytest.mark.usefixtures("either_kernel")
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("unseen", [0.0, 0.4])
 def test_they_are_diagonals_of_the_whole_covariance(seed, unseen):
@@ -59,13 +60,15 @@ def test_they_are_diagonals_of_the_whole_covariance(seed, unseen):
         assert_diagonals(stated, T, rng.normal(size=(2, NV)))
 
 
+@pytest.mark.usefixtures("either_kernel")
 def test_without_skin_and_information_they_are_the_filters_own():
     rng, stated = errors(1)
     plain = replace(stated, information=np.zeros((NV, NV)), seen=np.zeros(0, dtype=int), skin=0.0, free=())
     assert_diagonals(plain, rng.normal(size=(NV, 3 * NV + 12)), rng.normal(size=(2, NV)))
 
 
-def test_information_positive_but_for_rounding_is_told():
+@pytest.mark.usefixtures("either_kernel")
+def test_what_the_kernel_cannot_factorise_is_told_as_without_it():
     """An information that is positive but for rounding has an inverse within limits; one of zeros has none."""
     rng, stated = errors(2)
     T, U = rng.normal(size=(NV, 3 * NV + 12)), rng.normal(size=(2, NV))

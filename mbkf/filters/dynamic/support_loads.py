@@ -92,7 +92,7 @@ class SupportLoads:
             by_joint[joint] = by_joint.get(joint, np.zeros(6)) + wrench
         balance.loaded(torque, by_joint)
         J = np.vstack([balance.jacobian(joint) for joint in ids])
-        by_state = np.zeros((self._nv, self.slice.stop))
+        by_state = np.zeros((self._nv, self.slice.stop), order="F")
         by_state[:, : torque.by_state.shape[1]] = torque.by_state
         by_state[:, self.slice] = -J.T @ loads.shares.by_whole.reshape(-1, 6)
         return by_state, np.einsum("ij,ik,kj->j", J, loads.shares.covariance, J)
