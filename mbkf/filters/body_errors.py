@@ -16,9 +16,11 @@ All is kept as B = (∂·/∂p) L, so that a covariance is B Bᵀ.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
 from mbkf.conventions import Array
@@ -65,6 +67,42 @@ class BodyErrorRoots:
     velocity: Array
     torque: Array
     wrench: Array
+
+    @cached_property
+    def position_variance(self) -> Array:
+        """(nv,) of the configuration."""
+        return _squared(self.position)
+
+    @cached_property
+    def velocity_variance(self) -> Array:
+        """(nv,) of the velocity."""
+        return _squared(self.velocity)
+
+    @cached_property
+    def torque_variance(self) -> Array:
+        """(nv,) of the generalised forces."""
+        return _squared(self.torque)
+
+    @cached_property
+    def wrench_variance(self) -> Array:
+        """(2, 6) of the feet's wrenches."""
+        return _squared(self.wrench).reshape(2, 6)
+
+    def blocks(self, dofs: NDArray[np.intp]) -> tuple[Array, Array]:
+        """(b, 3, 3) covariances of configuration and velocity, of the same three dofs (b, 3) whenever it is asked."""
+        if not self._blocks:
+            for root in (self.position, self.velocity):
+                own = root[dofs]
+                self._blocks.append(own @ own.transpose(0, 2, 1))
+        position, velocity = self._blocks
+        return position, velocity
+
+    _blocks: list[Array] = field(default_factory=list, init=False, repr=False, compare=False)
+
+
+def _squared(root: Array) -> Array:
+    """(n,) squared sums of rows."""
+    return np.asarray(np.einsum("ij,ij->i", root, root))
 
 
 class BodyErrors:

@@ -104,8 +104,9 @@ class ErrorCovariance:
     def size(self) -> Array:
         """(N,) by which errors of the filter's kind are smaller than P says, √κ."""
         nv, size = len(self.information), np.ones(len(self.P))
+        everything = len(self.seen) == nv
         for n, new in enumerate((self.new, *(self.new_rates or (self.new, self.new)))):
-            size[n * nv + self.seen] = new**0.5
+            size[slice(n * nv, n * nv + nv) if everything else n * nv + self.seen] = new**0.5
         for foot in (0, 1):
             known = self.new**0.5 if foot in self.free else self.plates
             size[3 * nv + 6 * foot : 3 * nv + 6 * foot + 6] = known
@@ -114,7 +115,17 @@ class ErrorCovariance:
         return size
 
     @cached_property
-    def _difference(self) -> Array | None:
+    def added(self) -> Array:
+        """(k, N) roots of what is added for lags and for wrenches that may be there or not."""
+        nv, edges = len(self.information), len(self.edges)
+        added = np.zeros((edges + (self.lag is not None), len(self.P)))
+        added[:edges, 3 * nv : 3 * nv + 12] = self.edges
+        if self.lag is not None:
+            added[-1, 2 * nv : 2 * nv + len(self.lag)] = self.lag
+        return added
+
+    @cached_property
+    def difference(self) -> Array | None:
         """(6, 6) what is added to both feet's wrenches, and taken from between them; None for one foot or none."""
         if len(self.free) < 2 or self.sharing == 1.0:
             return None
@@ -190,11 +201,12 @@ class ErrorCovariance:
         variance += self.skin * (squared[: len(T)] + squared[len(T) :])
         if n < 3 * nv + 12:
             return variance
-        if self._difference is not None:
+        if self.difference is not None:
             apart = T[:, 3 * nv : 3 * nv + 6] - T[:, 3 * nv + 6 : 3 * nv + 12]
-            variance += np.einsum("ij,ij->i", apart @ self._difference, apart)
+            variance += np.einsum("ij,ij->i", apart @ self.difference, apart)
         if self.lag is not None:
-            variance += (T[:, 2 * nv :] @ self.lag[: n - 2 * nv]) ** 2
+            late = T[:, 2 * nv : 2 * nv + len(self.lag)]
+            variance += (late @ self.lag[: late.shape[1]]) ** 2
         return variance + np.square(T[:, 3 * nv : 3 * nv + 12] @ self.edges.T).sum(axis=1)
 
     @property
@@ -202,8 +214,8 @@ class ErrorCovariance:
         """(12,) diagonal of Σ of both feet's wrenches."""
         mine = slice(3 * len(self.information), 3 * len(self.information) + 12)
         found: Array = np.diagonal(self.P)[mine] * self.size[mine] ** 2
-        if self._difference is not None:
-            found += np.tile(np.diagonal(self._difference), 2)
+        if self.difference is not None:
+            found += np.tile(np.diagonal(self.difference), 2)
         found += np.square(self.edges).sum(axis=0)
         nv = len(self.information)
         return found if self.lag is None else found + self.lag[nv : nv + 12] ** 2
@@ -216,9 +228,9 @@ class ErrorCovariance:
         for first, second, sign in ((0, 0, 1.0), (1, 1, 1.0), (2, 2, 1.0), (0, 2, -1.0), (2, 0, -1.0)):
             own = np.ix_(first * nv + self.seen, second * nv + self.seen)
             whole[own] += sign * rates[first] * rates[second] * C
-        if self._difference is not None:
+        if self.difference is not None:
             wrenches = slice(3 * nv, 3 * nv + 12)
-            whole[wrenches, wrenches] += np.kron([[1.0, -1.0], [-1.0, 1.0]], self._difference)
+            whole[wrenches, wrenches] += np.kron([[1.0, -1.0], [-1.0, 1.0]], self.difference)
         if self.lag is not None:
             late = slice(2 * nv, 2 * nv + len(self.lag))
             whole[late, late] += np.outer(self.lag, self.lag)

@@ -200,7 +200,6 @@ class FrameRecorder:
         """The estimate and its standard deviations; it may be a smoothed one."""
         for name in MOTION:
             row[name] = getattr(posterior, name)
-        row["wrench_sd"] = self.filter.wrench_sd(posterior)
         row["support"] = np.nan if posterior.support is None else posterior.support
         row["support_sd"] = self.filter.support_sd(posterior)
         by_body = self._body.of(int(row["number"][0]), posterior)
@@ -208,8 +207,8 @@ class FrameRecorder:
         for name in SPREAD_AT_ONCE:
             row[f"{name}_sd"] = getattr(spread, name)
             row[f"{name}_offset"] = getattr(spread, f"{name}_offset")
-        row["wrench_offset"] = spread.wrench_offset
-        row["wrench_sd"] = np.hypot(row["wrench_sd"], row["wrench_offset"])
+        offset = spread.wrench_offset
+        row["wrench_offset"], row["wrench_sd"] = offset, np.hypot(self.filter.wrench_sd(posterior), offset)
         return spread
 
     def innovation(self, row: NDArray, posterior: Posterior) -> None:

@@ -10,11 +10,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.filters.body_errors import BodyErrorRoots
+from mbkf.filters.coordinate_variances import CoordinateVariances
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
 
@@ -25,11 +27,15 @@ class SpreadReader:
     Attributes:
         model: The body.
         clinical: Its clinical coordinates, A of them.
+        coordinates: Reads the coordinates' variances, from covariances of their dofs.
     """
 
     def __init__(self, model: Body) -> None:
         self.model, self.clinical = model, ClinicalAngles(model)
-        self._feet = [model.joint(segment).joint_id for segment in model.roles.feet]
+        self.coordinates = CoordinateVariances(self.clinical)
+        feet = [model.joint(segment).joint_id for segment in model.roles.feet]
+        self._moves = np.ascontiguousarray(model.supports[feet], dtype=float)
+        self._origins = [4 * joint + 3 for joint in feet]
 
     def torque_variance(self, q: Array, step_covariance: Array, dt_s: float) -> Array:
         """(nv,) variances of the generalised forces that thesis eq. 3.7's accelerations cause, M (v_k − v_{k−1}) / Δt.
@@ -42,12 +48,32 @@ class SpreadReader:
         M = self.model.mass_matrix(q)
         return ((M @ step_covariance) * M).sum(axis=1) / dt_s**2
 
-    def foot_height(self, q: Array, P: Array) -> Array:
-        """(2,) of the feet, for the covariance P (nv, nv) of the configuration."""
-        _, origins, jacobian = self.model.placements_and_jacobian(q)
-        x, y, _ = origins[self._feet].T[:, :, None]
-        rise = (jacobian[2] + jacobian[3] * y - jacobian[4] * x) * self.model.supports[self._feet]
-        return root(((rise @ P) * rise).sum(axis=1))
+    def rise_jacobian(self, q: Array) -> Array:
+        """(2, nv) derivative of the height of right and left foot by the configuration q (nq,)."""
+        frames, jacobian = self.model.frames_and_jacobian(q)
+        x, y, _ = frames[self._origins].T[:, :, None]
+        rise: Array = jacobian[3] * y
+        rise -= jacobian[4] * x
+        rise += jacobian[2]
+        rise *= self._moves
+        return rise
+
+    def parts(self, q: Array, P: Array) -> ConfigurationParts:
+        """What is read off a covariance P (nv, nv) of the configuration q (nq,)."""
+        rise, dofs = self.rise_jacobian(q), self.coordinates.dofs
+        return ConfigurationParts(((rise @ P) * rise).sum(axis=1), P[dofs[:, :, None], dofs[:, None, :]])
+
+
+class ConfigurationParts(NamedTuple):
+    """Parts of a covariance of the configuration.
+
+    Attributes:
+        foot_height: (2,) variances of the height of right and left foot, m².
+        blocks: (n + 1, 3, 3) covariances of the dofs :attr:`CoordinateVariances.dofs`.
+    """
+
+    foot_height: Array
+    blocks: Array
 
 
 @dataclass(frozen=True)
@@ -60,7 +86,7 @@ class Spread:
         position_variance: (nv,) of the configuration in its tangent space, by the filter.
         velocity_variance: (nv,) of the velocities, by the filter.
         torque_variance: (nv,) of the generalised forces, by the filter; NaN where nothing is known of them.
-        covariance: Makes the filter's (nv, nv) covariance of the configuration.
+        parts: What else is asked of the filter's covariance of the configuration, worked out once.
         body: Roots of the errors by the person's body; None where they are not known.
     """
 
@@ -69,28 +95,28 @@ class Spread:
     position_variance: Array
     velocity_variance: Array
     torque_variance: Array
-    covariance: Callable[[], Array]
+    parts: Callable[[], ConfigurationParts]
     body: BodyErrorRoots | None = None
 
     @property
     def position(self) -> Array:
         """(nv,) of the configuration in its tangent space, rad or m."""
-        return np.hypot(root(self.position_variance), self.position_offset)
+        return self._with(self.position_variance, None if self.body is None else self.body.position_variance)
 
-    @cached_property
+    @property
     def position_offset(self) -> Array:
         """(nv,) the offset's part of it."""
-        return self._lengths(None if self.body is None else self.body.position)
+        return self._zeros if self.body is None else np.sqrt(self.body.position_variance)
 
     @property
     def velocity(self) -> Array:
         """(nv,) of the velocity."""
-        return np.hypot(root(self.velocity_variance), self.velocity_offset)
+        return self._with(self.velocity_variance, None if self.body is None else self.body.velocity_variance)
 
-    @cached_property
+    @property
     def velocity_offset(self) -> Array:
         """(nv,) the offset's part of it."""
-        return self._lengths(None if self.body is None else self.body.velocity)
+        return self._zeros if self.body is None else np.sqrt(self.body.velocity_variance)
 
     @property
     def offset_covariance(self) -> Array:
@@ -104,76 +130,85 @@ class Spread:
     @property
     def torque(self) -> Array:
         """(nv,) of the generalised forces; NaN where nothing is known of them."""
-        return np.hypot(root(self.torque_variance), self.torque_offset)
+        return self._with(self.torque_variance, None if self.body is None else self.body.torque_variance)
 
-    @cached_property
+    @property
     def torque_offset(self) -> Array:
         """(nv,) the offset's part of it."""
-        return self._lengths(None if self.body is None else self.body.torque)
+        return self._zeros if self.body is None else np.sqrt(self.body.torque_variance)
 
     @property
     def wrench_offset(self) -> Array:
         """(2, 6) the offset's part of the feet's wrenches, which a plate's reading has none of: N, N m."""
-        return np.zeros((2, 6)) if self.body is None else self._lengths(self.body.wrench).reshape(2, 6)
-
-    @cached_property
-    def _position(self) -> Array:
-        return self.covariance()
-
-    @cached_property
-    def _rate_matrix(self) -> Array:
-        return self.reader.clinical.rate_matrix(self.q)
+        return np.zeros((2, 6)) if self.body is None else np.sqrt(self.body.wrench_variance)
 
     @property
     def angle(self) -> Array:
         """(A,) of the clinical coordinates."""
-        E = self._rate_matrix
-        return np.hypot(root(((E @ self._position) * E).sum(axis=1)), self.angle_offset)
+        found = self._coordinates
+        return self._with(found[0], None if self.body is None else found[2])
 
-    @cached_property
+    @property
     def angle_offset(self) -> Array:
         """(A,) the offset's part of it."""
-        return self._lengths(None if self.body is None else self._rate_matrix @ self.body.position)
+        return self._zeros if self.body is None else root(self._coordinates[2])
 
     @property
     def rate(self) -> Array:
         """(A,) of their rates, from the velocities' own variances."""
-        return np.hypot(root(self._rate_matrix**2 @ self.velocity_variance), self.rate_offset)
+        found = self._coordinates
+        return self._with(found[1], None if self.body is None else found[3])
 
-    @cached_property
+    @property
     def rate_offset(self) -> Array:
         """(A,) the offset's part of it."""
-        return self._lengths(None if self.body is None else self._rate_matrix @ self.body.velocity)
+        return self._zeros if self.body is None else root(self._coordinates[3])
 
     @property
     def ball_covariance(self) -> Array:
         """(n, 3, 3) covariances of the rotations of the n joints with three angles, in distal axes, rad²."""
-        turns = self.reader.clinical.ball_turns
-        return self._position[turns[:, :, None], turns[:, None, :]] + self.ball_offset
+        own = self._parts.blocks[:-1]
+        return own if self.body is None else own + self.ball_offset
 
-    @cached_property
+    @property
     def ball_offset(self) -> Array:
         """(n, 3, 3) the offset's part of it."""
-        turns = self.reader.clinical.ball_turns
-        if self.body is None:
-            return np.zeros((len(turns), 3, 3))
-        by_ball = self.body.position[turns]
-        return by_ball @ by_ball.transpose(0, 2, 1)
+        dofs = self.reader.coordinates.dofs
+        return np.zeros((len(dofs) - 1, 3, 3)) if self.body is None else self.body.blocks(dofs)[0][:-1]
 
     @property
     def foot_height(self) -> Array:
         """(2,) of the height of right and left foot, m, by the filter."""
-        return self.reader.foot_height(self.q, self._position)
+        return root(self._parts.foot_height)
 
-    def _lengths(self, roots: Array | None) -> Array:
-        """(n,) √ of the squared sums of rows; 0 where there is no root."""
-        return (
-            np.zeros(len(self.position_variance))
-            if roots is None
-            else np.sqrt(np.einsum("ij,ij->i", roots, roots))
-        )
+    @cached_property
+    def _parts(self) -> ConfigurationParts:
+        return self.parts()
+
+    @cached_property
+    def _coordinates(self) -> Array:
+        """(2 or 4, A) variances of the clinical coordinates and their rates by the filter, and by the body."""
+        dofs, velocity = self.reader.coordinates.dofs, self.velocity_variance
+        blocks = [self._parts.blocks, velocity[dofs][:, :, None] * _EYE]
+        diagonals = [self.position_variance, velocity]
+        if self.body is not None:
+            blocks += self.body.blocks(dofs)
+            diagonals += [self.body.position_variance, self.body.velocity_variance]
+        return self.reader.coordinates.of(self.q, blocks, diagonals)
+
+    @property
+    def _zeros(self) -> Array:
+        return np.zeros(len(self.position_variance))
+
+    def _with(self, variance: Array, offset: Array | None) -> Array:
+        """Standard deviation of two independent parts."""
+        own = np.maximum(variance, 0.0)
+        return np.sqrt(own if offset is None else own + offset)
 
 
 def root(variance: Array) -> Array:
     """Square root; rounding may leave a variance of zero a little below it."""
     return np.sqrt(np.maximum(variance, 0.0))
+
+
+_EYE = np.eye(3)

@@ -187,6 +187,90 @@ class Library(Protocol):
             beyond: (nv,) filled.
         """
 
+    def errors(
+        self,
+        P: Array,
+        information: Array,
+        seen: NDArray[np.int32],
+        size: Array,
+        constants: Array,
+        rows: Array,
+        T: Array,
+        U: Array,
+        first: NDArray[np.int32],
+        found: Array,
+        /,
+    ) -> int:
+        """Fills ``found`` with diagonals of an error covariance Σ: see :mod:`mbkf.filters.state_variances`.
+
+        Args:
+            P: (N, N) covariance.
+            information: (nv, nv) of one frame.
+            seen: (n,) dofs that markers observe, ascending, 32-bit integers.
+            size: (N,) factor on errors of P's kind.
+            constants: (2,) variance of skin and its rate.
+            rows: (k, N) roots of what is added.
+            T: (m, n) quantities of the first n ≥ nv components, in Fortran order.
+            U: (l, n) further ones, in Fortran order.
+            first: (b,) first of three components of the configuration, 32-bit integers.
+            found: (N + m + l + 9 b,) filled: diagonals of Σ, T Σ Tᵀ and U Σ Uᵀ, and blocks (3, 3) of Σ.
+
+        Returns:
+            0, or 1 where the information cannot be factorised.
+        """
+
+    def joint_variances(
+        self,
+        q: Array,
+        places: NDArray[np.int32],
+        signs: Array,
+        root: int,
+        axes: Array,
+        covariance: Array,
+        variance: Array,
+        /,
+    ) -> None:
+        """Fills ``variance`` (k, n + 1, 3): see :class:`mbkf.filters.coordinate_variances.CoordinateVariances`.
+
+        Args:
+            q: (nq,) configuration.
+            places: (n, 4) first number of a joint's quaternion in q, and its axes, 32-bit integers.
+            signs: (n, 4) parity of the axes, and the angles' signs.
+            root: First number of the root's quaternion in q.
+            axes: (3, 3) what takes the root's position to the axes it is told in.
+            covariance: (k, n + 1, 3, 3) of the joints' dofs and the root's position.
+            variance: (k, n + 1, 3) filled.
+        """
+
+    def torques(
+        self,
+        free: Array,
+        by_q: Array,
+        by_v: Array,
+        by_a: Array,
+        J: Array,
+        moves: NDArray[np.int32],
+        joint_of: NDArray[np.int32],
+        wrenches: Array,
+        tau: Array,
+        by_state: Array,
+        /,
+    ) -> None:
+        """Fills ``tau`` (nv,) and ``by_state`` (nv, 3 nv + 12) as :mod:`mbkf.model.newton_euler` states them.
+
+        Args:
+            free: (nv,) forces without the feet's wrenches.
+            by_q: (nv, nv) their derivative by q.
+            by_v: (nv, nv) by v.
+            by_a: (nv, nv) by a, symmetric.
+            J: (6, nv) velocities at the world's origin, in Fortran order.
+            moves: (2, nv) whether a dof moves a foot, 32-bit integers.
+            joint_of: (nv,) joint of a dof, 32-bit integers.
+            wrenches: (12,) of the feet.
+            tau: (nv,) filled.
+            by_state: (nv, 3 nv + 12) filled, in Fortran order.
+        """
+
     def choose(self, own: bool, /) -> None:
         """Whether products are made with instructions of the kernel's own, where the processor has them, or by BLAS."""
 

@@ -115,6 +115,8 @@ static PyObject *py_inform(PyObject *self, PyObject *const *args, Py_ssize_t giv
     return done;
 }
 
+#include "spread_bindings.h"
+
 /* vectors() -> bits of the vectors that products are made with; 0 where BLAS makes them */
 static PyObject *py_vectors(PyObject *self, PyObject *nothing)
 {
@@ -173,6 +175,7 @@ static PyMethodDef methods[] = {
     {"carry_velocities", (PyCFunction)(void (*)(void))py_carry_velocities, METH_FASTCALL,
      "The same for positions and velocities alone."},
     {"inform", (PyCFunction)(void (*)(void))py_inform, METH_FASTCALL, "A covariance after readings."},
+    SPREAD_METHODS,
     {"choose", py_choose, METH_O, "Products by instructions of their own, where they can be, or by BLAS."},
     {"vectors", py_vectors, METH_NOARGS, "Bits of the vectors that products are made with; 0: BLAS makes them."},
     {NULL, NULL, 0, NULL},

@@ -6,7 +6,10 @@ Inside mbkf a joint is a rotation; people read angles. The body file says which.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
+from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.errors import InvalidInput, ShapeError
@@ -36,6 +39,34 @@ def dof_names(model: Body) -> tuple[str, ...]:
         for joint in model.joints.values()
         for axis in axes.get(joint.kind, tuple(joint.axes))
     )
+
+
+class RateLayout(NamedTuple):
+    """Where the rates' matrix E of θ̇ = E v is not zero: joint by joint.
+
+    Attributes:
+        quaternions: (n,) first number in q of the quaternions of joints with three angles.
+        order: (n, 3) their axes.
+        parity: (n,) +1 where these are an even permutation of x, y, z, else −1.
+        signs: (n, 3) signs of their angles.
+        columns: (n + 1, 3) their columns, last those of the root's position.
+        dofs: (n + 1, 3) their dofs, ascending.
+        single_columns: (m,) columns of the other angles, each ± one dof.
+        single_dofs: (m,) those dofs.
+        root_quaternion: First number in q of the root's.
+        root_axes: (3, 3) what takes the root's position to the axes it is told in.
+    """
+
+    quaternions: NDArray[np.intp]
+    order: NDArray[np.intp]
+    parity: Array
+    signs: Array
+    columns: NDArray[np.intp]
+    dofs: NDArray[np.intp]
+    single_columns: NDArray[np.intp]
+    single_dofs: NDArray[np.intp]
+    root_quaternion: int
+    root_axes: Array
 
 
 class ClinicalAngles:
@@ -117,6 +148,22 @@ class ClinicalAngles:
         self._root_quaternion = slice(place.q.start + 3, place.q.start + 7)
         self.root_angles = read_only([column[angle.name] for angle in root.angles], dtype=int)
         self.root_turns = slice(place.v.start + 3, place.v.stop)
+
+    @property
+    def rate_layout(self) -> RateLayout:
+        """Where :meth:`rate_matrix` is not zero, and what it is made of, in the body file's own axes."""
+        return RateLayout(
+            self._ball_q[:, 0],
+            self._order,
+            self._parity,
+            self._ball_sign,
+            np.vstack([self.ball_columns, self._root_columns]),
+            np.vstack([self.ball_turns, self._root_v]),
+            self._dof_column,
+            self._dof_v,
+            self._root_quaternion.start,
+            self._root_axes,
+        )
 
     def against(self, heading_rad: Array, q: Array) -> Array:
         """Configurations as seen from axes that are turned about the vertical; positions stay in the world's axes.

@@ -15,6 +15,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
+from mbkf.kernel.loading import library
 from mbkf.kernel.tree import CompiledTree
 from mbkf.model.body import Body
 
@@ -103,6 +104,8 @@ class NewtonEuler:
         self._after = [_moved_by(model, chain) for chain in self._chains]
         self._tree = CompiledTree.where_built(model.pin_model)
         self._others: dict[int, tuple[NDArray[np.intp], Array]] = {}
+        self._joint_of = _joint_of(model)
+        self._moves_feet = np.array(self._moves, dtype=np.int32)
 
     def root(self, q: Array, v: Array, a: Array, wrenches: Array) -> RootBalance:
         """The pelvis's equations for the feet's wrenches (12,).
@@ -136,9 +139,24 @@ class NewtonEuler:
             wrenches: (12,) right and left foot's wrenches: force N and moment N m about the world's origin.
         """
         data, nv = self._data, self.model.nv
-        by_state = np.empty((nv, 3 * nv + 12))
+        by_state = np.empty((nv, 3 * nv + 12), order="F")
         found = JointTorques(np.empty(nv), by_state)
-        found.by_q[:], found.by_v[:], found.by_a[:] = self._inverse_dynamics(q, v, a)
+        by_q, by_v, by_a = self._inverse_dynamics(q, v, a)
+        kernel = library()
+        if kernel is not None:
+            own = self._moves_feet, self._joint_of, np.ascontiguousarray(wrenches)
+            kernel.torques(
+                data.tau,
+                np.ascontiguousarray(by_q),
+                np.ascontiguousarray(by_v),
+                by_a,
+                data.J,
+                *own,
+                found.tau,
+                by_state,
+            )
+            return found
+        found.by_q[:], found.by_v[:], found.by_a[:] = by_q, by_v, by_a
         found.tau[:], J = data.tau, data.J
         for foot, (chain, moves, after) in enumerate(
             zip(self._chains, self._moves, self._after, strict=True)
@@ -194,12 +212,17 @@ class NewtonEuler:
 
 def _moved_by(model: Body, chain: NDArray[np.intp]) -> Array:
     """(n, n) 1 where the axis of a chain's dof (row) turns with a dof (column): the same joint's or one before it."""
-    joint_of = np.empty(model.nv, dtype=int)
+    mine = _joint_of(model)[chain]
+    return (mine[:, None] >= mine[None, :]).astype(float)
+
+
+def _joint_of(model: Body) -> NDArray[np.int32]:
+    """(nv,) Pinocchio joint of every dof."""
+    joint_of = np.empty(model.nv, dtype=np.int32)
     for joint in range(1, model.pin_model.njoints):
         first = model.pin_model.joints[joint].idx_v
         joint_of[first : first + model.pin_model.joints[joint].nv] = joint
-    mine = joint_of[chain]
-    return (mine[:, None] >= mine[None, :]).astype(float)
+    return joint_of
 
 
 def _turned_wrench(wrench: Array) -> Array:

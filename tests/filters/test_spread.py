@@ -1,6 +1,7 @@
 """Standard deviations of angles, rates, torques and foot heights from a filter's covariance."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -26,7 +27,8 @@ def case():
     reader, nv = SpreadReader(model), model.nv
     torque = reader.torque_variance(state.q, B @ B.T, DT_S)
     variances = np.split(np.diag(state.P), 2)
-    return model, state, B, Spread(reader, state.q, *variances, torque, lambda: state.P[:nv, :nv])
+    parts = partial(reader.parts, state.q, state.P[:nv, :nv])
+    return model, state, B, Spread(reader, state.q, *variances, torque, parts)
 
 
 def slopes(model, q, read):
@@ -74,6 +76,8 @@ def test_foot_heights_by_finite_differences(case):
     P = state.P[: model.nv, : model.nv]
     ids = [model.joint(foot).joint_id for foot in ("right_foot", "left_foot")]
     J = slopes(model, state.q, lambda q: model.placements(q)[1][ids, 2])
+    rise = spread.reader.rise_jacobian(state.q)
+    np.testing.assert_allclose(rise, J, atol=1e-7 * np.abs(J).max())
     np.testing.assert_allclose(spread.foot_height, np.sqrt(np.diag(J @ P @ J.T)), rtol=1e-7)
 
 

@@ -4,6 +4,8 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from mbkf.kernel.loading import library
+from mbkf.model import newton_euler
 from mbkf.model.newton_euler import NewtonEuler
 from tests.dynamics import random_state
 from tests.motions import assert_near, random_model, worst
@@ -49,6 +51,17 @@ def test_the_pelvis_rows_are_the_residual(seed):
 def test_torques_are_the_same_with_and_without_derivatives(seed):
     _, balance, s = made(seed)
     assert_near(balance.tau(s.q, s.v, s.a, s.w), balance.torques(s.q, s.v, s.a, s.w).tau, 1e-9)
+
+
+@pytest.mark.skipif(library() is None, reason="the kernel is not compiled here")
+@seeds
+def test_the_kernel_finds_the_same_torques_and_derivatives(seed, monkeypatch):
+    _, balance, s = made(seed)
+    compiled = balance.torques(s.q, s.v, s.a, s.w)
+    monkeypatch.setattr(newton_euler, "library", lambda: None)
+    reference = balance.torques(s.q, s.v, s.a, s.w)
+    assert_near(compiled.tau, reference.tau, 1e-12)
+    assert_near(compiled.by_state, reference.by_state, 1e-12)
 
 
 @seeds

@@ -72,24 +72,27 @@ class SupportLoads:
             found[list(loads.parts)] = np.sqrt(np.maximum(variance, 0.0)).reshape(-1, 6)
         return found
 
-    def torques(self, balance: NewtonEuler, torque: JointTorques, loads: Loads | None) -> tuple[Array, Array]:
+    def torques(
+        self, balance: NewtonEuler, torque: JointTorques, loads: Loads | None
+    ) -> tuple[Array, Array | None]:
         """Derivative (nv, n) of the generalised forces by the state, and (nv,) variance by how parts share the load.
+
+        There is no such variance, None, where nothing else bears.
 
         Args:
             balance: The equations, last asked for these torques.
             torque: Torques for the feet's wrenches; the others' are counted in, in place.
             loads: What else bears; None for nothing.
         """
-        none = np.zeros(self._nv)
         if loads is None or self.slice is None:
-            return torque.by_state, none
+            return torque.by_state, None
         ids = [self.bearings.joint_ids[k] for k in loads.parts]
         by_joint: dict[int, Array] = {}
         for joint, wrench in zip(ids, loads.shares.wrench, strict=True):
             by_joint[joint] = by_joint.get(joint, np.zeros(6)) + wrench
         balance.loaded(torque, by_joint)
         J = np.vstack([balance.jacobian(joint) for joint in ids])
-        by_state = np.zeros((self._nv, self.slice.stop))
+        by_state = np.zeros((self._nv, self.slice.stop), order="F")
         by_state[:, : torque.by_state.shape[1]] = torque.by_state
         by_state[:, self.slice] = -J.T @ loads.shares.by_whole.reshape(-1, 6)
         return by_state, np.einsum("ij,ik,kj->j", J, loads.shares.covariance, J)

@@ -18,7 +18,8 @@ from mbkf.filters.filter import Prior, Step
 from mbkf.filters.innovations import Innovations
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.tracking import warm_start
-from mbkf.filters.spread import Spread, SpreadReader, root
+from mbkf.filters.spread import ConfigurationParts, Spread, SpreadReader, root
+from mbkf.filters.state_variances import StateVariances, state_variances
 from mbkf.numerics.passage import LinearStep
 from mbkf.numerics.smoothing import BackwardPass
 from mbkf.sensors.block import NO_DOFS
@@ -54,6 +55,7 @@ class DynamicTracking(TrackingFilter):
         self.clinical = self._reader.clinical
         self._unobservable = np.flatnonzero(kalman.unobservable)
         self._anywhere = self.model.posture_sd[self._unobservable] ** 2
+        self._read: tuple[Posterior, StateVariances] | None = None
 
     def start(self, recording: Recording, t: int, guess: Array | None) -> Posterior | None:
         """The kinematic filter's warm start, corrected by this frame's plates and Newton's law."""
@@ -91,21 +93,31 @@ class DynamicTracking(TrackingFilter):
 
     def spread(self, estimate: Posterior) -> Spread:
         """Standard deviations; torques' from the whole state through Newton–Euler."""
-        state = _record(estimate).state
+        found = self._variances(estimate)
+        parts = ConfigurationParts(found.height, found.blocks)
+        q = _record(estimate).state.q
+        return Spread(self._reader, q, found.position, found.velocity, found.torque, lambda: parts)
+
+    def _variances(self, estimate: Posterior) -> StateVariances:
+        """Variances of all that is read off an estimate; kept, since they are asked for one after the other."""
+        if self._read is not None and self._read[0] is estimate:
+            return self._read[1]
+        step = _record(estimate)
+        state, loads, dofs = step.state, self.loads.of(step), self._reader.coordinates.dofs
         torque = self.kalman.balance.torques(state.q, state.v, state.a, state.w)
-        errors = self.errors(estimate)
-        loads = self.loads.of(_record(estimate))
         by_state, shared = self.loads.torques(self.kalman.balance, torque, loads)
-        variance = errors.position_variance
-        variance[self._unobservable] += self._anywhere
-        return Spread(
-            self._reader,
-            state.q,
-            variance,
-            errors.velocity_variance,
-            errors.variance_of(by_state) + shared,
-            lambda: self._configuration(errors.position),
-        )
+        rise = self._reader.rise_jacobian(state.q)
+        found = state_variances(self.errors(estimate), by_state, rise, dofs)
+        if shared is not None:
+            found.torque[:] += shared
+        if len(self._unobservable):
+            anywhere = np.zeros(self.model.nv)
+            anywhere[self._unobservable] = self._anywhere
+            found.position[:] += anywhere
+            found.height[:] += rise**2 @ anywhere
+            np.einsum("bii->bi", found.blocks)[:] += anywhere[dofs]
+        self._read = estimate, found
+        return found
 
     def _configuration(self, P: Array) -> Array:
         """A covariance (nv, nv) or more with what unobservable dofs may be, in place."""
@@ -177,7 +189,7 @@ class DynamicTracking(TrackingFilter):
 
     def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) standard deviations of the feet's wrenches."""
-        return root(self.errors(estimate).wrench_variance).reshape(2, 6)
+        return root(self._variances(estimate).wrench).reshape(2, 6)
 
     def support_sd(self, estimate: Posterior) -> Array:
         """(B, 6) from the state's covariance, and from how the parts that bear share their load."""

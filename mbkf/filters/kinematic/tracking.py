@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -153,7 +154,9 @@ class KinematicTracking(TrackingFilter):
         if inner.step is not None and inner.before is not None:
             change = VelocityStep(inner.before, inner.step, self.kalman.plant).covariance
             torque = self._reader.torque_variance(q, change, self.dt_s)
-        return Spread(self._reader, q, np.diagonal(P)[:nv], np.diagonal(P)[nv:], torque, lambda: P[:nv, :nv])
+        variance = np.diagonal(P)
+        parts = partial(self._reader.parts, q, P[:nv, :nv])
+        return Spread(self._reader, q, variance[:nv], variance[nv:], torque, parts)
 
     def wrench_sd(self, estimate: Posterior) -> Array:
         """This filter estimates no wrench."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import cast
 
 import numpy as np
@@ -111,7 +112,7 @@ class TorqueTracking(TrackingFilter):
             np.diagonal(P)[:nv],
             np.diagonal(P)[nv:],
             state.tau_sd**2,
-            lambda: P[:nv, :nv],
+            partial(self._reader.parts, state.q, P[:nv, :nv]),
         )
 
     def wrench_sd(self, estimate: Posterior) -> Array:

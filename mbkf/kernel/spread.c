@@ -1,0 +1,174 @@
+/* Variances that a state's errors give to what is read off it: diagonals of T S T' without S and without its square.
+ * P is symmetric, which halves T P T', and W is a triangle. Matrices stand column by column. */
+#include "spread.h"
+
+#include <string.h>
+
+#include "blas.h"
+#include "product.h"
+#include "vectorised.h"
+
+enum { BLOCK = 24 };
+
+/* W = L^-1 of a lower triangle L (n x n) */
+VECTORISED static void inverted(int n, const double *L, double *W)
+{
+    memset(W, 0, sizeof(double) * n * n);
+    for (int j = 0; j < n; j++) {
+        double *x = W + (long)j * n;
+        x[j] = 1.0;
+        for (int k = j; k < n; k++) {
+            const double *l = L + (long)k * n, found = x[k] / l[k];
+            x[k] = found;
+            for (int i = k + 1; i < n; i++)
+                x[i] -= found * l[i];
+        }
+    }
+}
+
+/* sum of x[i] y[i] */
+VECTORISED static double dot(int n, const double *x, const double *y)
+{
+    double sum[4] = {0.0, 0.0, 0.0, 0.0};
+    int i = 0;
+    for (; i + 4 <= n; i += 4)
+        for (int k = 0; k < 4; k++)
+            sum[k] += x[i + k] * y[i + k];
+    for (; i < n; i++)
+        sum[0] += x[i] * y[i];
+    return sum[0] + sum[1] + (sum[2] + sum[3]);
+}
+
+/* total += factor x y, number by number */
+VECTORISED static void gather(int n, double factor, const double *x, const double *y, double *total)
+{
+    for (int i = 0; i < n; i++)
+        total[i] += factor * x[i] * y[i];
+}
+
+long root_work(int nv) { return 2L * nv * nv; }
+
+int error_diagonal(const Errors *e, double *root, double *diagonal, double *work)
+{
+    const int n = e->n_seen, nv = e->nv, N = e->N;
+    double *L = work, *W = work + (long)n * n;
+    int failed = 0;
+    for (int j = 0; j < n; j++)
+        for (int i = j; i < n; i++)
+            L[(long)j * n + i] = e->information[(long)e->seen[j] * nv + e->seen[i]];
+    if (n)
+        blas.dpotrf("l", (int *)&n, L, (int *)&n, &failed);
+    if (failed)
+        return 1;
+    inverted(n, L, W);
+    memset(root, 0, sizeof(double) * n * nv);
+    for (int i = 0; i < N; i++)
+        diagonal[i] = e->P[(long)i * N + i] * e->size[i] * e->size[i];
+    for (int k = 0; k < n; k++) {
+        const int dof = e->seen[k];
+        const double square = e->rate * e->rate;
+        const double skin = e->skin * dot(n, W + (long)k * n, W + (long)k * n);
+        memcpy(root + (long)dof * n, W + (long)k * n, sizeof(double) * n);
+        diagonal[dof] += skin;
+        diagonal[nv + dof] += square * skin;
+        diagonal[2 * nv + dof] += square * square * skin;
+    }
+    for (int k = 0; k < e->n_rows; k++)
+        gather(N, 1.0, e->rows + (long)k * N, e->rows + (long)k * N, diagonal);
+    return 0;
+}
+
+long error_work(int m, int n, int nv) { return (long)m * (n + 2L * nv + 2 * BLOCK); }
+
+/* variance += diagonal of T P T' for T (m x n): what stands left of P's diagonal counts twice. Y: (m x BLOCK) */
+static void symmetric_form(int m, int n, const double *T, int N, const double *P, double *variance, double *Y)
+{
+    for (int b = 0; b < n; b += BLOCK) {
+        const int width = n - b < BLOCK ? n - b : BLOCK;
+        const double *own = T + (long)b * m;
+        if (b)
+            product(WHOLE, m, width, b, 2.0, T, m, P + b, N, 0.0, NULL, Y, m);
+        product(WHOLE, m, width, width, 1.0, own, m, P + (long)b * N + b, N, b ? 1.0 : 0.0, Y, Y, m);
+        for (int i = 0; i < width; i++)
+            gather(m, 1.0, own + (long)i * m, Y + (long)i * m, variance);
+    }
+}
+
+/* What positions and accelerations, which swing in opposition, and velocities between them make of T: (2 m x nv). */
+VECTORISED static void swung(int m, int n, int nv, double rate, const double *T, double *parts)
+{
+    const int has_v = n >= 2 * nv, has_a = n >= 3 * nv;
+    for (int j = 0; j < nv; j++) {
+        const double *q = T + (long)j * m, *v = q + (long)nv * m, *a = v + (long)nv * m;
+        double *swing = parts + 2L * j * m, *quarter = swing + m;
+        for (int i = 0; i < m; i++)
+            swing[i] = has_a ? q[i] - rate * rate * a[i] : q[i];
+        for (int i = 0; i < m; i++)
+            quarter[i] = has_v ? rate * v[i] : 0.0;
+    }
+}
+
+/* variance += skin times the squares of parts W' (2 m x n_seen), where row k of W ends at the seen dof k */
+static void repeated(const Errors *e, const double *root, int m, const double *parts, double *variance, double *R)
+{
+    const int rows = 2 * m;
+    for (int b = 0; b < e->n_seen; b += BLOCK) {
+        const int width = e->n_seen - b < BLOCK ? e->n_seen - b : BLOCK;
+        const int inner = e->seen[b + width - 1] + 1;
+        product(WHOLE, rows, width, inner, 1.0, parts, rows, root + b, e->n_seen, 0.0, NULL, R, rows);
+        for (int k = 0; k < width; k++) {
+            const double *r = R + (long)k * rows;
+            gather(m, e->skin, r, r, variance);
+            gather(m, e->skin, r + m, r + m, variance);
+        }
+    }
+}
+
+VECTORISED static void scaled(int m, double factor, const double *x, double *y)
+{
+    for (int i = 0; i < m; i++)
+        y[i] = factor * x[i];
+}
+
+VECTORISED static void added(int m, double factor, const double *x, double *y)
+{
+    for (int i = 0; i < m; i++)
+        y[i] += factor * x[i];
+}
+
+void error_of(const Errors *e, const double *root, int m, int n, const double *T, double *variance, double *work)
+{
+    double *sized = work, *parts = sized + (long)m * n, *Y = parts + 2L * m * e->nv;
+    memset(variance, 0, sizeof(double) * m);
+    for (int j = 0; j < n; j++)
+        scaled(m, e->size[j], T + (long)j * m, sized + (long)j * m);
+    symmetric_form(m, n, sized, e->N, e->P, variance, Y);
+    if (e->n_seen && e->skin > 0.0) {
+        swung(m, n, e->nv, e->rate, T, parts);
+        repeated(e, root, m, parts, variance, Y);
+    }
+    for (int k = 0; k < e->n_rows; k++) {
+        const double *row = e->rows + (long)k * e->N;
+        int some = 0;
+        memset(Y, 0, sizeof(double) * m);
+        for (int j = 0; j < n; j++)
+            if (row[j] != 0.0) {
+                added(m, row[j], T + (long)j * m, Y);
+                some = 1;
+            }
+        if (some)
+            gather(m, 1.0, Y, Y, variance);
+    }
+}
+
+void error_blocks(const Errors *e, const double *root, int n_blocks, const int *first, double *blocks)
+{
+    const int n = e->n_seen;
+    for (int b = 0; b < n_blocks; b++)
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++) {
+                const int p = first[b] + i, q = first[b] + j;
+                blocks[9 * b + 3 * i + j] = e->P[(long)p * e->N + q] * e->size[p] * e->size[q] +
+                                            e->skin * dot(n, root + (long)p * n, root + (long)q * n);
+            }
+}
