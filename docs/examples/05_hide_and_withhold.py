@@ -11,7 +11,7 @@ import numpy as np
 import mbkf
 
 subject, recorded = mbkf.synthesise("squat", seconds=2.0, seed=4)
-complete = mbkf.ReconstructSettings()
+complete = mbkf.ReconstructSettings(smooth=False)  # as a live run: no frame knows later ones
 
 # All markers of the right shank are hidden for 0.3 s.
 shank = tuple(marker.name for marker in subject.markers if marker.segment == "right_shank")

@@ -35,6 +35,15 @@ def test_components_name_their_segments(places):
     assert tuple(names[k] for k in places.segment_index) == places.segments
 
 
+def test_some_of_the_components_are_as_they_were(places):
+    chosen = np.array([name.endswith("hand") for name in places.segments])
+    some = places.only(chosen)
+    assert set(some.segments) == {"right_hand", "left_hand"}
+    assert some.landmarks == tuple(name for name, kept in zip(places.landmarks, chosen, strict=True) if kept)
+    for field in ("position_m", "sd_m", "weight", "noise_m", "segment_index"):
+        np.testing.assert_array_equal(getattr(some, field), getattr(places, field)[chosen])
+
+
 def test_landmarks_are_where_the_body_has_them(places):
     on = [k for k, name in enumerate(places.landmarks) if name]
     assert sorted(places.landmarks[k] for k in on) == sorted(BODY.landmarks)

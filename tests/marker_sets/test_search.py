@@ -48,6 +48,32 @@ def test_a_standing_person_is_found(worn, found):
     assert found.rival < found.worth
 
 
+def test_who_searches_a_frame_again_gets_the_body_that_was_found(worn, found):
+    """Also with names that tell nothing; a name that tells something, or another frame, is a search of its own."""
+    nothing = np.ones((len(worn.points_m), len(PLACES.segments)))
+    assert find_body(PLACES, worn.points_m.copy(), nothing) is found
+    for one in (found.body.q, found.body.factors, found.body.shares):
+        assert not one.flags.writeable
+    told = nothing.copy()
+    told[0, 0] = 2.0
+    assert find_body(PLACES, worn.points_m, told).worth > found.worth
+    assert find_body(PLACES, worn.points_m + 1e-6) is not found
+
+
+def test_bare_segments_have_no_share(worn):
+    legs = [
+        name
+        for name, segment in worn.segments.items()
+        if segment.endswith(("pelvis", "thigh", "shank", "foot"))
+    ]
+    rows = [worn.markers.names.index(name) for name in legs]
+    found = find_body(PLACES, worn.points_m[rows])
+    assert found.equipment.name == "pelvis and legs"
+    assert found.body.shares.shape == (len(legs), len(PLACES.segments))
+    assert not found.body.shares[:, found.equipment.bare(PLACES)].any()
+    assert found.body.shares.sum() > 0.9 * len(legs)
+
+
 def test_a_turned_and_shifted_cloud_has_the_turned_body(worn, found):
     angle = 1.9
     again = find_body(PLACES, worn.turned(angle, (3.0, -2.0, 0.3)).points_m)
