@@ -5,6 +5,7 @@ Run by hatchling (pyproject.toml), never by mbkf. The stable ABI makes one build
 
 from __future__ import annotations
 
+import os
 import shutil
 import tempfile
 from pathlib import Path
@@ -45,7 +46,7 @@ def compiled(folder: Path) -> Path:
     from setuptools.command.build_ext import build_ext
 
     sources = sorted(str(path) for path in folder.glob("*.c"))
-    kernel = Extension(NAME, sources, py_limited_api=True)
+    kernel = Extension(NAME, sources, py_limited_api=True, libraries=["m"] if os.name == "posix" else [])
     with tempfile.TemporaryDirectory() as scratch:
         command = build_ext(Distribution({"ext_modules": [kernel]}))
         command.build_lib = command.build_temp = scratch
