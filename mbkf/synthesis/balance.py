@@ -3,7 +3,8 @@
 With h the height of the centre of mass c over the surface, F_z = m (g + ḧ) and L its angular momentum, the point of
 zero moment is
 x = c_x − (h m c̈_x + L̇_y) / F_z and y = c_y − (h m c̈_y − L̇_x) / F_z. Given x and y, h and L̇, this is a linear
-equation for the curve c, solved by least squares on quintic splines, one per spell on the ground.
+equation for the curve c, solved by least squares on quintic splines, one per spell on the ground; the equations are a
+band, so that the work grows with the time alone.
 """
 
 from __future__ import annotations
@@ -11,10 +12,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy import sparse
 from scipy.interpolate import BSpline
-from scipy.linalg import cho_factor, cho_solve, null_space
+from scipy.linalg import null_space
 
 from mbkf.conventions import GRAVITY_M_S2, Array
+from mbkf.synthesis.bands import BandedCholesky, spline_rows
 from mbkf.synthesis.dual_numbers import Dual
 
 DEGREE = 5
@@ -37,19 +40,18 @@ class HorizontalPath:
         self.first = np.cumsum([0, *self.sizes])
         self.coefficients = np.zeros((self.first[-1], 2))
 
-    def rows(self, spell: int, times: Array, order: int) -> Array:
-        """(T, K) rows that give a derivative of the curve from its K coefficients.
+    def rows(self, spell: int, times: Array, order: int) -> sparse.csr_array:
+        """(T, K) sparse rows that give a derivative of the curve from its K coefficients.
 
         Args:
             spell: Number of the spell on the ground.
             times: (T,) times inside it, s.
             order: Order of the derivative, 0 for the curve itself.
         """
-        rows = np.zeros((len(times), self.first[-1]))
-        knots, size = self.knots[spell], self.sizes[spell]
-        basis = BSpline(knots, np.eye(size), DEGREE)
-        rows[:, self.first[spell] : self.first[spell] + size] = basis(times, nu=order)
-        return rows
+        own = spline_rows(self.knots[spell], DEGREE, times, order)
+        before, after = self.first[spell], self.first[-1] - self.first[spell + 1]
+        none = [sparse.csr_array((len(times), int(count))) for count in (before, after)]
+        return sparse.csr_array(sparse.hstack([none[0], own, none[1]]))
 
     def __call__(self, times: Array) -> Dual:
         """The curve (T, 2) with its derivatives."""
@@ -71,7 +73,7 @@ class HorizontalPath:
         return Dual(*orders)
 
     def _ties(self) -> Array:
-        """Linear conditions: no horizontal force in the air, straight uniform motion from spell to spell."""
+        """(N, K) linear conditions: no horizontal force in the air, straight uniform motion from spell to spell."""
         ties = []
         for k in range(len(self.spells) - 1):
             end, start = np.array([self.spells[k][1]]), np.array([self.spells[k + 1][0]])
@@ -81,7 +83,18 @@ class HorizontalPath:
                 self.rows(k, end, 1) - self.rows(k + 1, start, 1),
                 self.rows(k, end, 0) + (start - end) * self.rows(k, end, 1) - self.rows(k + 1, start, 0),
             ]
-        return np.vstack(ties) if ties else np.zeros((0, self.first[-1]))
+        return sparse.vstack(ties).toarray()
+
+    def _free(self) -> sparse.csr_array:
+        """(K, J) orthonormal basis of the coefficients that keep the ties, which touch the ends of spells only."""
+        every = sparse.eye_array(self.first[-1], format="csc")
+        if len(self.spells) == 1:
+            return every.tocsr()
+        ties = self._ties()
+        touched, rest = np.flatnonzero(ties.any(axis=0)), np.flatnonzero(~ties.any(axis=0))
+        among = every[:, touched] @ sparse.csc_array(null_space(ties[:, touched]))
+        before = rest < touched[0]
+        return sparse.csr_array(sparse.hstack([every[:, rest[before]], among, every[:, rest[~before]]]))
 
     def solve(self, times: Array, target: Array, height: Dual, turning: Array) -> None:
         """Fits the curve to the wanted pressure.
@@ -98,16 +111,16 @@ class HorizontalPath:
             lift = GRAVITY_M_S2 + height.second[use]
             weight = np.clip(lift, 0.0, None) / (np.clip(lift, 0.0, None) + 0.03 * GRAVITY_M_S2)
             safe = np.maximum(lift, 1e-3)
-            ratio = height.value[use] / safe
-            rows.append(
-                (self.rows(k, times[use], 0) - ratio[:, None] * self.rows(k, times[use], 2)) * weight[:, None]
-            )
+            ratio = sparse.diags_array(height.value[use] / safe)
+            pressed = self.rows(k, times[use], 0) - ratio @ self.rows(k, times[use], 2)
+            rows.append(sparse.diags_array(weight) @ pressed)
             wanted.append((target[use] + turning[use] / safe[:, None]) * weight[:, None])
         for k, at in ((0, 0), (len(self.spells) - 1, -1)):
             rows.append(3.0 * self.rows(k, np.array([self.spells[k][at]]), 0))
             wanted.append(3.0 * target[[at]])
-        free = null_space(self._ties()) if len(self.spells) > 1 else np.eye(self.first[-1])
-        design = np.vstack(rows) @ free
+        free = self._free()
+        design = sparse.vstack(rows) @ free
         normal = design.T @ design
-        normal[np.diag_indices_from(normal)] += 1e-12 * np.trace(normal) / len(normal)
-        self.coefficients = free @ cho_solve(cho_factor(normal), design.T @ np.vstack(wanted))
+        small = 1e-12 * normal.diagonal().mean()
+        fit = BandedCholesky(normal + small * sparse.eye_array(normal.shape[0]))
+        self.coefficients = free @ fit.solve(design.T @ np.vstack(wanted))

@@ -12,11 +12,12 @@ from mbkf.model.body import Body
 from mbkf.numerics.threads import single_threaded
 from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.balance import HorizontalPath
+from mbkf.synthesis.coordinates import coordinates
 from mbkf.synthesis.curves import Curve
 from mbkf.synthesis.dual_numbers import Dual
 from mbkf.synthesis.flight import SMALL, Tumbling
 from mbkf.synthesis.holding import Correction
-from mbkf.synthesis.inverse_kinematics import InverseKinematics, Pose
+from mbkf.synthesis.inverse_kinematics import FootPose, HandPose, InverseKinematics, Pose, Posture
 from mbkf.synthesis.plan import MotionPlan
 from mbkf.synthesis.support import weight_n, zero_moment
 
@@ -30,6 +31,16 @@ FLIGHT_ROUNDS = 40
 
 HOLD_ROUNDS, NEAR_M, FAR_M = 24, 0.001, 0.02
 """Iterations at most that bring to its place what stays on a support, how near is near enough, and how far too far."""
+
+
+@dataclass(frozen=True)
+class Given:
+    """A plan at (T,) times in s: joint angles by joint, rad, and the poses of feet and hands by side."""
+
+    times: Array
+    angles: dict[str, tuple[Dual, ...]]
+    feet: dict[str, FootPose]
+    hands: dict[str, HandPose] | None
 
 
 @dataclass
@@ -53,27 +64,34 @@ class Composition:
         plane, height = self.horizontal(times), self.height(times)
         return Dual(*(np.column_stack([p, h]) for p, h in zip(plane.orders, height.orders, strict=True)))
 
-    def pose(self, times: Array, start: Dual | None = None, pelvis: tuple[Dual, ...] | None = None) -> Pose:
-        """The body over time.
+    def given(self, times: Array) -> Given:
+        """What the plan gives at times in s."""
+        angles = {joint: tuple(curve(times) for curve in axes) for joint, axes in self.plan.angles.items()}
+        hands = None if self.plan.hands is None else self.plan.hands(times)
+        return Given(times, angles, self.plan.feet(times), hands)
+
+    def posture(self, given: Given, pelvis: tuple[Dual, ...] | None = None) -> Posture:
+        """The body without its centre of mass.
 
         Args:
-            times: (T,) s.
-            start: (T, 3) pelvis position from which the inverse kinematics start; by default the centre of mass.
+            given: What the plan gives.
             pelvis: (T,) pelvis angles about x, y and z, rad; by default the composition's own.
         """
-        angles = {joint: tuple(curve(times) for curve in axes) for joint, axes in self.plan.angles.items()}
-        angles["pelvis"] = pelvis or self._pelvis(times)
+        angles = {**given.angles, "pelvis": pelvis or self._pelvis(given.times)}
         if self.correction is not None:
-            lean = self.correction(times)[:, 0]
+            lean = self.correction(given.times)[:, 0]
             for joint, gains in self.correction.hold.lean.items():
                 if joint != "pelvis":
                     angles[joint] = _leaned(angles[joint], gains, lean)
-        hands = None if self.plan.hands is None else self.plan.hands(times)
-        return self.kinematics.pose(self.com(times), angles, self.plan.feet(times), start, hands)
+        return self.kinematics.posture(angles, given.feet, given.hands)
+
+    def pose(self, times: Array) -> Pose:
+        """The body over time."""
+        return self.kinematics.pose(self.com(times), self.posture(self.given(times)))
 
     def coordinates(self, times: Array) -> tuple[Array, Array, Array]:
         """q, v and a at times in s."""
-        return self.kinematics.coordinates(self.pose(times))
+        return coordinates(self.kinematics.model, self.pose(times))
 
     def pelvis_rotations(self, times: Array) -> Array:
         """(T, 3, 3) world rotations of the pelvis."""
@@ -113,6 +131,8 @@ def compose(model: Body, plan: MotionPlan) -> Composition:
     )
     if plan.hold is not None:
         result.correction = Correction(plan.hold, times)
+    given, still = result.given(times), result.correction is None and tumbling is None
+    posture = result.posture(given)
     turning = np.zeros((len(times), 2))
     start: Dual | None = None
     missed_m = 0.0
@@ -122,7 +142,8 @@ def compose(model: Body, plan: MotionPlan) -> Composition:
         target, level = zero_moment(plan.supports, times, load, height.value, vertical)
         over = Dual(height.value - level, height.first, height.second)
         result.horizontal.solve(times, target, over, turning)
-        pose = result.pose(times, start)
+        posture = posture if still else result.posture(given)
+        pose = result.kinematics.pose(result.com(times), posture, start)
         start = pose.origins["pelvis"]
         result.lift_m += _lift(result, pose, times)
         if k < LIFTS:
@@ -133,7 +154,7 @@ def compose(model: Body, plan: MotionPlan) -> Composition:
                 break
         if tumbling is not None:
             _fly(result, tumbling, 3)
-            pose = result.pose(times, start)
+            pose = result.kinematics.pose(result.com(times), result.posture(given), start)
         _, _, change = result.kinematics.momentum(pose)
         turning = np.column_stack([change[:, 1], -change[:, 0]]) / result.kinematics.total_mass
     if missed_m > FAR_M:
@@ -145,10 +166,15 @@ def compose(model: Body, plan: MotionPlan) -> Composition:
 
 def _fly(composition: Composition, tumbling: Tumbling, rounds: int) -> float:
     """Turns the pelvis in the air; returns the last change of its rates in rad/s."""
-    start = composition.pose(tumbling.times).origins["pelvis"]
+    kinematics, given, com = (
+        composition.kinematics,
+        composition.given(tumbling.times),
+        composition.com(tumbling.times),
+    )
+    start = kinematics.pose(com, composition.posture(given)).origins["pelvis"]
 
     def momentum(angles: tuple[Dual, Dual, Dual]) -> Array:
-        return composition.kinematics.momentum(composition.pose(tumbling.times, start, angles))[1]
+        return kinematics.momentum(kinematics.pose(com, composition.posture(given, angles), start))[1]
 
     change = tumbling.refine(momentum, rounds)
     composition.pelvis = tumbling.curves()

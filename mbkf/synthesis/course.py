@@ -129,13 +129,14 @@ def standing_height(
     load, poses = feet.load(times), feet.poses(times)
     joints = {joint: tuple(curve(times) for curve in axes) for joint, axes in angles.items()}
     kinematics, still = InverseKinematics(model), np.zeros((count, 3))
+    posture = kinematics.posture(joints, poses)
     usual = 0.95 * float(model.scale.mean())
     flat = Dual.constant(np.full(count, usual))
     plane = HorizontalPath([(0.0, seconds)], 2 * COARSE_S)
     plane.solve(times, load.total_pressure, flat, np.zeros((count, 2)))
     across, height, start = plane(times).value, usual + load.mean_surface, None
     for _ in range(ROUNDS):
-        pose = kinematics.pose(Dual(np.column_stack([across, height]), still, still), joints, poses, start)
+        pose = kinematics.pose(Dual(np.column_stack([across, height]), still, still), posture, start)
         start = pose.origins["pelvis"]
         height = height + 0.9 * (np.cos(KNEE_RAD / 2) - pose.reach) * kinematics.leg_length("r")
     step = times[1]

@@ -6,10 +6,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import sparse
 from scipy.interpolate import BSpline
-from scipy.linalg import cho_factor, cho_solve
 
 from mbkf.conventions import Array
+from mbkf.synthesis.bands import BandedCholesky, spline_rows
 from mbkf.synthesis.dual_numbers import Dual
 from mbkf.synthesis.inverse_kinematics import Pose
 
@@ -51,15 +52,14 @@ class Correction:
         self.hold, self.times = hold, times
         self.knots = np.r_[[times[0]] * DEGREE, inner, [times[-1]] * DEGREE]
         self.coefficients = np.zeros((len(self.knots) - DEGREE - 1, 2))
-        basis = BSpline(self.knots, np.eye(len(self.coefficients)), DEGREE)
-        self._rows = basis(times)
+        self._rows = spline_rows(self.knots, DEGREE, times, 0)
         self._weight = hold.weight(times)
-        jerk = basis(times, nu=3)
-        fixed = self._weight + hold.free(times)
-        self._normal = cho_factor(
-            self._rows.T @ (fixed[:, None] * self._rows)
+        jerk = spline_rows(self.knots, DEGREE, times, 3)
+        fixed = sparse.diags_array(self._weight + hold.free(times))
+        self._normal = BandedCholesky(
+            self._rows.T @ (fixed @ self._rows)
             + CALM * (jerk.T @ jerk)
-            + 1e-12 * np.eye(len(jerk.T))
+            + 1e-12 * sparse.eye_array(len(self.coefficients))
         )
 
     def __call__(self, times: Array) -> Dual:
@@ -73,5 +73,5 @@ class Correction:
         missed = self.hold.missed(self.times, pose)
         gain = [0.7 / self.hold.metres_per_rad if self.hold.lean else 0.0, -1.0]
         wanted = self._rows @ self.coefficients + missed * gain
-        self.coefficients = cho_solve(self._normal, self._rows.T @ (self._weight[:, None] * wanted))
+        self.coefficients = self._normal.solve(self._rows.T @ (self._weight[:, None] * wanted))
         return float(np.abs(missed[self._weight > 0.5]).max())

@@ -6,22 +6,27 @@ of mass by iteration. Angles: a joint's rotation is Ry(y) Rx(x) Rz(z); the pelvi
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import SIDES, Array
-from mbkf.errors import InvalidInput
 from mbkf.model.body import Body
 from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.dual_numbers import Dual
+from mbkf.synthesis.two_links import Limb, TwoLinks
 
 SIDE_NAMES = {"r": "right", "l": "left"}
 
-STRAIGHT_RAD = np.deg2rad(2.5)
-"""The knee never gets straighter than this; a leg asked to reach further stays short."""
+NEWTON, ROUNDS = 12, 60
+"""Newton steps at most that find the pelvis, and iterations at most, where those fail."""
+
+CLOSE = (1e-13, 1e-11, 1e-9)
+"""Errors of the centre of mass at which they end: m, m/s, m/s²."""
+
+GAIN = np.diag([1.2, 1.2, 1.1])
+"""How far the pelvis moves per error of the centre of mass where Newton's steps fail; legs follow a little."""
 
 
 @dataclass(frozen=True)
@@ -76,6 +81,31 @@ class Pose:
     reach: Array
 
 
+@dataclass(frozen=True)
+class Posture:
+    """What is given of a pose before its centre of mass.
+
+    Attributes:
+        rotations: Per segment with a given one the (T, 3, 3) world rotation.
+        above: Per segment of pelvis, trunk, head and hanging arms the (T, 3) origin relative to the pelvis's, m.
+        ends: Per segment of the feet the (T, 3) world origin, m.
+        angles: Per dof of a hinge or universal joint, by segment, the (T,) angles, rad.
+        legs: "right" and "left" leg.
+        arms: Arms whose hands' place is given.
+        fixed: (T, 3) first moment of mass with the pelvis's origin in the world's, without what limbs move, kg m.
+        mass: What moves with the pelvis's origin, besides limbs, kg.
+    """
+
+    rotations: dict[str, Dual]
+    above: dict[str, Dual]
+    ends: dict[str, Dual]
+    angles: dict[str, tuple[Dual, ...]]
+    legs: dict[str, Limb]
+    arms: dict[str, Limb]
+    fixed: Dual
+    mass: float
+
+
 class InverseKinematics:
     """Poses of one scaled body from centre of mass, feet and joint angles.
 
@@ -113,91 +143,184 @@ class InverseKinematics:
             np.linalg.norm(self.offset[f"{name}_shank"]) + np.linalg.norm(self.offset[f"{name}_foot"])
         )
 
-    def pose(
+    def posture(
         self,
-        com: Dual,
         angles: Mapping[str, tuple[Dual, ...]],
         feet: Mapping[str, FootPose],
-        start: Dual | None = None,
         hands: Mapping[str, HandPose] | None = None,
-    ) -> Pose:
+    ) -> Posture:
+        """What is given of a pose before its centre of mass.
+
+        Args:
+            angles: Joint angles (x, y, z) of pelvis, torso, neck (x, y), head, arms, and the knees' small
+                rotations ``{side}_shank`` (x, z; y is not used), rad.
+            feet: The feet by side.
+            hands: The hands whose place is given, by side; of these arms' angles only the forearm's small rotations
+                (x, z) are used.
+        """
+        held = {SIDE_NAMES[side]: hand for side, hand in (hands or {}).items()}
+        rotations, origins = self._upper(angles, list(held))
+        free, ends = dict(rotations), self._feet(feet)
+        fixed = self._moment(rotations, origins) + self._moment(*ends)
+        legs = {SIDE_NAMES[side]: self._leg(side, rotations["pelvis"], angles, feet[side]) for side in SIDES}
+        arms = {name: self._arm(name, rotations, origins, angles, hand) for name, hand in held.items()}
+        for name, hand in held.items():
+            fixed = fixed + hand.rotation.apply(self.mass[f"{name}_hand"] * self.com[f"{name}_hand"])
+            rotations[f"{name}_hand"] = hand.rotation
+        hinged = {"neck": angles["neck"][:2], "right_toes": (feet["r"].toes,), "left_toes": (feet["l"].toes,)}
+        upper_mass = sum(self.mass[name] for name in free)
+        return Posture({**rotations, **ends[0]}, origins, ends[1], hinged, legs, arms, fixed, upper_mass)
+
+    def pose(self, com: Dual, posture: Posture, start: Dual | None = None) -> Pose:
         """The pose with a given (T, 3) centre of mass, m.
 
         Args:
             com: Whole-body centre of mass.
-            angles: Joint angles (x, y, z) of pelvis, torso, neck (x, y), head, arms, and the knees' small
-                rotations ``{side}_shank`` (x, z; y is not used), rad.
-            feet: The feet by side.
+            posture: What else is given.
             start: Pelvis position from which the iteration starts.
-            hands: The hands whose place is given, by side; of these arms' angles only the forearm's small rotations
-                (x, z) are used.
         """
-        hands = hands or {}
-        upper = self._upper(angles, [SIDE_NAMES[side] for side in hands])
-        rest = sum((self._weighted(name, *upper) for name in upper[0]), start=Dual.constant(np.zeros(3)))
-        upper_mass = sum(self.mass[name] for name in upper[0])
-        pelvis = com if start is None else start
-        for _ in range(60):
-            limbs = self._limbs(pelvis, upper, angles, feet, hands)
-            below = sum(
-                (self._weighted(name, *limbs[:2]) for name in limbs[0]), start=Dual.constant(np.zeros(3))
-            )
-            error = com - (rest + below + pelvis * upper_mass) / self.total_mass
-            pelvis = pelvis + error * np.array([1.2, 1.2, 1.1])
-            if all(np.abs(e).max() < tol for e, tol in zip(error.orders, (1e-13, 1e-11, 1e-9), strict=True)):
+        pelvis = self._pelvis(com, posture, com if start is None else start)
+        rotations = dict(posture.rotations)
+        origins = {name: origin + pelvis for name, origin in posture.above.items()} | posture.ends
+        knees, reach = [], np.zeros(len(com.value))
+        for name, leg in posture.legs.items():
+            knee, used = self._place(name, ("thigh", "shank", None), leg, pelvis, rotations, origins)
+            knees.append(knee)
+            reach = np.maximum(reach, used)
+        for name, arm in posture.arms.items():
+            self._place(name, ("upper_arm", "forearm", "hand"), arm, pelvis, rotations, origins)
+        return Pose(rotations, origins, posture.angles, np.stack(knees, axis=-1), reach)
+
+    def _pelvis(self, com: Dual, posture: Posture, pelvis: Dual) -> Dual:
+        """(T, 3) pelvis position with which the centre of mass is where it should be, m."""
+        limbs = [*posture.legs.values(), *posture.arms.values()]
+        for k in range(ROUNDS):
+            moment, mass = posture.fixed + pelvis * posture.mass, posture.mass * np.eye(3)
+            for limb in limbs:
+                own, by_pelvis = limb.moment_by_pelvis(pelvis)
+                moment, mass = moment + own, mass + by_pelvis
+            error = com - moment / self.total_mass
+            gain: Array = np.asarray(self.total_mass * np.linalg.inv(mass)) if k < NEWTON else GAIN[None]
+            pelvis = pelvis + Dual(*(_apply(gain, x) for x in error.orders))
+            if all(np.abs(e).max() < close for e, close in zip(error.orders, CLOSE, strict=True)):
                 break
-        limbs = self._limbs(pelvis, upper, angles, feet, hands)
-        rotations, origins = {**upper[0], **limbs[0]}, {name: p + pelvis for name, p in upper[1].items()}
-        origins.update(limbs[1])
-        hinged = {"neck": angles["neck"][:2], "right_toes": (feet["r"].toes,), "left_toes": (feet["l"].toes,)}
-        return Pose(rotations, origins, hinged, limbs[2], limbs[3])
+        return pelvis
 
-    def _weighted(self, name: str, rotations: dict[str, Dual], origins: dict[str, Dual]) -> Dual:
-        return (origins[name] + rotations[name].apply(self.com[name])) * self.mass[name]
-
-    def _limbs(
-        self,
+    @staticmethod
+    def _place(
+        name: str,
+        parts: tuple[str, str, str | None],
+        limb: Limb,
         pelvis: Dual,
-        upper: tuple[dict[str, Dual], dict[str, Dual]],
-        angles: Mapping[str, tuple[Dual, ...]],
-        feet: Mapping[str, FootPose],
-        hands: Mapping[str, HandPose],
-    ) -> tuple[dict[str, Dual], dict[str, Dual], Array, Array]:
-        """World rotations and origins of the legs and of arms whose hands' place is given; knees and reach."""
-        rotations, origins, knees, reach = self._legs(pelvis, upper[0]["pelvis"], angles, feet)
-        for side, hand in hands.items():
-            self._arm(
-                SIDE_NAMES[side],
-                pelvis + upper[1]["torso"],
-                upper[0]["torso"],
-                angles,
-                hand,
-                rotations,
-                origins,
-            )
-        return rotations, origins, knees, reach
+        rotations: dict[str, Dual],
+        origins: dict[str, Dual],
+    ) -> tuple[Array, Array]:
+        """Adds a limb's segments to rotations and origins; returns its flexion, rad, and its reach.
+
+        Args:
+            name: "right" or "left".
+            parts: The upper and the lower link, and what is at the far end; None where that has its place.
+            limb: The limb.
+            pelvis: (T, 3) origin of the pelvis, m.
+            rotations: World rotations by segment.
+            origins: World origins by segment.
+        """
+        near = pelvis + limb.near
+        span = limb.span(near)
+        bend = limb.links.bend(span, limb.across(near))
+        upper, lower, end = parts
+        first, last = bend.rotations()
+        rotations[f"{name}_{upper}"], rotations[f"{name}_{lower}"] = first, last
+        origins[f"{name}_{upper}"] = near
+        origins[f"{name}_{lower}"] = near + first.apply(np.array([0.0, 0.0, -limb.links.lengths[0]]))
+        if end is not None:
+            origins[f"{name}_{end}"] = near + span
+        return bend.flexion, bend.used
+
+    def _moment(self, rotations: Mapping[str, Dual], origins: Mapping[str, Dual]) -> Dual:
+        """(T, 3) first moment of mass of segments, kg m."""
+        return sum(
+            (
+                (origin + rotations[name].apply(self.com[name])) * self.mass[name]
+                for name, origin in origins.items()
+            ),
+            start=Dual.constant(np.zeros(3)),
+        )
+
+    def _limb(
+        self,
+        names: tuple[str, str],
+        links: TwoLinks,
+        near: Dual,
+        span: Callable[[Dual], Dual],
+        across: Callable[[Dual], Dual],
+        hand: HandPose | None = None,
+    ) -> Limb:
+        """A limb of two segments, see :class:`mbkf.synthesis.two_links.Limb` for the arguments.
+
+        Args:
+            names: The upper and the lower segment.
+            links: The links.
+            near: Near end relative to the pelvis's origin.
+            span: Way from the near to the far end.
+            across: Near which the middle joint's axis lies.
+            hand: Whose mass goes with the far end; None where that is in its place.
+        """
+        upper, lower = names
+        masses = self.mass[upper], self.mass[lower]
+        first = masses[0] * self.com[upper] + masses[1] * self.offset[lower]
+        last = links.small.apply(masses[1] * self.com[lower])
+        held = np.ones(len(near.value)) if hand is None else hand.held.value
+        beyond = 0.0 if hand is None else self.mass[upper.replace("upper_arm", "hand")]
+        return Limb(links, near, span, across, sum(masses), first, last, beyond, held)
+
+    def _leg(self, side: str, pelvis: Dual, angles: Mapping[str, tuple[Dual, ...]], foot: FootPose) -> Limb:
+        """A leg, which hangs on the pelvis's (T, 3, 3) rotation and ends at the ankle."""
+        name = SIDE_NAMES[side]
+        lengths = (-self.offset[f"{name}_shank"][2], -self.offset[f"{name}_foot"][2])
+        small = angles[f"{name}_shank"]
+        left = dual_numbers.stack([-dual_numbers.sin(foot.yaw), dual_numbers.cos(foot.yaw), foot.yaw * 0.0])
+
+        def across(hip: Dual) -> Dual:
+            return left if foot.knee is None else dual_numbers.cross(foot.knee - hip, foot.ankle - hip)
+
+        return self._limb(
+            (f"{name}_thigh", f"{name}_shank"),
+            TwoLinks(lengths, small[0], small[2]),
+            pelvis.apply(self.offset[f"{name}_thigh"]),
+            lambda hip: foot.ankle - hip,
+            across,
+        )
 
     def _arm(
         self,
         name: str,
-        at: Dual,
-        torso: Dual,
+        rotations: Mapping[str, Dual],
+        origins: Mapping[str, Dual],
         angles: Mapping[str, tuple[Dual, ...]],
         hand: HandPose,
-        rotations: dict[str, Dual],
-        origins: dict[str, Dual],
-    ) -> None:
-        """Adds an arm whose hand's place is given; ``at`` and ``torso`` are the torso's origin and rotation."""
-        shoulder = at + torso.apply(self.offset[f"{name}_upper_arm"])
-        hanging = torso.apply(hand.hanging)
-        span = hanging + (hand.wrist - shoulder - hanging) * hand.held[:, None]
+    ) -> Limb:
+        """An arm whose hand's place is given.
+
+        Args:
+            name: "right" or "left".
+            rotations: World rotations of the trunk.
+            origins: Origins of the trunk relative to the pelvis's origin, m.
+            angles: Joint angles, rad.
+            hand: Where the hand is.
+        """
+        torso = rotations["torso"]
         lengths = (-self.offset[f"{name}_forearm"][2], -self.offset[f"{name}_hand"][2])
-        across = torso.apply(np.array([0.0, 1.0, 0.0]))
-        upper, lower, _, _ = self._limb(lengths, span, angles[f"{name}_forearm"], across, -1.0)
-        rotations[f"{name}_upper_arm"], origins[f"{name}_upper_arm"] = upper, shoulder
-        rotations[f"{name}_forearm"] = lower
-        origins[f"{name}_forearm"] = shoulder + upper.apply(self.offset[f"{name}_forearm"])
-        rotations[f"{name}_hand"], origins[f"{name}_hand"] = hand.rotation, shoulder + span
+        small = angles[f"{name}_forearm"]
+        hanging, left = torso.apply(hand.hanging), torso.apply(np.array([0.0, 1.0, 0.0]))
+        return self._limb(
+            (f"{name}_upper_arm", f"{name}_forearm"),
+            TwoLinks(lengths, small[0], small[2], -1.0),
+            origins["torso"] + torso.apply(self.offset[f"{name}_upper_arm"]),
+            lambda shoulder: hanging + (hand.wrist - shoulder - hanging) * hand.held[:, None],
+            lambda _: left,
+            hand,
+        )
 
     def _upper(
         self, angles: Mapping[str, tuple[Dual, ...]], without: Sequence[str] = ()
@@ -223,135 +346,38 @@ class InverseKinematics:
             origins[name] = origins[parent] + rotations[parent].apply(self.offset[name])
         return rotations, origins
 
-    def _legs(
-        self,
-        pelvis: Dual,
-        pelvis_rotation: Dual,
-        angles: Mapping[str, tuple[Dual, ...]],
-        feet: Mapping[str, FootPose],
-    ) -> tuple[dict[str, Dual], dict[str, Dual], Array, Array]:
+    def _feet(self, feet: Mapping[str, FootPose]) -> tuple[dict[str, Dual], dict[str, Dual]]:
+        """World rotations and origins of feet and toes."""
         rotations: dict[str, Dual] = {}
         origins: dict[str, Dual] = {}
-        knees, reach = [], np.zeros(len(pelvis.value))
-        for side in SIDES:
-            name, foot = SIDE_NAMES[side], feet[side]
-            hip = pelvis + pelvis_rotation.apply(self.offset[f"{name}_thigh"])
-            lengths = (-self.offset[f"{name}_shank"][2], -self.offset[f"{name}_foot"][2])
-            if foot.knee is None:
-                across = dual_numbers.stack(
-                    [-dual_numbers.sin(foot.yaw), dual_numbers.cos(foot.yaw), foot.yaw * 0.0]
-                )
-            else:
-                across = dual_numbers.cross(foot.knee - hip, foot.ankle - hip)
-            thigh, shank, knee, used = self._limb(lengths, foot.ankle - hip, angles[f"{name}_shank"], across)
-            foot_rotation = dual_numbers.rotation(2, foot.yaw) @ dual_numbers.rotation(1, foot.pitch)
+        for side, foot in feet.items():
+            name = SIDE_NAMES[side]
+            rotation = dual_numbers.rotation(2, foot.yaw) @ dual_numbers.rotation(1, foot.pitch)
             if foot.roll is not None:
-                foot_rotation = foot_rotation @ dual_numbers.rotation(0, foot.roll)
-            rotations[f"{name}_thigh"], origins[f"{name}_thigh"] = thigh, hip
-            rotations[f"{name}_shank"] = shank
-            origins[f"{name}_shank"] = hip + thigh.apply(self.offset[f"{name}_shank"])
-            rotations[f"{name}_foot"], origins[f"{name}_foot"] = foot_rotation, foot.ankle
-            rotations[f"{name}_toes"] = foot_rotation @ dual_numbers.rotation(1, foot.toes)
-            origins[f"{name}_toes"] = foot.ankle + foot_rotation.apply(self.offset[f"{name}_toes"])
-            knees.append(knee)
-            reach = np.maximum(reach, used)
-        return rotations, origins, np.stack(knees, axis=-1), reach
-
-    def _limb(
-        self,
-        lengths: tuple[float, float],
-        span: Dual,
-        middle_xz: tuple[Dual, ...],
-        across: Dual,
-        bends: float = 1.0,
-    ) -> tuple[Dual, Dual, Array, Array]:
-        """Rotations of two links that put the far end at ``span`` from the near one, flexion and reach.
-
-        Args:
-            lengths: Of the upper and the lower link, m.
-            span: (T, 3) m.
-            middle_xz: Small rotations of the middle joint about x and z (first and last), rad.
-            across: (T, 3) near which the axis of the middle joint lies.
-            bends: Sign of flexion about that axis: 1 knee, −1 elbow.
-        """
-        upper, lower = lengths
-        square = dual_numbers.dot(span, span)
-        cosine = (square - upper**2 - lower**2) / (dual_numbers.cos(middle_xz[0]) * (2 * upper * lower))
-        limit = float(np.cos(STRAIGHT_RAD))
-        cosine = dual_numbers.where(
-            (cosine.value < limit) & (cosine.value > -limit),
-            cosine,
-            Dual.constant(np.clip(cosine.value, -limit, limit)),
-        )
-        flexion = dual_numbers.arccos(cosine)
-        middle = dual_numbers.euler((middle_xz[0], flexion * bends, middle_xz[2]))
-        local = middle.apply(np.array([0.0, 0.0, -lower])) + np.array([0.0, 0.0, -upper])
-        side_axis = Dual.constant(np.zeros_like(span.value) + np.array([0.0, 1.0, 0.0]))
-        first = _frame(span, across) @ _frame(local, side_axis).transposed()
-        used = np.sqrt(square.value) / (upper + lower)
-        return first, first @ middle, flexion.value, used
+                rotation = rotation @ dual_numbers.rotation(0, foot.roll)
+            rotations[f"{name}_foot"], origins[f"{name}_foot"] = rotation, foot.ankle
+            rotations[f"{name}_toes"] = rotation @ dual_numbers.rotation(1, foot.toes)
+            origins[f"{name}_toes"] = foot.ankle + rotation.apply(self.offset[f"{name}_toes"])
+        return rotations, origins
 
     def momentum(self, pose: Pose) -> tuple[Dual, Array, Array]:
         """Centre of mass (T, 3), angular momentum about it (T, 3) in N m s and its derivative (T, 3) in N m."""
-        com = (
-            sum(
-                (self._weighted(name, pose.rotations, pose.origins) for name in self.mass),
-                start=Dual.constant(np.zeros(3)),
-            )
-            / self.total_mass
-        )
+        com = self._moment(pose.rotations, pose.origins) / self.total_mass
         spin, change = np.zeros_like(com.value), np.zeros_like(com.value)
         for name, mass in self.mass.items():
             R = pose.rotations[name]
             at = pose.origins[name] + R.apply(self.com[name]) - com
-            carried = self.moments[name] @ np.swapaxes(R.value, -1, -2)
-            spin += 2 * dual_numbers.axial(R.first @ carried) + mass * np.cross(at.value, at.first)
-            change += 2 * dual_numbers.axial(R.second @ carried) + mass * np.cross(at.value, at.second)
+            carried = _product(np.broadcast_to(self.moments[name], R.value.shape), R.transposed().value)
+            spin += 2 * dual_numbers.axial(_product(R.first, carried)) + mass * np.cross(at.value, at.first)
+            change += 2 * dual_numbers.axial(_product(R.second, carried)) + mass * np.cross(
+                at.value, at.second
+            )
         return com, spin, change
 
-    def coordinates(self, pose: Pose) -> tuple[Array, Array, Array]:
-        """Arrays q (T, nq), v (T, nv), a (T, nv) of a pose, in Pinocchio's coordinates; quaternions do not jump."""
-        frames = len(pose.knee)
-        q = np.zeros((frames, self.model.nq))
-        v, a = np.zeros((frames, self.model.nv)), np.zeros((frames, self.model.nv))
-        for name, joint in self.model.joints.items():
-            if joint.kind in ("hinge", "universal"):
-                for k, angle in enumerate(pose.angles[name]):
-                    at_q, at_v = joint.q.start + k, joint.v.start + k
-                    q[:, at_q], v[:, at_v], a[:, at_v] = angle.orders
-                continue
-            rotation, first_q, first_v = pose.rotations[name], joint.q.start, joint.v.start
-            if joint.kind == "free":
-                to_body, origin = rotation.transposed(), pose.origins[name]
-                q[:, first_q : first_q + 3] = origin.value
-                v[:, first_v : first_v + 3] = _apply(to_body.value, origin.first)
-                a[:, first_v : first_v + 3] = _apply(to_body.value, origin.second) + _apply(
-                    to_body.first, origin.first
-                )
-                first_q, first_v = first_q + 3, first_v + 3
-            else:
-                rotation = pose.rotations[self.parent[name]].transposed() @ rotation
-            q[:, first_q : first_q + 4] = _quaternions(rotation.value)
-            v[:, first_v : first_v + 3], a[:, first_v : first_v + 3] = dual_numbers.local_rates(rotation)
-        if not (np.isfinite(q).all() and np.isfinite(a).all()):
-            raise InvalidInput("the motion cannot be performed by this body")
-        return q, v, a
+
+def _product(one: Array, other: Array) -> Array:
+    return np.asarray(np.einsum("tij,tjk->tik", one, other))
 
 
 def _apply(matrices: Array, vectors: Array) -> Array:
-    return (matrices @ vectors[..., None])[..., 0]
-
-
-def _frame(along: Dual, across: Dual) -> Dual:
-    """(T, 3, 3) right-handed frame whose first axis is ``along`` and whose second is nearest to ``across``."""
-    u = dual_numbers.unit(along)
-    w = dual_numbers.unit(across - u * dual_numbers.dot(across, u)[..., None])
-    return dual_numbers.stack([u, w, dual_numbers.cross(u, w)])
-
-
-def _quaternions(rotations: Array) -> Array:
-    quaternions = Rotation.from_matrix(rotations).as_quat()
-    turned = np.sign(np.einsum("ti,ti->t", quaternions[1:], quaternions[:-1]))
-    turned[turned == 0] = 1.0
-    quaternions[1:] *= np.cumprod(turned)[:, None]
-    return quaternions
+    return np.asarray(np.einsum("tij,tj->ti", matrices, vectors))

@@ -183,15 +183,15 @@ class _Foot:
         """Toe-off as part of the stride."""
         return 0.5 + DOUBLE_SUPPORT
 
-    def _about(self, step: Step, pivot: Array, pitch: Dual) -> Dual:
-        """(T, 3) ankle of a foot that turns about a point of its own that rests on the floor."""
+    def _about(self, pivot: Array, pitch: Dual) -> Dual:
+        """(T, 3) ankle over its place on the flat foot, of a foot that turns about a point that rests on the floor."""
         turned = dual_numbers.rotation(1, pitch).apply(-pivot) + pivot
-        return Dual(*(x @ self.heading.T for x in turned.orders)) + step.ankle_m
+        return Dual(*(x @ self.heading.T for x in turned.orders))
 
     def _swing(self, last: Step, following: Step) -> Curve:
         at_off, at_strike = np.array([last.off_s]), np.array([following.strike_s])
-        off = self._about(last, self.ball, self.pitch(at_off))
-        strike = self._about(following, self.heel, self.pitch(at_strike))
+        off = self._about(self.ball, self.pitch(at_off)) + last.ankle_m
+        strike = self._about(self.heel, self.pitch(at_strike)) + following.ankle_m
         duration = following.strike_s - last.off_s
         a, b = ([x[0] for x in end.orders] for end in (off, strike))
         times = [last.off_s, *(last.off_s + part * duration for part in SWING_PARTS), following.strike_s]
@@ -212,15 +212,17 @@ class _Foot:
     def pose(self, times: Array) -> FootPose:
         """The foot at times in s."""
         pitch = self.pitch(times)
-        ankle = Dual.constant(np.zeros((len(times), 3)))
-        for step in self.steps:
-            on = (times >= step.strike_s) & (times <= step.off_s)
-            rolled = dual_numbers.where(
-                pitch.value < 0, self._about(step, self.heel, pitch), self._about(step, self.ball, pitch)
-            )
-            ankle = dual_numbers.where(on, rolled, ankle)
-        for (a, b), swing in zip(pairwise(self.steps), self.swings, strict=True):
-            ankle = dual_numbers.where((times > a.off_s) & (times < b.strike_s), swing(times), ankle)
+        step = np.searchsorted([step.strike_s for step in self.steps], times, side="right") - 1
+        on = (step >= 0) & (times <= np.array([step.off_s for step in self.steps])[step])
+        rolled = (
+            dual_numbers.where(pitch.value < 0, self._about(self.heel, pitch), self._about(self.ball, pitch))
+            + np.array([step.ankle_m for step in self.steps])[step]
+        )
+        ankle = dual_numbers.where(on, rolled, Dual.constant(np.zeros((len(times), 3))))
+        for k, swing in enumerate(self.swings):
+            swinging = np.flatnonzero((step == k) & ~on)
+            for whole, part in zip(ankle.orders, swing(times[swinging]).orders, strict=True):
+                whole[swinging] = part
         yaw = Dual.constant(np.full(len(times), self.steps[0].yaw))
         return FootPose(ankle, yaw, pitch, self.toes(times))
 

@@ -1,0 +1,16 @@
+"""The benchmark's structure; how long anything takes is not tested."""
+
+import pytest
+
+from benchmarks import synthesis_time
+from benchmarks.checks import Context
+
+
+def test_a_quick_run_gives_both_rows_and_the_files(tmp_path, monkeypatch):
+    times = iter([10.0, 12.0, 20.0, 24.0])
+    monkeypatch.setattr(synthesis_time, "process_time", lambda: next(times))
+    monkeypatch.setattr(synthesis_time, "product_seconds", lambda: 0.001)
+    frame, growth = synthesis_time.run(Context(None, tmp_path, quick=True))
+    assert frame.value == pytest.approx(4.0 / 400 / 0.001)
+    assert growth.value == pytest.approx((4.0 / 400) / (2.0 / 100))
+    assert (tmp_path / "walk" / "trial.c3d").is_file()

@@ -1,0 +1,106 @@
+"""Limbs reach their far ends, their segments' moments add up, and the derivatives are the numeric ones."""
+
+import numpy as np
+import pytest
+
+from mbkf.synthesis import dual_numbers
+from mbkf.synthesis.curves import ripple
+from mbkf.synthesis.dual_numbers import Dual
+from mbkf.synthesis.two_links import STRAIGHT_RAD, Limb, TwoLinks
+
+TIMES = np.linspace(0.0, 2.0, 9)
+LENGTHS = 0.42, 0.40
+UPPER, LOWER = np.array([0.02, 0.01, -0.3]), np.array([0.01, -0.02, -0.2])
+
+
+def moving(*means):
+    return dual_numbers.stack(
+        [ripple(0.05, 0.4 + 0.1 * k, 0.3 * k, mean)(TIMES) for k, mean in enumerate(means)]
+    )
+
+
+def links(bends):
+    return TwoLinks(LENGTHS, ripple(0.03, 0.5, 0.1)(TIMES), ripple(0.05, 0.3, 0.4)(TIMES), bends)
+
+
+def bend(span, bends=1.0, across=(0.2, 1.0, 0.1)):
+    return links(bends).bend(span, moving(*across))
+
+
+@pytest.mark.parametrize("bends", [1.0, -1.0])
+def test_the_far_end_is_reached_and_the_middle_joint_bends_its_way(bends):
+    span = moving(0.1, 0.05, -0.7)
+    found = bend(span, bends)
+    upper, lower = found.rotations()
+    reached = upper.apply(np.array([0.0, 0.0, -LENGTHS[0]])) + lower.apply(np.array([0.0, 0.0, -LENGTHS[1]]))
+    for x, y in zip(reached.orders, span.orders, strict=True):
+        assert np.abs(x - y).max() < 1e-12 * (1 + np.abs(y).max())
+    relative = np.einsum("tji,tjk->tik", upper.value, lower.value)
+    assert (bends * relative[:, 0, 2] > 0).all()
+    assert found.used == pytest.approx(np.linalg.norm(span.value, axis=1) / sum(LENGTHS))
+
+
+def test_out_of_reach_the_limb_stays_short_and_almost_straight():
+    span = moving(0.0, 0.0, -1.2)
+    found = bend(span)
+    assert found.flexion == pytest.approx(STRAIGHT_RAD)
+    assert not found.flexion_by_distance.any()
+    upper, lower = found.rotations()
+    reached = upper.value[:, :, 2] * -LENGTHS[0] + lower.value[:, :, 2] * -LENGTHS[1]
+    assert np.abs(np.cross(reached, span.value)).max() < 1e-12
+
+
+def test_what_the_links_carry_is_turned_with_them():
+    found = bend(moving(0.1, 0.05, -0.7))
+    carried, _ = found.carried_by_span(UPPER, found.links.small.apply(LOWER))
+    upper, lower = found.rotations()
+    expected = upper.apply(UPPER) + lower.apply(LOWER)
+    for x, y in zip(carried.orders, expected.orders, strict=True):
+        assert np.abs(x - y).max() < 1e-12 * (1 + np.abs(y).max())
+
+
+@pytest.mark.parametrize("bends", [1.0, -1.0])
+@pytest.mark.parametrize("down", [-0.75, -0.5, -1.2])
+def test_derivatives_by_the_ends_are_the_numeric_ones(bends, down):
+    span, h = moving(0.1, 0.05, down), 1e-6
+    small = links(bends).small
+
+    def at(moved):
+        return bend(span + moved, bends).carried_by_span(UPPER, small.apply(LOWER))
+
+    stated = at(np.zeros(3))[1]
+    for k, axis in enumerate(np.eye(3)):
+        numeric = (at(h * axis)[0].value - at(-h * axis)[0].value) / (2 * h)
+        assert np.abs(numeric - stated[:, :, k]).max() < 1e-7
+
+
+@pytest.mark.parametrize("held", [1.0, 0.4, 0.0])
+def test_the_moment_by_the_pelvis_is_the_numeric_derivative(held):
+    goal, hanging = moving(0.3, 0.1, 0.2), moving(0.0, 0.0, -0.6)
+    own = links(-1.0)
+    limb = Limb(
+        own,
+        moving(0.0, -0.2, 0.5),
+        lambda near: hanging + (goal - near - hanging) * held,
+        lambda _: moving(0.0, 1.0, 0.0),
+        5.0,
+        UPPER,
+        own.small.apply(LOWER),
+        0.5,
+        np.full(len(TIMES), held),
+    )
+    pelvis, h = moving(0.1, 0.1, 0.2), 1e-6
+    moment, stated = limb.moment_by_pelvis(pelvis)
+    assert moment.value.shape == (len(TIMES), 3)
+    for k, axis in enumerate(np.eye(3)):
+        ahead, behind = (limb.moment_by_pelvis(pelvis + step * axis)[0].value for step in (h, -h))
+        assert np.abs((ahead - behind) / (2 * h) - stated[:, :, k]).max() < 1e-7
+
+
+def test_a_straight_constant_limb_does_not_move():
+    still = Dual.constant(np.tile([0.0, 0.0, -0.7], (len(TIMES), 1)))
+    zero = Dual.constant(np.zeros(len(TIMES)))
+    across = Dual.constant(np.tile([0.0, 1.0, 0.0], (len(TIMES), 1)))
+    for rotation in TwoLinks(LENGTHS, zero, zero).bend(still, across).rotations():
+        assert not rotation.first.any()
+        assert not rotation.second.any()
