@@ -15,10 +15,12 @@ from types import FrameType
 from typing import Any, NamedTuple, cast
 
 import mbkf
+from benchmarks.kernel import using
 from mbkf.errors import InvalidInput
 from mbkf.filters.dynamic.plant import DynamicState
 from mbkf.filters.estimate import Recording, TrackingFilter
 from mbkf.filters.filter import Step
+from mbkf.kernel.loading import REFERENCE
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.reconstruct import ReconstructSettings, subject_markers
 from mbkf.pipelines.trial.filters import tracking_filter
@@ -97,10 +99,12 @@ def undeclared(executed: Iterable[str], page: Path = PAGE) -> list[str]:
 def executed_in_a_step() -> set[str]:
     """Files of the package that one dynamic step executes, all markers seen and both feet on plates.
 
+    The step is the reference's: the compiled kernel does the same by other files (``mbkf/kernel``).
+
     Raises:
         InvalidInput: The frame that was chosen is not like that.
     """
-    with single_threaded():
+    with using(REFERENCE), single_threaded():
         kalman, recording = _squat()
         before = kalman.start(recording, 0, None)
         if before is None:
