@@ -28,7 +28,7 @@ def test_segments_are_where_the_pose_has_them(body, composition):
 
 
 def test_velocity_and_acceleration_are_rates_along_the_configuration(body, composition):
-    _q, v, a = coordinates(body, composition.pose(TIMES))
+    _, v, a = coordinates(body, composition.pose(TIMES))
     before, after = (coordinates(body, composition.pose(TIMES + step)) for step in (-STEP_S, STEP_S))
     for k in range(len(TIMES)):
         way = pin.difference(body.pin_model, before[0][k], after[0][k])
