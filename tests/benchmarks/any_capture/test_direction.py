@@ -18,14 +18,14 @@ from mbkf.errors import UnknownName
 from mbkf.io.records import Capture, DerivedPoint, MarkerTrajectories
 from mbkf.io.subject import SubjectMarker
 from mbkf.io.wrench import centre_of_pressure
-from mbkf.pipelines.synth import synthesise
 from tests.recordings import walk
+from tests.walker import walker
 
 TIMES = np.arange(200) / 100.0
 
 
 def test_a_capture_turns_with_its_plates():
-    _, made = synthesise("walk", seconds=1.0)
+    made = walker()
     quarter = turned(made.trial, 90.0)
     x, y, z = np.moveaxis(made.trial.markers.positions_m, 2, 0)
     np.testing.assert_allclose(quarter.markers.positions_m, np.stack([-y, x, z], axis=2), atol=1e-12)
