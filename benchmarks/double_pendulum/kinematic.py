@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar, cast
 
@@ -11,6 +12,7 @@ from benchmarks.double_pendulum.torque import START_VARIANCE
 from benchmarks.double_pendulum.trials import Estimate, Trial
 from mbkf.conventions import Array
 from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
+from mbkf.model.body import SegmentJoint
 from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
 from mbkf.model.human import HumanModel
 from mbkf.numerics.kalman import correct, information
@@ -26,10 +28,15 @@ class PlainManifold:
 
     Attributes:
         movement_sd: (4,) typical accelerations of the coordinates z.
+        joints: One slider per coordinate.
     """
 
     movement_sd: Array
     nv: ClassVar[int] = 4
+    joints: ClassVar[Mapping[str, SegmentJoint]] = {
+        f"z{k}": SegmentJoint(f"z{k}", "slider", "", k + 1, slice(k, k + 1), slice(k, k + 1))
+        for k in range(4)
+    }
 
     def integrate(self, q: Array, dv: Array) -> Array:
         """(4,) q + dv."""

@@ -45,7 +45,7 @@ def test_every_motion_is_followed_causally_and_smoothed(monkeypatch, tmp_path):
     if library() is None:
         pytest.skip("the kernel is not compiled here")
     monkeypatch.setattr(kernel, "QUICK_MOTIONS", ("squat",))
-    monkeypatch.setattr(kernel, "SECONDS", 0.6)
+    monkeypatch.setattr(kernel, "SECONDS", 1.0)
     rows = kernel.run(kernel.Context(None, tmp_path, quick=True))
     names = [row.name.partition(": ") for row in rows]
     assert [name for name, _, what in names if "last digit" in what] == ["squat, causal", "squat, smoothed"]
