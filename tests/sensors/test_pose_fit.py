@@ -106,10 +106,9 @@ def test_covariance_is_the_inverse_of_the_information(body):
     H = sensor.reading(found.q).jacobian.reshape(-1, model.nv) / 0.005
     B = posture.reading(found.q).jacobian / posture.sd[:, None]
     expected = H.T @ H + B.T @ B
-    # An inverse is rounded by the size of its rows and columns, however small an element is.
-    rounding = 2e-13 * np.sqrt(np.outer(np.diag(expected), np.diag(expected)))
-    off = np.abs(np.linalg.inv(found.covariance) - expected)
-    assert (off <= 1e-8 * np.abs(expected) + rounding).all()
+    # Metres and radians on a common scale: an inverse is rounded by the size of its rows and columns.
+    scale = np.sqrt(np.outer(np.diag(expected), np.diag(expected)))
+    assert (np.abs(np.linalg.inv(found.covariance) - expected) <= 2e-11 * scale).all()
 
 
 def test_scatter_of_fits_is_what_the_covariance_says():
