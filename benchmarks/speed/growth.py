@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from benchmarks.checks import Check, information
@@ -15,7 +13,7 @@ SLOPE = 0.3
 """Bound of what forty markers more cost, P."""
 
 LINEAR = 1.25
-"""How many times the first forty's cost each further forty may take, for a time is not measured exactly."""
+"""Bound of the last over a straight line, for a time is not measured exactly."""
 
 
 def rows(seconds: float, steps: int) -> list[Check]:
@@ -32,12 +30,8 @@ def rows(seconds: float, steps: int) -> list[Check]:
     slope = np.polyfit(list(times), list(times.values()), 1)[0]
     checks.append(Check("step, forty markers more", 40.0 * float(slope), SLOPE, "<=", "P"))
     first, second, third = (times[markers] for markers in MARKERS)
-    bent = (third - second) / 2.0 / max(second - first, 1e-9) if third > second else 0.0
-    worth = math.inf if third - first > SLOPE * 0.2 else None
-    if worth is not None:
-        checks.append(
-            Check("step, forty of the last eighty markers over the forty before", bent, LINEAR, "<=")
-        )
+    straight = first + 3.0 * (second - first)
+    checks.append(Check("step, 160 markers over the line through 40 and 80", third / straight, LINEAR, "<="))
     walk = synthetic(seconds)
     for plates in PLATES:
         value = dynamic_times(with_plates(walk, plates), steps).in_products(STEP)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from benchmarks.speed.products import Stopwatch, Times, joined
@@ -24,39 +26,52 @@ def dynamic_times(walk: Walk, least: int = LEAST_STEPS) -> Times:
     """The dynamic filter frame by frame, as `mbkf reconstruct --causal` runs it."""
     tracking, recording, body = walk.dynamic()
     recorder = FrameRecorder(tracking, recording.markers_m.shape[1], body)
-    rounds, frames = [], 0
-    with single_threaded():
-        while frames < least:
-            watch = Stopwatch()
-            first, found = _started(tracking, recording)
-            for t in range(first + 1, len(recording)):
-                watch.frame()
-                found = watch.part(STEP, tracking.step, found, recording, t)
-                row = blank(recorder.dtype, 1)
-                watch.part(RECORD, recorder.step, row, found, 0.0)
-                watch.part(NIS, recorder.innovation, row, found)
-                spread = watch.part(RECORD, recorder.motion, row, found)
-                watch.part(SPREADS, recorder.spread, row, spread)
-            rounds.append(watch.times())
-            frames += len(rounds[-1].product)
-    return joined(rounds)
+
+    def record(watch: Stopwatch, found: Posterior) -> None:
+        row = blank(recorder.dtype, 1)
+        watch.part(RECORD, recorder.step, row, found, 0.0)
+        watch.part(NIS, recorder.innovation, row, found)
+        spread = watch.part(RECORD, recorder.motion, row, found)
+        watch.part(SPREADS, recorder.spread, row, spread)
+
+    return _timed(tracking, recording, record, least)
 
 
 def kinematic_times(walk: Walk, least: int = LEAST_STEPS) -> Times:
     """The kinematic filter with inverse dynamics behind it."""
     tracking, recording = walk.kinematic()
     balance, wrenches = NewtonEuler(tracking.model), np.zeros(12)
-    rounds, frames = [], 0
+
+    def solve(watch: Stopwatch, found: Posterior) -> None:
+        watch.part(INVERSE_DYNAMICS, balance.tau, found.q, found.v, found.a, wrenches)
+
+    return _timed(tracking, recording, solve, least)
+
+
+def _timed(
+    tracking: TrackingFilter,
+    recording: Recording,
+    after: Callable[[Stopwatch, Posterior], None],
+    least: int,
+) -> Times:
+    """Follows a walk from its beginning until so many steps are timed.
+
+    Args:
+        tracking: The filter.
+        recording: What it reads.
+        after: What is done with each estimate.
+        least: Steps to time.
+    """
+    rounds: list[Times] = []
     with single_threaded():
-        while frames < least:
+        while sum(len(one.product) for one in rounds) < least:
             watch = Stopwatch()
             first, found = _started(tracking, recording)
             for t in range(first + 1, len(recording)):
                 watch.frame()
                 found = watch.part(STEP, tracking.step, found, recording, t)
-                watch.part(INVERSE_DYNAMICS, balance.tau, found.q, found.v, found.a, wrenches)
+                after(watch, found)
             rounds.append(watch.times())
-            frames += len(rounds[-1].product)
     return joined(rounds)
 
 

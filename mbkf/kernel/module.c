@@ -30,6 +30,26 @@ static double *workspace(long count)
     return memory;
 }
 
+/* Whether a view has the numbers of a square of some size; an error is set if not. */
+static int is_square(const Py_buffer *view, Py_ssize_t size)
+{
+    if (view->len == (Py_ssize_t)sizeof(double) * size * size)
+        return 1;
+    PyErr_SetString(PyExc_ValueError, "the arrays' sizes do not fit");
+    return 0;
+}
+
+/* Whether joints (n x 2), taken last, name dofs below nv; an error is set if not. */
+static int are_joints(const Arrays *held, const int *joints, int n, int nv)
+{
+    int sound = held->views[held->held - 1].len >= (Py_ssize_t)(2 * sizeof(int)) * n;
+    for (int k = 0; sound && k < n; k++)
+        sound = joints[2 * k] >= 0 && joints[2 * k + 1] >= 0 && joints[2 * k] + joints[2 * k + 1] <= nv;
+    if (!sound)
+        PyErr_SetString(PyExc_ValueError, "the joints' dofs are not the state's");
+    return sound;
+}
+
 /* carry(P, A, B, joints, singer, noise, sd, carried) */
 static PyObject *py_carry(PyObject *self, PyObject *const *args, Py_ssize_t given)
 {
@@ -46,6 +66,8 @@ static PyObject *py_carry(PyObject *self, PyObject *const *args, Py_ssize_t give
     const double *B = A ? numbers(&held, args[2], (Py_ssize_t)nv * nv) : NULL;
     const int *joints = B ? array(&held, args[3], PyBUF_C_CONTIGUOUS, sizeof(int), 0) : NULL;
     const int n_joints = joints ? length(&held) : 0;
+    if (joints && !are_joints(&held, joints, n_joints, nv))
+        joints = NULL;
     const double *singer = joints ? numbers(&held, args[4], 4) : NULL;
     const double *noise = singer ? numbers(&held, args[5], 9) : NULL;
     double *carried = noise ? filled(&held, args[7], (Py_ssize_t)N * N) : NULL;
@@ -53,7 +75,7 @@ static PyObject *py_carry(PyObject *self, PyObject *const *args, Py_ssize_t give
     if (work) {
         if (N < 3 * nv)
             PyErr_SetString(PyExc_ValueError, "the covariance is smaller than the state");
-        else {
+        else if (is_square(&held.views[1], N)) {
             const Singer s = {singer[0], singer[1], singer[2], singer[3]};
             carry(nv, N, P, A, B, joints, n_joints, &s, noise, sd, carried, work);
             done = Py_NewRef(Py_None);
@@ -78,6 +100,8 @@ static PyObject *py_carry_velocities(PyObject *self, PyObject *const *args, Py_s
     const double *P = B ? symmetric(&held, args[0], N) : NULL;
     const int *joints = P ? array(&held, args[3], PyBUF_C_CONTIGUOUS, sizeof(int), 0) : NULL;
     const int n_joints = joints ? length(&held) : 0;
+    if (joints && !are_joints(&held, joints, n_joints, nv))
+        joints = NULL;
     const double *noise = joints ? numbers(&held, args[5], 4 * (Py_ssize_t)nv) : NULL;
     double *carried = noise ? filled(&held, args[6], (Py_ssize_t)N * N) : NULL;
     double *work = carried ? workspace(carry_work(nv, N)) : NULL;
@@ -108,7 +132,7 @@ static PyObject *py_inform(PyObject *self, PyObject *const *args, Py_ssize_t giv
     if (work) {
         if (n > N || (m && held.views[2].len != (Py_ssize_t)sizeof(double) * m * N))
             PyErr_SetString(PyExc_ValueError, "the arrays' sizes do not fit");
-        else
+        else if (is_square(&held.views[0], N) && is_square(&held.views[1], n))
             done = PyLong_FromLong(inform(N, P, n, information, m, rows, informed, work));
     }
     release(&held);

@@ -113,6 +113,11 @@ def test_arrays_that_do_not_fit_are_refused():
         kernel.inform(P, np.eye(2), np.zeros((1, 4)), np.empty((3, 4)))
     with pytest.raises(ValueError, match="type or size"):
         kernel.inform(P.astype(np.float32), np.eye(2), np.zeros((1, 4)), np.empty((4, 4)))
+    with pytest.raises(ValueError, match="sizes"):
+        kernel.inform(np.eye(4)[:, :2].copy(), np.eye(2), np.zeros((1, 4)), np.empty((4, 4)))
+    with pytest.raises(ValueError, match="dofs"):
+        joints = np.array([[0, 3]], dtype=np.int32)
+        kernel.carry_velocities(P, np.eye(2), np.eye(2), joints, 0.1, np.zeros((2, 2, 2)), np.empty((4, 4)))
     with pytest.raises(TypeError):
         kernel.inform(P, np.eye(2))
 
