@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput
 
 SWITCH = "MBKF_KERNEL"
@@ -185,6 +185,78 @@ class Library(Protocol):
             lower: (nv,) least.
             upper: (nv,) greatest.
             beyond: (nv,) filled.
+        """
+
+    def marker_places(
+        self,
+        tree: object,
+        joints: NDArray[np.int32],
+        local: Array,
+        q: Array,
+        places: Array,
+        jacobian: Array,
+        /,
+    ) -> None:
+        """Fills places of markers and the Jacobian.
+
+        Args:
+            tree: The handle.
+            joints: (M,) joints that carry the markers, 32-bit integers.
+            local: (M, 3) places in their frames.
+            q: (nq,) configuration.
+            places: (M, 3) filled.
+            jacobian: (6, nv) filled, in Fortran order.
+        """
+
+    def markers_apart(
+        self,
+        measured: Array,
+        places: Array,
+        radius: float,
+        innovation: Array,
+        squared: Array,
+        seen: BoolArray,
+        /,
+    ) -> int:
+        """Fills innovations: see :class:`mbkf.kernel.markers.Apart`.
+
+        Args:
+            measured: (M, 3) measured places.
+            places: (M, 3) predicted ones.
+            radius: How far a near marker lies off at most.
+            innovation: (M, 3) filled.
+            squared: (M,) filled.
+            seen: (M,) filled.
+
+        Returns:
+            How many are seen; −1 where one of them is not near.
+        """
+
+    def marker_information(
+        self,
+        tree: object,
+        joints: NDArray[np.int32],
+        weights: Array,
+        trusted: BoolArray,
+        jacobian: Array,
+        places: Array,
+        innovation: Array,
+        matrix: Array,
+        vector: Array,
+        /,
+    ) -> float:
+        """Fills the information of markers and returns yᵀR⁻¹y.
+
+        Args:
+            tree: The handle.
+            joints: (M,) joints that carry the markers, 32-bit integers.
+            weights: (M,) 1/sd².
+            trusted: (M,) markers that count.
+            jacobian: (6, nv) velocities at the world's origin, in Fortran order.
+            places: (M, 3) of the markers.
+            innovation: (M, 3) y.
+            matrix: (nv, nv) filled.
+            vector: (nv,) filled.
         """
 
     def errors(

@@ -14,9 +14,10 @@ Tree *tree_made(int joints, int nq, int nv)
     tree->joint = calloc(joints, sizeof *tree->joint);
     tree->frames = calloc(joints, 12 * sizeof *tree->frames);
     tree->axes = calloc(nv, sizeof *tree->axes);
+    tree->motion = calloc(nv, sizeof *tree->motion);
     tree->carried = calloc(joints, sizeof *tree->carried);
     tree->by = calloc(nv, sizeof *tree->by);
-    if (!tree->joint || !tree->frames || !tree->axes || !tree->carried || !tree->by) {
+    if (!tree->joint || !tree->frames || !tree->axes || !tree->motion || !tree->carried || !tree->by) {
         tree_freed(tree);
         return NULL;
     }
@@ -29,6 +30,7 @@ void tree_freed(Tree *tree)
     free(tree->joint);
     free(tree->frames);
     free(tree->axes);
+    free(tree->motion);
     free(tree->carried);
     free(tree->by);
     free(tree);

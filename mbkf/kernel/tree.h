@@ -42,6 +42,7 @@ typedef struct {
     Joint *joint;      /* (joints) */
     double *frames;    /* (joints x 12) x, y, z axes and origin in the world */
     double (*axes)[6]; /* (nv) velocity of what a dof moves: the Jacobian's columns */
+    double (*motion)[6]; /* (nv) the same, seen from elsewhere than the world's origin */
     Carried *carried;  /* (joints) */
     Derivative *by;    /* (nv) */
 } Tree;

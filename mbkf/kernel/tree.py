@@ -24,6 +24,10 @@ class CompiledTree:
     """A Pinocchio model's equations in compiled code; arrays that it returns are new ones.
 
     The model's numbers are read once: later changes of it do not count.
+
+    Attributes:
+        handle: The kernel's tree.
+        nv: Degrees of freedom.
     """
 
     def __init__(self, kernel: Library, model: pin.Model) -> None:
@@ -33,7 +37,7 @@ class CompiledTree:
             kernel: The compiled kernel.
             model: One whose joints :data:`KINDS` has.
         """
-        self._kernel, self._nq, self._nv = kernel, model.nq, model.nv
+        self._kernel, self._nq, self.nv = kernel, model.nq, model.nv
         self._frames = (4 * model.njoints, 3)
         whole, numbers = np.zeros((model.njoints, 4), dtype=np.int32), np.zeros((model.njoints, 28))
         for i in range(1, model.njoints):
@@ -46,7 +50,7 @@ class CompiledTree:
             numbers[i, 15], numbers[i, 16:19] = inertia.mass, inertia.lever
             numbers[i, 19:28] = inertia.inertia.ravel()
         sizes = np.array([model.nq, model.nv], dtype=np.int32)
-        self._tree = kernel.tree(whole, numbers, np.array(model.gravity.vector), sizes)
+        self.handle = kernel.tree(whole, numbers, np.array(model.gravity.vector), sizes)
 
     @classmethod
     def where_built(cls, model: pin.Model) -> CompiledTree | None:
@@ -58,8 +62,8 @@ class CompiledTree:
 
     def frames_and_jacobian(self, q: Array) -> tuple[Array, Array]:
         """(4 J, 3) frames and (6, nv) Jacobian as :meth:`mbkf.model.body.Body.frames_and_jacobian`."""
-        frames, jacobian = np.empty(self._frames), np.empty((6, self._nv), order="F")
-        self._kernel.place(self._tree, _read(q), frames, jacobian)
+        frames, jacobian = np.empty(self._frames), np.empty((6, self.nv), order="F")
+        self._kernel.place(self.handle, _read(q), frames, jacobian)
         return frames, jacobian
 
     def root(self, q: Array, v: Array, a: Array, wrench: Array) -> tuple[Array, Array]:
@@ -75,20 +79,20 @@ class CompiledTree:
             (6,) residual, and (6, 3 nv + 12) its derivatives by q (in the tangent space), v, a and either of two
             wrenches whose sum is w.
         """
-        residual, by_state = np.empty(6), np.empty((6, 3 * self._nv + 12))
-        self._kernel.root(self._tree, _read(q), _read(v), _read(a), _read(wrench), residual, by_state)
+        residual, by_state = np.empty(6), np.empty((6, 3 * self.nv + 12))
+        self._kernel.root(self.handle, _read(q), _read(v), _read(a), _read(wrench), residual, by_state)
         return residual, by_state
 
     def integrate(self, q: Array, dv: Array) -> Array:
         """(nq,) configuration reached from q by the tangent vector dv (nv,)."""
         stepped = np.empty(self._nq)
-        self._kernel.step(self._tree, _read(q), _read(dv), stepped)
+        self._kernel.step(self.handle, _read(q), _read(dv), stepped)
         return stepped
 
     def integration_derivatives(self, dv: Array) -> tuple[Array, Array]:
         """(nv, nv) derivatives of :meth:`integrate` by q and by dv; the configuration does not matter."""
-        by_q, by_step = np.empty((self._nv, self._nv)), np.empty((self._nv, self._nv))
-        self._kernel.step_derivatives(self._tree, _read(dv), by_q, by_step)
+        by_q, by_step = np.empty((self.nv, self.nv)), np.empty((self.nv, self.nv))
+        self._kernel.step_derivatives(self.handle, _read(dv), by_q, by_step)
         return by_q, by_step
 
     def deviation(self, q: Array) -> tuple[Array, Array]:
@@ -96,8 +100,8 @@ class CompiledTree:
 
         Both are zero for free joints.
         """
-        deviation, jacobian = np.empty(self._nv), np.empty((self._nv, self._nv))
-        self._kernel.deviation(self._tree, _read(q), deviation, jacobian)
+        deviation, jacobian = np.empty(self.nv), np.empty((self.nv, self.nv))
+        self._kernel.deviation(self.handle, _read(q), deviation, jacobian)
         return deviation, jacobian
 
     def posture_information(self, residual: Array, jacobian: Array, weights: Array) -> tuple[Array, Array]:
@@ -108,8 +112,8 @@ class CompiledTree:
             jacobian: (nv, nv) J, that of :meth:`deviation`: entries between joints are not read.
             weights: (nv,) W's diagonal, 1/sd of each reading, 1/rad.
         """
-        matrix, vector = np.empty((self._nv, self._nv)), np.empty(self._nv)
-        self._kernel.posture(self._tree, residual, _read(jacobian), _read(weights), matrix, vector)
+        matrix, vector = np.empty((self.nv, self.nv)), np.empty(self.nv)
+        self._kernel.posture(self.handle, residual, _read(jacobian), _read(weights), matrix, vector)
         return matrix, vector
 
     def beyond(self, deviation: Array, lower: Array, upper: Array) -> Array | None:
@@ -122,8 +126,8 @@ class CompiledTree:
             lower: (nv,) least, rad.
             upper: (nv,) greatest, rad.
         """
-        beyond = np.empty(self._nv)
-        return beyond if self._kernel.beyond(self._tree, _read(deviation), lower, upper, beyond) else None
+        beyond = np.empty(self.nv)
+        return beyond if self._kernel.beyond(self.handle, _read(deviation), lower, upper, beyond) else None
 
 
 def _read(values: Array) -> Array:

@@ -67,7 +67,7 @@ static PyObject *py_tree(PyObject *self, PyObject *const *args, Py_ssize_t given
     return made;
 }
 
-static Tree *tree_in(PyObject *capsule) { return PyCapsule_GetPointer(capsule, CAPSULE); }
+Tree *tree_in(PyObject *capsule) { return PyCapsule_GetPointer(capsule, CAPSULE); }
 
 /* place(tree, q, frames, jacobian): places of all joints; the Jacobian column by column */
 static PyObject *py_place(PyObject *self, PyObject *const *args, Py_ssize_t given)
@@ -217,8 +217,6 @@ static PyObject *py_beyond(PyObject *self, PyObject *const *args, Py_ssize_t giv
     release(&held);
     return done;
 }
-
-#define QUICK(function) (PyCFunction)(void (*)(void)) function, METH_FASTCALL
 
 PyMethodDef tree_functions[] = {
     {"tree", QUICK(py_tree), "A body as a tree of joints."},

@@ -13,6 +13,7 @@ from typing import Protocol, runtime_checkable
 import pinocchio as pin
 
 from mbkf.conventions import Array
+from mbkf.kernel.tree import CompiledTree
 from mbkf.model.description import BodyDescription, Roles, Segment
 
 
@@ -51,7 +52,8 @@ class Body(Protocol):
       movement, m/s² or rad/s²;
     * ``limits`` (nv, 2): least and greatest rotation from neutral, rad; ±inf where there is no limit;
     * ``supports`` (joints, nv): True where a dof moves a joint's segment;
-    * ``pin_model``: its Pinocchio model, for the equations that take it directly.
+    * ``pin_model``: its Pinocchio model, for the equations that take it directly;
+    * ``tree``: the same compiled, or None.
     """
 
     @property
@@ -65,6 +67,10 @@ class Body(Protocol):
     @property
     def pin_model(self) -> pin.Model:
         """Its Pinocchio model."""
+
+    @property
+    def tree(self) -> CompiledTree | None:
+        """Its equations in compiled code; None where there is none."""
 
     @property
     def scale(self) -> Array:

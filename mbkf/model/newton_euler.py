@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.kernel.loading import library
-from mbkf.kernel.tree import CompiledTree
 from mbkf.model.body import Body
 
 ROOT = 6
@@ -102,7 +101,7 @@ class NewtonEuler:
         self._chains = [np.flatnonzero(model.supports[j]) for j in ids]
         self._moves = [model.supports[j].astype(float) for j in ids]
         self._after = [_moved_by(model, chain) for chain in self._chains]
-        self._tree = CompiledTree.where_built(model.pin_model)
+        self._tree = model.tree
         self._others: dict[int, tuple[NDArray[np.intp], Array]] = {}
         self._joint_of = _joint_of(model)
         self._moves_feet = np.array(self._moves, dtype=np.int32)

@@ -10,6 +10,7 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.errors import ShapeError
+from mbkf.kernel.markers import CompiledMarkers
 from mbkf.model.body import Body
 from mbkf.model.point_masses import PointMasses
 from mbkf.numerics.kalman import Information, information
@@ -24,12 +25,12 @@ class MarkerReading:
 
     Attributes:
         positions_m: (M, 3) in the world.
-        _spatial: (6, nv) velocity at the world origin of what each dof moves, (linear, angular).
+        spatial: (6, nv) velocity at the world origin of what each dof moves, (linear, angular).
         _moves: (M, nv) whether a dof moves a marker.
     """
 
     positions_m: Array
-    _spatial: Array
+    spatial: Array
     _moves: BoolArray
 
     @property
@@ -39,7 +40,7 @@ class MarkerReading:
 
     def only(self, markers: BoolArray) -> MarkerReading:
         """The reading of some of the markers (M,)."""
-        return MarkerReading(self.positions_m[markers], self._spatial, self._moves[markers])
+        return MarkerReading(self.positions_m[markers], self.spatial, self._moves[markers])
 
     @cached_property
     def jacobian(self) -> Array:
@@ -50,7 +51,7 @@ class MarkerReading:
         velocity[:, 0, 4], velocity[:, 0, 5] = z, -y
         velocity[:, 1, 3], velocity[:, 1, 5] = -z, x
         velocity[:, 2, 3], velocity[:, 2, 4] = y, -x
-        moved = (velocity.reshape(-1, 6) @ self._spatial).reshape(len(x), 3, self._spatial.shape[1])
+        moved = (velocity.reshape(-1, 6) @ self.spatial).reshape(len(x), 3, self.spatial.shape[1])
         moved *= self._moves[:, None, :]
         return moved
 
@@ -61,7 +62,7 @@ class MarkerReading:
         # p × f, all components at once.
         np.multiply(p.take(_NEXT, 0), f.take(_AFTER, 0), out=moment)
         moment -= p.take(_AFTER, 0) * f.take(_NEXT, 0)
-        return np.einsum("ik,ik->k", self._spatial, wrench @ self._moves)
+        return np.einsum("ik,ik->k", self.spatial, wrench @ self._moves)
 
 
 class MarkerSensor:
@@ -72,6 +73,7 @@ class MarkerSensor:
         segments: Segment of each of the M markers.
         local_m: (M, 3) positions in the segments' frames, m.
         joint_ids: (M,) Pinocchio joints that carry them.
+        compiled: They in compiled code, None where there is none.
     """
 
     def __init__(self, model: Body, segments: Sequence[str], local_m: Array) -> None:
@@ -85,13 +87,19 @@ class MarkerSensor:
         places = np.zeros((len(self.segments), len(model.supports), 4))
         places[np.arange(len(self.segments)), self.joint_ids] = np.insert(self.local_m, 3, 1.0, axis=1)
         self._places = places.reshape(len(self.segments), 4 * len(model.supports))
+        self.compiled = CompiledMarkers.where_built(model.tree, self.joint_ids, self.local_m)
 
     def positions(self, q: Array) -> Array:
         """(M, 3) world positions at the configuration q (nq,)."""
+        if self.compiled is not None:
+            return self.compiled.places(q)[0]
         return self._places @ self.model.frames(q)
 
     def reading(self, q: Array) -> MarkerReading:
         """Positions and their Jacobian at q (nq,)."""
+        if self.compiled is not None:
+            positions, jacobian = self.compiled.places(q)
+            return MarkerReading(positions, jacobian, self._moves)
         frames, jacobian = self.model.frames_and_jacobian(q)
         return MarkerReading(self._places @ frames, jacobian, self._moves)
 
@@ -106,10 +114,17 @@ class MarkerInformation:
 
     def __init__(self, sensor: MarkerSensor, noise_m: Array) -> None:
         self.sensor, self.noise_m = sensor, noise_m
-        self._weight = noise_m[:, None] ** -2
-        self._masses = PointMasses(sensor.model, sensor.joint_ids, sensor.local_m, self._weight[:, 0])
+        self._weight = noise_m**-2.0
+        self._masses = PointMasses(sensor.model, sensor.joint_ids, sensor.local_m, self._weight)
 
-    def at(self, q: Array, reading: MarkerReading, innovation_m: Array, trusted: BoolArray) -> Information:
+    def at(
+        self,
+        q: Array,
+        reading: MarkerReading,
+        innovation_m: Array,
+        trusted: BoolArray,
+        noise_scale: float = 1.0,
+    ) -> Information:
         """Information on the configuration (nv).
 
         Args:
@@ -117,12 +132,18 @@ class MarkerInformation:
             reading: The sensor's at q.
             innovation_m: (M, 3) measured minus predicted, NaN where missing.
             trusted: (M,) markers that count; none of them missing.
+            noise_scale: Square of a factor on their noise.
         """
         count = trusted.tobytes().count(1)
+        if (compiled := self.sensor.compiled) is not None:
+            weight = self._weight * (1.0 / noise_scale)
+            said = compiled.information(weight, trusted, reading.spatial, reading.positions_m, innovation_m)
+            return Information(*said, 3 * count)
         y = innovation_m if count == len(trusted) else np.where(trusted[:, None], innovation_m, 0.0)
-        forces = y * self._weight
+        forces = y * self._weight[:, None]
         matrix = self._masses.mass_matrix(q, trusted)
-        return Information(matrix, reading.pull(forces), float(np.vdot(forces, y)), 3 * count)
+        found = Information(matrix, reading.pull(forces), float(np.vdot(forces, y)), 3 * count)
+        return found if noise_scale == 1.0 else found.scaled(1.0 / noise_scale)
 
 
 class JacobianInformation:
@@ -135,7 +156,14 @@ class JacobianInformation:
     def __init__(self, sensor: MarkerSensor, noise_m: Array) -> None:
         self.noise_m, self._nv = noise_m, sensor.model.nv
 
-    def at(self, q: Array, reading: MarkerReading, innovation_m: Array, trusted: BoolArray) -> Information:
+    def at(
+        self,
+        q: Array,
+        reading: MarkerReading,
+        innovation_m: Array,
+        trusted: BoolArray,
+        noise_scale: float = 1.0,
+    ) -> Information:
         """As :meth:`MarkerInformation.at`.
 
         Args:
@@ -143,7 +171,10 @@ class JacobianInformation:
             reading: The sensor's reading at q.
             innovation_m: (M, 3) measured minus predicted positions.
             trusted: (M,) markers to count.
+            noise_scale: Square of a factor on their noise.
         """
         del q
         H = reading.jacobian[trusted].reshape(-1, self._nv)
-        return information(innovation_m[trusted].ravel(), H, np.repeat(self.noise_m[trusted], 3))
+        return information(
+            innovation_m[trusted].ravel(), H, np.repeat(self.noise_m[trusted] * noise_scale**0.5, 3)
+        )

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
+from mbkf.kernel.markers import apart
 from mbkf.numerics.kalman import Information
 from mbkf.sensors.block import NO_DOFS, Block, Channels, Frame, Notes, OperatingPoint, State
 from mbkf.sensors.gating import ObservedDofs, gated
@@ -159,11 +160,16 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         self, at: OperatingPoint[State, MarkerReading], frame: Frame, memory: MarkerMemory, notes: Notes
     ) -> MarkerDecision:
         """Gates the markers and notes which dofs they leave unobserved."""
-        innovation, s = frame.markers_m - at.prepared.positions_m, self.settings
-        P = at.state.P[: self._nv, : self._nv]
-        seen, trusted, squared, displaced, lost = gated(
-            innovation, at.prepared, P, self.noise_m, s.gate, s.gate_radius_m, memory.noise_scale
-        )
+        s, predicted = self.settings, at.prepared.positions_m
+        found = apart(frame.markers_m, predicted, s.gate_radius_m)
+        innovation = frame.markers_m - predicted if found is None else found.innovation_m
+        if found is not None and found.near:
+            seen, trusted, squared, displaced, lost = found.seen, found.seen, found.squared_m2, None, False
+        else:
+            P = at.state.P[: self._nv, : self._nv]
+            seen, trusted, squared, displaced, lost = gated(
+                innovation, at.prepared, P, self.noise_m, s.gate, s.gate_radius_m, memory.noise_scale
+            )
         notes.seen, notes.trusted = seen, trusted
         notes.unmarked = notes.unobserved = self._observed.unmarked(trusted)
         notes.observed = trusted.tobytes().count(1) >= s.min_markers
@@ -188,10 +194,9 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         state, reading, trusted = at.state, at.prepared, decision.trusted
         innovation = decision.measured_m - reading.positions_m
         if self._skin is None or decision.before_m is None:
-            found = self._information.at(state.q, reading, innovation, trusted)
-        else:
-            q, v, a = state.q, state.v, cast(AcceleratedState, state).a
-            found = self._skin.at(q, v, a, reading, innovation, trusted, decision.before_m)
+            return self._information.at(state.q, reading, innovation, trusted, decision.noise_scale)
+        q, v, a = state.q, state.v, cast(AcceleratedState, state).a
+        found = self._skin.at(q, v, a, reading, innovation, trusted, decision.before_m)
         return found if decision.noise_scale == 1.0 else found.scaled(1.0 / decision.noise_scale)
 
     def remember(

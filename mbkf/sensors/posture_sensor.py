@@ -8,7 +8,6 @@ import numpy as np
 import pinocchio as pin
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.kernel.tree import CompiledTree
 from mbkf.model.body import Body
 
 
@@ -37,7 +36,7 @@ class PostureSensor:
         root = next(joint for joint in model.joints.values() if joint.kind == "free")
         self._root, self._root_dofs = root.q, root.v
         usual = np.array_equal(self._neutral, pin.neutral(model.pin_model))
-        self.tree = CompiledTree.where_built(model.pin_model) if usual else None
+        self.tree = model.tree if usual else None
         self._last: tuple[Array, tuple[Array, Array]] | None = None
 
     def reading(self, q: Array) -> PostureReading:

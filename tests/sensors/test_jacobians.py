@@ -38,9 +38,9 @@ each_sensor = pytest.mark.parametrize("name", SENSORS)
 
 
 def value_of(reading):
-    """The one array of a reading that is neither its Jacobian nor private to it."""
+    """The one array of a reading that is neither private to it nor its Jacobian or the body's."""
     public = [field.name for field in fields(reading) if not field.name.startswith("_")]
-    (name,) = [name for name in public if name != "jacobian"]
+    (name,) = [name for name in public if name not in {"jacobian", "spatial"}]
     return getattr(reading, name)
 
 

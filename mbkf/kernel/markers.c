@@ -1,0 +1,129 @@
+/* Markers on a tree. Their information is the mass matrix of point masses 1/sd^2: mbkf/model/point_masses.py says why,
+ * and mbkf/sensors/marker_sensor.py is what is repeated here. */
+#include "markers.h"
+
+#include <math.h>
+#include <string.h>
+
+void markers_placed(const Tree *tree, const Markers *markers, double *places)
+{
+    for (int m = 0; m < markers->count; m++) {
+        const double *frame = tree->frames + 12 * markers->joint[m];
+        turned(frame, markers->local + 3 * m, places + 3 * m);
+        for (int i = 0; i < 3; i++)
+            places[3 * m + i] += frame[9 + i];
+    }
+}
+
+int markers_apart(int count, const double *measured, const double *places, double radius, double *innovation,
+                  double *squared, char *seen)
+{
+    int found = 0, near = 1;
+    for (int m = 0; m < count; m++) {
+        double *y = innovation + 3 * m;
+        for (int i = 0; i < 3; i++)
+            y[i] = measured[3 * m + i] - places[3 * m + i];
+        const double length = dot3(y, y);
+        seen[m] = !isnan(length);
+        squared[m] = seen[m] ? length : 0.0;
+        near = near && squared[m] <= radius * radius;
+        found += seen[m];
+    }
+    return near ? found : -1;
+}
+
+/* A reading's share of its segment's composite mass, and of the force on it; places are told from a centre. */
+static void count(Carried *on, double weight, const double *p, const double *y)
+{
+    double force[3], moment[3];
+    Inertia *all = &on->inertia;
+    all->mass += weight;
+    for (int i = 0; i < 3; i++) {
+        all->first[i] += weight * p[i];
+        force[i] = weight * y[i];
+    }
+    all->second[0] += weight * (p[1] * p[1] + p[2] * p[2]);
+    all->second[1] -= weight * p[0] * p[1];
+    all->second[2] -= weight * p[0] * p[2];
+    all->second[3] += weight * (p[0] * p[0] + p[2] * p[2]);
+    all->second[4] -= weight * p[1] * p[2];
+    all->second[5] += weight * (p[0] * p[0] + p[1] * p[1]);
+    cross(p, force, moment);
+    for (int i = 0; i < 3; i++) {
+        on->force[i] += force[i];
+        on->force[3 + i] += moment[i];
+    }
+}
+
+static void add(Carried *to, const Carried *from)
+{
+    to->inertia.mass += from->inertia.mass;
+    for (int i = 0; i < 3; i++)
+        to->inertia.first[i] += from->inertia.first[i];
+    for (int i = 0; i < 6; i++) {
+        to->inertia.second[i] += from->inertia.second[i];
+        to->force[i] += from->force[i];
+    }
+}
+
+/* Dofs of a joint against those of its own and of the joints that bear it. */
+static void spread_out(const Tree *tree, int i, const double (*motion)[6], double *matrix, double *vector)
+{
+    const Joint *joint = &tree->joint[i];
+    const Carried *on = &tree->carried[i];
+    for (int d = joint->at_v; d < joint->at_v + joint->dofs; d++) {
+        double moved[6];
+        momentum(&on->inertia, motion[d], moved);
+        vector[d] = dot6(motion[d], on->force);
+        for (int k = i; k; k = tree->joint[k].parent) {
+            const Joint *bearer = &tree->joint[k];
+            for (int e = bearer->at_v; e < bearer->at_v + bearer->dofs; e++)
+                matrix[e * tree->nv + d] = matrix[d * tree->nv + e] = dot6(motion[e], moved);
+        }
+    }
+}
+
+double markers_information(const Tree *tree, const Markers *markers, const double *weights, const char *trusted,
+                           const double *axes, const double *places, const double *innovation, double *matrix,
+                           double *vector)
+{
+    double centre[3] = {0.0, 0.0, 0.0}, squared = 0.0;
+    double(*motion)[6] = tree->motion;
+    int used = 0;
+    memset(matrix, 0, sizeof *matrix * tree->nv * tree->nv);
+    memset(vector, 0, sizeof *vector * tree->nv);
+    memset(tree->carried, 0, sizeof *tree->carried * tree->joints);
+    /* Moments about the markers' middle: far from the world's origin they would lose digits. */
+    for (int m = 0; m < markers->count; m++)
+        if (trusted[m]) {
+            used++;
+            for (int i = 0; i < 3; i++)
+                centre[i] += places[3 * m + i];
+        }
+    for (int i = 0; i < 3; i++)
+        centre[i] /= used ? used : 1;
+    for (int m = 0; m < markers->count; m++)
+        if (trusted[m]) {
+            const double *y = innovation + 3 * m;
+            double p[3];
+            for (int i = 0; i < 3; i++)
+                p[i] = places[3 * m + i] - centre[i];
+            count(&tree->carried[markers->joint[m]], weights[m], p, y);
+            squared += weights[m] * dot3(y, y);
+        }
+    for (int d = 0; d < tree->nv; d++) {
+        const double *axis = axes + 6 * d;
+        double along[3];
+        cross(axis + 3, centre, along);
+        for (int i = 0; i < 3; i++) {
+            motion[d][i] = axis[i] + along[i];
+            motion[d][3 + i] = axis[3 + i];
+        }
+    }
+    for (int i = tree->joints - 1; i; i--) {
+        spread_out(tree, i, (const double(*)[6])motion, matrix, vector);
+        if (tree->joint[i].parent)
+            add(&tree->carried[tree->joint[i].parent], &tree->carried[i]);
+    }
+    return squared;
+}
