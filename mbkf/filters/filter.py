@@ -10,13 +10,13 @@ The kinematic, torque and dynamic filters are this class with another plant and 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cache
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.innovations import Innovations, InnovationSpreads
+from mbkf.filters.once import Once
 from mbkf.filters.readings import Readings, summed
 from mbkf.kernel.covariance import informed_with_rows
 from mbkf.numerics.kalman import correct
@@ -278,18 +278,18 @@ class Filter(Generic[StateT]):
             readings = summed(self.blocks, said, self.layout)
             posterior = self._updated(state, readings)
 
-        read = cache(lambda: self._spreads.read(chosen, said))
-        judge = cache(lambda: self._spreads.innovations(memory.spreads, read()))
+        read = Once(lambda: self._spreads.read(chosen, said))
+        judge = Once(lambda: self._spreads.innovations(memory.spreads, read()))
 
-        @cache
-        def recall() -> Memory:
+        def remembered() -> Memory:
             kept = list(memory.blocks)
             for k, block in self._remembering:
                 kept[k] = block.remember(posterior, points[k], chosen[k], kept[k])
             spreads = self._spreads.after(memory.spreads, read())
             return Memory(self.plant.remember(posterior, notes, memory.plant), kept, spreads)
 
-        return Step(posterior, prior, Decisions(prior.noise, chosen, notes), readings, recall, judge)
+        decisions = Decisions(prior.noise, chosen, notes)
+        return Step(posterior, prior, decisions, readings, Once(remembered), judge)
 
     def inflate(self, P: Array, chosen: Sequence[Any]) -> None:
         """Adds to a predicted covariance, in place, the process noise that depends on the blocks' decisions."""

@@ -135,10 +135,11 @@ def _whitened(said: Statement, channels: int) -> Channels:
     if isinstance(said, Information):
         first = np.arange(channels) == 0
         return Channels(first * (said.innovation / max(said.readings, 1)), first * said.readings)
-    own: list[list[float]] = [[] for _ in range(channels)]
+    squares, readings = [0.0] * channels, [0] * channels
     for rows in (said,) if isinstance(said, Rows) else said or ():
-        values = rows.innovation[: rows.readings].tolist()
-        for k in range(0, len(values), 3):
-            own[k // 3 % channels] += values[k : k + 3]
-    mean_square = [sum(y * y for y in values) / max(len(values), 1) for values in own]
-    return Channels(np.array(mean_square), np.array([len(values) for values in own]))
+        for k, y in enumerate(rows.innovation[: rows.readings].tolist()):
+            channel = k // 3 % channels
+            squares[channel] += y * y
+            readings[channel] += 1
+    mean_square = [total / max(n, 1) for total, n in zip(squares, readings, strict=True)]
+    return Channels(np.array(mean_square), np.array(readings))

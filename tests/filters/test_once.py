@@ -1,0 +1,52 @@
+"""Values that are made when first asked for."""
+
+import gc
+import weakref
+
+import pytest
+
+from mbkf.filters.once import Once
+
+
+def test_a_value_is_made_once_and_only_when_asked_for():
+    made = []
+    value = Once(lambda: made.append(1) or len(made))
+    assert made == []
+    assert value() == 1
+    assert value() == 1
+    assert made == [1]
+
+
+def test_none_is_a_value_like_any_other():
+    made = []
+    value = Once(lambda: made.append(1))
+    assert value() is None
+    assert value() is None
+    assert made == [1]
+
+
+def test_what_it_was_made_from_is_let_go():
+    class Source:
+        pass
+
+    source = Source()
+    gone, value = weakref.ref(source), Once(lambda: source is None)
+    value()
+    del source
+    gc.collect()
+    assert gone() is None
+
+
+def test_a_failure_is_no_value():
+    asked = []
+
+    def fails_at_first():
+        asked.append(1)
+        if len(asked) == 1:
+            raise ValueError("not yet")
+        return "made"
+
+    value = Once(fails_at_first)
+    with pytest.raises(ValueError, match="not yet"):
+        value()
+    assert value() == "made"
