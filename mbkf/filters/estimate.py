@@ -15,8 +15,8 @@ from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.numerics.passage import LinearStep
 from mbkf.numerics.smoothing import BackwardPass
+from mbkf.numerics.white_noise import WhiteNoise
 from mbkf.sensors.block import NO_READINGS, Frame
-from mbkf.sensors.contact.plate_noise import PlateNoise
 from mbkf.sensors.marker_prediction import MarkerPrediction
 
 
@@ -82,7 +82,8 @@ class Posterior(NamedTuple):
         changes: (2, 2, 6) change of the feet's wrenches since the frame before, and of that change, as they were known
             at once; None where they are not.
         later: Whether later frames have corrected it and its covariance.
-        plate_noise: What is known of the plates' noise; None where the filter does not ask, or at a start.
+        plate_noise: What is known of the noise of the plates' forces, N; None where the filter does not ask, or at a
+            start.
     """
 
     q: Array
@@ -98,7 +99,7 @@ class Posterior(NamedTuple):
     lag: Array | None = None
     changes: Array | None = None
     later: bool = False
-    plate_noise: PlateNoise | None = None
+    plate_noise: WhiteNoise | None = None
 
 
 class Prediction(NamedTuple):

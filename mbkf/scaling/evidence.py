@@ -20,7 +20,7 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.scaling.problem import ScalingPrior, ScalingProblem, ScalingState
 
-BELIEF = 2.0
+BELIEF = 1.0
 """b: the prior's own spread counts as so many unknowns that the data determine."""
 
 RANGE = (0.2, 2.0)

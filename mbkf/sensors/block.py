@@ -79,6 +79,7 @@ class Notes:
         unobserved: Those of them that no inertial sensor observes either.
         observed: Whether enough instruments read for the body to count as tracked.
         lost: Whether most markers lie far from the predicted body.
+        lasting: Mean square of what lasts in the markers' errors, over what their noise is taken for.
         imus: (S, 6) inertial readings that are used; None where there are none.
         contact: What the feet stand on; None where no block asks.
         coordinated: Dofs that the coordination prior predicts.
@@ -92,6 +93,7 @@ class Notes:
     unobserved: NDArray[np.intp] = field(default_factory=lambda: NO_DOFS)
     observed: bool = False
     lost: bool = False
+    lasting: float = 1.0
     imus: Array | None = None
     contact: ContactDecision | None = None
     coordinated: NDArray[np.intp] = field(default_factory=lambda: NO_DOFS)

@@ -9,6 +9,10 @@ independent reading only:
 Noise that stays for a while is told as white noise σ_m of equal weight (:mod:`mbkf.sensors.lasting_noise`). One frame
 then shows only the noise's own spread e_m, and s is (e_m/σ_m)² of each such marker.
 
+What of the innovations does not last is white noise of the cameras, told by the readings themselves
+(:mod:`mbkf.numerics.white_noise`). Where cameras and skin are quiet, c is at its least, and errors are less than it
+says.
+
 The innovation gate is that of :mod:`mbkf.sensors.gating`. Where all that is seen of a segment lies elsewhere than
 predicted, its joint's spread is inflated.
 """
@@ -24,6 +28,7 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array, BoolArray
 from mbkf.kernel.markers import apart
 from mbkf.numerics.kalman import Information
+from mbkf.numerics.white_noise import WhiteNoise
 from mbkf.sensors.block import NO_DOFS, Block, Channels, Frame, Notes, OperatingPoint, State
 from mbkf.sensors.gating import ObservedDofs, gated
 from mbkf.sensors.marker_sensor import JacobianInformation, MarkerInformation, MarkerReading, MarkerSensor
@@ -65,11 +70,29 @@ class MarkerSettings:
     min_markers: int = 6
 
 
+START_WHITE_M, LEAST_WHITE_M = 1e-3, 1e-5
+"""White noise of cameras before they have shown it, and what is taken for granted: files have so many digits."""
+
+EXPECTED_FRAMES = 2.0
+"""So many frames the expected mean square of innovations counts as."""
+
+
 class MarkerMemory(NamedTuple):
-    """Square of the factor on the noise, and (M, 3) markers used in the frame before where skin is modelled."""
+    """What the frames before have shown.
+
+    Attributes:
+        noise_scale: Square c of the factor on the noise.
+        before_m: (M, 3) markers used in the frame before, where skin is modelled.
+        mean_square: Mean yᵀR⁻¹y / (3 m s): c before it is kept in its range.
+        frames: On how many frames that rests.
+        white: White noise of the cameras, m; None where it is not asked for.
+    """
 
     noise_scale: float
     before_m: Array | None
+    mean_square: float = 1.0
+    frames: float = EXPECTED_FRAMES
+    white: WhiteNoise | None = None
 
 
 class MarkerDecision(NamedTuple):
@@ -140,6 +163,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
             expected = spread_m * s.marker_noise_scale
         self.expected_m = np.maximum(expected, 1e-9)
         self._certainty = self.expected_m**-2.0
+        self._mean_certainty = float(np.mean(self._certainty)) if len(self._certainty) else 0.0
         self._information = compress(sensor, self.noise_m)
         self._skin: SkinMarkers | None = None
         if s.skin_memory_s > 0.0:
@@ -150,7 +174,8 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
 
     def begin(self) -> MarkerMemory:
         """The markers' own noise."""
-        return MarkerMemory(1.0, None)
+        white = WhiteNoise(START_WHITE_M, LEAST_WHITE_M) if self.settings.innovation_share > 0.0 else None
+        return MarkerMemory(1.0, None, white=white)
 
     def prepare(self, state: State, memory: MarkerMemory | None) -> MarkerReading:
         """Predicted markers."""
@@ -174,6 +199,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         notes.unmarked = notes.unobserved = self._observed.unmarked(trusted)
         notes.observed = trusted.tobytes().count(1) >= s.min_markers
         notes.lost = lost and self._track_loss
+        notes.lasting = self._lasting(memory)
         moved = NO_DOFS
         if displaced is not None and self._inflate:
             moved = self._observed.carriers(displaced)
@@ -212,17 +238,24 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         before = None
         if self._skin is not None:
             before = np.where(decision.trusted[:, None], decision.measured_m, np.nan)
-        return MarkerMemory(self._next_noise_scale(decision), before)
-
-    def _next_noise_scale(self, decision: MarkerDecision) -> float:
-        share, trusted = self.settings.innovation_share, decision.trusted
-        used = trusted.tobytes().count(1)
-        if share <= 0.0 or not used:
-            return decision.noise_scale
-        squared = float(decision.squared_m2 @ self._certainty) / (3 * used)
+        white = None if memory.white is None else memory.white.after(decision.measured_m)
+        used = decision.trusted.tobytes().count(1)
+        if self.settings.innovation_share <= 0.0 or not used:
+            return memory._replace(before_m=before, white=white)
         low, high = self.settings.noise_range
-        wanted = min(max(squared, low**2), high**2)
-        return decision.noise_scale + self._forget * (wanted - decision.noise_scale)
+        squared = min(float(decision.squared_m2 @ self._certainty) / (3 * used), high**2)
+        scale, frames = decision.noise_scale, memory.frames + 1.0
+        scale += self._forget * (max(squared, low**2) - scale)
+        mean_square = memory.mean_square
+        mean_square += max(1.0 / frames, self._forget) * (squared - mean_square)
+        return MarkerMemory(scale, before, mean_square, frames, white)
+
+    def _lasting(self, memory: MarkerMemory) -> float:
+        """Mean square of the markers' errors without the cameras' white noise, over what c takes them for."""
+        if memory.white is None:
+            return 1.0
+        lasting = memory.mean_square - memory.white.sd**2 * self._mean_certainty
+        return max(lasting, 0.0) / memory.noise_scale
 
     def expected_spread(self) -> Array:
         """(M,) of one coordinate of each marker, m."""

@@ -27,11 +27,12 @@ def test_none_is_a_value_like_any_other():
 
 def test_what_it_was_made_from_is_let_go():
     class Source:
-        pass
+        def told(self):
+            return "told"
 
     source = Source()
-    gone, value = weakref.ref(source), Once(lambda: source is None)
-    value()
+    gone, value = weakref.ref(source), Once(source.told)
+    assert value() == "told"
     del source
     gc.collect()
     assert gone() is None

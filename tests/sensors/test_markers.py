@@ -130,3 +130,23 @@ def test_noise_that_stays_follows_its_own_spread(size, expected):
     at, decision, _ = decided(block, SENSOR.positions(STATE.q) + 0.02 * size)
     decision = decision._replace(trusted=np.ones(len(NOISE), dtype=bool))
     assert block.remember(STATE, at, decision, block.begin()).noise_scale == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(("camera_m", "skin_m"), [(0.0004, 0.0), (0.0004, 0.003), (0.002, 0.0)])
+def test_what_lasts_is_what_innovations_show_beyond_the_cameras_noise(camera_m, skin_m):
+    """Skin that holds still for the trial is no white noise; quiet cameras are less than c can say."""
+    rng, block, places = np.random.default_rng(7), block_with(), SENSOR.positions(STATE.q)
+    memory, skin = block.begin(), skin_m * rng.normal(size=places.shape)
+    for _ in range(400):
+        at, decision, notes = decided(block, places + skin + camera_m * rng.normal(size=places.shape), memory)
+        memory = block.remember(STATE, at, decision, memory)
+    assert memory.white.sd == pytest.approx(camera_m, rel=0.1)
+    expected = np.mean(skin**2) / MARKER_SD_M**2 / MarkerSettings().innovation_share
+    told = notes.lasting * memory.noise_scale
+    assert told == pytest.approx(expected, rel=0.1, abs=0.3 * camera_m**2 / MARKER_SD_M**2 / 0.12)
+
+
+def test_what_lasts_is_taken_as_expected_where_the_noise_is_white():
+    block = block_with(innovation_share=0.0)
+    assert block.begin().white is None
+    assert decided(block, SENSOR.positions(STATE.q) + 0.003)[2].lasting == 1.0

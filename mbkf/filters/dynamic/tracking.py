@@ -22,8 +22,8 @@ from mbkf.filters.spread import ConfigurationParts, Spread, SpreadReader, root
 from mbkf.filters.state_variances import StateVariances, state_variances
 from mbkf.numerics.passage import LinearStep
 from mbkf.numerics.smoothing import BackwardPass
+from mbkf.numerics.white_noise import WhiteNoise
 from mbkf.sensors.block import NO_DOFS
-from mbkf.sensors.contact.plate_noise import PlateNoise
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.marker_prediction import MarkerPrediction
 from mbkf.sensors.markers import Markers
@@ -33,6 +33,9 @@ DynamicStep = Step[DynamicState]
 
 LATER_FADES_S = 0.1
 """Time in which a later frame's influence fades; without later frames an estimate is as late as a causal one."""
+
+LEAST_PLATE_NOISE_N = 0.1
+"""Noise of a plate's forces that is taken for granted: readings are stored in steps of such a size."""
 
 ROUNDS = 2
 """How often a smoothed window is linearised; a third round changes the residual by less than 0.1 N."""
@@ -48,7 +51,7 @@ class DynamicTracking(TrackingFilter):
 
     def __init__(self, kalman: DynamicFilter, starter: KinematicFilter) -> None:
         self.kalman, self._starter = kalman, starter
-        self._plate_noise = PlateNoise(kalman.settings.contact.plate_force_n)
+        self._plate_noise = WhiteNoise(kalman.settings.contact.plate_force_n, LEAST_PLATE_NOISE_N)
         self.model, self.dt_s = kalman.model, kalman.dt_s
         self.restart_after_s = starter.settings.restart_after_s
         self._reader, self.loads = SpreadReader(self.model), SupportLoads(self.model, kalman.layout)
@@ -83,7 +86,7 @@ class DynamicTracking(TrackingFilter):
         now = self._estimate(self.kalman.step(was.state, was.memory, recording.frame(t), prior))
         change = now.wrench - before.wrench
         bend = np.zeros((2, 6)) if before.changes is None else change - before.changes[0]
-        noise = (before.plate_noise or self._plate_noise).after(recording.plates[t])
+        noise = (before.plate_noise or self._plate_noise).after(recording.plates[t, :, :3])
         return now._replace(changes=np.array([change, bend]), plate_noise=noise)
 
     def covariance(self, estimate: Posterior) -> Array:
@@ -139,7 +142,7 @@ class DynamicTracking(TrackingFilter):
         # A pose takes up part of what its markers err by, so innovations show less than that.
         readings = 3 * int(np.count_nonzero(notes.trusted))
         over = max(readings - len(seen), readings // 4)
-        skin = s.errors.skin_share * share * readings / max(over, 1)
+        skin = s.errors.skin_share * notes.lasting * share * readings / max(over, 1)
         # A limb out of sight errs as P says, and so does a reaction that rests on its acceleration.
         all_seen = len(seen) + len(self._unobservable) == self.model.nv
         contacts = () if notes.contact is None or not all_seen else notes.contact.contacts
@@ -165,7 +168,7 @@ class DynamicTracking(TrackingFilter):
         """Noise of plates over what the filter takes for it; how two feet share a plate is no reading of it."""
         if estimate.plate_noise is None or Contact.SHARED in contacts:
             return 1.0
-        return min(1.0, estimate.plate_noise.force_n / self.kalman.settings.contact.plate_force_n)
+        return min(1.0, estimate.plate_noise.sd / self.kalman.settings.contact.plate_force_n)
 
     def _edges(self, estimate: Posterior, free: tuple[int, ...]) -> Array:
         """(n, 12) wrenches that feet may carry or not: see :mod:`mbkf.filters.error_covariance`."""

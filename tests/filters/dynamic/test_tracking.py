@@ -135,7 +135,7 @@ def test_markers_on_skin_with_a_memory_leave_the_spreads_their_places():
 
 def test_quiet_plates_narrow_the_wrenches_that_they_read_not_how_two_feet_share_one():
     tracking, found = estimates("dynamic")
-    quiet = found[30]._replace(plate_noise=replace(tracking._plate_noise, force_n=0.3))
+    quiet = found[30]._replace(plate_noise=replace(tracking._plate_noise, sd=0.3))
     contact = quiet.inner.decisions.notes.contact
     assert contact.contacts == (Contact.MEASURED, Contact.MEASURED)
     sd = tracking.wrench_sd(quiet)
