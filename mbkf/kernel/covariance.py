@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.kernel.loading import Library, library
+from mbkf.kernel.tree import CompiledTree
 from mbkf.numerics import information_update
 
 
@@ -55,6 +56,42 @@ class CompiledPrediction:
         A, B = np.ascontiguousarray(A), np.ascontiguousarray(B)
         self._kernel.carry(P, A, B, self._joints, self._singer, self._noise, sd, carried)
         return carried
+
+    def predicted(
+        self, tree: CompiledTree, P: Array, q: Array, v: Array, a: Array, sd: Array
+    ) -> tuple[Array, Array, Array, Array]:
+        """P (N, N), q (nq,), v and a (nv,) one step later, all in one call.
+
+        Args:
+            tree: The body.
+            P: (N, N) symmetric covariance.
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            a: (nv,) acceleration.
+            sd: (nv,) σ_a of the step.
+        """
+        carried, further, faster, steeper = (
+            np.empty(P.shape),
+            np.empty(q.shape),
+            np.empty(v.shape),
+            np.empty(a.shape),
+        )
+        self._kernel.predict(
+            tree.handle,
+            P,
+            q,
+            v,
+            a,
+            self._joints,
+            self._singer,
+            self._noise,
+            sd,
+            carried,
+            further,
+            faster,
+            steeper,
+        )
+        return carried, further, faster, steeper
 
 
 class CompiledVelocityPrediction:

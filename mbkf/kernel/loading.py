@@ -47,6 +47,41 @@ class Library(Protocol):
             carried: (N, N) filled.
         """
 
+    def predict(
+        self,
+        tree: object,
+        P: Array,
+        q: Array,
+        v: Array,
+        a: Array,
+        joints: NDArray[np.int32],
+        singer: Array,
+        noise: Array,
+        sd: Array,
+        carried: Array,
+        q_after: Array,
+        v_after: Array,
+        a_after: Array,
+        /,
+    ) -> None:
+        """Fills a state one step later: see :meth:`mbkf.kernel.covariance.CompiledPrediction.predicted`.
+
+        Args:
+            tree: The handle.
+            P: (N, N) covariance.
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            a: (nv,) acceleration.
+            joints: (J, 2) first dof and number of dofs of each joint, 32-bit integers.
+            singer: (4,) Δt, c₁, c₂, ρ.
+            noise: (3, 3) covariance of (q, v, a) for σ_a = 1.
+            sd: (nv,) σ_a.
+            carried: (N, N) filled.
+            q_after: (nq,) filled.
+            v_after: (nv,) filled.
+            a_after: (nv,) filled.
+        """
+
     def carry_velocities(
         self,
         P: Array,
@@ -257,6 +292,22 @@ class Library(Protocol):
             innovation: (M, 3) y.
             matrix: (nv, nv) filled.
             vector: (nv,) filled.
+        """
+
+    def third_differences(
+        self, first: Array, second: Array, third: Array, latest: Array, level: float, /
+    ) -> tuple[int, int]:
+        """Counts third differences: see :func:`mbkf.kernel.differences.third_differences`.
+
+        Args:
+            first: A sample.
+            second: The next one, of as many numbers.
+            third: The next.
+            latest: The latest.
+            level: The level.
+
+        Returns:
+            How many are numbers, and how many of these lie below the level.
         """
 
     def errors(

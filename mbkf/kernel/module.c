@@ -7,6 +7,8 @@
 
 #include "blas.h"
 #include "covariance.h"
+#include "differences.h"
+#include "manifold.h"
 #include "markers_binding.h"
 #include "product.h"
 #include "tree_binding.h"
@@ -86,6 +88,50 @@ static PyObject *py_carry(PyObject *self, PyObject *const *args, Py_ssize_t give
     return done;
 }
 
+/* predict(tree, P, q, v, a, joints, singer, noise, sd, carried, q2, v2, a2): mean and covariance one step later */
+static PyObject *py_predict(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    Arrays held = {.held = 0};
+    PyObject *done = NULL;
+    (void)self;
+    const Tree *tree = expects(given, 13) ? tree_in(args[0]) : NULL;
+    if (!tree)
+        return NULL;
+    const int nv = tree->nv;
+    const double *P = symmetric(&held, args[1], 3 * (Py_ssize_t)nv);
+    const int N = P ? length(&held) : 0;
+    const double *q = P ? numbers(&held, args[2], tree->nq) : NULL;
+    const double *v = q ? numbers(&held, args[3], nv) : NULL;
+    const double *a = v ? numbers(&held, args[4], nv) : NULL;
+    const int *joints = a ? array(&held, args[5], PyBUF_C_CONTIGUOUS, sizeof(int), 0) : NULL;
+    const int n_joints = joints ? length(&held) : 0;
+    if (joints && !are_joints(&held, joints, n_joints, nv))
+        joints = NULL;
+    const double *singer = joints ? numbers(&held, args[6], 4) : NULL;
+    const double *noise = singer ? numbers(&held, args[7], 9) : NULL;
+    const double *sd = noise ? numbers(&held, args[8], nv) : NULL;
+    double *carried = sd ? filled(&held, args[9], (Py_ssize_t)N * N) : NULL;
+    double *q2 = carried ? filled(&held, args[10], tree->nq) : NULL;
+    double *v2 = q2 ? filled(&held, args[11], nv) : NULL;
+    double *a2 = v2 ? filled(&held, args[12], nv) : NULL;
+    double *work = a2 ? workspace(nv + 2L * nv * nv + carry_work(nv, N)) : NULL;
+    if (work && is_square(&held.views[0], N)) {
+        double *step = work, *A = work + nv, *B = A + (long)nv * nv;
+        const Singer s = {singer[0], singer[1], singer[2], singer[3]};
+        for (int i = 0; i < nv; i++) {
+            step[i] = s.dt * v[i] + s.c2 * a[i];
+            v2[i] = v[i] + s.c1 * a[i];
+            a2[i] = s.rho * a[i];
+        }
+        tree_stepped(tree, q, step, q2);
+        tree_step_derivatives(tree, step, A, B);
+        carry(nv, N, P, A, B, joints, n_joints, &s, noise, sd, carried, B + (long)nv * nv);
+        done = Py_NewRef(Py_None);
+    }
+    release(&held);
+    return done;
+}
+
 /* carry_velocities(P, A, B, joints, dt, noise, carried) */
 static PyObject *py_carry_velocities(PyObject *self, PyObject *const *args, Py_ssize_t given)
 {
@@ -135,6 +181,31 @@ static PyObject *py_inform(PyObject *self, PyObject *const *args, Py_ssize_t giv
             PyErr_SetString(PyExc_ValueError, "the arrays' sizes do not fit");
         else if (is_square(&held.views[0], N) && is_square(&held.views[1], n))
             done = PyLong_FromLong(inform(N, P, n, information, m, rows, informed, work));
+    }
+    release(&held);
+    return done;
+}
+
+/* third_differences(first, second, third, latest, level) -> (known, below) */
+static PyObject *py_third_differences(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    Arrays held = {.held = 0};
+    PyObject *done = NULL;
+    const double *samples[4] = {NULL, NULL, NULL, NULL};
+    (void)self;
+    if (!expects(given, 5))
+        return NULL;
+    const double level = PyFloat_AsDouble(args[4]);
+    Py_ssize_t count = 0;
+    for (int k = 0; k < 4 && !PyErr_Occurred(); k++) {
+        samples[k] = numbers(&held, args[k], count);
+        if (samples[k] && !k)
+            count = held.views[0].len / (Py_ssize_t)sizeof(double);
+    }
+    if (samples[3]) {
+        long known, below;
+        third_differences((long)count, samples, level, &known, &below);
+        done = Py_BuildValue("(ll)", known, below);
     }
     release(&held);
     return done;
@@ -197,9 +268,11 @@ static PyObject *py_connect(PyObject *self, PyObject *capsules)
 static PyMethodDef methods[] = {
     {"connect", py_connect, METH_O, "Takes BLAS and LAPACK routines from a dictionary of capsules."},
     {"carry", (PyCFunction)(void (*)(void))py_carry, METH_FASTCALL, "A covariance, one step later."},
+    {"predict", QUICK(py_predict), "A state and its covariance, one step later."},
     {"carry_velocities", (PyCFunction)(void (*)(void))py_carry_velocities, METH_FASTCALL,
      "The same for positions and velocities alone."},
     {"inform", (PyCFunction)(void (*)(void))py_inform, METH_FASTCALL, "A covariance after readings."},
+    {"third_differences", QUICK(py_third_differences), "How many third differences lie below a level."},
     SPREAD_METHODS,
     {"choose", py_choose, METH_O, "Products by instructions of their own, where they can be, or by BLAS."},
     {"vectors", py_vectors, METH_NOARGS, "Bits of the vectors that products are made with; 0: BLAS makes them."},

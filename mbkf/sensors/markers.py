@@ -10,7 +10,7 @@ Noise that stays for a while is told as white noise σ_m of equal weight (:mod:`
 then shows only the noise's own spread e_m, and s is (e_m/σ_m)² of each such marker.
 
 What of the innovations does not last is white noise of the cameras, told by the readings themselves
-(:mod:`mbkf.numerics.white_noise`). Where cameras and skin are quiet, c is at its least, and errors are less than it
+(:mod:`mbkf.sensors.white_noise`). Where cameras and skin are quiet, c is at its least, and errors are less than it
 says.
 
 The innovation gate is that of :mod:`mbkf.sensors.gating`. Where all that is seen of a segment lies elsewhere than
@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array, BoolArray
 from mbkf.kernel.markers import apart
 from mbkf.numerics.kalman import Information
-from mbkf.numerics.white_noise import WhiteNoise
+from mbkf.sensors.white_noise import WhiteNoise
 from mbkf.sensors.block import NO_DOFS, Block, Channels, Frame, Notes, OperatingPoint, State
 from mbkf.sensors.gating import ObservedDofs, gated
 from mbkf.sensors.marker_sensor import JacobianInformation, MarkerInformation, MarkerReading, MarkerSensor

@@ -120,6 +120,16 @@ def test_arrays_that_do_not_fit_are_refused():
         kernel.carry_velocities(P, np.eye(2), np.eye(2), joints, 0.1, np.zeros((2, 2, 2)), np.empty((4, 4)))
     with pytest.raises(TypeError):
         kernel.inform(P, np.eye(2))
+    tree, nv, nq = reference_model().tree.handle, reference_model().nv, reference_model().nq
+    v, joints = np.zeros(nv), np.array([[0, nv]], dtype=np.int32)
+    states = np.zeros((nq,)), v, v, joints, np.zeros(4), np.eye(3), v
+    with pytest.raises(ValueError, match="type or size"):
+        kernel.predict(tree, P, *states, np.empty((4, 4)), np.empty(nq), np.empty(nv), np.empty(nv))
+    N, wrong = 3 * nv + 12, np.array([[1, nv]], dtype=np.int32)
+    with pytest.raises(ValueError, match="dofs"):
+        kernel.predict(
+            tree, np.eye(N), *states[:3], wrong, *states[4:], np.empty((N, N)), states[0], v.copy(), v.copy()
+        )
 
 
 MODELS = {"reference": reference_model(), "random": random_model(np.random.default_rng(4))}
@@ -136,7 +146,12 @@ def test_the_prediction_is_phi_p_phi_and_noise(either_kernel, model, order):
     q = model.integrate(model.neutral(), rng.normal(size=nv))
     state = DynamicState(q, rng.normal(size=nv), 20.0 * rng.normal(size=nv), np.zeros(12), P)
     sd = rng.uniform(0.0, 30.0, nv)
-    found = plant.predict(state, sd).P
+    predicted = plant.predict(state, sd)
+    found = predicted.P
+    step = DT * state.v + plant.c2 * state.a
+    assert worst(predicted.q - model.integrate(q, step)) <= 1e-14
+    assert worst(predicted.v - (state.v + plant.c1 * state.a)) <= 1e-13 * worst(state.v)
+    np.testing.assert_array_equal(predicted.a, plant.rho * state.a)
     Q = np.zeros((N, N))
     Q[: 3 * nv, : 3 * nv] = np.kron(plant.covariance, np.diag(sd**2))
     phi = plant.transition(state)

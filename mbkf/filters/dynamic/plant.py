@@ -160,19 +160,32 @@ class SingerPlant(Plant[DynamicState]):
             state: State.
             noise: (nv,) σ_a for this step; None for the table's.
         """
+        sd = self.acceleration_sd if noise is None else noise
+        if self._compiled is not None and (tree := self.model.tree) is not None:
+            P, q, v, a = self._compiled.predicted(tree, state.P, state.q, state.v, state.a, sd)
+        else:
+            P, q, v, a = self._predicted(state, sd)
+        if len(self._walk):
+            P.reshape(-1)[:: len(P) + 1][-len(self._walk) :] += self._walk
+        return DynamicState(q, v, a, state.w, P.T, state.extra)
+
+    def _predicted(self, state: DynamicState, sd: Array) -> tuple[Array, Array, Array, Array]:
+        """P, q, v and a one step later.
+
+        Args:
+            state: The state.
+            sd: (nv,) σ_a of the step.
+        """
         step = self.dt_s * state.v + self.c2 * state.a
         A, B = self.model.integration_derivatives(state.q, step)
-        sd = self.acceleration_sd if noise is None else noise
         if self._compiled is None:
             P = self._carried(A, B, state.P if state.P.flags.c_contiguous else state.P.T)
             diagonals = block_diagonals(P, 3, self.model.nv)
             diagonals += self.covariance[:, :, None] * (sd * sd)
         else:
             P = self._compiled.carried(state.P, A, B, sd)
-        if len(self._walk):
-            P.reshape(-1)[:: len(P) + 1][-len(self._walk) :] += self._walk
         q = self.model.integrate(state.q, step)
-        return DynamicState(q, state.v + self.c1 * state.a, self.rho * state.a, state.w, P.T, state.extra)
+        return P, q, state.v + self.c1 * state.a, self.rho * state.a
 
     def difference(self, origin: DynamicState, state: DynamicState) -> Array:
         """(N,) tangent vector from one state's mean to another's."""

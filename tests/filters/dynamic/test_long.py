@@ -26,6 +26,7 @@ class Slider:
     nv = 1
     joints = {"mass": SegmentJoint("mass", "slider", "x", 1, slice(0, 1), slice(0, 1))}  # noqa: RUF012
     movement_sd = np.array([300.0])
+    tree = None
 
     def integrate(self, q, dv):
         return q + dv

@@ -10,12 +10,14 @@ the absolute value of a standard normal number; that level is followed by a Robb
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import exp
 
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.kernel.differences import third_differences
 
 QUANTILE, STEP = 0.25, 0.1
 """The level followed, and η: the level falls to a tenth in thirty samples."""
@@ -40,13 +42,20 @@ class WhiteNoise:
 
     def after(self, now: Array) -> WhiteNoise:
         """With the next sample, of the same shape as those before; NaN where there is no reading."""
+        now = np.ascontiguousarray(now, dtype=float)
         if len(self.last) < 3:
             return WhiteNoise(self.sd, self.least, (*self.last, now))
-        third = np.abs(now - 3.0 * self.last[2] + 3.0 * self.last[1] - self.last[0])
-        # NaN compares as false.
-        known = np.count_nonzero(third >= 0.0)
-        sd = self.sd
+        samples, sd = (*self.last, now), self.sd
+        counted = third_differences(samples, _LEVEL * sd)
+        known, below = _counted(samples, _LEVEL * sd) if counted is None else counted
         if known:
-            below = np.count_nonzero(third < _LEVEL * sd) / known
-            sd = max(self.least, sd * exp(STEP * (QUANTILE - below)))
-        return WhiteNoise(sd, self.least, (self.last[1], self.last[2], now))
+            sd = max(self.least, sd * exp(STEP * (QUANTILE - below / known)))
+        return WhiteNoise(sd, self.least, samples[1:])
+
+
+def _counted(samples: Sequence[Array], level: float) -> tuple[int, int]:
+    """How many third differences of four samples are numbers, and how many of these lie below a level."""
+    first, second, third, latest = samples
+    differences = np.abs(latest - 3.0 * third + 3.0 * second - first)
+    # NaN compares as false.
+    return int(np.count_nonzero(differences >= 0.0)), int(np.count_nonzero(differences < level))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mbkf.numerics.white_noise import WhiteNoise
+from mbkf.sensors.white_noise import WhiteNoise
 
 SAMPLES, LEAST = 300, 0.1
 
