@@ -15,9 +15,9 @@ from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.numerics.passage import LinearStep
 from mbkf.numerics.smoothing import BackwardPass
-from mbkf.sensors.white_noise import WhiteNoise
 from mbkf.sensors.block import NO_READINGS, Frame
 from mbkf.sensors.marker_prediction import MarkerPrediction
+from mbkf.sensors.white_noise import WhiteNoise
 
 
 @dataclass(frozen=True)

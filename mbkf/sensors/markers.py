@@ -28,12 +28,12 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array, BoolArray
 from mbkf.kernel.markers import apart
 from mbkf.numerics.kalman import Information
-from mbkf.sensors.white_noise import WhiteNoise
 from mbkf.sensors.block import NO_DOFS, Block, Channels, Frame, Notes, OperatingPoint, State
 from mbkf.sensors.gating import ObservedDofs, gated
 from mbkf.sensors.marker_sensor import JacobianInformation, MarkerInformation, MarkerReading, MarkerSensor
 from mbkf.sensors.skin import SkinMarkers
 from mbkf.sensors.states import AcceleratedState
+from mbkf.sensors.white_noise import WhiteNoise
 
 DISPLACED_SD_RAD = 0.5
 DISPLACED_SD_RAD_S = 3.0

@@ -22,11 +22,11 @@ from mbkf.filters.spread import ConfigurationParts, Spread, SpreadReader, root
 from mbkf.filters.state_variances import StateVariances, state_variances
 from mbkf.numerics.passage import LinearStep
 from mbkf.numerics.smoothing import BackwardPass
-from mbkf.sensors.white_noise import WhiteNoise
 from mbkf.sensors.block import NO_DOFS
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.marker_prediction import MarkerPrediction
 from mbkf.sensors.markers import Markers
+from mbkf.sensors.white_noise import WhiteNoise
 
 DynamicStep = Step[DynamicState]
 """A step of the dynamic filter."""
