@@ -19,6 +19,11 @@ SWITCH = "MBKF_KERNEL"
 COMPILED, REFERENCE = "compiled", "reference"
 
 
+Point = tuple[float, float, float]
+Points = tuple[Point, Point, Point]
+"""Of heel, ball and toe end."""
+
+
 class Library(Protocol):
     """The functions of ``mbkf/kernel/module.c``. Arrays are in C order unless they are symmetric."""
 
@@ -292,6 +297,53 @@ class Library(Protocol):
             innovation: (M, 3) y.
             matrix: (nv, nv) filled.
             vector: (nv,) filled.
+        """
+
+    def feet(
+        self, tree: object, joints: NDArray[np.int32], local: Array, q: Array, v: Array, middles: Array, /
+    ) -> tuple[tuple[Points, Points], tuple[Points, Points], tuple[float, float], Point]:
+        """Points and velocities of both soles, the feet's upward axes and the root.
+
+        Args:
+            tree: The handle.
+            joints: (3,) right foot, left foot and root, 32-bit integers.
+            local: (6, 3) heel, ball and toe end of right and left sole.
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            middles: (2, 3) filled with the middles of heels and toe ends.
+        """
+
+    def foot_rows(
+        self,
+        centres: Array,
+        weights: Array,
+        expected: Array,
+        wrench: Array,
+        first: int,
+        rows: Array,
+        values: Array,
+        /,
+    ) -> None:
+        """Fills rows on both feet's wrenches: see :func:`mbkf.kernel.feet.foot_rows`.
+
+        Args:
+            centres: (2, 3) points about which they are read.
+            weights: (2, 6) 1/sd.
+            expected: (2, 6) what is read.
+            wrench: (12,) those of the state.
+            first: Foot whose rows come first.
+            rows: (12, 12) filled.
+            values: (12,) filled.
+        """
+
+    def foot_walks(self, centres: Array, sd: Array, first: int, P: Array, /) -> None:
+        """Adds the wrenches' random walk to a covariance.
+
+        Args:
+            centres: (2, 3) points about which they wander.
+            sd: (6,) of force and moment.
+            first: Component at which the wrenches begin.
+            P: (N, N) added to.
         """
 
     def third_differences(

@@ -8,6 +8,7 @@
 #include "blas.h"
 #include "covariance.h"
 #include "differences.h"
+#include "feet_binding.h"
 #include "manifold.h"
 #include "markers_binding.h"
 #include "product.h"
@@ -287,7 +288,9 @@ static struct PyModuleDef definition = {
 PyMODINIT_FUNC PyInit__kernel(void)
 {
     PyObject *module = PyModule_Create(&definition);
-    if (module && (PyModule_AddFunctions(module, tree_functions) < 0 || PyModule_AddFunctions(module, marker_functions) < 0))
-        Py_CLEAR(module);
+    PyMethodDef *const further[] = {tree_functions, marker_functions, feet_functions};
+    for (int k = 0; module && k < 3; k++)
+        if (PyModule_AddFunctions(module, further[k]) < 0)
+            Py_CLEAR(module);
     return module;
 }

@@ -119,9 +119,11 @@ class UnmeasuredFeet:
             height: Height of loaded soles, NaN before one was loaded.
         """
         floor = height if not isnan(height) else self._floor
-        ends = [(f, point) for f in (0, 1) for point in feet.soles[f][:SOLE_ENDS]]
-        foot, point = min(ends, key=lambda end: end[1][2])
-        low = feet.velocity(foot, point)[:2] if point[2] < floor + STAND_HEIGHT_M else (nan, nan)
+        points = [feet.lowest(f, SOLE_ENDS) for f in (0, 1)]
+        right, left = (feet.soles[f][point][2] for f, point in enumerate(points))
+        foot, height = (0, right) if right <= left else (1, left)
+        x, y, _ = feet.velocities[foot][points[foot]]
+        low = (x, y) if height < floor + STAND_HEIGHT_M else (nan, nan)
         return before.with_frame(low, feet.pelvis_m, self._dt_s)
 
     def _falls(self, motion: tuple[Array, Array, Array], movement: Movement) -> bool:
@@ -249,8 +251,11 @@ def _touches(foot: int, feet: FeetMotion, floor: _Floor, limits: tuple[float, fl
         limits: Of height, m, and speed, m/s.
     """
     height, speed = limits
-    low = [point for point in feet.soles[foot][:SOLE_ENDS] if point[2] < floor.height + height]
-    return any(feet.speed(foot, point, floor.velocity) < speed for point in low)
+    sole = feet.soles[foot]
+    return any(
+        sole[point][2] < floor.height + height and feet.speed(foot, point, floor.velocity) < speed
+        for point in range(SOLE_ENDS)
+    )
 
 
 def _near(foot: int, feet: FeetMotion, floor: _Floor, limits: tuple[float, float]) -> float:
@@ -266,9 +271,8 @@ def _near(foot: int, feet: FeetMotion, floor: _Floor, limits: tuple[float, float
         return 0.0
     height, speed = limits
     away = [
-        (max(point[2] - floor.height, 0.0) / height) ** 2
-        + (feet.speed(foot, point, floor.velocity) / speed) ** 2
-        for point in feet.soles[foot]
+        (max(point[2] - floor.height, 0.0) / height) ** 2 + (feet.speed(foot, k, floor.velocity) / speed) ** 2
+        for k, point in enumerate(feet.soles[foot])
     ]
     return exp(-0.5 * min(away))
 

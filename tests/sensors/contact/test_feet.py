@@ -34,15 +34,21 @@ def test_points_move_with_the_feet_at_their_velocity(seed):
     feet, sensor = FEET.at(q, v), MarkerSensor(MODEL, *sole_locals(MODEL))
     later, earlier = (sensor.positions(MODEL.integrate(q, sign * STEP_S * v)) for sign in (1.0, -1.0))
     expected = ((later - earlier) / (2.0 * STEP_S)).reshape(2, 3, 3)
-    for foot, sole in enumerate(feet.soles):
-        for point, velocity in zip(sole, expected[foot], strict=True):
-            np.testing.assert_allclose(feet.velocity(foot, point), velocity, atol=1e-6)
+    np.testing.assert_allclose(feet.velocities, expected, atol=1e-6)
 
 
 def test_speed_is_against_the_floor():
     q, v = moving(5)
     feet = FEET.at(q, v)
-    point = feet.soles[1][0]
-    x, y, z = feet.velocity(1, point)
-    assert feet.speed(1, point, (0.0, 0.0)) == pytest.approx(np.linalg.norm([x, y, z]))
-    assert feet.speed(1, point, (x, y)) == pytest.approx(abs(z))
+    x, y, z = feet.velocities[1][0]
+    assert feet.speed(1, 0, (0.0, 0.0)) == pytest.approx(np.linalg.norm([x, y, z]))
+    assert feet.speed(1, 0, (x, y)) == pytest.approx(abs(z))
+
+
+def test_the_lowest_point_is_of_those_that_are_looked_at():
+    q, v = moving(6)
+    feet = FEET.at(q, v)
+    for foot in (0, 1):
+        for points in (2, 3):
+            heights = np.array(feet.soles[foot])[:points, 2]
+            assert feet.lowest(foot, points) == np.argmin(heights)
