@@ -17,6 +17,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.body_errors import BodyErrorRoots
 from mbkf.filters.coordinate_variances import CoordinateVariances
+from mbkf.kernel.tree import CompiledTree
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
 
@@ -35,6 +36,8 @@ class SpreadReader:
         self.coordinates = CoordinateVariances(self.clinical)
         feet = [model.joint(segment).joint_id for segment in model.roles.feet]
         self._moves = np.ascontiguousarray(model.supports[feet], dtype=float)
+        self._feet = np.array(feet, dtype=np.int32)
+        self._tree = CompiledTree.where_built(model.pin_model)
         self._origins = [4 * joint + 3 for joint in feet]
 
     def torque_variance(self, q: Array, step_covariance: Array, dt_s: float) -> Array:
@@ -50,6 +53,8 @@ class SpreadReader:
 
     def rise_jacobian(self, q: Array) -> Array:
         """(2, nv) derivative of the height of right and left foot by the configuration q (nq,)."""
+        if self._tree is not None:
+            return self._tree.rise_jacobian(q, self._feet)
         frames, jacobian = self.model.frames_and_jacobian(q)
         x, y, _ = frames[self._origins].T[:, :, None]
         rise: Array = jacobian[3] * y
