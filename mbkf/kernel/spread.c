@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "blas.h"
+#include "factor.h"
 #include "product.h"
 #include "vectorised.h"
 
@@ -53,13 +53,10 @@ int error_diagonal(const Errors *e, double *root, double *diagonal, double *work
 {
     const int n = e->n_seen, nv = e->nv, N = e->N;
     double *L = work, *W = work + (long)n * n;
-    int failed = 0;
     for (int j = 0; j < n; j++)
         for (int i = j; i < n; i++)
             L[(long)j * n + i] = e->information[(long)e->seen[j] * nv + e->seen[i]];
-    if (n)
-        blas.dpotrf("l", (int *)&n, L, (int *)&n, &failed);
-    if (failed)
+    if (factored(n, L))
         return 1;
     inverted(n, L, W);
     memset(root, 0, sizeof(double) * n * nv);
