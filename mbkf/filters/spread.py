@@ -150,24 +150,22 @@ class Spread:
     @property
     def angle(self) -> Array:
         """(A,) of the clinical coordinates."""
-        found = self._coordinates
-        return self._with(found[0], None if self.body is None else found[2])
+        return self._coordinates[0]
 
     @property
     def angle_offset(self) -> Array:
         """(A,) the offset's part of it."""
-        return self._zeros if self.body is None else root(self._coordinates[2])
+        return self._zeros if self.body is None else self._coordinates[2]
 
     @property
     def rate(self) -> Array:
         """(A,) of their rates, from the velocities' own variances."""
-        found = self._coordinates
-        return self._with(found[1], None if self.body is None else found[3])
+        return self._coordinates[1]
 
     @property
     def rate_offset(self) -> Array:
         """(A,) the offset's part of it."""
-        return self._zeros if self.body is None else root(self._coordinates[3])
+        return self._zeros if self.body is None else self._coordinates[3]
 
     @property
     def ball_covariance(self) -> Array:
@@ -192,14 +190,19 @@ class Spread:
 
     @cached_property
     def _coordinates(self) -> Array:
-        """(2 or 4, A) variances of the clinical coordinates and their rates by the filter, and by the body."""
-        dofs, velocity = self.reader.coordinates.dofs, self.velocity_variance
-        blocks = [self._parts.blocks, velocity[dofs][:, :, None] * _EYE]
+        """(2 or 4, A) of the clinical coordinates and their rates, and the offset's part of both."""
+        dofs, velocity, own = self.reader.coordinates.dofs, self.velocity_variance, self._parts.blocks
+        blocks = [own, np.zeros(own.shape)]
+        np.einsum("bii->bi", blocks[1])[:] = velocity[dofs]
         diagonals = [self.position_variance, velocity]
         if self.body is not None:
             blocks += self.body.blocks(dofs)
             diagonals += [self.body.position_variance, self.body.velocity_variance]
-        return self.reader.coordinates.of(self.q, blocks, diagonals)
+        variance = self.reader.coordinates.of(self.q, blocks, diagonals)
+        np.maximum(variance, 0.0, out=variance)
+        if self.body is not None:
+            variance[:2] += variance[2:]
+        return np.sqrt(variance, out=variance)
 
     @property
     def _zeros(self) -> Array:
@@ -214,6 +217,3 @@ class Spread:
 def root(variance: Array) -> Array:
     """Square root; rounding may leave a variance of zero a little below it."""
     return np.sqrt(np.maximum(variance, 0.0))
-
-
-_EYE = np.eye(3)
