@@ -122,7 +122,7 @@ class BodyErrors:
         """
         model = sensor.model
         self.sensor, self._model = sensor, model
-        self._weight = noise_m**-2.0
+        self._weight = np.repeat(1.0 / noise_m, 3)[:, None]
         posture = np.asarray(model.posture_sd)
         self._prior = LOOSE + np.where(posture > 0.0, 1.0 / np.where(posture > 0.0, posture, 1.0) ** 2, 0.0)
         self._balance, self._origins = NewtonEuler(model), OriginLevers(model)
@@ -132,7 +132,7 @@ class BodyErrors:
 
     def _take(self, root: Array) -> None:
         count = len(self._model.scale)
-        self._factors, self._places = root[:count], root[count:].reshape(len(self._weight), 3, -1)
+        self._factors, self._places = root[:count], root[count:].reshape(len(self.sensor.joint_ids), 3, -1)
         self._levers = self._origins.levers @ self._factors
 
     def _directions(self) -> Array:
@@ -160,10 +160,9 @@ class BodyErrors:
         H = self.sensor.reading(q).jacobian
         by_places = rotations[joints] @ self._places
         by_factors = self._origins.summed(rotations, self._levers, joints)
-        moved = (by_places + by_factors).reshape(H.shape[0] * 3, -1)
-        H = H.reshape(len(moved), nv)
-        weighed = H * np.repeat(self._weight, 3)[:, None]
-        information = H.T @ weighed
+        moved = (by_places + by_factors).reshape(H.shape[0] * 3, -1) * self._weight
+        weighed = H.reshape(len(moved), nv) * self._weight
+        information = weighed.T @ weighed
         np.einsum("ii->i", information)[:] += self._prior
         _, found, failed = lapack.dposv(information.T, weighed.T @ moved, overwrite_a=True)
         if failed:
