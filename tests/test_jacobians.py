@@ -68,6 +68,7 @@ ELSEWHERE = {
     "scaling.problem.ScalingProblem.places_by_factors_and_offsets": "scaling/test_covariance.py",
     "sensors.gating.ObservedDofs.carried_by": "sensors/test_gating.py",
     "scaling.problem.ScalingProblem.linearise": "scaling/test_problem.py",
+    "model.scale_derivatives.OriginLevers.summed": "model/test_scale_derivatives.py",
     "model.scale_derivatives.origin_derivatives": "model/test_scale_derivatives.py",
     "scaling.standing.Standing.linearised": "scaling/test_standing.py",
     "sensors.block.Rows.jacobian": "block_contract.py jacobian",

@@ -21,13 +21,13 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import lapack
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import ROOT, JointTorques, NewtonEuler
-from mbkf.model.scale_derivatives import origin_derivatives
+from mbkf.model.scale_derivatives import OriginLevers
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.marker_sensor import MarkerSensor
 
@@ -122,17 +122,18 @@ class BodyErrors:
         """
         model = sensor.model
         self.sensor, self._model = sensor, model
-        self._weight = noise_m**-2.0
+        self._weight = np.repeat(1.0 / noise_m, 3)[:, None]
         posture = np.asarray(model.posture_sd)
         self._prior = LOOSE + np.where(posture > 0.0, 1.0 / np.where(posture > 0.0, posture, 1.0) ** 2, 0.0)
-        self._balance = NewtonEuler(model)
+        self._balance, self._origins = NewtonEuler(model), OriginLevers(model)
         self._varied = [NewtonEuler(one) for one in _varied(model)]
         self._take(root)
         self._take(root @ self._directions())
 
     def _take(self, root: Array) -> None:
         count = len(self._model.scale)
-        self._factors, self._places = root[:count], root[count:].reshape(len(self._weight), 3, -1)
+        self._factors, self._places = root[:count], root[count:].reshape(len(self.sensor.joint_ids), 3, -1)
+        self._levers = self._origins.levers @ self._factors
 
     def _directions(self) -> Array:
         """(r, n) orthonormal directions of L's columns in which nearly all of every dof's variance lies."""
@@ -149,18 +150,24 @@ class BodyErrors:
         return np.asarray(directions[: 1 + int(np.searchsorted(shares, KEPT_VARIANCE))].T)
 
     def pose_root(self, q: Array) -> Array:
-        """(nv, r) W L at a configuration q (nq,)."""
+        """(nv, r) W L at a configuration q (nq,).
+
+        Raises:
+            numpy.linalg.LinAlgError: Markers and posture do not determine the pose.
+        """
         rotations, _ = self._model.placements(q)
         joints, nv = self.sensor.joint_ids, self._model.nv
         H = self.sensor.reading(q).jacobian
         by_places = rotations[joints] @ self._places
-        by_factors = origin_derivatives(self._model, rotations)[joints] @ self._factors
-        moved = (by_places + by_factors).reshape(H.shape[0] * 3, -1)
-        H = H.reshape(len(moved), nv)
-        weighed = H * np.repeat(self._weight, 3)[:, None]
-        information = H.T @ weighed
-        information[np.diag_indices(nv)] += self._prior
-        return -np.asarray(cho_solve(cho_factor(information, overwrite_a=True), weighed.T @ moved))
+        by_factors = self._origins.summed(rotations, self._levers, joints)
+        moved = (by_places + by_factors).reshape(H.shape[0] * 3, -1) * self._weight
+        weighed = H.reshape(len(moved), nv) * self._weight
+        information = weighed.T @ weighed
+        np.einsum("ii->i", information)[:] += self._prior
+        _, found, failed = lapack.dposv(information.T, weighed.T @ moved, overwrite_a=True)
+        if failed:
+            raise np.linalg.LinAlgError("markers and posture do not determine the pose")
+        return -np.asarray(found)
 
     def at(
         self, q: Array, v: Array, a: Array, wrenches: Array, contact: tuple[int, int] | None

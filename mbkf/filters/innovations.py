@@ -34,6 +34,9 @@ LEAST, MOST = 0.1, 3.0
 EXPECTED_FRAMES = 2.0
 """So many frames the expected spread of a marker counts as."""
 
+NO_CHANNELS = Channels(np.zeros(0), np.zeros(0, dtype=int))
+"""Of a filter that reads nothing but priors."""
+
 
 class Innovations(NamedTuple):
     """A frame's innovations.
@@ -72,7 +75,7 @@ class InnovationSpreads:
             self._readers.append((number, block, len(sd[-1])))
             if block.kind == "markers":
                 self._markers = slice(first, len(kinds))
-        self._of_kind = np.equal.outer(np.arange(len(READING_KINDS)), kinds).astype(float)
+        self._of_kind = np.equal.outer(kinds, np.arange(len(READING_KINDS))).astype(float)
         spread, is_known = (np.concatenate([np.zeros(0), *parts]) for parts in (sd, known))
         self._first = RunningSpread(spread**2, EXPECTED_FRAMES * is_known)
         self._least = (LEAST * spread) ** 2
@@ -90,22 +93,23 @@ class InnovationSpreads:
             said: What they said.
         """
         read = [self._read(block, chosen[k], said[k], channels) for k, block, channels in self._readers]
+        if not read:
+            return NO_CHANNELS
         return Channels(
-            np.concatenate([np.zeros(0), *(one.mean_square for one in read)]),
-            np.concatenate([np.zeros(0, dtype=int), *(one.readings for one in read)]),
+            np.concatenate([one.mean_square for one in read]), np.concatenate([one.readings for one in read])
         )
 
     def innovations(self, before: RunningSpread, read: Channels) -> Innovations:
         """A frame's readings in units of their spread in the frames before."""
         variance = np.minimum(np.maximum(before.mean_square, self._least), self._most)
-        counted = read.readings * (before.frames > 0.0)
         ratio, own = read.mean_square / variance, self._markers
-        return Innovations(
-            self._of_kind @ (ratio * counted),
-            (self._of_kind @ counted).astype(int),
-            np.where(counted[own] > 0, ratio[own], np.nan),
-            np.sqrt(variance[own]),
-        )
+        counted = np.empty((2, len(ratio)))
+        np.multiply(read.readings, before.frames > 0.0, out=counted[1])
+        np.multiply(ratio, counted[1], out=counted[0])
+        squared, readings = counted @ self._of_kind
+        markers = ratio[own]
+        markers[counted[1, own] == 0.0] = np.nan
+        return Innovations(squared, readings.astype(int), markers, np.sqrt(variance[own]))
 
     def after(self, before: RunningSpread, read: Channels) -> RunningSpread:
         """The spreads that a frame's readings leave for the next."""

@@ -17,6 +17,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.body_errors import BodyErrorRoots
 from mbkf.filters.coordinate_variances import CoordinateVariances
+from mbkf.kernel.tree import CompiledTree
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
 
@@ -35,6 +36,8 @@ class SpreadReader:
         self.coordinates = CoordinateVariances(self.clinical)
         feet = [model.joint(segment).joint_id for segment in model.roles.feet]
         self._moves = np.ascontiguousarray(model.supports[feet], dtype=float)
+        self._feet = np.array(feet, dtype=np.int32)
+        self._tree = CompiledTree.where_built(model.pin_model)
         self._origins = [4 * joint + 3 for joint in feet]
 
     def torque_variance(self, q: Array, step_covariance: Array, dt_s: float) -> Array:
@@ -50,6 +53,8 @@ class SpreadReader:
 
     def rise_jacobian(self, q: Array) -> Array:
         """(2, nv) derivative of the height of right and left foot by the configuration q (nq,)."""
+        if self._tree is not None:
+            return self._tree.rise_jacobian(q, self._feet)
         frames, jacobian = self.model.frames_and_jacobian(q)
         x, y, _ = frames[self._origins].T[:, :, None]
         rise: Array = jacobian[3] * y
@@ -145,24 +150,22 @@ class Spread:
     @property
     def angle(self) -> Array:
         """(A,) of the clinical coordinates."""
-        found = self._coordinates
-        return self._with(found[0], None if self.body is None else found[2])
+        return self._coordinates[0]
 
     @property
     def angle_offset(self) -> Array:
         """(A,) the offset's part of it."""
-        return self._zeros if self.body is None else root(self._coordinates[2])
+        return self._zeros if self.body is None else self._coordinates[2]
 
     @property
     def rate(self) -> Array:
         """(A,) of their rates, from the velocities' own variances."""
-        found = self._coordinates
-        return self._with(found[1], None if self.body is None else found[3])
+        return self._coordinates[1]
 
     @property
     def rate_offset(self) -> Array:
         """(A,) the offset's part of it."""
-        return self._zeros if self.body is None else root(self._coordinates[3])
+        return self._zeros if self.body is None else self._coordinates[3]
 
     @property
     def ball_covariance(self) -> Array:
@@ -187,14 +190,19 @@ class Spread:
 
     @cached_property
     def _coordinates(self) -> Array:
-        """(2 or 4, A) variances of the clinical coordinates and their rates by the filter, and by the body."""
-        dofs, velocity = self.reader.coordinates.dofs, self.velocity_variance
-        blocks = [self._parts.blocks, velocity[dofs][:, :, None] * _EYE]
+        """(2 or 4, A) of the clinical coordinates and their rates, and the offset's part of both."""
+        dofs, velocity, own = self.reader.coordinates.dofs, self.velocity_variance, self._parts.blocks
+        blocks = [own, np.zeros(own.shape)]
+        np.einsum("bii->bi", blocks[1])[:] = velocity[dofs]
         diagonals = [self.position_variance, velocity]
         if self.body is not None:
             blocks += self.body.blocks(dofs)
             diagonals += [self.body.position_variance, self.body.velocity_variance]
-        return self.reader.coordinates.of(self.q, blocks, diagonals)
+        variance = self.reader.coordinates.of(self.q, blocks, diagonals)
+        np.maximum(variance, 0.0, out=variance)
+        if self.body is not None:
+            variance[:2] += variance[2:]
+        return np.sqrt(variance, out=variance)
 
     @property
     def _zeros(self) -> Array:
@@ -209,6 +217,3 @@ class Spread:
 def root(variance: Array) -> Array:
     """Square root; rounding may leave a variance of zero a little below it."""
     return np.sqrt(np.maximum(variance, 0.0))
-
-
-_EYE = np.eye(3)

@@ -141,6 +141,17 @@ static void gather(Carried *to, const Carried *from)
         to->gyration[i] += from->gyration[i];
 }
 
+void tree_loaded(Tree *tree, const double *q, const double *v, const double *a)
+{
+    tree_placed(tree, q);
+    segments(tree, v, a);
+    for (int i = tree->joints - 1; i > 0; i--) {
+        const int parent = tree->joint[i].parent;
+        for (int k = 0; parent && k < 6; k++)
+            tree->carried[parent].force[k] += tree->carried[i].force[k];
+    }
+}
+
 void tree_differentiated(Tree *tree, const double *q, const double *v, const double *a)
 {
     tree_placed(tree, q);

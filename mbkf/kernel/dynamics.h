@@ -4,6 +4,9 @@
 
 #include "tree.h"
 
+/* Fills the forces of carried, of all that a joint carries and without load; not by. */
+void tree_loaded(Tree *tree, const double *q, const double *v, const double *a);
+
 /* Fills carried and by, forces without load. */
 void tree_differentiated(Tree *tree, const double *q, const double *v, const double *a);
 

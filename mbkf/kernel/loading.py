@@ -417,33 +417,67 @@ class Library(Protocol):
             variance: (k, n + 1, 3) filled.
         """
 
+    def tau(
+        self,
+        tree: object,
+        q: Array,
+        v: Array,
+        a: Array,
+        moves: NDArray[np.int32],
+        wrenches: Array,
+        tau: Array,
+        /,
+    ) -> None:
+        """Fills ``tau`` (nv,) as :mod:`mbkf.model.newton_euler` states it.
+
+        Args:
+            tree: The handle.
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            a: (nv,) acceleration.
+            moves: (2, nv) whether a dof moves a foot, 32-bit integers.
+            wrenches: (12,) of the feet.
+            tau: (nv,) filled.
+        """
+
     def torques(
         self,
-        free: Array,
-        by_q: Array,
-        by_v: Array,
-        by_a: Array,
-        J: Array,
+        tree: object,
+        q: Array,
+        v: Array,
+        a: Array,
         moves: NDArray[np.int32],
-        joint_of: NDArray[np.int32],
         wrenches: Array,
         tau: Array,
         by_state: Array,
+        jacobian: Array,
         /,
     ) -> None:
-        """Fills ``tau`` (nv,) and ``by_state`` (nv, 3 nv + 12) as :mod:`mbkf.model.newton_euler` states them.
+        """Fills ``tau``, its derivatives and the Jacobian.
 
         Args:
-            free: (nv,) forces without the feet's wrenches.
-            by_q: (nv, nv) their derivative by q.
-            by_v: (nv, nv) by v.
-            by_a: (nv, nv) by a, symmetric.
-            J: (6, nv) velocities at the world's origin, in Fortran order.
+            tree: The handle.
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            a: (nv,) acceleration.
             moves: (2, nv) whether a dof moves a foot, 32-bit integers.
-            joint_of: (nv,) joint of a dof, 32-bit integers.
             wrenches: (12,) of the feet.
             tau: (nv,) filled.
             by_state: (nv, 3 nv + 12) filled, in Fortran order.
+            jacobian: (6, nv) filled, in Fortran order.
+        """
+
+    def rise(self, tree: object, q: Array, joints: NDArray[np.int32], rise: Array, /) -> None:
+        """Fills derivatives of the heights of joints.
+
+        Args:
+            tree: The handle.
+            q: (nq,) configuration.
+            joints: (n,) indices, 32-bit integers.
+            rise: (n, nv) filled.
+
+        Raises:
+            ValueError: The tree has no such joint.
         """
 
     def choose(self, own: bool, /) -> None:

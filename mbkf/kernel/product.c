@@ -32,28 +32,29 @@ static void by_blas(int part, int rows, int columns, int inner, double factor, c
 
 enum { LANES = 8, VECTORS = 3, HEIGHT = LANES * VECTORS, BREADTH = 8 };
 
-/* A tile of up to HEIGHT x breadth; breadth is a constant where this is inlined, so that all sums stay in registers. */
-WIDE static inline __attribute__((always_inline)) void tile(int breadth, const __mmask8 *mask, int inner,
+/* A tile of up to height vectors x breadth; both are constants where this is inlined, and that is within a loop:
+ * else compilers do not unroll its own ones in time to keep all sums in registers. */
+WIDE static inline __attribute__((always_inline)) void tile(int height, int breadth, const __mmask8 *mask, int inner,
                                                             double factor, const double *A, int lda,
                                                             const double *B, int ldb, double keep, const double *D,
                                                             double *C, int ldc)
 {
     __m512d sum[BREADTH][VECTORS];
     for (int j = 0; j < breadth; j++)
-        for (int v = 0; v < VECTORS; v++)
+        for (int v = 0; v < height; v++)
             sum[j][v] = _mm512_setzero_pd();
     for (int p = 0; p < inner; p++) {
         __m512d a[VECTORS];
-        for (int v = 0; v < VECTORS; v++)
+        for (int v = 0; v < height; v++)
             a[v] = _mm512_maskz_loadu_pd(mask[v], A + (long)p * lda + v * LANES);
         for (int j = 0; j < breadth; j++) {
             const __m512d b = _mm512_set1_pd(B[(long)p * ldb + j]);
-            for (int v = 0; v < VECTORS; v++)
+            for (int v = 0; v < height; v++)
                 sum[j][v] = _mm512_fmadd_pd(a[v], b, sum[j][v]);
         }
     }
     for (int j = 0; j < breadth; j++)
-        for (int v = 0; v < VECTORS; v++) {
+        for (int v = 0; v < height; v++) {
             double *c = C + (long)j * ldc + v * LANES;
             __m512d found = _mm512_mul_pd(_mm512_set1_pd(factor), sum[j][v]);
             if (keep != 0.0)
@@ -76,19 +77,18 @@ WIDE static void by_tiles(int part, int rows, int columns, int inner, double fac
             const double *a = A + i, *b = B + j;
             const double *d = keep != 0.0 ? D + (long)j * ldc + i : NULL;
             double *c = C + (long)j * ldc + i;
-            switch (breadth) {
-#define OF_BREADTH(n)                                                    \
-    case n:                                                              \
-        tile(n, mask, inner, factor, a, lda, b, ldb, keep, d, c, ldc);      \
+            switch (BREADTH * (mask[2] ? 2 : mask[1] ? 1 : 0) + breadth) {
+#define OF_BREADTH(height, n)                                                \
+    case BREADTH * (height - 1) + n:                                         \
+        tile(height, n, mask, inner, factor, a, lda, b, ldb, keep, d, c, ldc); \
         break;
-                OF_BREADTH(1)
-                OF_BREADTH(2)
-                OF_BREADTH(3)
-                OF_BREADTH(4)
-                OF_BREADTH(5)
-                OF_BREADTH(6)
-                OF_BREADTH(7)
-                OF_BREADTH(8)
+#define OF_HEIGHT(height)                                                                                 \
+    OF_BREADTH(height, 1) OF_BREADTH(height, 2) OF_BREADTH(height, 3) OF_BREADTH(height, 4)               \
+    OF_BREADTH(height, 5) OF_BREADTH(height, 6) OF_BREADTH(height, 7) OF_BREADTH(height, 8)
+                OF_HEIGHT(1)
+                OF_HEIGHT(2)
+                OF_HEIGHT(3)
+#undef OF_HEIGHT
 #undef OF_BREADTH
             }
         }

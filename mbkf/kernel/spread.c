@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "blas.h"
+#include "factor.h"
 #include "product.h"
 #include "vectorised.h"
 
@@ -39,11 +39,12 @@ VECTORISED static double dot(int n, const double *x, const double *y)
     return sum[0] + sum[1] + (sum[2] + sum[3]);
 }
 
-/* total += factor x y, number by number */
-VECTORISED static void gather(int n, double factor, const double *x, const double *y, double *total)
+/* total (n) += factor x y, number by number, summed over columns one after the other */
+VECTORISED static void gather(int n, int columns, double factor, const double *x, const double *y, double *total)
 {
-    for (int i = 0; i < n; i++)
-        total[i] += factor * x[i] * y[i];
+    for (int j = 0; j < columns; j++, x += n, y += n)
+        for (int i = 0; i < n; i++)
+            total[i] += factor * x[i] * y[i];
 }
 
 long root_work(int nv) { return 2L * nv * nv; }
@@ -52,13 +53,10 @@ int error_diagonal(const Errors *e, double *root, double *diagonal, double *work
 {
     const int n = e->n_seen, nv = e->nv, N = e->N;
     double *L = work, *W = work + (long)n * n;
-    int failed = 0;
     for (int j = 0; j < n; j++)
         for (int i = j; i < n; i++)
             L[(long)j * n + i] = e->information[(long)e->seen[j] * nv + e->seen[i]];
-    if (n)
-        blas.dpotrf("l", (int *)&n, L, (int *)&n, &failed);
-    if (failed)
+    if (factored(n, L))
         return 1;
     inverted(n, L, W);
     memset(root, 0, sizeof(double) * n * nv);
@@ -73,8 +71,7 @@ int error_diagonal(const Errors *e, double *root, double *diagonal, double *work
         diagonal[nv + dof] += square * skin;
         diagonal[2 * nv + dof] += square * square * skin;
     }
-    for (int k = 0; k < e->n_rows; k++)
-        gather(N, 1.0, e->rows + (long)k * N, e->rows + (long)k * N, diagonal);
+    gather(N, e->n_rows, 1.0, e->rows, e->rows, diagonal);
     return 0;
 }
 
@@ -89,8 +86,7 @@ static void symmetric_form(int m, int n, const double *T, int N, const double *P
         if (b)
             product(WHOLE, m, width, b, 2.0, T, m, P + b, N, 0.0, NULL, Y, m);
         product(WHOLE, m, width, width, 1.0, own, m, P + (long)b * N + b, N, b ? 1.0 : 0.0, Y, Y, m);
-        for (int i = 0; i < width; i++)
-            gather(m, 1.0, own + (long)i * m, Y + (long)i * m, variance);
+        gather(m, width, 1.0, own, Y, variance);
     }
 }
 
@@ -108,6 +104,14 @@ VECTORISED static void swung(int m, int n, int nv, double rate, const double *T,
     }
 }
 
+/* variance (m) += factor times the squares of columns of twice as many numbers, the second half upon the first */
+VECTORISED static void folded(int m, int columns, double factor, const double *R, double *variance)
+{
+    for (int j = 0; j < columns; j++, R += 2L * m)
+        for (int i = 0; i < m; i++)
+            variance[i] += factor * (R[i] * R[i] + R[m + i] * R[m + i]);
+}
+
 /* variance += skin times the squares of parts W' (2 m x n_seen), where row k of W ends at the seen dof k */
 static void repeated(const Errors *e, const double *root, int m, const double *parts, double *variance, double *R)
 {
@@ -116,18 +120,16 @@ static void repeated(const Errors *e, const double *root, int m, const double *p
         const int width = e->n_seen - b < BLOCK ? e->n_seen - b : BLOCK;
         const int inner = e->seen[b + width - 1] + 1;
         product(WHOLE, rows, width, inner, 1.0, parts, rows, root + b, e->n_seen, 0.0, NULL, R, rows);
-        for (int k = 0; k < width; k++) {
-            const double *r = R + (long)k * rows;
-            gather(m, e->skin, r, r, variance);
-            gather(m, e->skin, r + m, r + m, variance);
-        }
+        folded(m, width, e->skin, R, variance);
     }
 }
 
-VECTORISED static void scaled(int m, double factor, const double *x, double *y)
+/* T with its columns multiplied by size. */
+VECTORISED static void scaled(int m, int columns, const double *size, const double *T, double *sized)
 {
-    for (int i = 0; i < m; i++)
-        y[i] = factor * x[i];
+    for (int j = 0; j < columns; j++, T += m, sized += m)
+        for (int i = 0; i < m; i++)
+            sized[i] = size[j] * T[i];
 }
 
 VECTORISED static void added(int m, double factor, const double *x, double *y)
@@ -140,8 +142,7 @@ void error_of(const Errors *e, const double *root, int m, int n, const double *T
 {
     double *sized = work, *parts = sized + (long)m * n, *Y = parts + 2L * m * e->nv;
     memset(variance, 0, sizeof(double) * m);
-    for (int j = 0; j < n; j++)
-        scaled(m, e->size[j], T + (long)j * m, sized + (long)j * m);
+    scaled(m, n, e->size, T, sized);
     symmetric_form(m, n, sized, e->N, e->P, variance, Y);
     if (e->n_seen && e->skin > 0.0) {
         swung(m, n, e->nv, e->rate, T, parts);
@@ -157,7 +158,7 @@ void error_of(const Errors *e, const double *root, int m, int n, const double *T
                 some = 1;
             }
         if (some)
-            gather(m, 1.0, Y, Y, variance);
+            gather(m, 1, 1.0, Y, Y, variance);
     }
 }
 

@@ -1,10 +1,9 @@
-/* Python's side of spread.c, joint_rates.c and torques.c; part of module.c, whose arrays and workspace it takes. */
+/* Python's side of spread.c and joint_rates.c; part of module.c, whose arrays and workspace it takes. */
 #ifndef MBKF_SPREAD_BINDINGS_H
 #define MBKF_SPREAD_BINDINGS_H
 
 #include "joint_rates.h"
 #include "spread.h"
-#include "torques.h"
 
 static double *columns(Arrays *arrays, PyObject *object, Py_ssize_t count)
 {
@@ -127,38 +126,9 @@ static PyObject *py_joint_variances(PyObject *self, PyObject *const *args, Py_ss
     return done;
 }
 
-/* torques(free, by_q, by_v, by_a, J, moves, joint_of, wrenches, tau, by_state) */
-static PyObject *py_torques(PyObject *self, PyObject *const *args, Py_ssize_t given)
-{
-    Arrays held = {.held = 0};
-    PyObject *done = NULL;
-    (void)self;
-    if (!expects(given, 10))
-        return NULL;
-    const double *free = numbers(&held, args[0], 0);
-    const Py_ssize_t nv = free ? length(&held) : 0;
-    const double *by_q = free ? numbers(&held, args[1], nv * nv) : NULL;
-    const double *by_v = by_q ? numbers(&held, args[2], nv * nv) : NULL;
-    const double *by_a = by_v ? symmetric(&held, args[3], nv) : NULL;
-    const double *J = by_a ? columns(&held, args[4], 6 * nv) : NULL;
-    const int *moves = J ? integers(&held, args[5], 2 * nv) : NULL;
-    const int *joint_of = moves ? integers(&held, args[6], nv) : NULL;
-    const double *wrenches = joint_of ? numbers(&held, args[7], 12) : NULL;
-    double *tau = wrenches ? filled(&held, args[8], nv) : NULL;
-    double *by_state =
-        tau ? array(&held, args[9], PyBUF_F_CONTIGUOUS | PyBUF_WRITABLE, sizeof(double), nv * (3 * nv + 12)) : NULL;
-    if (by_state) {
-        torques((int)nv, free, by_q, by_v, by_a, J, moves, joint_of, wrenches, tau, by_state);
-        done = Py_NewRef(Py_None);
-    }
-    release(&held);
-    return done;
-}
-
 #define SPREAD_METHODS                                                                                             \
     {"errors", (PyCFunction)(void (*)(void))py_errors, METH_FASTCALL, "Variances that a state's errors give."},     \
         {"joint_variances", (PyCFunction)(void (*)(void))py_joint_variances, METH_FASTCALL,                         \
-         "Variances of joints' angles."},                                                                          \
-        {"torques", (PyCFunction)(void (*)(void))py_torques, METH_FASTCALL, "Generalised forces under loads."}
+         "Variances of joints' angles."}
 
 #endif

@@ -1,22 +1,17 @@
-/* Generalised forces of a body under its feet's wrenches, tau = ID(q, v, a) - sum of J' w, and their derivatives. */
+/* Generalised forces of a tree under its feet's wrenches, tau = ID(q, v, a) - sum of J' w, and their derivatives.
+ *
+ * The force f of all that a joint carries does work along the joint's axes: tau_i = J_i . f. A dof k behind i changes f
+ * and not J_i. A dof k before i, or of the same joint, turns both alike; besides, f changes by Y (acceleration by k) +
+ * D (velocity by k) as in dynamics.c, and J_i . Y s = s . Y J_i, J_i . D s = s . D'J_i. Dofs of which neither is before
+ * the other do not meet. */
 #include "torques.h"
 
 #include <string.h>
 
-static void cross(const double *a, const double *b, double *c)
-{
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double dot6(const double *a, const double *b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4] + a[5] * b[5];
-}
+#include "dynamics.h"
 
 /* X J_k with (J_k x J_i) . w = J_i' X J_k: what a turn by dof k changes (_turned_wrench of newton_euler.py). */
-static void turned(const double *w, const double *column, double *found)
+static void turned_wrench(const double *w, const double *column, double *found)
 {
     double moment[3];
     cross(w, column + 3, found);
@@ -26,38 +21,99 @@ static void turned(const double *w, const double *column, double *found)
         found[3 + i] += moment[i];
 }
 
-static void transposed(int n, const double *A, double *B)
+/* Angular part of D'J; the linear part is zero. */
+static void gyrated(const Carried *one, const double *axis, double *found)
 {
-    for (int j = 0; j < n; j++)
-        for (int i = 0; i < n; i++)
-            B[(long)j * n + i] = A[(long)i * n + j];
+    double across[3];
+    cross(one->impulse, axis, across);
+    turned_back(one->gyration, axis + 3, found);
+    for (int i = 0; i < 3; i++)
+        found[i] += 2.0 * across[i];
 }
 
-void torques(int nv, const double *free, const double *by_q, const double *by_v, const double *by_a,
-             const double *J, const int *moves, const int *joint_of, const double *wrenches, double *tau,
-             double *by_state)
+/* Derivatives of dof i's force by the dofs k of a joint before its own, or of its own, and of theirs by dof i. */
+static void meet(const Tree *tree, const Joint *joint, int same, int i, const double *gyration, double *by_state)
 {
-    const long block = (long)nv * nv;
-    memcpy(tau, free, sizeof(double) * nv);
-    transposed(nv, by_q, by_state);
-    transposed(nv, by_v, by_state + block);
-    memcpy(by_state + 2 * block, by_a, sizeof(double) * block);
-    for (int foot = 0; foot < 2; foot++) {
-        const int *own = moves + (long)foot * nv;
-        const double *w = wrenches + 6 * foot;
-        double *by_wrench = by_state + 3 * block + 6L * foot * nv;
-        for (int k = 0; k < nv; k++) {
-            const double *column = J + 6L * k;
-            for (int c = 0; c < 6; c++)
-                by_wrench[(long)c * nv + k] = own[k] ? -column[c] : 0.0;
-            if (!own[k])
-                continue;
+    const long nv = tree->nv, block = nv * nv;
+    const Derivative *of = &tree->by[i];
+    double whole[6];
+    for (int c = 0; c < 6; c++)
+        whole[c] = of->force_by_q[c] + of->swung[c];
+    for (int k = joint->at_v; k < joint->at_v + joint->dofs; k++) {
+        const Derivative *by = &tree->by[k];
+        const double *axis = tree->axes[k];
+        double *down = by_state + k * nv + i, *up = by_state + i * nv + k;
+        down[0] = dot6(by->by_q, of->force_by_a) + dot3(by->drag + 3, gyration);
+        down[block] = dot6(by->by_v, of->force_by_a) + dot3(axis + 3, gyration);
+        down[2 * block] = dot6(axis, of->force_by_a);
+        if (same)
+            continue;
+        up[0] = dot6(axis, whole);
+        up[block] = dot6(axis, of->force_by_v);
+        up[2 * block] = down[2 * block];
+    }
+}
+
+/* Takes the feet's wrenches off. */
+static void unload(const Tree *tree, const int *moves, const double *wrenches, double *tau)
+{
+    for (int foot = 0; foot < 2; foot++)
+        for (int k = 0; k < tree->nv; k++)
+            if (moves[(long)foot * tree->nv + k])
+                tau[k] -= dot6(tree->axes[k], wrenches + 6 * foot);
+}
+
+/* by_state for one foot: its wrench stands still when dofs before turn an axis. */
+static void unload_derivatives(const Tree *tree, const int *own, const double *w, double *by_state, double *by_wrench)
+{
+    const long nv = tree->nv;
+    for (int n = 1; n < tree->joints; n++) {
+        const Joint *joint = &tree->joint[n];
+        if (!joint->dofs || !own[joint->at_v])
+            continue;
+        for (int k = joint->at_v; k < joint->at_v + joint->dofs; k++) {
             double change[6];
-            tau[k] -= dot6(column, w);
-            turned(w, column, change);
-            for (int i = 0; i < nv; i++)
-                if (own[i] && joint_of[i] >= joint_of[k])
-                    by_state[(long)k * nv + i] -= dot6(J + 6L * i, change);
+            turned_wrench(w, tree->axes[k], change);
+            for (int c = 0; c < 6; c++)
+                by_wrench[c * nv + k] = -tree->axes[k][c];
+            for (int i = joint->at_v; i < nv; i++)
+                if (own[i])
+                    by_state[k * nv + i] -= dot6(tree->axes[i], change);
         }
     }
+}
+
+void tree_tau(Tree *tree, const double *q, const double *v, const double *a, const int *moves, const double *wrenches,
+              double *tau)
+{
+    tree_loaded(tree, q, v, a);
+    for (int n = 1; n < tree->joints; n++) {
+        const Joint *joint = &tree->joint[n];
+        for (int k = joint->at_v; k < joint->at_v + joint->dofs; k++)
+            tau[k] = dot6(tree->axes[k], tree->carried[n].force);
+    }
+    unload(tree, moves, wrenches, tau);
+}
+
+void tree_torques(Tree *tree, const double *q, const double *v, const double *a, const int *moves,
+                  const double *wrenches, double *tau, double *by_state)
+{
+    const long nv = tree->nv, block = nv * nv;
+    memset(by_state, 0, sizeof(double) * nv * (3 * nv + 12));
+    tree_differentiated(tree, q, v, a);
+    for (int n = 1; n < tree->joints; n++) {
+        const Joint *joint = &tree->joint[n];
+        const Carried *one = &tree->carried[n];
+        for (int i = joint->at_v; i < joint->at_v + joint->dofs; i++) {
+            double gyration[3];
+            tau[i] = dot6(tree->axes[i], one->force);
+            gyrated(one, tree->axes[i], gyration);
+            meet(tree, joint, 1, i, gyration, by_state);
+            for (int m = joint->parent; m; m = tree->joint[m].parent)
+                meet(tree, &tree->joint[m], 0, i, gyration, by_state);
+        }
+    }
+    unload(tree, moves, wrenches, tau);
+    for (int foot = 0; foot < 2; foot++)
+        unload_derivatives(tree, moves + foot * nv, wrenches + 6 * foot, by_state, by_state + 3 * block + 6 * foot * nv);
 }

@@ -110,3 +110,12 @@ void tree_placed(Tree *tree, const double *q)
         move(joint, frame, tree->axes + joint->at_v);
     }
 }
+
+void tree_rise(const Tree *tree, int joint, double *rise)
+{
+    const double x = tree->frames[12 * joint + 9], y = tree->frames[12 * joint + 10];
+    memset(rise, 0, sizeof *rise * tree->nv);
+    for (int i = joint; i; i = tree->joint[i].parent)
+        for (int k = tree->joint[i].at_v; k < tree->joint[i].at_v + tree->joint[i].dofs; k++)
+            rise[k] = tree->axes[k][3] * y - tree->axes[k][4] * x + tree->axes[k][2];
+}

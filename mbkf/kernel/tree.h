@@ -54,4 +54,7 @@ void tree_freed(Tree *tree);
 /* Frames and axes at a configuration. */
 void tree_placed(Tree *tree, const double *q);
 
+/* Derivative (nv) of the height of a joint's origin by the configuration that the tree was placed at. */
+void tree_rise(const Tree *tree, int joint, double *rise);
+
 #endif

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.kernel.loading import Library, library
@@ -82,6 +83,48 @@ class CompiledTree:
         residual, by_state = np.empty(6), np.empty((6, 3 * self.nv + 12))
         self._kernel.root(self.handle, _read(q), _read(v), _read(a), _read(wrench), residual, by_state)
         return residual, by_state
+
+    def tau(self, q: Array, v: Array, a: Array, moves: NDArray[np.int32], wrenches: Array) -> Array:
+        """(nv,) generalised forces ID(q, v, a) − Σ J_fᵀ w_f.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            a: (nv,) acceleration.
+            moves: (2, nv) whether a dof moves a foot.
+            wrenches: (12,) of the feet: force N and moment N m about the world's origin.
+        """
+        tau = np.empty(self.nv)
+        self._kernel.tau(self.handle, _read(q), _read(v), _read(a), moves, _read(wrenches), tau)
+        return tau
+
+    def torques(
+        self, q: Array, v: Array, a: Array, moves: NDArray[np.int32], wrenches: Array
+    ) -> tuple[Array, Array, Array]:
+        """:meth:`tau`, its derivatives (nv, 3 nv + 12) by q, v, a and the wrenches, and the Jacobian (6, nv).
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity in the tangent space.
+            a: (nv,) acceleration.
+            moves: (2, nv) whether a dof moves a foot.
+            wrenches: (12,) of the feet: force N and moment N m about the world's origin.
+        """
+        nv = self.nv
+        tau, by_state, jacobian = (
+            np.empty(nv),
+            np.empty((nv, 3 * nv + 12), order="F"),
+            np.empty((6, nv), order="F"),
+        )
+        given = _read(q), _read(v), _read(a), moves, _read(wrenches)
+        self._kernel.torques(self.handle, *given, tau, by_state, jacobian)
+        return tau, by_state, jacobian
+
+    def rise_jacobian(self, q: Array, joints: NDArray[np.int32]) -> Array:
+        """(n, nv) derivative of the heights of the origins of n joints by the configuration q (nq,)."""
+        rise = np.empty((len(joints), self.nv))
+        self._kernel.rise(self.handle, _read(q), joints, rise)
+        return rise
 
     def integrate(self, q: Array, dv: Array) -> Array:
         """(nq,) configuration reached from q by the tangent vector dv (nv,)."""

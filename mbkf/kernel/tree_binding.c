@@ -7,6 +7,7 @@
 #include "dynamics.h"
 #include "manifold.h"
 #include "posture.h"
+#include "torques.h"
 
 #define CAPSULE "mbkf.kernel.tree"
 
@@ -110,6 +111,92 @@ static PyObject *py_root(PyObject *self, PyObject *const *args, Py_ssize_t given
         PyErr_SetString(PyExc_ValueError, "the tree has no free root");
     else if (by_state) {
         tree_root(tree, q, v, a, wrench, residual, by_state);
+        done = Py_NewRef(Py_None);
+    }
+    release(&held);
+    return done;
+}
+
+/* What both functions of torques are given besides a tree: q, v, a, whether dofs move the feet, and wrenches. */
+typedef struct {
+    const double *q, *v, *a, *wrenches;
+    const int *moves;
+} Loaded;
+
+static int loaded(Arrays *held, const Tree *tree, PyObject *const *args, Loaded *at)
+{
+    at->q = numbers(held, args[0], tree->nq);
+    at->v = at->q ? numbers(held, args[1], tree->nv) : NULL;
+    at->a = at->v ? numbers(held, args[2], tree->nv) : NULL;
+    at->moves = at->a ? array(held, args[3], PyBUF_C_CONTIGUOUS, sizeof(int), 2 * (Py_ssize_t)tree->nv) : NULL;
+    at->wrenches = at->moves ? numbers(held, args[4], 12) : NULL;
+    return at->wrenches != NULL;
+}
+
+/* tau(tree, q, v, a, moves, wrenches, tau) */
+static PyObject *py_tau(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    Arrays held = {.held = 0};
+    PyObject *done = NULL;
+    Loaded at;
+    (void)self;
+    Tree *tree = expects(given, 7) ? tree_in(args[0]) : NULL;
+    if (!tree)
+        return NULL;
+    double *tau = loaded(&held, tree, args + 1, &at) ? filled(&held, args[6], tree->nv) : NULL;
+    if (tau) {
+        tree_tau(tree, at.q, at.v, at.a, at.moves, at.wrenches, tau);
+        done = Py_NewRef(Py_None);
+    }
+    release(&held);
+    return done;
+}
+
+/* torques(tree, q, v, a, moves, wrenches, tau, by_state, jacobian): matrices column by column */
+static PyObject *py_torques(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    Arrays held = {.held = 0};
+    PyObject *done = NULL;
+    Loaded at;
+    (void)self;
+    Tree *tree = expects(given, 9) ? tree_in(args[0]) : NULL;
+    if (!tree)
+        return NULL;
+    const Py_ssize_t nv = tree->nv;
+    double *tau = loaded(&held, tree, args + 1, &at) ? filled(&held, args[6], nv) : NULL;
+    double *by_state = tau ? filled(&held, args[7], nv * (3 * nv + 12)) : NULL;
+    double *jacobian = by_state ? filled(&held, args[8], 6 * nv) : NULL;
+    if (jacobian) {
+        tree_torques(tree, at.q, at.v, at.a, at.moves, at.wrenches, tau, by_state);
+        memcpy(jacobian, tree->axes, sizeof *tree->axes * nv);
+        done = Py_NewRef(Py_None);
+    }
+    release(&held);
+    return done;
+}
+
+/* rise(tree, q, joints, rise): how the heights of joints change with q, row by row */
+static PyObject *py_rise(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    Arrays held = {.held = 0};
+    PyObject *done = NULL;
+    (void)self;
+    Tree *tree = expects(given, 4) ? tree_in(args[0]) : NULL;
+    if (!tree)
+        return NULL;
+    const double *q = numbers(&held, args[1], tree->nq);
+    const int *joints = q ? array(&held, args[2], PyBUF_C_CONTIGUOUS, sizeof(int), 0) : NULL;
+    const int count = joints ? length(&held) : 0;
+    double *rise = joints ? filled(&held, args[3], (Py_ssize_t)count * tree->nv) : NULL;
+    int sound = rise != NULL;
+    for (int n = 0; sound && n < count; n++)
+        sound = joints[n] > 0 && joints[n] < tree->joints;
+    if (rise && !sound)
+        PyErr_SetString(PyExc_ValueError, "the tree has no such joint");
+    else if (rise) {
+        tree_placed(tree, q);
+        for (int n = 0; n < count; n++)
+            tree_rise(tree, joints[n], rise + (Py_ssize_t)n * tree->nv);
         done = Py_NewRef(Py_None);
     }
     release(&held);
@@ -222,6 +309,9 @@ PyMethodDef tree_functions[] = {
     {"tree", QUICK(py_tree), "A body as a tree of joints."},
     {"place", QUICK(py_place), "Frames and Jacobian of a tree."},
     {"root", QUICK(py_root), "The root's equations of motion."},
+    {"tau", QUICK(py_tau), "Generalised forces under loads."},
+    {"torques", QUICK(py_torques), "The same with derivatives."},
+    {"rise", QUICK(py_rise), "How heights of joints change."},
     {"step", QUICK(py_step), "A configuration, one step further."},
     {"step_derivatives", QUICK(py_step_derivatives), "Derivatives of a step."},
     {"deviation", QUICK(py_deviation), "Turns of a tree's joints from neutral."},

@@ -15,7 +15,6 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
-from mbkf.kernel.loading import library
 from mbkf.model.body import Body
 
 ROOT = 6
@@ -103,7 +102,7 @@ class NewtonEuler:
         self._after = [_moved_by(model, chain) for chain in self._chains]
         self._tree = model.tree
         self._others: dict[int, tuple[NDArray[np.intp], Array]] = {}
-        self._joint_of = _joint_of(model)
+        self._J = self._data.J
         self._moves_feet = np.array(self._moves, dtype=np.int32)
 
     def root(self, q: Array, v: Array, a: Array, wrenches: Array) -> RootBalance:
@@ -137,26 +136,15 @@ class NewtonEuler:
             a: (nv,) acceleration.
             wrenches: (12,) right and left foot's wrenches: force N and moment N m about the world's origin.
         """
-        data, nv = self._data, self.model.nv
+        if self._tree is not None:
+            tau, by_state, self._J = self._tree.torques(q, v, a, self._moves_feet, wrenches)
+            return JointTorques(tau, by_state)
+        nv = self.model.nv
         by_state = np.empty((nv, 3 * nv + 12), order="F")
         found = JointTorques(np.empty(nv), by_state)
-        by_q, by_v, by_a = self._inverse_dynamics(q, v, a)
-        kernel = library()
-        if kernel is not None:
-            own = self._moves_feet, self._joint_of, np.ascontiguousarray(wrenches)
-            kernel.torques(
-                data.tau,
-                np.ascontiguousarray(by_q),
-                np.ascontiguousarray(by_v),
-                by_a,
-                data.J,
-                *own,
-                found.tau,
-                by_state,
-            )
-            return found
-        found.by_q[:], found.by_v[:], found.by_a[:] = by_q, by_v, by_a
-        found.tau[:], J = data.tau, data.J
+        found.by_q[:], found.by_v[:], found.by_a[:] = self._inverse_dynamics(q, v, a)
+        found.tau[:], J = self._data.tau, self._data.J
+        self._J = J
         for foot, (chain, moves, after) in enumerate(
             zip(self._chains, self._moves, self._after, strict=True)
         ):
@@ -175,7 +163,7 @@ class NewtonEuler:
             found: What :meth:`torques` gave in its last call.
             loads: (6,) wrench about the world's origin by the index of the joint whose segment bears it.
         """
-        J = self._data.J
+        J = self._J
         for joint, wrench in loads.items():
             if joint not in self._others:
                 chain = np.flatnonzero(self.model.supports[joint])
@@ -186,8 +174,8 @@ class NewtonEuler:
             found.by_state[chain[:, None], chain] -= after * (own.T @ _turned_wrench(wrench) @ own)
 
     def jacobian(self, joint: int) -> Array:
-        """(6, nv) velocity at the world's origin of a joint's segment, at the configuration of the last call."""
-        return np.where(self.model.supports[joint], self._data.J, 0.0)
+        """(6, nv) velocity at the world's origin of a joint's segment, where :meth:`torques` was last asked."""
+        return np.where(self.model.supports[joint], self._J, 0.0)
 
     def tau(self, q: Array, v: Array, a: Array, wrenches: Array) -> Array:
         """(nv,) generalised forces alone.
@@ -198,6 +186,8 @@ class NewtonEuler:
             a: (nv,) acceleration.
             wrenches: (12,) right and left foot's wrenches: force N and moment N m about the world's origin.
         """
+        if self._tree is not None:
+            return self._tree.tau(q, v, a, self._moves_feet, wrenches)
         tau = pin.rnea(self._pin, self._data, q, v, a)
         J = pin.computeJointJacobians(self._pin, self._data, q)
         for foot, moves in enumerate(self._moves):

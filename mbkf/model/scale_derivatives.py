@@ -3,9 +3,49 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
+
+
+class OriginLevers:
+    """What of these derivatives does not change: a joint's origin is the sum of levers of all joints before it.
+
+    Attributes:
+        parents: (S,) joint in whose segment each of S joints lies.
+        levers: (S, 3, K) derivative of its place in that segment by the scale factors.
+    """
+
+    def __init__(self, model: Body) -> None:
+        """Args: the scaled body."""
+        body = model.description
+        segments = [segment for segment in body.segments if segment.parent != "world"]
+        own = [model.joint(segment.name).joint_id for segment in segments]
+        self.parents: NDArray[np.intp] = np.array(
+            [model.joint(segment.parent).joint_id for segment in segments], dtype=int
+        )
+        self.levers = np.zeros((len(segments), 3, len(body.scale_factors)))
+        self._before = np.zeros((len(model.supports), len(segments)))
+        for k, segment in enumerate(segments):
+            parent = body.segment(str(segment.parent))
+            self.levers[k] = segment.origin_m[:, None] * parent.scale_matrix
+            self._before[own[k]] = self._before[self.parents[k]]
+            self._before[own[k], k] = 1.0
+
+    def summed(
+        self, rotations: Array, levers: Array, joints: NDArray[np.intp] | slice = slice(None)
+    ) -> Array:
+        """(J, 3, r) derivatives of joints' world origins.
+
+        Args:
+            rotations: (J, 3, 3) world rotations of all joints.
+            levers: (S, 3, r) :attr:`levers`, or these times directions (K, r) of the scale factors.
+            joints: Which joints.
+        """
+        turned = rotations[self.parents] @ levers
+        found: Array = self._before[joints] @ turned.reshape(len(levers), -1)
+        return found.reshape(-1, *turned.shape[1:])
 
 
 def origin_derivatives(model: Body, rotations: Array) -> Array:
@@ -15,13 +55,5 @@ def origin_derivatives(model: Body, rotations: Array) -> Array:
         model: The scaled body.
         rotations: (J, 3, 3) world rotations of its joints.
     """
-    body = model.description
-    derivatives = np.zeros((len(rotations), 3, len(body.scale_factors)))
-    for segment in body.segments:
-        if segment.parent == "world":
-            continue
-        parent = model.joint(segment.parent).joint_id
-        lever = segment.origin_m[:, None] * body.segment(segment.parent).scale_matrix
-        joint = model.joint(segment.name).joint_id
-        derivatives[joint] = derivatives[parent] + rotations[parent] @ lever
-    return derivatives
+    levers = OriginLevers(model)
+    return levers.summed(rotations, levers.levers)

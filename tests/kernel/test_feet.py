@@ -38,7 +38,7 @@ def test_soles_move_as_their_feet_do(seed):
     points = np.einsum("kij,kj->ki", rotations[on], local) + origins[on]
     velocities = [
         model.segment_jacobian(q, segment, place)[:3] @ v
-        for segment, place in zip(segments, local, strict=True)
+        for segment, place in zip(segments, points, strict=True)
     ]
     assert worst(np.reshape(found.points, (6, 3)) - points) <= 1e-13
     assert worst(np.reshape(found.velocities, (6, 3)) - velocities) <= 1e-12

@@ -93,6 +93,54 @@ def test_the_root_s_equations_are_pinocchio_s(seed):
     assert_same(by_state[:, 3 * nv :], np.tile(-axes.T, 2))
 
 
+@often
+@seeds
+def test_torques_and_their_derivatives_are_pinocchio_s(seed):
+    """Each foot hangs on any joint; its wrench stands still in the world."""
+    s = moving(seed)
+    nv, feet = s.model.nv, s.rng.integers(1, s.model.njoints, size=2)
+    moves = np.array([[_is_before(s.model, k, foot) for k in range(nv)] for foot in feet], dtype=np.int32)
+    tau, by_state, jacobian = s.tree.torques(s.q, s.v, s.a, moves, s.w)
+    by_q, by_v, by_a = pin.computeRNEADerivatives(s.model, s.data, s.q, s.v, s.a)
+    expected, by_q = s.data.tau.copy(), by_q.copy()
+    assert_same(jacobian, s.data.J)
+    for foot, own in zip((slice(6), slice(6, 12)), moves, strict=True):
+        J = s.data.J * own
+        turns = (J.T @ crossed(s.w[foot]) @ J).T
+        by_q -= turns * [[_is_before(s.model, k, _joint(s.model, i)) for k in range(nv)] for i in range(nv)]
+        expected -= J.T @ s.w[foot]
+        assert_same(by_state[:, 3 * nv :][:, foot], -J.T)
+    assert_same(tau, expected)
+    assert_same(s.tree.tau(s.q, s.v, s.a, moves, s.w), expected)
+    assert_same(by_state[:, :nv], by_q)
+    assert_same(by_state[:, nv : 2 * nv], by_v)
+    assert_same(by_state[:, 2 * nv : 3 * nv], by_a)
+
+
+def _joint(model, dof):
+    """Joint of a dof."""
+    return next(i for i in range(1, model.njoints) if dof < model.joints[i].idx_v + model.joints[i].nv)
+
+
+def _is_before(model, dof, joint):
+    """Whether a dof moves a joint."""
+    return _joint(model, dof) in list(model.supports[int(joint)])
+
+
+@often
+@seeds
+def test_heights_change_as_their_joints_velocities_say(seed):
+    s = moving(seed)
+    joints = np.arange(1, s.model.njoints, dtype=np.int32)
+    pin.computeJointJacobians(s.model, s.data, s.q)
+    expected = [
+        pin.getJointJacobian(s.model, s.data, int(joint), pin.LOCAL_WORLD_ALIGNED)[2] for joint in joints
+    ]
+    assert_same(s.tree.rise_jacobian(s.q, joints), np.array(expected))
+    with pytest.raises(ValueError, match="no such joint"):
+        s.tree.rise_jacobian(s.q, joints + 1)
+
+
 def test_rows_of_tables_and_whole_numbers_are_read():
     s = moving(0)
     every_other = np.repeat(s.q, 2).reshape(-1, 2)[:, 0]

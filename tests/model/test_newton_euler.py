@@ -5,7 +5,7 @@ import pinocchio as pin
 import pytest
 
 from mbkf.kernel.loading import library
-from mbkf.model import newton_euler
+from mbkf.kernel.tree import CompiledTree
 from mbkf.model.newton_euler import NewtonEuler
 from tests.dynamics import random_state
 from tests.motions import assert_near, random_model, worst
@@ -56,12 +56,15 @@ def test_torques_are_the_same_with_and_without_derivatives(seed):
 @pytest.mark.skipif(library() is None, reason="the kernel is not compiled here")
 @seeds
 def test_the_kernel_finds_the_same_torques_and_derivatives(seed, monkeypatch):
-    _, balance, s = made(seed)
-    compiled = balance.torques(s.q, s.v, s.a, s.w)
-    monkeypatch.setattr(newton_euler, "library", lambda: None)
-    reference = balance.torques(s.q, s.v, s.a, s.w)
-    assert_near(compiled.tau, reference.tau, 1e-12)
-    assert_near(compiled.by_state, reference.by_state, 1e-12)
+    model, compiled, s = made(seed)
+    monkeypatch.setattr(CompiledTree, "where_built", lambda model: None)
+    reference = NewtonEuler(model)
+    expected, found = reference.torques(s.q, s.v, s.a, s.w), compiled.torques(s.q, s.v, s.a, s.w)
+    assert_near(found.tau, expected.tau, 1e-12)
+    assert_near(found.by_state, expected.by_state, 1e-12)
+    assert_near(compiled.tau(s.q, s.v, s.a, s.w), expected.tau, 1e-12)
+    hand = model.joint("right_hand").joint_id
+    assert_near(compiled.jacobian(hand), reference.jacobian(hand), 1e-12)
 
 
 @seeds

@@ -3,7 +3,7 @@
 import numpy as np
 
 from mbkf.model.human import HumanModel
-from mbkf.model.scale_derivatives import origin_derivatives
+from mbkf.model.scale_derivatives import OriginLevers, origin_derivatives
 from tests.motions import assert_near, moderate_pose, random_model
 
 
@@ -21,3 +21,12 @@ def test_origin_derivatives_are_differences_of_scaled_bodies():
     found = origin_derivatives(model, model.placements(q)[0])
     joints = [joint.joint_id for joint in model.joints.values()]
     assert_near(found[joints], np.moveaxis(slopes, 0, -1)[joints], 1e-9)
+
+
+def test_levers_along_directions_are_the_derivatives_times_these():
+    rng = np.random.default_rng(4)
+    model = random_model(rng)
+    rotations, _ = model.placements(moderate_pose(model, rng))
+    levers, directions, joints = OriginLevers(model), rng.normal(size=(len(model.scale), 3)), np.array([4, 2])
+    found = levers.summed(rotations, levers.levers @ directions, joints)
+    assert_near(found, origin_derivatives(model, rotations)[joints] @ directions, 1e-12)

@@ -1,0 +1,9 @@
+/* Cholesky factors of matrices of a body's size; see factor.c. Matrices stand column by column. */
+#ifndef MBKF_FACTOR_H
+#define MBKF_FACTOR_H
+
+/* Lower factor L of A = L L' (n x n) in place of A, whose lower triangle alone is read; zero right of the diagonal.
+ * Returns 0, or 1 where A is not positive definite. */
+int factored(int n, double *A);
+
+#endif
