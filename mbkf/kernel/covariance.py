@@ -28,7 +28,7 @@ class CompiledPrediction:
             noise: (3, 3) covariance of (q, v, a) for σ_a = 1.
         """
         self._kernel, self._singer, self._noise = kernel, np.ascontiguousarray(singer), noise
-        self._joints = _first_and_number(joints)
+        self._joints = first_and_number(joints)
 
     @classmethod
     def where_built(cls, joints: Iterable[slice], singer: Array, noise: Array) -> CompiledPrediction | None:
@@ -70,7 +70,7 @@ class CompiledVelocityPrediction:
             noise: (2, 2, nv) diagonals of the blocks of Q.
         """
         self._kernel, self._dt_s, self._noise = kernel, dt_s, np.ascontiguousarray(noise)
-        self._joints = _first_and_number(joints)
+        self._joints = first_and_number(joints)
 
     @classmethod
     def where_built(
@@ -100,7 +100,7 @@ class CompiledVelocityPrediction:
         return carried
 
 
-def _first_and_number(joints: Iterable[slice]) -> NDArray[np.int32]:
+def first_and_number(joints: Iterable[slice]) -> NDArray[np.int32]:
     """(J, 2) first dof and number of dofs of each joint."""
     return np.array([(dofs.start, dofs.stop - dofs.start) for dofs in joints], dtype=np.int32)
 

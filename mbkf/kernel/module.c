@@ -139,6 +139,7 @@ static PyObject *py_inform(PyObject *self, PyObject *const *args, Py_ssize_t giv
     return done;
 }
 
+#include "smoothing_bindings.h"
 #include "spread_bindings.h"
 
 /* vectors() -> bits of the vectors that products are made with; 0 where BLAS makes them */
@@ -199,6 +200,7 @@ static PyMethodDef methods[] = {
     {"carry_velocities", (PyCFunction)(void (*)(void))py_carry_velocities, METH_FASTCALL,
      "The same for positions and velocities alone."},
     {"inform", (PyCFunction)(void (*)(void))py_inform, METH_FASTCALL, "A covariance after readings."},
+    SMOOTHING_METHODS,
     SPREAD_METHODS,
     {"choose", py_choose, METH_O, "Products by instructions of their own, where they can be, or by BLAS."},
     {"vectors", py_vectors, METH_NOARGS, "Bits of the vectors that products are made with; 0: BLAS makes them."},

@@ -13,10 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.filters.dynamic.filter import DynamicFilter
 from mbkf.filters.dynamic.plant import DynamicState
-from mbkf.filters.filter import Decisions, Filter, Readings, Step
+from mbkf.filters.filter import Decisions, Readings, Step
 from mbkf.kernel.covariance import informed_with_rows
-from mbkf.numerics.smoothing import BackwardPass
+from mbkf.kernel.smoothing import SparseBackwardPass
+from mbkf.numerics.rate_transition import RateTransition
 
 FURTHEST_RAD = 0.5
 """A round corrects no joint by more than this."""
@@ -30,11 +32,11 @@ class _Forward:
     delta: Array
     readings: Readings | None
     vector: Array
-    transition: Array | None
+    transition: RateTransition | None
 
 
 def smooth(
-    kalman: Filter[DynamicState],
+    kalman: DynamicFilter,
     run: Sequence[Step[DynamicState]],
     rounds: int,
     wanted: int | None = None,
@@ -57,7 +59,7 @@ def smooth(
             kalman.plant.retract(x, share * step, x.P) for x, step in zip(means, reversed(steps), strict=True)
         ]
     forward = _forward(kalman, begin, means, decided)
-    steps_and_covariances = list(_backward(forward, covariances=True))[::-1]
+    steps_and_covariances = list(_backward(forward, covariances=True, wanted=wanted))[::-1]
     for mean, (step, P) in list(zip(means, steps_and_covariances, strict=True))[:wanted]:
         if P is not None:
             yield kalman.plant.retract(mean, step, P)
@@ -70,7 +72,7 @@ def _damping(steps: Sequence[Array], nv: int) -> float:
 
 
 def _forward(
-    kalman: Filter[DynamicState],
+    kalman: DynamicFilter,
     begin: DynamicState,
     means: Sequence[DynamicState],
     decided: Sequence[Decisions],
@@ -81,10 +83,10 @@ def _forward(
     passed = [_Forward(P, delta, None, np.zeros_like(delta), None)]
     for last, mean, decisions in zip(means[:-1], means[1:], decided[1:], strict=True):
         before = replace(last, P=P)
-        transition = plant.transition(before)
+        transition = plant.transition_parts(before)
         prior = plant.predict(before, decisions.noise)
         kalman.inflate(prior.P, decisions.blocks)
-        delta = transition @ delta + plant.difference(mean, prior)
+        delta = transition.forward(delta) + plant.difference(mean, prior)
         readings = kalman.linearise(mean, decisions)
         P = informed_with_rows(prior.P, readings.matrix, readings.rows)
         vector = readings.whole_vector - readings.apply(delta)
@@ -94,13 +96,22 @@ def _forward(
     return passed
 
 
-def _backward(forward: Sequence[_Forward], covariances: bool) -> Iterator[tuple[Array, Array | None]]:
-    """From the last frame to the first: correction of the mean, and the smoothed covariance when wanted."""
-    back = BackwardPass(len(forward[0].delta), covariances)
+def _backward(
+    forward: Sequence[_Forward], covariances: bool, wanted: int | None = None
+) -> Iterator[tuple[Array, Array | None]]:
+    """From the last frame to the first: correction of the mean, and the smoothed covariance when wanted.
+
+    Args:
+        forward: The forward pass.
+        covariances: Whether smoothed covariances are wanted, too.
+        wanted: Of how many frames from the first on; None for all.
+    """
+    back = SparseBackwardPass(len(forward[0].delta), covariances)
     for k in range(len(forward) - 1, -1, -1):
         here = forward[k]
-        yield here.delta + back.step(here.P), back.covariance(here.P) if covariances else None
+        asked = covariances and (wanted is None or k < wanted)
+        yield here.delta + back.step(here.P), back.covariance(here.P) if asked else None
         transition = forward[k - 1].transition if k else None
         if here.readings is not None and transition is not None:
-            back.through_readings(here.P, here.readings.whole_matrix, here.vector)
-            back.through_plant(transition)
+            back.through_parts(here.P, here.readings.matrix, here.readings.rows, here.vector)
+            back.through_motion(transition)
