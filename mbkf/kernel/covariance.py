@@ -105,7 +105,7 @@ def first_and_number(joints: Iterable[slice]) -> NDArray[np.int32]:
     return np.array([(dofs.start, dofs.stop - dofs.start) for dofs in joints], dtype=np.int32)
 
 
-def informed_with_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
+def informed_with_rows(covariance: Array, matrix: Array, rows: Array, memory: Array | None = None) -> Array:
     """(N, N) as :func:`mbkf.numerics.information_update.informed_with_rows`, by the compiled kernel where there is one.
 
     What the kernel cannot factorise is the reference's, which knows what to do with it.
@@ -114,10 +114,11 @@ def informed_with_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
         covariance: (N, N) prior covariance P.
         matrix: (n, n) information Λ on the first n components.
         rows: (m, N) whitened Jacobian of the other readings; their values do not enter.
+        memory: (N, N) array that may be filled with the answer, so that none is made.
     """
     kernel = library()
     if kernel is not None:
-        informed = np.empty(covariance.shape)
+        informed = np.empty(covariance.shape) if memory is None else memory
         if kernel.inform(covariance, matrix, np.ascontiguousarray(rows), informed) == 0:
             return informed.T
     return information_update.informed_with_rows(covariance, matrix, rows)

@@ -18,27 +18,32 @@ class SparseBackwardPass(BackwardPass):
 
     def __init__(self, size: int, covariances: bool = True) -> None:
         super().__init__(size, covariances)
-        self._kernel = library()
-        self._found: tuple[Array, Array, Array] | None = None
+        self._kernel = library() if covariances else None
+        self._of: Array | None = None
+        if self._kernel is not None:  # fresh memory costs more than the products that go there
+            self._smoothed, self._product, self._spare = np.empty((3, size, size))
 
     def covariance(self, P: Array) -> Array:
-        """(N, N) smoothed covariance of a frame with posterior covariance P; not to be changed.
+        """(N, N) smoothed covariance of a frame with posterior covariance P.
 
         Raises:
             ValueError: The pass carries no covariances.
         """
         if self.curvature is None or self._kernel is None:
             return super().covariance(P)
-        return self._smoothed(P, self.curvature)[0]
+        self._smooth(P, self.curvature)
+        return self._smoothed.copy()
 
-    def _smoothed(self, P: Array, curvature: Array) -> tuple[Array, Array]:
-        """P − P L P and L P; kept, since a frame's answer and its readings both need them."""
-        if self._found is None or self._found[0] is not P:
-            smoothed, product = np.empty(P.shape), np.empty(P.shape)
-            if self._kernel is not None:
-                self._kernel.smoothed(P, curvature, smoothed, product)
-            self._found = P, smoothed, product
-        return self._found[1:]
+    def _smooth(self, P: Array, curvature: Array) -> None:
+        """Works out P − P L P and L P; kept, since a frame's answer and its readings both need them."""
+        if self._of is not P and self._kernel is not None:
+            self._kernel.smoothed(P, curvature, self._smoothed, self._product)
+            self._of = P
+
+    def _swap(self) -> None:
+        """The curvature is what was worked out in the spare memory."""
+        if self.curvature is not None:
+            self._spare, self.curvature, self._of = self.curvature, self._spare, None
 
     def through_parts(self, P: Array, matrix: Array, rows: Array, vector: Array) -> None:
         """From after a frame's readings to before them, as :meth:`through_readings`.
@@ -58,11 +63,10 @@ class SparseBackwardPass(BackwardPass):
             self.through_readings(P, information, vector)
             return
         if self.curvature is not None and self._kernel is not None:
-            smoothed, product = self._smoothed(P, self.curvature)
-            before = np.empty(P.shape)
-            rows = np.ascontiguousarray(rows)
-            self._kernel.before_readings(self.curvature, smoothed, product, matrix, rows, before)
-            self.curvature, self._found = before, None
+            self._smooth(P, self.curvature)
+            known = matrix, np.ascontiguousarray(rows)
+            self._kernel.before_readings(self.curvature, self._smoothed, self._product, *known, self._spare)
+            self._swap()
         kept = self.gradient - vector
         change = P @ kept
         self.gradient = kept - (rows @ change) @ rows
@@ -75,9 +79,8 @@ class SparseBackwardPass(BackwardPass):
             return
         self.gradient = transition.backward(self.gradient)
         if self.curvature is not None and self._kernel is not None:
-            before = np.empty(self.curvature.shape)
             A, B = np.ascontiguousarray(transition.A), np.ascontiguousarray(transition.B)
             self._kernel.before_motion(
-                self.curvature, A, B, transition.joints, transition.push, transition.rates, before
+                self.curvature, A, B, transition.joints, transition.push, transition.rates, self._spare
             )
-            self.curvature, self._found = before, None
+            self._swap()

@@ -40,6 +40,7 @@ def smooth(
     run: Sequence[Step[DynamicState]],
     rounds: int,
     wanted: int | None = None,
+    memory: list[Array] | None = None,
 ) -> Iterator[DynamicState]:
     """Smoothed states of a window, in order.
 
@@ -48,18 +49,22 @@ def smooth(
         run: Its steps; the first one's state is taken as it is.
         rounds: How often to linearise anew.
         wanted: Only the first ``wanted`` frames are returned; the others are looked at.
+        memory: Arrays (N, N) to work in, which may serve one window after another: fresh memory costs as much as the
+            products that go there. It grows as it has to; what is returned does not lie in it.
     """
     begin, decided = run[0].state, [step.decisions for step in run]
     means = [step.state for step in run]
+    memory = [] if memory is None else memory
+    memory += [np.empty(begin.P.shape) for _ in range(len(memory), len(run))]
     for _ in range(rounds - 1):
-        forward = _forward(kalman, begin, means, decided)
-        steps = [step for step, _ in _backward(forward, covariances=False)]
+        forward = _forward(kalman, begin, means, decided, memory)
+        steps = [step for step, _ in _backward(forward)]
         share = _damping(steps, kalman.layout.nv)
         means = [
             kalman.plant.retract(x, share * step, x.P) for x, step in zip(means, reversed(steps), strict=True)
         ]
-    forward = _forward(kalman, begin, means, decided)
-    steps_and_covariances = list(_backward(forward, covariances=True, wanted=wanted))[::-1]
+    forward = _forward(kalman, begin, means, decided, memory)
+    steps_and_covariances = list(_backward(forward, len(run) if wanted is None else wanted))[::-1]
     for mean, (step, P) in list(zip(means, steps_and_covariances, strict=True))[:wanted]:
         if P is not None:
             yield kalman.plant.retract(mean, step, P)
@@ -76,19 +81,30 @@ def _forward(
     begin: DynamicState,
     means: Sequence[DynamicState],
     decided: Sequence[Decisions],
+    memory: Sequence[Array],
 ) -> list[_Forward]:
-    """The filter in corrections δ of the trajectory ``means``."""
+    """The filter in corrections δ of the trajectory ``means``.
+
+    Args:
+        kalman: The filter.
+        begin: The first state.
+        means: The trajectory.
+        decided: What each frame's readings were taken to be.
+        memory: (N, N) for each frame's covariance.
+    """
     plant = kalman.plant
     delta, P = plant.difference(means[0], begin), begin.P
     passed = [_Forward(P, delta, None, np.zeros_like(delta), None)]
-    for last, mean, decisions in zip(means[:-1], means[1:], decided[1:], strict=True):
+    for last, mean, decisions, room in zip(
+        means[:-1], means[1:], decided[1:], memory[: len(means) - 1], strict=True
+    ):
         before = replace(last, P=P)
         transition = plant.transition_parts(before)
         prior = plant.predict(before, decisions.noise)
         kalman.inflate(prior.P, decisions.blocks)
         delta = transition.forward(delta) + plant.difference(mean, prior)
         readings = kalman.linearise(mean, decisions)
-        P = informed_with_rows(prior.P, readings.matrix, readings.rows)
+        P = informed_with_rows(prior.P, readings.matrix, readings.rows, room)
         vector = readings.whole_vector - readings.apply(delta)
         delta = delta + P @ vector
         passed[-1] = replace(passed[-1], transition=transition)
@@ -96,21 +112,17 @@ def _forward(
     return passed
 
 
-def _backward(
-    forward: Sequence[_Forward], covariances: bool, wanted: int | None = None
-) -> Iterator[tuple[Array, Array | None]]:
-    """From the last frame to the first: correction of the mean, and the smoothed covariance when wanted.
+def _backward(forward: Sequence[_Forward], covariances: int = 0) -> Iterator[tuple[Array, Array | None]]:
+    """From the last frame to the first: correction of the mean, and the smoothed covariance where it is wanted.
 
     Args:
         forward: The forward pass.
-        covariances: Whether smoothed covariances are wanted, too.
-        wanted: Of how many frames from the first on; None for all.
+        covariances: Of how many frames, from the first on, it is.
     """
-    back = SparseBackwardPass(len(forward[0].delta), covariances)
+    back = SparseBackwardPass(len(forward[0].delta), covariances > 0)
     for k in range(len(forward) - 1, -1, -1):
         here = forward[k]
-        asked = covariances and (wanted is None or k < wanted)
-        yield here.delta + back.step(here.P), back.covariance(here.P) if asked else None
+        yield here.delta + back.step(here.P), back.covariance(here.P) if k < covariances else None
         transition = forward[k - 1].transition if k else None
         if here.readings is not None and transition is not None:
             back.through_parts(here.P, here.readings.matrix, here.readings.rows, here.vector)
