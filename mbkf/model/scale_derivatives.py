@@ -9,19 +9,20 @@ from mbkf.model.body import Body
 
 
 def origin_derivatives(model: Body, rotations: Array) -> Array:
-    """(J, 3, K) derivative of every joint's world origin by the scale factors, at a fixed configuration.
+    """(…, J, 3, K) derivative of every joint's world origin by the scale factors, at fixed configurations.
 
     Args:
         model: The scaled body.
-        rotations: (J, 3, 3) world rotations of its joints.
+        rotations: (…, J, 3, 3) world rotations of its joints, of one configuration or many.
     """
     body = model.description
-    derivatives = np.zeros((len(rotations), 3, len(body.scale_factors)))
+    derivatives = np.zeros((*rotations.shape[:-1], len(body.scale_factors)))
     for segment in body.segments:
         if segment.parent == "world":
             continue
         parent = model.joint(segment.parent).joint_id
         lever = segment.origin_m[:, None] * body.segment(segment.parent).scale_matrix
         joint = model.joint(segment.name).joint_id
-        derivatives[joint] = derivatives[parent] + rotations[parent] @ lever
+        turned = rotations[..., parent, :, :] @ lever
+        derivatives[..., joint, :, :] = derivatives[..., parent, :, :] + turned
     return derivatives

@@ -21,3 +21,12 @@ def test_origin_derivatives_are_differences_of_scaled_bodies():
     found = origin_derivatives(model, model.placements(q)[0])
     joints = [joint.joint_id for joint in model.joints.values()]
     assert_near(found[joints], np.moveaxis(slopes, 0, -1)[joints], 1e-9)
+
+
+def test_many_configurations_are_each_by_itself():
+    rng = np.random.default_rng(4)
+    model = random_model(rng)
+    rotations = np.array([model.placements(moderate_pose(model, rng))[0] for _ in range(5)])
+    np.testing.assert_array_equal(
+        origin_derivatives(model, rotations), [origin_derivatives(model, one) for one in rotations]
+    )
