@@ -46,6 +46,8 @@ ELSEWHERE = {
     "model.forced_body.ForcedBody.transport": "model/test_human_dynamics.py",
     "filters.torque.integrators.trapezoidal_newton": "filters/torque/test_integrators.py TN",
     "sensors.gating.gated": "sensors/test_gating.py",
+    "filters.dynamic.plant.SingerPlant.transition_parts": "filters/dynamic/test_plant.py transition",
+    "filters.kinematic.plant.WhiteAccelerationPlant.transition_parts": "filters/kinematic/test_plant.py transition",
     "filters.state_variances.state_variances": "filters/test_state_variances.py",
     "filters.spread.SpreadReader.rise_jacobian": "filters/test_spread.py rise",
     "filters.filter.Filter.prepared_by": "filters/test_filter.py",

@@ -15,8 +15,8 @@ from scipy.interpolate import CubicSpline
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.io.subject import Subject
-from mbkf.labelling.placing import nearest_rotations
 from mbkf.model.human import reference_body
+from mbkf.numerics.rotations import nearest_rotations
 
 CARRIERS = 3
 """Markers that carry a lost one, at least; from its segment, then the nearest ones of the segments jointed to it."""

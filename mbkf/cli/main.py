@@ -14,6 +14,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
+from mbkf.cli.postponed import postpone
 from mbkf.errors import MbkfError
 from mbkf.version import __version__
 
@@ -94,6 +95,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if arguments is None else arguments)
     named = words[:1] if words[:1] and words[0] in COMMANDS else COMMANDS
     args = build_parser(named).parse_args(words)
+    postpone()
     try:
         code = args.run(args)
         sys.stdout.flush()  # so that a closed pipe is noticed here

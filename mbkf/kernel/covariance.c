@@ -4,35 +4,11 @@
 
 #include <string.h>
 
+#include "bands.h"
 #include "blas.h"
 #include "product.h"
+#include "symmetric.h"
 #include "vectorised.h"
-
-enum { TILE = 8 };
-
-/* The columns of a tile of X become rows of another, on the other side of the diagonal. */
-static inline void mirror_tile(int N, const double *from, double *to)
-{
-    for (int b = 0; b < TILE; b++)
-        for (int a = 0; a < TILE; a++)
-            to[(long)b * N + a] = from[(long)a * N + b];
-}
-
-/* Copies what stands right of the diagonal, row by row, to the left of it. */
-VECTORISED static void mirror(int N, double *X)
-{
-    const int whole = N - N % TILE;
-    for (int i = 0; i < whole; i += TILE) {
-        for (int b = 1; b < TILE; b++)
-            for (int a = 0; a < b; a++)
-                X[(long)(i + b) * N + i + a] = X[(long)(i + a) * N + i + b];
-        for (int j = i + TILE; j < whole; j += TILE)
-            mirror_tile(N, X + (long)i * N + j, X + (long)j * N + i);
-    }
-    for (int j = whole; j < N; j++)
-        for (int i = 0; i < j; i++)
-            X[(long)j * N + i] = X[(long)i * N + j];
-}
 
 /* out = A P + B S of one joint's rows, from first on, for all columns. */
 VECTORISED static void joint_rows(int first, int dofs, int nv, int N, const double *A, const double *B,
@@ -166,14 +142,6 @@ void carry_velocities(int nv, const double *P, const double *A, const double *B,
     mirror(N, carried);
 }
 
-/* B (columns x rows) = A' of a matrix (rows x columns), both stored column by column. */
-static void transposed(int rows, int columns, const double *A, int lda, double *B)
-{
-    for (int j = 0; j < columns; j++)
-        for (int i = 0; i < rows; i++)
-            B[(long)i * columns + j] = A[(long)j * lda + i];
-}
-
 /* G with G G' = L: lower Cholesky factor; components that nothing informs about are set aside. */
 static int square_root(int n, const double *L, double *G)
 {
@@ -205,40 +173,6 @@ static int half(int N, int m, double *W, double *S)
     if (!failed)
         blas.dtrsm("r", "l", "t", "n", &N, &m, &one, S, &m, W, &N);
     return failed != 0;
-}
-
-/* Rows from start to end that are zero outside of the same columns, from first to last. */
-typedef struct {
-    int start, end, first, last;
-} Band;
-
-static void columns_of(const double *row, int N, int *first, int *last)
-{
-    int a = 0, b = N;
-    while (a < N && row[a] == 0.0)
-        a++;
-    while (b > a && row[b - 1] == 0.0)
-        b--;
-    *first = a < N ? a : 0;
-    *last = a < N ? b : 1;
-}
-
-/* The next band from a row on: most rows read wrenches alone, which saves most of their products. Rows whose columns
- * differ by less than a tenth of the state are taken together. */
-static Band band_from(int start, int m, int N, const double *rows)
-{
-    Band band = {start, start + 1, 0, N};
-    columns_of(rows + (long)start * N, N, &band.first, &band.last);
-    for (; band.end < m; band.end++) {
-        int first, last;
-        columns_of(rows + (long)band.end * N, N, &first, &last);
-        const int least = first < band.first ? first : band.first, most = last > band.last ? last : band.last;
-        if (most - least > last - first + N / 10 || most - least > band.last - band.first + N / 10)
-            break;
-        band.first = least;
-        band.last = most;
-    }
-    return band;
 }
 
 /* The second half of the reduction: W = (P - F F') rows' C^-T with C C' = rows (P - F F') rows' + I, where F = P K.

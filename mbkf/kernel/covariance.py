@@ -29,7 +29,7 @@ class CompiledPrediction:
             noise: (3, 3) covariance of (q, v, a) for σ_a = 1.
         """
         self._kernel, self._singer, self._noise = kernel, np.ascontiguousarray(singer), noise
-        self._joints = _first_and_number(joints)
+        self._joints = first_and_number(joints)
 
     @classmethod
     def where_built(cls, joints: Iterable[slice], singer: Array, noise: Array) -> CompiledPrediction | None:
@@ -107,7 +107,7 @@ class CompiledVelocityPrediction:
             noise: (2, 2, nv) diagonals of the blocks of Q.
         """
         self._kernel, self._dt_s, self._noise = kernel, dt_s, np.ascontiguousarray(noise)
-        self._joints = _first_and_number(joints)
+        self._joints = first_and_number(joints)
 
     @classmethod
     def where_built(
@@ -137,12 +137,12 @@ class CompiledVelocityPrediction:
         return carried
 
 
-def _first_and_number(joints: Iterable[slice]) -> NDArray[np.int32]:
+def first_and_number(joints: Iterable[slice]) -> NDArray[np.int32]:
     """(J, 2) first dof and number of dofs of each joint."""
     return np.array([(dofs.start, dofs.stop - dofs.start) for dofs in joints], dtype=np.int32)
 
 
-def informed_with_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
+def informed_with_rows(covariance: Array, matrix: Array, rows: Array, memory: Array | None = None) -> Array:
     """(N, N) as :func:`mbkf.numerics.information_update.informed_with_rows`, by the compiled kernel where there is one.
 
     What the kernel cannot factorise is the reference's, which knows what to do with it.
@@ -151,10 +151,11 @@ def informed_with_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
         covariance: (N, N) prior covariance P.
         matrix: (n, n) information Λ on the first n components.
         rows: (m, N) whitened Jacobian of the other readings; their values do not enter.
+        memory: (N, N) array that may be filled with the answer, so that none is made.
     """
     kernel = library()
     if kernel is not None:
-        informed = np.empty(covariance.shape)
+        informed = np.empty(covariance.shape) if memory is None else memory
         if kernel.inform(covariance, matrix, np.ascontiguousarray(rows), informed) == 0:
             return informed.T
     return information_update.informed_with_rows(covariance, matrix, rows)

@@ -123,6 +123,53 @@ class Library(Protocol):
             0, or which factorisation failed.
         """
 
+    def before_motion(
+        self,
+        L: Array,
+        A: Array,
+        B: Array,
+        joints: NDArray[np.int32],
+        push: Array,
+        rates: Array,
+        before: Array,
+        /,
+    ) -> None:
+        """Fills ``before`` (N, N): see :meth:`mbkf.kernel.smoothing.SparseBackwardPass.through_motion`.
+
+        Args:
+            L: (N, N) curvature.
+            A: (nv, nv) derivative of the next configuration by this one.
+            B: (nv, nv) by the step.
+            joints: (J, 2) first dof and number of dofs of each joint, 32-bit integers.
+            push: (k,) what each order of rates adds to the step.
+            rates: (k, k) how rates carry one another.
+            before: (N, N) filled.
+        """
+
+    def smoothed(self, P: Array, L: Array, smoothed: Array, LP: Array, /) -> None:
+        """Fills a smoothed covariance and a product that readings need, too.
+
+        Args:
+            P: (N, N) posterior covariance.
+            L: (N, N) curvature.
+            smoothed: (N, N) filled with P − P L P.
+            LP: (N, N) filled, column by column.
+        """
+
+    def before_readings(
+        self, L: Array, smoothed: Array, LP: Array, information: Array, rows: Array, before: Array, /
+    ) -> None:
+        """Fills ``before`` (N, N): see :meth:`mbkf.kernel.smoothing.SparseBackwardPass.through_parts`.
+
+        Args:
+            L: (N, N) curvature.
+            smoothed: (N, N) of :meth:`smoothed`.
+            LP: (N, N) of :meth:`smoothed`.
+            information: (n, n) on the first n components.
+            rows: (m, N) whitened.
+            before: (N, N) filled.
+        """
+
     def tree(
         self, whole: NDArray[np.int32], numbers: Array, gravity: Array, sizes: NDArray[np.int32], /
     ) -> object:

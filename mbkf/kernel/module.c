@@ -212,6 +212,7 @@ static PyObject *py_third_differences(PyObject *self, PyObject *const *args, Py_
     return done;
 }
 
+#include "smoothing_bindings.h"
 #include "spread_bindings.h"
 
 /* vectors() -> bits of the vectors that products are made with; 0 where BLAS makes them */
@@ -274,6 +275,7 @@ static PyMethodDef methods[] = {
      "The same for positions and velocities alone."},
     {"inform", (PyCFunction)(void (*)(void))py_inform, METH_FASTCALL, "A covariance after readings."},
     {"third_differences", QUICK(py_third_differences), "How many third differences lie below a level."},
+    SMOOTHING_METHODS,
     SPREAD_METHODS,
     {"choose", py_choose, METH_O, "Products by instructions of their own, where they can be, or by BLAS."},
     {"vectors", py_vectors, METH_NOARGS, "Bits of the vectors that products are made with; 0: BLAS makes them."},

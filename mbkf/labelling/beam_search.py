@@ -13,9 +13,10 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.labelling.assignment import HIDDEN, Indices
-from mbkf.labelling.placing import match, nearest_rotations, placings, worths
+from mbkf.labelling.placing import match, placings, worths
 from mbkf.labelling.seeds import Seeds
 from mbkf.labelling.skeleton import Cluster
+from mbkf.numerics.rotations import nearest_rotations
 
 BEAM = 40
 """Beam width: how many partial bodies are kept after every segment."""
@@ -130,7 +131,9 @@ def _with(one: PartialBody, body: tuple[Cluster, ...], number: int, points_m: Ar
     cluster = body[number]
     parent = one.rotations[cluster.parent]
     origin = one.origins_m[cluster.parent] + parent @ cluster.origin_m
-    free = np.setdiff1d(np.arange(len(points_m)), one.points)
+    untaken = np.ones(len(points_m), dtype=bool)
+    untaken[one.points[one.points != HIDDEN]] = False
+    free = np.flatnonzero(untaken)
     bigger = []
     for way in placings(cluster, origin, parent, points_m, free, BRANCHES):
         points = one.points.copy()

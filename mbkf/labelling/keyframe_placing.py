@@ -15,8 +15,9 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.keyframes import Keyframes
-from mbkf.labelling.placing import MOST_POSTURE, PLACING_SD_M, likeness, nearest_rotations
+from mbkf.labelling.placing import MOST_POSTURE, PLACING_SD_M, likeness
 from mbkf.labelling.skeleton import Cluster
+from mbkf.numerics.rotations import nearest_rotations
 
 TOGETHER_M = 0.05
 """Two tracks whose distance varies more than this are not on one segment; skin and shoulder blades do so much."""

@@ -112,8 +112,8 @@ def _likelier_exchanged(search: FirstFrameSearch, markers_m: Array, q: Array, a:
 def _freely(search: FirstFrameSearch, markers_m: Array, q: Array) -> float:
     """Mean worth of frames (n, M, 3), fitted from poses (n, nq) or from the markers alone, the better of both."""
     total = 0.0
-    for frame, pose in zip(markers_m, q, strict=True):
-        fits = [_fit(search, frame, start) for start in (pose, segment_by_segment(search.sensor, frame))]
+    for frame, *starts in zip(markers_m, q, segment_by_segment(search.sensor, markers_m), strict=True):
+        fits = [_fit(search, frame, start) for start in starts]
         total += max(search.worth(frame, fit) for fit in fits)
     return total / len(q)
 

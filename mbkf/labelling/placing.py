@@ -10,6 +10,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.labelling.assignment import HIDDEN, AssignmentSettings, Indices
 from mbkf.labelling.skeleton import Cluster
+from mbkf.numerics.rotations import nearest_rotations
 
 MATCH_M = 0.045
 """A point further than this from where a placed segment has a marker is not that marker."""
@@ -132,10 +133,3 @@ def _rotations(local_m: Array, arms: Array, parent: Array) -> Array:
     pairs = pairs[np.argsort(misfit[pairs] - 0.1 * between[pairs])[:_MOST]]
     both = single[one[pairs]] + single[two[pairs]]
     return nearest_rotations(np.concatenate([both, single[:_MOST]]) + _POSTURE_PULL * parent)
-
-
-def nearest_rotations(matrices: Array) -> Array:
-    """(n, 3, 3) proper rotations nearest to matrices (n, 3, 3) (Wahba's problem, SVD solution of Markley 1988)."""
-    u, _, vt = np.linalg.svd(matrices)
-    u[:, :, 2] *= np.linalg.det(u @ vt)[:, None]
-    return u @ vt

@@ -7,8 +7,9 @@ from itertools import combinations
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.labelling.placing import LENGTH_TOLERANCE_M, MATCH_M, nearest_rotations
+from mbkf.labelling.placing import LENGTH_TOLERANCE_M, MATCH_M
 from mbkf.labelling.skeleton import Cluster
+from mbkf.numerics.rotations import nearest_rotations
 
 TILT_M = 0.06
 """How much higher one marker of an upright root may stand than in the neutral posture."""

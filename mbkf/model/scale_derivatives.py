@@ -36,24 +36,24 @@ class OriginLevers:
     def summed(
         self, rotations: Array, levers: Array, joints: NDArray[np.intp] | slice = slice(None)
     ) -> Array:
-        """(J, 3, r) derivatives of joints' world origins.
+        """(…, J, 3, r) derivatives of joints' world origins.
 
         Args:
-            rotations: (J, 3, 3) world rotations of all joints.
+            rotations: (…, J, 3, 3) world rotations of all joints, of one configuration or many.
             levers: (S, 3, r) :attr:`levers`, or these times directions (K, r) of the scale factors.
             joints: Which joints.
         """
-        turned = rotations[self.parents] @ levers
-        found: Array = self._before[joints] @ turned.reshape(len(levers), -1)
-        return found.reshape(-1, *turned.shape[1:])
+        turned = rotations[..., self.parents, :, :] @ levers
+        found: Array = self._before[joints] @ turned.reshape(*turned.shape[:-2], -1)
+        return found.reshape(*found.shape[:-1], *turned.shape[-2:])
 
 
 def origin_derivatives(model: Body, rotations: Array) -> Array:
-    """(J, 3, K) derivative of every joint's world origin by the scale factors, at a fixed configuration.
+    """(…, J, 3, K) derivative of every joint's world origin by the scale factors, at fixed configurations.
 
     Args:
         model: The scaled body.
-        rotations: (J, 3, 3) world rotations of its joints.
+        rotations: (…, J, 3, 3) world rotations of its joints, of one configuration or many.
     """
     levers = OriginLevers(model)
     return levers.summed(rotations, levers.levers)

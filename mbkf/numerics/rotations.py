@@ -35,6 +35,13 @@ def quaternion_of(rotation: Array) -> Array:
     return np.asarray(row / np.sqrt(sum(row**2)))
 
 
+def nearest_rotations(matrices: Array) -> Array:
+    """(…, 3, 3) proper rotations nearest to matrices (…, 3, 3) (Wahba's problem, SVD solution of Markley 1988)."""
+    u, _, vt = np.linalg.svd(matrices)
+    u[..., 2] *= np.linalg.det(u @ vt)[..., None]
+    return np.asarray(u @ vt)
+
+
 def quaternion_log(quaternions: Array) -> Array:
     """(…, 3) rotation vectors, of angle at most π, of unit quaternions (…, 4) in (x, y, z, w) order."""
     signed = np.where(quaternions[..., 3:] < 0, -quaternions, quaternions)

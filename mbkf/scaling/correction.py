@@ -60,7 +60,7 @@ def correct_markers(subject: Subject, trial: MarkerTrajectories) -> Subject:
     """
     problem = _problem(subject, trial)
     sensor = problem.sensor(problem.start(np.zeros((0, problem.posture.model.nq))))
-    state = problem.start(np.array([segment_by_segment(sensor, frame) for frame in problem.measured_m]))
+    state = problem.start(segment_by_segment(sensor, problem.measured_m))
     solution = minimise(state, problem.linearise, problem.cost, problem.move, tolerance=1e-3)
     state = solution.state
     outliers = problem.outliers(state, OUTLIER_M)

@@ -190,13 +190,9 @@ def first_poses(problem: ScalingProblem) -> Array:
     anatomical = np.array([m.kind != "technical" for m in problem.markers])
     tracked = {m.segment for m in problem.markers if m.kind != "technical"}
     placed = anatomical | np.array([m.segment not in tracked for m in problem.markers])
-    poses = []
-    for frame, seen in zip(problem.measured_m, problem.seen, strict=True):
-        enough = (placed & seen).sum() >= MIN_MARKERS
-        poses.append(
-            segment_by_segment(sensor, np.where(placed[:, None], frame, np.nan) if enough else frame)
-        )
-    return np.array(poses)
+    enough = (placed & problem.seen).sum(axis=1) >= MIN_MARKERS
+    shown = placed | ~enough[:, None]
+    return segment_by_segment(sensor, np.where(shown[:, :, None], problem.measured_m, np.nan))
 
 
 def _minimise(

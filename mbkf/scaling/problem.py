@@ -344,9 +344,9 @@ class ScalingProblem:
         sensor = self.sensor(state)
         model = sensor.model
         readings = [sensor.reading(q) for q in state.poses]
-        rotations = [model.placements(q)[0] for q in state.poses]
-        axes = np.array(rotations)[:, sensor.joint_ids]
-        origins = np.array([origin_derivatives(model, one) for one in rotations])[:, sensor.joint_ids]
+        rotations = np.array([model.placements(q)[0] for q in state.poses])
+        axes = rotations[:, sensor.joint_ids]
+        origins = origin_derivatives(model, rotations)[:, sensor.joint_ids]
         errors = np.array([one.positions_m for one in readings]) - self.measured_m
         whiten = np.where(self.seen, np.sqrt(self.weights.markers)[:, None] / self.noise_m, 0.0)[..., None]
         by_pose = np.array([one.jacobian for one in readings])

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.numerics.levenberg_marquardt import ArrowEquations, minimise
-from mbkf.numerics.rotations import quaternion_of
+from mbkf.numerics.rotations import nearest_rotations, quaternion_of
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.posture_sensor import PostureSensor
 
@@ -43,37 +43,68 @@ def segment_by_segment(sensor: MarkerSensor, measured_m: Array) -> Array:
 
     Args:
         sensor: The markers on the body.
-        measured_m: (M, 3) measured positions, NaN where missing.
+        measured_m: (…, M, 3) measured positions of one frame or of many, NaN where missing.
 
     Returns:
-        (nq,) configuration.
+        (…, nq) configurations.
     """
-    model = sensor.model
-    seen = np.asarray(~np.isnan(measured_m).any(axis=1))
-    q = model.neutral()
-    placed = sensor.positions(q)
+    frames = measured_m.reshape(-1, *measured_m.shape[-2:])
+    poses = np.tile(sensor.model.neutral(), (len(frames), 1))
+    seen = np.asarray(~np.isnan(frames).any(axis=2))
     names = np.array(sensor.segments)
-    weight = np.where(names == model.roles.root, 1.0, _TRUNK_WEIGHT) * seen
-    if weight.sum() == 0.0:
-        return q
-    target = np.where(seen[:, None], measured_m, 0.0)
-    centre_from = (weight[:, None] * placed).sum(axis=0) / weight.sum()
-    centre_to = (weight[:, None] * target).sum(axis=0) / weight.sum()
-    attitude = (weight[:, None] * (target - centre_to)).T @ (placed - centre_from)
-    rotation = _nearest_rotation(attitude + 1e-9 * np.eye(3))
-    root = model.root
-    q[root.q][:3] = centre_to - rotation @ centre_from
-    q[root.q][3:] = quaternion_of(rotation)
-    for joint in model.joints.values():
+    weight = np.where(names == sensor.model.roles.root, 1.0, _TRUNK_WEIGHT) * seen
+    some = np.flatnonzero(weight.sum(axis=1))
+    if len(some):
+        target = np.where(seen[some, :, None], frames[some], 0.0)
+        poses[some] = _with_limbs(sensor, target, seen[some], _with_root(sensor, target, weight[some]))
+    return poses.reshape(*measured_m.shape[:-2], sensor.model.nq)
+
+
+def _with_root(sensor: MarkerSensor, target_m: Array, weight: Array) -> Array:
+    """(N, nq) poses whose joints are neutral, placed by all markers.
+
+    Args:
+        sensor: The markers on the body.
+        target_m: (N, M, 3) measured positions, 0 where missing.
+        weight: (N, M) of each, 0 where missing.
+    """
+    neutral = sensor.model.neutral()
+    placed = sensor.positions(neutral)
+    counted, whole = weight[:, :, None], weight.sum(axis=1)[:, None]
+    centre_from, centre_to = (counted * placed).sum(axis=1) / whole, (counted * target_m).sum(axis=1) / whole
+    away = counted * (target_m - centre_to[:, None])
+    attitude = np.swapaxes(away, 1, 2) @ (placed - centre_from[:, None])
+    poses, root = np.tile(neutral, (len(target_m), 1)), sensor.model.root.q
+    for q, turn, start, end in zip(
+        poses, nearest_rotations(attitude + 1e-9 * np.eye(3)), centre_from, centre_to, strict=True
+    ):
+        q[root][:3] = end - turn @ start
+        q[root][3:] = quaternion_of(turn)
+    return poses
+
+
+def _with_limbs(sensor: MarkerSensor, target_m: Array, seen: BoolArray, poses: Array) -> Array:
+    """The poses (N, nq) with each ball joint turned in place, from the root on.
+
+    Args:
+        sensor: The markers on the body.
+        target_m: (N, M, 3) measured positions.
+        seen: (N, M) whether a marker was measured.
+        poses: (N, nq) poses whose joints are neutral.
+    """
+    names = np.array(sensor.segments)
+    for joint in sensor.model.joints.values():
         if joint.kind != "spherical":
             continue
-        mine = seen & (names == joint.segment)
-        rotations, origins = model.placements(q)
-        parent = rotations[joint.joint_id]
-        arms = sensor.local_m[mine]
-        attitude = (target[mine] - origins[joint.joint_id]).T @ arms + _NEUTRAL_PULL * parent
-        q[joint.q] = quaternion_of(parent.T @ _nearest_rotation(attitude))
-    return q
+        own = np.flatnonzero(names == joint.segment)
+        placed = [sensor.model.placements(q) for q in poses]
+        parents = np.array([rotations[joint.joint_id] for rotations, _ in placed])
+        origins = np.array([places[joint.joint_id] for _, places in placed])
+        arms = np.where(seen[:, own, None], target_m[:, own] - origins[:, None], 0.0)
+        attitude = np.swapaxes(arms, 1, 2) @ sensor.local_m[own] + _NEUTRAL_PULL * parents
+        turns = np.swapaxes(parents, 1, 2) @ nearest_rotations(attitude)
+        poses[:, joint.q] = [quaternion_of(turn) for turn in turns]
+    return poses
 
 
 def fit_pose(
@@ -152,8 +183,3 @@ def fit_most_markers(
         kept[np.nanargmax(distance)] = np.nan
         fit = fit_pose(sensor, posture, kept, noise_m, fit.q)
     return fit
-
-
-def _nearest_rotation(matrix: Array) -> Array:
-    u, _, vt = np.linalg.svd(matrix)
-    return u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt

@@ -4,7 +4,7 @@ import numpy as np
 
 from mbkf.labelling.assignment import HIDDEN
 from mbkf.labelling.beam_search import PartialBody, search_bodies, search_limb
-from mbkf.labelling.placing import likeness, match, nearest_rotations, placings
+from mbkf.labelling.placing import likeness, match, placings
 from mbkf.labelling.seeds import any_attitude, upright
 from mbkf.labelling.skeleton import clusters, limbs
 from tests.labelling.bodies import posture, reference_sensor, unlabelled
@@ -78,14 +78,6 @@ def test_likeness_prefers_sure_markers_and_near_points():
     sd = np.array([0.005, 0.05])
     assert likeness(np.zeros(2), sd)[0] > likeness(np.zeros(2), sd)[1]
     assert likeness(np.full(2, 1e-4), sd)[0] < likeness(np.zeros(2), sd)[0]
-
-
-def test_nearest_rotations_are_rotations():
-    matrices = np.random.default_rng(0).normal(size=(20, 3, 3))
-    found = nearest_rotations(matrices)
-    assert np.allclose(found @ found.transpose(0, 2, 1), np.eye(3))
-    assert np.allclose(np.linalg.det(found), 1.0)
-    assert np.allclose(nearest_rotations(found), found)
 
 
 def test_the_best_body_is_the_true_one():

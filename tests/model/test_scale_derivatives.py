@@ -30,3 +30,11 @@ def test_levers_along_directions_are_the_derivatives_times_these():
     levers, directions, joints = OriginLevers(model), rng.normal(size=(len(model.scale), 3)), np.array([4, 2])
     found = levers.summed(rotations, levers.levers @ directions, joints)
     assert_near(found, origin_derivatives(model, rotations)[joints] @ directions, 1e-12)
+
+
+def test_many_configurations_are_each_by_itself():
+    rng = np.random.default_rng(4)
+    model = random_model(rng)
+    rotations = np.array([model.placements(moderate_pose(model, rng))[0] for _ in range(5)])
+    each = np.array([origin_derivatives(model, one) for one in rotations])
+    assert_near(origin_derivatives(model, rotations), each, 1e-14)

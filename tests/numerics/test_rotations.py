@@ -6,7 +6,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from mbkf.numerics.rotations import log_and_inverse_jacobian, quaternion_log, quaternion_of, skew
+from mbkf.numerics.rotations import (
+    log_and_inverse_jacobian,
+    nearest_rotations,
+    quaternion_log,
+    quaternion_of,
+    skew,
+)
 
 VECTORS = st.tuples(*[st.floats(-1, 1)] * 3).map(np.array).filter(lambda v: np.linalg.norm(v) > 1e-3)
 ANGLES = st.floats(0, np.pi - 1e-6)
@@ -112,3 +118,11 @@ def test_the_quaternion_of_a_matrix_turns_as_the_matrix_does(direction, angle):
 def test_half_a_turn_about_an_axis_has_no_scalar_part(axis):
     matrix = 2.0 * np.diag(np.eye(3)[axis]) - np.eye(3)
     np.testing.assert_array_equal(quaternion_of(matrix), np.eye(4)[axis])
+
+
+def test_nearest_rotations_are_rotations():
+    matrices = np.random.default_rng(0).normal(size=(20, 3, 3))
+    found = nearest_rotations(matrices)
+    assert np.allclose(found @ found.transpose(0, 2, 1), np.eye(3))
+    assert np.allclose(np.linalg.det(found), 1.0)
+    assert np.allclose(nearest_rotations(found), found)

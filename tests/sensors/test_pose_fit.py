@@ -161,3 +161,16 @@ def test_points_that_are_no_body_do_not_become_one(body):
     points = np.random.default_rng(0).uniform(-1.0, 1.0, (len(sensor.segments), 3))
     start = segment_by_segment(sensor, points)
     assert fit_most_markers(sensor, PostureSensor(model), points, noise(sensor, 0.005), start).rms_m > 0.1
+
+
+def test_many_frames_are_each_frame_by_itself(body):
+    """Also where markers are missing, all of a frame's among them."""
+    model, sensor, _ = body
+    rng = np.random.default_rng(11)
+    measured = np.array([sensor.positions(moderate_pose(model, rng)) for _ in range(6)])
+    measured[rng.random(measured.shape[:2]) < 0.3] = np.nan
+    measured[3] = np.nan
+    found = segment_by_segment(sensor, measured)
+    assert_near(found, [segment_by_segment(sensor, frame) for frame in measured], 1e-12)
+    np.testing.assert_array_equal(found[3], model.neutral())
+    assert segment_by_segment(sensor, measured[:0]).shape == (0, model.nq)

@@ -20,9 +20,10 @@ from scipy.linalg import expm
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.filter import Plant
-from mbkf.kernel.covariance import CompiledPrediction
+from mbkf.kernel.covariance import CompiledPrediction, first_and_number
 from mbkf.model.body import Body
 from mbkf.numerics.diagonals import block_diagonals
+from mbkf.numerics.rate_transition import RateTransition
 from mbkf.sensors.block import Notes
 from mbkf.sensors.layout import WRENCH, ExtraState, Layout
 
@@ -114,6 +115,8 @@ class SingerPlant(Plant[DynamicState]):
         self._walk = self.layout.walk_variance(dt_s)
         singer = np.array([dt_s, self.c1, self.c2, self.rho])
         dofs = [joint.v for joint in model.joints.values()]
+        self._joints = first_and_number(dofs)
+        self._push, self._rates = np.array([dt_s, self.c2]), np.array([[1.0, self.c1], [0.0, self.rho]])
         self._compiled = CompiledPrediction.where_built(dofs, singer, self.covariance)
 
     def begin(self) -> Array | None:
@@ -142,16 +145,12 @@ class SingerPlant(Plant[DynamicState]):
 
     def transition(self, state: DynamicState) -> Array:
         """(N, N) Φ at a state."""
-        nv, n = self.model.nv, self.layout.size
-        phi = np.eye(n)
+        return self.transition_parts(state).matrix(self.layout.size)
+
+    def transition_parts(self, state: DynamicState) -> RateTransition:
+        """Φ at a state, by its parts."""
         A, B = self.model.integration_derivatives(state.q, self.dt_s * state.v + self.c2 * state.a)
-        phi[:nv, :nv] = A
-        phi[:nv, nv : 2 * nv] = B * self.dt_s
-        phi[:nv, 2 * nv : 3 * nv] = B * self.c2
-        every = np.arange(nv)
-        phi[nv + every, 2 * nv + every] = self.c1
-        phi[2 * nv + every, 2 * nv + every] = self.rho
-        return phi
+        return RateTransition(A, B, self._joints, self._push, self._rates)
 
     def predict(self, state: DynamicState, noise: Array | None = None) -> DynamicState:
         """The state one step later; its P = Φ P Φᵀ + Q is exactly symmetric, new, and in Fortran order.

@@ -13,10 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.filters.dynamic.filter import DynamicFilter
 from mbkf.filters.dynamic.plant import DynamicState
-from mbkf.filters.filter import Decisions, Filter, Readings, Step
+from mbkf.filters.filter import Decisions, Readings, Step
 from mbkf.kernel.covariance import informed_with_rows
-from mbkf.numerics.smoothing import BackwardPass
+from mbkf.kernel.smoothing import SparseBackwardPass
+from mbkf.numerics.rate_transition import RateTransition
 
 FURTHEST_RAD = 0.5
 """A round corrects no joint by more than this."""
@@ -30,14 +32,15 @@ class _Forward:
     delta: Array
     readings: Readings | None
     vector: Array
-    transition: Array | None
+    transition: RateTransition | None
 
 
 def smooth(
-    kalman: Filter[DynamicState],
+    kalman: DynamicFilter,
     run: Sequence[Step[DynamicState]],
     rounds: int,
     wanted: int | None = None,
+    memory: list[Array] | None = None,
 ) -> Iterator[DynamicState]:
     """Smoothed states of a window, in order.
 
@@ -46,18 +49,22 @@ def smooth(
         run: Its steps; the first one's state is taken as it is.
         rounds: How often to linearise anew.
         wanted: Only the first ``wanted`` frames are returned; the others are looked at.
+        memory: Arrays (N, N) to work in, which may serve one window after another: fresh memory costs as much as the
+            products that go there. It grows as it has to; what is returned does not lie in it.
     """
     begin, decided = run[0].state, [step.decisions for step in run]
     means = [step.state for step in run]
+    memory = [] if memory is None else memory
+    memory += [np.empty(begin.P.shape) for _ in range(len(memory), len(run))]
     for _ in range(rounds - 1):
-        forward = _forward(kalman, begin, means, decided)
-        steps = [step for step, _ in _backward(forward, covariances=False)]
+        forward = _forward(kalman, begin, means, decided, memory)
+        steps = [step for step, _ in _backward(forward)]
         share = _damping(steps, kalman.layout.nv)
         means = [
             kalman.plant.retract(x, share * step, x.P) for x, step in zip(means, reversed(steps), strict=True)
         ]
-    forward = _forward(kalman, begin, means, decided)
-    steps_and_covariances = list(_backward(forward, covariances=True))[::-1]
+    forward = _forward(kalman, begin, means, decided, memory)
+    steps_and_covariances = list(_backward(forward, len(run) if wanted is None else wanted))[::-1]
     for mean, (step, P) in list(zip(means, steps_and_covariances, strict=True))[:wanted]:
         if P is not None:
             yield kalman.plant.retract(mean, step, P)
@@ -70,23 +77,34 @@ def _damping(steps: Sequence[Array], nv: int) -> float:
 
 
 def _forward(
-    kalman: Filter[DynamicState],
+    kalman: DynamicFilter,
     begin: DynamicState,
     means: Sequence[DynamicState],
     decided: Sequence[Decisions],
+    memory: Sequence[Array],
 ) -> list[_Forward]:
-    """The filter in corrections δ of the trajectory ``means``."""
+    """The filter in corrections δ of the trajectory ``means``.
+
+    Args:
+        kalman: The filter.
+        begin: The first state.
+        means: The trajectory.
+        decided: What each frame's readings were taken to be.
+        memory: (N, N) for each frame's covariance.
+    """
     plant = kalman.plant
     delta, P = plant.difference(means[0], begin), begin.P
     passed = [_Forward(P, delta, None, np.zeros_like(delta), None)]
-    for last, mean, decisions in zip(means[:-1], means[1:], decided[1:], strict=True):
+    for last, mean, decisions, room in zip(
+        means[:-1], means[1:], decided[1:], memory[: len(means) - 1], strict=True
+    ):
         before = replace(last, P=P)
-        transition = plant.transition(before)
+        transition = plant.transition_parts(before)
         prior = plant.predict(before, decisions.noise)
         kalman.inflate(prior.P, decisions.blocks)
-        delta = transition @ delta + plant.difference(mean, prior)
+        delta = transition.forward(delta) + plant.difference(mean, prior)
         readings = kalman.linearise(mean, decisions)
-        P = informed_with_rows(prior.P, readings.matrix, readings.rows)
+        P = informed_with_rows(prior.P, readings.matrix, readings.rows, room)
         vector = readings.whole_vector - readings.apply(delta)
         delta = delta + P @ vector
         passed[-1] = replace(passed[-1], transition=transition)
@@ -94,13 +112,18 @@ def _forward(
     return passed
 
 
-def _backward(forward: Sequence[_Forward], covariances: bool) -> Iterator[tuple[Array, Array | None]]:
-    """From the last frame to the first: correction of the mean, and the smoothed covariance when wanted."""
-    back = BackwardPass(len(forward[0].delta), covariances)
+def _backward(forward: Sequence[_Forward], covariances: int = 0) -> Iterator[tuple[Array, Array | None]]:
+    """From the last frame to the first: correction of the mean, and the smoothed covariance where it is wanted.
+
+    Args:
+        forward: The forward pass.
+        covariances: Of how many frames, from the first on, it is.
+    """
+    back = SparseBackwardPass(len(forward[0].delta), covariances > 0)
     for k in range(len(forward) - 1, -1, -1):
         here = forward[k]
-        yield here.delta + back.step(here.P), back.covariance(here.P) if covariances else None
+        yield here.delta + back.step(here.P), back.covariance(here.P) if k < covariances else None
         transition = forward[k - 1].transition if k else None
         if here.readings is not None and transition is not None:
-            back.through_readings(here.P, here.readings.whole_matrix, here.vector)
-            back.through_plant(transition)
+            back.through_parts(here.P, here.readings.matrix, here.readings.rows, here.vector)
+            back.through_motion(transition)

@@ -59,6 +59,7 @@ class DynamicTracking(TrackingFilter):
         self._unobservable = np.flatnonzero(kalman.unobservable)
         self._anywhere = self.model.posture_sd[self._unobservable] ** 2
         self._read: tuple[Posterior, StateVariances] | None = None
+        self._smoothing: list[Array] = []  # memory that windows share
 
     def start(self, recording: Recording, t: int, guess: Array | None) -> Posterior | None:
         """The kinematic filter's warm start, corrected by this frame's plates and Newton's law."""
@@ -208,7 +209,8 @@ class DynamicTracking(TrackingFilter):
     ) -> list[Posterior]:
         """Iterated smoother; see :mod:`mbkf.filters.dynamic.smoother`."""
         del recording, first
-        states = list(smooth(self.kalman, [_record(estimate) for estimate in run], ROUNDS, wanted))
+        steps = [_record(estimate) for estimate in run]
+        states = list(smooth(self.kalman, steps, ROUNDS, wanted, self._smoothing))
         befores = [states[0], *states[:-1]] if states else []
         last = (len(run) - 1) * self.dt_s
         return [

@@ -12,9 +12,10 @@ from scipy.linalg import blas
 
 from mbkf.conventions import Array
 from mbkf.filters.filter import Plant
-from mbkf.kernel.covariance import CompiledVelocityPrediction
+from mbkf.kernel.covariance import CompiledVelocityPrediction, first_and_number
 from mbkf.model.body import Body
 from mbkf.numerics.diagonals import block_diagonals
+from mbkf.numerics.rate_transition import RateTransition
 from mbkf.sensors.block import Notes
 from mbkf.sensors.layout import Layout
 
@@ -65,6 +66,8 @@ class WhiteAccelerationPlant(Plant[KinematicState]):
         blocks = [[self.position_noise, self.cross_noise], [self.cross_noise, self.velocity_noise]]
         self._noise = np.array(blocks)
         dofs = [joint.v for joint in model.joints.values()]
+        self._joints = first_and_number(dofs)
+        self._push, self._rates = np.array([dt_s]), np.ones((1, 1))
         self._compiled = CompiledVelocityPrediction.where_built(dofs, dt_s, self._noise)
 
     def begin(self) -> None:
@@ -89,11 +92,12 @@ class WhiteAccelerationPlant(Plant[KinematicState]):
 
     def transition(self, state: KinematicState) -> Array:
         """(2 nv, 2 nv) Φ at a state."""
-        nv = self.model.nv
-        phi = np.eye(2 * nv)
-        phi[:nv, :nv], phi[:nv, nv:] = self.model.integration_derivatives(state.q, state.v * self.dt_s)
-        phi[:nv, nv:] *= self.dt_s
-        return phi
+        return self.transition_parts(state).matrix(2 * self.model.nv)
+
+    def transition_parts(self, state: KinematicState) -> RateTransition:
+        """Φ at a state, by its parts."""
+        A, B = self.model.integration_derivatives(state.q, state.v * self.dt_s)
+        return RateTransition(A, B, self._joints, self._push, self._rates)
 
     def predict(self, state: KinematicState, noise: Array | None = None) -> KinematicState:
         """The state one step later; its P = Φ P Φᵀ + Q is exactly symmetric and in Fortran order."""

@@ -16,6 +16,7 @@ from mbkf.filters.innovations import Innovations
 from mbkf.filters.kinematic.filter import KinematicFilter, VelocityStep
 from mbkf.filters.kinematic.plant import KinematicState
 from mbkf.filters.spread import Spread, SpreadReader
+from mbkf.kernel.smoothing import SparseBackwardPass
 from mbkf.numerics.passage import LinearStep
 from mbkf.numerics.smoothing import BackwardPass
 from mbkf.sensors.block import Frame
@@ -101,8 +102,15 @@ def _record(estimate: Posterior) -> KinematicRecord:
 class KinematicTracking(TrackingFilter):
     """Drives a :class:`KinematicFilter`; see :class:`mbkf.filters.estimate.TrackingFilter`."""
 
-    def __init__(self, kalman: KinematicFilter) -> None:
-        self.kalman = kalman
+    def __init__(self, kalman: KinematicFilter, smoothed_covariances: bool = True) -> None:
+        """Makes the driver.
+
+        Args:
+            kalman: The filter.
+            smoothed_covariances: Whether smoothed estimates get covariances of their own, which cost far more than
+                means; without, they keep the filter's, which are never smaller.
+        """
+        self.kalman, self._covariances = kalman, smoothed_covariances
         self.model = kalman.model
         self.dt_s = kalman.plant.dt_s
         self.restart_after_s = kalman.settings.restart_after_s
@@ -177,15 +185,15 @@ class KinematicTracking(TrackingFilter):
         """
         del recording, first
         states: list[KinematicState] = []
-        back = BackwardPass(2 * self.model.nv)
+        back = SparseBackwardPass(2 * self.model.nv, self._covariances)
         for k in range(len(run) - 1, -1, -1):
             inner = _record(run[k])
             state = inner.state
-            states.append(self.kalman.plant.retract(state, back.step(state.P), back.covariance(state.P)))
+            states.append(self.kalman.plant.retract(state, *back.corrected(state.P)))
             if k and inner.step is not None and inner.before is not None:
                 known = inner.step.readings
-                back.through_readings(state.P, known.whole_matrix, known.whole_vector)
-                back.through_plant(self.kalman.plant.transition(inner.before))
+                back.through_parts(state.P, known.matrix, known.rows, known.whole_vector)
+                back.through_motion(self.kalman.plant.transition_parts(inner.before))
         states.reverse()
         v = np.array([state.v for state in states])
         a = np.gradient(v, self.dt_s, axis=0) if len(v) > 1 else np.zeros_like(v)

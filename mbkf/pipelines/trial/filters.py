@@ -69,6 +69,11 @@ def _kinematic(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
     return KinematicTracking(_starter(inputs))
 
 
+def motion_filter(inputs: FilterInputs) -> TrackingFilter:
+    """The kinematic filter where its motion alone is wanted: its covariances are not smoothed."""
+    return KinematicTracking(_starter(inputs), smoothed_covariances=False)
+
+
 def _dynamic(inputs: FilterInputs, blocks: Blocks) -> TrackingFilter:
     known = inputs.sensor, inputs.noise_m
     if blocks is None:

@@ -11,7 +11,7 @@ from mbkf.conventions import Array
 from mbkf.filters.estimate import Posterior, Recording
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
 from mbkf.filters.tracking_loop import followed
-from mbkf.pipelines.trial.filters import FilterInputs, tracking_filter
+from mbkf.pipelines.trial.filters import FilterInputs, motion_filter
 
 
 class Motion(NamedTuple):
@@ -31,7 +31,7 @@ def markers_alone(
         recording: What the instruments read.
         progress: Called with frames done and frames in all.
     """
-    filter, frames = tracking_filter("kinematic", inputs), len(recording)
+    filter, frames = motion_filter(inputs), len(recording)
     q, v = np.full((frames, filter.model.nq), np.nan), np.full((frames, filter.model.nv), np.nan)
 
     def keep(found: Sequence[tuple[int, Posterior]]) -> None:

@@ -5,7 +5,10 @@ from functools import cache
 
 import numpy as np
 
+from mbkf.filters.fixed_lag import SmoothingSettings
+from mbkf.filters.tracking import track
 from mbkf.pipelines.reconstruct import ReconstructSettings
+from mbkf.pipelines.trial.filters import tracking_filter
 from mbkf.pipelines.trial.inputs import trial_inputs
 from mbkf.pipelines.trial.markers_alone import markers_alone
 from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
@@ -33,6 +36,15 @@ def test_it_is_the_true_motion():
     off = [made.model.difference(*pair) for pair in zip(found.q, made.motion.q[:FEW], strict=True)]
     assert np.sqrt(np.mean(np.square(off))) < 0.02
     assert np.sqrt(np.mean((found.v - made.motion.v[:FEW])[10:] ** 2)) < 0.25
+
+
+def test_it_is_the_smoothed_kinematic_filter_s():
+    """Smoothing covariances as well changes no mean."""
+    _, inputs, recording = read()
+    found = markers_alone(inputs, recording)
+    whole = track(tracking_filter("kinematic", inputs), recording, smoothing=SmoothingSettings())
+    np.testing.assert_array_equal(found.q, whole.q)
+    np.testing.assert_array_equal(found.v, whole.v)
 
 
 def test_plates_have_no_say():

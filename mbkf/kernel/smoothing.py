@@ -1,0 +1,86 @@
+"""Backward pass of a smoother by the compiled kernel (``smoothing.c``), which leaves out what is zero in Φ and Λ."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.kernel.loading import library
+from mbkf.numerics.rate_transition import RateTransition
+from mbkf.numerics.smoothing import BackwardPass
+
+
+class SparseBackwardPass(BackwardPass):
+    """A :class:`mbkf.numerics.smoothing.BackwardPass` that is told readings and transitions by their parts.
+
+    Where there is no kernel, the parts are put together.
+    """
+
+    def __init__(self, size: int, covariances: bool = True) -> None:
+        super().__init__(size, covariances)
+        self._kernel = library() if covariances else None
+        self._of: Array | None = None
+        if self._kernel is not None:  # fresh memory costs more than the products that go there
+            self._smoothed, self._product, self._spare = np.empty((3, size, size))
+
+    def covariance(self, P: Array) -> Array:
+        """(N, N) smoothed covariance of a frame with posterior covariance P.
+
+        Raises:
+            ValueError: The pass carries no covariances.
+        """
+        if self.curvature is None or self._kernel is None:
+            return super().covariance(P)
+        self._smooth(P, self.curvature)
+        return self._smoothed.copy()
+
+    def _smooth(self, P: Array, curvature: Array) -> None:
+        """Works out P − P L P and L P; kept, since a frame's answer and its readings both need them."""
+        if self._of is not P and self._kernel is not None:
+            self._kernel.smoothed(P, curvature, self._smoothed, self._product)
+            self._of = P
+
+    def _swap(self) -> None:
+        """The curvature is what was worked out in the spare memory."""
+        if self.curvature is not None:
+            self._spare, self.curvature, self._of = self.curvature, self._spare, None
+
+    def through_parts(self, P: Array, matrix: Array, rows: Array, vector: Array) -> None:
+        """From after a frame's readings to before them, as :meth:`through_readings`.
+
+        With S = P − P L P, and Z = L P + Λ S / 2, the curvature is L + Λ − Z Λ − (Z Λ)ᵀ.
+
+        Args:
+            P: (N, N) posterior covariance.
+            matrix: (n, n) information on the first n components.
+            rows: (m, N) whitened Jacobian of the other readings: Λ is ``matrix`` on the first n, and rowsᵀ rows.
+            vector: (N,) HᵀR⁻¹y with the innovation y of the prior.
+        """
+        n = len(matrix)
+        if self.curvature is not None and self._kernel is None:
+            information = rows.T @ rows
+            information[:n, :n] += matrix
+            self.through_readings(P, information, vector)
+            return
+        if self.curvature is not None and self._kernel is not None:
+            self._smooth(P, self.curvature)
+            known = matrix, np.ascontiguousarray(rows)
+            self._kernel.before_readings(self.curvature, self._smoothed, self._product, *known, self._spare)
+            self._swap()
+        kept = self.gradient - vector
+        change = P @ kept
+        self.gradient = kept - (rows @ change) @ rows
+        self.gradient[:n] -= matrix @ change[:n]
+
+    def through_motion(self, transition: RateTransition) -> None:
+        """From before a frame's readings to after those of the frame before it, as :meth:`through_plant`."""
+        if self.curvature is not None and self._kernel is None:
+            self.through_plant(transition.matrix(len(self.gradient)))
+            return
+        self.gradient = transition.backward(self.gradient)
+        if self.curvature is not None and self._kernel is not None:
+            A, B = np.ascontiguousarray(transition.A), np.ascontiguousarray(transition.B)
+            self._kernel.before_motion(
+                self.curvature, A, B, transition.joints, transition.push, transition.rates, self._spare
+            )
+            self._swap()

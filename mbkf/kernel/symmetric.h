@@ -1,0 +1,14 @@
+/* Matrices (N x N) and their transposes, in tiles that stay in the caches; see symmetric.c. */
+#ifndef MBKF_SYMMETRIC_H
+#define MBKF_SYMMETRIC_H
+
+/* Copies what stands right of the diagonal, row by row, to the left of it. */
+void mirror(int N, double *X);
+
+/* out = X'; out is not X. */
+void transpose(int N, const double *X, double *out);
+
+/* X + X' in place of X: exactly symmetric. */
+void symmetrise(int N, double *X);
+
+#endif

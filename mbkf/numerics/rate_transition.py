@@ -1,0 +1,70 @@
+"""Transition Φ of positions on a manifold, of their rates, and of what stays, by its parts.
+
+A state (q, v, a …, rest) with k orders of rates moves by q' = q ⊕ s, a step s that the rates add up to, while rates
+carry one another dof by dof:
+
+    Φ = [[A, B p₁, …, B pₖ, 0], [0, R ⊗ 1, 0], [0, 0, 1]]
+
+with the derivatives A and B of the retraction by q and by s, which couple the dofs of one joint only.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mbkf.conventions import Array
+
+
+class RateTransition(NamedTuple):
+    """Φ of one step.
+
+    Attributes:
+        A: (nv, nv) derivative of the next configuration by this one.
+        B: (nv, nv) by the step.
+        joints: (J, 2) first dof and number of dofs of each joint, 32-bit integers; A and B are zero between joints.
+        push: (k,) p, what each order of rates adds to the step.
+        rates: (k, k) R, the next rates of a dof by its rates.
+    """
+
+    A: Array
+    B: Array
+    joints: NDArray[np.int32]
+    push: Array
+    rates: Array
+
+    def matrix(self, size: int) -> Array:
+        """(N, N) Φ of a state of ``size`` components."""
+        nv, phi = len(self.A), np.eye(size)
+        phi[:nv, :nv] = self.A
+        every = np.arange(nv)
+        for j, push in enumerate(self.push, start=1):
+            np.multiply(self.B, push, out=phi[:nv, j * nv : (j + 1) * nv])
+            for i, factor in enumerate(self.rates[:, j - 1], start=1):
+                phi[i * nv + every, j * nv + every] = factor
+        return phi
+
+    def forward(self, vector: Array) -> Array:
+        """(N,) Φ times a tangent vector (N,)."""
+        moved = vector.copy()
+        position, rates = self._parts(vector)
+        q, v = self._parts(moved)
+        q[:] = self.A @ position + self.B @ (self.push @ rates)
+        v[:] = self.rates @ rates
+        return moved
+
+    def backward(self, gradient: Array) -> Array:
+        """(N,) Φᵀ times a gradient (N,)."""
+        before = gradient.copy()
+        position, rates = self._parts(gradient)
+        q, v = self._parts(before)
+        q[:] = position @ self.A
+        v[:] = np.multiply.outer(self.push, position @ self.B) + self.rates.T @ rates
+        return before
+
+    def _parts(self, vector: Array) -> tuple[Array, Array]:
+        """Views: (nv,) positions and (k, nv) rates of a vector (N,)."""
+        nv, k = len(self.A), len(self.push)
+        return vector[:nv], vector[nv : (1 + k) * nv].reshape(k, nv)

@@ -1,0 +1,136 @@
+"""The backward pass by parts is the one by whole matrices, with the kernel and without it."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mbkf.kernel.loading import library
+from mbkf.kernel.smoothing import SparseBackwardPass
+from mbkf.numerics.rate_transition import RateTransition
+from mbkf.numerics.smoothing import BackwardPass
+from tests.kernel.test_covariance import banded_rows, covariance, information, needs_kernel
+from tests.motions import worst
+
+
+def transition(rng, nv, orders):
+    """Joints of one to three dofs, near the identity."""
+    joints, first = [], 0
+    while first < nv:
+        joints.append((first, min(int(rng.integers(1, 4)), nv - first)))
+        first += joints[-1][1]
+    A, B = np.eye(nv), np.eye(nv)
+    for start, dofs in joints:
+        own = slice(start, start + dofs)
+        A[own, own] += 0.3 * rng.normal(size=(dofs, dofs))
+        B[own, own] += 0.3 * rng.normal(size=(dofs, dofs))
+    rates = np.triu(rng.uniform(0.1, 1.0, (orders, orders)))
+    return RateTransition(A, B, np.array(joints, dtype=np.int32), rng.uniform(0.0, 1.0, orders), rates)
+
+
+def posterior(prior, matrix, rows):
+    """(N, N) after readings, in scaled components, by the textbook's formula that needs no inverse of the prior."""
+    scale = np.sqrt(np.diag(prior))
+    C, L = prior / scale / scale[:, None], whole(matrix, rows) * scale * scale[:, None]
+    found = (C - C @ np.linalg.solve(np.eye(len(C)) + L @ C, L @ C)) * scale * scale[:, None]
+    return 0.5 * (found + found.T)
+
+
+def filtered(rng, frames, nv, orders, rest, readings):
+    """From the last frame to the first: posterior covariance, readings by their parts, transition into the frame."""
+    N = (1 + orders) * nv + rest
+    n, P, passed = nv + int(rng.integers(0, N - nv + 1)), covariance(rng, N), []
+    for _ in range(frames):
+        matrix, rows = information(rng, n, n + 4), banded_rows(rng, readings, N)
+        phi = transition(rng, nv, orders)
+        moved = phi.matrix(N) @ P @ phi.matrix(N).T
+        P = posterior(moved + np.diag(rng.uniform(0.0, 1.0, N)), matrix, rows)
+        passed.append((P, matrix, rows, rng.normal(size=N), phi))
+    return passed[::-1]
+
+
+def whole(matrix, rows):
+    information = rows.T @ rows
+    information[: len(matrix), : len(matrix)] += matrix
+    return information
+
+
+def assert_follows(frames, tolerance, covariances=True):
+    """Both passes tell the same of every frame, from the last to the first; spreads in units of the filter's."""
+    N = len(frames[0][0])
+    by_parts, by_matrices = SparseBackwardPass(N, covariances), BackwardPass(N, covariances)
+    for P, matrix, rows, vector, phi in frames:
+        scale = np.sqrt(np.diag(P))
+        assert worst((by_parts.step(P) - by_matrices.step(P)) / scale) <= tolerance
+        if covariances:
+            found, expected = by_parts.covariance(P), by_matrices.covariance(P)
+            np.testing.assert_array_equal(found, found.T)
+            assert worst((found - expected) / np.outer(scale, scale)) <= tolerance
+        by_parts.through_parts(P, matrix, rows, vector)
+        by_parts.through_motion(phi)
+        by_matrices.through_readings(P, whole(matrix, rows), vector)
+        by_matrices.through_plant(phi.matrix(N))
+        assert worst(by_parts.gradient - by_matrices.gradient) <= tolerance * worst(by_matrices.gradient)
+        if covariances:
+            difference = worst(by_parts.curvature - by_matrices.curvature)
+            assert difference <= tolerance * worst(by_matrices.curvature)
+
+
+@pytest.fixture(params=[True, False], ids=["own vectors", "BLAS"], scope="module")
+def products(request):
+    """Matrices multiplied by instructions of the kernel's own, where the processor has them, and by BLAS."""
+    kernel = library()
+    if kernel is None:
+        pytest.skip("the kernel is not compiled here")
+    kernel.choose(request.param)
+    if request.param and not kernel.vectors():
+        pytest.skip("the processor has no 512-bit vectors")
+    yield
+    kernel.choose(True)
+
+
+@pytest.mark.usefixtures("products")
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 10**6), st.integers(1, 20), st.integers(1, 2), st.integers(0, 14), st.integers(0, 12))
+def test_parts_are_whole_matrices(seed, nv, orders, rest, readings):
+    """Any sizes: those of tiles, less and more."""
+    rng = np.random.default_rng(seed)
+    assert_follows(filtered(rng, 3, nv, orders, rest, readings), 1e-5)
+
+
+@pytest.mark.parametrize("covariances", [True, False])
+def test_with_the_kernel_and_without_it(either_kernel, covariances):
+    rng = np.random.default_rng(8)
+    assert_follows(filtered(rng, 4, 9, 2, 12, 7), 1e-8, covariances)
+
+
+def test_a_covariance_is_that_of_the_frame_asked_for(either_kernel):
+    """What is kept of one frame is not told of another."""
+    rng = np.random.default_rng(9)
+    one, other = filtered(rng, 2, 4, 2, 3, 5)
+    back = SparseBackwardPass(15)
+    back.through_parts(*one[:4])
+    for P in (one[0], other[0], one[0]):
+        np.testing.assert_allclose(back.covariance(P), BackwardPass.covariance(back, P), atol=1e-9 * worst(P))
+    with pytest.raises(ValueError, match="no covariances"):
+        SparseBackwardPass(15, covariances=False).covariance(one[0])
+
+
+@needs_kernel
+def test_arrays_that_do_not_fit_are_refused():
+    kernel, L, joints = library(), np.eye(6), np.array([[0, 2]], dtype=np.int32)
+    A, push, rates, out = np.eye(2), np.ones(2), np.eye(2), np.empty((6, 6))
+    with pytest.raises(ValueError, match="smaller"):
+        kernel.before_motion(np.eye(5), A, A, joints, push, rates, out)
+    with pytest.raises(ValueError, match="dofs"):
+        kernel.before_motion(L, A, A, joints + 1, push, rates, out)
+    with pytest.raises(ValueError, match="type or size"):
+        kernel.before_motion(L, A, A, joints, push, np.eye(1), out)
+    with pytest.raises(ValueError, match="type or size"):
+        kernel.smoothed(L, np.eye(5), out, out.copy())
+    with pytest.raises(ValueError, match="sizes"):
+        kernel.before_readings(L, L, L, np.eye(7), np.zeros((1, 6)), out)
+    with pytest.raises(ValueError, match="sizes"):
+        kernel.before_readings(L, L, L, np.eye(2), np.zeros((1, 5)), out)
+    with pytest.raises(TypeError):
+        kernel.smoothed(L, L, out)

@@ -1,0 +1,36 @@
+"""A transition by its parts is the matrix that it stands for."""
+
+import numpy as np
+import pytest
+
+from mbkf.numerics.rate_transition import RateTransition
+from tests.motions import worst
+
+DOFS = 5
+
+
+def transition(rng, orders):
+    joints = np.array([[0, 3], [3, 1], [4, 1]], dtype=np.int32)
+    A, B = np.zeros((2, DOFS, DOFS))
+    for first, dofs in joints:
+        own = slice(first, first + dofs)
+        A[own, own], B[own, own] = rng.normal(size=(2, dofs, dofs))
+    return RateTransition(A, B, joints, rng.normal(size=orders), rng.normal(size=(orders, orders)))
+
+
+@pytest.mark.parametrize("orders", [1, 2])
+@pytest.mark.parametrize("rest", [0, 4])
+def test_the_parts_are_the_matrix(orders, rest):
+    rng = np.random.default_rng(orders)
+    parts, size = transition(rng, orders), (1 + orders) * DOFS + rest
+    phi = parts.matrix(size)
+    moving = (1 + orders) * DOFS
+    expected = np.eye(size)
+    expected[:DOFS, :moving] = np.hstack([parts.A, *(push * parts.B for push in parts.push)])
+    expected[DOFS:moving, DOFS:moving] = np.kron(parts.rates, np.eye(DOFS))
+    np.testing.assert_array_equal(phi, expected)
+    x = rng.normal(size=size)
+    kept = x.copy()
+    assert worst(parts.forward(x) - phi @ x) <= 1e-14 * worst(phi) * worst(x) * size
+    assert worst(parts.backward(x) - phi.T @ x) <= 1e-14 * worst(phi) * worst(x) * size
+    np.testing.assert_array_equal(x, kept)
