@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.kernel.loading import Library, Point, Points, library
+from mbkf.kernel.loading import Library, library
+from mbkf.kernel.readings_functions import Point, Points
 from mbkf.kernel.tree import CompiledTree
 
 
