@@ -7,7 +7,7 @@ from time import process_time
 
 import numpy as np
 
-from benchmarks.better_body.persons import Trial, normalised, scaled, trial
+from benchmarks.better_body.persons import Trial, normalised, scaled, trial, with_true_lengths
 from benchmarks.checks import Check, information
 from benchmarks.references import rms
 from mbkf.conventions import Array
@@ -42,6 +42,7 @@ def angle_rows(motion: str, seeds: Sequence[int], careless: float = 1.0) -> list
     seconds = (process_time() - middle) / max(middle - start, 1e-9)
     true = _pooled(trials, [one.person for one in trials])
     alone, together = _pooled(trials, static), _pooled(trials, both)
+    lengths = _pooled(trials, [with_true_lengths(one) for one in trials])
     name = f"{motion}, {len(seeds)} persons" + (", markers 10 mm off" if careless > 1.0 else "")
     squares = [
         float(np.mean([normalised(found, one.person) for found, one in zip(bodies, trials, strict=True)]))
@@ -55,6 +56,7 @@ def angle_rows(motion: str, seeds: Sequence[int], careless: float = 1.0) -> list
         information(f"{name}: static and trial, constant part", together[1], "°"),
         Check(f"{name}: static and trial / static alone", together[0] / alone[0], 1.0, "<="),
         Check(f"{name}: static and trial / true body", together[0] / true[0], most, "<="),
+        information(f"{name}: the same with the true lengths", lengths[0] / true[0]),
         information(f"{name}: squared normalised error of factors, static", squares[0]),
         information(f"{name}: the same, static and trial", squares[1]),
         information(f"{name}: time of scaling, static and trial / static", seconds),

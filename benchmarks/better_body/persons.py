@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 
@@ -15,6 +17,8 @@ from mbkf.io.truth import Truth
 from mbkf.model.protocol import load_protocol
 from mbkf.pipelines.scale import scale
 from mbkf.pipelines.synth import synthesise
+from mbkf.scaling import fit
+from mbkf.scaling.problem import ScalingProblem
 from mbkf.synthesis.capture import CaptureSettings
 from mbkf.synthesis.person import body_of, synthesise_subject
 
@@ -24,6 +28,10 @@ NOISE = CaptureSettings(skin_sd_m=0.003)
 CARELESS = 2.5
 """Markers this many times as far from the protocol's places as `mbkf synth` puts them: 10 mm of anatomical ones, which
 is what the protocol states, and what examiners reach (U. Della Croce et al., Gait Posture 21 (2005) 226-237)."""
+
+
+KNOWN_SD = 1e-5
+"""Spread of a length that is known."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +81,20 @@ def scaled(from_trial: Trial, *, moving: bool) -> Subject:
     """The person scaled from the static trial, and the moving one."""
     trials = [from_trial.moving] if moving else []
     return scale(from_trial.static, trials, mass_kg=from_trial.person.mass_kg)
+
+
+def with_true_lengths(from_trial: Trial) -> Subject:
+    """The person scaled from both trials by someone who knows every length: only markers are to be found."""
+    made = fit.scaling_problem
+
+    def knowing(*given: Any) -> ScalingProblem:
+        problem = made(*given)
+        factors = np.array([from_trial.person.scale_factors[name] for name in problem.body.scale_factors])
+        exactly = KNOWN_SD**2 * np.eye(len(factors))
+        return problem.believing(replace(problem.prior, factors=factors, factor_covariance=exactly))
+
+    with patch.object(fit, "scaling_problem", knowing):
+        return scaled(from_trial, moving=True)
 
 
 def normalised(found: Subject, person: Subject) -> float:
