@@ -20,6 +20,8 @@ class FeetAt(NamedTuple):
         velocities: Their velocities, m/s.
         up: Vertical component of each foot's upward axis.
         root: The root's origin, m.
+        lowest: The lowest point of each sole, 0 heel, 1 ball, 2 toe end.
+        lowest_end: The lower one of heel and ball.
         middles_m: (2, 3) middle of heel and toe end.
     """
 
@@ -27,6 +29,8 @@ class FeetAt(NamedTuple):
     velocities: tuple[Points, Points]
     up: tuple[float, float]
     root: Point
+    lowest: tuple[int, int]
+    lowest_end: tuple[int, int]
     middles_m: Array
 
 

@@ -15,7 +15,18 @@ static PyObject *vectors(double of[2][SOLE_POINTS][3])
                          l[0], l[1], l[2], l[3], l[4], l[5], l[6], l[7], l[8]);
 }
 
-/* feet(tree, joints, local, q, v, middles) -> (points, velocities, up, root); the tree placed, too */
+/* The lowest of some first points of a sole. */
+static int lowest(const double points[SOLE_POINTS][3], int first)
+{
+    int found = 0;
+    for (int k = 1; k < first; k++)
+        if (points[k][2] < points[found][2])
+            found = k;
+    return found;
+}
+
+/* feet(tree, joints, local, q, v, middles) -> (points, velocities, up, root, lowest of three, lowest of the first two);
+ * the tree placed, too */
 static PyObject *py_feet(PyObject *self, PyObject *const *args, Py_ssize_t given)
 {
     Arrays held = {.held = 0};
@@ -45,8 +56,11 @@ static PyObject *py_feet(PyObject *self, PyObject *const *args, Py_ssize_t given
         memcpy(middles, feet.middles, sizeof feet.middles);
         PyObject *points = vectors(feet.points), *velocities = vectors(feet.velocities);
         if (points && velocities)
-            done = Py_BuildValue("(OO(dd)(ddd))", points, velocities, feet.up[0], feet.up[1], feet.root[0],
-                                 feet.root[1], feet.root[2]);
+            done = Py_BuildValue(
+                "(OO(dd)(ddd)(ii)(ii))", points, velocities, feet.up[0], feet.up[1], feet.root[0], feet.root[1],
+                feet.root[2], lowest((const double(*)[3])feet.points[0], SOLE_POINTS),
+                lowest((const double(*)[3])feet.points[1], SOLE_POINTS), lowest((const double(*)[3])feet.points[0], 2),
+                lowest((const double(*)[3])feet.points[1], 2));
         Py_XDECREF(points);
         Py_XDECREF(velocities);
     }

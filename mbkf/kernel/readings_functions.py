@@ -91,8 +91,15 @@ class ReadingFunctions(Protocol):
 
     def feet(
         self, tree: object, joints: NDArray[np.int32], local: Array, q: Array, v: Array, middles: Array, /
-    ) -> tuple[tuple[Points, Points], tuple[Points, Points], tuple[float, float], Point]:
-        """Points and velocities of both soles, the feet's upward axes and the root.
+    ) -> tuple[
+        tuple[Points, Points],
+        tuple[Points, Points],
+        tuple[float, float],
+        Point,
+        tuple[int, int],
+        tuple[int, int],
+    ]:
+        """Both feet: see :class:`mbkf.kernel.feet.FeetAt`, but for the middles.
 
         Args:
             tree: The handle.

@@ -84,11 +84,13 @@ class DynamicTracking(TrackingFilter):
         """One frame on."""
         was = _record(before)
         prior = None if prediction is None else cast("Prior[DynamicState] | None", prediction.prior)
-        now = self._estimate(self.kalman.step(was.state, was.memory, recording.frame(t), prior))
-        change = now.wrench - before.wrench
-        bend = np.zeros((2, 6)) if before.changes is None else change - before.changes[0]
+        now = self.kalman.step(was.state, was.memory, recording.frame(t), prior)
+        changes = np.zeros((2, 2, 6))
+        np.subtract(now.state.w.reshape(2, 6), before.wrench, out=changes[0])
+        if before.changes is not None:
+            np.subtract(changes[0], before.changes[0], out=changes[1])
         noise = (before.plate_noise or self._plate_noise).after(recording.plates[t, :, :3])
-        return now._replace(changes=np.array([change, bend]), plate_noise=noise)
+        return self._estimate(now, changes, noise)
 
     def covariance(self, estimate: Posterior) -> Array:
         """(2 nv, 2 nv) of (q, v); dofs that no marker moves with may be anywhere a posture is."""
@@ -261,11 +263,17 @@ class DynamicTracking(TrackingFilter):
             later=state.P is not _record(estimate).state.P,
         )
 
-    def _estimate(self, step: DynamicStep) -> Posterior:
+    def _estimate(
+        self, step: DynamicStep, changes: Array | None = None, noise: WhiteNoise | None = None
+    ) -> Posterior:
         state, notes = step.state, step.decisions.notes
         contact = None if notes.contact is None else notes.contact.contacts
         plant, before = self.kalman.plant, step.prior.state
         steps = self.kalman.settings.errors.lag_s / self.dt_s
+        lag = np.concatenate(
+            [state.a - before.a / plant.rho, state.w - before.w, self.loads.change(before, state)]
+        )
+        lag *= steps
         return Posterior(
             state.q,
             state.v,
@@ -277,8 +285,7 @@ class DynamicTracking(TrackingFilter):
             False,
             step,
             self.loads.wrench(self.loads.of(step)),
-            steps
-            * np.concatenate(
-                [state.a - before.a / plant.rho, state.w - before.w, self.loads.change(before, state)]
-            ),
+            lag,
+            changes,
+            plate_noise=noise,
         )

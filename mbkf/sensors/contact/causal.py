@@ -177,7 +177,7 @@ class ContactDetector:
             feet: The feet.
             slack: Factor on the limit of speed: feet that stood there together must clearly part.
         """
-        lowest = feet.lowest(0), feet.lowest(1)
+        lowest = feet.lowest
         right, left = feet.soles[0][lowest[0]], feet.soles[1][lowest[1]]
         level = abs(right[2] - left[2]) < LEVEL_M
         if not (level and self._areas.over(k, *right[:2]) and self._areas.over(k, *left[:2])):

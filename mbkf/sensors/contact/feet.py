@@ -12,7 +12,7 @@ from mbkf.conventions import Array
 from mbkf.kernel.feet import CompiledFeet
 from mbkf.model.body import Body
 from mbkf.sensors.contact.soles import Sole, sole_locals
-from mbkf.sensors.contact.thresholds import FACES_DOWN
+from mbkf.sensors.contact.thresholds import FACES_DOWN, SOLE_ENDS
 
 Vector = tuple[float, float, float]
 """A vector in the world."""
@@ -27,6 +27,8 @@ class FeetMotion(NamedTuple):
         middles_m: (2, 3) middle of heel and toe end of each.
         facing_down: Whether each sole faces the floor enough to be stood on (:func:`.soles.soles_down`).
         pelvis_m: The pelvis, x, y, z.
+        lowest: The lowest point of each sole: 0 heel, 1 ball, 2 toe end.
+        lowest_end: The lower one of heel and ball.
     """
 
     soles: Sequence[Sole]
@@ -34,6 +36,8 @@ class FeetMotion(NamedTuple):
     middles_m: Array
     facing_down: tuple[bool, bool]
     pelvis_m: Vector
+    lowest: tuple[int, int]
+    lowest_end: tuple[int, int]
 
     def speed(self, foot: int, point: int, floor_m_s: tuple[float, float]) -> float:
         """Speed of a point of a sole.
@@ -45,16 +49,6 @@ class FeetMotion(NamedTuple):
         """
         x, y, z = self.velocities[foot][point]
         return hypot(x - floor_m_s[0], y - floor_m_s[1], z)
-
-    def lowest(self, foot: int, points: int = 3) -> int:
-        """The lowest of a sole's first points.
-
-        Args:
-            foot: 0 right, 1 left.
-            points: How many are looked at: heel, ball, toe end.
-        """
-        heights = [point[2] for point in self.soles[foot][:points]]
-        return heights.index(min(heights))
 
 
 class FeetOnBody:
@@ -82,17 +76,20 @@ class FeetOnBody:
     def at(self, q: Array, v: Array) -> FeetMotion:
         """Both feet at a configuration q (nq,) and velocity v (nv,)."""
         if self._compiled is not None:
-            soles, velocities, (right, left), pelvis, middles = self._compiled.at(q, v)
-            return FeetMotion(soles, velocities, middles, (right > FACES_DOWN, left > FACES_DOWN), pelvis)
+            soles, velocities, (right, left), pelvis, lowest, ends, middles = self._compiled.at(q, v)
+            down = right > FACES_DOWN, left > FACES_DOWN
+            return FeetMotion(soles, velocities, middles, down, pelvis, lowest, ends)
         frames, jacobian = self._model.frames_and_jacobian(q)
         found = self._picked @ frames
         points, twists = found.tolist(), (v * self._moves) @ jacobian.T
         velocities = twists[:, None, :3] + np.cross(twists[:, None, 3:], found[:6].reshape(2, 3, 3))
-        x, y, z = points[10]
+        (x, y, z), heights = points[10], found[:6, 2].reshape(2, 3)
         return FeetMotion(
             (points[:3], points[3:6]),
             velocities.tolist(),
             found[6:8],
             (points[8][2] > FACES_DOWN, points[9][2] > FACES_DOWN),
             (x, y, z),
+            (int(heights[0].argmin()), int(heights[1].argmin())),
+            (int(heights[0, :SOLE_ENDS].argmin()), int(heights[1, :SOLE_ENDS].argmin())),
         )

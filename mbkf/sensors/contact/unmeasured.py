@@ -119,10 +119,10 @@ class UnmeasuredFeet:
             height: Height of loaded soles, NaN before one was loaded.
         """
         floor = height if not isnan(height) else self._floor
-        points = [feet.lowest(f, SOLE_ENDS) for f in (0, 1)]
-        right, left = (feet.soles[f][point][2] for f, point in enumerate(points))
+        ends, soles = feet.lowest_end, feet.soles
+        right, left = soles[0][ends[0]][2], soles[1][ends[1]][2]
         foot, height = (0, right) if right <= left else (1, left)
-        x, y, _ = feet.velocities[foot][points[foot]]
+        x, y, _ = feet.velocities[foot][ends[foot]]
         low = (x, y) if height < floor + STAND_HEIGHT_M else (nan, nan)
         return before.with_frame(low, feet.pelvis_m, self._dt_s)
 

@@ -45,10 +45,10 @@ def test_speed_is_against_the_floor():
     assert feet.speed(1, 0, (x, y)) == pytest.approx(abs(z))
 
 
-def test_the_lowest_point_is_of_those_that_are_looked_at():
+def test_the_lowest_point_is_told(either_kernel):
     q, v = moving(6)
-    feet = FEET.at(q, v)
+    feet = FeetOnBody(reference_model()).at(q, v)
     for foot in (0, 1):
-        for points in (2, 3):
-            heights = np.array(feet.soles[foot])[:points, 2]
-            assert feet.lowest(foot, points) == np.argmin(heights)
+        heights = np.array(feet.soles[foot])[:, 2]
+        assert feet.lowest[foot] == np.argmin(heights)
+        assert feet.lowest_end[foot] == np.argmin(heights[:2])
