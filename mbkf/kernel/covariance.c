@@ -6,6 +6,7 @@
 
 #include "bands.h"
 #include "blas.h"
+#include "factor.h"
 #include "product.h"
 #include "symmetric.h"
 #include "vectorised.h"
@@ -145,15 +146,13 @@ void carry_velocities(int nv, const double *P, const double *A, const double *B,
 /* G with G G' = L: lower Cholesky factor; components that nothing informs about are set aside. */
 static int square_root(int n, const double *L, double *G)
 {
-    int failed;
     for (int j = 0; j < n; j++)
         for (int i = 0; i < n; i++)
             G[(long)j * n + i] = i < j ? 0.0 : L[(long)j * n + i];
     for (int i = 0; i < n; i++)
         if (L[(long)i * n + i] == 0.0)
             G[(long)i * n + i] = 1.0;
-    blas.dpotrf("l", &n, G, &n, &failed);
-    if (failed)
+    if (factored(n, G))
         return 1;
     for (int i = 0; i < n; i++)
         if (L[(long)i * n + i] == 0.0)
@@ -165,14 +164,12 @@ static int square_root(int n, const double *L, double *G)
 /* W C^-T with C C' = I + S in place of W (N x m); S (m x m) is overwritten. */
 static int half(int N, int m, double *W, double *S)
 {
-    int failed;
-    double one = 1.0;
     for (int i = 0; i < m; i++)
         S[(long)i * m + i] += 1.0;
-    blas.dpotrf("l", &m, S, &m, &failed);
-    if (!failed)
-        blas.dtrsm("r", "l", "t", "n", &N, &m, &one, S, &m, W, &N);
-    return failed != 0;
+    if (factored(m, S))
+        return 1;
+    divided(N, m, S, W);
+    return 0;
 }
 
 /* The second half of the reduction: W = (P - F F') rows' C^-T with C C' = rows (P - F F') rows' + I, where F = P K.

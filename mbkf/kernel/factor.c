@@ -1,5 +1,5 @@
-/* Cholesky factors, block of columns by block: what stands left of a block is taken off by one product. LAPACK's routine,
- * made for larger matrices, takes twice as long; it does it where products are BLAS's. */
+/* Cholesky factors and division by them, block of columns by block: what stands left of a block is taken off by one
+ * product, which LAPACK's routines, made for larger matrices, are slower at. They do it where products are BLAS's. */
 #include "factor.h"
 
 #include <math.h>
@@ -32,6 +32,22 @@ VECTORISED static int panel(int rows, int width, double *A, int lda)
     return 0;
 }
 
+/* X (rows x width) divided by a block of L. */
+VECTORISED static void columns_divided(int rows, int width, const double *L, int ldl, double *X)
+{
+    for (int j = 0; j < width; j++) {
+        double *column = X + (long)j * rows;
+        const double by = L[(long)j * ldl + j];
+        for (int k = 0; k < j; k++) {
+            const double *before = X + (long)k * rows, factor = L[(long)k * ldl + j];
+            for (int i = 0; i < rows; i++)
+                column[i] -= factor * before[i];
+        }
+        for (int i = 0; i < rows; i++)
+            column[i] /= by;
+    }
+}
+
 int factored(int n, double *A)
 {
     int failed = 0;
@@ -49,4 +65,20 @@ int factored(int n, double *A)
     for (int j = 1; j < n; j++)
         memset(A + (long)j * n, 0, sizeof *A * j);
     return failed != 0;
+}
+
+void divided(int rows, int n, const double *L, double *X)
+{
+    double one = 1.0;
+    if (!product_is_own()) {
+        blas.dtrsm("r", "l", "t", "n", &rows, &n, &one, (double *)L, &n, X, &rows);
+        return;
+    }
+    for (int b = 0; b < n; b += WIDTH) {
+        const int width = n - b < WIDTH ? n - b : WIDTH;
+        double *own = X + (long)b * rows;
+        if (b)
+            product(WHOLE, rows, width, b, -1.0, X, rows, L + b, n, 1.0, own, own, rows);
+        columns_divided(rows, width, L + (long)b * n + b, n, own);
+    }
 }

@@ -6,4 +6,7 @@
  * Returns 0, or 1 where A is not positive definite. */
 int factored(int n, double *A);
 
+/* X L^-T (rows x n) in place of X. */
+void divided(int rows, int n, const double *L, double *X);
+
 #endif
