@@ -18,7 +18,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.filters.innovations import Innovations, InnovationSpreads
 from mbkf.filters.once import Once
 from mbkf.filters.readings import Readings, summed
-from mbkf.kernel.covariance import informed_with_rows
+from mbkf.kernel.covariance import correction, informed_with_rows
 from mbkf.numerics.kalman import correct
 from mbkf.numerics.running_spread import RunningSpread
 from mbkf.sensors.block import AnyBlock, Block, Frame, Notes, OperatingPoint, State
@@ -303,7 +303,8 @@ class Filter(Generic[StateT]):
         return summed(self.blocks, said, self.layout)
 
     def _updated(self, prior: StateT, readings: Readings) -> StateT:
-        P, vector = self.update(prior.P, readings.matrix, readings.rows), readings.vector
-        if len(readings.values):
-            return self.plant.retract(prior, P @ readings.whole_vector, P)
-        return self.plant.retract(prior, P[:, : len(vector)] @ vector, P)
+        P = self.update(prior.P, readings.matrix, readings.rows)
+        step = correction(P, readings.vector, readings.rows, readings.values)
+        if readings.added is not None:
+            step += P @ readings.added
+        return self.plant.retract(prior, step, P)

@@ -220,3 +220,23 @@ int inform(int N, const double *P, int n, const double *information, int m, cons
     mirror(N, informed);
     return 0;
 }
+
+/* y (N) += a x */
+VECTORISED static void plus(int N, double a, const double *x, double *y)
+{
+    for (int i = 0; i < N; i++)
+        y[i] += a * x[i];
+}
+
+void correction(int N, const double *P, int n, const double *vector, int m, const double *rows, const double *values,
+                double *step, double *total)
+{
+    memset(total, 0, sizeof *total * N);
+    memcpy(total, vector, sizeof *total * n);
+    memset(step, 0, sizeof *step * N);
+    for (int k = 0; k < m; k++)
+        if (values[k] != 0.0)
+            plus(N, values[k], rows + (long)k * N, total);
+    for (int k = 0; k < N; k++)
+        plus(N, total[k], P + (long)k * N, step);
+}

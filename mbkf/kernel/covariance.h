@@ -29,4 +29,8 @@ int inform(int N, const double *P, int n, const double *information, int m, cons
            double *work);
 long inform_work(int n, int m, int N);
 
+/* step (N) = P (vector (n) on the first components + rows' values), rows (m x N) row by row; total: N numbers. */
+void correction(int N, const double *P, int n, const double *vector, int m, const double *rows, const double *values,
+                double *step, double *total);
+
 #endif

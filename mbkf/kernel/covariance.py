@@ -172,3 +172,22 @@ def informed_after_rows(covariance: Array, matrix: Array, rows: Array) -> Array:
     if library() is None:
         return information_update.informed_after_rows(covariance, matrix, rows)
     return informed_with_rows(covariance, matrix, rows)
+
+
+def correction(covariance: Array, vector: Array, rows: Array, values: Array) -> Array:
+    """(N,) P (λ + Hᵀ y): how far readings move a mean.
+
+    Args:
+        covariance: (N, N) posterior covariance P, symmetric.
+        vector: (n,) λ on the first n components.
+        rows: (m, N) H, whitened.
+        values: (m,) y, their innovations.
+    """
+    kernel = library()
+    if kernel is not None:
+        step = np.empty(len(covariance))
+        kernel.correction(covariance, vector, rows, values, step)
+        return step
+    total = values @ rows
+    total[: len(vector)] += vector
+    return np.asarray(covariance @ total)

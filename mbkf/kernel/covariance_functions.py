@@ -156,6 +156,17 @@ class CovarianceFunctions(Protocol):
             before: (N, N) filled.
         """
 
+    def correction(self, P: Array, vector: Array, rows: Array, values: Array, step: Array, /) -> None:
+        """Fills ``step`` (N,): see :func:`mbkf.kernel.covariance.correction`.
+
+        Args:
+            P: (N, N) covariance.
+            vector: (n,) on the first n components.
+            rows: (m, N) whitened.
+            values: (m,) their innovations.
+            step: (N,) filled.
+        """
+
     def errors(
         self,
         P: Array,

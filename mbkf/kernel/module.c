@@ -187,6 +187,33 @@ static PyObject *py_inform(PyObject *self, PyObject *const *args, Py_ssize_t giv
     return done;
 }
 
+/* correction(P, vector, rows, values, step): step = P (vector on the first components + rows' values) */
+static PyObject *py_correction(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    Arrays held = {.held = 0};
+    PyObject *done = NULL;
+    (void)self;
+    if (!expects(given, 5))
+        return NULL;
+    const double *P = symmetric(&held, args[0], 0);
+    const int N = P ? length(&held) : 0;
+    const double *vector = P ? numbers(&held, args[1], 0) : NULL;
+    const int n = vector ? length(&held) : 0;
+    const double *values = vector ? numbers(&held, args[3], 0) : NULL;
+    const int m = values ? length(&held) : 0;
+    const double *rows = values ? numbers(&held, args[2], (Py_ssize_t)m * N) : NULL;
+    double *step = rows ? filled(&held, args[4], N) : NULL;
+    double *total = step ? workspace(N) : NULL;
+    if (total && n > N)
+        PyErr_SetString(PyExc_ValueError, "the arrays' sizes do not fit");
+    else if (total && is_square(&held.views[0], N)) {
+        correction(N, P, n, vector, m, rows, values, step, total);
+        done = Py_NewRef(Py_None);
+    }
+    release(&held);
+    return done;
+}
+
 /* third_differences(first, second, third, latest, level) -> (known, below) */
 static PyObject *py_third_differences(PyObject *self, PyObject *const *args, Py_ssize_t given)
 {
@@ -274,6 +301,7 @@ static PyMethodDef methods[] = {
     {"carry_velocities", (PyCFunction)(void (*)(void))py_carry_velocities, METH_FASTCALL,
      "The same for positions and velocities alone."},
     {"inform", (PyCFunction)(void (*)(void))py_inform, METH_FASTCALL, "A covariance after readings."},
+    {"correction", QUICK(py_correction), "The step of a mean that readings make."},
     {"third_differences", QUICK(py_third_differences), "How many third differences lie below a level."},
     SMOOTHING_METHODS,
     SPREAD_METHODS,

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
 from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
-from mbkf.kernel.covariance import informed_with_rows
+from mbkf.kernel.covariance import correction, informed_with_rows
 from mbkf.kernel.loading import library
 from mbkf.numerics import information_update
 from tests.dynamics import DT
@@ -182,3 +182,36 @@ def test_the_prediction_of_positions_and_velocities_is_phi_p_phi_and_noise(eithe
     assert (np.abs(found - expected) <= 1e-13 * np.outer(scale, scale)).all()
     np.testing.assert_array_equal(found, found.T)
     assert found.flags.f_contiguous
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    st.integers(0, 10**6), st.integers(1, 40), st.integers(0, 20), st.integers(0, 9), st.sampled_from("CF")
+)
+def test_the_correction_is_the_covariance_times_what_is_read(seed, n, further, readings, order):
+    rng = np.random.default_rng(seed)
+    P = np.array(covariance(rng, n + further), order=order)
+    rows, values, vector = (
+        banded_rows(rng, readings, n + further),
+        rng.normal(size=readings),
+        rng.normal(size=n),
+    )
+    total = np.concatenate([vector, np.zeros(further)]) + rows.T @ values
+    found = correction(P, vector, rows, values)
+    assert (np.abs(found - P @ total) <= 1e-13 * (np.abs(P) @ np.abs(total))).all()
+
+
+def test_the_correction_is_the_reference_s(reference_kernel):
+    rng = np.random.default_rng(8)
+    P, rows = covariance(rng, 12), banded_rows(rng, 3, 12)
+    expected = P[:, :5] @ np.arange(5.0) + P @ rows.T @ np.ones(3)
+    assert worst(correction(P, np.arange(5.0), rows, np.ones(3)) - expected) <= 1e-12 * worst(expected)
+
+
+@needs_kernel
+def test_corrections_that_do_not_fit_are_refused():
+    P = np.eye(4)
+    with pytest.raises(ValueError, match="sizes"):
+        correction(P, np.zeros(5), np.zeros((1, 4)), np.zeros(1))
+    with pytest.raises(ValueError, match="type or size"):
+        correction(P, np.zeros(2), np.zeros((1, 3)), np.zeros(1))

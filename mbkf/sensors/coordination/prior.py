@@ -20,6 +20,7 @@ from mbkf.model.body import Body
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 from mbkf.sensors.coordination.regression import Coordination, learn
 from mbkf.sensors.layout import Layout
+from mbkf.sensors.posture_sensor import PostureSensor
 
 NOTED_HZ, BLOCK_S = 25.0, 0.5
 """How often frames are noted, and how long a block of them is that is left out at a time."""
@@ -132,7 +133,7 @@ class CoordinationPrior(Block[State, Mapping[int, Coordination], CoordinationDec
             if name not in model.roles.leading and not unobservable[own].all()
         ]
         self._root = next(joint for joint in model.joints.values() if joint.kind == "free")
-        self._neutral = model.neutral()
+        self._neutral, self._posture = model.neutral(), PostureSensor(model)
         self._every = max(1, round(1.0 / (NOTED_HZ * dt_s)))
         noted_s = self._every * dt_s
         self._block = max(1, round(BLOCK_S / noted_s))
@@ -233,9 +234,7 @@ class CoordinationPrior(Block[State, Mapping[int, Coordination], CoordinationDec
 
     def posture(self, q: Array) -> Array:
         """(nv,) rotation of every joint from neutral."""
-        posture = q.copy()
-        posture[self._root.q] = self._neutral[self._root.q]
-        return self._model.difference(self._neutral, posture)
+        return self._posture.deviation(q)[0]
 
     def _gone(self, unobserved: NDArray[np.intp]) -> tuple[int, ...]:
         """Numbers of the joints that are out of sight."""
