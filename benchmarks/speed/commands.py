@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from time import perf_counter
 
 import numpy as np
 
-from benchmarks.checks import Check
+from benchmarks.checks import Check, information
 from mbkf.errors import InvalidInput
 from mbkf.pipelines.synth import synthesise, write_folder
 
@@ -30,20 +31,37 @@ def rows(folder: Path, runs: int = RUNS) -> list[Check]:
     written = {path.name: path for path in write_folder(person, recorded, folder)}
     trial = next(path for name, path in written.items() if name.startswith("trial"))
     words = ("reconstruct", trial, "--subject", written["subject.toml"])
-    times: dict[str, list[float]] = {"--causal": [], "--smooth": []}
-    for _ in range(runs):
-        for option, taken in times.items():
-            taken.append(_seconds(*words, option, "--out", folder / option.strip("-")))
+    judged = _median_s(words, folder, 1)
+    # No laboratory has the truth beside its capture, to which the command compares its result and keeps covariances.
+    written["truth.h5"].unlink()
+    times = _median_s(words, folder, runs)
     return [
+        information("reconstruct of a 5 s walk with its truth, causal, wall time", judged["--causal"], "s"),
+        information("… smoothed", judged["--smooth"], "s"),
         Check(
             "reconstruct of a 5 s walk, causal, wall time",
-            float(np.median(times["--causal"])),
+            times["--causal"],
             CAUSAL_S,
             "<=",
             "s",
         ),
-        Check("… smoothed", float(np.median(times["--smooth"])), SMOOTHED_S, "<=", "s"),
+        Check("… smoothed", times["--smooth"], SMOOTHED_S, "<=", "s"),
     ]
+
+
+def _median_s(words: Sequence[str | Path], folder: Path, runs: int) -> dict[str, float]:
+    """Median wall time of a command by option.
+
+    Args:
+        words: The command.
+        folder: For its results.
+        runs: How often it is run with each option, in turn.
+    """
+    times: dict[str, list[float]] = {"--causal": [], "--smooth": []}
+    for _ in range(runs):
+        for option, taken in times.items():
+            taken.append(_seconds(*words, option, "--out", folder / option.strip("-")))
+    return {option: float(np.median(taken)) for option, taken in times.items()}
 
 
 def _seconds(*words: str | Path) -> float:
