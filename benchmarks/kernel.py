@@ -121,14 +121,22 @@ def _apart(motion: str, seed: int, settings: ReconstructSettings) -> Apart:
 
 
 def moved(subject: Subject, towards: float) -> Subject:
-    """The subject with its markers' places moved by their last binary digit.
+    """The subject with its markers' places and their noise moved by the last binary digit.
+
+    Rounding of covariances does not depend on what is measured, but on how it is weighed.
 
     Args:
         subject: The person.
         towards: Infinity of one sign or the other.
     """
-    places = [np.nextafter(one.position_m, towards) for one in subject.markers]
-    markers = (replace(one, position_m=at) for one, at in zip(subject.markers, places, strict=True))
+    markers = (
+        replace(
+            one,
+            position_m=np.nextafter(one.position_m, towards),
+            noise_m=float(np.nextafter(one.noise_m, towards)),
+        )
+        for one in subject.markers
+    )
     return replace(subject, markers=tuple(markers))
 
 

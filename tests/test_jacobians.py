@@ -62,6 +62,7 @@ ELSEWHERE = {
     "numerics.windows.second_derivative": "numerics/test_windows.py",
     "numerics.windows.slopes": "numerics/test_windows.py",
     "numerics.passage.LinearStep.transition": "numerics/test_passage.py",
+    "numerics.rotations.travel_by_turn": "numerics/test_rotations.py",
     "numerics.rotations.log_and_inverse_jacobian": "numerics/test_rotations.py",
     "filters.tracking.Track.nis_by_kind": "pipelines/results/test_innovations.py nis_by_kind",
     "filters.tracking.Track.readings_by_kind": "pipelines/results/test_innovations.py nis_readings_by_kind",

@@ -29,10 +29,12 @@ class PlainManifold:
     Attributes:
         movement_sd: (4,) typical accelerations of the coordinates z.
         joints: One slider per coordinate.
+        tree: None: the compiled kernel knows no sliders.
     """
 
     movement_sd: Array
     nv: ClassVar[int] = 4
+    tree: ClassVar[None] = None
     joints: ClassVar[Mapping[str, SegmentJoint]] = {
         f"z{k}": SegmentJoint(f"z{k}", "slider", "", k + 1, slice(k, k + 1), slice(k, k + 1))
         for k in range(4)

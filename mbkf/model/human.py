@@ -23,6 +23,7 @@ from mbkf.kernel.tree import CompiledTree
 from mbkf.model.body import SegmentJoint
 from mbkf.model.body_file import load_body, parse_body
 from mbkf.model.description import JOINT_DOF, BodyDescription, Roles, Segment
+from mbkf.numerics.rotations import travel_by_turn
 
 
 class HumanModel:
@@ -218,7 +219,10 @@ class HumanModel:
         """(nv, nv) derivatives of :meth:`integrate` by q and by dv, block-diagonal over joints."""
         if (tree := self.tree) is not None:
             return tree.integration_derivatives(dv)
-        return pin.dIntegrate(self.pin_model, q, dv)
+        by_q, by_step = pin.dIntegrate(self.pin_model, q, dv)
+        # Of the root Pinocchio's own is off by 1e-9 for small turns.
+        by_step[:3, 3:6] = travel_by_turn(dv[:3], dv[3:6])
+        return by_q, by_step
 
     def difference_derivative(self, q0: Array, q1: Array) -> Array:
         """(nv, nv) derivative of :meth:`difference` by q1, block-diagonal over joints."""

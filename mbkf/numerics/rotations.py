@@ -6,6 +6,9 @@ import numpy as np
 
 from mbkf.conventions import Array
 
+SMALL_TURN_RAD = 0.15
+"""Below this a series is more exact than the closed form."""
+
 
 def skew(vectors: Array) -> Array:
     """(…, 3, 3) matrices [v]× of vectors (…, 3)."""
@@ -64,3 +67,32 @@ def log_and_inverse_jacobian(quaternions: Array) -> tuple[Array, Array]:
     exact = 1.0 / safe**2 - (1.0 + np.cos(safe)) / (2.0 * safe * np.sin(np.minimum(safe, np.pi - 1e-9)))
     factor = np.where(theta < 1e-4, 1.0 / 12.0, exact)
     return phi, np.eye(3) + 0.5 * cross + factor * (cross @ cross)
+
+
+def travel_by_turn(u: Array, w: Array) -> Array:
+    """(3, 3) how the travel of a screw motion exp(u, w) changes with its turn w, in the axes that it ends in.
+
+    T. Barfoot, State Estimation for Robotics, 2017, eq. 7.86, of (−u, −w); for small turns by its series, since the
+    closed form loses nine digits there.
+
+    Args:
+        u: (3,) linear part.
+        w: (3,) turn, rad.
+    """
+    t2 = float(w @ w)
+    t = np.sqrt(t2)
+    if t > SMALL_TURN_RAD:
+        s, c = np.sin(t), np.cos(t)
+        c1 = (t - s) / t**3
+        c2 = (t2 + 2.0 * c - 2.0) / (2.0 * t**4)
+        c3 = (2.0 * t - 3.0 * s + t * c) / (2.0 * t**5)
+    else:
+        c1 = 1.0 / 6.0 - t2 / 120.0 * (1.0 - t2 / 42.0 * (1.0 - t2 / 72.0))
+        c2 = 1.0 / 24.0 - t2 / 720.0 * (1.0 - t2 / 56.0 * (1.0 - t2 / 90.0))
+        c3 = 1.0 / 120.0 - t2 / 2520.0 * (1.0 - t2 / 48.0 * (1.0 - t2 * 7.0 / 550.0))
+    U, W = skew(-u), skew(-w)
+    WU, UW = W @ U, U @ W
+    WUW = WU @ W
+    return np.asarray(
+        0.5 * U + c1 * (WU + UW + WUW) + c2 * (W @ WU + UW @ W - 3.0 * WUW) + c3 * (WUW @ W + W @ WUW)
+    )

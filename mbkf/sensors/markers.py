@@ -70,11 +70,8 @@ class MarkerSettings:
     min_markers: int = 6
 
 
-START_WHITE_M, LEAST_WHITE_M = 1e-3, 1e-5
-"""White noise of cameras before they have shown it, and what is taken for granted: files have so many digits."""
-
-EXPECTED_FRAMES = 2.0
-"""So many frames the expected mean square of innovations counts as."""
+LEAST_WHITE_M = 1e-5
+"""White noise of cameras that is taken for granted: files have so many digits."""
 
 
 class MarkerMemory(NamedTuple):
@@ -83,15 +80,13 @@ class MarkerMemory(NamedTuple):
     Attributes:
         noise_scale: Square c of the factor on the noise.
         before_m: (M, 3) markers used in the frame before, where skin is modelled.
-        mean_square: Mean yᵀR⁻¹y / (3 m s): c before it is kept in its range.
-        frames: On how many frames that rests.
+        lasting: The same mean as c, before it is kept in its range, of what is not white noise of the cameras.
         white: White noise of the cameras, m; None where it is not asked for.
     """
 
     noise_scale: float
     before_m: Array | None
-    mean_square: float = 1.0
-    frames: float = EXPECTED_FRAMES
+    lasting: float = 1.0
     white: WhiteNoise | None = None
 
 
@@ -174,7 +169,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
 
     def begin(self) -> MarkerMemory:
         """The markers' own noise."""
-        white = WhiteNoise(START_WHITE_M, LEAST_WHITE_M) if self.settings.innovation_share > 0.0 else None
+        white = WhiteNoise(0.0, LEAST_WHITE_M) if self.settings.innovation_share > 0.0 else None
         return MarkerMemory(1.0, None, white=white)
 
     def prepare(self, state: State, memory: MarkerMemory | None) -> MarkerReading:
@@ -199,7 +194,8 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         notes.unmarked = notes.unobserved = self._observed.unmarked(trusted)
         notes.observed = trusted.tobytes().count(1) >= s.min_markers
         notes.lost = lost and self._track_loss
-        notes.lasting = self._lasting(memory)
+        if memory.white is not None:
+            notes.lasting = max(memory.lasting, 0.0) / memory.noise_scale
         moved = NO_DOFS
         if displaced is not None and self._inflate:
             moved = self._observed.carriers(displaced)
@@ -244,18 +240,11 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
             return memory._replace(before_m=before, white=white)
         low, high = self.settings.noise_range
         squared = min(float(decision.squared_m2 @ self._certainty) / (3 * used), high**2)
-        scale, frames = decision.noise_scale, memory.frames + 1.0
+        scale, lasting = decision.noise_scale, memory.lasting
         scale += self._forget * (max(squared, low**2) - scale)
-        mean_square = memory.mean_square
-        mean_square += max(1.0 / frames, self._forget) * (squared - mean_square)
-        return MarkerMemory(scale, before, mean_square, frames, white)
-
-    def _lasting(self, memory: MarkerMemory) -> float:
-        """Mean square of the markers' errors without the cameras' white noise, over what c takes them for."""
-        if memory.white is None:
-            return 1.0
-        lasting = memory.mean_square - memory.white.sd**2 * self._mean_certainty
-        return max(lasting, 0.0) / memory.noise_scale
+        not_white = squared - (0.0 if white is None else white.sd**2 * self._mean_certainty)
+        lasting += self._forget * (not_white - lasting)
+        return MarkerMemory(scale, before, lasting, white)
 
     def expected_spread(self) -> Array:
         """(M,) of one coordinate of each marker, m."""

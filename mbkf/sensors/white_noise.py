@@ -31,7 +31,7 @@ class WhiteNoise:
     """What is known of readings' noise after a sample.
 
     Attributes:
-        sd: Standard deviation of one number.
+        sd: Standard deviation of one number; 0 before readings have shown it.
         least: Noise that is taken for granted: readings are stored in steps of such a size.
         last: The last samples, three at most, the latest last; NaN where there was no reading.
     """
@@ -46,6 +46,8 @@ class WhiteNoise:
         if len(self.last) < 3:
             return WhiteNoise(self.sd, self.least, (*self.last, now))
         samples, sd = (*self.last, now), self.sd
+        if not sd:
+            return WhiteNoise(_first_sd(samples, self.least), self.least, samples[1:])
         counted = third_differences(samples, _LEVEL * sd)
         known, below = _counted(samples, _LEVEL * sd) if counted is None else counted
         if known:
@@ -53,9 +55,21 @@ class WhiteNoise:
         return WhiteNoise(sd, self.least, samples[1:])
 
 
+def _first_sd(samples: Sequence[Array], least: float) -> float:
+    """What four samples show at once; 0 where nothing is read."""
+    differences = _third(samples)
+    known = differences[~np.isnan(differences)]
+    return max(least, float(np.quantile(known, QUANTILE)) / _LEVEL) if known.size else 0.0
+
+
+def _third(samples: Sequence[Array]) -> Array:
+    """Absolute third differences of four samples."""
+    first, second, third, latest = samples
+    return np.abs(latest - 3.0 * third + 3.0 * second - first)
+
+
 def _counted(samples: Sequence[Array], level: float) -> tuple[int, int]:
     """How many third differences of four samples are numbers, and how many of these lie below a level."""
-    first, second, third, latest = samples
-    differences = np.abs(latest - 3.0 * third + 3.0 * second - first)
+    differences = _third(samples)
     # NaN compares as false.
     return int(np.count_nonzero(differences >= 0.0)), int(np.count_nonzero(differences < level))

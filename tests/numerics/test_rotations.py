@@ -12,6 +12,7 @@ from mbkf.numerics.rotations import (
     quaternion_log,
     quaternion_of,
     skew,
+    travel_by_turn,
 )
 
 VECTORS = st.tuples(*[st.floats(-1, 1)] * 3).map(np.array).filter(lambda v: np.linalg.norm(v) > 1e-3)
@@ -126,3 +127,26 @@ def test_nearest_rotations_are_rotations():
     assert np.allclose(found @ found.transpose(0, 2, 1), np.eye(3))
     assert np.allclose(np.linalg.det(found), 1.0)
     assert np.allclose(nearest_rotations(found), found)
+
+
+def travelled(u, w):
+    """(3,) how far exp(u, w) goes, in extended precision by the exponential's own series."""
+    u, w = np.asarray(u, dtype=np.longdouble), np.asarray(w, dtype=np.longdouble)
+    total, term = np.zeros(3, dtype=np.longdouble), u
+    for k in range(1, 40):
+        total = total + term
+        term = np.cross(w, term) / (k + 1)
+    return total
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-6, 1e-3, 0.1, 0.149, 0.151, 0.5, 1.5, 3.0])
+def test_travel_changes_with_the_turn_as_its_differences_do(angle):
+    """In the axes that the screw motion ends in, by right turns: exp(w + J⁻¹ δ) ≈ exp(w) exp(δ)."""
+    rng = np.random.default_rng(9)
+    u, w = rng.normal(size=3), rotation_vector(rng.normal(size=3), angle)
+    step, back = np.longdouble(1e-6), Rotation.from_rotvec(-w).as_matrix()
+    by_vector = np.array(
+        [(travelled(u, w + step * e) - travelled(u, w - step * e)) / (2 * step) for e in np.eye(3)],
+        dtype=float,
+    ).T
+    np.testing.assert_allclose(travel_by_turn(u, w), back @ by_vector, rtol=0, atol=2e-12)

@@ -46,6 +46,14 @@ def test_what_moves_smoothly_is_no_noise():
     assert noise.sd == pytest.approx(5e-4, rel=0.2)
 
 
+def test_before_it_is_known_four_samples_tell_it():
+    readings = 2.0 * np.random.default_rng(5).normal(size=(4, 300, 3))
+    assert followed(readings[:3], 0.0) == 0.0
+    assert followed(readings, 0.0) == pytest.approx(2.0, rel=0.1)
+    assert followed(np.full((6, 3, 3), np.nan), 0.0) == 0.0
+    assert followed(np.zeros((6, 3, 3)), 0.0) == LEAST
+
+
 def test_silent_readings_have_the_noise_of_their_digits_and_missing_ones_say_nothing():
     assert followed(np.zeros((SAMPLES, 1, 3))) == LEAST
     assert followed(np.full((SAMPLES, 1, 3), np.nan)) == 3.0
