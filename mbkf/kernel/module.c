@@ -8,7 +8,6 @@
 #include "blas.h"
 #include "covariance.h"
 #include "differences.h"
-#include "feet_binding.h"
 #include "manifold.h"
 #include "markers_binding.h"
 #include "product.h"
@@ -318,8 +317,8 @@ static struct PyModuleDef definition = {
 PyMODINIT_FUNC PyInit__kernel(void)
 {
     PyObject *module = PyModule_Create(&definition);
-    PyMethodDef *const further[] = {tree_functions, marker_functions, feet_functions};
-    for (int k = 0; module && k < 3; k++)
+    PyMethodDef *const further[] = {tree_functions, marker_functions};
+    for (int k = 0; module && k < 2; k++)
         if (PyModule_AddFunctions(module, further[k]) < 0)
             Py_CLEAR(module);
     return module;

@@ -1,4 +1,4 @@
-"""Functions of the kernel on readings (``markers.c``, ``feet.c``, ``differences.h``): what they take and give."""
+"""Functions of the kernel on readings (``markers.c``, ``differences.h``): what they take and give."""
 
 from __future__ import annotations
 
@@ -9,13 +9,8 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
 
-Point = tuple[float, float, float]
-Points = tuple[Point, Point, Point]
-"""Of heel, ball and toe end."""
-
-
 class ReadingFunctions(Protocol):
-    """Markers, feet and noise. Arrays are in C order."""
+    """Markers and noise. Arrays are in C order."""
 
     def marker_places(
         self,
@@ -87,60 +82,6 @@ class ReadingFunctions(Protocol):
             innovation: (M, 3) y.
             matrix: (nv, nv) filled.
             vector: (nv,) filled.
-        """
-
-    def feet(
-        self, tree: object, joints: NDArray[np.int32], local: Array, q: Array, v: Array, middles: Array, /
-    ) -> tuple[
-        tuple[Points, Points],
-        tuple[Points, Points],
-        tuple[float, float],
-        Point,
-        tuple[int, int],
-        tuple[int, int],
-    ]:
-        """Both feet: see :class:`mbkf.kernel.feet.FeetAt`, but for the middles.
-
-        Args:
-            tree: The handle.
-            joints: (3,) right foot, left foot and root, 32-bit integers.
-            local: (6, 3) heel, ball and toe end of right and left sole.
-            q: (nq,) configuration.
-            v: (nv,) velocity.
-            middles: (2, 3) filled with the middles of heels and toe ends.
-        """
-
-    def foot_rows(
-        self,
-        centres: Array,
-        weights: Array,
-        expected: Array,
-        wrench: Array,
-        first: int,
-        rows: Array,
-        values: Array,
-        /,
-    ) -> None:
-        """Fills rows on both feet's wrenches: see :func:`mbkf.kernel.feet.foot_rows`.
-
-        Args:
-            centres: (2, 3) points about which they are read.
-            weights: (2, 6) 1/sd.
-            expected: (2, 6) what is read.
-            wrench: (12,) those of the state.
-            first: Foot whose rows come first.
-            rows: (12, 12) filled.
-            values: (12,) filled.
-        """
-
-    def foot_walks(self, centres: Array, sd: Array, first: int, P: Array, /) -> None:
-        """Adds the wrenches' random walk to a covariance.
-
-        Args:
-            centres: (2, 3) points about which they wander.
-            sd: (6,) of force and moment.
-            first: Component at which the wrenches begin.
-            P: (N, N) added to.
         """
 
     def third_differences(

@@ -19,7 +19,6 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.kernel.feet import foot_rows, walked
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, FreeStance
@@ -83,10 +82,6 @@ BELT_FORCE = 2.0
 """Force in body weights whose moment about the world's origin changes as a belt takes it along."""
 
 
-NOT_NEAR = (0.0, 0.0)
-"""Feet that stand on plates, or are far from any floor."""
-
-
 class FootDecision(NamedTuple):
     """What the feet stand on, and which unmeasured feet, 0 right and 1 left, were seen to carry nothing."""
 
@@ -129,10 +124,6 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         self._pulling[2] = 1.0 / s.pulling_force_n
         self._landing = np.repeat([s.landing_force_n, s.landing_moment_nm], 3)
         self._walk = np.repeat([s.wrench_force, s.wrench_moment], 3) * dt_s**0.5
-        by_kind = {Contact.MEASURED: self._plate, Contact.AIR: self._air}
-        self._usual = {
-            (right, left): np.array([by_kind[right], by_kind[left]]) for right in by_kind for left in by_kind
-        }
         self._first, self._feet = 0, (slice(0, 6), slice(6, 12))
 
     def bind(self, layout: Layout) -> None:
@@ -155,17 +146,15 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
 
     def inflate(self, P: Array, decision: FootDecision) -> None:
         """The wrenches' random walk about the middles of the soles, which a belt takes along."""
-        if not walked(decision.contact.centres_m, self._walk, self._first, P):
-            shift = _about(-decision.contact.centres_m) * self._walk
-            for mine, one in zip(self._feet, shift, strict=True):
-                own = P[mine, mine]
-                own += one @ one.T
+        shift = _about(-decision.contact.centres_m) * self._walk
+        walk = shift @ shift.transpose(0, 2, 1)
         x, y = decision.contact.floor_m_s
         if x or y:
             carried = BELT_FORCE * self._weight_n * self._dt_s * np.array([y, -x])
-            for mine in self._feet:
-                own = P[mine.start + 3 : mine.start + 5, mine.start + 3 : mine.start + 5]
-                own += np.outer(carried, carried)
+            walk[:, 3:5, 3:5] += np.outer(carried, carried)
+        for mine, added in zip(self._feet, walk, strict=True):
+            own = P[mine, mine]
+            own += added
 
     def linearise(self, at: OperatingPoint[LoadedState, None], decision: FootDecision) -> Rows:
         """Twelve rows; readings of plates come first."""
@@ -174,18 +163,13 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
             return self._shared(w, contact, contact.shared)
         if contact.free is not None and not lifted:
             return self._both_unmeasured(w, contact.free)
-        kinds = contact.contacts
-        expected, weights = contact.wrench, self._usual.get(kinds)
-        if weights is None or contact.near != NOT_NEAR:
-            pulls = [bool(w[foot, 2] < 0.0) or foot in lifted for foot in (0, 1)]
-            weights = np.array([self._weight(contact, foot, pulls[foot]) for foot in (0, 1)])
-            expected = np.array([self._expected(contact, foot, pulls[foot]) for foot in (0, 1)])
-        left_first = kinds[1] == Contact.MEASURED and kinds[0] != Contact.MEASURED
-        found = foot_rows(contact.centres_m, weights, expected, at.state.w, int(left_first))
-        if found is None:
-            X = _about(contact.centres_m) * weights[:, :, None]
-            found = _stacked(X, np.vecdot(X, (expected - w)[:, None]), left_first)
-        return Rows(*found, self._first, 6 * kinds.count(Contact.MEASURED))
+        pulls = [w[foot, 2] < 0.0 or foot in lifted for foot in (0, 1)]
+        X = _about(contact.centres_m)
+        X *= np.array([self._weight(contact, foot, pulls[foot]) for foot in (0, 1)])[:, :, None]
+        away = np.array([self._expected(contact, foot, pulls[foot]) for foot in (0, 1)]) - w
+        measured = [kind == Contact.MEASURED for kind in contact.contacts]
+        rows, values = _stacked(X, np.vecdot(X, away[:, None]), left_first=measured == [False, True])
+        return Rows(rows, values, self._first, 6 * sum(measured))
 
     def review(self, posterior: LoadedState, decision: FootDecision) -> FootDecision | None:
         """Unmeasured feet whose force pulls at the floor, clearly more than it is kept from that, carry nothing."""

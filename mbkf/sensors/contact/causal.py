@@ -23,7 +23,6 @@ from mbkf.sensors.contact.soles import distance_to_sole, nearer_foot, share_alon
 from mbkf.sensors.contact.thresholds import (
     FLAT_FROM,
     FLAT_TO,
-    KEEP_M,
     LEAVE_SLACK,
     LEVEL_M,
     PARTED_M_S,
@@ -165,8 +164,6 @@ class ContactDetector:
         """
         if self._both_on(k, feet, LEAVE_SLACK if before == BOTH else 1.0):
             return BOTH
-        if before in (0, 1) and distance_to_sole(*point, feet.soles[before]) <= KEEP_M:
-            return before  # however near the other is
         return nearer_foot([distance_to_sole(*point, sole) for sole in feet.soles], before)
 
     def _both_on(self, k: int, feet: FeetMotion, slack: float) -> bool:
@@ -177,12 +174,11 @@ class ContactDetector:
             feet: The feet.
             slack: Factor on the limit of speed: feet that stood there together must clearly part.
         """
-        lowest = feet.lowest
-        right, left = feet.soles[0][lowest[0]], feet.soles[1][lowest[1]]
+        right, left = (min(sole, key=lambda point: point[2]) for sole in feet.soles)
         level = abs(right[2] - left[2]) < LEVEL_M
-        if not (level and self._areas.over(k, *right[:2]) and self._areas.over(k, *left[:2])):
+        if not (level and all(self._areas.over(k, x, y) for x, y, _ in (right, left))):
             return False
-        return dist(feet.velocities[0][lowest[0]], feet.velocities[1][lowest[1]]) < slack * PARTED_M_S
+        return dist(feet.velocity(0, right), feet.velocity(1, left)) < slack * PARTED_M_S
 
     def _shared(self, foot_of_plate: Sequence[int], plate_wrench: Array, feet: FeetMotion) -> SharedLoad:
         """How the feet share what they stand on together: all that the plates under either of them read."""

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.numerics.running_median import RunningMedian
 from mbkf.sensors.contact.thresholds import (
     BELT_FROM_M_S,
     BELT_WINDOW_S,
@@ -31,14 +32,13 @@ class Movement(NamedTuple):
     """The last frames of a body's movement.
 
     Attributes:
-        frames: (n, 5) of each, the latest last: horizontal velocity x and y of the lowest sole point while it was near
-            the floor, NaN else; and the pelvis, x, y, z. Never written into.
-        slow: In how many of them the lowest sole point was slower than any belt.
+        low_m_s: Horizontal velocity, x and y, of the lowest sole point while it was near the floor; NaN else.
+        pelvis_m: The pelvis, x, y, z.
         airborne: For how many frames both feet have been held to be in the air.
     """
 
-    frames: Array = np.zeros((0, 5))
-    slow: int = 0
+    low_m_s: tuple[RunningMedian, RunningMedian] = (RunningMedian(), RunningMedian())
+    pelvis_m: tuple[tuple[float, float, float], ...] = ()
     airborne: int = 0
 
     def with_frame(
@@ -51,14 +51,13 @@ class Movement(NamedTuple):
             pelvis_m: The pelvis.
             dt_s: Time between frames.
         """
-        kept = min(len(self.frames), _frames(BELT_WINDOW_S, dt_s) - 1)
-        frames = np.empty((kept + 1, 5))
-        frames[:kept] = self.frames[len(self.frames) - kept :]
-        frames[kept] = *low_m_s, *pelvis_m
-        slow = self.slow + _is_slow(*low_m_s)
-        for x, y in self.frames[: len(self.frames) - kept, :2].tolist():
-            slow -= _is_slow(x, y)
-        return Movement(frames, slow, self.airborne)
+        most = _frames(BELT_WINDOW_S, dt_s)
+        low_x, low_y = self.low_m_s
+        return Movement(
+            (low_x.followed(low_m_s[0], most), low_y.followed(low_m_s[1], most)),
+            (*self.pelvis_m[max(0, len(self.pelvis_m) + 1 - most) :], pelvis_m),
+            self.airborne,
+        )
 
     def floor_m_s(self, dt_s: float) -> tuple[float, float]:
         """Horizontal velocity of the floor; zero unless a belt is evident.
@@ -66,17 +65,12 @@ class Movement(NamedTuple):
         Args:
             dt_s: Time between frames.
         """
-        still, low = _frames(STILL_FLOOR_S, dt_s), self.frames[:, :2]
-        # Where most are slow, the medians are, whatever their exact values.
-        if 2 * (self.slow + still) > len(low) + still:
-            return 0.0, 0.0
-        moving = np.concatenate([low[~np.isnan(low[:, 0])], np.zeros((still, 2))])
-        x, y = np.median(moving, axis=0).tolist()
+        still = _frames(STILL_FLOOR_S, dt_s)
+        x, y = (low.median(still) for low in self.low_m_s)
         speed = hypot(x, y)
         if speed < BELT_FROM_M_S:
             return 0.0, 0.0
-        (x0, y0), (x1, y1) = self.frames[[0, -1], 2:4].tolist()
-        lasted_s = len(self.frames) * dt_s
+        (x0, y0, _), (x1, y1, _), lasted_s = self.pelvis_m[0], self.pelvis_m[-1], len(self.pelvis_m) * dt_s
         goes_along = hypot((x1 - x0) / lasted_s - x, (y1 - y0) / lasted_s - y) < 0.5 * speed
         return (0.0, 0.0) if goes_along else (x, y)
 
@@ -91,17 +85,9 @@ class Movement(NamedTuple):
         frames = max(4, _frames(FALL_WINDOW_S, dt_s) + 1)
         if self.airborne < frames:
             return False
-        heights = self.frames[-frames:, 4]
+        heights = np.array(self.pelvis_m[-frames:])[:, 2]
         return float(_curvature(frames) @ heights) / dt_s**2 > FALL_M_S2
 
-
-def _is_slow(x_m_s: float, y_m_s: float) -> bool:
-    """Whether a sole point is too slow for a belt in either direction; one that is not near the floor is not."""
-    return abs(x_m_s) < _SLOW_M_S and abs(y_m_s) < _SLOW_M_S
-
-
-_SLOW_M_S = BELT_FROM_M_S * 0.5**0.5
-"""Less than this along both axes is less than a belt's least speed."""
 
 NO_MOVEMENT = Movement()
 """Before the first frame."""

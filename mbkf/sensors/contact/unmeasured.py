@@ -119,11 +119,9 @@ class UnmeasuredFeet:
             height: Height of loaded soles, NaN before one was loaded.
         """
         floor = height if not isnan(height) else self._floor
-        ends, soles = feet.lowest_end, feet.soles
-        right, left = soles[0][ends[0]][2], soles[1][ends[1]][2]
-        foot, height = (0, right) if right <= left else (1, left)
-        x, y, _ = feet.velocities[foot][ends[foot]]
-        low = (x, y) if height < floor + STAND_HEIGHT_M else (nan, nan)
+        ends = [(f, point) for f in (0, 1) for point in feet.soles[f][:SOLE_ENDS]]
+        foot, point = min(ends, key=lambda end: end[1][2])
+        low = feet.velocity(foot, point)[:2] if point[2] < floor + STAND_HEIGHT_M else (nan, nan)
         return before.with_frame(low, feet.pelvis_m, self._dt_s)
 
     def _falls(self, motion: tuple[Array, Array, Array], movement: Movement) -> bool:
@@ -251,11 +249,8 @@ def _touches(foot: int, feet: FeetMotion, floor: _Floor, limits: tuple[float, fl
         limits: Of height, m, and speed, m/s.
     """
     height, speed = limits
-    sole = feet.soles[foot]
-    return any(
-        sole[point][2] < floor.height + height and feet.speed(foot, point, floor.velocity) < speed
-        for point in range(SOLE_ENDS)
-    )
+    low = [point for point in feet.soles[foot][:SOLE_ENDS] if point[2] < floor.height + height]
+    return any(feet.speed(foot, point, floor.velocity) < speed for point in low)
 
 
 def _near(foot: int, feet: FeetMotion, floor: _Floor, limits: tuple[float, float]) -> float:
@@ -271,8 +266,9 @@ def _near(foot: int, feet: FeetMotion, floor: _Floor, limits: tuple[float, float
         return 0.0
     height, speed = limits
     away = [
-        (max(point[2] - floor.height, 0.0) / height) ** 2 + (feet.speed(foot, k, floor.velocity) / speed) ** 2
-        for k, point in enumerate(feet.soles[foot])
+        (max(point[2] - floor.height, 0.0) / height) ** 2
+        + (feet.speed(foot, point, floor.velocity) / speed) ** 2
+        for point in feet.soles[foot]
     ]
     return exp(-0.5 * min(away))
 

@@ -34,21 +34,15 @@ def test_points_move_with_the_feet_at_their_velocity(seed):
     feet, sensor = FEET.at(q, v), MarkerSensor(MODEL, *sole_locals(MODEL))
     later, earlier = (sensor.positions(MODEL.integrate(q, sign * STEP_S * v)) for sign in (1.0, -1.0))
     expected = ((later - earlier) / (2.0 * STEP_S)).reshape(2, 3, 3)
-    np.testing.assert_allclose(feet.velocities, expected, atol=1e-6)
+    for foot, sole in enumerate(feet.soles):
+        for point, velocity in zip(sole, expected[foot], strict=True):
+            np.testing.assert_allclose(feet.velocity(foot, point), velocity, atol=1e-6)
 
 
 def test_speed_is_against_the_floor():
     q, v = moving(5)
     feet = FEET.at(q, v)
-    x, y, z = feet.velocities[1][0]
-    assert feet.speed(1, 0, (0.0, 0.0)) == pytest.approx(np.linalg.norm([x, y, z]))
-    assert feet.speed(1, 0, (x, y)) == pytest.approx(abs(z))
-
-
-def test_the_lowest_point_is_told(either_kernel):
-    q, v = moving(6)
-    feet = FeetOnBody(reference_model()).at(q, v)
-    for foot in (0, 1):
-        heights = np.array(feet.soles[foot])[:, 2]
-        assert feet.lowest[foot] == np.argmin(heights)
-        assert feet.lowest_end[foot] == np.argmin(heights[:2])
+    point = feet.soles[1][0]
+    x, y, z = feet.velocity(1, point)
+    assert feet.speed(1, point, (0.0, 0.0)) == pytest.approx(np.linalg.norm([x, y, z]))
+    assert feet.speed(1, point, (x, y)) == pytest.approx(abs(z))
