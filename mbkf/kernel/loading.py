@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
+from mbkf.kernel.contact_library import ContactLibrary
 
 SWITCH = "MBKF_KERNEL"
 """Environment variable: ``compiled`` asks for the kernel, ``reference`` for numpy and Pinocchio."""
@@ -19,8 +20,8 @@ SWITCH = "MBKF_KERNEL"
 COMPILED, REFERENCE = "compiled", "reference"
 
 
-class Library(Protocol):
-    """The functions of ``mbkf/kernel/module.c``. Arrays are in C order unless they are symmetric."""
+class Library(ContactLibrary, Protocol):
+    """The functions of ``mbkf/kernel/module.c`` and those of feet. Arrays are in C order unless they are symmetric."""
 
     def carry(
         self,

@@ -8,6 +8,7 @@
 #include "blas.h"
 #include "covariance.h"
 #include "product.h"
+#include "contact_binding.h"
 #include "tree_binding.h"
 
 Blas blas;
@@ -213,7 +214,7 @@ static struct PyModuleDef definition = {
 PyMODINIT_FUNC PyInit__kernel(void)
 {
     PyObject *module = PyModule_Create(&definition);
-    if (module && PyModule_AddFunctions(module, tree_functions) < 0)
+    if (module && (PyModule_AddFunctions(module, tree_functions) < 0 || PyModule_AddFunctions(module, contact_functions) < 0))
         Py_CLEAR(module);
     return module;
 }

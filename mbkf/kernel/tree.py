@@ -48,6 +48,11 @@ class CompiledTree:
         sizes = np.array([model.nq, model.nv], dtype=np.int32)
         self._tree = kernel.tree(whole, numbers, np.array(model.gravity.vector), sizes)
 
+    @property
+    def handle(self) -> object:
+        """What the kernel knows it by."""
+        return self._tree
+
     @classmethod
     def where_built(cls, model: pin.Model) -> CompiledTree | None:
         """One, or None where there is no compiled kernel, or the model's joints are others or its root not free."""

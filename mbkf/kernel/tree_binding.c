@@ -67,7 +67,7 @@ static PyObject *py_tree(PyObject *self, PyObject *const *args, Py_ssize_t given
     return made;
 }
 
-static Tree *tree_in(PyObject *capsule) { return PyCapsule_GetPointer(capsule, CAPSULE); }
+Tree *tree_in(PyObject *capsule) { return PyCapsule_GetPointer(capsule, CAPSULE); }
 
 /* place(tree, q, frames, jacobian): places of all joints; the Jacobian column by column */
 static PyObject *py_place(PyObject *self, PyObject *const *args, Py_ssize_t given)

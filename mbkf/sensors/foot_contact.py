@@ -21,7 +21,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.contact.causal import ContactDetector
-from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, FreeStance
+from mbkf.sensors.contact.records import Contact, ContactDecision, FreeStance, KeptContact
 from mbkf.sensors.contact.sharing import (
     LEAST_SHARE,
     LEVER_M,
@@ -89,7 +89,7 @@ class FootDecision(NamedTuple):
     lifted: tuple[int, ...] = ()
 
 
-class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
+class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
     """Force plates under the feet: twelve rows on the wrenches of right and left foot.
 
     Attributes:
@@ -131,12 +131,12 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         first = self._first = layout.wrench.start
         self._feet = slice(first, first + 6), slice(first + 6, first + 12)
 
-    def begin(self) -> ContactMemory:
+    def begin(self) -> KeptContact:
         """No plate was loaded yet."""
         return self.detector.begin()
 
     def decide(
-        self, at: OperatingPoint[LoadedState, None], frame: Frame, memory: ContactMemory, notes: Notes
+        self, at: OperatingPoint[LoadedState, None], frame: Frame, memory: KeptContact, notes: Notes
     ) -> FootDecision:
         """Plates to feet, and feet that stand elsewhere."""
         state = at.state
@@ -185,8 +185,8 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         posterior: LoadedState,
         at: OperatingPoint[LoadedState, None],
         decision: FootDecision,
-        memory: ContactMemory,
-    ) -> ContactMemory:
+        memory: KeptContact,
+    ) -> KeptContact:
         """What the detector keeps."""
         return decision.contact.memory
 
