@@ -261,6 +261,7 @@ int contact_decided(const Feet *feet, const Seen *seen, const double *before, do
 {
     Scene scene = {.feet = feet, .before = before};
     double near[FEET] = {0.0, 0.0};
+    memset(after, 0, sizeof *after * record_length(feet));
     feet_at(feet, seen->q, seen->v, &scene.motion);
     int flags = plates_assigned(&scene, seen, after, told);
     floor_found(&scene, after);

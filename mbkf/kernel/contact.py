@@ -65,12 +65,22 @@ class CompiledFeet:
             supported: Whether another part than the feet bears.
             before: The memory from the frame before.
         """
-        q, v, a = (np.ascontiguousarray(part, dtype=float) for part in motion)
-        wrenches = np.ascontiguousarray(wrenches, dtype=float)
-        after, wrench, middles = np.zeros(len(before)), np.empty((2, 6)), np.empty((2, 3))
+        q, v, a = motion
+        after, wrench, middles = np.empty(len(before)), np.empty((2, 6)), np.empty((2, 3))
         below, rest = np.empty(6), np.empty(25)
         flags = self._stand(
-            self._feet, q, v, a, wrenches, supported, before, after, wrench, middles, below, rest
+            self._feet,
+            np.ascontiguousarray(q, float),
+            np.ascontiguousarray(v, float),
+            np.ascontiguousarray(a, float),
+            np.ascontiguousarray(wrenches, float),
+            supported,
+            before,
+            after,
+            wrench,
+            middles,
+            below,
+            rest,
         )
         after.setflags(write=False)
         return Stand(flags, after, wrench, middles, below, rest)

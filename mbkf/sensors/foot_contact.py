@@ -170,14 +170,13 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
             return self._shared(w, contact, contact.shared)
         if contact.free is not None and not lifted:
             return self._both_unmeasured(w, contact.free)
-        pulls = [w[foot, 2] < 0.0 or foot in lifted for foot in (0, 1)]
-        right, left = (self._weight(contact, foot, pulls[foot]) for foot in (0, 1))
+        kinds = contact.contacts
+        pulls = (w[0, 2] < 0.0 or 0 in lifted, w[1, 2] < 0.0 or 1 in lifted)
+        weights = self._weight(contact, 0, pulls[0]), self._weight(contact, 1, pulls[1])
         expected = self._expected(contact, pulls)
-        measured = [kind == Contact.MEASURED for kind in contact.contacts]
-        rows, values = self._separate(
-            w, contact.centres_m, (right, left), expected, measured == [False, True]
-        )
-        return Rows(rows, values, self._first, 6 * sum(measured))
+        left_first = kinds[1] == Contact.MEASURED != kinds[0]
+        rows, values = self._separate(w, contact.centres_m, weights, expected, left_first)
+        return Rows(rows, values, self._first, 6 * kinds.count(Contact.MEASURED))
 
     def _separate(
         self,
