@@ -28,8 +28,10 @@ static int ranked_anew(const double *before, int count, double old, double value
     memcpy(ranked, before, sizeof *ranked * count);
     if (!isnan(old)) {
         const int at = rank_of(ranked, count, old);
-        if (at < count)
+        if (at < count) {
             memmove(ranked + at, ranked + at + 1, sizeof *ranked * (--count - at));
+            ranked[count] = 0.0;
+        }
     }
     if (!isnan(value)) {
         const int at = rank_of(ranked, count, value);
