@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mbkf.conventions import GRAVITY_M_S2
 from mbkf.kernel.loading import library
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.compiled import CompiledContact
@@ -102,6 +103,21 @@ def test_a_belt_is_found_alike():
     met = assert_decided_alike(model, (), DT, frames)
     moving = [one.floor_m_s != (0.0, 0.0) for one in met]
     assert any(moving) and not moving[0] and not moving[-1]
+
+
+@pytest.mark.parametrize("share, held", [(0.38, True), (0.42, False)])
+def test_a_body_is_held_up_alike(share, held):
+    """Predicted to fall, its feet too fast to stand, its pelvis falls with less or more than the limit of 0.4 g."""
+    model = reference_model()
+    q, v, a = standing(model), np.zeros(model.nv), np.zeros(model.nv)
+    v[2], a[2] = -5.0, -GRAVITY_M_S2
+    frames = []
+    for t in range(20):
+        lower = q.copy()
+        lower[2] -= 0.5 * share * GRAVITY_M_S2 * (t * DT) ** 2
+        frames.append((lower, v, a, np.zeros((0, 6)), False))
+    met = assert_decided_alike(model, (), DT, frames)
+    assert (Contact.UNMEASURED in {kind for one in met for kind in one.contacts}) == held
 
 
 @given(st.integers(0, 10**6))
