@@ -29,7 +29,7 @@ from mbkf.model.protocol import load_protocol
 from mbkf.numerics.threads import single_threaded
 from mbkf.sensors.block import Frame
 from mbkf.sensors.contact.causal import ContactDetector
-from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
+from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, KeptContact
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.marker_sensor import MarkerSensor
 
@@ -94,7 +94,7 @@ class AlwaysMeasured(ContactDetector):
 
     def decide(
         self,
-        memory: ContactMemory,
+        memory: KeptContact,
         q: Array,  # noqa: ARG002
         v: Array,  # noqa: ARG002
         a: Array,  # noqa: ARG002

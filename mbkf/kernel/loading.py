@@ -8,6 +8,7 @@ from functools import cache
 from typing import Protocol
 
 from mbkf.errors import InvalidInput
+from mbkf.kernel.contact_functions import ContactFunctions
 from mbkf.kernel.covariance_functions import CovarianceFunctions
 from mbkf.kernel.readings_functions import ReadingFunctions
 from mbkf.kernel.tree_functions import TreeFunctions
@@ -18,7 +19,7 @@ SWITCH = "MBKF_KERNEL"
 COMPILED, REFERENCE = "compiled", "reference"
 
 
-class Library(CovarianceFunctions, TreeFunctions, ReadingFunctions, Protocol):
+class Library(CovarianceFunctions, TreeFunctions, ReadingFunctions, ContactFunctions, Protocol):
     """The functions of ``mbkf/kernel/module.c``."""
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
 
+
 class ReadingFunctions(Protocol):
     """Markers and noise. Arrays are in C order."""
 

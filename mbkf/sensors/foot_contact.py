@@ -13,15 +13,17 @@ whose posterior force pulls at the floor is read again as carrying nothing.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.kernel.loading import library
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.contact.causal import ContactDetector
-from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, FreeStance
+from mbkf.sensors.contact.records import Contact, ContactDecision, FreeStance, KeptContact
 from mbkf.sensors.contact.sharing import (
     LEAST_SHARE,
     LEVER_M,
@@ -89,7 +91,7 @@ class FootDecision(NamedTuple):
     lifted: tuple[int, ...] = ()
 
 
-class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
+class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
     """Force plates under the feet: twelve rows on the wrenches of right and left foot.
 
     Attributes:
@@ -123,7 +125,9 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         self._pulling = self._free.copy()
         self._pulling[2] = 1.0 / s.pulling_force_n
         self._landing = np.repeat([s.landing_force_n, s.landing_moment_nm], 3)
-        self._walk = np.repeat([s.wrench_force, s.wrench_moment], 3) * dt_s**0.5
+        self._walk_sd = np.array([s.wrench_force, s.wrench_moment]) * dt_s**0.5
+        self._walk = np.repeat(self._walk_sd, 3)
+        self._kernel = library()
         self._first, self._feet = 0, (slice(0, 6), slice(6, 12))
 
     def bind(self, layout: Layout) -> None:
@@ -131,12 +135,12 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         first = self._first = layout.wrench.start
         self._feet = slice(first, first + 6), slice(first + 6, first + 12)
 
-    def begin(self) -> ContactMemory:
+    def begin(self) -> KeptContact:
         """No plate was loaded yet."""
         return self.detector.begin()
 
     def decide(
-        self, at: OperatingPoint[LoadedState, None], frame: Frame, memory: ContactMemory, notes: Notes
+        self, at: OperatingPoint[LoadedState, None], frame: Frame, memory: KeptContact, notes: Notes
     ) -> FootDecision:
         """Plates to feet, and feet that stand elsewhere."""
         state = at.state
@@ -146,12 +150,15 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
 
     def inflate(self, P: Array, decision: FootDecision) -> None:
         """The wrenches' random walk about the middles of the soles, which a belt takes along."""
-        shift = _about(-decision.contact.centres_m) * self._walk
+        contact = decision.contact
+        x, y = contact.floor_m_s
+        carried = BELT_FORCE * self._weight_n * self._dt_s * np.array([y, -x]) if x or y else _NO_BELT
+        if self._kernel is not None:
+            self._kernel.wrench_walk(P, self._first, contact.centres_m, self._walk_sd, carried)
+            return
+        shift = _about(-contact.centres_m) * self._walk
         walk = shift @ shift.transpose(0, 2, 1)
-        x, y = decision.contact.floor_m_s
-        if x or y:
-            carried = BELT_FORCE * self._weight_n * self._dt_s * np.array([y, -x])
-            walk[:, 3:5, 3:5] += np.outer(carried, carried)
+        walk[:, 3:5, 3:5] += np.outer(carried, carried)
         for mine, added in zip(self._feet, walk, strict=True):
             own = P[mine, mine]
             own += added
@@ -163,13 +170,38 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
             return self._shared(w, contact, contact.shared)
         if contact.free is not None and not lifted:
             return self._both_unmeasured(w, contact.free)
-        pulls = [w[foot, 2] < 0.0 or foot in lifted for foot in (0, 1)]
-        X = _about(contact.centres_m)
-        X *= np.array([self._weight(contact, foot, pulls[foot]) for foot in (0, 1)])[:, :, None]
-        away = np.array([self._expected(contact, foot, pulls[foot]) for foot in (0, 1)]) - w
-        measured = [kind == Contact.MEASURED for kind in contact.contacts]
-        rows, values = _stacked(X, np.vecdot(X, away[:, None]), left_first=measured == [False, True])
-        return Rows(rows, values, self._first, 6 * sum(measured))
+        kinds = contact.contacts
+        pulls = (w[0, 2] < 0.0 or 0 in lifted, w[1, 2] < 0.0 or 1 in lifted)
+        weights = self._weight(contact, 0, pulls[0]), self._weight(contact, 1, pulls[1])
+        expected = self._expected(contact, pulls)
+        left_first = kinds[1] == Contact.MEASURED != kinds[0]
+        rows, values = self._separate(w, contact.centres_m, weights, expected, left_first)
+        return Rows(rows, values, self._first, 6 * kinds.count(Contact.MEASURED))
+
+    def _separate(
+        self,
+        w: Array,
+        middles_m: Array,
+        weights: tuple[Array, Array],
+        expected: Array,
+        left_first: bool,
+    ) -> tuple[Array, Array]:
+        """(12, 12) rows and (12,) innovations of feet whose wrenches are read one by one.
+
+        Args:
+            w: (2, 6) wrenches.
+            middles_m: (2, 3) of the soles.
+            weights: (6,) 1/sd of right and left foot's rows.
+            expected: (2, 6) wrenches as read.
+            left_first: Whether the rows of the left foot come first.
+        """
+        if self._kernel is not None:
+            rows, values = np.empty((12, 12)), np.empty(12)
+            self._kernel.wrench_rows(middles_m, *weights, expected, w, left_first, rows, values)
+            return rows, values
+        X = _about(middles_m)
+        X *= np.array(weights)[:, :, None]
+        return _stacked(X, np.vecdot(X, (expected - w)[:, None]), left_first)
 
     def review(self, posterior: LoadedState, decision: FootDecision) -> FootDecision | None:
         """Unmeasured feet whose force pulls at the floor, clearly more than it is kept from that, carry nothing."""
@@ -185,8 +217,8 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         posterior: LoadedState,
         at: OperatingPoint[LoadedState, None],
         decision: FootDecision,
-        memory: ContactMemory,
-    ) -> ContactMemory:
+        memory: KeptContact,
+    ) -> KeptContact:
         """What the detector keeps."""
         return decision.contact.memory
 
@@ -196,18 +228,22 @@ class FootContact(Block[LoadedState, None, FootDecision, ContactMemory]):
         plates = 1 if Contact.SHARED in kinds else kinds.count(Contact.MEASURED)
         return -2.0 * plates * float(np.log(self._plate).sum())
 
-    def _expected(self, contact: ContactDecision, foot: int, pulls: bool) -> Array:
-        """(6,) wrench a foot is read to carry: its plate's, nothing, or its share of what no plate carries.
+    def _expected(self, contact: ContactDecision, pulls: Sequence[bool]) -> Array:
+        """(2, 6) wrenches that feet are read to carry: their plate's, nothing, or their share of what no plate carries.
 
         An unmeasured foot that would pull at the floor is held at nothing instead.
         """
-        if contact.contacts[foot] != Contact.UNMEASURED or pulls:
-            return contact.wrench[foot]
-        other = contact.contacts[1 - foot]
-        carried = float(contact.wrench[1 - foot, 2]) if other == Contact.MEASURED else 0.0
-        rest = max(self._weight_n - carried, 0.0) * (0.5 if other == Contact.UNMEASURED else 1.0)
-        x, y, _ = contact.centres_m[foot].tolist()
-        return np.array([0.0, 0.0, rest, y * rest, -x * rest, 0.0])
+        if Contact.UNMEASURED not in contact.contacts:
+            return contact.wrench
+        expected = contact.wrench.copy()
+        for foot, (kind, other) in enumerate((contact.contacts, contact.contacts[::-1])):
+            if kind != Contact.UNMEASURED or pulls[foot]:
+                continue
+            carried = float(contact.wrench[1 - foot, 2]) if other == Contact.MEASURED else 0.0
+            rest = max(self._weight_n - carried, 0.0) * (0.5 if other == Contact.UNMEASURED else 1.0)
+            x, y, _ = contact.centres_m[foot].tolist()
+            expected[foot] = 0.0, 0.0, rest, y * rest, -x * rest, 0.0
+        return expected
 
     def _weight(self, contact: ContactDecision, foot: int, pulls: bool) -> Array:
         """(6,) 1/sd of a foot's rows.
@@ -311,3 +347,4 @@ def _levers() -> Array:
 
 _LEVERS = _levers()
 _UNMOVED = np.eye(6).ravel()
+_NO_BELT = np.zeros(2)

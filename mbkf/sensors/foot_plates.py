@@ -25,7 +25,7 @@ from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.numerics.kalman import Information, information
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
 from mbkf.sensors.contact.causal import ContactDetector
-from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory
+from mbkf.sensors.contact.records import Contact, ContactDecision, KeptContact
 from mbkf.sensors.contact.sharing import SharedLoad
 from mbkf.sensors.foot_wrench import FootWrenchSensor
 from mbkf.sensors.layout import Layout
@@ -85,7 +85,7 @@ class Ahead(NamedTuple):
 class PlateMemory(NamedTuple):
     """What the detector keeps, and where the next frame's contact is decided; None for at the prediction."""
 
-    contact: ContactMemory
+    contact: KeptContact
     ahead: Ahead | None
 
 

@@ -199,6 +199,26 @@ def test_wrenches_wander_about_the_soles():
         np.testing.assert_allclose(to_sole @ wander @ to_sole.T, np.diag(sd**2), rtol=1e-9, atol=1e-9)
 
 
+@pytest.mark.parametrize("contacts", PAIRS[:-1])
+@pytest.mark.parametrize("near, floor_m_s", [((0.0, 0.0), (0.0, 0.0)), ((0.3, 0.6), (-1.2, 0.4))])
+@pytest.mark.parametrize("lifted", [(), (0,), (1,)])
+def test_the_kernel_reads_and_inflates_as_is_stated(contacts, near, floor_m_s, lifted, reference_kernel):
+    """To rounding, for feet that bear and pull in every way."""
+    stated, rng = FootContact(BLOCK.detector, WEIGHT_N, DT, SETTINGS), np.random.default_rng(2)
+    stated._first, stated._feet = BLOCK._first, BLOCK._feet
+    decision = FootDecision(replace(load(contacts), near=near, floor_m_s=floor_m_s), lifted)
+    at = OperatingPoint(SimpleNamespace(w=rng.normal(0.0, 200.0, 12)), None)
+    found, expected = BLOCK.linearise(at, decision), stated.linearise(at, decision)
+    assert found[2:] == expected[2:]
+    for one, other in zip(found[:2], expected[:2], strict=True):
+        np.testing.assert_allclose(one, other, rtol=0, atol=1e-12 * np.abs(other).max())
+    P = rng.normal(size=(FIRST + 14, FIRST + 14))
+    ours, theirs = P.copy(), P.copy()
+    BLOCK.inflate(ours, decision)
+    stated.inflate(theirs, decision)
+    np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-12 * np.abs(theirs).max())
+
+
 def test_a_belt_takes_the_place_of_the_force_along():
     """The moment of a vertical force changes across the belt's way, beyond the usual wandering."""
     still = load((Contact.UNMEASURED, Contact.AIR))

@@ -15,11 +15,19 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.io.records import PlateReadings
 from mbkf.model.body import Body
+from mbkf.sensors.contact.compiled import CompiledContact
 from mbkf.sensors.contact.feet import FeetMotion, FeetOnBody
 from mbkf.sensors.contact.plates import PlateAreas, least_load, pressed_at, surface_height
-from mbkf.sensors.contact.records import Contact, ContactDecision, ContactMemory, FreeStance, Planted, Pressed
-from mbkf.sensors.contact.sharing import SharedLoad, expected_stance, push_share, share_load
+from mbkf.sensors.contact.records import (
+    Contact,
+    ContactDecision,
+    ContactMemory,
+    KeptContact,
+    Planted,
+    Pressed,
+)
 from mbkf.sensors.contact.soles import distance_to_sole, nearer_foot, share_along
+from mbkf.sensors.contact.stances import BOTH, free_stance, shared_between
 from mbkf.sensors.contact.thresholds import (
     FLAT_FROM,
     FLAT_TO,
@@ -30,9 +38,6 @@ from mbkf.sensors.contact.thresholds import (
     STAND_AFTER_S,
 )
 from mbkf.sensors.contact.unmeasured import UnmeasuredFeet
-
-BOTH = 2
-"""Owner of a plate on which both feet stand."""
 
 _FEET_OF = {0: (0,), 1: (1,), BOTH: (0, 1), -1: ()}
 """Feet by a plate's owner: right, left, both, none."""
@@ -57,7 +62,13 @@ class ContactDetector:
         self.surfaces_m = [surface_height(plate) for plate in plates]
         self._areas = PlateAreas(plates)
         self._model, self._feet, self._still = model, FeetOnBody(model), np.zeros(model.nv)
-        self._elsewhere = UnmeasuredFeet(self._areas, min(self.surfaces_m, default=np.nan), dt_s)
+        floor_m = min(self.surfaces_m, default=np.nan)
+        self._elsewhere = UnmeasuredFeet(self._areas, floor_m, dt_s)
+        self._compiled = CompiledContact.where_built(
+            model,
+            np.column_stack([self._areas.known, self._least_n, self.surfaces_m, self._areas.outlines()]),
+            dt_s,
+        )
 
     def begin(self) -> ContactMemory:
         """Memory before the first frame."""
@@ -66,7 +77,7 @@ class ContactDetector:
 
     def decide(
         self,
-        memory: ContactMemory,
+        memory: KeptContact,
         q: Array,
         v: Array,
         a: Array,
@@ -83,7 +94,9 @@ class ContactDetector:
             plate_wrench: (K, 6) force N and moment N m about the world's origin; NaN where not recorded.
             supported: Whether another part than the feet bears.
         """
-        feet = self._feet.at(q, v)
+        if self._compiled is not None:
+            return self._compiled.decide(memory, (q, v, a), plate_wrench, supported)
+        memory, feet = memory.unpacked(), self._feet.at(q, v)
         forces = plate_wrench[:, 2].tolist()
         loaded, unloaded, silent = self._by_load(forces)
         pressed, foot_of_plate = list(memory.pressed), [-1] * len(forces)
@@ -112,8 +125,12 @@ class ContactDetector:
                 elsewhere.movement,
                 lowest_ball_m,
             ),
-            self._shared(foot_of_plate, plate_wrench, feet) if BOTH in foot_of_plate else None,
-            _free(feet, lowest_ball_m, elsewhere.touching_s) if len(elsewhere.carrying) == 2 else None,
+            shared_between(feet.soles, feet.pelvis_m, plate_wrench, foot_of_plate, self.surfaces_m)
+            if BOTH in foot_of_plate
+            else None,
+            free_stance(feet.soles, feet.pelvis_m, lowest_ball_m, elsewhere.touching_s)
+            if len(elsewhere.carrying) == 2
+            else None,
             elsewhere.near,
             elsewhere.floor_m_s,
             _below(plate_wrench, [k for k in unloaded if forces[k] > 0.0]),
@@ -180,12 +197,6 @@ class ContactDetector:
             return False
         return dist(feet.velocity(0, right), feet.velocity(1, left)) < slack * PARTED_M_S
 
-    def _shared(self, foot_of_plate: Sequence[int], plate_wrench: Array, feet: FeetMotion) -> SharedLoad:
-        """How the feet share what they stand on together: all that the plates under either of them read."""
-        under = [k for k, owner in enumerate(foot_of_plate) if owner >= 0]
-        surface = self.surfaces_m[foot_of_plate.index(BOTH)]
-        return share_load(plate_wrench[under].sum(axis=0), feet.soles, np.array(feet.pelvis_m), surface)
-
 
 def _below(plate_wrench: Array, small: Sequence[int]) -> Array | None:
     """(6,) sum of those of the wrenches (K, 6) that are smaller than what counts as a load; None for nothing."""
@@ -206,18 +217,3 @@ def _lowest_balls(
         min(feet.soles[f][1][2], memory.lowest_ball_m[f] if touching_s[f] > 0.0 else inf) for f in (0, 1)
     )
     return right, left
-
-
-def _free(
-    feet: FeetMotion, lowest_ball_m: tuple[float, float], touching_s: tuple[float, float]
-) -> FreeStance:
-    """How both feet stand on floor that no plate reads.
-
-    Args:
-        feet: The feet.
-        lowest_ball_m: Least height of each ball while the foot has stood.
-        touching_s: For how long each has.
-    """
-    surface = min(point[2] for sole in feet.soles for point in sole)
-    right, left = (push_share(feet.soles[f], lowest_ball_m[f], touching_s[f]) for f in (0, 1))
-    return FreeStance(expected_stance(feet.soles, surface), np.array(feet.pelvis_m), (right, left))

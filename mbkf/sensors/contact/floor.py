@@ -51,7 +51,7 @@ class Movement(NamedTuple):
             pelvis_m: The pelvis.
             dt_s: Time between frames.
         """
-        most = _frames(BELT_WINDOW_S, dt_s)
+        most = frames_of(BELT_WINDOW_S, dt_s)
         low_x, low_y = self.low_m_s
         return Movement(
             (low_x.followed(low_m_s[0], most), low_y.followed(low_m_s[1], most)),
@@ -65,7 +65,7 @@ class Movement(NamedTuple):
         Args:
             dt_s: Time between frames.
         """
-        still = _frames(STILL_FLOOR_S, dt_s)
+        still = frames_of(STILL_FLOOR_S, dt_s)
         x, y = (low.median(still) for low in self.low_m_s)
         speed = hypot(x, y)
         if speed < BELT_FROM_M_S:
@@ -82,7 +82,7 @@ class Movement(NamedTuple):
         Args:
             dt_s: Time between frames.
         """
-        frames = max(4, _frames(FALL_WINDOW_S, dt_s) + 1)
+        frames = fall_frames(dt_s)
         if self.airborne < frames:
             return False
         heights = np.array(self.pelvis_m[-frames:])[:, 2]
@@ -93,8 +93,14 @@ NO_MOVEMENT = Movement()
 """Before the first frame."""
 
 
-def _frames(duration_s: float, dt_s: float) -> int:
+def frames_of(duration_s: float, dt_s: float) -> int:
+    """How many frames, one at least, are nearest to a duration."""
     return max(1, round(duration_s / dt_s))
+
+
+def fall_frames(dt_s: float) -> int:
+    """Over how many frames a fall shows in the pelvis's height."""
+    return max(4, frames_of(FALL_WINDOW_S, dt_s) + 1)
 
 
 @lru_cache(maxsize=8)

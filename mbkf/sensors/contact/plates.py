@@ -106,6 +106,11 @@ class PlateAreas:
         self._edges = np.concatenate([self._from, self._along], axis=2).tolist()
         self._boxes = np.concatenate([corners.min(axis=1), corners.max(axis=1)], axis=1).tolist()
 
+    def outlines(self) -> Array:
+        """(K, 20) each plate's box from above, least x and y and most x and y, and its edges (4, 4): x, y and way."""
+        edges = np.array(self._edges).reshape(-1, 16)
+        return np.concatenate([np.array(self._boxes).reshape(-1, 4), edges], axis=1)
+
     def contain(self, points_m: Array) -> BoolArray:
         """(n, K) whether points (n, 2) lie over each plate; never over one whose corners are not known."""
         away = points_m[:, None, None] - self._from

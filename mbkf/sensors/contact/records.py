@@ -7,7 +7,11 @@ from enum import IntEnum
 from math import inf
 from typing import NamedTuple
 
-from mbkf.conventions import Array
+import numpy as np
+
+from mbkf.conventions import Array, read_only
+from mbkf.kernel.contact import HEAD, NEVER, PER_PLATE
+from mbkf.numerics.running_median import RunningMedian
 from mbkf.sensors.contact.floor import NO_MOVEMENT, Movement
 from mbkf.sensors.contact.sharing import SharedLoad, Stance
 
@@ -56,6 +60,86 @@ class ContactMemory:
     movement: Movement = NO_MOVEMENT
     lowest_ball_m: tuple[float, float] = (inf, inf)
 
+    def unpacked(self) -> ContactMemory:
+        """Itself."""
+        return self
+
+    def packed(self, window: int) -> PackedMemory:
+        """The same as one array of numbers, for a movement of at most so many frames.
+
+        Raises:
+            ValueError: The movement is longer.
+        """
+        plates, movement = len(self.foot_of_plate), self.movement
+        numbers = np.zeros(HEAD + PER_PLATE * plates + 7 * window)
+        ranked = [low.ranked for low in movement.low_m_s]
+        numbers[:HEAD] = [
+            self.sole_height_m,
+            *self.touching_s,
+            *self.lowest_ball_m,
+            movement.airborne,
+            len(movement.pelvis_m),
+            *(len(order) for order in ranked),
+        ]
+        of_plate = numbers[HEAD : HEAD + PER_PLATE * plates].reshape(plates, PER_PLATE)
+        for own, foot, pressed in zip(of_plate, self.foot_of_plate, self.pressed, strict=True):
+            own[:] = foot, *(pressed or (0.0, 0.0, NEVER))
+        at = HEAD + PER_PLATE * plates
+        for low in movement.low_m_s:
+            for part in (low.latest, low.ranked):
+                numbers[at : at + window][: len(part)] = part
+                at += window
+        numbers[at:].reshape(window, 3)[: len(movement.pelvis_m)] = movement.pelvis_m or np.zeros((0, 3))
+        return PackedMemory(read_only(numbers), plates, window)
+
+
+class PackedMemory(NamedTuple):
+    """A :class:`ContactMemory` as the compiled decision keeps it.
+
+    Attributes:
+        numbers: They, in the order of :mod:`mbkf.kernel.contact`.
+        plates: Number of plates.
+        window: Frames of movement that there is room for.
+    """
+
+    numbers: Array
+    plates: int
+    window: int
+
+    @property
+    def foot_of_plate(self) -> tuple[int, ...]:
+        """(K,) as that of :class:`ContactMemory`."""
+        return tuple(int(foot) for foot in self._of_plates()[:, 0])
+
+    def unpacked(self) -> ContactMemory:
+        """What it holds."""
+        height, right_s, left_s, right_m, left_m, airborne, *counts = self.numbers[:HEAD].tolist()
+        frames, *ranked = (int(count) for count in counts)
+        series = self.numbers[HEAD + PER_PLATE * self.plates :].reshape(7, self.window)
+        low_x, low_y = (
+            RunningMedian(tuple(latest[:frames].tolist()), order[:count].tolist())
+            for latest, order, count in zip(series[:4:2], series[1:4:2], ranked, strict=True)
+        )
+        path = series[4:].reshape(self.window, 3)[:frames].tolist()
+        return ContactMemory(
+            self.foot_of_plate,
+            tuple(
+                None if owner == NEVER else Pressed(x, y, int(owner))
+                for _, x, y, owner in self._of_plates().tolist()
+            ),
+            height,
+            (right_s, left_s),
+            Movement((low_x, low_y), tuple((x, y, z) for x, y, z in path), int(airborne)),
+            (right_m, left_m),
+        )
+
+    def _of_plates(self) -> Array:
+        return self.numbers[HEAD : HEAD + PER_PLATE * self.plates].reshape(self.plates, PER_PLATE)
+
+
+KeptContact = ContactMemory | PackedMemory
+"""What a decision needs from the frame before, in either form."""
+
 
 class FreeStance(NamedTuple):
     """Both feet on floor that no plate reads.
@@ -94,7 +178,7 @@ class ContactDecision:
     wrench: Array
     centres_m: Array
     stray: bool
-    memory: ContactMemory
+    memory: KeptContact
     shared: SharedLoad | None = None
     free: FreeStance | None = None
     near: tuple[float, float] = (0.0, 0.0)

@@ -14,6 +14,7 @@ from mbkf.io.contacts import foot_sources
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.pipelines.live.filter import LiveInputs
 from mbkf.sensors.contact.causal import ContactDetector
+from mbkf.sensors.contact.records import KeptContact
 from mbkf.stream.receiving.alignment import ReadyFrame
 from mbkf.stream.results.frame import LiveFrame
 
@@ -30,7 +31,7 @@ class FrameMaker:
         self._sensor, self._rate_hz = inputs.sensor, rate_hz
         self._balance = NewtonEuler(inputs.sensor.model)
         self._feet = ContactDetector(inputs.sensor.model, inputs.plates, inputs.dt_s)
-        self._memory = self._feet.begin()
+        self._memory: KeptContact = self._feet.begin()
         self._arrivals: deque[float] = deque()
         self._first: int | None = None
 

@@ -301,7 +301,10 @@ def test_decisions_repeat_and_leave_their_inputs_alone(name):
 
 
 def test_memory_cannot_be_changed():
-    memory = stand_on([plate(0.0, 0.0)], np.zeros(6)).memory
+    kept = stand_on([plate(0.0, 0.0)], np.zeros(6)).memory
+    memory = kept.unpacked()
+    assert not memory.packed(100).numbers.flags.writeable
+    assert kept is memory or not kept.numbers.flags.writeable
     for field in fields(memory):
         with pytest.raises(FrozenInstanceError):
             setattr(memory, field.name, None)

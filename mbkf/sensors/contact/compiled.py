@@ -1,0 +1,141 @@
+"""The causal contact decision by the compiled kernel, where it was built: the rules are those of :mod:`.causal`.
+
+Compiled code assigns plates and finds feet that stand elsewhere. How two feet stand together, which is asked in double
+support without plates of their own, is left to :mod:`.stances`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.kernel.contact import (
+    BELOW,
+    KINDS,
+    MOVING_OR_NEAR,
+    ON_ONE_PLATE,
+    ON_OPEN_FLOOR,
+    STRAY,
+    CompiledFeet,
+    Stand,
+)
+from mbkf.kernel.tree import CompiledTree
+from mbkf.model.body import Body
+from mbkf.sensors.contact import thresholds
+from mbkf.sensors.contact.floor import fall_frames, frames_of
+from mbkf.sensors.contact.records import Contact, ContactDecision, KeptContact, PackedMemory
+from mbkf.sensors.contact.soles import sole_locals
+from mbkf.sensors.contact.stances import free_stance, shared_between
+
+_CONTACTS = tuple((Contact((bits & 3) - 1), Contact((bits >> 2) - 1)) for bits in range(KINDS + 1))
+"""What right and left foot stand on, by the bits that say so."""
+
+_LIMITS = (
+    thresholds.REACH_M,
+    thresholds.KEEP_M,
+    thresholds.BELT_FROM_M_S,
+    thresholds.TOUCH_HEIGHT_M,
+    thresholds.STAND_HEIGHT_M,
+    thresholds.STAND_SPEED_M_S,
+    thresholds.STAND_AFTER_S,
+    thresholds.ALONE_HEIGHT_M,
+    thresholds.ALONE_SPEED_M_S,
+    thresholds.LEAVE_SLACK,
+    thresholds.FLOOR_SHARE,
+    thresholds.LEVEL_M,
+    thresholds.PARTED_M_S,
+    thresholds.FACES_DOWN,
+    thresholds.FALL_M_S2,
+)
+"""Limits in the order of ``mbkf/kernel/feet.h``."""
+
+
+class CompiledContact:
+    """The decision of :class:`mbkf.sensors.contact.causal.ContactDetector` in compiled code."""
+
+    def __init__(self, tree: CompiledTree, model: Body, plates: Array, dt_s: float) -> None:
+        """Makes it.
+
+        Args:
+            tree: The body's equations.
+            model: The body.
+            plates: (K, 23) of each plate: whether its outline is known, least load N, height m, and its outline
+                (:meth:`mbkf.sensors.contact.plates.PlateAreas.outlines`).
+            dt_s: Time between frames.
+        """
+        segments, places = sole_locals(model)
+        joints = [model.joint(segment).joint_id for segment in (*segments, *model.roles.feet)]
+        frames = [frames_of(time_s, dt_s) for time_s in (thresholds.BELT_WINDOW_S, thresholds.STILL_FLOOR_S)]
+        whole = np.array([*joints, model.root.joint_id, *frames, fall_frames(dt_s)], dtype=np.int32)
+        self._surfaces_m = plates[:, 2].tolist()
+        floor_m = min(self._surfaces_m, default=np.nan)
+        self._feet = CompiledFeet(
+            tree, whole, np.array([*places.ravel(), floor_m, dt_s, *_LIMITS]), np.ascontiguousarray(plates)
+        )
+        self._plates, self._window = len(plates), frames[0]
+
+    @classmethod
+    def where_built(cls, model: Body, plates: Array, dt_s: float) -> CompiledContact | None:
+        """One, or None where there is no compiled kernel that knows the body's joints.
+
+        Args:
+            model: The body.
+            plates: (K, 23) as it takes them.
+            dt_s: Time between frames.
+        """
+        tree = CompiledTree.where_built(model.pin_model)
+        return None if tree is None else cls(tree, model, plates, dt_s)
+
+    def decide(
+        self,
+        memory: KeptContact,
+        motion: tuple[Array, Array, Array],
+        plate_wrench: Array,
+        supported: bool,
+    ) -> ContactDecision:
+        """What the feet stand on in one frame, as :meth:`mbkf.sensors.contact.causal.ContactDetector.decide`.
+
+        Args:
+            memory: From the frame before.
+            motion: Predicted (nq,) configuration, (nv,) velocity and acceleration.
+            plate_wrench: (K, 6) force N and moment N m about the world's origin; NaN where not recorded.
+            supported: Whether another part than the feet bears.
+        """
+        before = memory if isinstance(memory, PackedMemory) else memory.packed(self._window)
+        stand = self._feet.stand(motion, plate_wrench, supported, before.numbers)
+        flags, kept = stand.flags, PackedMemory(stand.after, self._plates, self._window)
+        decision = (_CONTACTS[flags & KINDS], stand.wrench, stand.middles_m, flags & STRAY > 0, kept)
+        if flags & (ON_ONE_PLATE | ON_OPEN_FLOOR | MOVING_OR_NEAR | BELOW):
+            return self._rarer(decision, stand, plate_wrench)
+        return ContactDecision(*decision)
+
+    def _rarer(
+        self,
+        decision: tuple[tuple[Contact, Contact], Array, Array, bool, PackedMemory],
+        stand: Stand,
+        plate_wrench: Array,
+    ) -> ContactDecision:
+        """With what is not told of every frame.
+
+        Args:
+            decision: What is.
+            stand: As compiled code tells it.
+            plate_wrench: (K, 6) what the plates read.
+        """
+        flags, numbers, kept, shared, free = stand.flags, stand.rest.tolist(), decision[4], None, None
+        if flags & (ON_ONE_PLATE | ON_OPEN_FLOOR):
+            soles, pelvis_m = stand.rest[:18].reshape(2, 3, 3).tolist(), numbers[18:21]
+            if flags & ON_ONE_PLATE:
+                shared = shared_between(soles, pelvis_m, plate_wrench, kept.foot_of_plate, self._surfaces_m)
+            if flags & ON_OPEN_FLOOR:
+                _, right_s, left_s, right_m, left_m = kept.numbers[:5].tolist()
+                free = free_stance(soles, pelvis_m, (right_m, left_m), (right_s, left_s))
+        near_right, near_left, floor_x, floor_y = numbers[21:]
+        return ContactDecision(
+            *decision,
+            shared,
+            free,
+            (near_right, near_left),
+            (floor_x, floor_y),
+            stand.below if flags & BELOW else None,
+        )
