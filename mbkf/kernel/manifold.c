@@ -72,7 +72,7 @@ static void turn_derivatives(const double *w, double *by_q, double *by_step)
     series(w, -c[1], c[2], by_step);
 }
 
-/* How the travel of exp6(u, w) changes with w, in its own axes: T. Barfoot, State Estimation for Robotics, 2017,
+/* How the travel of exp6(u, w) changes with w, in its own axes: T. Barfoot, State Estimation for Robotics (2017),
  * eq. 7.86, of (-u, -w). */
 static void travel_by_turn(const double *u, const double *w, double *found)
 {

@@ -72,7 +72,7 @@ def log_and_inverse_jacobian(quaternions: Array) -> tuple[Array, Array]:
 def travel_by_turn(u: Array, w: Array) -> Array:
     """(3, 3) how the travel of a screw motion exp(u, w) changes with its turn w, in the axes that it ends in.
 
-    T. Barfoot, State Estimation for Robotics, 2017, eq. 7.86, of (−u, −w); for small turns by its series, since the
+    T. Barfoot, State Estimation for Robotics (2017), eq. 7.86, of (−u, −w); for small turns by its series, since the
     closed form loses nine digits there.
 
     Args:
