@@ -329,6 +329,31 @@ class Reconstruction:
         """(T,) its standard deviation or a part of it, as :meth:`angle_sd`."""
         return self._sd("moments_sd", name, part)
 
+    def power(self, name: str) -> Array:
+        """(T,) power at a coordinate, W: its moment times its rate; those of a joint add up to the joint's."""
+        return self.moment(name) * self.angle_rate(name)
+
+    def power_sd(self, name: str, part: SdPart = "total") -> Array:
+        """(T,) its standard deviation or a part of it, as :meth:`angle_sd`; moment and rate err independently.
+
+        Of m ω with independent errors: √(m² σ_ω² + ω² σ_m² + σ_m² σ_ω²) (L. A. Goodman, J. Am. Stat. Assoc. 55 (1960)
+        708-713).
+        """
+        m, rate = self.moment(name), self.angle_rate(name)
+
+        def spread(m_sd: Array, rate_sd: Array) -> Array:
+            return np.sqrt((m * rate_sd) ** 2 + (rate * m_sd) ** 2 + (m_sd * rate_sd) ** 2)
+
+        total = spread(self.moment_sd(name), self.angle_rate_sd(name))
+        if part == "total":
+            return np.asarray(total)
+        offset = spread(self.moment_sd(name, "offset"), self.angle_rate_sd(name, "offset"))
+        if part == "offset":
+            return np.asarray(offset)
+        if part not in get_args(SdPart):
+            raise UnknownName("part of a standard deviation", part, get_args(SdPart))
+        return varying_sd(total, offset)
+
     torque = moment
     torque_sd = moment_sd
 

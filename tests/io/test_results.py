@@ -93,6 +93,24 @@ def test_a_standard_deviation_has_two_parts(read, array):
         getattr(r, read)("pelvis_tx", "ofset")
 
 
+def test_power_errs_as_a_product_of_independent_errors_does():
+    """Moment and rate drawn about what is told: the product's scatter, and its two parts."""
+    rng, name, draws = np.random.default_rng(3), "hip_flexion_r", 20000
+    sd = {"angle_rates_sd": np.full((12, 3), 0.3), "moments_sd": np.full((12, 3), 2.0)}
+    r = made_up(**sd, **{f"{array}_offset": 0.6 * total for array, total in sd.items()})
+    m, rate = r.moment(name), r.angle_rate(name)
+    np.testing.assert_array_equal(r.power(name), m * rate)
+    for part, share in (("total", 1.0), ("offset", 0.6)):
+        found = (m + share * 2.0 * rng.normal(size=(draws, 12))) * (
+            rate + share * 0.3 * rng.normal(size=(draws, 12))
+        )
+        np.testing.assert_allclose(r.power_sd(name, part), found.std(axis=0), rtol=0.04)
+    whole, offset, varying = (r.power_sd(name, part) for part in ("total", "offset", "varying"))
+    np.testing.assert_allclose(whole**2, offset**2 + varying**2, rtol=1e-12)
+    with pytest.raises(UnknownName, match="did you mean offset"):
+        r.power_sd(name, "ofset")
+
+
 def test_offsets_that_are_not_told_are_zero_where_the_total_is_known():
     total = made_up().sd_tau.copy()
     total[3] = np.nan
