@@ -17,7 +17,6 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.body_errors import BodyErrorRoots
 from mbkf.filters.coordinate_variances import CoordinateVariances
-from mbkf.kernel.tree import CompiledTree
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
 
@@ -37,7 +36,7 @@ class SpreadReader:
         feet = [model.joint(segment).joint_id for segment in model.roles.feet]
         self._moves = np.ascontiguousarray(model.supports[feet], dtype=float)
         self._feet = np.array(feet, dtype=np.int32)
-        self._tree = CompiledTree.where_built(model.pin_model)
+        self._tree = model.tree
         self._origins = [4 * joint + 3 for joint in feet]
 
     def torque_variance(self, q: Array, step_covariance: Array, dt_s: float) -> Array:

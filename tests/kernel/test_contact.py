@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from mbkf.kernel.contact import HEAD, CompiledFeet
-from mbkf.kernel.contact_functions import ContactFunctions
 from mbkf.kernel.loading import library
 from mbkf.kernel.tree import CompiledTree
 from tests.motions import reference_model
@@ -37,11 +36,6 @@ def test_feet_stand_where_the_body_puts_them():
         np.testing.assert_allclose(sole, origins[joint] + PLACES[:3] @ rotations[joint].T, atol=1e-12)
     np.testing.assert_allclose(found.middles_m, soles[:, [0, 2]].mean(axis=1), atol=1e-12)
     np.testing.assert_allclose(found.rest[18:21], origins[MODEL.root.joint_id], atol=1e-12)
-
-
-def test_the_kernel_has_the_functions_that_are_stated():
-    stated = [name for name in vars(ContactFunctions) if not name.startswith("_")]
-    assert len(stated) == 4 and all(callable(getattr(library(), name)) for name in stated)
 
 
 @pytest.mark.parametrize("place, value", [(0, 0), (5, 1000), (6, -1), (8, 99), (9, 0), (10, 0), (11, 3)])

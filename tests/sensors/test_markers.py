@@ -137,13 +137,14 @@ def test_what_lasts_is_what_innovations_show_beyond_the_cameras_noise(camera_m, 
     """Skin that holds still for the trial is no white noise; quiet cameras are less than c can say."""
     rng, block, places = np.random.default_rng(7), block_with(), SENSOR.positions(STATE.q)
     memory, skin = block.begin(), skin_m * rng.normal(size=places.shape)
-    for _ in range(400):
+    for _ in range(round(8.0 * MarkerSettings().noise_memory_s / DT)):
         at, decision, notes = decided(block, places + skin + camera_m * rng.normal(size=places.shape), memory)
         memory = block.remember(STATE, at, decision, memory)
     assert memory.white.sd == pytest.approx(camera_m, rel=0.1)
     expected = np.mean(skin**2) / MARKER_SD_M**2 / MarkerSettings().innovation_share
     told = notes.lasting * memory.noise_scale
-    assert told == pytest.approx(expected, rel=0.1, abs=0.3 * camera_m**2 / MARKER_SD_M**2 / 0.12)
+    white = camera_m**2 / MARKER_SD_M**2 / MarkerSettings().innovation_share
+    assert told == pytest.approx(expected, rel=0.005, abs=0.04 * white)
 
 
 def test_what_lasts_is_taken_as_expected_where_the_noise_is_white():

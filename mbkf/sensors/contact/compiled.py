@@ -83,7 +83,7 @@ class CompiledContact:
             plates: (K, 23) as it takes them.
             dt_s: Time between frames.
         """
-        tree = CompiledTree.where_built(model.pin_model)
+        tree = model.tree
         return None if tree is None else cls(tree, model, plates, dt_s)
 
     def decide(
