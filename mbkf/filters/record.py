@@ -162,7 +162,7 @@ class FrameRecorder:
         sizes = {"M": markers, "nq": model.nq, "nv": model.nv, "A": len(filter.clinical.names)}
         sizes |= {"B": len(model.description.bearings), "N": len(filter.clinical.ball_turns)}
         self.dtype = record_dtype(sizes)
-        self._empty = blank(self.dtype, 1)
+        self._empty = blank(self.dtype, 1).view(np.uint8)  # numpy copies records field by field, bytes at once
 
     def row(
         self, number: int, measured_m: Array, posterior: Posterior | None, step_seconds: float
@@ -175,7 +175,7 @@ class FrameRecorder:
             posterior: What the filter made of it; None where it is not started.
             step_seconds: Computing time.
         """
-        row = self._empty.copy()
+        row = self._empty.copy().view(self.dtype)
         row["number"], row["measured_m"] = number, measured_m
         if posterior is None:
             return row, None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -62,8 +63,10 @@ def average_over_frames(plate: PlateReadings, frame_times_s: Array, rate_hz: flo
     return FrameLoads(means[:, :3], means[:, 3:])
 
 
-def window_ends(position: Array, half: float) -> tuple[Array, Array]:
-    """Where the windows around positions (T,) begin and end, in samples; on a sample where only rounding is between.
+def window_ends(position: Array | float, half: float) -> tuple[Array, Array]:
+    """Where the windows around positions (T,), or one, begin and end, in samples.
+
+    On a sample where only rounding is between.
 
     Else a live stream would wait for a sample that counts for nothing, or come to other numbers without it.
     """
@@ -90,10 +93,6 @@ def integrals_between(samples: Array, low: Array, high: Array, span: float) -> A
     """
     places = np.floor(low).astype(int) + np.arange(int(np.ceil(span)) + 2)[:, None]
     weights = _hat_until(high - places) - _hat_until(low - places)
-    if len(low) == 1:  # a stream's frame: the same sum, row after row, in one call
-        inside = weights[:, 0] > 0.0
-        only: Array = (weights[inside] * samples[places[inside, 0]]).sum(axis=0)
-        return only[None]
     total = np.zeros((len(low), samples.shape[1]))
     for k, weight in zip(places, weights, strict=True):
         counted = weight > 0.0
@@ -102,6 +101,21 @@ def integrals_between(samples: Array, low: Array, high: Array, span: float) -> A
         else:
             total[counted] += weight[counted, None] * samples[k[counted]]
     return total
+
+
+@lru_cache(maxsize=256)
+def window_weights(low: float, high: float) -> Array:
+    """(n, 1) weights of the first n samples in the integral of one window, see :func:`integrals_between`.
+
+    The weighted sum of the samples, row after row, is the very same number. Windows of a stream's frames recur, so
+    weights are kept.
+
+    Args:
+        low: Where the window begins, in samples; less than 1.
+        high: Where it ends.
+    """
+    places = np.arange(int(np.ceil(high)) + 1.0)
+    return np.asarray(_hat_until(high - places) - _hat_until(low - places))[:, None]
 
 
 def _hat_until(x: Array) -> Array:

@@ -170,10 +170,61 @@ static PyObject *py_wrench_walk(PyObject *self, PyObject *const *args, Py_ssize_
     return done;
 }
 
+/* wrenches_possible(readings, reach, limits) -> whether all are */
+static PyObject *py_wrenches_possible(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    Arrays held = {.held = 0};
+    PyObject *done = NULL;
+    (void)self;
+    if (!expects(given, 3))
+        return NULL;
+    const double *readings = numbers(&held, args[0], 0);
+    const double *reach = readings ? numbers(&held, args[1], 1) : NULL;
+    const int plates = reach ? length(&held) : 0;
+    const double *limits = reach ? numbers(&held, args[2], 5) : NULL;
+    if (limits) {
+        const Possible possible = {limits[0], limits[1], limits[2], limits[3], limits[4]};
+        const long count = (long)(held.views[0].len / (Py_ssize_t)sizeof(double) / 6);
+        done = PyBool_FromLong(wrenches_possible(count, readings, plates, reach, &possible));
+    }
+    release(&held);
+    return done;
+}
+
+/* wrench_means(ring, first, weights, width, origins, means) */
+static PyObject *py_wrench_means(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    Arrays held = {.held = 0};
+    PyObject *done = NULL;
+    (void)self;
+    const long first = expects(given, 6) ? PyLong_AsLong(args[1]) : -1;
+    const double width = PyErr_Occurred() ? 0.0 : PyFloat_AsDouble(args[3]);
+    if (PyErr_Occurred())
+        return NULL;
+    const double *ring = numbers(&held, args[0], 0);
+    const int rows = ring ? length(&held) : 0;
+    const double *weights = ring ? numbers(&held, args[2], 0) : NULL;
+    const int n = weights ? length(&held) : 0;
+    const double *origins = weights ? numbers(&held, args[4], 0) : NULL;
+    const int plates = origins ? length(&held) : 0;
+    double *means = origins ? filled(&held, args[5], 6 * (Py_ssize_t)plates) : NULL;
+    if (means && (first < 0 || held.views[0].len != (Py_ssize_t)sizeof(double) * 6 * rows * plates || !rows))
+        PyErr_SetString(PyExc_ValueError, "the ring has no such readings");
+    else if (means) {
+        wrench_means(ring, rows, plates, first, n, weights, width, origins, means);
+        done = Py_NewRef(Py_None);
+    }
+    release(&held);
+    return done;
+}
+
 PyMethodDef contact_functions[] = {
     {"feet", (PyCFunction)(void (*)(void))py_feet, METH_FASTCALL, "Feet of a tree, and plates that they stand on."},
     {"stand", (PyCFunction)(void (*)(void))py_stand, METH_FASTCALL, "What the feet stand on in one frame."},
     {"wrench_rows", (PyCFunction)(void (*)(void))py_wrench_rows, METH_FASTCALL, "Readings of the feet's wrenches."},
     {"wrench_walk", (PyCFunction)(void (*)(void))py_wrench_walk, METH_FASTCALL, "Random walks of the feet's wrenches."},
+    {"wrench_means", (PyCFunction)(void (*)(void))py_wrench_means, METH_FASTCALL, "Means of readings over a window."},
+    {"wrenches_possible", (PyCFunction)(void (*)(void))py_wrenches_possible, METH_FASTCALL,
+     "Whether a person can make plates read this."},
     {NULL, NULL, 0, NULL},
 };

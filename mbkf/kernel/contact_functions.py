@@ -100,3 +100,29 @@ class ContactFunctions(Protocol):
             sd: (2,) of force and moment.
             belt: (2,) root of what a belt adds to the horizontal moments.
         """
+
+    def wrenches_possible(self, readings: Array, reach: Array, limits: Array, /) -> bool:
+        """Whether a person can make plates read this: see :func:`mbkf.sensors.contact.possible.all_possible`.
+
+        Args:
+            readings: (..., K, 6) readings.
+            reach: (K,) of the plates.
+            limits: (5,) the weight, and the most vertical force, pull, friction and slack.
+        """
+
+    def wrench_means(
+        self, ring: Array, first: int, weights: Array, width: float, origins: Array, means: Array, /
+    ) -> None:
+        """Fills plates' means over a window: see :meth:`mbkf.stream.receiving.plate_buffer.PlateBuffer.mean`.
+
+        Args:
+            ring: (size, 6 K) the latest readings.
+            first: The window's first sample.
+            weights: (n,) or (n, 1) of the samples from there on.
+            width: The window's width, in samples.
+            origins: (K, 3) of the plates.
+            means: (K, 6) filled: about the world's origin.
+
+        Raises:
+            ValueError: The ring's size does not fit, or the window lies before its beginning.
+        """

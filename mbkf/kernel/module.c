@@ -14,14 +14,20 @@
 #include "contact_binding.h"
 #include "tree_binding.h"
 
+#if defined(_MSC_VER)
+#define THREAD_LOCAL __declspec(thread)
+#else
+#define THREAD_LOCAL _Thread_local
+#endif
+
 Blas blas;
 
-/* Memory to work in; it stays from call to call, since fresh pages cost more than the work. The interpreter's lock is
- * held meanwhile. */
+/* Each thread's memory to work in; it stays from call to call, since fresh pages cost more than the work. What takes
+ * tens of microseconds runs without the interpreter's lock, so that a stream is read meanwhile. */
 static double *workspace(long count)
 {
-    static double *memory;
-    static long size;
+    static THREAD_LOCAL double *memory;
+    static THREAD_LOCAL long size;
     if (count > size) {
         double *larger = realloc(memory, sizeof(double) * count);
         if (!larger) {
@@ -81,7 +87,9 @@ static PyObject *py_carry(PyObject *self, PyObject *const *args, Py_ssize_t give
             PyErr_SetString(PyExc_ValueError, "the covariance is smaller than the state");
         else if (is_square(&held.views[1], N)) {
             const Singer s = {singer[0], singer[1], singer[2], singer[3]};
+            Py_BEGIN_ALLOW_THREADS
             carry(nv, N, P, A, B, joints, n_joints, &s, noise, sd, carried, work);
+            Py_END_ALLOW_THREADS
             done = Py_NewRef(Py_None);
         }
     }
@@ -126,7 +134,9 @@ static PyObject *py_predict(PyObject *self, PyObject *const *args, Py_ssize_t gi
         }
         tree_stepped(tree, q, step, q2);
         tree_step_derivatives(tree, step, A, B);
+        Py_BEGIN_ALLOW_THREADS
         carry(nv, N, P, A, B, joints, n_joints, &s, noise, sd, carried, B + (long)nv * nv);
+        Py_END_ALLOW_THREADS
         done = Py_NewRef(Py_None);
     }
     release(&held);
@@ -154,7 +164,9 @@ static PyObject *py_carry_velocities(PyObject *self, PyObject *const *args, Py_s
     double *carried = noise ? filled(&held, args[6], (Py_ssize_t)N * N) : NULL;
     double *work = carried ? workspace(carry_work(nv, N)) : NULL;
     if (work) {
+        Py_BEGIN_ALLOW_THREADS
         carry_velocities(nv, P, A, B, joints, n_joints, dt, noise, carried, work);
+        Py_END_ALLOW_THREADS
         done = Py_NewRef(Py_None);
     }
     release(&held);
@@ -180,8 +192,13 @@ static PyObject *py_inform(PyObject *self, PyObject *const *args, Py_ssize_t giv
     if (work) {
         if (n > N || (m && held.views[2].len != (Py_ssize_t)sizeof(double) * m * N))
             PyErr_SetString(PyExc_ValueError, "the arrays' sizes do not fit");
-        else if (is_square(&held.views[0], N) && is_square(&held.views[1], n))
-            done = PyLong_FromLong(inform(N, P, n, information, m, rows, informed, work));
+        else if (is_square(&held.views[0], N) && is_square(&held.views[1], n)) {
+            int failed;
+            Py_BEGIN_ALLOW_THREADS
+            failed = inform(N, P, n, information, m, rows, informed, work);
+            Py_END_ALLOW_THREADS
+            done = PyLong_FromLong(failed);
+        }
     }
     release(&held);
     return done;

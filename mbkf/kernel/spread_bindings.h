@@ -41,13 +41,16 @@ static int read_off(const Errors *e, int m, int n, const double *T, int k, int l
     double *root = workspace(roots + most);
     if (!root)
         return -1;
-    const int failed = error_diagonal(e, root, found, root + roots);
-    if (failed)
-        return failed;
-    error_of(e, root, m, n, T, found + e->N, root + roots);
-    error_of(e, root, k, l, U, found + e->N + m, root + roots);
-    error_blocks(e, root, n_first, first, found + e->N + m + k);
-    return 0;
+    int failed;
+    Py_BEGIN_ALLOW_THREADS
+    failed = error_diagonal(e, root, found, root + roots);
+    if (!failed) {
+        error_of(e, root, m, n, T, found + e->N, root + roots);
+        error_of(e, root, k, l, U, found + e->N + m, root + roots);
+        error_blocks(e, root, n_first, first, found + e->N + m + k);
+    }
+    Py_END_ALLOW_THREADS
+    return failed;
 }
 
 /* errors(P, information, seen, size, constants, rows, T, U, first, found) -> 0, or which factorisation failed */

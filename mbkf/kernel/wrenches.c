@@ -1,6 +1,8 @@
-/* FootContact.linearise, of feet that do not bear together, and FootContact.inflate of mbkf/sensors/foot_contact.py. */
+/* FootContact.linearise, of feet that do not bear together, and FootContact.inflate of mbkf/sensors/foot_contact.py;
+ * all_possible of mbkf/sensors/contact/possible.py; PlateBuffer.mean of mbkf/stream/receiving/plate_buffer.py. */
 #include "wrenches.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "rotation.h"
@@ -45,5 +47,42 @@ void wrench_walk(double *P, int N, int at, const double *middles, const double *
                     own[(3 + i) * N + 3 + j] += belt[i] * belt[j];
             }
         }
+    }
+}
+
+int wrenches_possible(long count, const double *readings, int plates, const double *reach, const Possible *limits)
+{
+    const double W = limits->weight;
+    int possible = 1;
+    for (long s = 0; s < count; s++) {
+        const double *w = readings + 6 * s, vertical = w[2], farthest = reach[s % plates];
+        const double bears = vertical + limits->slack * W, least = bears > 0.0 ? bears : 0.0;
+        /* What is not a number compares as false. */
+        possible &= fabs(vertical) <= limits->most * W && vertical >= -limits->pull * W &&
+                    hypot(w[0], w[1]) <= limits->friction * least && hypot(w[3], w[4]) <= farthest * least &&
+                    fabs(w[5]) <= limits->friction * farthest * least;
+    }
+    return possible;
+}
+
+void wrench_means(const double *ring, long rows, int plates, long first, int n, const double *weights, double width,
+                  const double *origins, double *means)
+{
+    memset(means, 0, 6 * plates * sizeof *means);
+    for (int i = 0; i < n; i++) {
+        const double *row = ring + (first + i) % rows * 6 * plates;
+        for (int c = 0; c < 6 * plates; c++)
+            means[c] += weights[i] * row[c];
+    }
+    for (int k = 0; k < plates; k++) {
+        const double *o = origins + 3 * k;
+        double *mean = means + 6 * k, sum = 0.0;
+        for (int c = 0; c < 6; c++)
+            sum += mean[c] /= width;
+        mean[3] += o[1] * mean[2] - o[2] * mean[1];
+        mean[4] += o[2] * mean[0] - o[0] * mean[2];
+        mean[5] += o[0] * mean[1] - o[1] * mean[0];
+        for (int c = 0; c < 6 && isnan(sum); c++)
+            mean[c] = NAN;
     }
 }

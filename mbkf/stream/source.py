@@ -112,10 +112,12 @@ def plausible(points_m: Array) -> tuple[Array, int]:
     Args:
         points_m: (N, 3) as received.
     """
-    missing = np.asarray(np.isnan(points_m).any(axis=1))
-    wrong = ~missing & ~np.asarray((np.abs(points_m) <= FARTHEST_M).all(axis=1))
-    bad = missing | wrong
-    return (np.where(bad[:, None], np.nan, points_m) if bad.any() else points_m), int(wrong.sum())
+    far = np.abs(points_m) > FARTHEST_M
+    missing = np.isnan(points_m).any(axis=1)
+    if far.any():
+        wrong = ~missing & far.any(axis=1)
+        return np.where((missing | wrong)[:, None], np.nan, points_m), int(wrong.sum())
+    return (np.where(missing[:, None], np.nan, points_m) if missing.any() else points_m), 0
 
 
 def empty_plate(

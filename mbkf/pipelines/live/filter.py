@@ -11,6 +11,7 @@ import time
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -44,8 +45,7 @@ def live_settings(settings: ReconstructSettings) -> ReconstructSettings:
     return replace(settings, smooth=False)
 
 
-@dataclass(frozen=True)
-class LiveStep:
+class LiveStep(NamedTuple):
     """The answer to one frame.
 
     Attributes:
@@ -137,6 +137,8 @@ class LiveFilter:
 
     def _lagged(self, steps: Sequence[LiveStep]) -> list[LiveStep]:
         """The steps that are due when these are made; a frame without an estimate tells nothing of those before."""
+        if not self._lag.frames:
+            return list(steps)
         due: list[LiveStep] = []
         for step in steps:
             if step.estimate is None:
@@ -159,7 +161,7 @@ class LiveFilter:
             return self._uncorrected(str(error))
         seconds = (time.perf_counter() - begin) / max(len(found), 1)
         given = [(self._lagging.popleft(), estimate) for _, estimate in found]
-        return [replace(one, estimate=estimate, seconds=one.seconds + seconds) for one, estimate in given]
+        return [one._replace(estimate=estimate, seconds=one.seconds + seconds) for one, estimate in given]
 
     def _uncorrected(self, trouble: str) -> list[LiveStep]:
         """All that waits as the filter found it, where a correction cannot be computed; what follows starts anew."""
@@ -167,7 +169,7 @@ class LiveFilter:
         self._lagging.clear()
         self._lag = FixedLag(self._filter, self._lag.frames * self._filter.dt_s, covariances=False)
         self.loop.forget()
-        return [*others, replace(last, trouble=trouble)]
+        return [*others, last._replace(trouble=trouble)]
 
     def _due(self, ahead: int) -> list[LiveStep]:
         awaited, steps = len(self._waiting) > 1, []

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.io.records import PlateReadings
+from mbkf.kernel.loading import library
 
 MOST_WEIGHTS = 20.0
 """Largest vertical force, body weights. The hardest contact that is known, the step of a triple jump, reaches 15.2
@@ -95,6 +96,21 @@ def impossible(wrench: Array, weight_n: float, reach_m: float | Array) -> Faults
     for kind, breaks in kinds:
         faults[breaks] = kind
     return faults
+
+
+def all_possible(readings: Array, weight_n: float, reach_m: Array) -> bool:
+    """Whether no reading breaks a limit of :func:`impossible`.
+
+    Args:
+        readings: (..., K, 6) force N and moment N m about the plates' origins, world axes.
+        weight_n: The person's weight.
+        reach_m: (K,) farthest that a foot can press from the origin of each plate.
+    """
+    kernel = library()
+    if kernel is None:
+        return not impossible(readings, weight_n, reach_m).any()
+    limits = np.array([weight_n, MOST_WEIGHTS, PULL_WEIGHTS, FRICTION, SLACK_WEIGHTS])
+    return kernel.wrenches_possible(np.ascontiguousarray(readings), reach_m, limits)
 
 
 def without_impossible(wrench: Array, plates: Sequence[PlateReadings], weight_n: float) -> Array:

@@ -9,6 +9,7 @@ end with a channel of type "FrameNumber" that counts frames or samples; without 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from types import ModuleType
 from typing import Any, TypeAlias
 
@@ -27,6 +28,9 @@ StreamInfo: TypeAlias = Any
 MARKERS_TYPE, PLATES_TYPE = "MoCap", "ForcePlate"
 MARKER_TYPES = ("mocap", "motioncapture", "motion capture")
 COUNTER = "framenumber"
+Channels: TypeAlias = slice | Array
+"""Numbers of channels in a sample."""
+
 _POSITION = ("positionx", "positiony", "positionz")
 _LOAD = ("forcex", "forcey", "forcez", "momentx", "momenty", "momentz")
 _METRES = {"meters": 1.0, "metres": 1.0, "m": 1.0, "millimeters": 1e-3, "millimetres": 1e-3, "mm": 1e-3}
@@ -50,7 +54,23 @@ class MarkerLayout:
 
     def points(self, sample: Array) -> tuple[Array, Array]:
         """(M, 3) named markers and (N, 3) points of a sample, world axes, m."""
-        return sample[self.named] @ self.rotation.T, sample[self.nameless] @ self.rotation.T
+        return self._world(sample[self._named]), self._world(sample[self._nameless])
+
+    def _world(self, values: Array) -> Array:
+        points = values.reshape(-1, 3)
+        return points @ self.rotation.T if self._turned else points
+
+    @cached_property
+    def _named(self) -> Channels:
+        return _together(self.named)
+
+    @cached_property
+    def _nameless(self) -> Channels:
+        return _together(self.nameless)
+
+    @cached_property
+    def _turned(self) -> bool:
+        return not np.array_equal(self.rotation, np.eye(3))
 
 
 @dataclass(frozen=True)
@@ -69,9 +89,24 @@ class PlateLayout:
 
     def wrenches(self, samples: Array) -> Array:
         """(S, K, 6) wrenches of samples (S, channels), world axes."""
-        found = samples[:, self.loads]
-        turned: Array = found.reshape(-1, 3) @ self.rotation.T
-        return turned.reshape(found.shape)
+        found = samples[:, self._loads].reshape(-1, 3)
+        turned = found @ self.rotation.T if self._turned else found
+        return turned.reshape(len(samples), *self.loads.shape)
+
+    @cached_property
+    def _loads(self) -> Channels:
+        return _together(self.loads)
+
+    @cached_property
+    def _turned(self) -> bool:
+        return not np.array_equal(self.rotation, np.eye(3))
+
+
+def _together(channels: Array) -> Channels:
+    """Channels as a slice where they follow each other, which numpy takes ten times as quickly."""
+    flat = channels.ravel()
+    first = int(flat[0]) if len(flat) else 0
+    return slice(first, first + len(flat)) if np.array_equal(flat, first + np.arange(len(flat))) else flat
 
 
 def marker_info(lsl: ModuleType, stream: StreamDescription, name: str, points: int) -> StreamInfo:

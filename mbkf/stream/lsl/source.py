@@ -201,6 +201,8 @@ class LslSource:
             self._lose("plates")
         if not parts:
             return PlateSamples.none(len(stream.plates))
+        if len(parts) == 1:
+            return parts[0]
         return PlateSamples(
             np.concatenate([part.index for part in parts]), np.concatenate([part.wrench for part in parts])
         )
@@ -226,8 +228,11 @@ class LslSource:
             index = samples[:, self._plate_layout.counter].astype(int)
         else:
             index = np.round((stamps - self._first_stamp) * self._stream.plate_rate_hz).astype(int)
-        rising = np.concatenate([[True], np.diff(np.maximum.accumulate(index)) > 0])
-        return PlateSamples(index[rising], self._plate_layout.wrenches(samples[rising]))
+        steps = np.diff(index)
+        if len(steps) and steps.min() <= 0:
+            rising = np.concatenate([[True], np.diff(np.maximum.accumulate(index)) > 0])
+            index, samples = index[rising], samples[rising]
+        return PlateSamples(index, self._plate_layout.wrenches(samples))
 
     def _lose(self, what: str) -> None:
         """A stream broke off; it is looked for in the background."""

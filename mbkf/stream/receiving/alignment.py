@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, read_only
 from mbkf.stream.receiving.numbering import Numbered, Numbering
 from mbkf.stream.receiving.plate_buffer import PlateBuffer
 from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription, plausible
@@ -19,12 +19,14 @@ anew."""
 ALIGNED_S = 0.25
 """After a source restarted its count, plate samples whose own count fits that of the frames within this keep it."""
 
+NO_POINTS = read_only(np.zeros((0, 3)))
+"""The points without names of a frame that has none."""
+
 Note = Callable[[str, str, int | None, int], None]
 """Takes an event: kind, sentence, frame, number of occurrences."""
 
 
-@dataclass(frozen=True)
-class ReadyFrame:
+class ReadyFrame(NamedTuple):
     """A frame for the filter.
 
     Attributes:
@@ -82,19 +84,24 @@ class FrameAlignment:
             return [], self._take_plates(frame, place)
         self._note_losses(place)
         samples = self._take_plates(frame, place)
-        first = place.number - place.lost
-        gap = range(first, place.number) if place.lost <= BRIDGED_S * self._stream.rate_hz else range(0)
-        nothing = np.zeros((0, 3))
-        unseen = None if self._columns is None else np.full((len(self._columns), 3), np.nan)
-        ready = [
-            ReadyFrame(n, frame.arrival_s, unseen, nothing, self._plates.mean(n), lost=True) for n in gap
-        ]
+        ready = self._missing(place, frame.arrival_s) if place.lost else []
         markers, points = self._points(frame, place.number)
         self._check_plates(frame, place.number)
         return [
             *ready,
             ReadyFrame(place.number, frame.arrival_s, markers, points, self._plates.mean(place.number)),
         ], samples
+
+    def _missing(self, place: Numbered, arrival_s: float) -> list[ReadyFrame]:
+        """Empty frames for those that are missing before a place; none for a gap that is too long to bridge."""
+        assert place.number is not None
+        if place.lost > BRIDGED_S * self._stream.rate_hz:
+            return []
+        unseen = None if self._columns is None else np.full((len(self._columns), 3), np.nan)
+        return [
+            ReadyFrame(n, arrival_s, unseen, NO_POINTS, self._plates.mean(n), lost=True)
+            for n in range(place.number - place.lost, place.number)
+        ]
 
     def _note_losses(self, place: Numbered) -> None:
         if place.reset:
@@ -126,7 +133,9 @@ class FrameAlignment:
         if place.reset and place.number is not None and len(samples.index):
             self._realign(frame, place.number)
         before, refused = self._plates.missing, self._plates.refused
-        taken = self._plates.put(PlateSamples(samples.index + self._plate_shift, samples.wrench))
+        if self._plate_shift:
+            samples = PlateSamples(samples.index + self._plate_shift, samples.wrench)
+        taken = self._plates.put(samples)
         if self._plates.missing > before:
             self._note(
                 "plates lost",

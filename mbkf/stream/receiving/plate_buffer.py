@@ -11,14 +11,18 @@ from math import ceil, floor
 import numpy as np
 from numpy.typing import NDArray
 
-from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
-from mbkf.io.resample import integrals_between, window_ends
+from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray, read_only
+from mbkf.io.resample import window_ends, window_weights
+from mbkf.kernel.loading import library
 from mbkf.sensors.contact.cleaning import longest_bridge
-from mbkf.sensors.contact.possible import Fault, impossible, reaches
+from mbkf.sensors.contact.possible import Fault, all_possible, impossible, reaches
 from mbkf.stream.source import PlateSamples, StreamDescription
 
 KEPT_S = 2.0
 """Readings older than this are forgotten."""
+
+ONE_SAMPLE = np.ones((1, 1))
+"""The weight of a sample that is taken alone."""
 
 OUTSIDE = 0.5
 """A frame so many samples outside of what was read has no reading."""
@@ -45,6 +49,7 @@ class PlateBuffer:
         self._frames_from_s = stream.start_time_s
         self._from_s = stream.plates[0].start_time_s if stream.plates else 0.0
         self._half = 0.5 * self._rate_hz / self._frame_rate_hz
+        self._unread = read_only(np.full((self._count, 6), np.nan))
         self._origins = np.array([plate.origin_m for plate in stream.plates]).reshape(-1, 3)
         size = int(KEPT_S * self._rate_hz) + 4 * int(self._half + 1)
         self._values = np.full((size, 6 * self._count), np.nan)
@@ -55,7 +60,7 @@ class PlateBuffer:
         self._weight_n = None if mass_kg is None else GRAVITY_M_S2 * mass_kg
         self._reach_m = reaches(stream.plates)
         self._bridge = longest_bridge(self._rate_hz)
-        self._last_good = np.full(self._count, -1)
+        self._last_good = [-1] * self._count
         """Of each plate; −1 where there is none that a gap could begin after."""
 
     def put(self, samples: PlateSamples) -> PlateSamples:
@@ -68,44 +73,49 @@ class PlateBuffer:
             index, wrench = index[fresh], wrench[fresh]
             if not len(index):
                 return PlateSamples.none(self._count)
-        size = len(self._values)
-        if self.newest is None or index[0] - self.newest > size:
+        size, first, last = len(self._values), int(index[0]), int(index[-1])
+        whole = len(index) == last - first + 1
+        if self.newest is None or first - self.newest > size:
             self._values[:] = np.nan
-            self._oldest = int(index[0])
-            self._last_good[:] = -1
-        else:
-            self._values[np.arange(self.newest + 1, int(index[0])) % size] = np.nan
-        expected = index[-1] - (index[0] - 1 if self.newest is None else self.newest)
-        self.missing += int(expected) - len(index)
-        if len(index) <= index[-1] - index[0]:
-            self._values[np.setdiff1d(np.arange(index[0], index[-1]), index) % size] = np.nan
+            self._oldest = first
+            self._last_good = [-1] * self._count
+        elif first > self.newest + 1:
+            self._values[np.arange(self.newest + 1, first) % size] = np.nan
+        self.missing += last - (first - 1 if self.newest is None else self.newest) - len(index)
+        if not whole:
+            self._values[np.setdiff1d(np.arange(first, last), index) % size] = np.nan
         wrench, good = self._judged(wrench)
         self._values[index % size] = wrench.reshape(len(index), -1)
-        self._bridge_gaps(index, good)
-        self.newest = int(index[-1])
+        self._bridge_gaps(index, good, whole)
+        self.newest = last
         return PlateSamples(index, wrench)
 
     def _judged(self, wrench: Array) -> tuple[Array, BoolArray]:
         """Readings (S, K, 6) with NaN for those that are not possible, and which (S, K) are."""
         if self._weight_n is None:
             return wrench, np.asarray(np.isfinite(wrench).all(axis=2))
+        if all_possible(wrench, self._weight_n, self._reach_m):
+            return wrench, np.ones(wrench.shape[:2], dtype=bool)
         good = impossible(wrench, self._weight_n, self._reach_m) == Fault.NONE
-        if good.all():
-            return wrench, good
         self.refused += int((~good).sum())
         return np.where(good[:, :, None], wrench, np.nan), good
 
-    def _bridge_gaps(self, index: NDArray[np.int64], good: BoolArray) -> None:
-        """Straight lines over short gaps that good samples (S, K) have ended, for each plate."""
-        whole = len(index) == index[-1] - index[0] + 1
-        if whole and good.all() and (self._last_good == index[0] - 1).all():
-            self._last_good[:] = index[-1]
+    def _bridge_gaps(self, index: NDArray[np.int64], good: BoolArray, whole: bool) -> None:
+        """Straight lines over short gaps that good samples have ended, for each plate.
+
+        Args:
+            index: (S,) the samples.
+            good: (S, K) whether each is.
+            whole: Whether none is missing between them.
+        """
+        if whole and good.all() and all(known == index[0] - 1 for known in self._last_good):
+            self._last_good = [int(index[-1])] * self._count
             return
         size = len(self._values)
         for k, own in enumerate(good.T):
             known = index[own]
             if self._last_good[k] >= 0:
-                known = np.concatenate([self._last_good[k : k + 1], known])
+                known = np.concatenate([[self._last_good[k]], known])
             for before in np.flatnonzero(np.diff(known) > 1).tolist():
                 first, last = int(known[before]), int(known[before + 1])
                 if last - first - 1 > self._bridge:
@@ -115,30 +125,39 @@ class PlateBuffer:
                     values = self._values[ends % size, column]
                     self._values[gap % size, column] = np.interp(gap, ends, values)
             if len(known):
-                self._last_good[k] = known[-1]
+                self._last_good[k] = int(known[-1])
 
     def mean(self, number: int) -> Array:
         """(K, 6) mean force N and moment N m about the world's origin over a frame; NaN where not read."""
-        unread = np.full((self._count, 6), np.nan)
-        if self.newest is None:
-            return unread
+        newest = self.newest
+        if newest is None:
+            return self._unread
         position = self._position(number)
-        oldest = max(self._oldest, self.newest - len(self._values) + 1)
-        if not oldest - OUTSIDE <= position <= self.newest + OUTSIDE:
-            return unread
-        ends = np.concatenate(window_ends(np.array([position]), self._half))
-        low, high = (min(max(end, oldest), self.newest) for end in ends.tolist())
+        oldest = max(self._oldest, newest - len(self._values) + 1)
+        if not oldest - OUTSIDE <= position <= newest + OUTSIDE:
+            return self._unread
+        low, high = (min(max(float(end), oldest), newest) for end in window_ends(position, self._half))
+        if high - low <= 1e-9:
+            return self._weighed(round(min(max(position, oldest), newest)), ONE_SAMPLE, 1.0)
         first = floor(low)
-        rows = np.arange(first, ceil(high) + 1)
-        samples = self._values[rows % len(self._values)]
-        if high - low > 1e-9:
-            area = integrals_between(
-                samples, np.array([low - first]), np.array([high - first]), 2.0 * self._half
-            )
-            loads = (area / (high - low)).reshape(self._count, 6)
-        else:
-            loads = samples[round(min(max(position, oldest), self.newest)) - first].reshape(self._count, 6)
-        loads[np.isnan(loads).any(axis=1)] = np.nan
+        return self._weighed(first, window_weights(low - first, high - first), high - low)
+
+    def _weighed(self, first: int, weights: Array, width: float) -> Array:
+        """(K, 6) weighted mean of samples about the world's origin, by the compiled kernel where there is one.
+
+        Args:
+            first: The first sample.
+            weights: (n, 1) of the samples from there on.
+            width: Sum of the weights.
+        """
+        size, kernel = len(self._values), library()
+        if kernel is not None and self._count:
+            loads = np.empty((self._count, 6))
+            kernel.wrench_means(self._values, first % size, weights, width, self._origins, loads)
+            return loads
+        samples = self._values[np.arange(first, first + len(weights)) % size]
+        loads = ((weights * samples).sum(axis=0) / width).reshape(self._count, 6)
+        loads[np.isnan(loads.sum(axis=1))] = np.nan
         x, y, z = self._origins.T
         fx, fy, fz = loads[:, :3].T
         loads[:, 3] += y * fz - z * fy

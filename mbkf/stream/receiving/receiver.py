@@ -70,7 +70,7 @@ class Receiver:
     @property
     def empty(self) -> bool:
         """Whether the buffer holds no frame."""
-        return not self._buffer.left()
+        return self._buffer.empty
 
     @property
     def ended(self) -> bool:

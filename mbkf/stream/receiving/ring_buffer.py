@@ -47,7 +47,8 @@ class RingBuffer(Generic[T]):
     def take(self, timeout_s: float) -> T | None:
         """The oldest item held; None where none comes for so long, or ever (see :attr:`ended`)."""
         with self._changed:
-            self._changed.wait_for(lambda: self._items or self._closed, timeout_s)
+            if not self._items:
+                self._changed.wait_for(lambda: self._items or self._closed, timeout_s)
             if not self._items:
                 return None
             item = self._items.popleft()
@@ -59,6 +60,11 @@ class RingBuffer(Generic[T]):
         with self._changed:
             self._closed = True
             self._changed.notify_all()
+
+    @property
+    def empty(self) -> bool:
+        """Whether it holds none."""
+        return not self._items
 
     def left(self) -> list[T]:
         """The items still in the buffer, oldest first."""

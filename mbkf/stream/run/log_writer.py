@@ -112,7 +112,8 @@ class LogWriter:
             rows = list(log.rows)
         if not rows:
             return True
-        together = np.concatenate(rows)
+        # As bytes: numpy joins records field by field.
+        together = np.concatenate([row.view(np.uint8) for row in rows]).view(log.writer.dtype)
         before = log.writer.rows
         try:
             log.writer.append(together)

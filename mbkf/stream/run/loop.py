@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from dataclasses import replace
 
 import numpy as np
 
@@ -143,7 +142,8 @@ class FilterLoop:
             labels.learn(latest)
 
     def _feed(self, frame: ReadyFrame, markers_m: Array) -> None:
-        self._waiting.append(replace(frame, markers_m=markers_m))
+        named = frame if markers_m is frame.markers_m else frame._replace(markers_m=markers_m)
+        self._waiting.append(named)
         self._answer(self._setup.filter.push(frame.number, Frame(markers_m, frame.plates)))
 
     def _answer(self, steps: list[LiveStep]) -> None:
