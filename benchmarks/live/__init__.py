@@ -28,8 +28,8 @@ FAST_HZ, FAST_SECONDS = 250.0, 10.0
 RATES_HZ = (200, 300, 400, 500, 600, 800, 1000)
 """Rates at which the synthetic walk is played to find the highest that is sustained."""
 
-SUSTAINED_HZ = 1000.0
-"""Rate that is to be sustained on one core."""
+SUSTAINED_HZ, SUSTAINED_FRAMES = 1000.0, 10_000
+"""Rate that is to be sustained on one core, and for how long."""
 
 CATCHING_UP = 0.2
 """A run whose filter is behind for longer than this share of it does not keep up."""
@@ -56,6 +56,7 @@ def run(context: Context) -> list[Check]:
     found = play(fast, "lsl", context.out / "fast")
     checks += [lost(fast.name, found), *latency(fast.name, found, math.inf)]
     if not context.quick:
+        checks += sustained(context.out)
         checks.append(
             Check("highest sustained rate, LSL", highest_rate(walk, context.out), SUSTAINED_HZ, ">=", "Hz")
         )
@@ -137,6 +138,21 @@ def latency(name: str, found: Run, bound: float) -> list[Check]:
             "ms",
         ),
     ]
+
+
+def sustained(out: Path) -> list[Check]:
+    """Ten thousand frames at :data:`SUSTAINED_HZ`: none is lost, and the filter soon keeps up."""
+    trial = synthetic(out, SUSTAINED_FRAMES / SUSTAINED_HZ, SUSTAINED_HZ)
+    checks: list[Check] = []
+    for protocol in PROTOCOLS:
+        found, name = play(trial, protocol, out / "sustained"), f"{trial.name}, {protocol}"
+        behind = number(found.report["frames_at_start"]) / number(found.report["frames_in"])
+        checks += [
+            lost(name, found),
+            Check(f"{name}: share of frames that waited for the start", behind, CATCHING_UP, "<="),
+            *latency(name, found, math.inf),
+        ]
+    return checks
 
 
 def highest_rate(trial: Trial, out: Path) -> float:
