@@ -50,7 +50,9 @@ class Recording:
         """Frames (at least one) that follow each other, ``dt_s`` apart."""
         first = frames[0]
         if len(frames) == 1:
-            own = {name: read[None] for name, read in first.readings.items()} if first.readings else NO_READINGS
+            own = (
+                {name: read[None] for name, read in first.readings.items()} if first.readings else NO_READINGS
+            )
             alone = None if first.imus is None else first.imus[None]
             return cls(first.markers_m[None], first.plates[None], dt_s, alone, own)
         imus = None if first.imus is None else np.array([frame.imus for frame in frames])

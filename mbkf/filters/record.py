@@ -162,7 +162,9 @@ class FrameRecorder:
         sizes = {"M": markers, "nq": model.nq, "nv": model.nv, "A": len(filter.clinical.names)}
         sizes |= {"B": len(model.description.bearings), "N": len(filter.clinical.ball_turns)}
         self.dtype = record_dtype(sizes)
-        self._empty = blank(self.dtype, 1).view(np.uint8)  # numpy copies records field by field, bytes at once
+        self._empty = blank(self.dtype, 1).view(
+            np.uint8
+        )  # numpy copies records field by field, bytes at once
 
     def row(
         self, number: int, measured_m: Array, posterior: Posterior | None, step_seconds: float

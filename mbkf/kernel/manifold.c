@@ -137,7 +137,16 @@ void tree_step_derivatives(const Tree *tree, const double *step, double *by_q, d
     }
 }
 
-void tree_deviation(const Tree *tree, const double *q, double *deviation, double *jacobian)
+/* turn = p* q of unit quaternions (x, y, z, w) */
+static void turn_between(const double *p, const double *q, double *turn)
+{
+    turn[0] = p[3] * q[0] - p[0] * q[3] - p[1] * q[2] + p[2] * q[1];
+    turn[1] = p[3] * q[1] - p[1] * q[3] - p[2] * q[0] + p[0] * q[2];
+    turn[2] = p[3] * q[2] - p[2] * q[3] - p[0] * q[1] + p[1] * q[0];
+    turn[3] = p[3] * q[3] + p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+}
+
+void tree_deviation(const Tree *tree, const double *start, const double *q, double *deviation, double *jacobian)
 {
     const long nv = tree->nv;
     memset(deviation, 0, nv * sizeof *deviation);
@@ -145,12 +154,13 @@ void tree_deviation(const Tree *tree, const double *q, double *deviation, double
     for (int i = 1; i < tree->joints; i++) {
         const Joint *joint = &tree->joint[i];
         const long first = joint->at_v;
-        double block[9];
+        double block[9], turn[4];
         if (joint->kind == SPHERICAL) {
-            logarithm(q + joint->at_q, deviation + first, block);
+            turn_between(start + joint->at_q, q + joint->at_q, turn);
+            logarithm(turn, deviation + first, block);
             put(block, jacobian, nv, first, first);
         } else if (joint->kind == HINGE) {
-            deviation[first] = q[joint->at_q];
+            deviation[first] = q[joint->at_q] - start[joint->at_q];
             jacobian[first * (nv + 1)] = 1.0;
         }
     }

@@ -12,6 +12,6 @@ void tree_step_derivatives(const Tree *tree, const double *step, double *by_q, d
 
 /* Turn (nv) of every joint from the neutral configuration as a rotation vector, and its derivative (nv x nv); zero
  * for free joints. */
-void tree_deviation(const Tree *tree, const double *q, double *deviation, double *jacobian);
+void tree_deviation(const Tree *tree, const double *start, const double *q, double *deviation, double *jacobian);
 
 #endif

@@ -39,7 +39,7 @@ class CompiledTree:
             model: One whose joints :data:`KINDS` has.
         """
         self._kernel, self._nq, self.nv = kernel, model.nq, model.nv
-        self._frames = (4 * model.njoints, 3)
+        self._frames, self._neutral = (4 * model.njoints, 3), _read(pin.neutral(model))
         whole, numbers = np.zeros((model.njoints, 4), dtype=np.int32), np.zeros((model.njoints, 28))
         for i in range(1, model.njoints):
             joint = model.joints[i]
@@ -138,13 +138,18 @@ class CompiledTree:
         self._kernel.step_derivatives(self.handle, _read(dv), by_q, by_step)
         return by_q, by_step
 
-    def deviation(self, q: Array) -> tuple[Array, Array]:
-        """(nv,) rotation of every joint from Pinocchio's neutral configuration, rad, and its Jacobian (nv, nv).
+    def deviation(self, q: Array, start: Array | None = None) -> tuple[Array, Array]:
+        """(nv,) rotation of every joint from another configuration, rad, and its Jacobian (nv, nv) by q.
 
         Both are zero for free joints.
+
+        Args:
+            q: (nq,) configuration.
+            start: (nq,) the other; None for Pinocchio's neutral one.
         """
         deviation, jacobian = np.empty(self.nv), np.empty((self.nv, self.nv))
-        self._kernel.deviation(self.handle, _read(q), deviation, jacobian)
+        other = self._neutral if start is None else _read(start)
+        self._kernel.deviation(self.handle, other, _read(q), deviation, jacobian)
         return deviation, jacobian
 
     def posture_information(self, residual: Array, jacobian: Array, weights: Array) -> tuple[Array, Array]:

@@ -243,20 +243,21 @@ static PyObject *py_step_derivatives(PyObject *self, PyObject *const *args, Py_s
     return done;
 }
 
-/* deviation(tree, q, deviation, jacobian) */
+/* deviation(tree, start, q, deviation, jacobian) */
 static PyObject *py_deviation(PyObject *self, PyObject *const *args, Py_ssize_t given)
 {
     Arrays held = {.held = 0};
     PyObject *done = NULL;
     (void)self;
-    const Tree *tree = expects(given, 4) ? tree_in(args[0]) : NULL;
+    const Tree *tree = expects(given, 5) ? tree_in(args[0]) : NULL;
     if (!tree)
         return NULL;
-    const double *q = numbers(&held, args[1], tree->nq);
-    double *deviation = q ? filled(&held, args[2], tree->nv) : NULL;
-    double *jacobian = deviation ? filled(&held, args[3], (Py_ssize_t)tree->nv * tree->nv) : NULL;
+    const double *start = numbers(&held, args[1], tree->nq);
+    const double *q = start ? numbers(&held, args[2], tree->nq) : NULL;
+    double *deviation = q ? filled(&held, args[3], tree->nv) : NULL;
+    double *jacobian = deviation ? filled(&held, args[4], (Py_ssize_t)tree->nv * tree->nv) : NULL;
     if (jacobian) {
-        tree_deviation(tree, q, deviation, jacobian);
+        tree_deviation(tree, start, q, deviation, jacobian);
         done = Py_NewRef(Py_None);
     }
     release(&held);
@@ -314,7 +315,7 @@ PyMethodDef tree_functions[] = {
     {"rise", QUICK(py_rise), "How heights of joints change."},
     {"step", QUICK(py_step), "A configuration, one step further."},
     {"step_derivatives", QUICK(py_step_derivatives), "Derivatives of a step."},
-    {"deviation", QUICK(py_deviation), "Turns of a tree's joints from neutral."},
+    {"deviation", QUICK(py_deviation), "Turns of a tree's joints from another configuration."},
     {"posture", QUICK(py_posture), "Information of readings of turns."},
     {"beyond", QUICK(py_beyond), "How far turns lie beyond limits."},
     {NULL, NULL, 0, NULL},

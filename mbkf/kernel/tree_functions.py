@@ -82,11 +82,12 @@ class TreeFunctions(Protocol):
             by_step: (nv, nv) filled.
         """
 
-    def deviation(self, tree: object, q: Array, deviation: Array, jacobian: Array, /) -> None:
-        """Fills rotations from neutral.
+    def deviation(self, tree: object, start: Array, q: Array, deviation: Array, jacobian: Array, /) -> None:
+        """Fills rotations from another configuration.
 
         Args:
             tree: The handle.
+            start: (nq,) that configuration.
             q: (nq,) configuration.
             deviation: (nv,) filled.
             jacobian: (nv, nv) filled.

@@ -87,7 +87,8 @@ class PlantedFeet(Block[State, None, PlantedDecision, None]):
         contact = notes.contact
         if contact is None or not (self.keypoints or len(notes.unmarked)):
             return PlantedDecision((), ())
-        unmarked = [dof in notes.unmarked for dof in self._dof]
+        gone = notes.unmarked.tolist()
+        unmarked = [dof in gone for dof in self._dof]
         found = [
             self.detector.planted(contact, at.state.q, foot) if self.keypoints or lost else None
             for foot, lost in enumerate(unmarked)

@@ -59,13 +59,23 @@ class PostureSensor:
         """
         if self._last is not None and self._last[0] is q:
             return self._last[1]
-        found = self._deviation(q) if self.tree is None else self.tree.deviation(q)
+        found = self._from(self._neutral, q) if self.tree is None else self.tree.deviation(q)
         self._last = (q, found)
         return found
 
-    def _deviation(self, q: Array) -> tuple[Array, Array]:
+    def from_posture(self, start: Array, q: Array) -> tuple[Array, Array]:
+        """Rotation (nv,) of every dof from another posture, rad, and its Jacobian (nv, nv) by q; the root is set aside.
+
+        Args:
+            start: (nq,) configuration with the other posture.
+            q: (nq,) configuration.
+        """
+        tree = self.model.tree
+        return self._from(start, q) if tree is None else tree.deviation(q, start)
+
+    def _from(self, start: Array, q: Array) -> tuple[Array, Array]:
         posture = q.copy()
-        posture[self._root] = self._neutral[self._root]
-        jacobian = self.model.difference_derivative(self._neutral, posture)
+        posture[self._root] = start[self._root]
+        jacobian = self.model.difference_derivative(start, posture)
         jacobian[self._root_dofs, self._root_dofs] = 0.0
-        return self.model.difference(self._neutral, posture), jacobian
+        return self.model.difference(start, posture), jacobian

@@ -113,9 +113,9 @@ def plausible(points_m: Array) -> tuple[Array, int]:
         points_m: (N, 3) as received.
     """
     far = np.abs(points_m) > FARTHEST_M
-    missing = np.isnan(points_m).any(axis=1)
+    missing = np.asarray(np.isnan(points_m).any(axis=1))
     if far.any():
-        wrong = ~missing & far.any(axis=1)
+        wrong = ~missing & np.asarray(far.any(axis=1))
         return np.where((missing | wrong)[:, None], np.nan, points_m), int(wrong.sum())
     return (np.where(missing[:, None], np.nan, points_m) if missing.any() else points_m), 0
 

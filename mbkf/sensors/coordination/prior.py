@@ -56,6 +56,13 @@ class NotedFrame(NamedTuple):
     observed: BoolArray
 
 
+class Followed(NamedTuple):
+    """How a joint goes with trunk and legs: rows of a relation's targets, its posture and then its velocity."""
+
+    relation: Coordination
+    columns: NDArray[np.intp]
+
+
 class CoordinationMemory(NamedTuple):
     """What a trial has shown so far.
 
@@ -69,7 +76,7 @@ class CoordinationMemory(NamedTuple):
     frame: int
     noted: tuple[NotedFrame, ...]
     gone: tuple[int, ...]
-    learned: Mapping[int, Coordination]
+    learned: Mapping[int, Followed]
 
 
 class CoordinationDecision(NamedTuple):
@@ -99,7 +106,7 @@ NONE = np.zeros(0)
 """No numbers."""
 
 
-class CoordinationPrior(Block[State, Mapping[int, Coordination], CoordinationDecision, CoordinationMemory]):
+class CoordinationPrior(Block[State, Mapping[int, Followed], CoordinationDecision, CoordinationMemory]):
     """Head, arms and toes as they went with trunk and legs.
 
     Attributes:
@@ -132,6 +139,7 @@ class CoordinationPrior(Block[State, Mapping[int, Coordination], CoordinationDec
             for name, own in dofs.items()
             if name not in model.roles.leading and not unobservable[own].all()
         ]
+        self._targets = [np.r_[own, model.nv + own] for own in self.dependents]
         self._root = next(joint for joint in model.joints.values() if joint.kind == "free")
         self._neutral, self._posture = model.neutral(), PostureSensor(model)
         self._every = max(1, round(1.0 / (NOTED_HZ * dt_s)))
@@ -151,7 +159,7 @@ class CoordinationPrior(Block[State, Mapping[int, Coordination], CoordinationDec
         """Nothing was shown yet."""
         return CoordinationMemory(0, (), (), {})
 
-    def prepare(self, state: State, memory: CoordinationMemory | None) -> Mapping[int, Coordination]:
+    def prepare(self, state: State, memory: CoordinationMemory | None) -> Mapping[int, Followed]:
         """How the joints that were out of sight in the frame before go with the others, by their number.
 
         Learned once, when they go; not of those that were observed too little.
@@ -162,49 +170,53 @@ class CoordinationPrior(Block[State, Mapping[int, Coordination], CoordinationDec
 
     def decide(
         self,
-        at: OperatingPoint[State, Mapping[int, Coordination]],
+        at: OperatingPoint[State, Mapping[int, Followed]],
         frame: Frame,
         memory: CoordinationMemory,
         notes: Notes,
     ) -> CoordinationDecision:
         """What the joints out of sight are predicted to do."""
-        gone, legible = self._gone(notes.unobserved), self._legible(notes)
+        gone, legible = self._out_of_sight(notes)
         learned = {j: one for j, one in at.prepared.items() if j in gone}
         if not learned:
             return CoordinationDecision(
                 notes.unobserved[:0], NONE, NONE, NONE, NONE, gone, legible, notes.unobserved
             )
-        features = self.features(at.state.q, at.state.v)
-        x, v, x_sd, v_sd = np.zeros((4, self._model.nv))
-        for j, one in learned.items():
-            own, (mean, sd) = self.dependents[j], one.predicted(features)
-            x[own], v[own] = mean[: len(own)], mean[len(own) :]
-            x_sd[own] = self._repeat * np.maximum(sd[: len(own)], LEAST_SD_RAD)
-            v_sd[own] = self._repeat * np.maximum(sd[len(own) :], LEAST_SD_RAD / PACE_S)
-        dofs = np.flatnonzero(x_sd)
+        features, nv = self.features(at.state.q, at.state.v), self._model.nv
+        mean, sd = np.zeros((2, 2 * nv))
+        for relation in {id(one.relation): one.relation for one in learned.values()}.values():
+            joints = [j for j, one in learned.items() if one.relation is relation]
+            own = np.concatenate([self._targets[j] for j in joints])
+            columns = np.concatenate([learned[j].columns for j in joints])
+            found = relation.predicted(features)
+            mean[own], sd[own] = found[0][columns], found[1][columns]
+        dofs = np.flatnonzero(sd[:nv])
         notes.coordinated = dofs
-        q = self._model.integrate(self._neutral, x)
-        return CoordinationDecision(dofs, q, v[dofs], x_sd[dofs], v_sd[dofs], gone, legible, notes.unobserved)
+        q = self._model.integrate(self._neutral, mean[:nv])
+        q_sd = self._repeat * np.maximum(sd[dofs], LEAST_SD_RAD)
+        v_sd = self._repeat * np.maximum(sd[nv + dofs], LEAST_SD_RAD / PACE_S)
+        return CoordinationDecision(dofs, q, mean[nv + dofs], q_sd, v_sd, gone, legible, notes.unobserved)
 
     def linearise(
-        self, at: OperatingPoint[State, Mapping[int, Coordination]], decision: CoordinationDecision
+        self, at: OperatingPoint[State, Mapping[int, Followed]], decision: CoordinationDecision
     ) -> list[Rows]:
         """Whitened rows on the configuration and on the velocity."""
         dofs, state = decision.dofs, at.state
         if not len(dofs):
             return []
-        away = self._model.difference(decision.q, state.q)[dofs]
-        by_q = self._model.difference_derivative(decision.q, state.q)[dofs] / decision.q_sd[:, None]
-        by_v = np.eye(self._model.nv)[dofs] / decision.v_sd[:, None]
+        away, by_q = self._posture.from_posture(decision.q, state.q)
+        by_q = by_q[dofs] / decision.q_sd[:, None]
+        by_v = np.zeros(by_q.shape)
+        by_v[np.arange(len(dofs)), dofs] = 1.0 / decision.v_sd
         return [
-            Rows(by_q, -away / decision.q_sd),
+            Rows(by_q, -away[dofs] / decision.q_sd),
             Rows(by_v, (decision.v - state.v[dofs]) / decision.v_sd, self._v),
         ]
 
     def remember(
         self,
         posterior: State,
-        at: OperatingPoint[State, Mapping[int, Coordination]],
+        at: OperatingPoint[State, Mapping[int, Followed]],
         decision: CoordinationDecision,
         memory: CoordinationMemory,
     ) -> CoordinationMemory:
@@ -236,19 +248,16 @@ class CoordinationPrior(Block[State, Mapping[int, Coordination], CoordinationDec
         """(nv,) rotation of every joint from neutral."""
         return self._posture.deviation(q)[0]
 
-    def _gone(self, unobserved: NDArray[np.intp]) -> tuple[int, ...]:
-        """Numbers of the joints that are out of sight."""
-        if not len(unobserved):
-            return ()
-        return tuple(np.flatnonzero(np.isin(self._first, unobserved)).tolist())
+    def _out_of_sight(self, notes: Notes) -> tuple[tuple[int, ...], bool]:
+        """Numbers of the joints out of sight, and whether trunk and legs are where the state has them."""
+        if not len(notes.unobserved):
+            return (), not notes.lost
+        unseen = np.zeros(self._model.nv, dtype=bool)
+        unseen[notes.unobserved] = True
+        legible = not notes.lost and not unseen[self._leading].any()
+        return tuple(unseen[self._first].nonzero()[0].tolist()), legible
 
-    def _legible(self, notes: Notes) -> bool:
-        """Whether trunk and legs are where the state has them."""
-        if notes.lost:
-            return False
-        return not len(notes.unobserved) or not np.isin(self._leading, notes.unobserved).any()
-
-    def _learned(self, memory: CoordinationMemory) -> dict[int, Coordination]:
+    def _learned(self, memory: CoordinationMemory) -> dict[int, Followed]:
         """Joints that were observed in the same frames are learned together."""
         found = dict(memory.learned)
         fresh = np.array([j for j in memory.gone if j not in found], dtype=np.intp)
@@ -264,19 +273,16 @@ class CoordinationPrior(Block[State, Mapping[int, Coordination], CoordinationDec
 
     def _learned_together(
         self, joints: NDArray[np.intp], frames: Sequence[NotedFrame]
-    ) -> dict[int, Coordination]:
-        columns = [np.r_[self.dependents[j], self._model.nv + self.dependents[j]] for j in joints]
+    ) -> dict[int, Followed]:
+        columns = [self._targets[j] for j in joints]
         movements = np.array([one.movement for one in frames])[:, np.concatenate(columns)]
         features = np.array([one.features for one in frames])
         blocks = np.array([one.block for one in frames])
         learned = learn(features, movements, blocks, self._ridge)
         if learned is None:
             return {}
-        ends = np.cumsum([len(own) for own in columns])
-        return {
-            int(j): learned.only(slice(end - len(own), end))
-            for j, own, end in zip(joints, columns, ends, strict=True)
-        }
+        places = np.split(np.arange(movements.shape[1]), np.cumsum([len(own) for own in columns[:-1]]))
+        return {int(j): Followed(learned, own) for j, own in zip(joints, places, strict=True)}
 
     def _noted(self, frame: int, state: State, unobserved: NDArray[np.intp]) -> NotedFrame:
         observed = np.ones(self._model.nv, dtype=bool)

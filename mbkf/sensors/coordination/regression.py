@@ -8,7 +8,8 @@ seen. A target that the plain mean of the other blocks foretells as well keeps t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,19 +45,14 @@ class Coordination:
     def predicted(self, features: Array) -> tuple[Array, Array]:
         """Mean (k,) and standard deviation (k,) of the targets at features (p,): wider the less such ones were seen."""
         away = features - self.features
-        reads = self.weights.any(axis=0)
-        growth = 1.0 + 1.0 / self.blocks + np.where(reads, away @ self.novelty @ away, 0.0)
-        few = (self.blocks - 1) / (self.blocks - 3)
+        known, few = 1.0 + 1.0 / self.blocks, (self.blocks - 1) / (self.blocks - 3)
+        growth = known + self._reads * (away @ self.novelty @ away)
         return self.targets + away @ self.weights, self.error_sd * np.sqrt(few * growth)
 
-    def only(self, targets: NDArray[np.intp] | slice) -> Coordination:
-        """The same for some targets."""
-        return replace(
-            self,
-            targets=self.targets[targets],
-            weights=self.weights[:, targets],
-            error_sd=self.error_sd[targets],
-        )
+    @cached_property
+    def _reads(self) -> Array:
+        """(k,) 1 for targets that read the features, 0 for those that keep their mean."""
+        return self.weights.any(axis=0).astype(float)
 
 
 def learn(features: Array, targets: Array, blocks: NDArray[np.intp], ridge: float) -> Coordination | None:

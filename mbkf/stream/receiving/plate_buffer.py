@@ -6,7 +6,7 @@ bridged as soon as a good sample ends them, with the numbers that a whole trial 
 
 from __future__ import annotations
 
-from math import ceil, floor
+from math import floor
 
 import numpy as np
 from numpy.typing import NDArray

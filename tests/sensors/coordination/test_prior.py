@@ -154,8 +154,8 @@ def test_what_comes_back_is_forgotten_and_what_was_seen_elsewhere_is_learned_by_
         noted += [NotedFrame(time, features, movement, seen)] * 3
     memory = CoordinationMemory(30, tuple(noted), (0, 1), {})
     both = learned(block, memory)
-    assert (both[0].blocks, both[1].blocks) == (10, 5)
-    assert len(both[0].targets) == 2 * len(first) and len(both[1].targets) == 2 * len(second)
+    assert (both[0].relation.blocks, both[1].relation.blocks) == (10, 5)
+    assert len(both[0].columns) == 2 * len(first) and len(both[1].columns) == 2 * len(second)
     left = learned(block, memory._replace(gone=(1,), learned={1: both[1]}))
     assert left.keys() == {1} and left[1] is both[1]
     assert not learned(block, memory._replace(gone=()))

@@ -89,10 +89,3 @@ def test_few_blocks_tell_no_more_than_a_vague_mean(blocks):
 def test_one_block_tells_nothing():
     features, targets, _ = shown()
     assert learn(features, targets, np.zeros(90, dtype=int), RIDGE) is None
-
-
-def test_some_targets_are_foretold_as_among_all():
-    features, targets, blocks = shown()
-    found = learn(features, targets, blocks, RIDGE)
-    mean, sd = found.predicted(features[5])
-    np.testing.assert_array_equal(found.only(slice(1, 3)).predicted(features[5]), [mean[1:], sd[1:]])
