@@ -26,10 +26,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.kernel.markers import apart
+from mbkf.kernel.markers import Apart, apart
 from mbkf.numerics.kalman import Information
 from mbkf.sensors.block import NO_DOFS, Block, Channels, Frame, Notes, OperatingPoint, State
-from mbkf.sensors.gating import ObservedDofs, gated
+from mbkf.sensors.gating import TRACK_LOSS_M, ObservedDofs, gated
 from mbkf.sensors.marker_sensor import JacobianInformation, MarkerInformation, MarkerReading, MarkerSensor
 from mbkf.sensors.skin import SkinMarkers
 from mbkf.sensors.states import AcceleratedState
@@ -166,6 +166,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         self._observed = ObservedDofs(sensor, unobservable)
         self._forget = 1.0 - np.exp(-dt_s / s.noise_memory_s)
         self._nv = sensor.model.nv
+        self._passes_m2 = s.gate * self.noise_m**2
 
     def begin(self) -> MarkerMemory:
         """The markers' own noise."""
@@ -183,7 +184,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         s, predicted = self.settings, at.prepared.positions_m
         found = apart(frame.markers_m, predicted, s.gate_radius_m)
         innovation = frame.markers_m - predicted if found is None else found.innovation_m
-        if found is not None and found.near:
+        if found is not None and (found.near or self._close(found, memory.noise_scale)):
             seen, trusted, squared, displaced, lost = found.seen, found.seen, found.squared_m2, None, False
         else:
             P = at.state.P[: self._nv, : self._nv]
@@ -203,6 +204,12 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
         return MarkerDecision(
             frame.markers_m, innovation, squared, trusted, memory.noise_scale, moved, memory.before_m
         )
+
+    def _close(self, found: Apart, noise_scale: float) -> bool:
+        """Whether no marker lies further off than its noise alone lets pass."""
+        limit = np.maximum(noise_scale * self._passes_m2, self.settings.gate_radius_m**2)
+        np.minimum(limit, TRACK_LOSS_M**2, out=limit)
+        return bool((found.squared_m2 <= limit).all())
 
     def inflate(self, P: Array, decision: MarkerDecision) -> None:
         """A displaced limb may be elsewhere, and move differently, than predicted."""
