@@ -46,7 +46,7 @@ the page shows these prompts to the person, and then the measurement.
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
-    from mbkf.cli.options import add_lag_option
+    from mbkf.cli.options import add_lag_option, add_spreads_option
 
     parser = subparsers.add_parser(
         "live",
@@ -73,6 +73,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("--filter", choices=("kinematic", "torque", "dynamic"), help="by default dynamic")
     parser.add_argument("--preset", metavar="NAME|FILE", help="settings, as for 'mbkf reconstruct'")
     add_lag_option(parser)
+    add_spreads_option(parser)
     parser.add_argument("--view", action="store_true", help="show it in the browser")
     parser.add_argument(
         "--seconds", type=float, metavar="S", help="end after this time, from the first frame"
@@ -123,7 +124,7 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         MbkfError: An input is unusable.
     """
-    from mbkf.cli.options import lag_seconds
+    from mbkf.cli.options import asked_spreads, lag_seconds
     from mbkf.cli.stopping import stopped_by_signal
     from mbkf.errors import InvalidInput
     from mbkf.io.atomic import check_folder
@@ -142,7 +143,10 @@ def run(args: argparse.Namespace) -> int:
     person = _person(args)
     folder = check_folder(args.out)
     settings = ReconstructSettings(
-        filter=args.filter or "dynamic", lag_s=lag_seconds(args), correct_markers=False
+        filter=args.filter or "dynamic",
+        lag_s=lag_seconds(args),
+        correct_markers=False,
+        spreads=asked_spreads(args),
     )
     if args.preset is not None:
         settings = with_preset(settings, args.preset, args.filter)

@@ -55,6 +55,25 @@ def add_lag_option(parser: argparse._ActionsContainer) -> None:
     )
 
 
+def add_spreads_option(parser: argparse._ActionsContainer) -> None:
+    """``--spreads``, for commands that tell standard deviations."""
+    parser.add_argument(
+        "--spreads",
+        default="all",
+        metavar="LIST",
+        help="standard deviations to tell besides those of configuration, velocity and reactions: torques, angles, "
+        "both with a comma (all, the default), or none; a frame costs less without",
+    )
+
+
+def asked_spreads(args: argparse.Namespace) -> tuple[str, ...]:
+    """What :func:`add_spreads_option` was given, by :attr:`ReconstructSettings.spreads`' names."""
+    from mbkf.filters.spread import ASKED
+
+    asked = {"all": ASKED, "none": ()}
+    return asked.get(args.spreads, tuple(args.spreads.split(",")))
+
+
 def lag_seconds(args: argparse.Namespace) -> float:
     """What :func:`add_lag_option` was given, in s; 0 if nothing.
 

@@ -29,7 +29,13 @@ writes summary.json, motion.h5, angles.mot, angles_lab.mot, torques.sto, reactio
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
-    from mbkf.cli.options import CAPTURE_FILES, FORCE_FILES, add_axes_options, add_lag_option
+    from mbkf.cli.options import (
+        CAPTURE_FILES,
+        FORCE_FILES,
+        add_axes_options,
+        add_lag_option,
+        add_spreads_option,
+    )
 
     parser = subparsers.add_parser(
         "reconstruct",
@@ -90,6 +96,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "the hands",
     )
     _add_angle_options(parser)
+    add_spreads_option(parser)
     add_axes_options(parser)
     parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
     parser.set_defaults(run=run)
@@ -126,7 +133,7 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         MbkfError: An input is unusable.
     """
-    from mbkf.cli.options import axes_options, lag_seconds
+    from mbkf.cli.options import asked_spreads, axes_options, lag_seconds
     from mbkf.cli.progress import stages
     from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
@@ -153,6 +160,7 @@ def run(args: argparse.Namespace) -> int:
         pelvis=args.pelvis,
         angles=args.angles,
         angles_zero=args.angles_zero,
+        spreads=asked_spreads(args),
         keep_covariance=truth is not None,
     )
     if args.preset is not None:

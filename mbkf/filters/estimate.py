@@ -161,8 +161,8 @@ class TrackingFilter(Protocol):
     def covariance(self, estimate: Posterior) -> Array:
         """(2 nv, 2 nv) covariance of (q, v)."""
 
-    def spread(self, estimate: Posterior) -> Spread:
-        """Standard deviations at an estimate."""
+    def spread(self, estimate: Posterior, torques: bool = True) -> Spread:
+        """Standard deviations at an estimate; without ``torques`` those of the generalised forces may be NaN."""
 
     def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) standard deviations of the feet's wrenches, NaN where the filter estimates none."""

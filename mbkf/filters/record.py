@@ -6,7 +6,7 @@ much again and is not waited for, by :meth:`FrameRecorder.spread` and :meth:`Fra
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from functools import cache
 from typing import NamedTuple
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array
 from mbkf.filters.body_errors import BodyErrorRoots, BodyErrors
 from mbkf.filters.estimate import Posterior, TrackingFilter
-from mbkf.filters.spread import Spread
+from mbkf.filters.spread import ASKED, Spread
 
 UNASKED = -9
 """Contact of the feet as it stands in a record of a filter that does not decide it."""
@@ -90,7 +90,7 @@ OFFSETS_HELD_S = 0.1
 """Offsets change with the posture and are worked out once in such a time."""
 
 MOTION = ("q", "v", "a", "wrench")
-SPREAD_AT_ONCE, SPREAD_LATER = ("position", "velocity", "torque"), ("angle", "rate", "foot_height")
+SPREAD_AT_ONCE = ("position", "velocity", "torque")
 
 
 def record_dtype(sizes: Mapping[str, int]) -> np.dtype:
@@ -149,15 +149,23 @@ class FrameRecorder:
         dtype: Type of a record.
     """
 
-    def __init__(self, filter: TrackingFilter, markers: int, body: BodyErrors | None = None) -> None:
+    def __init__(
+        self,
+        filter: TrackingFilter,
+        markers: int,
+        body: BodyErrors | None = None,
+        asked: Collection[str] = ASKED,
+    ) -> None:
         """Makes it.
 
         Args:
             filter: The filter.
             markers: Number of markers.
             body: What estimates err by because the person's body is not known exactly; None where that is not told.
+            asked: Which of the standard deviations :data:`mbkf.filters.spread.ASKED` are told; others are NaN.
         """
         self.filter, self._body = filter, HeldErrors(body, filter.dt_s)
+        self._asks_torques, self._asks_angles = (name in asked for name in ASKED)
         model = filter.model
         sizes = {"M": markers, "nq": model.nq, "nv": model.nv, "A": len(filter.clinical.names)}
         sizes |= {"B": len(model.description.bearings), "N": len(filter.clinical.ball_turns)}
@@ -205,8 +213,8 @@ class FrameRecorder:
         row["support"] = np.nan if posterior.support is None else posterior.support
         row["support_sd"] = self.filter.support_sd(posterior)
         by_body = self._body.of(int(row["number"][0]), posterior)
-        spread = replace(self.filter.spread(posterior), body=by_body())
-        for name in SPREAD_AT_ONCE:
+        spread = replace(self.filter.spread(posterior, self._asks_torques), body=by_body())
+        for name in SPREAD_AT_ONCE if self._asks_torques else ("position", "velocity"):
             row[f"{name}_sd"] = getattr(spread, name)
             row[f"{name}_offset"] = getattr(spread, f"{name}_offset")
         offset = spread.wrench_offset
@@ -224,8 +232,10 @@ class FrameRecorder:
 
     def spread(self, row: NDArray, spread: Spread) -> None:
         """Standard deviations of clinical coordinates, their rates and the height of the feet."""
-        for name in SPREAD_LATER:
-            row[f"{name}_sd"] = getattr(spread, name)
+        row["foot_height_sd"] = spread.foot_height
+        if not self._asks_angles:
+            return
         for name in ("angle", "rate"):
+            row[f"{name}_sd"] = getattr(spread, name)
             row[f"{name}_offset"] = getattr(spread, f"{name}_offset")
         row["ball_covariance"], row["ball_offset"] = spread.ball_covariance, spread.ball_offset

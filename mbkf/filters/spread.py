@@ -20,6 +20,10 @@ from mbkf.filters.coordinate_variances import CoordinateVariances
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
 
+ASKED = ("torques", "angles")
+"""Standard deviations that a trial or a stream need not ask for: of generalised forces, and of clinical coordinates and
+their rates. Those of configuration, velocity and the feet's wrenches cost next to nothing."""
+
 
 class SpreadReader:
     """Reads standard deviations off the covariances of a body's filter.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -15,6 +15,7 @@ from mbkf.filters.estimate import Posterior, Recording, TrackingFilter
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
 from mbkf.filters.lag import FixedLag
 from mbkf.filters.record import UNASKED, FrameRecorder, blank
+from mbkf.filters.spread import ASKED
 from mbkf.filters.tracking_loop import followed
 
 
@@ -97,6 +98,7 @@ def track(
     smoothing: SmoothingSettings | None = None,
     lag_s: float = 0.0,
     body: BodyErrors | None = None,
+    spreads: Collection[str] = ASKED,
     keep_covariance: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> Track:
@@ -108,13 +110,14 @@ def track(
         smoothing: How to smooth; None for the filter alone.
         lag_s: Without smoothing, how far later readings may correct a frame.
         body: What estimates err by because the person's body is not known exactly; None where that is not told.
+        spreads: Which of the standard deviations :data:`mbkf.filters.spread.ASKED` are told.
         keep_covariance: Whether to keep the full covariance of (q, v) of every frame.
         progress: Called with frames done and frames in all.
 
     Raises:
         NotObservable: In no frame do the markers fit the body.
     """
-    recorder, frames = FrameRecorder(filter, recording.markers_m.shape[1], body), len(recording)
+    recorder, frames = FrameRecorder(filter, recording.markers_m.shape[1], body, spreads), len(recording)
     rows = blank(recorder.dtype, frames)
     rows["number"] = np.arange(frames)
     size = 2 * filter.model.nv

@@ -113,6 +113,7 @@ def reconstruct(
             smoothing=settings.smoothing if settings.smooths else None,
             lag_s=settings.lag_s,
             body=inputs.body,
+            spreads=settings.spreads,
             keep_covariance=settings.keep_covariance,
             progress=None if progress is None else lambda done, total: progress("Filtering", done, total),
         )

@@ -11,6 +11,7 @@ from mbkf.filters.dynamic.settings import DynamicSettings
 from mbkf.filters.fixed_lag import SmoothingSettings
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.settings import flat
+from mbkf.filters.spread import ASKED
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.io.results import LAG_KEY
 from mbkf.kernel.loading import told
@@ -48,6 +49,8 @@ class ReconstructSettings:
         other_contacts: Whether parts besides the feet may bear load: a seat, a knee or a hand on the floor, a load in
             the hands. Only the dynamic filter knows of them.
         checks: Whether mass, plates, clocks and markers are checked against each other (:mod:`mbkf.pipelines.checks`).
+        spreads: Which standard deviations are told besides those of configuration, velocity and wrenches: "torques" and
+            "angles". Frames with an estimated load do not count as valid without those of the torques.
     """
 
     filter: str = "dynamic"
@@ -66,15 +69,20 @@ class ReconstructSettings:
     keep_covariance: bool = False
     other_contacts: bool = True
     checks: bool = True
+    spreads: tuple[str, ...] = ASKED
 
     def __post_init__(self) -> None:
-        """Refuses a lag that is no time, or beside smoothing.
+        """Refuses a lag that is no time, or beside smoothing, and standard deviations of something else.
 
         Raises:
             InvalidInput: It is so.
         """
         if not 0.0 <= self.lag_s < np.inf:
             raise InvalidInput(f"a lag of {self.lag_s:g} s is not possible: give a positive time")
+        if not set(self.spreads) <= set(ASKED):
+            raise InvalidInput(
+                f"standard deviations of {', '.join(self.spreads)} are not known; choose among {', '.join(ASKED)}"
+            )
         if self.smooth and self.lag_s > 0.0:
             raise InvalidInput(
                 "smoothing uses all later frames, so a lag is not possible beside it; choose one"

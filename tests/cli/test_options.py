@@ -7,6 +7,8 @@ import pytest
 from mbkf.cli.options import (
     add_axes_options,
     add_lag_option,
+    add_spreads_option,
+    asked_spreads,
     axes_options,
     check_positive,
     check_share,
@@ -30,6 +32,22 @@ def test_a_lag_is_given_in_milliseconds():
     assert lag_seconds(parser.parse_args(["--lag", "60"])) == pytest.approx(0.06)
     with pytest.raises(InvalidInput, match="--lag"):
         lag_seconds(parser.parse_args(["--lag=-5"]))
+
+
+@pytest.mark.parametrize(
+    "given, asked",
+    [
+        ([], ("torques", "angles")),
+        (["--spreads", "all"], ("torques", "angles")),
+        (["--spreads", "none"], ()),
+        (["--spreads", "angles"], ("angles",)),
+        (["--spreads", "angles,torques"], ("angles", "torques")),
+    ],
+)
+def test_spreads_are_all_told_unless_some_are_named(given, asked):
+    parser = argparse.ArgumentParser()
+    add_spreads_option(parser)
+    assert asked_spreads(parser.parse_args(given)) == asked
 
 
 @pytest.mark.parametrize("value", [-1.0, float("nan"), float("inf"), 0.0])

@@ -15,6 +15,7 @@ from mbkf.filters.record import (
     blank,
     record_dtype,
 )
+from mbkf.filters.spread import ASKED
 from mbkf.filters.tracking import Track, track_of
 from tests.dynamics import DT
 from tests.followed import estimates, inputs, made_filter, recording, tracked
@@ -111,3 +112,25 @@ def test_errors_by_the_body_are_held_for_a_while_and_found_when_asked(body, monk
     anew = found[frames + 1]._replace(started=True)
     assert held.of(frames + 1, anew)() is anew.q
     assert HeldErrors(None, DT).of(0, found[0])() is None
+
+
+@pytest.mark.parametrize("name", ["dynamic", "kinematic"])
+@pytest.mark.parametrize("asked", [(), ("torques",), ("angles",)])
+def test_spreads_that_are_not_asked_for_stay_unknown_and_the_others_as_they_are(name, asked):
+    """Those of configuration, velocity and wrenches are told in any case."""
+    tracking, found = estimates(name)
+    whole, part = (
+        FrameRecorder(tracking, recording().markers_m.shape[1], asked=one) for one in (ASKED, asked)
+    )
+    left_out = {"torques": ("torque_",), "angles": ("angle_", "rate_", "ball_")}
+    unknown = tuple(prefix for one in ASKED if one not in asked for prefix in left_out[one])
+    rows = []
+    for recorder in (whole, part):
+        row, spread = recorder.row(20, recording().markers_m[20], found[20], 0.0)
+        recorder.spread(row, spread)
+        rows.append(row)
+    for field in whole.dtype.names:
+        if field.startswith(unknown):
+            assert np.isfinite(rows[0][field]).all() and np.isnan(rows[1][field]).all()
+        else:
+            np.testing.assert_array_equal(rows[0][field], rows[1][field])

@@ -1,5 +1,6 @@
 """Prediction and update by the kernel are the textbook's; what it cannot factorise the reference does."""
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -215,3 +216,18 @@ def test_corrections_that_do_not_fit_are_refused():
         correction(P, np.zeros(5), np.zeros((1, 4)), np.zeros(1))
     with pytest.raises(ValueError, match="type or size"):
         correction(P, np.zeros(2), np.zeros((1, 3)), np.zeros(1))
+
+
+@needs_kernel
+def test_threads_do_not_share_memory_to_work_in():
+    """Its long calls let go of the interpreter's lock; each thread finds what it finds alone."""
+    made = []
+    for seed, N in enumerate((40, 120, 170, 90)):
+        rng = np.random.default_rng(seed)
+        made.append((covariance(rng, N), information(rng, N // 3, N), banded_rows(rng, 20, N)))
+    alone = [informed_with_rows(*one) for one in made]
+    with ThreadPoolExecutor(len(made)) as threads:
+        for _ in range(50):
+            together = list(threads.map(lambda one: informed_with_rows(*one), made))
+            for found, expected in zip(together, alone, strict=True):
+                np.testing.assert_array_equal(found, expected)

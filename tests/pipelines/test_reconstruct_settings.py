@@ -33,3 +33,10 @@ def test_a_lag_is_a_time_and_stands_alone(settings, why):
 def test_later_frames_are_used_unless_a_lag_or_the_causal_answer_is_asked_for(settings, smooths):
     chosen = ReconstructSettings(**settings)
     assert chosen.smooths is recorded(chosen)["smooth"] is smooths
+
+
+def test_spreads_of_something_else_are_refused():
+    assert ReconstructSettings().spreads == ("torques", "angles")
+    assert recorded(ReconstructSettings(spreads=()))["spreads"] == ()
+    with pytest.raises(InvalidInput, match="choose among torques, angles"):
+        ReconstructSettings(spreads=("torques", "forces"))

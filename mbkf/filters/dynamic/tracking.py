@@ -58,7 +58,8 @@ class DynamicTracking(TrackingFilter):
         self.clinical = self._reader.clinical
         self._unobservable = np.flatnonzero(kalman.unobservable)
         self._anywhere = self.model.posture_sd[self._unobservable] ** 2
-        self._read: tuple[Posterior, StateVariances] | None = None
+        self._read: tuple[Posterior, StateVariances, bool] | None = None
+        self._no_torques = np.zeros((0, 3 * self.model.nv + 12))
         self._smoothing: list[Array] = []  # memory that windows share
 
     def start(self, recording: Recording, t: int, guess: Array | None) -> Posterior | None:
@@ -97,23 +98,28 @@ class DynamicTracking(TrackingFilter):
         nv = self.model.nv
         return self._configuration(self.errors(estimate).covariance()[: 2 * nv, : 2 * nv])
 
-    def spread(self, estimate: Posterior) -> Spread:
+    def spread(self, estimate: Posterior, torques: bool = True) -> Spread:
         """Standard deviations; torques' from the whole state through Newton–Euler."""
-        found = self._variances(estimate)
+        found = self._variances(estimate, torques)
         parts = ConfigurationParts(found.height, found.blocks)
         q = _record(estimate).state.q
         return Spread(self._reader, q, found.position, found.velocity, found.torque, lambda: parts)
 
-    def _variances(self, estimate: Posterior) -> StateVariances:
-        """Variances of all that is read off an estimate; kept, since they are asked for one after the other."""
-        if self._read is not None and self._read[0] is estimate:
+    def _variances(self, estimate: Posterior, torques: bool = True) -> StateVariances:
+        """Variances of all that is read off an estimate; kept, since they are asked for one after the other.
+
+        Args:
+            estimate: The estimate.
+            torques: Whether the torques' are wanted; they may be NaN otherwise.
+        """
+        if self._read is not None and self._read[0] is estimate and (self._read[2] or not torques):
             return self._read[1]
-        step = _record(estimate)
-        state, loads, dofs = step.state, self.loads.of(step), self._reader.coordinates.dofs
-        torque = self.kalman.balance.torques(state.q, state.v, state.a, state.w)
-        by_state, shared = self.loads.torques(self.kalman.balance, torque, loads)
+        state, dofs = _record(estimate).state, self._reader.coordinates.dofs
+        by_state, shared = self._torques(estimate) if torques else (self._no_torques, None)
         rise = self._reader.rise_jacobian(state.q)
         found = state_variances(self.errors(estimate), by_state, rise, dofs)
+        if not torques:
+            found = found._replace(torque=np.full(self.model.nv, np.nan))
         if shared is not None:
             found.torque[:] += shared
         if len(self._unobservable):
@@ -122,8 +128,15 @@ class DynamicTracking(TrackingFilter):
             found.position[:] += anywhere
             found.height[:] += rise**2 @ anywhere
             np.einsum("bii->bi", found.blocks)[:] += anywhere[dofs]
-        self._read = estimate, found
+        self._read = estimate, found, torques
         return found
+
+    def _torques(self, estimate: Posterior) -> tuple[Array, Array | None]:
+        """(nv, n) derivative of the torques by the state, and what sharing a load adds to their variances."""
+        step, balance = _record(estimate), self.kalman.balance
+        state = step.state
+        torque = balance.torques(state.q, state.v, state.a, state.w)
+        return self.loads.torques(balance, torque, self.loads.of(step))
 
     def _configuration(self, P: Array) -> Array:
         """A covariance (nv, nv) or more with what unobservable dofs may be, in place."""
@@ -195,7 +208,7 @@ class DynamicTracking(TrackingFilter):
 
     def wrench_sd(self, estimate: Posterior) -> Array:
         """(2, 6) standard deviations of the feet's wrenches."""
-        return root(self._variances(estimate).wrench).reshape(2, 6)
+        return root(self._variances(estimate, torques=False).wrench).reshape(2, 6)
 
     def support_sd(self, estimate: Posterior) -> Array:
         """(B, 6) from the state's covariance, and from how the parts that bear share their load."""

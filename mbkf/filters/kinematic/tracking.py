@@ -154,12 +154,12 @@ class KinematicTracking(TrackingFilter):
         """(2 nv, 2 nv) of (q, v)."""
         return _record(estimate).state.P
 
-    def spread(self, estimate: Posterior) -> Spread:
+    def spread(self, estimate: Posterior, torques: bool = True) -> Spread:
         """Standard deviations; torques as far as accelerations cause them, NaN at a start."""
         inner = _record(estimate)
         q, P, nv = inner.state.q, inner.state.P, self.model.nv
         torque = np.full(nv, np.nan)
-        if inner.step is not None and inner.before is not None:
+        if torques and inner.step is not None and inner.before is not None:
             change = VelocityStep(inner.before, inner.step, self.kalman.plant).covariance
             torque = self._reader.torque_variance(q, change, self.dt_s)
         variance = np.diagonal(P)

@@ -102,8 +102,9 @@ class TorqueTracking(TrackingFilter):
         nv = self.model.nv
         return _record(estimate).state.filtered.P[: 2 * nv, : 2 * nv]
 
-    def spread(self, estimate: Posterior) -> Spread:
+    def spread(self, estimate: Posterior, torques: bool = True) -> Spread:
         """Standard deviations; torques are states of this filter."""
+        del torques
         state = _record(estimate).state
         P, nv = self.covariance(estimate), self.model.nv
         return Spread(

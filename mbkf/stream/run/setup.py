@@ -89,6 +89,6 @@ def prepare(
         live,
         LiveFilter(chosen, settings.lag_s),
         FrameMaker(live, stream.rate_hz),
-        FrameRecorder(chosen, len(live.names), live.inputs.body),
+        FrameRecorder(chosen, len(live.names), live.inputs.body, settings.spreads),
         None if stream.marker_names else PointNames(subject, live.names, 1.0 / stream.rate_hz, patient, note),
     )

@@ -11,6 +11,7 @@ from mbkf.sensors.contact.possible import (
     ANYWHERE_M,
     BEYOND_M,
     Fault,
+    all_possible,
     impossible,
     reaches,
     without_impossible,
@@ -85,6 +86,21 @@ def test_each_plate_has_its_own_reach():
     wrench = np.tile(WEIGHT_N * np.array([0.0, 0.0, 1.0, 5.0, 0.0, 0.0]), (3, 2, 1))
     found = impossible(wrench, WEIGHT_N, np.array([0.8, 20.0]))
     assert found.tolist() == [[Fault.MOMENT, Fault.NONE]] * 3
+
+
+@pytest.mark.usefixtures("either_kernel")
+@pytest.mark.parametrize("worst", [0.0, 0.5, 1.0, 2.0, 5.0, 25.0, np.nan, np.inf])
+def test_readings_are_all_possible_where_none_is_impossible(worst):
+    """Each component in turn grows until it cannot be; plates have reaches of their own."""
+    reach_m, judged = np.array([0.8, 3.0]), set()
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        wrench = WEIGHT_N * np.tile([0.1, 0.1, 1.0, 0.1, 0.1, 0.05], (4, 2, 1))
+        wrench[tuple(rng.integers((4, 2, 6)))] = worst * WEIGHT_N * rng.choice([-1.0, 1.0])
+        expected = not impossible(wrench, WEIGHT_N, reach_m).any()
+        assert all_possible(wrench, WEIGHT_N, reach_m) is expected
+        judged.add(expected)
+    assert judged == ({True} if worst == 0.0 else {True, False} if worst <= 5.0 else {False})
 
 
 def test_a_frame_is_judged_about_each_plates_own_origin():

@@ -65,6 +65,26 @@ def test_means_are_those_of_the_whole_trial(rate_hz, frames_from_s, plates_after
         np.testing.assert_array_equal(buffer.mean(number), expected[number])
 
 
+@pytest.mark.usefixtures("either_kernel")
+@pytest.mark.parametrize("rate_hz", [100.0, 1234.5])
+def test_means_are_a_whole_trial_s_by_either_kernel(rate_hz):
+    """Round the ring, and with a plate that was not read for a while."""
+    plates = plates_of(rate_hz, int(3.0 * rate_hz))
+    values, index = readings(plates), np.arange(int(3.0 * rate_hz))
+    values[len(values) // 2 : len(values) // 2 + 50, 1] = np.nan
+    known = [
+        replace(plate, force_n=values[:, k, :3], moment_nm=values[:, k, 3:]) for k, plate in enumerate(plates)
+    ]
+    expected = plate_wrenches(known, np.arange(299) / RATE_HZ, RATE_HZ)
+    assert np.isnan(expected).any()
+    buffer = buffer_of(plates)
+    for number in range(299):
+        sent = 0 if buffer.newest is None else buffer.newest + 1
+        until = min(int((number + 0.5) / RATE_HZ * rate_hz) + 2, len(values))
+        buffer.put(PlateSamples(index[sent:until], values[sent:until]))
+        np.testing.assert_array_equal(buffer.mean(number), expected[number])
+
+
 @pytest.mark.parametrize("number", [403, 1612, 1617])
 def test_a_sample_past_the_end_of_a_frame_changes_nothing(number):
     """These frames' ends lie a rounding error behind a sample."""
