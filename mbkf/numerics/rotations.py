@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from mbkf.conventions import Array
 
 SMALL_TURN_RAD = 0.15
 """Below this a series is more exact than the closed form."""
+
+
+_DIAGONAL = np.diag_indices(3)
 
 
 def skew(vectors: Array) -> Array:
@@ -80,9 +85,9 @@ def travel_by_turn(u: Array, w: Array) -> Array:
         w: (3,) turn, rad.
     """
     t2 = float(w @ w)
-    t = np.sqrt(t2)
+    t = math.sqrt(t2)
     if t > SMALL_TURN_RAD:
-        s, c = np.sin(t), np.cos(t)
+        s, c = math.sin(t), math.cos(t)
         c1 = (t - s) / t**3
         c2 = (t2 + 2.0 * c - 2.0) / (2.0 * t**4)
         c3 = (2.0 * t - 3.0 * s + t * c) / (2.0 * t**5)
@@ -90,9 +95,10 @@ def travel_by_turn(u: Array, w: Array) -> Array:
         c1 = 1.0 / 6.0 - t2 / 120.0 * (1.0 - t2 / 42.0 * (1.0 - t2 / 72.0))
         c2 = 1.0 / 24.0 - t2 / 720.0 * (1.0 - t2 / 56.0 * (1.0 - t2 / 90.0))
         c3 = 1.0 / 120.0 - t2 / 2520.0 * (1.0 - t2 / 48.0 * (1.0 - t2 * 7.0 / 550.0))
-    U, W = skew(-u), skew(-w)
-    WU, UW = W @ U, U @ W
-    WUW = WU @ W
-    return np.asarray(
-        0.5 * U + c1 * (WU + UW + WUW) + c2 * (W @ WU + UW @ W - 3.0 * WUW) + c3 * (WUW @ W + W @ WUW)
-    )
+    # With W = [−w]×, U = [−u]×: WU + UW = wuᵀ + uwᵀ − 2d I, WUW = −d W, W²U + UW² = −t² U − d W.
+    d = float(w @ u)
+    x, y, z = ((0.5 - c2 * t2) * u + (2.0 * c2 - c1) * d * w).tolist()
+    crossed = np.outer(w, c1 * u - c3 * d * w)
+    found = crossed + crossed.T + np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
+    found[_DIAGONAL] += 2.0 * d * (c3 * t2 - c1)
+    return np.asarray(found)
