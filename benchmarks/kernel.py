@@ -40,7 +40,7 @@ MOTIONS = (
     "kneel",
 )
 SEEDS, QUICK_SEEDS, QUICK_MOTIONS = 6, 1, ("squat", "jump")
-SECONDS = 2.5
+SECONDS = 4.0
 TIMES = ("step_seconds",)
 """Arrays of wall time, which differ from run to run."""
 
