@@ -1,0 +1,125 @@
+"""`mbkf batch`: many trials, on this computer or a cluster."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+_EPILOG = """\
+examples:
+  mbkf batch study --out results
+  mbkf batch trials.csv --out results --workers 8
+  mbkf batch trials.toml --out results --dask tcp://10.0.0.1:8786    (a cluster's scheduler; "local" for this computer)
+  mbkf batch study --out results --shard 3/16                        (one of 16 jobs that know nothing of each other)
+
+A folder with captures (.c3d, .trc) is a session; the first folder on the way to it names the person. Standing trials
+are known by their names (static, calibration, t-pose, …), ground reactions lie beside their trial under its name with
+"grf" or "forces", and session.toml states mass_kg, height_m and protocol where captures and plates do not.
+A list names them instead:
+
+  subject,trial,static,forces,mass_kg                    [[subject]]
+  P01,P01/walk1.c3d,P01/static.c3d,,71.2                 name = "P01"
+  P01,P01/walk2.c3d,,,                                   static = "P01/static.c3d"
+                                                         trials = ["P01/walk1.c3d", "P01/walk2.c3d"]
+
+Results stand in DIR/SUBJECT[/SESSION]/TRIAL; DIR/summary.csv has a row per trial, DIR/curves.csv all gait cycles at 0
+to 100 %, both as .parquet, too. What is done and unchanged is not done again. A bad file costs only itself: its reason
+stands in the table.
+"""
+
+EXIT_FAILED = 1
+"""Some trial failed."""
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Adds the command to the command line."""
+    from mbkf.cli.options import add_lag_option, add_spreads_option
+
+    parser = subparsers.add_parser(
+        "batch",
+        help="many trials: a folder per trial, tables over all",
+        description="Scale every person once, reconstruct every trial, and make tables of all of them.",
+        epilog=_EPILOG,
+    )
+    parser.add_argument("source", metavar="FOLDER|LIST", help="folder of captures, or a list in TOML or CSV")
+    parser.add_argument(
+        "--workers", type=int, metavar="N", help="processes, one thread each (default: one per processor)"
+    )
+    parser.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler whose workers do it; or local")
+    parser.add_argument(
+        "--shard",
+        metavar="I/N",
+        help="only every N-th trial, from the I-th on; without it the tables of all are made",
+    )
+    parser.add_argument("--filter", choices=("kinematic", "torque", "dynamic"), help="by default dynamic")
+    parser.add_argument("--preset", metavar="NAME|FILE", help="settings, as for 'mbkf reconstruct'")
+    later = parser.add_mutually_exclusive_group()
+    later.add_argument("--causal", action="store_true", help="use no later frame")
+    add_lag_option(later)
+    add_spreads_option(parser)
+    parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Runs the batch and prints what failed.
+
+    Raises:
+        MbkfError: The list is damaged, or there is nothing to do.
+    """
+    from mbkf.cli.options import asked_spreads, lag_seconds
+    from mbkf.cli.progress import stages
+    from mbkf.pipelines.batch.run import batch
+    from mbkf.pipelines.presets import with_preset
+    from mbkf.pipelines.reconstruct_settings import ReconstructSettings
+
+    settings = ReconstructSettings(
+        filter=args.filter or "dynamic",
+        smooth=not args.causal and args.lag is None,
+        lag_s=lag_seconds(args),
+        spreads=asked_spreads(args),
+    )
+    if args.preset is not None:
+        settings = with_preset(settings, args.preset, args.filter)
+    with stages() as report:
+        table = batch(
+            args.source,
+            args.out,
+            workers=args.workers,
+            dask=args.dask,
+            shard=shard_of(args.shard),
+            settings=settings,
+            progress=report,
+        )
+    return _told(table, args.out)
+
+
+def shard_of(text: str | None) -> tuple[int, int] | None:
+    """(I, N) of a text ``I/N``.
+
+    Raises:
+        InvalidInput: It is not one.
+    """
+    from mbkf.errors import InvalidInput
+
+    if text is None:
+        return None
+    number, _, count = text.partition("/")
+    if not (number.isascii() and number.isdecimal() and count.isascii() and count.isdecimal()):
+        raise InvalidInput(f"--shard is I/N, such as 3/16, not '{text}'")
+    return int(number), int(count)
+
+
+def _told(table: pa.Table, out: str) -> int:
+    """Prints how many trials were done, and why others were not."""
+    statuses = table["status"].to_pylist()
+    for row in table.select(["folder", "status", "reason"]).to_pylist():
+        if row["status"] == "failed":
+            print(f"failed: {row['folder']}: {row['reason']}", file=sys.stderr)
+    done, unchanged, failed = (statuses.count(status) for status in ("done", "unchanged", "failed"))
+    print(f"{out}: {done} trials done, {unchanged} unchanged, {failed} failed")
+    return EXIT_FAILED if failed else 0

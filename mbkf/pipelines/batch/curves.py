@@ -1,0 +1,132 @@
+"""Curves over gait cycles as a tidy table: a row per cycle, quantity and per cent, with its standard deviation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from mbkf.conventions import Array
+from mbkf.io.atomic import replacing
+from mbkf.io.results import Reconstruction
+from mbkf.io.results_opensim import TRANSLATIONS
+from mbkf.pipelines.gait.cycles import POINTS, Cycle, find_gait, over_cycle
+
+SIDES, ENDINGS = ("right", "left"), ("_r", "_l")
+AXES, ROOT = "xyz", "pelvis_"
+
+_WORD = pa.dictionary(pa.int32(), pa.string())
+SCHEMA = pa.schema(
+    [
+        ("side", _WORD),
+        ("cycle", pa.int32()),
+        ("start_s", pa.float64()),
+        ("duration_s", pa.float64()),
+        ("toe_off_percent", pa.float32()),
+        ("measured", pa.bool_()),
+        ("valid", pa.bool_()),
+        ("quantity", _WORD),
+        ("name", _WORD),
+        ("unit", _WORD),
+        ("percent", pa.int8()),
+        ("value", pa.float32()),
+        ("sd", pa.float32()),
+    ]
+)
+"""Columns of a trial's curves. side, cycle: whose cycle, and the how-manieth of that side from 1. start_s, duration_s,
+toe_off_percent: of the cycle. measured, valid: whether every load in it was measured, and every torque known
+(:attr:`Reconstruction.measured`, ``valid``). quantity: angle, torque, power or reaction. name: the coordinate, without
+its side, or the axis of the force. percent: 0 to 100 of the cycle. value, sd: in ``unit``."""
+
+
+class Curve(NamedTuple):
+    """A quantity over a trial, and its standard deviation, (T,) each."""
+
+    quantity: str
+    name: str
+    unit: str
+    value: Array
+    sd: Array
+
+
+def write_curves(r: Reconstruction, path: Path) -> None:
+    """Writes the curves of a reconstruction's gait cycles as Parquet; without gait a table without rows.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+    with replacing(path) as partial:
+        pq.write_table(curves_of(r), partial, compression="zstd")
+
+
+def curves_of(r: Reconstruction) -> pa.Table:
+    """The curves of a reconstruction's gait cycles (:data:`SCHEMA`): those of the cycle's side, and of the trunk."""
+    gait = find_gait(r)
+    tables = []
+    for side in range(2):
+        cycles = () if gait is None else gait.of(side)
+        curves = list(_curves(r, side)) if cycles else []
+        tables += [_table(r, cycle, number, curves) for number, cycle in enumerate(cycles, start=1)]
+    return pa.concat_tables(tables).unify_dictionaries() if tables else SCHEMA.empty_table()
+
+
+def _curves(r: Reconstruction, side: int) -> Iterator[Curve]:
+    """What is told of cycles of a side."""
+    own, other = ENDINGS[side], ENDINGS[1 - side]
+    for name in r.coordinate_names:
+        if name.endswith(other):
+            continue
+        told = name.removesuffix(own)
+        if name in TRANSLATIONS:
+            yield Curve("angle", told, "m", r.angle(name), r.angle_sd(name))
+            continue
+        yield Curve("angle", told, "deg", np.rad2deg(r.angle(name)), np.rad2deg(r.angle_sd(name)))
+        if name.startswith(ROOT):  # what stands there is a residual
+            continue
+        yield Curve("torque", told, "N m", r.moment(name), r.moment_sd(name))
+        yield Curve("power", told, "W", r.power(name), r.power_sd(name))
+    unknown = np.full(len(r.times_s), np.nan)
+    for k, axis in enumerate(AXES):
+        sd = unknown if r.foot_wrench_sd is None else r.foot_wrench_sd[:, side, k]
+        yield Curve("reaction", f"force_{axis}", "N", r.foot_wrench[:, side, k], sd)
+
+
+def _table(r: Reconstruction, cycle: Cycle, number: int, curves: list[Curve]) -> pa.Table:
+    """One cycle's rows."""
+    n = len(curves)
+    inside = (r.times_s >= cycle.start_s) & (r.times_s <= cycle.end_s)
+    values, spreads = (
+        np.concatenate([over_cycle(r.times_s, values, cycle) for values in column])
+        for column in ([c.value for c in curves], [c.sd for c in curves])
+    )
+
+    def same(value: object) -> list[object]:
+        return [value] * (n * POINTS)
+
+    def each(words: list[str]) -> pa.Array:
+        distinct = list(dict.fromkeys(words))
+        places = np.repeat([distinct.index(word) for word in words], POINTS).astype(np.int32)
+        return pa.DictionaryArray.from_arrays(pa.array(places), pa.array(distinct))
+
+    return pa.table(
+        {
+            "side": each([SIDES[cycle.side]] * n),
+            "cycle": same(number),
+            "start_s": same(cycle.start_s),
+            "duration_s": same(cycle.seconds),
+            "toe_off_percent": same(cycle.off_percent),
+            "measured": same(bool(r.measured[inside].all())),
+            "valid": same(bool(r.valid[inside].all())),
+            "quantity": each([c.quantity for c in curves]),
+            "name": each([c.name for c in curves]),
+            "unit": each([c.unit for c in curves]),
+            "percent": np.tile(np.arange(POINTS, dtype=np.int8), n),
+            "value": values.astype(np.float32),
+            "sd": spreads.astype(np.float32),
+        },
+        schema=SCHEMA,
+    )

@@ -1,0 +1,62 @@
+"""What a result was made from, so that what is done and unchanged is not done again: files by their contents."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from mbkf.io.atomic import replacing
+from mbkf.version import __version__
+
+RECORD = "batch.json"
+"""File in a result's folder that says what it was made from."""
+
+
+def fingerprint(files: Sequence[Path], settings: Mapping[str, object]) -> dict[str, object]:
+    """What a result follows from: contents of files, settings and version, as plain data.
+
+    Args:
+        files: The inputs.
+        settings: Plain data.
+
+    Raises:
+        OSError: A file cannot be read.
+    """
+    return {
+        "files": {str(file): _digest(file) for file in files},
+        "settings": json.loads(json.dumps(settings, default=str)),
+        "version": __version__,
+    }
+
+
+def is_made_from(record: Path, made_from: Mapping[str, object]) -> bool:
+    """Whether a record says that its result was made from the same; file names do not count, contents do."""
+    try:
+        found = json.loads(record.read_text(encoding="utf-8"))
+        return _contents(found) == _contents(made_from)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return False
+
+
+def write_record(record: Path, made_from: Mapping[str, object]) -> None:
+    """Writes what a result was made from.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+    with replacing(record) as partial:
+        partial.write_text(json.dumps(made_from, indent=2) + "\n", encoding="utf-8")
+
+
+def _contents(made_from: Mapping[str, object]) -> tuple[list[object], object, object]:
+    files = made_from["files"]
+    if not isinstance(files, dict):
+        raise TypeError("the files' contents are a table")
+    return list(files.values()), made_from["settings"], made_from["version"]
+
+
+def _digest(file: Path) -> str:
+    with file.open("rb") as opened:
+        return hashlib.file_digest(opened, "sha256").hexdigest()

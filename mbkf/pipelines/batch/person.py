@@ -1,0 +1,103 @@
+"""One person of a batch scaled: from a standing trial, or from the moving ones, and weighed where no mass is stated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from mbkf.errors import FileFormatError, InvalidInput, MbkfError
+from mbkf.io.capture import read_capture
+from mbkf.io.records import Capture
+from mbkf.io.subject import Subject, write_subject
+from mbkf.pipelines.batch.inputs import fingerprint, is_made_from, write_record
+from mbkf.pipelines.batch.plan import Files, Person
+from mbkf.pipelines.scale import scale
+from mbkf.pipelines.weighing import PROVISIONAL_KG, weighed
+
+SUBJECT_FILE, RECORD = "subject.toml", "subject.json"
+"""Files of a scaled person in the person's folder: the body, and what it was made from."""
+
+
+def subject_of(person: Person, out: Path) -> Path:
+    """The person's subject file: the one given, the one made before from the same, or a new one.
+
+    Args:
+        person: The person.
+        out: The batch's folder.
+
+    Raises:
+        MbkfError: The person cannot be scaled.
+        OSError: A file cannot be read or written.
+    """
+    if person.subject is not None:
+        return person.subject
+    place = out / person.place
+    used = [Files(path) for path in person.statics[:1]]
+    used += person.moving if not used or person.mass_kg is None else ()
+    if not used:
+        raise FileFormatError(place, "the person has no trial to scale from")
+    made_from = fingerprint([file for pair in used for file in pair if file is not None], _stated(person))
+    if is_made_from(place / RECORD, made_from) and (place / SUBJECT_FILE).is_file():
+        return place / SUBJECT_FILE
+    (place / RECORD).unlink(missing_ok=True)
+    subject = scaled(person)
+    place.mkdir(parents=True, exist_ok=True)
+    write_subject(subject, place / SUBJECT_FILE)
+    write_record(place / RECORD, made_from)
+    return place / SUBJECT_FILE
+
+
+def scaled(person: Person) -> Subject:
+    """The person's body: by the first standing trial, else by the moving ones.
+
+    Raises:
+        MbkfError: No trial can be read, or they do not tell body or mass.
+        OSError: A file cannot be read.
+    """
+    static = read_capture(person.statics[0]) if person.statics else None
+    trials = [] if static is not None else _readable(person.moving)
+    captures = [*([] if static is None else [static]), *trials]
+    stated = person.mass_kg is not None or any(one.subject_mass_kg is not None for one in captures)
+    subject = scale(
+        static,
+        trials,
+        mass_kg=person.mass_kg if stated else PROVISIONAL_KG,
+        height_m=person.height_m,
+        protocol=person.protocol,
+    )
+    if stated:
+        return subject
+    if not any(capture.plates for capture in captures):
+        captures = _readable(person.moving)
+    try:
+        return weighed(subject, captures)
+    except InvalidInput as error:
+        raise InvalidInput(
+            f"no capture tells the body mass; state mass_kg in session.toml or in the list ({error})"
+        ) from error
+
+
+def _readable(trials: Sequence[Files]) -> list[Capture]:
+    """Those captures that can be read and hold markers.
+
+    Raises:
+        MbkfError: Not one can be; the first one's reason.
+    """
+    found, why = [], None
+    for path, forces in trials:
+        try:
+            capture = read_capture(path, forces=forces)
+        except MbkfError as error:
+            why = why or error
+            continue
+        if np.isfinite(capture.markers.positions_m).any():
+            found.append(capture)
+    if not found and why is not None:
+        raise why
+    return found
+
+
+def _stated(person: Person) -> Mapping[str, object]:
+    return {"mass_kg": person.mass_kg, "height_m": person.height_m, "protocol": person.protocol}

@@ -1,0 +1,127 @@
+"""What a batch is to do: the persons of each session, and their trials."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+from mbkf.errors import InvalidInput
+
+FORBIDDEN = re.compile(r'[/\\:*?"<>|\x00-\x1f]')
+"""What no system allows in a folder's name."""
+
+
+MOST_MOVING = 3
+"""So many trials are scaled from where there is no standing one, or weighed by where that one has no plates."""
+
+
+class Files(NamedTuple):
+    """A capture, and the ground reactions beside it; None for those of the capture itself."""
+
+    path: Path
+    forces: Path | None = None
+
+
+@dataclass(frozen=True)
+class Person:
+    """A person in one session, who is scaled once.
+
+    Attributes:
+        name: The person's name or code.
+        session: Name of the session; empty for a person with one.
+        statics: Standing trials; the first one is used.
+        moving: The first moving trials, :data:`MOST_MOVING` at most.
+        mass_kg: Body mass; None for what the captures state, else what their plates tell.
+        height_m: Body height; None where it is not known.
+        protocol: Marker protocol; None for the one that the names belong to.
+        subject: A subject file to take instead of scaling.
+    """
+
+    name: str
+    session: str = ""
+    statics: tuple[Path, ...] = ()
+    moving: tuple[Files, ...] = ()
+    mass_kg: float | None = None
+    height_m: float | None = None
+    protocol: str | None = None
+    subject: Path | None = None
+
+    @property
+    def place(self) -> Path:
+        """Where the person's results stand in the batch's folder."""
+        return Path(self.name, self.session) if self.session else Path(self.name)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One trial of a person.
+
+    Attributes:
+        person: Whose it is.
+        path: The capture.
+        forces: Ground reactions beside it; None for those of the capture itself.
+        name: Its folder's name among the person's trials.
+    """
+
+    person: Person
+    path: Path
+    forces: Path | None = None
+    name: str = ""
+
+    @property
+    def place(self) -> Path:
+        """Where its results stand in the batch's folder."""
+        return self.person.place / (self.name or self.path.stem)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """All trials of a batch, and with them the persons."""
+
+    trials: tuple[Trial, ...]
+
+    @property
+    def persons(self) -> tuple[Person, ...]:
+        """Those whose trials these are, in their order."""
+        return tuple(dict.fromkeys(trial.person for trial in self.trials))
+
+    def shard(self, number: int, count: int) -> Plan:
+        """Every ``count``-th trial, from the ``number``-th (from 1) on.
+
+        Raises:
+            InvalidInput: There is no such shard.
+        """
+        if not 1 <= number <= count:
+            raise InvalidInput(f"there is no shard {number}/{count}; give 1/{count} to {count}/{count}")
+        return Plan(self.trials[number - 1 :: count])
+
+
+def planned(trials: Sequence[Trial], where: str) -> Plan:
+    """The plan of trials, each in a place of its own.
+
+    Args:
+        trials: They.
+        where: File or folder that they were read from, for messages.
+
+    Raises:
+        InvalidInput: There are none, two have the same place, or a name cannot be a folder's.
+    """
+    if not trials:
+        raise InvalidInput(
+            f"{where}: no trial was found; see mbkf batch --help for what a folder or list holds"
+        )
+    places: dict[Path, Path] = {}
+    for trial in trials:
+        for name in (trial.person.name, trial.person.session, trial.name):
+            if name in {".", ".."} or FORBIDDEN.search(name):
+                raise InvalidInput(f"{where}: '{name}' cannot be a folder's name")
+        other = places.setdefault(trial.place, trial.path)
+        if other != trial.path:
+            raise InvalidInput(
+                f"{where}: {trial.path} and {other} would both be written to {trial.place}; give one another name"
+            )
+    unique = {trial.place: trial for trial in trials}
+    return Plan(tuple(unique.values()))

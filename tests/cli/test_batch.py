@@ -1,0 +1,42 @@
+"""`mbkf batch` tells what failed, and by its exit code whether anything did."""
+
+import pytest
+
+from mbkf.cli.batch import shard_of
+from mbkf.cli.main import main
+from mbkf.errors import InvalidInput
+from tests.studies import study
+
+pytestmark = pytest.mark.slow
+
+
+def run(*words) -> int:
+    return main(["batch", *(str(word) for word in words)])
+
+
+def test_a_study_is_done_and_failures_are_told(tmp_path, capsys):
+    source, out = study(tmp_path / "study"), tmp_path / "out"
+    words = (source, "--out", out, "--workers", "1", "--filter", "kinematic", "--causal", "--spreads", "none")
+    assert run(*words) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == f"{out}: 1 trials done, 0 unchanged, 0 failed"
+    assert (out / "P1" / "walk1" / "summary.json").is_file() and (out / "summary.csv").is_file()
+    (source / "P1" / "bad.c3d").write_bytes(b"nothing")
+    assert run(*words) == 1
+    shown = capsys.readouterr()
+    assert shown.out.splitlines()[-1] == f"{out}: 0 trials done, 1 unchanged, 1 failed"
+    assert shown.err.startswith("failed: P1/bad: ")
+
+
+def test_nothing_to_do_is_bad_input(tmp_path, capsys):
+    assert run(tmp_path, "--out", tmp_path / "out") == 2
+    assert "no trial was found" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("text", ["3", "a/b", "3/", "/16", "-1/3", "3/16/2", "1.5/2", "²/3"])
+def test_a_shard_is_two_numbers(text):
+    with pytest.raises(InvalidInput, match="--shard"):
+        shard_of(text)
+
+
+def test_a_shard_is_read():
+    assert shard_of("3/16") == (3, 16) and shard_of(None) is None

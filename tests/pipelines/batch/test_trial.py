@@ -1,0 +1,81 @@
+"""A trial's folder appears whole or not at all, and only once from the same."""
+
+import errno
+import os
+
+import pytest
+
+from mbkf.io.results_folder import read_reconstruction
+from mbkf.pipelines.batch import trial as module
+from mbkf.pipelines.batch.inputs import RECORD
+from mbkf.pipelines.batch.plan import Person, Trial
+from mbkf.pipelines.batch.trial import CURVES_FILE, PARTIAL, remove_partial, trial_done
+from mbkf.pipelines.reconstruct_settings import ReconstructSettings
+from tests.captures import snapshot
+from tests.studies import walk_folder
+
+SETTINGS = ReconstructSettings(filter="kinematic", smooth=False)
+
+
+@pytest.fixture
+def task(tmp_path):
+    trial = Trial(Person("P"), walk_folder() / "trial.c3d", name="walk")
+    return trial, walk_folder() / "subject.toml", tmp_path
+
+
+def test_a_trial_is_done_once_from_the_same(task, tmp_path):
+    assert trial_done(*task, SETTINGS)
+    folder = tmp_path / "P" / "walk"
+    assert {RECORD, CURVES_FILE, "summary.json", "motion.h5"} <= {path.name for path in folder.iterdir()}
+    assert read_reconstruction(folder).filter == "kinematic"
+    before = snapshot(tmp_path)
+    assert not trial_done(*task, SETTINGS) and snapshot(tmp_path) == before
+    assert trial_done(*task, ReconstructSettings(filter="dynamic", smooth=False))
+    assert read_reconstruction(folder).filter == "dynamic"
+    assert [path.name for path in (tmp_path / "P").iterdir()] == ["walk"]
+
+
+@pytest.mark.parametrize("fails", ["write_reconstruction", "write_curves", "write_record"])
+@pytest.mark.parametrize("earlier", [False, True])
+def test_a_full_disk_leaves_nothing_half_written(task, tmp_path, monkeypatch, fails, earlier):
+    """Nor touches what an earlier run left."""
+    if earlier:
+        trial_done(*task, SETTINGS)
+    before = snapshot(tmp_path / "P") if earlier else {}
+    original = getattr(module, fails)
+
+    def full(*args):
+        if fails == "write_record":
+            args[0].parent.mkdir(exist_ok=True)
+        else:
+            original(*args)
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(module, fails, full)
+    with pytest.raises(OSError, match="No space left"):
+        trial_done(*task, ReconstructSettings(filter="kinematic", smooth=False, correct_markers=False))
+    assert snapshot(tmp_path / "P") == before
+
+
+def test_a_folder_that_cannot_be_put_in_place_leaves_the_earlier_one(task, tmp_path, monkeypatch):
+    trial_done(*task, SETTINGS)
+    before = snapshot(tmp_path)
+    rename = type(tmp_path).rename
+
+    def refused(self, target):
+        if self.name.startswith(PARTIAL) and not self.name.endswith("-earlier"):
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+        return rename(self, target)
+
+    monkeypatch.setattr(type(tmp_path), "rename", refused)
+    with pytest.raises(PermissionError):
+        trial_done(*task, ReconstructSettings(filter="kinematic", smooth=False, correct_markers=False))
+    assert snapshot(tmp_path) == before
+
+
+def test_what_killed_workers_left_is_removed_and_nothing_else(tmp_path):
+    for name in (f"P/{PARTIAL}walk-1", f"P/monday/{PARTIAL}walk-2", "P/walk", "P/monday/walk"):
+        (tmp_path / name).mkdir(parents=True)
+        (tmp_path / name / "motion.h5").touch()
+    remove_partial(tmp_path)
+    assert {path.name for path in tmp_path.rglob("*")} == {"P", "monday", "walk", "motion.h5"}

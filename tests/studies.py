@@ -1,0 +1,29 @@
+"""A study as a laboratory keeps it: walks of synthetic persons with their standing trials, made once."""
+
+from functools import cache
+from pathlib import Path
+from tempfile import mkdtemp
+
+from mbkf.pipelines.synth import synthesise, write_folder
+
+SECONDS = 2.5
+
+
+@cache
+def walk_folder() -> Path:
+    """A synthetic walk as `mbkf synth` writes it: trial.c3d, static.c3d, subject.toml, truth.h5."""
+    folder = Path(mkdtemp(prefix="mbkf-study-"))
+    person, made = synthesise("walk", seconds=SECONDS)
+    write_folder(person, made, folder)
+    return folder
+
+
+def study(folder: Path, persons: int = 1, trials: int = 1) -> Path:
+    """A folder of persons P1, P2, … with walk1.c3d, walk2.c3d, … and static.c3d each; returns it."""
+    for person in range(1, persons + 1):
+        own = folder / f"P{person}"
+        own.mkdir(parents=True)
+        (own / "static.c3d").write_bytes((walk_folder() / "static.c3d").read_bytes())
+        for trial in range(1, trials + 1):
+            (own / f"walk{trial}.c3d").write_bytes((walk_folder() / "trial.c3d").read_bytes())
+    return folder
