@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from mbkf.errors import InvalidPacket
 
 _HEADER, _COUNT = struct.Struct("<2H"), struct.Struct("<I")
-_FLOAT = np.dtype("<f4")
+_POINT = np.dtype(("<f4", (3,)))
 
 
 class Cursor:
@@ -42,7 +42,12 @@ class Cursor:
 
     def integer(self) -> int:
         """An unsigned integer of four bytes."""
-        return int(_COUNT.unpack_from(self.data, self.take(4))[0])
+        at = self.at
+        if self.end - at < 4:
+            self.take(4)
+        self.at = at + 4
+        count: int = _COUNT.unpack_from(self.data, at)[0]  # not through take: this is called most
+        return count
 
     def count(self, least: int) -> int:
         """Number of things that follow, of which each takes at least so many bytes.
@@ -65,7 +70,7 @@ class Cursor:
 
     def points(self, count: int) -> NDArray[np.float32]:
         """(count, 3) next points, single precision, a view of the packet."""
-        return self.rows(_FLOAT, 3 * count).reshape(count, 3)
+        return self.rows(_POINT, count)
 
     def text(self) -> str:
         """Text up to its closing nought; what is no UTF-8 is replaced.

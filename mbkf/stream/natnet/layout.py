@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from mbkf.conventions import Array, BoolArray
+from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.errors import InvalidInput
 from mbkf.io.records import PlateReadings
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
@@ -23,6 +23,9 @@ WHOLE_RATE = 2e-3
 
 EVERYTHING = "all"
 """Motive's set of all markers; it repeats the others."""
+
+NO_POINTS = read_only(np.zeros((0, 3)))
+"""The points without names of a frame that has none."""
 
 
 class StreamLayout:
@@ -85,7 +88,7 @@ class StreamLayout:
             points = frame.labelled["position"][flags & packets.UNLABELLED != 0]
         markers = found.astype(float) @ self._rotation.T
         markers[missing] = np.nan
-        return markers, points.astype(float) @ self._rotation.T
+        return markers, points.astype(float) @ self._rotation.T if len(points) else NO_POINTS
 
     def _plates(self, frame: Frame) -> PlateSamples:
         count, each = len(self._plate_numbers), self._samples
