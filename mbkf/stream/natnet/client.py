@@ -1,7 +1,8 @@
-"""A NatNet client: two sockets, one thread that receives, and frames kept as they came until they are read.
+"""A NatNet client: two sockets, and frames kept as they came until they are read.
 
-The thread does as little as it can per frame, since packets that wait too long in the system are lost. No packet ends
-it: one that cannot be read is counted and told.
+The caller that waits for a frame receives it in its own thread: a handover between threads would cost a loaded computer
+more than reading the frame. Another thread receives while no caller waits, since packets that stay too long in the
+system are lost. No packet ends either: one that cannot be read is counted and told.
 """
 
 from __future__ import annotations
@@ -14,7 +15,6 @@ import threading
 import time
 from collections import deque
 from contextlib import suppress
-from queue import Empty, SimpleQueue
 
 from mbkf.errors import InvalidInput, InvalidPacket
 from mbkf.stream.natnet import packets
@@ -25,6 +25,9 @@ from mbkf.stream.natnet.server import Version, read_server_info
 ROOM_BYTES = 4 * 1024 * 1024
 """Size of each socket's receive buffer, as far as the system allows: its usual 200 kB hold a tenth of a second with
 many plates, and packets beyond that are lost."""
+
+WATCH_S = 0.01
+"""So often the thread looks whether packets wait that no caller takes."""
 
 KEEP_ALIVE_S = 1.0
 """So often a server that streams to single clients hears of us, and is asked again for what it has not answered."""
@@ -70,7 +73,7 @@ class NatNetClient:
         self.most_held = LEAST_HELD
         self.dropped = self.unreadable = 0
         self._alone = multicast is None
-        self._frames: SimpleQueue[tuple[float, bytes]] = SimpleQueue()
+        self._frames: deque[tuple[float, bytes]] = deque()
         self._news: deque[tuple[str, str]] = deque()
         self._told: set[str] = set()
         self._command, self._data = _sockets(local, port, multicast)
@@ -83,15 +86,28 @@ class NatNetClient:
                 f"NatNet: {server}, port {port} cannot be reached from {local} ({error}); "
                 "--server and --local name the camera computer and this one"
             ) from error
-        self._closing = threading.Event()
-        self._thread = threading.Thread(target=self._receive, name="mbkf-natnet-client", daemon=True)
+        self._selector = selectors.DefaultSelector()
+        for one in (self._command, self._data):
+            self._selector.register(one, selectors.EVENT_READ)
+        self._turn, self._closing = threading.Lock(), threading.Event()
+        self._thread = threading.Thread(target=self._watch, name="mbkf-natnet-client", daemon=True)
         self._thread.start()
 
     def take(self, timeout_s: float) -> tuple[float, bytes] | None:
         """Arrival time (clock of ``time.perf_counter``) and packet of the oldest frame; None where none comes."""
+        until = time.perf_counter() + timeout_s
+        while not self._frames:
+            left = until - time.perf_counter()
+            with self._turn:
+                if self._closing.is_set():
+                    return None
+                if not self._frames:
+                    self._receive(max(0.0, left), 1)
+            if left <= 0.0:
+                break
         try:
-            return self._frames.get(timeout=timeout_s)
-        except Empty:
+            return self._frames.popleft()
+        except IndexError:
             return None
 
     def refuse(self, error: InvalidPacket) -> None:
@@ -108,41 +124,46 @@ class NatNetClient:
         self._closing.set()
         self._thread.join()
         self._send(packets.DISCONNECT)
-        self._close_sockets()
+        with self._turn:
+            self._selector.close()
+            self._close_sockets()
 
-    def _receive(self) -> None:
-        with selectors.DefaultSelector() as selector:
-            for one in (self._command, self._data):
-                selector.register(one, selectors.EVENT_READ)
-            due = time.monotonic() + ASK_S
-            while not self._closing.is_set():
-                for key, _ in selector.select(ASK_S / 2):
-                    self._drain(key.fileobj)  # type: ignore[arg-type]
-                if time.monotonic() >= due:
-                    self._ask()
-                    due = time.monotonic() + (KEEP_ALIVE_S if self.answered.is_set() else ASK_S)
+    def _watch(self) -> None:
+        """The thread: takes what the sockets hold while no caller waits for a frame, and keeps the server informed."""
+        due = time.monotonic() + ASK_S
+        while not self._closing.wait(WATCH_S):
+            if self._turn.acquire(blocking=False):
+                try:
+                    self._receive(0.0, LEAST_HELD)
+                finally:
+                    self._turn.release()
+            if time.monotonic() >= due:
+                self._ask()
+                due = time.monotonic() + (KEEP_ALIVE_S if self.answered.is_set() else ASK_S)
 
-    def _drain(self, one: socket.socket) -> None:
-        """Takes what a socket holds; a stream that never pauses is left now and then for keep-alive messages."""
-        for _ in range(LEAST_HELD):
-            try:
-                packet = one.recv(_LARGEST)
-            except BlockingIOError:
-                return
-            except OSError:  # an answer that nobody listens to, or the network is gone
-                self._closing.wait(PAUSE_S)
-                return
-            arrival_s = time.perf_counter()
-            if packet[:2] == _FRAME:
-                if self._frames.qsize() >= self.most_held:
+    def _receive(self, timeout_s: float, most: int) -> None:
+        """Waits until a socket holds something, and takes up to so many packets of each; only by turns."""
+        for key, _ in self._selector.select(timeout_s):
+            one: socket.socket = key.fileobj  # type: ignore[assignment]
+            for _ in range(most):
+                try:
+                    packet = one.recv(_LARGEST)
+                except BlockingIOError:
+                    break
+                except OSError:  # the server does not listen, or the network is gone
+                    self._closing.wait(PAUSE_S)
+                    break
+                arrival_s = time.perf_counter()
+                if packet[:2] != _FRAME:
+                    self._take_message(packet)
+                    continue
+                if len(self._frames) >= self.most_held:
                     self._drop()
-                self._frames.put((arrival_s, packet))
-            else:
-                self._take_message(packet)
+                self._frames.append((arrival_s, packet))
 
     def _drop(self) -> None:
-        with suppress(Empty):  # read in this moment
-            self._frames.get_nowait()
+        with suppress(IndexError):  # read in this moment
+            self._frames.popleft()
             if self.answered.is_set():  # frames before cannot be read yet
                 self.dropped += 1
                 self._tell("overrun", "received frames were dropped, since they were not read in time")
