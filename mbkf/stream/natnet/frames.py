@@ -9,6 +9,7 @@ Source: the NatNet SDK's description of its packets (NatNetTypes.h, and the samp
 from __future__ import annotations
 
 import struct
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -22,9 +23,21 @@ SIZED: Version = (4, 1)
 """From this protocol on the size of each part is sent."""
 
 _RIGID_BODY_BYTES = 38
-_SUFFIX = struct.Struct("<2Id")
+_SUFFIX, _FIRST_PLATE = struct.Struct("<2Id"), struct.Struct("<3I")
 _COUNT, _FLOAT = np.dtype("<u4"), np.dtype("<f4")
 _UNLABELLED = np.zeros(0, dtype=packets.LABELLED)
+
+
+class Plates(NamedTuple):
+    """Samples of a frame's force plates.
+
+    Attributes:
+        numbers: The plates' numbers.
+        samples: (C, m) samples of each plate's channels; one array (K, C, m) where all plates have equally many.
+    """
+
+    numbers: list[int]
+    samples: Sequence[NDArray[np.float32]] | NDArray[np.float32]
 
 
 class Frame(NamedTuple):
@@ -36,7 +49,7 @@ class Frame(NamedTuple):
         sets: (n, 3) positions of each set's markers, by the set's name.
         points: (N, 3) points without names.
         labelled: (L,) labelled markers, as :data:`mbkf.stream.natnet.packets.LABELLED`.
-        plates: (C, m) samples of each plate's channels, by the plate's number.
+        plates: The force plates' samples.
     """
 
     number: int
@@ -44,7 +57,7 @@ class Frame(NamedTuple):
     sets: dict[str, NDArray[np.float32]]
     points: NDArray[np.float32]
     labelled: NDArray[np.void]
-    plates: dict[int, NDArray[np.float32]]
+    plates: Plates
 
 
 def read_frame(packet: bytes, version: Version) -> Frame:
@@ -76,11 +89,8 @@ def read_frame(packet: bytes, version: Version) -> Frame:
     count, end = _begin(cursor, packets.LABELLED.itemsize, sized)
     labelled = cursor.rows(packets.LABELLED, count) if count else _UNLABELLED
     _finish(cursor, end)
-    plates: dict[int, NDArray[np.float32]] = {}
     count, end = _begin(cursor, 8, sized)
-    for _ in range(count):
-        identity = cursor.integer()
-        plates[identity] = _channels(cursor)
+    plates = _plates(cursor, count)
     _finish(cursor, end)
     if sized:
         _pass_over(cursor)  # devices
@@ -107,19 +117,25 @@ def _pass_over(cursor: Cursor) -> None:
     cursor.leave(cursor.part())
 
 
+def _plates(cursor: Cursor, count: int) -> Plates:
+    """Samples of so many plates: at once where all have as many channels and samples as the first, else one by one."""
+    begin = cursor.at
+    if count and cursor.end - begin >= _FIRST_PLATE.size:
+        _, channels, each = _FIRST_PLATE.unpack_from(cursor.data, begin)
+        size = count * (2 + channels * (1 + each))
+        if channels and 4 * size <= cursor.end - begin:
+            words = np.frombuffer(cursor.data, _COUNT, size, begin).reshape(count, -1)
+            cells = words[:, 2:].reshape(count, channels, 1 + each)
+            if (words[:, 1] == channels).all() and (cells[:, :, 0] == each).all():
+                cursor.take(4 * size)
+                return Plates(words[:, 0].tolist(), cells[:, :, 1:].view(_FLOAT))
+    one_by_one = [(cursor.integer(), _channels(cursor)) for _ in range(count)]
+    return Plates([number for number, _ in one_by_one], [samples for _, samples in one_by_one])
+
+
 def _channels(cursor: Cursor) -> NDArray[np.float32]:
     """(C, m) samples of a plate or device; (0, 0) where its channels have different numbers of samples."""
-    count = cursor.count(4)
-    if not count:
+    channels = [cursor.rows(_FLOAT, cursor.integer()) for _ in range(cursor.count(4))]
+    if not channels or any(len(one) != len(channels[0]) for one in channels):
         return np.zeros((0, 0), dtype=_FLOAT)
-    begin = cursor.at
-    each = cursor.integer() + 1
-    cursor.at = begin
-    if count * each * 4 <= cursor.end - begin:
-        cells = np.frombuffer(cursor.data, _COUNT, count * each, begin).reshape(count, each)
-        if cells[:, 0].tolist() == [each - 1] * count:
-            cursor.take(count * each * 4)
-            return cells[:, 1:].view(_FLOAT)
-    for _ in range(count):
-        cursor.take(4 * cursor.integer())
-    return np.zeros((0, 0), dtype=_FLOAT)
+    return np.array(channels)

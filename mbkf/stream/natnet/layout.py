@@ -50,7 +50,7 @@ class StreamLayout:
         self._sets: list[MarkerSet] = [s for s in described.sets if s.name.lower() != EVERYTHING]
         names = [name for one in self._sets for name in one.markers]
         rate_hz = _rate(frames)
-        self._samples = max((samples.shape[1] for samples in frames[0].plates.values()), default=1)
+        self._samples = max((samples.shape[1] for samples in frames[0].plates.samples), default=1)
         with np.errstate(invalid="ignore", over="ignore"):
             plates = [self._plate(plate, rate_hz * self._samples) for plate in described.plates]
         axes = [axes_of(plate.corners_m) for plate in plates]
@@ -92,13 +92,18 @@ class StreamLayout:
 
     def _plates(self, frame: Frame) -> PlateSamples:
         count, each = len(self._plate_numbers), self._samples
-        if not count or not frame.plates:
+        numbers, sent = frame.plates
+        if not count or not numbers:
             return PlateSamples.none(count)
-        channels = np.full((count, 6, each), np.nan)
-        for k, number in enumerate(self._plate_numbers):
-            samples = frame.plates.get(number)
-            if samples is not None and len(samples) >= 6 and samples.shape[1] == each:
-                channels[k] = samples[:6]
+        if numbers == self._plate_numbers and isinstance(sent, np.ndarray) and sent.shape[1:] == (6, each):
+            channels = sent.astype(float)
+        else:
+            channels = np.full((count, 6, each), np.nan)
+            by_number = dict(zip(numbers, sent, strict=True))
+            for k, number in enumerate(self._plate_numbers):
+                samples = by_number.get(number)
+                if samples is not None and len(samples) >= 6 and samples.shape[1] == each:
+                    channels[k] = samples[:6]
         turned = self._plate_axes @ channels.reshape(count, 2, 3, each)
         wrench = np.ascontiguousarray(turned.reshape(count, 6, each).transpose(2, 0, 1))
         first = frame.number * each

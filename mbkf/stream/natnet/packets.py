@@ -158,7 +158,7 @@ def frame(
         struct.pack("<I", len(labelled)),
         labelled.tobytes(),
         struct.pack("<I", len(plates)),
-        *(_channels(k + 1, samples) for k, samples in enumerate(plates)),
+        _samples(plates),
         struct.pack("<I", 0),  # devices
         struct.pack("<2Id3QH", 0, 0, time_s, nanoseconds, nanoseconds, nanoseconds, 0),
         struct.pack("<I", 0),  # end of data
@@ -166,12 +166,15 @@ def frame(
     return message(FRAME, b"".join(payload))
 
 
-def _channels(number: int, samples: Array) -> bytes:
-    """One plate's samples (m, 6), channel by channel, each after its count."""
-    cells = np.empty((samples.shape[1], 1 + len(samples)), dtype="<f4")
-    cells[:, 1:] = samples.T
-    cells[:, :1].view("<u4")[:] = len(samples)
-    return struct.pack("<2I", number, samples.shape[1]) + cells.tobytes()
+def _samples(plates: Array) -> bytes:
+    """All plates' samples (K, m, 6): of each its number, that of its channels, then each channel after its count."""
+    count, each, channels = plates.shape
+    words = np.empty((count, 2 + channels * (1 + each)), dtype="<u4")
+    words[:, 0], words[:, 1] = np.arange(count) + 1, channels
+    cells = words[:, 2:].reshape(count, channels, 1 + each)  # a view
+    cells[:, :, 0] = each
+    cells[:, :, 1:].view("<f4")[:] = plates.transpose(0, 2, 1)
+    return words.tobytes()
 
 
 def _floats(values: Array) -> bytes:

@@ -39,15 +39,16 @@ def test_a_frame_is_read_past_all_that_is_not_wanted(version):
         assert (one["id"], one["flags"]) == (identity, flags)
         assert (one["size"], one["residual"]) == (np.float32(0.014), 0.5)
         np.testing.assert_array_equal(one["position"], position)
-    assert list(found.plates) == [1, 4]
-    for number, samples in PLATES:
-        np.testing.assert_array_equal(found.plates[number], samples)
+    assert found.plates.numbers == [1, 4]
+    for samples, (_, sent) in zip(found.plates.samples, PLATES, strict=True):
+        np.testing.assert_array_equal(samples, sent)
 
 
 @pytest.mark.parametrize("version", layouts.VERSIONS)
 def test_an_empty_frame_is_read(version):
     found = read_frame(layouts.frame(version), version)
-    assert found.sets == found.plates == {}
+    assert found.sets == {}
+    assert len(found.plates.numbers) == len(found.plates.samples) == 0
     assert found.points.shape == (0, 3)
     assert len(found.labelled) == 0
 
@@ -55,8 +56,22 @@ def test_an_empty_frame_is_read(version):
 def test_a_plate_with_uneven_channels_has_no_samples():
     uneven = [[1.0, 2.0], [3.0], [4.0, 5.0]]
     found = read_frame(layouts.frame((4, 0), plates=[(1, uneven), (2, [[6.0]]), (3, [])]), (4, 0))
-    assert found.plates[1].size == found.plates[3].size == 0
-    np.testing.assert_array_equal(found.plates[2], [[6.0]])
+    assert found.plates.numbers == [1, 2, 3]
+    assert found.plates.samples[0].size == found.plates.samples[2].size == 0
+    np.testing.assert_array_equal(found.plates.samples[1], [[6.0]])
+
+
+@pytest.mark.parametrize("others", [(6, 4), (5, 4), (6, 3), (8, 3), (4, 7), (1, 34)])
+def test_plates_are_read_alike_whether_all_have_equal_channels_or_not(others):
+    """Shapes that take as many bytes as the first plate's, or more, or less."""
+    rng = np.random.default_rng(0)
+    sent = [rng.normal(size=shape).astype(np.float32) for shape in ((6, 4), (6, 4), others, (6, 4))]
+    found = read_frame(
+        layouts.frame((4, 1), plates=list(zip((3, 9, 1, 4), sent, strict=True))), (4, 1)
+    ).plates
+    assert found.numbers == [3, 9, 1, 4]
+    for samples, expected in zip(found.samples, sent, strict=True):
+        np.testing.assert_array_equal(samples, expected)
 
 
 @given(
@@ -83,9 +98,9 @@ def test_what_the_player_packs_is_read_back(number, time_s, sizes, seed):
     np.testing.assert_array_equal(
         found.labelled["id"] & 0xFFFF, [*range(1, len(markers) + 1), *range(1, len(points) + 1)]
     )
-    assert list(found.plates) == list(range(1, len(plates) + 1))
+    assert found.plates.numbers == list(range(1, len(plates) + 1))
     for k, samples in enumerate(plates):
-        np.testing.assert_array_equal(found.plates[k + 1], samples.T.astype(np.float32))
+        np.testing.assert_array_equal(found.plates.samples[k], samples.T.astype(np.float32))
 
 
 def read_or_refused(packet, version):
