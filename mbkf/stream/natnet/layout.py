@@ -80,10 +80,11 @@ class StreamLayout:
         """(M, 3) named markers and (N, 3) points; what Motive only filled in counts as missing."""
         rows = [_rows(frame.sets.get(one.name), len(one.markers)) for one in self._sets]
         found = rows[0] if len(rows) == 1 else np.concatenate([*rows, packets.NO_POINTS])
-        flags, points, missing = frame.labelled["flags"], frame.points, ~found.any(axis=1)
+        flags, points, missing = frame.labelled["flags"], frame.points, _at_nought(found)
         raised = int(np.bitwise_or.reduce(flags))
         if raised & packets.OCCLUDED:
-            missing |= _among(found, frame.labelled["position"][flags & packets.OCCLUDED != 0])
+            occluded = frame.labelled["position"][flags & packets.OCCLUDED != 0]
+            missing |= _among(found, occluded[~_at_nought(occluded)])
         if raised & packets.UNLABELLED and not len(points):
             points = frame.labelled["position"][flags & packets.UNLABELLED != 0]
         markers = found.astype(float) @ self._rotation.T
@@ -120,10 +121,17 @@ def _rows(found: NDArray[np.float32] | None, count: int) -> NDArray[np.float32]:
     return rows
 
 
+def _at_nought(points: NDArray[np.float32]) -> BoolArray:
+    """(M,) whether each of the points (M, 3) is the origin."""
+    nought = np.asarray(points[:, 0] == 0.0)
+    return nought & ~points.any(axis=1) if nought.any() else nought
+
+
 def _among(found: NDArray[np.float32], others: NDArray[np.float32]) -> BoolArray:
-    """(M,) whether each of the points (M, 3) is one of the others (K, 3) away from the origin."""
+    """(M,) whether each of the points (M, 3) is one of the others (K, 3)."""
     among = np.zeros(len(found), dtype=bool)
-    others = others[others.any(axis=1)]
+    if not len(others):
+        return among
     rows, which = np.nonzero(found[:, None, 0] == others[:, 0])
     same = (found[rows] == others[which]).all(axis=1)
     among[rows[same]] = True
