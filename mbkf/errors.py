@@ -63,6 +63,10 @@ class InvalidInput(MbkfError):
     """A value is readable but cannot be right (negative mass, wrong unit, NaN force …)."""
 
 
+class InvalidPacket(MbkfError):
+    """A packet of a network stream does not fit its own lengths, or is not what its header states."""
+
+
 class NotObservable(MbkfError):
     """The markers present do not determine the body, so nothing can be followed."""
 

@@ -357,9 +357,9 @@ def test_replay_refuses_a_missing_file(refused):
 
 
 def test_a_missing_library_is_named(person, tmp_path, refused, monkeypatch):
-    monkeypatch.setitem(sys.modules, "natnet", None)
-    words = ["live", "--from", "natnet", "--subject", person.subject, "--out", tmp_path / "out"]
-    refused(words, "pip install 'mbkf[natnet]'")
+    monkeypatch.setitem(sys.modules, "pylsl", None)
+    words = ["live", "--from", "lsl", "--subject", person.subject, "--out", tmp_path / "out"]
+    refused(words, "pip install 'mbkf[lsl]'")
 
 
 def test_a_first_signal_asks_and_a_second_breaks_off():

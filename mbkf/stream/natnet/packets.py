@@ -3,7 +3,7 @@
 Little endian throughout: message number and length (two bytes each), then the payload. Positions are in m; the channels
 of a force plate follow the C3D convention, as its corners do: plate axes with z down, force of the plate on the body.
 
-Source: the NatNet SDK's description of its packets (NatNetTypes.h) and the parser of the client library ``natnet``.
+Source: the NatNet SDK's description of its packets (NatNetTypes.h).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, read_only
 from mbkf.errors import InvalidInput
 
 VERSION = (4, 0, 0, 0)
@@ -27,8 +27,23 @@ CHANNELS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 OCCLUDED, SOLVED, UNLABELLED = 0x01, 0x02, 0x10
 """Flags of a labelled marker."""
 
+LABELLED = np.dtype(
+    [
+        ("id", "<u4"),
+        ("position", "<f4", (3,)),
+        ("size", "<f4"),
+        ("flags", "<u2"),
+        ("residual", "<f4"),
+    ]
+)
+"""A labelled marker: its number in the lower half of ``id``, that of its model in the upper; m."""
+
+NO_POINTS = read_only(np.zeros((0, 3), dtype="<f4"))
+
 MARKER_SIZE_M = 0.014
-_SET_DESCRIPTION, _PLATE_DESCRIPTION = 0, 3
+SET_DESCRIPTION, PLATE_DESCRIPTION = 0, 3
+"""Numbers of what is described."""
+
 _NAME_BYTES = 256
 MOST_BYTES = 65_000
 
@@ -79,8 +94,8 @@ def descriptions(set_name: str, markers: Sequence[str], plates: Sequence[PlateDe
     parts = []
     if markers:
         named = _text(set_name) + struct.pack("<I", len(markers)) + b"".join(map(_text, markers))
-        parts.append(struct.pack("<I", _SET_DESCRIPTION) + named)
-    parts += [struct.pack("<I", _PLATE_DESCRIPTION) + plate_description(plate) for plate in plates]
+        parts.append(struct.pack("<I", SET_DESCRIPTION) + named)
+    parts += [struct.pack("<I", PLATE_DESCRIPTION) + plate_description(plate) for plate in plates]
     return message(DESCRIPTIONS, struct.pack("<I", len(parts)) + b"".join(parts))
 
 
@@ -126,11 +141,12 @@ def frame(
     sets = b""
     if len(markers_m):
         sets = _text(set_name) + struct.pack("<I", len(shown)) + _floats(shown)
-    labelled = [
-        _labelled((1 << 16) + k + 1, position, OCCLUDED if out else SOLVED)
-        for k, (position, out) in enumerate(zip(shown, hidden, strict=True))
-    ]
-    labelled += [_labelled(k + 1, position, SOLVED | UNLABELLED) for k, position in enumerate(points_m)]
+    labelled = np.zeros(len(shown) + len(points_m), dtype=LABELLED)
+    named, bare = labelled[: len(shown)], labelled[len(shown) :]
+    labelled["size"] = MARKER_SIZE_M
+    named["id"], bare["id"] = np.arange(len(named)) + (1 << 16) + 1, np.arange(len(bare)) + 1
+    named["position"], bare["position"] = shown, points_m
+    named["flags"], bare["flags"] = np.where(hidden, OCCLUDED, SOLVED), SOLVED | UNLABELLED
     nanoseconds = round(1e9 * time_s)
     payload = [
         struct.pack("<I", number),
@@ -140,9 +156,9 @@ def frame(
         _floats(points_m),
         struct.pack("<2I", 0, 0),  # rigid bodies, skeletons
         struct.pack("<I", len(labelled)),
-        *labelled,
+        labelled.tobytes(),
         struct.pack("<I", len(plates)),
-        *(_channels(k + 1, samples) for k, samples in enumerate(plates)),
+        _samples(plates),
         struct.pack("<I", 0),  # devices
         struct.pack("<2Id3QH", 0, 0, time_s, nanoseconds, nanoseconds, nanoseconds, 0),
         struct.pack("<I", 0),  # end of data
@@ -150,17 +166,15 @@ def frame(
     return message(FRAME, b"".join(payload))
 
 
-def _labelled(identity: int, position: Array, flags: int) -> bytes:
-    x, y, z = position.tolist()
-    return struct.pack("<I4fHf", identity, x, y, z, MARKER_SIZE_M, flags, 0.0)
-
-
-def _channels(number: int, samples: Array) -> bytes:
-    """One plate's samples (m, 6), channel by channel."""
-    parts = [struct.pack("<2I", number, samples.shape[1])]
-    for channel in samples.T:
-        parts += [struct.pack("<I", len(channel)), _floats(channel)]
-    return b"".join(parts)
+def _samples(plates: Array) -> bytes:
+    """All plates' samples (K, m, 6): of each its number, that of its channels, then each channel after its count."""
+    count, each, channels = plates.shape
+    words = np.empty((count, 2 + channels * (1 + each)), dtype="<u4")
+    words[:, 0], words[:, 1] = np.arange(count) + 1, channels
+    cells = words[:, 2:].reshape(count, channels, 1 + each)  # a view
+    cells[:, :, 0] = each
+    cells[:, :, 1:].view("<f4")[:] = plates.transpose(0, 2, 1)
+    return words.tobytes()
 
 
 def _floats(values: Array) -> bytes:

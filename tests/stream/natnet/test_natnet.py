@@ -1,85 +1,26 @@
-"""NatNet packets are read back by the client library, and a replay through it loses nothing but digits."""
+"""A replay through NatNet loses nothing but digits, whatever else is sent, and the source outlives its server."""
 
-import socket
 import threading
 import time
 from dataclasses import replace
 
-import natnet
 import numpy as np
 import pytest
-from natnet.packet_buffer import PacketBuffer
 
 from mbkf.errors import InvalidInput
 from mbkf.io.records import MarkerTrajectories
 from mbkf.stream.natnet import packets
+from mbkf.stream.natnet import source as source_module
 from mbkf.stream.natnet.player import NatNetPlayer, axes_of, plates_in_frames
-from mbkf.stream.natnet.source import ROOM_BYTES, NatNetSource, read_all_corners
+from mbkf.stream.natnet.source import NatNetSource
 from mbkf.stream.played import played
 from mbkf.stream.replay import ReplaySettings, replay
 from tests.captures import made_capture
+from tests.stream.natnet import layouts
+from tests.stream.natnet.serving import Server, described, frame, nonsense
 from tests.stream.scripted import frames_of
 
 CAPTURE = made_capture(30)
-VERSION = natnet.Version(*packets.VERSION)
-
-
-def payload(packet, number):
-    buffer = PacketBuffer(packet)
-    assert (buffer.read_uint16(), buffer.read_uint16()) == (number, len(packet) - 4)
-    return buffer
-
-
-def test_descriptions_are_read_to_their_end():
-    read_all_corners(natnet)
-    read_all_corners(natnet)
-    rng = np.random.default_rng(0)
-    plates = [
-        packets.PlateDescription(k, f"plate {k}", rng.normal(size=3), rng.normal(size=(4, 3))) for k in (1, 2)
-    ]
-    packet = packets.descriptions("walk", ("A", "Ä"), plates)
-    buffer = payload(packet, packets.DESCRIPTIONS)
-    found = natnet.DataDescriptions.read_from_buffer(buffer, VERSION)
-    assert buffer.pointer == len(packet)
-    assert found.marker_sets[0] == ("walk", ("A", "Ä"))
-    for plate, made in zip(found.force_plates, plates, strict=True):
-        assert (plate.id_num, plate.serial_number) == (made.number, made.serial)
-        assert (plate.plate_type, plate.channel_data_type) == (2, 0)
-        assert plate.channel_list == packets.CHANNELS
-        np.testing.assert_array_equal(plate.corners, made.corners_m.astype(np.float32))
-        np.testing.assert_array_equal(plate.position, made.offset_m.astype(np.float32))
-        np.testing.assert_array_equal(plate.cal_matrix, np.eye(12))
-
-
-def test_frames_are_read_back():
-    rng = np.random.default_rng(1)
-    markers, points = rng.normal(size=(4, 3)), rng.normal(size=(3, 3))
-    markers[2] = np.nan
-    plates = rng.normal(size=(2, 5, 6))
-    packet = packets.frame(77, 0.77, "walk", markers, points, plates)
-    buffer = payload(packet, packets.FRAME)
-    found = natnet.DataFrame.read_from_buffer(buffer, VERSION)
-    assert len(packet) - buffer.pointer == 4  # the tag at the end of data
-    assert (found.prefix.frame_number, found.suffix.timestamp) == (77, 0.77)
-    (only,) = found.marker_sets
-    assert only.model_name == "walk"
-    np.testing.assert_array_equal(only.marker_pos_list, np.nan_to_num(markers).astype(np.float32))
-    np.testing.assert_array_equal(found.unlabeled_marker_pos, points.astype(np.float32))
-    labelled = found.labeled_markers
-    assert [marker.occluded for marker in labelled] == [False, False, True, False, False, False, False]
-    assert [marker.unlabeled for marker in labelled] == 4 * [False] + 3 * [True]
-    assert [marker.marker_id for marker in labelled[:4]] == [1, 2, 3, 4]
-    for k, plate in enumerate(found.force_plates):
-        assert plate.id_num == k + 1
-        np.testing.assert_array_equal(np.array(plate.channel_arrays).T, plates[k].astype(np.float32))
-
-
-def test_server_info_is_read_back():
-    found = natnet.ServerInfo.read_from_buffer(
-        payload(packets.server_info("us", 1510), packets.SERVER_INFO), None
-    )
-    assert found.application_name == "us"
-    assert found.nat_net_protocol_version == VERSION
 
 
 def test_channels_follow_the_c3d_convention():
@@ -183,23 +124,6 @@ def test_points_without_names_arrive(served):
     np.testing.assert_array_equal(found, single(original))
 
 
-def test_what_comes_while_nobody_reads_is_kept_for_long(served):
-    """Both sockets have as much room as the system gives to whoever asks."""
-    source = NatNetSource("127.0.0.1", "127.0.0.1", served().port, None)
-    connected(source)
-    sockets = [held for held in vars(source._client).values() if isinstance(held, socket.socket)]
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
-        usual = room_of(other)
-        other.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM_BYTES)
-        assert [room_of(one) for one in sockets] == 2 * [room_of(other)]
-        assert room_of(other) > usual
-    source.close()
-
-
-def room_of(one):
-    return one.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
-
-
 @pytest.mark.slow
 def test_a_server_that_dies_and_returns_is_taken_up_again(served, monkeypatch):
     monkeypatch.setattr("mbkf.stream.natnet.source.RECONNECT_AFTER_S", 0.2)
@@ -216,6 +140,69 @@ def test_a_server_that_dies_and_returns_is_taken_up_again(served, monkeypatch):
     assert [frame.number for frame in read(source, 30)][-1] == 29
     source.close()
     assert {kind for kind, _ in source.news()} == {"connection"}
+
+
+@pytest.fixture
+def server():
+    made = Server()
+    yield made
+    made.close()
+
+
+def test_frames_follow_each_other_whatever_comes_between(server):
+    source = NatNetSource("127.0.0.1", "127.0.0.1", server.port, None)
+    assert source.connect(0.0) is None
+    server.hear(packets.CONNECT)
+    server.send(
+        frame(0), *nonsense(), layouts.answer((9, 9)), layouts.answer((4, 1)), *nonsense(), described()
+    )
+    server.send(*(frame(k) for k in range(1, 10)))
+    stream = connected(source)
+    assert (stream.marker_names, stream.rate_hz) == (("A",), 100.0)
+    for number in range(10, 20):
+        server.send(*nonsense(), frame(number))
+    frames = read(source, 20)
+    assert [one.number for one in frames] == list(range(20))
+    np.testing.assert_array_equal([one.markers_m[0, 0] for one in frames], 1.0 + np.arange(20))
+    assert [kind for kind, _ in source.news()] == ["packets"]
+    source.close()
+
+
+def test_two_seconds_of_frames_are_held(server):
+    source = NatNetSource("127.0.0.1", "127.0.0.1", server.port, None)
+    source.connect(0.0)
+    server.hear(packets.CONNECT)
+    thousand = [layouts.frame((4, 1), k, 0.001 * k) for k in range(10)]
+    server.send(layouts.answer((4, 1)), described(), *thousand)
+    assert connected(source).rate_hz == 1000.0
+    assert source._client.most_held == 2000
+    source.close()
+
+
+def test_an_address_that_is_gone_for_a_while_ends_nothing(server, monkeypatch):
+    monkeypatch.setattr(source_module, "RECONNECT_AFTER_S", 0.0)
+    source = NatNetSource("127.0.0.1", "127.0.0.1", server.port, None)
+    source.connect(0.0)
+    server.hear(packets.CONNECT)
+    server.send(layouts.answer((4, 1)), described(), *(frame(k) for k in range(10)))
+    connected(source)
+    assert len(read(source, 10)) == 10
+
+    def unplugged(*options):
+        raise InvalidInput("NatNet: the network is gone")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(source_module, "NatNetClient", unplugged)
+        assert source.read(0.0) is None
+        assert source.read(0.0) is None
+    assert {what for _, what in source.news()} >= {"NatNet: the network is gone"}
+    monkeypatch.setattr(source_module, "RECONNECT_AFTER_S", 2.0)
+    source._again()
+    server.heard()
+    server.hear(packets.CONNECT)
+    server.send(frame(30), layouts.answer((4, 1)))
+    assert [one.number for one in read(source, 1)] == [30]
+    source.close()
 
 
 def test_without_a_server_nothing_is_found():

@@ -1,0 +1,137 @@
+"""A place in a NatNet packet: every length is checked against the packet's end before anything is read or allocated."""
+
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mbkf.errors import InvalidPacket
+
+_HEADER, _COUNT = struct.Struct("<2H"), struct.Struct("<I")
+_POINT = np.dtype(("<f4", (3,)))
+
+
+class Cursor:
+    """Reads a packet's payload from front to back, little endian.
+
+    Attributes:
+        data: The packet.
+        at: Where the next field begins, bytes.
+        end: Where the payload ends, bytes.
+    """
+
+    __slots__ = ("at", "data", "end")
+
+    def __init__(self, data: bytes, at: int, end: int) -> None:
+        """A cursor over ``data[at:end]``; ``end`` is not beyond the packet."""
+        self.data, self.at, self.end = data, at, end
+
+    def take(self, size: int) -> int:
+        """Where the next so many bytes begin, which the cursor leaves behind.
+
+        Raises:
+            InvalidPacket: The packet ends before them.
+        """
+        at = self.at
+        if size > self.end - at:
+            raise InvalidPacket(f"NatNet: {size} bytes are wanted where {self.end - at} are left")
+        self.at = at + size
+        return at
+
+    def integer(self) -> int:
+        """An unsigned integer of four bytes."""
+        at = self.at
+        if self.end - at < 4:
+            self.take(4)
+        self.at = at + 4
+        count: int = _COUNT.unpack_from(self.data, at)[0]  # not through take: this is called most
+        return count
+
+    def count(self, least: int) -> int:
+        """Number of things that follow, of which each takes at least so many bytes.
+
+        Raises:
+            InvalidPacket: So many do not fit.
+        """
+        count = self.integer()
+        if count * least > self.end - self.at:
+            raise InvalidPacket(f"NatNet: {count} things cannot stand in {self.end - self.at} bytes")
+        return count
+
+    def fields(self, layout: struct.Struct) -> tuple:
+        """The next fields of a fixed layout."""
+        return layout.unpack_from(self.data, self.take(layout.size))
+
+    def rows(self, layout: np.dtype, count: int) -> NDArray:
+        """(count,) next elements of a fixed layout, a view of the packet."""
+        return np.frombuffer(self.data, layout, count, self.take(count * layout.itemsize))
+
+    def points(self, count: int) -> NDArray[np.float32]:
+        """(count, 3) next points, single precision, a view of the packet."""
+        return self.rows(_POINT, count)
+
+    def text(self) -> str:
+        """Text up to its closing nought; what is no UTF-8 is replaced.
+
+        Raises:
+            InvalidPacket: It is not closed.
+        """
+        close = self.data.find(b"\0", self.at, self.end)
+        if close < 0:
+            raise InvalidPacket("NatNet: a text does not end")
+        text = self.data[self.at : close].decode("utf-8", "replace")
+        self.at = close + 1
+        return text
+
+    def skip_texts(self, count: int) -> None:
+        """Leaves so many texts behind."""
+        for _ in range(count):
+            self.text()
+
+    def part(self) -> int:
+        """End of a part whose size is sent in front of it, as protocol 4.1 and later do.
+
+        Raises:
+            InvalidPacket: It reaches beyond the packet.
+        """
+        size = self.integer()
+        if size > self.end - self.at:
+            raise InvalidPacket(f"NatNet: a part of {size} bytes cannot stand in {self.end - self.at}")
+        return self.at + size
+
+    def sized_count(self, least: int) -> tuple[int, int]:
+        """Number of things in a part, of which each takes at least so many bytes, and the part's end.
+
+        Raises:
+            InvalidPacket: So many do not fit, or the part reaches beyond the packet.
+        """
+        count, end = self.integer(), self.part()
+        if count * least > end - self.at:
+            raise InvalidPacket(f"NatNet: {count} things cannot stand in {end - self.at} bytes")
+        return count, end
+
+    def leave(self, end: int) -> None:
+        """Goes to the end of a part.
+
+        Raises:
+            InvalidPacket: More than the part was read.
+        """
+        if self.at > end:
+            raise InvalidPacket("NatNet: a part is shorter than what stands in it")
+        self.at = end
+
+
+def opened(packet: bytes) -> tuple[int, Cursor]:
+    """Number of a message, and a cursor at its payload; bytes after the stated length are left out.
+
+    Raises:
+        InvalidPacket: The packet is shorter than it states, or has no header.
+    """
+    if len(packet) < _HEADER.size:
+        raise InvalidPacket(f"NatNet: a packet of {len(packet)} bytes")
+    number, size = _HEADER.unpack_from(packet)
+    if size > len(packet) - _HEADER.size:
+        raise InvalidPacket(f"NatNet: a packet states {size} bytes and brings {len(packet) - _HEADER.size}")
+    return number, Cursor(packet, _HEADER.size, _HEADER.size + size)
