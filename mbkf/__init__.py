@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from mbkf.model.human import HumanModel
     from mbkf.model.protocol import load_protocol
     from mbkf.numerics.kalman import Information
+    from mbkf.pipelines.batch.run import batch
     from mbkf.pipelines.imu.orient import orient
     from mbkf.pipelines.inertia.estimate import InertiaEstimate, estimate_inertia
     from mbkf.pipelines.label import label
@@ -48,6 +49,7 @@ _HOMES = {
     "ReconstructSettings": "mbkf.pipelines.reconstruct",
     "Rows": "mbkf.sensors.block",
     "Tracker": "mbkf.pipelines.tracker",
+    "batch": "mbkf.pipelines.batch.run",
     "estimate_inertia": "mbkf.pipelines.inertia.estimate",
     "label": "mbkf.pipelines.label",
     "load_body": "mbkf.model.body_file",
@@ -84,6 +86,7 @@ __all__ = [
     "Rows",
     "Tracker",
     "__version__",
+    "batch",
     "estimate_inertia",
     "label",
     "load_body",

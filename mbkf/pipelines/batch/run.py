@@ -62,17 +62,41 @@ def batch(
     target, plan = check_folder(out), plan_of(Path(source))
     if shard is not None:
         plan = plan.shard(*shard)
-    target.mkdir(parents=True, exist_ok=True)
-    remove_partial(target)
     count = workers or cpu_count() or 1
     executor: Executor = LocalWorkers(count) if dask is None else ClusterWorkers(dask, count)
+    suffix = "" if shard is None else f"-{shard[0]}-of-{shard[1]}"
     try:
-        outcomes = outcomes_of(plan, target, settings or ReconstructSettings(), executor, progress)
+        return follow(plan, target, settings or ReconstructSettings(), executor, progress, suffix)
     finally:
         executor.close()
         remove_partial(target)
-    suffix = "" if shard is None else f"-{shard[0]}-of-{shard[1]}"
-    return pq.read_table(write_tables(plan, outcomes, target, suffix))
+
+
+def follow(
+    plan: Plan,
+    out: Path,
+    settings: ReconstructSettings,
+    executor: Executor,
+    progress: StageCallback | None = None,
+    suffix: str = "",
+) -> pa.Table:
+    """Does what a plan says, and makes its tables; returns that of the trials.
+
+    Args:
+        plan: The persons and trials.
+        out: The batch's folder.
+        settings: The filter and its settings.
+        executor: Who does it.
+        progress: Called with the stage, items done and items in all.
+        suffix: Ends the tables' names.
+
+    Raises:
+        OSError: The folder cannot be written to.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    remove_partial(out)
+    outcomes = outcomes_of(plan, out, settings, executor, progress)
+    return pq.read_table(write_tables(plan, outcomes, out, suffix))
 
 
 def plan_of(source: Path) -> Plan:

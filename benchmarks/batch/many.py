@@ -1,0 +1,121 @@
+"""Ten thousand trials from a list, each a pause instead of a reconstruction: what handing them out costs.
+
+Run as a file of its own, it is the process that hands out: it prints its time per trial beyond the pauses, ms, and the
+most memory that it had, MB.
+
+    python -m benchmarks.batch.many FOLDER TRIALS
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter, sleep
+
+from benchmarks.checks import Check, Context
+from mbkf.errors import InvalidInput
+from mbkf.pipelines.batch.outcome import Outcome, ReconstructTrial, Status, Task, peak_memory_mb
+from mbkf.pipelines.batch.run import follow, plan_of
+from mbkf.pipelines.batch.workers import LocalWorkers
+from mbkf.pipelines.reconstruct_settings import ReconstructSettings
+
+TRIALS, QUICK_TRIALS = 10_000, 500
+PAUSE_S, WORKERS = 0.010, 2
+OVERHEAD_MS, MEMORY_MB = 5.0, 500.0
+PERSONS = 200
+KEYS = 150
+"""Numbers in a trial's summary: as many as a walk's has."""
+
+
+@dataclass(frozen=True)
+class Pause:
+    """Instead of a reconstruction: a pause, and a summary."""
+
+    folder: Path
+
+    def __call__(self) -> Outcome:
+        """Done."""
+        sleep(PAUSE_S)
+        self.folder.mkdir(parents=True, exist_ok=True)
+        summary = {f"number_{k}": k / 7.0 for k in range(KEYS)} | {
+            "warnings": ["a remark of usual length"] * 5
+        }
+        (self.folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+        return Outcome(Status.DONE)
+
+
+@dataclass(frozen=True)
+class Scaled:
+    """Instead of scaling."""
+
+    subject: Path
+
+    def __call__(self) -> Outcome:
+        """Done."""
+        return Outcome(Status.DONE, subject=self.subject)
+
+
+class Pausing:
+    """Workers that pause instead of reconstructing."""
+
+    def __init__(self, out: Path) -> None:
+        self._inner, self._out = LocalWorkers(WORKERS), out
+
+    def run(self, tasks: Iterable[Task]) -> Iterator[tuple[int, Outcome]]:
+        """Outcomes, each with its task's place."""
+        return self._inner.run(map(self._pausing, tasks))
+
+    def close(self) -> None:
+        """Ends the workers."""
+        self._inner.close()
+
+    def _pausing(self, task: Task) -> Task:
+        if isinstance(task, ReconstructTrial):
+            return Pause(self._out / task.trial.place)
+        return Scaled(self._out)
+
+
+def many_rows(context: Context) -> list[Check]:
+    """Time beyond the pauses, and memory."""
+    count = QUICK_TRIALS if context.quick else TRIALS
+    words = [sys.executable, "-m", "benchmarks.batch.many", str(context.out / "many"), str(count)]
+    found = subprocess.run(words, capture_output=True, text=True, check=False)
+    if found.returncode:
+        raise InvalidInput(f"the batch of {count} trials failed: {found.stderr.strip()[-300:]}")
+    overhead_ms, memory_mb = map(float, found.stdout.split()[-2:])
+    return [
+        Check(
+            f"{count} trials of {1e3 * PAUSE_S:g} ms: time of each beyond that",
+            overhead_ms,
+            OVERHEAD_MS,
+            "<=",
+            "ms",
+        ),
+        Check(f"{count} trials: memory of the process that hands them out", memory_mb, MEMORY_MB, "<=", "MB"),
+    ]
+
+
+def main(folder: Path, count: int) -> None:
+    """Writes the list, hands it out and prints what that cost."""
+    folder.mkdir(parents=True, exist_ok=True)
+    lines = [f"P{k % PERSONS},walk{k}.c3d,70" for k in range(count)]
+    source = folder / "list.csv"
+    source.write_text("\n".join(["subject,trial,mass_kg", *lines]) + "\n", encoding="utf-8")
+    workers = Pausing(folder / "out")
+    try:
+        next(iter(workers.run([])), None)
+        begin = perf_counter()
+        table = follow(plan_of(source), folder / "out", ReconstructSettings(), workers)
+        seconds = perf_counter() - begin
+    finally:
+        workers.close()
+    assert table["status"].to_pylist() == ["done"] * count
+    print(1e3 * (seconds / count - PAUSE_S / WORKERS), peak_memory_mb())
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), int(sys.argv[2]))
