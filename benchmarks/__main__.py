@@ -55,11 +55,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     args = _parser().parse_args(arguments)
     try:
+        if args.gate or args.update_baseline is not None:
+            return _gate(args)
         checks = _run(args)
     except (MbkfError, OSError) as error:
         print(f"benchmarks: error: {' '.join(str(error).split())}", file=sys.stderr)
         return 2
     return 0 if all(check.passed for check in checks) else 1
+
+
+def _gate(args: argparse.Namespace) -> int:
+    """Holds quick metrics against the committed baseline, or makes a new one."""
+    from benchmarks.gate.command import gate, update
+
+    _check_folders(args)
+    out = (args.out / "gate").resolve()
+    if args.update_baseline is not None:
+        update(_console(), out, args.data, args.update_baseline)
+        return 0
+    return 0 if gate(_console(), out, args.data) else 1
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -71,6 +85,14 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("names", nargs="*", metavar="NAME", help="benchmarks to run (default: all)")
     parser.add_argument("--quick", action="store_true", help="shorter runs, for a first look")
+    parser.add_argument(
+        "--gate",
+        action="store_true",
+        help="instead of benchmarks: quick metrics from end to end against the committed baseline",
+    )
+    parser.add_argument(
+        "--update-baseline", metavar="REASON", help="make a new baseline, and say why it changes"
+    )
     parser.add_argument(
         "--data",
         type=Path,
@@ -101,13 +123,8 @@ def _run(args: argparse.Namespace) -> list[Check]:
     for name in args.names:
         if name not in known:
             raise UnknownName("benchmark", name, known)
-    if args.data is not None and not args.data.is_dir():
-        raise InvalidInput(f"{args.data}: no such folder; give the reference captures with --data DIR")
-    if args.old is not None and not args.old.is_dir():
-        raise InvalidInput(f"{args.old}: no such folder; give a checked-out source tree with --old TREE")
-    console = Console()
-    if not console.is_terminal:
-        console = Console(width=_PIPED_WIDTH)
+    _check_folders(args)
+    console = _console()
     results: dict[str, list[Check]] = {}
     for name in args.names or known:
         out = args.out / name
@@ -118,6 +135,18 @@ def _run(args: argparse.Namespace) -> list[Check]:
         console.print(_table(name, results[name], perf_counter() - start))
     _write(args.out / "checks.json", results, args.quick)
     return [check for checks in results.values() for check in checks]
+
+
+def _check_folders(args: argparse.Namespace) -> None:
+    if args.data is not None and not args.data.is_dir():
+        raise InvalidInput(f"{args.data}: no such folder; give the reference captures with --data DIR")
+    if args.old is not None and not args.old.is_dir():
+        raise InvalidInput(f"{args.old}: no such folder; give a checked-out source tree with --old TREE")
+
+
+def _console() -> Console:
+    console = Console()
+    return console if console.is_terminal else Console(width=_PIPED_WIDTH)
 
 
 def context_of(args: argparse.Namespace, out: Path) -> Context:

@@ -1,0 +1,67 @@
+"""The gate from end to end on one short motion: shut by a worsened setting, which is named; open for what it was."""
+
+from dataclasses import replace
+
+import pytest
+from rich.console import Console
+
+from benchmarks.__main__ import main
+from benchmarks.gate import command, metrics
+from benchmarks.gate.baseline import Baseline, held, write_baseline
+from mbkf.errors import InvalidInput
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def short(monkeypatch, tmp_path):
+    """One short squat, and a baseline of it."""
+    monkeypatch.setattr(metrics, "TRIALS", {"squat": 1.5})
+    monkeypatch.setattr(metrics, "STEPS", 60)
+    monkeypatch.delenv("CI", raising=False)
+    found = list(metrics.measured(tmp_path / "first", None))
+    write_baseline(
+        Baseline({one.name: held(one) for one in found if not one.is_time}), tmp_path / "baseline.toml"
+    )
+    monkeypatch.setattr(metrics, "library", lambda: None)
+    return tmp_path
+
+
+def worsened(settings):
+    """Markers are weighed as if their noise were six times what it is."""
+    markers = replace(settings.dynamic.markers, marker_noise_scale=6.0)
+    return replace(settings, dynamic=replace(settings.dynamic, markers=markers))
+
+
+def run(place, change=None):
+    console = Console(record=True, width=120)
+    opened = command.gate(console, place / "out", None, place / "baseline.toml", change)
+    return opened, console.export_text()
+
+
+def test_the_gate_opens_for_what_it_was_and_shuts_for_a_worsened_setting(short):
+    opened, shown = run(short)
+    assert opened and "WORSE" not in shown and "real captures are left out" in shown
+    opened, shown = run(short, worsened)
+    assert not opened
+    assert (
+        "the gate stays shut: " in shown and "squat, smoothed: marker RMS" in shown.split("stays shut: ")[1]
+    )
+
+
+def test_without_captures_the_gate_fails_in_ci_and_no_baseline_is_made(monkeypatch, tmp_path):
+    monkeypatch.setenv("CI", "true")
+    with pytest.raises(InvalidInput, match="reference captures"):
+        command.gate(Console(), tmp_path, None)
+    with pytest.raises(InvalidInput, match="reference captures"):
+        command.update(Console(), tmp_path, None, "why")
+
+
+def test_the_command_line_reaches_it(monkeypatch, tmp_path):
+    asked = []
+    monkeypatch.setattr(command, "gate", lambda *words: asked.append(words) or len(asked) > 1)
+    monkeypatch.setattr(command, "update", lambda *words: asked.append(words))
+    assert main(["--gate", "--out", str(tmp_path)]) == 1
+    assert main(["--gate", "--out", str(tmp_path)]) == 0
+    assert main(["--update-baseline", "why", "--out", str(tmp_path)]) == 0
+    assert asked[-1][-1] == "why"
