@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
+from numpy.typing import NDArray
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, read_only
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 from mbkf.sensors.layout import Layout
 from mbkf.sensors.states import AcceleratedState
@@ -41,6 +42,7 @@ class UnobservedJoints(Block[State, None, Notes, None]):
         """Args: standard deviations (nv,) of velocities and accelerations about zero; None for no acceleration."""
         self._rest = 1.0 / velocity_sd
         self._calm = None if acceleration_sd is None else 1.0 / np.maximum(acceleration_sd, 1e-300)
+        self._kept: tuple[bytes, Array, Array] | None = None
 
     @classmethod
     def of(cls, movement_sd: Array, settings: UnobservedSettings) -> UnobservedJoints:
@@ -62,16 +64,29 @@ class UnobservedJoints(Block[State, None, Notes, None]):
         dofs, state = decision.unobserved, at.state
         if not len(dofs):
             return None
-        nv, k, rest = len(state.v), np.arange(len(dofs)), self._rest[dofs]
-        kinds = 1 if self._calm is None else 2
-        rows, values = np.zeros((kinds * len(dofs), kinds * nv)), np.empty(kinds * len(dofs))
-        rows[k, dofs] = rest
-        values[k] = -rest * state.v[dofs]
+        rows, rest = self._weights(dofs, len(state.v))
+        speed = -rest * state.v[dofs]
         if self._calm is not None:
-            calm = self._calm[dofs]
-            rows[len(dofs) + k, nv + dofs] = calm
-            values[len(dofs) + k] = -calm * cast(AcceleratedState, state).a[dofs]
-            return Rows(rows, values, self._v)
-        vector = np.zeros(nv)
-        vector[dofs] = -(rest**2) * state.v[dofs]
-        return Rows(rows, values, self._v, vector=vector)
+            slowing = -self._calm[dofs] * cast(AcceleratedState, state).a[dofs]
+            return Rows(rows, np.concatenate([speed, slowing]), self._v)
+        vector = np.zeros(len(state.v))
+        vector[dofs] = rest * speed
+        return Rows(rows, speed, self._v, vector=vector)
+
+    def _weights(self, dofs: NDArray[np.intp], nv: int) -> tuple[Array, Array]:
+        """Rows on velocities and accelerations, and weights of the first; kept while the same are unobserved.
+
+        Args:
+            dofs: (n,) unobserved ones.
+            nv: Degrees of freedom.
+        """
+        asked = dofs.tobytes()
+        if self._kept is None or self._kept[0] != asked:
+            k, rest = np.arange(len(dofs)), self._rest[dofs]
+            kinds = 1 if self._calm is None else 2
+            rows = np.zeros((kinds * len(dofs), kinds * nv))
+            rows[k, dofs] = rest
+            if self._calm is not None:
+                rows[len(dofs) + k, nv + dofs] = self._calm[dofs]
+            self._kept = asked, read_only(rows), rest
+        return self._kept[1:]
