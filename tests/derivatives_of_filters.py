@@ -55,6 +55,7 @@ def markers(rng):
     "sensors.posture.PreparedPosture.jacobian",
     "sensors.posture_sensor.PostureSensor.reading",
     "sensors.posture_sensor.PostureSensor.deviation",
+    "sensors.posture_sensor.PostureSensor.from_posture",
     "sensors.posture.posture_information",
 )
 def posture(rng):
@@ -62,7 +63,8 @@ def posture(rng):
     sensor, q = PostureSensor(model), moderate_pose(model, rng, spread=1.0)
     numeric = central_difference(model, lambda at: sensor.deviation(at)[0], q)
     read = central_difference(model, lambda at: sensor.reading(at).deviation, q)
-    weights = rng.uniform(0.5, 2.0, model.nv)
+    weights, start = rng.uniform(0.5, 2.0, model.nv), moderate_pose(model, rng, spread=0.5)
+    away = central_difference(model, lambda at: sensor.from_posture(start, at)[0], q)
     prior = PosturePrior(sensor, np.zeros(model.nv, dtype=bool), PostureSettings())
 
     def squared(at):
@@ -73,6 +75,7 @@ def posture(rng):
         ("PostureReading.jacobian", sensor.reading(q).jacobian, read),
         ("PostureSensor.reading", sensor.reading(q).jacobian, numeric[sensor.dofs]),
         ("PostureSensor.deviation", sensor.deviation(q)[1], numeric),
+        ("PostureSensor.from_posture", sensor.from_posture(start, q)[1], away),
     ) | named(
         "sensors.posture",
         ("PreparedPosture.jacobian", prior.prepare(SimpleNamespace(q=q), None).jacobian, numeric),

@@ -271,3 +271,16 @@ def test_limits_are_passed_as_the_reference_says(seed):
     if found is not None and expected is not None:
         assert_same(found.matrix, expected.matrix)
         assert_same(found.vector, expected.vector)
+
+
+@often
+@seeds
+def test_deviations_from_another_configuration_are_pinocchio_s_differences(seed):
+    """With the root set aside."""
+    s = moving(seed)
+    start = pin.integrate(s.model, s.q, 0.3 * s.rng.normal(size=s.model.nv))
+    deviation, jacobian = s.tree.deviation(s.q, start)
+    expected, slope = pin.difference(s.model, start, s.q), pin.dDifference(s.model, start, s.q, pin.ARG1)
+    np.testing.assert_allclose(deviation[6:], expected[6:], rtol=0, atol=1e-13)
+    np.testing.assert_allclose(jacobian[6:, 6:], slope[6:, 6:], rtol=0, atol=1e-8)
+    assert not deviation[:6].any() and not jacobian[:6].any()
