@@ -41,6 +41,9 @@ MOTIONS = (
 )
 SEEDS, QUICK_SEEDS, QUICK_MOTIONS = 6, 1, ("squat", "jump")
 
+SECONDS: float | None = None
+"""Length of a trial; None for the motion's usual one."""
+
 TIMES = ("step_seconds",)
 """Arrays of wall time, which differ from run to run."""
 
@@ -106,7 +109,7 @@ def _apart(motion: str, seed: int, settings: ReconstructSettings) -> Apart:
         seed: Of the person and the motion.
         settings: How it is reconstructed.
     """
-    subject, made = synthesise(motion, seed=seed)
+    subject, made = synthesise(motion, seconds=SECONDS, seed=seed)
     with using(COMPILED):
         compiled = reconstruct(made.trial, subject, settings=settings)
     with using(REFERENCE):
