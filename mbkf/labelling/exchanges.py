@@ -52,6 +52,10 @@ LEAST_GAIN, SURE_GAIN = 1.0, 12.0
 LEFT, SURELY_LEFT = 0.9, 0.6
 """An exchange that is put right leaves no more than this share of the cost; in the same two cases."""
 
+BOTH_SEEN = 0.2
+"""Both markers must be seen in this share of an exchange: of one alone, with its rigid neighbours hidden as well, limbs
+that are bent further than usual look like another name."""
+
 OBSERVED_SD_M, FEW = 0.008, 20
 """Least spread of a distance as the capture has it, and how many frames looked at must show it."""
 
@@ -243,7 +247,8 @@ def _chosen(shown_m: Array, distances: Distances, pairs: Indices) -> list[Exchan
         for first, end in _runs(state[:, p]):
             there = slice(first, end)
             looked = stored[there, p] > 0.0
-            if not looked.any():
+            both = ~np.isnan(delta[there, p, 0])
+            if not looked.any() or both.sum() < BOTH_SEEN * looked.sum():
                 continue
             ends = [t for t in (first - 1, end - 1) if 0 <= t < len(turn)]
             if any(turn[t, p] >= 0.0 for t in ends):

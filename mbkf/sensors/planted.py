@@ -1,15 +1,16 @@
-"""Planted foot, as a block: 0 = ṗ + r_p and 0 = ω + r_ω, for a loaded foot none of whose markers is seen.
+"""Planted foot, as a block: u = ṗ + r_p and 0 = ω + r_ω, for a loaded foot none of whose markers is seen.
 
 Where keypoints show a foot, which leave its pitch open by several degrees, its sole is level while it lies flat on a
 plate: 0 = (A e_z)_xy + r_l.
 
-The point p under the centre of pressure stands still, whether the foot is flat or rolls; a flat foot does not turn
-either, nor do the toes once the load is on them and the heel rises. The derivative by the configuration vanishes where
-the reading is met and is left out.
+The point p under the centre of pressure moves as the floor does, whether the foot is flat or rolls: u is zero, or the
+velocity of the belt. A flat foot does not turn either, nor do the toes once the load is on them and the heel rises. The
+derivative by the configuration vanishes where the reading is met and is left out.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -28,21 +29,24 @@ class PlantedSettings:
     """How still a loaded foot stands.
 
     Attributes:
-        planted_speed_sd, planted_turn_sd: Standard deviations of the point's velocity, m/s, and of the turning of what
-            lies flat, rad/s.
+        planted_speed_sd, planted_turn_sd: Standard deviations of the point's velocity on the floor, m/s, and of the
+            turning of what lies flat, rad/s.
+        belt_speed_share: The same of the belt's speed, as a share of it.
         level_sd_rad: How far from level a flat sole is per frame, where only keypoints show the foot, rad.
     """
 
     planted_speed_sd: float = 0.03
     planted_turn_sd: float = 0.2
+    belt_speed_share: float = 0.1
     level_sd_rad: float = 0.3
 
 
 class PlantedDecision(NamedTuple):
-    """What stands still, and the segments of feet whose soles are level."""
+    """What stands still on the floor, the segments of feet whose soles are level, and the floor's velocity, m/s."""
 
     still: tuple[Planted, ...]
     level: tuple[str, ...]
+    floor_m_s: tuple[float, float] = (0.0, 0.0)
 
 
 class PlantedFeet(Block[State, None, PlantedDecision, None]):
@@ -95,16 +99,17 @@ class PlantedFeet(Block[State, None, PlantedDecision, None]):
         ]
         still = tuple(one for one, lost in zip(found, unmarked, strict=True) if lost and one is not None)
         if not self.keypoints:
-            return PlantedDecision(still, ())
+            return PlantedDecision(still, (), contact.floor_m_s)
         flat = [one.segment for one in found if one is not None and one.flat]
-        return PlantedDecision(still, tuple(name for name in flat if name in self._model.roles.feet))
+        level = tuple(name for name in flat if name in self._model.roles.feet)
+        return PlantedDecision(still, level, contact.floor_m_s)
 
     def linearise(self, at: OperatingPoint[State, None], decision: PlantedDecision) -> list[Rows]:
         """Rows on the velocity, and on the configuration where a sole is level."""
-        s, state = self.settings, at.state
-        sds = s.planted_speed_sd, s.planted_turn_sd
+        s, state, floor = self.settings, at.state, decision.floor_m_s
+        sds = math.hypot(s.planted_speed_sd, s.belt_speed_share * math.hypot(*floor)), s.planted_turn_sd
         found = [
-            Rows(*standing_still(self._model, state.q, state.v, foot, *sds), self._v)
+            Rows(*standing_still(self._model, state.q, state.v, foot, *sds, floor), self._v)
             for foot in decision.still
         ]
         level = decision.level
@@ -112,7 +117,13 @@ class PlantedFeet(Block[State, None, PlantedDecision, None]):
 
 
 def standing_still(
-    model: Body, q: Array, v: Array, planted: Planted, speed_sd: float, turn_sd: float
+    model: Body,
+    q: Array,
+    v: Array,
+    planted: Planted,
+    speed_sd: float,
+    turn_sd: float,
+    floor_m_s: tuple[float, float] = (0.0, 0.0),
 ) -> tuple[Array, Array]:
     """Whitened rows (k, nv) on the velocity and their innovations (k,): three, and three more for what lies flat.
 
@@ -121,13 +132,16 @@ def standing_still(
         q: (nq,) configuration.
         v: (nv,) velocity.
         planted: The foot or its toes.
-        speed_sd: How still the point stands, m/s.
+        speed_sd: How still the point stands on the floor, m/s.
         turn_sd: How little what lies flat turns, rad/s.
+        floor_m_s: Horizontal velocity of the floor.
     """
     jacobian = model.segment_jacobian(q, planted.segment, planted.point_m)
     weight = 1.0 / np.repeat([speed_sd, turn_sd], 3)
     rows = (weight[:, None] * jacobian)[: 6 if planted.flat else 3]
-    return rows, -rows @ v
+    short = -rows @ v
+    short[:2] += weight[:2] * floor_m_s
+    return rows, short
 
 
 def lying_level(model: Body, q: Array, segment: str, level_sd_rad: float) -> tuple[Array, Array]:

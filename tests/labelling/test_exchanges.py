@@ -85,6 +85,18 @@ def test_an_exchange_after_a_gap_is_found(expected):
     assert np.array_equal(put_right(changed, exchanges(changed, expected)), positions, equal_nan=True)
 
 
+@pytest.mark.parametrize("pair", [("RHEE", "RMT1"), ("C7", "CLAV"), ("RANK", "RKNE")])
+def test_one_marker_alone_is_not_renamed(pair, expected):
+    """What stands near another's place while that is hidden may be a limb that is bent further than usual."""
+    a, b = sorted(NAMES.index(name) for name in pair)
+    positions, there = walking(), frames_of((30, 60))
+    positions[there, a] = positions[there, b]
+    positions[there, b] = np.nan
+    found = exchanges(swapped(positions, a, b, frames_of((5, 15))), expected)
+    assert [(one.a, one.b) for one in found] == [(a, b)]
+    assert np.array_equal(found[0].frames, frames_of((5, 15)))
+
+
 def test_three_names_that_go_round_are_put_right(expected):
     three = [NAMES.index(name) for name in ("RASI", "RKNE", "RANK")]
     positions = walking()

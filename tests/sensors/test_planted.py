@@ -1,11 +1,16 @@
 """A loaded foot stands still: velocity of its point and its turning against finite differences."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from mbkf.sensors.block import OperatingPoint
+from mbkf.sensors.contact.records import Planted
 from mbkf.sensors.contact.soles import sole_locals
+from mbkf.sensors.layout import Layout
 from mbkf.sensors.marker_sensor import MarkerSensor
-from mbkf.sensors.planted import Planted, lying_level, standing_still
+from mbkf.sensors.planted import PlantedDecision, PlantedFeet, PlantedSettings, lying_level, standing_still
 from tests.motions import central_difference, moderate_pose, reference_model
 
 MODEL = reference_model()
@@ -34,6 +39,29 @@ def test_a_flat_foot_does_not_turn_either(foot):
     h = 1e-6
     moved = [SOLES.positions(MODEL.integrate(Q, s * h * still)).reshape(2, 3, 3)[foot] for s in (-1, 1)]
     np.testing.assert_allclose((moved[1] - moved[0]) / (2 * h), 0.0, atol=1e-6)
+
+
+def test_on_a_belt_the_point_goes_with_it():
+    """The rows vanish for a motion that moves the foot with the belt, and draw one that stands still along."""
+    point, belt = SOLES.positions(Q)[0], (-1.2, 0.3)
+    planted = Planted(MODEL.roles.feet[0], point, flat=True)
+    rows, short = standing_still(MODEL, Q, V, planted, 0.05, 0.2, belt)
+    moved = np.array([*belt, 0.0, 0.0, 0.0, 0.0]) / np.repeat([0.05, 0.2], 3)
+    along = V + np.linalg.pinv(rows) @ (moved - rows @ V)
+    np.testing.assert_allclose(standing_still(MODEL, Q, along, planted, 0.05, 0.2, belt)[1], 0.0, atol=1e-9)
+    np.testing.assert_allclose(short, moved - rows @ V, atol=1e-12)
+
+
+def test_a_belt_is_followed_less_closely_than_a_floor():
+    block = PlantedFeet(MODEL, None, PlantedSettings(planted_speed_sd=0.03, belt_speed_share=0.1))
+    block.bind(Layout.of(MODEL.nv, q=MODEL.nv, v=MODEL.nv))
+    at = OperatingPoint(SimpleNamespace(q=Q, v=V), None)
+    foot = Planted(MODEL.roles.feet[0], SOLES.positions(Q)[0], flat=False)
+    (floor,) = block.linearise(at, PlantedDecision((foot,), ()))
+    (belt,) = block.linearise(at, PlantedDecision((foot,), (), (-0.3, 0.4)))
+    np.testing.assert_allclose(belt.jacobian, floor.jacobian * 0.03 / np.hypot(0.03, 0.05))
+    away = np.hypot(0.03, 0.05) * (belt.innovation + belt.jacobian @ V)
+    np.testing.assert_allclose(away, [-0.3, 0.4, 0.0], atol=1e-12)
 
 
 def test_smaller_spreads_weigh_more():
