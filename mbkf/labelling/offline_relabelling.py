@@ -90,6 +90,8 @@ def majority_labels(
 ) -> Indices:
     """(n,) label of every tracklet by the frames in which its points carried it.
 
+    A tracklet gives its label up for another one that it carried as well where more frames keep theirs in all.
+
     Args:
         label_of_point: (T, C) labels frame by frame.
         markers: Their number M.
@@ -98,7 +100,8 @@ def majority_labels(
     """
     votes = _votes(label_of_point, markers, tracklets)
     length = np.diff(tracklets.spans, axis=1)
-    return _without_overlap(np.where(votes >= settings.least_votes * (length + 5.0), votes, 0.0), tracklets)
+    votes = np.where(votes >= settings.least_votes * (length + 5.0), votes, 0.0)
+    return _traded(votes, _without_overlap(votes, tracklets), tracklets)
 
 
 def relabel(
@@ -241,6 +244,38 @@ def _without_overlap(frames: Array, tracklets: Tracklets) -> Indices:
             label[piece] = marker
             taken[first:end, marker] = True
     return label
+
+
+def _traded(votes: Array, label: Indices, tracklets: Tracklets) -> Indices:
+    """(n,) labels after trades: one tracklet takes another label, and tracklets without any take its own.
+
+    Args:
+        votes: (n, M) number of frames in which each tracklet carried each label, 0 where they are too few.
+        label: (n,) labels, none twice in a frame.
+        tracklets: The links.
+    """
+    for piece in np.flatnonzero((label != HIDDEN) & (np.count_nonzero(votes, axis=1) > 1)):
+        own = label[piece]
+        for other in np.flatnonzero(votes[piece]):
+            if other == own or not _free(other, piece, label, tracklets):
+                continue
+            trial, gained = label.copy(), votes[piece, other] - votes[piece, own]
+            trial[piece] = other
+            heirs = np.flatnonzero((label == HIDDEN) & (votes[:, own] > 0.0))
+            for heir in heirs[np.argsort(-votes[heirs, own], kind="stable")]:
+                if _free(own, heir, trial, tracklets):
+                    trial[heir], gained = own, gained + votes[heir, own]
+            if gained > 0.0:
+                label = trial
+                break
+    return label
+
+
+def _free(marker: int, piece: int, label: Indices, tracklets: Tracklets) -> bool:
+    """Whether no other tracklet has the marker's label while this one lasts."""
+    spans = tracklets.spans[(label == marker) & (np.arange(len(label)) != piece)]
+    first, end = tracklets.spans[piece]
+    return not ((spans[:, 0] < end) & (spans[:, 1] > first)).any()
 
 
 def _costs(

@@ -84,6 +84,17 @@ def test_the_majority_of_frames_names_a_tracklet(scene):
     assert (majority_labels(seldom, 3, tracklets, SETTINGS) == HIDDEN).all()
 
 
+def test_a_label_that_two_tracklets_carried_goes_to_the_one_without_another(scene):
+    """A marker hidden at first, whose neighbour was taken for it: the neighbour has its own name for the rest."""
+    positions, _ = scene
+    positions[20:40, 0] = np.nan
+    tracklets = linked(positions)
+    carried = np.tile([HIDDEN, 0, 2], (100, 1))
+    carried[60:, 0], carried[60:, 1] = 0, 1
+    found = tracklets.points(majority_labels(carried, 3, tracklets, SETTINGS))
+    assert (found[40:] == [0, 1, 2]).all() and (found[:40, 1:] == [1, 2]).all()
+
+
 def test_no_label_twice_in_a_frame(scene):
     positions, _ = scene
     tracklets = linked(positions)
