@@ -23,7 +23,7 @@ from rich.table import Table
 
 import benchmarks
 from benchmarks.checks import Check, Context
-from mbkf.errors import InvalidInput, MbkfError, UnknownName
+from mbkf.errors import InvalidInput, MbkfError, MissingDependency, UnknownName
 
 DATA_VARIABLE, OLD_VARIABLE = "MBKF_DATA", "MBKF_OLD_TREE"
 _PIPED_WIDTH = 120
@@ -131,7 +131,13 @@ def _run(args: argparse.Namespace) -> list[Check]:
         out.mkdir(parents=True, exist_ok=True)
         start = perf_counter()
         module = importlib.import_module(f"benchmarks.{name}")
-        results[name] = getattr(module, ENTRY_POINT)(context_of(args, out))
+        try:
+            results[name] = getattr(module, ENTRY_POINT)(context_of(args, out))
+        except MissingDependency as missing:
+            if args.names:
+                raise
+            console.print(f"{name}: left out, since {missing}", markup=False)
+            continue
         console.print(_table(name, results[name], perf_counter() - start))
     _write(args.out / "checks.json", results, args.quick)
     return [check for checks in results.values() for check in checks]

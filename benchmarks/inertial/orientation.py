@@ -94,6 +94,20 @@ def _from_ahrs(one: ImuReadings, moving: BoolArray) -> float:
     return float(np.degrees(error_angles(own.quaternion, theirs)[0][moving].max()))
 
 
+def beside_vqf(context: Context) -> Iterator[Check]:
+    """Both trials of BROAD by the EKF and its smoother, and by VQF online and offline."""
+    folder = context.require_data() / "imu_broad"
+    for trial, (file, *_) in BROAD.items():
+        (one,) = read_imu(folder / file)
+        moving = scipy.io.loadmat(folder / file)["movement"].ravel().astype(bool)
+        name = f"BROAD {trial}"
+        for kind, method in (("online", "ekf"), ("offline", "smooth")):
+            error = _error(one, moving, OrientSettings(method, madgwick=MadgwickSettings(BETA)))
+            yield _shown(f"{name}, mbkf {kind}: total", error.total)
+            yield _shown(f"{name}, mbkf {kind}: inclination", error.inclination)
+        yield from _yardsticks(name, one, moving)
+
+
 def _yardsticks(name: str, one: ImuReadings, moving: BoolArray) -> Iterator[Check]:
     assert one.orientation is not None
     parts = [

@@ -254,15 +254,15 @@ def _traded(votes: Array, label: Indices, tracklets: Tracklets) -> Indices:
         label: (n,) labels, none twice in a frame.
         tracklets: The links.
     """
-    for piece in np.flatnonzero((label != HIDDEN) & (np.count_nonzero(votes, axis=1) > 1)):
-        own = label[piece]
-        for other in np.flatnonzero(votes[piece]):
+    for piece in np.flatnonzero((label != HIDDEN) & (np.count_nonzero(votes, axis=1) > 1)).tolist():
+        own = int(label[piece])
+        for other in np.flatnonzero(votes[piece]).tolist():
             if other == own or not _free(other, piece, label, tracklets):
                 continue
             trial, gained = label.copy(), votes[piece, other] - votes[piece, own]
             trial[piece] = other
             heirs = np.flatnonzero((label == HIDDEN) & (votes[:, own] > 0.0))
-            for heir in heirs[np.argsort(-votes[heirs, own], kind="stable")]:
+            for heir in heirs[np.argsort(-votes[heirs, own], kind="stable")].tolist():
                 if _free(own, heir, trial, tracklets):
                     trial[heir], gained = own, gained + votes[heir, own]
             if gained > 0.0:

@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks import __main__ as runner
 from benchmarks.checks import Check, Context, number, within
-from mbkf.errors import InvalidInput
+from mbkf.errors import InvalidInput, MissingDependency
 
 
 @pytest.mark.parametrize(
@@ -77,6 +77,17 @@ def test_benchmark_that_needs_absent_data_exits_with_2(fake, tmp_path, capsys):
     fake.run = lambda context: context.require_data()
     assert runner.main(["fake", "--out", str(tmp_path)]) == 2
     assert runner.DATA_VARIABLE in capsys.readouterr().err
+
+
+def test_a_benchmark_without_its_library_is_left_out_unless_it_is_named(fake, tmp_path, capsys):
+    def run(context):
+        raise MissingDependency("opensim", "the comparison with other tools", "peers")
+
+    fake.run = run
+    assert runner.main(["--out", str(tmp_path)]) == 0
+    assert "left out" in (told := capsys.readouterr().out) and "mbkf[peers]" in told
+    assert runner.main(["fake", "--out", str(tmp_path)]) == 2
+    assert "mbkf[peers]" in capsys.readouterr().err
 
 
 def test_every_benchmark_module_says_what_it_measures_and_can_run():
