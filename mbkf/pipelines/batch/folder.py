@@ -3,7 +3,7 @@
     study/P01/static.c3d, study/P01/walk1.c3d                  person P01
     study/P01/monday/static.c3d, study/P01/monday/walk1.trc    person P01, session monday
 
-Standing trials are known by their names. Ground reactions lie beside their trial, under its name with ``grf`` or
+Standing trials are known by their names; where none is, by standing still. Ground reactions lie beside their trial, under its name with ``grf`` or
 ``forces``. ``session.toml`` in a session's folder, or above it, states mass, height and protocol.
 """
 
@@ -17,7 +17,7 @@ from pathlib import Path
 
 from mbkf.errors import FileFormatError
 from mbkf.io.capture import CAPTURES, FORCES
-from mbkf.pipelines.batch.plan import MOST_MOVING, Files, Person, Plan, Trial, planned
+from mbkf.pipelines.batch.plan import MOST_LOOKED_AT, MOST_MOVING, Files, Person, Plan, Trial, planned
 
 CAPTURE_SUFFIXES = (".c3d", ".trc")
 """Captures of a folder, the more telling first; other formats are named in a list."""
@@ -125,7 +125,7 @@ def _trials(root: Path, place: Path, captures: Sequence[Path]) -> list[Trial]:
         parts[0] if parts else root.name,
         "-".join(parts[1:]),
         statics,
-        tuple(moving[:MOST_MOVING]),
+        tuple(moving[: MOST_MOVING if statics else MOST_LOOKED_AT]),
         stated.mass_kg,
         stated.height_m,
         stated.protocol,

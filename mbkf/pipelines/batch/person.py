@@ -12,7 +12,8 @@ from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject, write_subject
 from mbkf.pipelines.batch.inputs import fingerprint, is_made_from, write_record
-from mbkf.pipelines.batch.plan import Files, Person
+from mbkf.pipelines.batch.plan import MOST_MOVING, Files, Person
+from mbkf.pipelines.protocol.standing import stands_still
 from mbkf.pipelines.scale import scale
 from mbkf.pipelines.weighing import PROVISIONAL_KG, weighed
 
@@ -50,7 +51,7 @@ def subject_of(person: Person, out: Path) -> Path:
 
 
 def scaled(person: Person) -> Subject:
-    """The person's body: by the first standing trial, else by the moving ones.
+    """The person's body: by the first standing trial, by its name or else by standing still, else by the moving ones.
 
     Raises:
         MbkfError: No trial can be read, or they do not tell body or mass.
@@ -58,6 +59,9 @@ def scaled(person: Person) -> Subject:
     """
     static = read_capture(person.statics[0]) if person.statics else None
     trials = [] if static is not None else _readable(person.moving)
+    if static is None and (still := next((one for one in trials if stands_still(one.markers)), None)):
+        static, trials = still, []
+    trials = trials[:MOST_MOVING]
     captures = [*([] if static is None else [static]), *trials]
     stated = person.mass_kg is not None or any(one.subject_mass_kg is not None for one in captures)
     subject = scale(
@@ -70,7 +74,7 @@ def scaled(person: Person) -> Subject:
     if stated:
         return subject
     if not any(capture.plates for capture in captures):
-        captures = _readable(person.moving)
+        captures = _readable(person.moving[:MOST_MOVING])
     try:
         return weighed(subject, captures)
     except InvalidInput as error:

@@ -17,6 +17,9 @@ FORBIDDEN = re.compile(r'[/\\:*?"<>|\x00-\x1f]')
 MOST_MOVING = 3
 """So many trials are scaled from where there is no standing one, or weighed by where that one has no plates."""
 
+MOST_LOOKED_AT = 12
+"""Among so many trials a standing one is looked for where no name tells."""
+
 
 class Files(NamedTuple):
     """A capture, and the ground reactions beside it; None for those of the capture itself."""
@@ -33,7 +36,8 @@ class Person:
         name: The person's name or code.
         session: Name of the session; empty for a person with one.
         statics: Standing trials; the first one is used.
-        moving: The first moving trials, :data:`MOST_MOVING` at most.
+        moving: The first moving trials, :data:`MOST_MOVING` at most; :data:`MOST_LOOKED_AT`, of which some may be
+            standing ones, where no standing trial is known.
         mass_kg: Body mass; None for what the captures state, else what their plates tell.
         height_m: Body height; None where it is not known.
         protocol: Marker protocol; None for the one that the names belong to.

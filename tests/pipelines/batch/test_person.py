@@ -56,6 +56,13 @@ def test_without_a_standing_trial_moving_ones_are_taken_those_that_can_be_read(p
         scaled(replace(person, statics=(), moving=moving[:1]))
 
 
+def test_where_no_name_tells_the_trial_that_stands_still_is_the_standing_one(person):
+    named, looked = scaled(person), (*person.moving, Files(person.statics[0]))
+    found = scaled(replace(person, statics=(), moving=looked))
+    assert found.scale_factors == named.scale_factors and found.report["frames"] == named.report["frames"]
+    assert scaled(replace(person, statics=())).scale_factors != named.scale_factors
+
+
 def test_a_file_of_the_person_is_taken_as_it_is(person, tmp_path):
     given = walk_folder() / "subject.toml"
     assert subject_of(replace(person, subject=given), tmp_path) == given
