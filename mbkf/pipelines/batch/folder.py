@@ -3,8 +3,9 @@
     study/P01/static.c3d, study/P01/walk1.c3d                  person P01
     study/P01/monday/static.c3d, study/P01/monday/walk1.trc    person P01, session monday
 
-Standing trials are known by their names; where none is, by standing still. Ground reactions lie beside their trial, under its name with ``grf`` or
-``forces``. ``session.toml`` in a session's folder, or above it, states mass, height and protocol.
+Standing trials are known by their names; where none is, by standing still. Ground reactions lie beside their trial,
+under its name with ``grf`` or ``forces``. ``session.toml`` in a session's folder, or above it, states mass, height and
+protocol.
 """
 
 from __future__ import annotations

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -154,17 +155,28 @@ def _curves(pairs: Sequence[tuple[Trial, Outcome]], out: Path) -> Iterator[pa.Ta
 
 
 def _write(path: Path, schema: pa.Schema, parts: Iterator[pa.Table | list[Row]]) -> None:
-    """Writes a table piece by piece, as Parquet and as CSV beside it."""
+    """Writes a table piece by piece, as Parquet and at the same time as CSV beside it."""
+    plain = _plain(schema)
+
+    def write_text(table: pa.Table) -> None:
+        rows.write_table(table.cast(plain))
+
     with ExitStack() as files:
         parquet, text = (
             files.enter_context(replacing(path.with_suffix(end))) for end in (".parquet", ".csv")
         )
         columns = files.enter_context(pq.ParquetWriter(parquet, schema, compression="zstd"))
-        rows = files.enter_context(pa_csv.CSVWriter(text, _plain(schema)))
+        rows = files.enter_context(pa_csv.CSVWriter(text, plain))
+        beside = files.enter_context(ThreadPoolExecutor(1))
+        written: Future[None] | None = None
         for part in parts:
             table = part if isinstance(part, pa.Table) else _table(part, schema)
+            if written is not None:
+                written.result()
+            written = beside.submit(write_text, table)
             columns.write_table(table)
-            rows.write_table(table.cast(_plain(schema)))
+        if written is not None:
+            written.result()
 
 
 def _table(rows: Sequence[Row], schema: pa.Schema) -> pa.Table:

@@ -16,8 +16,9 @@ from joblib.externals.loky.process_executor import BrokenProcessPool
 
 from mbkf.pipelines.batch.outcome import Outcome, Status, Task
 
-AHEAD = 4
-"""So many tasks per worker are handed over before one is awaited: enough to keep it busy, little enough to hold."""
+AHEAD = 2
+"""So many tasks per worker are handed over before one is awaited: enough to keep it busy, and no more than loky passes
+on at once, whose manager would stumble over tasks that still wait with it when an interruption ends it."""
 
 ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
 
