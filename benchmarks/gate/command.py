@@ -12,7 +12,8 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.gate.baseline import FILE, read_baseline, updated, write_baseline
-from benchmarks.gate.metrics import Change, left_out, measured
+from benchmarks.gate.measured import left_out, measured
+from benchmarks.gate.metrics import Change
 from benchmarks.gate.verdict import Kind, Verdict, verdicts
 from mbkf.errors import InvalidInput
 

@@ -1,7 +1,4 @@
-"""What the gate measures: short synthetic trials with known truth, real captures where they are, and ratios of times.
-
-Every number but those of time is arithmetic on the same input, so that it changes only when mbkf does.
-"""
+"""Metrics of short synthetic trials with known truth, and of public captures as they are."""
 
 from __future__ import annotations
 
@@ -12,12 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.dynamic.captures import SOURCES
-from benchmarks.speed.steps import STEP, dynamic_times
-from benchmarks.speed.walks import synthetic
 from mbkf.io.capture import read_capture
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
-from mbkf.kernel.loading import library
 from mbkf.pipelines.label import label
 from mbkf.pipelines.labelling.score import score
 from mbkf.pipelines.live.filter import LiveFilter, live_inputs
@@ -37,10 +31,6 @@ TRIALS = {"walk": 4.0, "squat": 3.0}
 """Synthetic motions and their length, s."""
 
 REAL = ("rajagopal walk", "gait2354")
-STEPS = 300
-
-TIME = "dynamic step, kernel with vectors of its own"
-"""The ratio of times: of one arithmetic, since others take longer."""
 
 
 @dataclass(frozen=True)
@@ -64,39 +54,6 @@ class Metric:
 
 Change = Callable[[ReconstructSettings], ReconstructSettings]
 """What a test worsens."""
-
-
-def measured(folder: Path, data: Path | None, change: Change | None = None) -> Iterator[Metric]:
-    """All metrics.
-
-    Args:
-        folder: For files.
-        data: Folder of the reference captures; None leaves those out.
-        change: Changes the settings of every reconstruction.
-    """
-    changed = change or (lambda settings: settings)
-    for motion, seconds in TRIALS.items():
-        yield from synthetic_metrics(motion, seconds, folder / motion, changed)
-    for name in REAL if data is not None else ():
-        assert data is not None
-        yield from real_metrics(name, data, changed)
-    kernel = library()
-    if kernel is not None and kernel.vectors():
-        step = dynamic_times(synthetic(2.0), STEPS).in_products(STEP)
-        yield Metric(TIME, step, "P", is_time=True)
-
-
-def left_out(name: str, data: Path | None) -> bool:
-    """Whether a metric of the baseline is not measured here: real captures, or times of another arithmetic.
-
-    Args:
-        name: The metric.
-        data: Folder of the reference captures; None for none.
-    """
-    kernel = library()
-    if name == TIME:
-        return kernel is None or not kernel.vectors()
-    return data is None and name.startswith(REAL)
 
 
 def synthetic_metrics(motion: str, seconds: float, folder: Path, changed: Change) -> Iterator[Metric]:

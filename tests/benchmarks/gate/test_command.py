@@ -6,7 +6,7 @@ import pytest
 from rich.console import Console
 
 from benchmarks.__main__ import main
-from benchmarks.gate import command, metrics
+from benchmarks.gate import command, measured
 from benchmarks.gate.baseline import Baseline, held, write_baseline
 from mbkf.errors import InvalidInput
 
@@ -16,14 +16,14 @@ pytestmark = pytest.mark.slow
 @pytest.fixture
 def short(monkeypatch, tmp_path):
     """One short squat, and a baseline of it."""
-    monkeypatch.setattr(metrics, "TRIALS", {"squat": 1.5})
-    monkeypatch.setattr(metrics, "STEPS", 60)
+    monkeypatch.setattr(measured, "TRIALS", {"squat": 1.5})
+    monkeypatch.setattr(measured, "STEPS", 60)
     monkeypatch.delenv("CI", raising=False)
-    found = list(metrics.measured(tmp_path / "first", None))
+    found = list(measured.measured(tmp_path / "first", None))
     write_baseline(
         Baseline({one.name: held(one) for one in found if not one.is_time}), tmp_path / "baseline.toml"
     )
-    monkeypatch.setattr(metrics, "library", lambda: None)
+    monkeypatch.setattr(measured, "library", lambda: None)
     return tmp_path
 
 
