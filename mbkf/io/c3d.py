@@ -18,11 +18,13 @@ from mbkf.io.axes import (
     up_axis,
 )
 from mbkf.io.c3d_analog import analog_channels, events, plate_readings, raw_plates
-from mbkf.io.c3d_layout import LAST_FRAME_OF_HEADER, C3dLayout, check_frames, check_layout
-from mbkf.io.c3d_parameters import C3dContent, C3dParameters
+from mbkf.io.c3d_decode import C3dContent, decode
+from mbkf.io.c3d_layout import check_layout
+from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.c3d_plates import RawPlate, plate_axes
 from mbkf.io.c3d_points import read_points
 from mbkf.io.c3d_write import write_c3d
+from mbkf.io.plausible import MASSES_KG
 from mbkf.io.records import AxesSource, Capture
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
 
@@ -62,19 +64,18 @@ def read_c3d(
     """
     path = Path(path)
     layout = check_layout(path)
-    content = _load(path)
-    parameters = C3dParameters(content["parameters"])
-    _check_complete(path, layout, parameters, content["data"]["points"].shape[2])
-    rate_hz = _rate(path, content, parameters)
+    content = decode(path, layout)
+    parameters = content.parameters
+    rate_hz = _rate(path, content)
     start_s = max(layout.first_frame - 1, 0) / rate_hz
 
-    notes: list[str] = []
+    notes = list(content.notes)
     used_unit = _length_unit(path, parameters, unit, notes)
-    raw = raw_plates(path, content, parameters, used_unit, notes) if plates else []
+    raw = raw_plates(path, content, used_unit, notes) if plates else []
     used_up, source = (
         (up_axis(up), AxesSource.UP_GIVEN) if up is not None else _up_axis(parameters, raw, notes)
     )
-    markers, derived = read_points(content, parameters, used_up, used_unit, rate_hz, start_s, notes)
+    markers, derived = read_points(content, used_up, used_unit, rate_hz, start_s, notes)
     if unit is None:
         notes += check_body_size(markers.positions_m, used_unit, str(path))
     readings = [
@@ -86,8 +87,8 @@ def read_c3d(
         markers=markers,
         plates=tuple(readings),
         derived=derived,
-        analog=analog_channels(content, parameters),
-        events=events(content, parameters),
+        analog=analog_channels(content),
+        events=events(content),
         up_axis=used_up,
         length_unit=used_unit,
         notes=tuple(notes),
@@ -98,35 +99,8 @@ def read_c3d(
     )
 
 
-def _load(path: Path) -> C3dContent:
-    """The file's content as ezc3d gives it; every error of ezc3d becomes one kind of error."""
-    import ezc3d
-
-    try:
-        return ezc3d.c3d(str(path))
-    except (OSError, RuntimeError, ValueError, TypeError, IndexError, KeyError, MemoryError) as error:
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise FileFormatError(path, f"cannot be read as C3D ({reason}); export it again") from error
-
-
-def _check_complete(path: Path, layout: C3dLayout, parameters: C3dParameters, frames_read: int) -> None:
-    """Compare the frames read with those that header and parameters promise (the header ends at 65535 frames)."""
-    promised = layout.frames
-    counted = layout.first_frame + layout.frames <= LAST_FRAME_OF_HEADER
-    actual = parameters.numbers("TRIAL", "ACTUAL_END_FIELD").ravel()
-    first = parameters.numbers("TRIAL", "ACTUAL_START_FIELD").ravel()
-    if not counted and len(actual) == len(first) == 2:  # 32-bit numbers in two 16-bit words, low word first
-        words = np.array([1, 65536])
-        promised = max(promised, int((actual % 65536) @ words - (first % 65536) @ words) + 1)
-    check_frames(path, layout, promised)
-    if frames_read < layout.frames:
-        raise FileFormatError(
-            path, f"only {frames_read} of {layout.frames} frames are readable; export it again"
-        )
-
-
-def _rate(path: Path, content: C3dContent, parameters: C3dParameters) -> float:
-    rate_hz = parameters.number("POINT", "RATE") or float(content["header"]["points"]["frame_rate"])
+def _rate(path: Path, content: C3dContent) -> float:
+    rate_hz = content.parameters.number("POINT", "RATE") or content.rate_hz
     if not (math.isfinite(rate_hz) and rate_hz > 0.0):
         raise FileFormatError(path, f"POINT:RATE is {rate_hz:g}, not a frame rate; export the trial again")
     return single_precision(rate_hz)
@@ -172,6 +146,6 @@ def _mass_kg(parameters: C3dParameters) -> float | None:
     """Body mass stated in PROCESSING or SUBJECTS, if it is one."""
     for group, name in (("PROCESSING", "BODYMASS"), ("SUBJECTS", "BODYMASS"), ("SUBJECTS", "WEIGHT")):
         mass = parameters.number(group, name)
-        if math.isfinite(mass) and mass > 0.0:
+        if MASSES_KG[0] <= mass <= MASSES_KG[1]:
             return single_precision(mass)
     return None

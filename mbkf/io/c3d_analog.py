@@ -9,7 +9,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
 from mbkf.io.axes import METRES_PER_UNIT, rotation_to_world
-from mbkf.io.c3d_parameters import C3dContent, C3dParameters
+from mbkf.io.c3d_decode import C3dContent
 from mbkf.io.c3d_plates import RawPlate, check_geometry, wrench_at_surface
 from mbkf.io.records import AnalogChannel, CaptureEvent, PlateReadings
 from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare, require_finite
@@ -18,30 +18,21 @@ _OFF_PLATE_M = 0.1
 _OFF_PLATE_SHARE = 0.5
 
 
-def analog_rate_hz(content: C3dContent, parameters: C3dParameters) -> float:
+def analog_rate_hz(content: C3dContent) -> float:
     """Sample rate of the analog channels in Hz, from their number per frame."""
-    frames = content["data"]["points"].shape[2]
-    samples = content["data"]["analogs"].shape[2]
-    rate_hz = parameters.number("POINT", "RATE") or float(content["header"]["points"]["frame_rate"])
+    frames, samples = len(content.points), content.analogs.shape[1]
+    rate_hz = content.parameters.number("POINT", "RATE") or content.rate_hz
     per_frame = samples / frames if frames else 0.0
     return float(str(np.float32(rate_hz * per_frame)))
 
 
-def analog_channels(content: C3dContent, parameters: C3dParameters) -> tuple[AnalogChannel, ...]:
-    """Every analog channel, scaled by the file's parameters, in its own unit.
-
-    Args:
-        content: The file as ezc3d reads it.
-        parameters: Its parameters.
-
-    Returns:
-        The channels in the file's order.
-    """
-    values = content["data"]["analogs"][0]
+def analog_channels(content: C3dContent) -> tuple[AnalogChannel, ...]:
+    """Every analog channel, scaled by the file's parameters, in its own unit; in the file's order."""
+    values, parameters = content.analogs, content.parameters
     if not values.size:
         return ()
     labels, units = parameters.texts("ANALOG", "LABELS"), parameters.texts("ANALOG", "UNITS")
-    rate_hz = analog_rate_hz(content, parameters)
+    rate_hz = analog_rate_hz(content)
     return tuple(
         AnalogChannel(
             name=(labels[i] if i < len(labels) else "") or f"channel {i + 1}",
@@ -53,15 +44,12 @@ def analog_channels(content: C3dContent, parameters: C3dParameters) -> tuple[Ana
     )
 
 
-def raw_plates(
-    path: Path, content: C3dContent, parameters: C3dParameters, unit: str, notes: list[str]
-) -> list[RawPlate]:
+def raw_plates(path: Path, content: C3dContent, unit: str, notes: list[str]) -> list[RawPlate]:
     """The force plates a file declares, checked but not yet converted.
 
     Args:
         path: The file, for messages.
-        content: The file as ezc3d reads it.
-        parameters: Its parameters.
+        content: The decoded file.
         unit: The file's length unit.
         notes: Receives which plates are skipped, because no channel belongs to them.
 
@@ -71,7 +59,7 @@ def raw_plates(
     Raises:
         FileFormatError: A plate is not usable: type, channels, corners or calibration.
     """
-    analog = content["data"]["analogs"][0]
+    analog, parameters = content.analogs, content.parameters
     used = int(parameters.number("FORCE_PLATFORM", "USED"))
     kinds = parameters.numbers("FORCE_PLATFORM", "TYPE").ravel()
     channels = parameters.per_plate("CHANNEL", (-1,))
@@ -96,7 +84,7 @@ def raw_plates(
             origin=origins[i] if i < len(origins) else np.zeros(3),
             readings=np.asarray(analog[indices], dtype=np.float64).T,
             units=tuple(units[k] for k in indices),
-            rate_hz=analog_rate_hz(content, parameters),
+            rate_hz=analog_rate_hz(content),
             calibration=calibrations[i] if i < len(calibrations) else None,
         )
         check_geometry(plate, str(path), unit)
@@ -180,16 +168,9 @@ def _doubts(name: str, wrench: Array, pressure: Array, corners: Array, threshold
     return doubts
 
 
-def events(content: C3dContent, parameters: C3dParameters) -> tuple[CaptureEvent, ...]:
-    """Labelled instants, from the group EVENT, or from the header where that group has none.
-
-    Args:
-        content: The file as ezc3d reads it.
-        parameters: Its parameters; EVENT:TIMES holds minutes and seconds.
-
-    Returns:
-        Events in order of time.
-    """
+def events(content: C3dContent) -> tuple[CaptureEvent, ...]:
+    """Labelled instants in order of time, from EVENT:TIMES (minutes and seconds), else from the header."""
+    parameters = content.parameters
     times = parameters.numbers("EVENT", "TIMES")
     labels, contexts = parameters.texts("EVENT", "LABELS"), parameters.texts("EVENT", "CONTEXTS")
     found = []
@@ -200,9 +181,5 @@ def events(content: C3dContent, parameters: C3dParameters) -> tuple[CaptureEvent
             context = contexts[i] if i < len(contexts) else ""
             found.append(CaptureEvent(label, context, round(float(time_s), 6)))
     else:
-        header = content["header"].get("events", {})
-        names, stamps = header.get("events_label", ()), header.get("events_time", ())
-        for name, stamp in zip(names, stamps, strict=False):
-            if str(name).strip():
-                found.append(CaptureEvent(str(name).strip(), "", round(float(stamp), 6)))
+        found = [CaptureEvent(label, "", round(time_s, 6)) for label, time_s in content.events]
     return tuple(sorted(found, key=lambda event: event.time_s))

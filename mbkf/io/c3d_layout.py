@@ -1,6 +1,6 @@
-"""Whether a C3D file is one and is complete, judged from its header before a library reads the data.
+"""Whether a C3D file is one, judged from its header and the structure of its parameters before any of it is decoded.
 
-Reading libraries return fewer frames from a truncated file, or fail in odd ways. The layout is that of the
+The layout is that of the
 C3D manual (c3d.org): a 512-byte header of 16-bit words, a parameter section, then frames of points (four
 numbers each) and analog samples, two bytes a number if the point scale is positive, else four.
 """
@@ -8,13 +8,16 @@ numbers each) and analog samples, two bytes a number if the point scale is posit
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
-from mbkf.io.c3d_records import DamagedParameters, first_integer, walk_parameters
+from mbkf.io.c3d_records import DamagedParameters, ParameterRecord, first_integer, walk_parameters
 
-_BLOCK = 512
+BLOCK_BYTES = 512
+"""Header, parameters and data begin at multiples of it."""
+
 _KEY = 0x50
 _BYTE_ORDERS = {84: "<", 85: "<", 86: ">"}  # Intel, DEC, MIPS
 _INTEL = 84
@@ -35,6 +38,9 @@ class C3dLayout:
         data_block: 512-byte block at which the data start, counted from 1.
         bytes_per_number: 2 (integers) or 4 (floats).
         file_bytes: Size of the file.
+        processor: 84 Intel, 85 DEC, 86 SGI-MIPS.
+        groups: Names of the groups of parameters by their numbers.
+        records: The parameters as they stand in the file.
     """
 
     points: int
@@ -45,6 +51,9 @@ class C3dLayout:
     data_block: int
     bytes_per_number: int
     file_bytes: int
+    processor: int
+    groups: Mapping[int, str] = field(default_factory=dict)
+    records: tuple[ParameterRecord, ...] = ()
 
     @property
     def bytes_per_frame(self) -> int:
@@ -54,8 +63,17 @@ class C3dLayout:
     @property
     def frames_present(self) -> int:
         """Whole frames for which the file has bytes."""
-        available = self.file_bytes - (self.data_block - 1) * _BLOCK
-        return max(available, 0) // self.bytes_per_frame if self.bytes_per_frame else self.frames
+        return max(self.data_bytes, 0) // self.bytes_per_frame if self.bytes_per_frame else self.frames
+
+    @property
+    def data_bytes(self) -> int:
+        """Bytes from the data's first block on."""
+        return self.file_bytes - (self.data_block - 1) * BLOCK_BYTES
+
+    @property
+    def counts_no_further(self) -> bool:
+        """Whether the trial reaches the last frame that the header's words can tell."""
+        return self.first_frame + self.frames > LAST_FRAME_OF_HEADER
 
 
 def check_layout(path: Path) -> C3dLayout:
@@ -77,47 +95,27 @@ def check_layout(path: Path) -> C3dLayout:
     if size == 0:
         raise FileFormatError(path, "the file is empty; copy or export it again")
     with path.open("rb") as file:
-        header = file.read(_BLOCK)
+        header = file.read(BLOCK_BYTES)
         if len(header) < 2 or header[1] != _KEY:
             raise FileFormatError(path, "not a C3D file (its second byte is not 0x50); export it as C3D")
-        start = (header[0] - 1) * _BLOCK
+        start = (header[0] - 1) * BLOCK_BYTES
         file.seek(max(start, 0))
         parameters = file.read(4)
-    if len(header) < _BLOCK or start < _BLOCK or len(parameters) < 4:
+    if len(header) < BLOCK_BYTES or start < BLOCK_BYTES or len(parameters) < 4:
         raise FileFormatError(path, f"cut short inside its header ({size} bytes); copy or export it again")
     if parameters[3] not in _BYTE_ORDERS:
         raise FileFormatError(path, f"not a C3D file (processor type {parameters[3]}); export it as C3D")
-    if size < start + parameters[2] * _BLOCK:
+    if size < start + parameters[2] * BLOCK_BYTES:
         raise FileFormatError(path, f"cut short inside its parameters ({size} bytes); export it again")
     layout = _layout(header, parameters[3], size)
-    _check_parameters(path, layout, start, parameters[2], _BYTE_ORDERS[parameters[3]])
-    check_frames(path, layout, layout.frames)
-    return layout
-
-
-def check_frames(path: Path, layout: C3dLayout, frames: int) -> None:
-    """Make sure that the file holds the data of so many frames.
-
-    Args:
-        path: The file, for the message.
-        layout: Its header.
-        frames: The number of frames.
-
-    Raises:
-        FileFormatError: There are no frames, or fewer than promised.
-    """
-    if frames <= 0:
+    if layout.frames <= 0 and not layout.bytes_per_frame:
         raise FileFormatError(path, "its header counts no frames; export the trial again")
-    if layout.frames_present < frames:
-        raise FileFormatError(
-            path,
-            f"cut short: {frames} frames promised, {layout.frames_present} present; copy or export it again",
-        )
+    return _with_parameters(path, layout, start, parameters[2], _BYTE_ORDERS[parameters[3]])
 
 
-def _check_parameters(path: Path, layout: C3dLayout, start: int, blocks: int, order: str) -> None:
-    """Walk the parameters, and compare the numbers of points and channels with the header's."""
-    end = max(start + blocks * _BLOCK, (layout.data_block - 1) * _BLOCK)
+def _with_parameters(path: Path, layout: C3dLayout, start: int, blocks: int, order: str) -> C3dLayout:
+    """The layout with the parameters' records, after comparing the number of points with the header's."""
+    end = max(start + blocks * BLOCK_BYTES, (layout.data_block - 1) * BLOCK_BYTES)
     with path.open("rb") as file:
         file.seek(start + 4)
         section = file.read(end - start - 4)
@@ -126,13 +124,13 @@ def _check_parameters(path: Path, layout: C3dLayout, start: int, blocks: int, or
     except DamagedParameters as error:
         raise FileFormatError(path, f"its parameters are damaged ({error}); export it again") from error
     used = {(groups[item.group], item.name): first_integer(item, order) for item in parameters}
-    for group, counted in (("POINT", layout.points), ("ANALOG", layout.channels)):
-        stated = used.get((group, "USED"))
-        if stated is not None and stated != counted:
-            reason = f"{group}:USED is {stated}, the header counts {counted}; export it again"
-            raise FileFormatError(path, reason)
-    if ("POINT", "USED") not in used or layout.data_block * _BLOCK < start + _BLOCK:
+    stated = used.get(("POINT", "USED"))
+    if stated is not None and stated != layout.points:
+        reason = f"POINT:USED is {stated}, the header counts {layout.points}; export it again"
+        raise FileFormatError(path, reason)
+    if ("POINT", "USED") not in used or layout.data_block * BLOCK_BYTES < start + BLOCK_BYTES:
         raise FileFormatError(path, "its parameters are damaged (no POINT:USED or no data); export it again")
+    return replace(layout, groups=groups, records=tuple(parameters))
 
 
 def _layout(header: bytes, processor: int, size: int) -> C3dLayout:
@@ -150,4 +148,5 @@ def _layout(header: bytes, processor: int, size: int) -> C3dLayout:
         data_block=words[8],
         bytes_per_number=4 if scale_word & 0x8000 else 2,
         file_bytes=size,
+        processor=processor,
     )

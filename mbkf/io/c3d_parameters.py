@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, TypeAlias
 
 import numpy as np
 
 from mbkf.conventions import Array
-
-C3dContent: TypeAlias = Any
-"""What ezc3d reads or is to write; the library carries no types."""
 
 CONTINUATIONS = 1000
 """More lists than this (LABELS2, LABELS3 …) no file has."""
 
 
 class C3dParameters:
-    """Read access to the parameters ezc3d returns; names are found in any case, missing ones are empty."""
+    """Read access to a file's parameters; names are found in any case, missing ones are empty."""
 
-    def __init__(self, groups: Mapping[str, Mapping[str, Mapping[str, object]]]) -> None:
+    def __init__(self, groups: Mapping[str, Mapping[str, object]]) -> None:
+        """Args: by group and name, texts (a list) or numbers (an array)."""
         self._groups = {
-            group.upper(): {name.upper(): item["value"] for name, item in members.items() if "value" in item}
+            group.upper(): {name.upper(): value for name, value in members.items()}
             for group, members in groups.items()
         }
 
@@ -47,6 +44,20 @@ class C3dParameters:
         """
         values = self.numbers(group, name).ravel()
         return float(values[0]) if len(values) else default
+
+    def all_numbers(self, group: str, name: str) -> Array:
+        """(n,) numbers of a parameter and of its continuations (NAME2, NAME3 …).
+
+        Args:
+            group: Name of the group.
+            name: Name of the parameter.
+        """
+        found = [self.numbers(group, name).ravel()]
+        for number in range(2, CONTINUATIONS):
+            if f"{name.upper()}{number}" not in self._groups.get(group.upper(), {}):
+                break
+            found.append(self.numbers(group, f"{name}{number}").ravel())
+        return np.concatenate(found)
 
     def single_numbers(self, group: str) -> dict[str, float]:
         """The parameters of a group that are one finite number each, by their names in capitals."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbkf.conventions import Array, BoolArray
 from mbkf.io.axes import finite, positions_to_world
-from mbkf.io.c3d_parameters import C3dContent, C3dParameters
+from mbkf.io.c3d_decode import C3dContent
+from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.derived import UNIT_PARAMETERS, classify, group_kinds
 from mbkf.io.labels import unique_labels, without_subject
 from mbkf.io.records import DerivedPoint, MarkerTrajectories
@@ -14,7 +14,6 @@ from mbkf.io.records import DerivedPoint, MarkerTrajectories
 
 def read_points(
     content: C3dContent,
-    parameters: C3dParameters,
     up: str,
     unit: str,
     rate_hz: float,
@@ -24,8 +23,7 @@ def read_points(
     """Markers and derived points of a file.
 
     Args:
-        content: The file as ezc3d reads it.
-        parameters: Its parameters.
+        content: The decoded file.
         up: Axis of the file that points up.
         unit: Length unit of the file.
         rate_hz: Frame rate in Hz.
@@ -35,8 +33,9 @@ def read_points(
     Returns:
         Measured markers in m and world axes, and the derived points as the file has them.
     """
-    points = np.asarray(content["data"]["points"][:3], dtype=np.float64).transpose(2, 1, 0)
-    present = _present(content, points)
+    points, parameters = content.points, content.parameters
+    # A point is not seen where its residual is negative, a coordinate is no number, or all are zero.
+    present = finite(points) & (content.residuals >= 0.0)
     labels = point_labels(parameters, points.shape[1], notes)
     kinds = classify(labels, _listed(parameters))
     measured = [i for i, label in enumerate(labels) if label not in kinds]
@@ -75,15 +74,6 @@ def point_labels(parameters: C3dParameters, count: int, notes: list[str]) -> lis
     labels += [""] * (count - len(labels))
     labels = [label or f"*{i}" for i, label in enumerate(labels)]
     return unique_labels(without_subject(labels), notes)
-
-
-def _present(content: C3dContent, points: Array) -> BoolArray:
-    """(T, N) whether a point was seen: residual not negative, coordinates numbers and not all zero."""
-    residuals = np.asarray(content["data"]["meta_points"]["residuals"], dtype=np.float64)
-    present = finite(points)
-    if residuals.shape == (1, points.shape[1], points.shape[0]):
-        present &= residuals[0].T >= 0.0
-    return present
 
 
 def _listed(parameters: C3dParameters) -> dict[str, str]:

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput
 from mbkf.io.atomic import replacing
 from mbkf.io.axes import METRES_PER_UNIT, finite, length_unit, rotation_to_world
-from mbkf.io.c3d_parameters import C3dContent
+from mbkf.io.c3d_encode import Value, encoded
 from mbkf.io.c3d_plates import plate_axes
 from mbkf.io.derived import GROUP_KINDS, UNIT_PARAMETERS
 from mbkf.io.records import Capture, DerivedPoint, PlateReadings
+
+Parameters: TypeAlias = dict[str, Value]
+"""Parameters of a group by their names."""
 
 _MM = 1000.0
 _DEFAULT_HALF_SIDES_M = np.array([[0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2], [0.3, -0.2]])
@@ -39,47 +43,43 @@ def write_c3d(capture: Capture, path: str | Path) -> None:
         InvalidInput: The name does not end in ``.c3d``, the capture has no frames, or more channels than fit.
         OSError: The file cannot be written.
     """
-    import ezc3d
-
     path = Path(path)
     if path.suffix.lower() != ".c3d":
         raise InvalidInput(f"{path}: a C3D file is named .c3d; change the name")
     if not capture.markers.frames:
         raise InvalidInput(f"{path}: nothing to write, the capture has no frames")
-    content = ezc3d.c3d()
     markers = capture.markers
-    content["header"]["points"]["first_frame"] = max(round(markers.start_time_s * markers.rate_hz), 0)
-    _fill_points(content, capture)
-    _fill_analog(content, capture)
-    _fill_events(content, capture)
+    points, missing, point = _points(capture)
+    analogs, channels = _analogs(capture)
+    groups = {"POINT": point, **channels, **_events(capture)}
     if capture.subject_mass_kg is not None:
-        content.add_parameter("PROCESSING", "Bodymass", [float(capture.subject_mass_kg)])
+        groups["PROCESSING"] = {"BODYMASS": float(capture.subject_mass_kg)}
+    first_frame = max(round(markers.start_time_s * markers.rate_hz), 0) + 1
+    content = encoded(groups, points, np.where(missing, -1.0, 0.0), analogs, markers.rate_hz, first_frame)
     with replacing(path.with_suffix(".c3d")) as temporary:
-        content.write(str(temporary))
+        temporary.write_bytes(content)
 
 
-def _fill_points(content: C3dContent, capture: Capture) -> None:
+def _points(capture: Capture) -> tuple[Array, BoolArray, Parameters]:
+    """(T, N, 3) measured and derived points in mm, (T, N) which are missing, and the group POINT."""
     markers, derived = capture.markers, capture.derived
     values = [markers.positions_m * _MM]
     values += [_in_file_axes(point, capture)[:, None, :] for point in derived]
     points = np.concatenate(values, axis=1)
     missing = ~finite(points)
-    points = np.where(missing[:, :, None], 0.0, points)
-    group = content["parameters"]["POINT"]
-    group["LABELS"]["value"] = [*markers.names, *(point.name for point in derived)]
-    group["UNITS"]["value"] = ["mm"]
-    group["RATE"]["value"] = np.array([markers.rate_hz])
-    content["data"]["points"] = np.pad(points, ((0, 0), (0, 0), (0, 1)), constant_values=1.0).transpose(
-        2, 1, 0
-    )
-    content["data"]["meta_points"]["residuals"] = np.where(missing, -1.0, 0.0).T[None]
-    content.add_parameter("POINT", "X_SCREEN", ["+X"])
-    content.add_parameter("POINT", "Y_SCREEN", ["+Z"])
+    group: Parameters = {
+        "LABELS": [*markers.names, *(point.name for point in derived)],
+        "DESCRIPTIONS": [""] * points.shape[1],
+        "UNITS": ["mm"],
+        "X_SCREEN": ["+X"],
+        "Y_SCREEN": ["+Z"],
+    }
     for name, kind in GROUP_KINDS.items():
         listed = [point for point in derived if point.kind == kind]
         if listed:
-            content.add_parameter("POINT", name, [point.name for point in listed])
-            content.add_parameter("POINT", UNIT_PARAMETERS[kind], [listed[0].unit])
+            group[name] = [point.name for point in listed]
+            group[UNIT_PARAMETERS[kind]] = [listed[0].unit]
+    return np.where(missing[:, :, None], 0.0, points), missing, group
 
 
 def _in_file_axes(point: DerivedPoint, capture: Capture) -> Array:
@@ -90,12 +90,12 @@ def _in_file_axes(point: DerivedPoint, capture: Capture) -> Array:
     return point.values @ rotation_to_world(capture.up_axis).T * (METRES_PER_UNIT[unit] * _MM)
 
 
-def _fill_analog(content: C3dContent, capture: Capture) -> None:
-    """Six channels per plate, then every analog channel with a name of its own."""
+def _analogs(capture: Capture) -> tuple[Array, dict[str, Parameters]]:
+    """(C, S) samples and the groups about them: six channels per plate, then every channel with a name of its own."""
     markers = capture.markers
     rates = [plate.rate_hz for plate in capture.plates] + [channel.rate_hz for channel in capture.analog]
     if not rates:
-        return
+        return np.zeros((0, 0)), {}
     per_frame = max(1, round(max(rates) / markers.rate_hz))
     rate_hz = per_frame * markers.rate_hz
     times = markers.start_time_s + np.arange(markers.frames * per_frame) / rate_hz
@@ -121,13 +121,8 @@ def _fill_analog(content: C3dContent, capture: Capture) -> None:
             f"{len(names)} analog channels, six of them for each of {len(capture.plates)} plates; a C3D file holds "
             f"{MOST_CHANNELS}: leave some away"
         )
-    group = content["parameters"]["ANALOG"]
-    group["RATE"]["value"] = np.array([rate_hz])
-    group["LABELS"]["value"] = names
-    group["UNITS"]["value"] = units
-    content["data"]["analogs"] = np.array(rows)[None]
-    if corners:
-        _declare_plates(content, corners)
+    analog: Parameters = {"RATE": rate_hz, "LABELS": names, "DESCRIPTIONS": [""] * len(names), "UNITS": units}
+    return np.array(rows), {"ANALOG": analog, **_plates(corners)}
 
 
 def _sampled(times_s: Array, stamps_s: Array, values: Array, per_frame: int) -> Array:
@@ -138,16 +133,21 @@ def _sampled(times_s: Array, stamps_s: Array, values: Array, per_frame: int) -> 
     return sampled
 
 
-def _declare_plates(content: C3dContent, corners: list[Array]) -> None:
+def _plates(corners: list[Array]) -> dict[str, Parameters]:
+    """The group about plates with these corners (4, 3), m; nothing where there are none."""
     count = len(corners)
-    group = "FORCE_PLATFORM"
-    content.add_parameter(group, "USED", count)
-    content.add_parameter(group, "TYPE", [2] * count)
-    content.add_parameter(group, "ZERO", [1, 0])
-    content.add_parameter(group, "CORNERS", np.stack([outline.T * _MM for outline in corners], axis=2))
-    content.add_parameter(group, "ORIGIN", np.zeros((3, count)))
-    channels = np.arange(1, 6 * count + 1).reshape(6, count, order="F")
-    content.add_parameter(group, "CHANNEL", channels.astype(float))
+    if not count:
+        return {}
+    return {
+        "FORCE_PLATFORM": {
+            "USED": count,
+            "TYPE": np.full(count, 2, dtype=np.int16),
+            "ZERO": np.array([1, 0], dtype=np.int16),
+            "CORNERS": np.stack([outline.T * _MM for outline in corners], axis=2),
+            "ORIGIN": np.zeros((3, count)),
+            "CHANNEL": np.arange(1, 6 * count + 1, dtype=np.int16).reshape(6, count, order="F"),
+        }
+    }
 
 
 def _corners(plate: PlateReadings) -> Array:
@@ -167,11 +167,15 @@ def _plate_channels(plate: PlateReadings, corners: Array) -> Array:
     return np.hstack([plate.force_n @ axes, moment @ axes * _MM])
 
 
-def _fill_events(content: C3dContent, capture: Capture) -> None:
+def _events(capture: Capture) -> dict[str, Parameters]:
     if not capture.events:
-        return
+        return {}
     minutes, seconds = np.divmod([event.time_s for event in capture.events], 60.0)
-    content.add_parameter("EVENT", "USED", len(capture.events))
-    content.add_parameter("EVENT", "CONTEXTS", [event.context for event in capture.events])
-    content.add_parameter("EVENT", "LABELS", [event.label for event in capture.events])
-    content.add_parameter("EVENT", "TIMES", np.vstack([minutes, seconds]))
+    return {
+        "EVENT": {
+            "USED": len(capture.events),
+            "CONTEXTS": [event.context for event in capture.events],
+            "LABELS": [event.label for event in capture.events],
+            "TIMES": np.vstack([minutes, seconds]),
+        }
+    }

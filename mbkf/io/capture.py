@@ -14,6 +14,7 @@ from pathlib import Path
 
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.axes import axes_matrix, axes_text, nearest_axis, rotation_to_world, up_axis
+from mbkf.io.plausible import plausible
 from mbkf.io.readers import FileFormat, FormatRegistry, either
 from mbkf.io.records import AxesSource, Capture, MarkerTrajectories, PlateReadings
 from mbkf.io.turning import turned
@@ -157,8 +158,8 @@ def read_capture(
 
     Raises:
         FileFormatError: A file is missing, of an unknown kind, or broken.
-        InvalidInput: A force is not a number, the length unit cannot be right, ``axes`` are none, or contradict
-            ``up``.
+        InvalidInput: A force is not a number or impossible, the length unit or a rate cannot be right, ``axes`` are
+            none, or contradict ``up``.
         UnknownName: Unknown axis, unit, or naming of force columns.
     """
     path = Path(path)
@@ -175,6 +176,7 @@ def read_capture(
     capture = _declared(kind.read(path, options), up)
     if forces is not None:
         capture = _with_forces(capture, Path(forces), kind, options)
+    capture = plausible(capture)
     if matrix is None:
         return capture
     return turned(capture, matrix @ axes_matrix(capture.axes).T, AxesSource.GIVEN)

@@ -23,12 +23,12 @@ def loaded_by(code, *words):
 
 def test_the_command_line_itself_needs_the_standard_library_alone():
     loaded = loaded_by("import mbkf.cli.main")
-    assert not (UNUSED | {"ezc3d", "h5py", "numpy", "pinocchio", "rich", "scipy"}) & loaded
+    assert not (UNUSED | {"h5py", "numpy", "pinocchio", "rich", "scipy"}) & loaded
 
 
 def test_a_reconstruction_loads_nothing_that_it_does_not_use(person, tmp_path):
     code = "from mbkf.cli.main import main\nassert main(sys.argv[1:]) == 0"
     words = ["reconstruct", person.trial, "--subject", person.subject, "--out", tmp_path / "out"]
     loaded = loaded_by(code, *words)
-    assert {"ezc3d", "h5py", "pinocchio", "rich.table"} <= loaded, "it was looked after the work"
+    assert {"mbkf.io.c3d", "h5py", "pinocchio", "rich.table"} <= loaded, "it was looked after the work"
     assert not UNUSED & loaded

@@ -7,7 +7,7 @@ import pytest
 
 from mbkf.errors import FileFormatError
 from mbkf.io.c3d import read_c3d
-from mbkf.io.c3d_layout import check_frames, check_layout
+from mbkf.io.c3d_layout import check_layout
 from tests.io.c3d_builder import Plate, build_c3d, standing_points
 
 
@@ -25,10 +25,7 @@ def test_sizes_are_those_written(whole, tmp_path):
     assert (layout.points, layout.analog_per_frame, layout.frames, layout.first_frame) == (9, 60, 12, 5)
     assert layout.bytes_per_frame == (4 * 9 + 60) * 4
     assert layout.frames_present >= 12
-    with pytest.raises(FileFormatError, match="cut short: 100 frames promised"):
-        check_frames(path, layout, 100)
-    with pytest.raises(FileFormatError, match="no frames"):
-        check_frames(path, layout, 0)
+    assert layout.data_bytes >= 12 * layout.bytes_per_frame and not layout.counts_no_further
 
 
 @pytest.mark.parametrize("share", [0.0, 1e-4, 0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97])

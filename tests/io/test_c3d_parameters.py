@@ -7,7 +7,7 @@ from mbkf.io.c3d_parameters import C3dParameters
 
 def parameters(**groups) -> C3dParameters:
     return C3dParameters(
-        {group: {name: {"value": value} for name, value in items.items()} for group, items in groups.items()}
+        {group: {name: value for name, value in items.items()} for group, items in groups.items()}
     )
 
 

@@ -22,7 +22,7 @@ from tests.io.c3d_builder import build_c3d, standing_points
 )
 def test_labels(stored, expected, remarks):
     notes: list[str] = []
-    assert point_labels(C3dParameters({"POINT": {"LABELS": {"value": stored}}}), 3, notes) == expected
+    assert point_labels(C3dParameters({"POINT": {"LABELS": stored}}), 3, notes) == expected
     assert len(notes) == remarks
 
 

@@ -36,9 +36,9 @@ def numbers(path: Path, _options) -> Capture:
 def test_a_reader_of_ones_own_is_used_and_listed(tmp_path):
     read = register_reader(".num", title="numbers", forces_share_up=True)(numbers)
     assert read is numbers
-    np.savetxt(tmp_path / "a.NUM", standing_points(20).reshape(20, -1))
+    np.savetxt(tmp_path / "a.NUM", 1e-3 * standing_points(20).reshape(20, -1))
     found = read_capture(tmp_path / "a.NUM")
-    np.testing.assert_allclose(found.markers.positions_m, standing_points(20))
+    np.testing.assert_allclose(found.markers.positions_m, 1e-3 * standing_points(20))
     with pytest.raises(FileFormatError, match=r"\.c3d, \.trc, \.csv, \.tsv or \.num"):
         read_capture(tmp_path / "a.xlsx")
     with pytest.raises(FileFormatError, match=r"numbers is not written; name a \.c3d or \.trc file"):

@@ -1,0 +1,273 @@
+"""What a C3D file holds, decoded from its bytes: parameters, points, analog samples and events of the header.
+
+A frame is four numbers per point (x, y, z, and the residual with the cameras' mask) and then the analog samples, as
+16-bit integers or floats, in the byte order and float format of the processor that wrote them (Intel, DEC, SGI-MIPS).
+Integers are scaled: points by POINT:SCALE, analog samples by (sample − OFFSET) · SCALE · GEN_SCALE. Source: The C3D
+File Format (c3d.org).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.errors import FileFormatError
+from mbkf.io.c3d_layout import BLOCK_BYTES, C3dLayout
+from mbkf.io.c3d_parameters import C3dParameters
+from mbkf.io.c3d_records import ParameterRecord
+
+EVENTS_KEY = 12345
+"""Stands in word 150 of a header whose events have four letters."""
+
+MOST_EVENTS, EVENT_TIMES, EVENT_LABELS = 18, 304, 396
+"""Events that a header has room for, and the bytes at which their times and labels begin."""
+
+MOST_SAMPLES = 1000
+"""More analog samples per frame no file has."""
+
+_UNSIGNED_OFFSET = -16384
+"""An analog offset below this, read with a sign, is the middle of an unsigned range."""
+
+
+class Processor(Enum):
+    """Who wrote a file's numbers."""
+
+    INTEL = 84
+    DEC = 85
+    MIPS = 86
+
+    @property
+    def order(self) -> str:
+        """Byte order of integers."""
+        return ">" if self is Processor.MIPS else "<"
+
+    def integers(self, data: bytes) -> Array:
+        """16-bit integers with a sign."""
+        return np.frombuffer(data, dtype=f"{self.order}i2").astype(np.float64)
+
+    def floats(self, data: bytes) -> Array:
+        """32-bit floats; DEC's have their words exchanged and an exponent that is greater by two (VAX F)."""
+        if self is not Processor.DEC:
+            with np.errstate(invalid="ignore"):  # what is no number stays none
+                return np.frombuffer(data, dtype=f"{self.order}f4").astype(np.float64)
+        words = np.frombuffer(data, dtype="<u2").reshape(-1, 2)
+        joined = (words[:, 0].astype(np.uint32) << 16) | words[:, 1]
+        exponent = (joined >> 23) & 0xFF
+        # An exponent of zero is zero; the others reach from 2^-128, below what IEEE has at full precision.
+        values = np.where(exponent > 2, joined, 0).astype(np.uint32).view(np.float32) / 4.0
+        return np.where(exponent == 0, 0.0, values).astype(np.float64)
+
+
+@dataclass(frozen=True)
+class C3dContent:
+    """A decoded file.
+
+    Attributes:
+        parameters: Its parameters.
+        points: (T, N, 3) points in the file's axes and unit.
+        residuals: (T, N) negative where a point was not seen.
+        analogs: (C, S) analog channels, scaled.
+        rate_hz: Frame rate of the header.
+        events: Labels and times in s of the header's events.
+        notes: What had to be settled about the layout.
+    """
+
+    parameters: C3dParameters
+    points: Array
+    residuals: Array
+    analogs: Array
+    rate_hz: float
+    events: tuple[tuple[str, float], ...]
+    notes: tuple[str, ...] = ()
+
+
+def decode(path: Path, layout: C3dLayout) -> C3dContent:
+    """Decodes a file whose layout was checked.
+
+    Raises:
+        FileFormatError: The data do not fit the layout.
+    """
+    processor = Processor(layout.processor)
+    parameters = C3dParameters(values_of(layout.groups, layout.records, processor))
+    shape = data_layout(path, layout, parameters)
+    frames, width = shape.frames, 4 * layout.points + shape.analog_per_frame
+    with path.open("rb") as file:
+        header = file.read(BLOCK_BYTES)
+        file.seek((layout.data_block - 1) * BLOCK_BYTES)
+        data = file.read(frames * width * layout.bytes_per_number)
+    whole = layout.bytes_per_number == 2
+    numbers = (processor.integers(data) if whole else processor.floats(data)).reshape(frames, width)
+    corners = numbers[:, : 4 * layout.points].reshape(frames, layout.points, 4)
+    scale = abs(parameters.number("POINT", "SCALE") or float(processor.floats(header[12:16])[0]))
+    return C3dContent(
+        parameters,
+        corners[:, :, :3] * scale if whole else corners[:, :, :3],
+        corners[:, :, 3],
+        _analogs(numbers[:, 4 * layout.points :], shape.channels, parameters, whole),
+        float(processor.floats(header[20:24])[0]),
+        _header_events(header, processor),
+        shape.notes,
+    )
+
+
+def values_of(
+    groups: Mapping[int, str], records: Sequence[ParameterRecord], processor: Processor
+) -> dict[str, dict[str, object]]:
+    """Parameters by group and name: lists of texts, or arrays with the dimensions that the file states.
+
+    Args:
+        groups: Names of the groups by their numbers.
+        records: The parameters as they stand in the file.
+        processor: Who wrote them.
+    """
+    found: dict[str, dict[str, object]] = {name: {} for name in groups.values()}
+    for record in records:
+        found[groups[record.group]][record.name] = _value(record, processor)
+    return found
+
+
+def _value(record: ParameterRecord, processor: Processor) -> object:
+    if record.kind == -1:
+        return _texts(record)
+    if record.kind == 1:
+        flat = np.frombuffer(record.data, dtype=np.uint8).astype(np.float64)
+    else:
+        flat = processor.integers(record.data) if record.kind == 2 else processor.floats(record.data)
+    return flat.reshape(record.dimensions or (1,), order="F")
+
+
+def _texts(record: ParameterRecord) -> list[str]:
+    """Words, the first dimension being their length."""
+    length = record.dimensions[0] if record.dimensions else 1
+    if not length:
+        return []
+    words = [record.data[at : at + length] for at in range(0, len(record.data), length)]
+    return [_text(word) for word in words]
+
+
+def _text(word: bytes) -> str:
+    plain = word.split(b"\0")[0]
+    try:
+        return plain.decode("utf-8").strip()
+    except UnicodeDecodeError:
+        return plain.decode("latin-1").strip()
+
+
+class DataLayout(NamedTuple):
+    """Frames, analog numbers per frame, analog channels, and what is to be told of them."""
+
+    frames: int
+    analog_per_frame: int
+    channels: int
+    notes: tuple[str, ...] = ()
+
+
+def data_layout(path: Path, layout: C3dLayout, parameters: C3dParameters) -> DataLayout:
+    """What header, parameters and the file's size agree on.
+
+    Args:
+        path: The file, for messages.
+        layout: What its header counts.
+        parameters: Its parameters.
+
+    Raises:
+        FileFormatError: The file holds fewer frames than it promises, or nothing tells how it is laid out.
+    """
+    used, samples = _count(parameters.number("ANALOG", "USED")), _samples_per_frame(parameters)
+    kinds = {layout.analog_per_frame: layout.channels}
+    kinds = kinds | {used * samples: used, 0: 0} | kinds
+    for frames in frames_told(layout, parameters):
+        for per_frame, channels in kinds.items():
+            taken = frames * (4 * layout.points + per_frame) * layout.bytes_per_number
+            if 0 <= layout.data_bytes - taken < BLOCK_BYTES:
+                notes = tuple(_told(layout, frames, per_frame))
+                return DataLayout(frames, per_frame, channels if per_frame else 0, notes)
+    if layout.frames_present < layout.frames:
+        present = f"{layout.frames} frames promised, {layout.frames_present} present"
+        raise FileFormatError(path, f"cut short: {present}; copy or export it again")
+    if layout.counts_no_further:
+        reason = f"its header counts {layout.frames} frames and can count no further, {layout.frames_present} are there"
+        raise FileFormatError(path, f"{reason}, and nothing else tells how many are meant; export it again")
+    if layout.frames <= 0:
+        raise FileFormatError(path, "its header counts no frames; export the trial again")
+    if used != layout.channels:
+        reason = f"ANALOG:USED is {used}, the header counts {layout.channels}; export it again"
+        raise FileFormatError(path, reason)
+    return DataLayout(layout.frames, layout.analog_per_frame, layout.channels)
+
+
+def frames_told(layout: C3dLayout, parameters: C3dParameters) -> tuple[int, ...]:
+    """Numbers of frames that the file tells in one place or another, the header's first; its words end at 65535."""
+    last, first = (
+        _two_words(parameters.numbers("TRIAL", f"ACTUAL_{which}_FIELD")) for which in ("END", "START")
+    )
+    counts = [layout.frames, 0 if last is None or first is None else last - first + 1]
+    counts += [_count(parameters.number("POINT", name)) for name in ("LONG_FRAMES", "FRAMES")]
+    return tuple(dict.fromkeys(count for count in counts if count > 0))
+
+
+def _told(layout: C3dLayout, frames: int, per_frame: int) -> Iterator[str]:
+    if frames != layout.frames and not layout.counts_no_further:
+        yield f"the header counts {layout.frames} frames, the file has {frames}"
+    if per_frame != layout.analog_per_frame:
+        yield f"the header counts {layout.analog_per_frame} analog numbers a frame, the file has {per_frame}"
+
+
+def _count(number: float) -> int:
+    """A number of things; 0 for what is none."""
+    return int(number) if 0.0 <= number < 2**31 else 0
+
+
+def _two_words(value: Array) -> int | None:
+    """A 32-bit number in two 16-bit words, low word first."""
+    words = value.ravel() % 65536
+    return int(words @ [1, 65536]) if len(words) == 2 else None
+
+
+def _samples_per_frame(parameters: C3dParameters) -> int:
+    ratio = parameters.number("ANALOG", "RATE") / (parameters.number("POINT", "RATE") or np.nan)
+    return round(ratio) if 0.0 < ratio < MOST_SAMPLES else 0
+
+
+def _analogs(samples: Array, channels: int, parameters: C3dParameters, whole: bool) -> Array:
+    """(C, S) scaled channels of samples (T, C · samples per frame).
+
+    Args:
+        samples: As the file has them.
+        channels: Their number C.
+        parameters: With OFFSET, SCALE and GEN_SCALE, which may be missing.
+        whole: Whether samples are integers.
+    """
+    if not channels or not samples.size:
+        return np.zeros((0, 0))
+    raw = samples.reshape(-1, channels).T
+    offset = _filled(parameters.all_numbers("ANALOG", "OFFSET"), channels, 0.0)
+    scale = _filled(parameters.all_numbers("ANALOG", "SCALE"), channels, 1.0)
+    unsigned = parameters.text("ANALOG", "FORMAT").upper().startswith("UNSIGNED")
+    if whole and (unsigned or bool((offset < _UNSIGNED_OFFSET).any())):
+        raw, offset = raw % 65536, offset % 65536
+    with np.errstate(all="ignore"):  # samples of a damaged file may be any number, or none
+        gain = scale * (parameters.number("ANALOG", "GEN_SCALE", 1.0) or 1.0)
+        scaled: Array = (raw - offset[:, None]) * gain[:, None]
+    return scaled
+
+
+def _filled(values: Array, count: int, default: float) -> Array:
+    """The first ``count`` values, defaults after them where there are fewer."""
+    return np.concatenate([values[:count], np.full(max(count - len(values), 0), default)])
+
+
+def _header_events(header: bytes, processor: Processor) -> tuple[tuple[str, float], ...]:
+    words = np.frombuffer(header, dtype=f"{processor.order}u2")
+    if words[149] != EVENTS_KEY:
+        return ()
+    count = min(int(words[150]), MOST_EVENTS)
+    times = processor.floats(header[EVENT_TIMES : EVENT_TIMES + 4 * count])
+    labels = [_text(header[EVENT_LABELS + 4 * k : EVENT_LABELS + 4 * k + 4]) for k in range(count)]
+    return tuple((label, float(time)) for label, time in zip(labels, times, strict=True) if label)

@@ -1,0 +1,60 @@
+"""Impossible places are missing and told, impossible forces and rates are refused; what is measured stays as it is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mbkf.errors import InvalidInput
+from mbkf.io.capture import read_capture
+from mbkf.io.plausible import plausible
+from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
+from tests.io.c3d_builder import Plate, build_c3d, standing_points
+
+MARKERS = MarkerTrajectories(("A", "B"), np.ones((5, 2, 3)), 100.0)
+PLATE = PlateReadings(
+    "1", 1000.0, 0.0, np.zeros(3), np.zeros((50, 3)), np.zeros((50, 3)), np.full((50, 3), np.nan), 20.0
+)
+
+
+def test_what_is_measured_stays_as_it_is():
+    capture = Capture("x", MARKERS, (PLATE,))
+    assert plausible(capture) is capture
+    assert plausible(Capture("x", MarkerTrajectories((), np.zeros((3, 0, 3)), 100.0))).markers.frames == 3
+
+
+def test_far_samples_are_missing_and_told():
+    positions = np.ones((5, 2, 3))
+    positions[2, 1, 0], positions[3, 1] = 1e9, np.inf
+    found = plausible(Capture("x", replace(MARKERS, positions_m=positions), notes=("before",)))
+    np.testing.assert_array_equal(
+        found.markers.present, [[True] * 2] * 2 + [[True, False]] * 2 + [[True] * 2]
+    )
+    assert found.notes[0] == "before" and "2 samples lie more than 1000 m away" in found.notes[1]
+
+
+@pytest.mark.parametrize("what", ["force_n", "moment_nm"])
+def test_impossible_loads_are_refused(what):
+    values = np.zeros((50, 3))
+    values[7, 1] = -1.3e6
+    with pytest.raises(InvalidInput, match=r"force plate 1 reads a (force|moment) of 1.3e\+06"):
+        plausible(Capture("x", MARKERS, (replace(PLATE, **{what: values}),)))
+
+
+@pytest.mark.parametrize("rate_hz", [1e-3, 1e7])
+def test_impossible_rates_are_refused(rate_hz):
+    with pytest.raises(InvalidInput, match="rate"):
+        plausible(Capture("x", replace(MARKERS, rate_hz=rate_hz)))
+
+
+def test_a_file_is_read_that_way(tmp_path):
+    points = standing_points(20)
+    points[3, 2] = 1e9
+    path = build_c3d(tmp_path / "x.c3d", points)
+    found = read_capture(path)
+    assert not found.markers.present[3, 2] and any("1000 m" in note for note in found.notes)
+    channels = np.zeros((20, 6))
+    channels[5, 2] = -2e6
+    path = build_c3d(tmp_path / "y.c3d", standing_points(20), plates=(Plate(2, channels),))
+    with pytest.raises(InvalidInput, match="--forces"):
+        read_capture(path)
