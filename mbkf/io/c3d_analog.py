@@ -10,7 +10,8 @@ from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
 from mbkf.io.axes import METRES_PER_UNIT, rotation_to_world
 from mbkf.io.c3d_decode import C3dContent
-from mbkf.io.c3d_plates import RawPlate, check_geometry, wrench_at_surface
+from mbkf.io.c3d_parameters import C3dParameters
+from mbkf.io.c3d_plates import CALIBRATION_OF_TYPE, RawPlate, check_geometry, wrench_at_surface
 from mbkf.io.records import AnalogChannel, CaptureEvent, PlateReadings
 from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare, require_finite
 
@@ -65,7 +66,6 @@ def raw_plates(path: Path, content: C3dContent, unit: str, notes: list[str]) -> 
     channels = parameters.per_plate("CHANNEL", (-1,))
     corners = parameters.per_plate("CORNERS", (3, 4))
     origins = parameters.per_plate("ORIGIN", (3,))
-    calibrations = parameters.per_plate("CAL_MATRIX", (6, 6))
     units = parameters.texts("ANALOG", "UNITS") + [""] * len(analog)
     plates = []
     for i in range(used):
@@ -77,19 +77,40 @@ def raw_plates(path: Path, content: C3dContent, unit: str, notes: list[str]) -> 
         if indices.max() >= len(analog):
             reason = f"force plate {i + 1} names channel {indices.max() + 1}, the file has {len(analog)}"
             raise FileFormatError(path, f"{reason}; export it again or use --forces")
+        kind = int(kinds[i]) if i < len(kinds) else 0
         plate = RawPlate(
             number=i + 1,
-            kind=int(kinds[i]) if i < len(kinds) else 0,
+            kind=kind,
             corners=corners[i] if i < len(corners) else np.zeros((3, 4)),
             origin=origins[i] if i < len(origins) else np.zeros(3),
             readings=np.asarray(analog[indices], dtype=np.float64).T,
             units=tuple(units[k] for k in indices),
             rate_hz=analog_rate_hz(content),
-            calibration=calibrations[i] if i < len(calibrations) else None,
+            calibration=_calibration(parameters, i, kind),
         )
         check_geometry(plate, str(path), unit)
         plates.append(plate)
     return plates
+
+
+def _calibration(parameters: C3dParameters, plate: int, kind: int) -> Array | None:
+    """A plate's CAL_MATRIX; None where its type has none, or the file holds none of that shape.
+
+    Args:
+        parameters: The file's parameters; plates of different types share one array as large as the largest.
+        plate: Its number, counted from 0.
+        kind: Its type.
+    """
+    shape = CALIBRATION_OF_TYPE.get(kind)
+    if shape is None:
+        return None
+    stored = parameters.numbers("FORCE_PLATFORM", "CAL_MATRIX")
+    if stored.ndim == 2:
+        stored = stored[:, :, None]
+    if stored.ndim == 3 and stored.shape[2] > plate and (np.array(stored.shape[:2]) >= shape).all():
+        return np.asarray(stored[: shape[0], : shape[1], plate])
+    blocks = parameters.per_plate("CAL_MATRIX", shape)
+    return blocks[plate] if plate < len(blocks) else None
 
 
 def plate_readings(
@@ -123,7 +144,7 @@ def plate_readings(
     rotation = rotation_to_world(up)
     corners = (rotation @ plate.corners * METRES_PER_UNIT[unit]).T
     centre = corners.mean(axis=0)
-    wrench = wrench_at_surface(plate, unit)
+    wrench = wrench_at_surface(plate, unit, notes)
     wrench = np.hstack([wrench[:, :3] @ rotation.T, wrench[:, 3:] @ rotation.T])
     name = f"force plate {plate.number}"
     require_finite(wrench[:, :3], wrench[:, 3:], plate.rate_hz, start_time_s, f"{path}, {name}")

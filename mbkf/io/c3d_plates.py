@@ -8,9 +8,13 @@ ORIGIN is the vector from the point the channels refer to, O, to the centre of t
 - type 1: Fx Fy Fz, centre of pressure x y, free moment Tz;
 - type 2: Fx Fy Fz Mx My Mz;
 - type 3: Fx12 Fx34 Fy14 Fy23 Fz1 Fz2 Fz3 Fz4 of four sensors at (±a, ±b), with ORIGIN = (a, b, z);
-- type 4: like type 2 after multiplication with CAL_MATRIX (its first index is the row).
+- type 4: like type 2 after multiplication with CAL_MATRIX (6 × 6; its first index is the row);
+- type 5: eight channels that CAL_MATRIX (6 × 8) turns into those of type 2;
+- type 6: Fx1 Fy1 Fz1 … Fx4 Fy4 Fz4 of four sensors as in type 3, after multiplication with CAL_MATRIX (12 × 12);
+- type 7: like type 3 after multiplication with CAL_MATRIX (8 × 8).
 
-Source: The C3D File Format, section FORCE_PLATFORM (c3d.org).
+Sources: The C3D File Format, section FORCE_PLATFORM (c3d.org); for types 5 to 7 Visual3D's documentation of FP_TYPE.
+Types 11, 12 and 21 are stairs and treadmills of single makers, of which no description was found.
 """
 
 from __future__ import annotations
@@ -23,11 +27,26 @@ from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
 from mbkf.io.axes import METRES_PER_UNIT
 
-CHANNELS_OF_TYPE = {1: 6, 2: 6, 3: 8, 4: 6}
+CHANNELS_OF_TYPE = {1: 6, 2: 6, 3: 8, 4: 6, 5: 8, 6: 12, 7: 8}
 """Number of analog channels of each plate type that can be read."""
+
+CALIBRATION_OF_TYPE = {4: (6, 6), 5: (6, 8), 6: (12, 12), 7: (8, 8)}
+"""Rows and columns of CAL_MATRIX of the types that have one."""
+
+SENSORS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
+"""Places of the four sensors of types 3, 6 and 7, over ORIGIN's (a, b)."""
 
 _FORCE_UNITS = {"n": 1.0, "newton": 1.0, "newtons": 1.0, "kn": 1000.0, "lbf": 4.4482216152605}
 _LEAST_SIDE_M = 0.02
+
+LOADED_N, LEAST_LOADED = 100.0, 20
+"""Load from which a sample tells where it presses, and how many of them tell the moments' unit."""
+
+STILL_M, FAR_M, BESIDE_M = 0.001, 10.0, 0.05
+"""No one stands this still, nor so far from a plate's middle; and how far beside it errors may place a pressure."""
+
+MOSTLY, SELDOM = 0.9, 0.1
+"""Shares of samples that press on the plate."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +61,7 @@ class RawPlate:
         readings: (S, C) its channels, scaled by the parameters of ANALOG.
         units: C units of the channels.
         rate_hz: Their sample rate in Hz.
-        calibration: (6, 6) CAL_MATRIX, or None.
+        calibration: CAL_MATRIX with the shape of its type, or None.
     """
 
     number: int
@@ -86,7 +105,7 @@ def check_geometry(plate: RawPlate, path: str, unit: str) -> None:
     name = f"force plate {plate.number}"
     if plate.kind not in CHANNELS_OF_TYPE:
         raise FileFormatError(
-            path, f"{name} is of type {plate.kind}; only 1 to 4 can be read; give its forces with --forces"
+            path, f"{name} is of type {plate.kind}; only 1 to 7 can be read; give its forces with --forces"
         )
     needed = CHANNELS_OF_TYPE[plate.kind]
     if plate.readings.shape[1] != needed:
@@ -98,56 +117,111 @@ def check_geometry(plate: RawPlate, path: str, unit: str) -> None:
         raise FileFormatError(
             path, f"{name} has no usable CORNERS, so it is not calibrated; calibrate it or use --forces"
         )
-    if plate.kind == 4 and (plate.calibration is None or not np.any(plate.calibration)):
-        raise FileFormatError(path, f"{name} is of type 4 without CAL_MATRIX; calibrate it or use --forces")
-    if plate.kind == 3 and not np.all(plate.origin[:2]):
-        raise FileFormatError(path, f"{name} is of type 3 but ORIGIN lacks the places of its sensors")
+    if plate.kind in CALIBRATION_OF_TYPE and (plate.calibration is None or not np.any(plate.calibration)):
+        reason = f"{name} is of type {plate.kind} without CAL_MATRIX; calibrate it or use --forces"
+        raise FileFormatError(path, reason)
+    if plate.kind in {3, 6, 7} and not np.all(plate.origin[:2]):
+        raise FileFormatError(
+            path, f"{name} is of type {plate.kind} but ORIGIN lacks the places of its sensors"
+        )
 
 
-def wrench_at_surface(plate: RawPlate, unit: str) -> Array:
+def wrench_at_surface(plate: RawPlate, unit: str, notes: list[str] | None = None) -> Array:
     """Force and moment of a plate on the body, about the centre of its surface.
 
     Args:
         plate: The plate, checked.
         unit: The file's length unit, in which moments are N times that unit unless they state their own.
+        notes: Receives that moments are in another unit, which is known by where they would press.
 
     Returns:
         (S, 6) force in N and moment in N m in the file's axes (not the plate's).
     """
     metre = METRES_PER_UNIT[unit]
-    a, b, depth = np.abs(plate.origin) * metre
     origin = plate.origin * metre
     if origin[2] > 0.0:
         origin = -origin
-    values = plate.readings
+    values, units = plate.readings, plate.units
+    if plate.kind in CALIBRATION_OF_TYPE:
+        assert plate.calibration is not None  # check_geometry has seen to it
+        values, units = values @ plate.calibration.T, ("",) * len(plate.calibration)
     if plate.kind == 1:
-        force = values[:, :3] * _forces(plate.units[:3])
+        force = values[:, :3] * _forces(units[:3])
         lever = np.zeros_like(force)
-        lever[:, :2] = values[:, 3:5] * _lengths(plate.units[3:5], metre) - origin[:2]
+        lever[:, :2] = values[:, 3:5] * _lengths(units[3:5], metre) - origin[:2]
         moment = np.cross(lever, force)
-        moment[:, 2] += values[:, 5] * _moments(plate.units[5:], metre)[0]
-    elif plate.kind == 3:
-        fx12, fx34, fy14, fy23, *fz = (values * _forces(plate.units)).T
-        force = np.column_stack([fx12 + fx34, fy14 + fy23, sum(fz)])
-        moment = np.column_stack(
-            [
-                b * (fz[0] + fz[1] - fz[2] - fz[3]),
-                a * (-fz[0] + fz[1] + fz[2] - fz[3]),
-                b * (fx34 - fx12) + a * (fy14 - fy23),
-            ]
-        )
-        moment += np.cross(force, [0.0, 0.0, -depth])
+        moment[:, 2] += values[:, 5] * _moments(units[5:], metre)[0]
+    elif plate.kind in {3, 6, 7}:
+        values = values * _forces(units)
+        joined = values if plate.kind == 6 else _of_each_sensor(values)
+        force, moment = _of_sensors(joined.reshape(-1, 4, 3), np.abs(plate.origin) * metre)
     else:
-        if plate.kind == 4:
-            assert plate.calibration is not None  # check_geometry has seen to it
-            values = values @ plate.calibration.T
-            force, moment = values[:, :3], values[:, 3:] * metre
-        else:
-            force = values[:, :3] * _forces(plate.units[:3])
-            moment = values[:, 3:] * _moments(plate.units[3:], metre)
-        moment = moment + np.cross(force, origin)
+        force = values[:, :3] * _forces(units[:3])
+        moment, shift = values[:, 3:] * _moments(units[3:], metre), np.cross(force, origin)
+        factor = _unit_factor(force, moment, shift, _half_sides(plate.corners) * metre)
+        if factor != 1.0 and notes is not None:
+            told = (
+                f"force plate {plate.number}: moments are taken {factor:g} times as large as their unit says"
+            )
+            notes.append(f"{told}, since the centre of pressure is then on the plate")
+        moment = factor * moment + shift
     axes = plate_axes(plate.corners)
     return np.hstack([force @ axes.T, moment @ axes.T])
+
+
+def _unit_factor(force: Array, moment: Array, shift: Array, half_sides_m: Array) -> float:
+    """1000 or 1/1000 where moments are evidently in N m instead of N mm, or the reverse; else 1.
+
+    Moments that are too small press within a millimetre of one point, closer than any foot stands still; those that are
+    too large press beside the plate.
+
+    Args:
+        force: (S, 3) N, plate axes.
+        moment: (S, 3) N m as their unit says, about the transducers.
+        shift: (S, 3) what moving them to the surface adds, N m.
+        half_sides_m: (2,) half the plate's sides.
+    """
+    loaded = np.abs(force[:, 2]) > LOADED_N
+    if np.count_nonzero(loaded) < LEAST_LOADED:
+        return 1.0
+
+    def pressed_m(values: Array) -> Array:
+        return np.column_stack([-values[:, 1], values[:, 0]]) / force[:, 2:]
+
+    def on_plate(factor: float) -> float:
+        place = pressed_m(factor * moment[loaded] + shift[loaded])
+        return float((np.abs(place) < half_sides_m + BESIDE_M).all(axis=1).mean())
+
+    force = force[loaded]
+    reach_m = float(np.percentile(np.linalg.norm(pressed_m(moment[loaded]), axis=1), 95.0))
+    if reach_m < STILL_M and on_plate(1e3) > MOSTLY:
+        return 1e3
+    return 1e-3 if reach_m > FAR_M and on_plate(1.0) < SELDOM and on_plate(1e-3) > MOSTLY else 1.0
+
+
+def _half_sides(corners: Array) -> Array:
+    """(2,) half the sides along the plate's x and y, in the corners' unit."""
+    x = corners[:, 0] + corners[:, 3] - corners[:, 1] - corners[:, 2]
+    y = corners[:, 0] + corners[:, 1] - corners[:, 2] - corners[:, 3]
+    return 0.25 * np.array([np.linalg.norm(x), np.linalg.norm(y)])
+
+
+def _of_each_sensor(values: Array) -> Array:
+    """(S, 12) forces of four sensors from those of type 3 (S, 8), whose pairs share shear forces in equal parts."""
+    fx12, fx34, fy14, fy23, *fz = values.T
+    fx, fy = (fx12, fx12, fx34, fx34), (fy14, fy23, fy23, fy14)
+    return np.column_stack([half for k in range(4) for half in (0.5 * fx[k], 0.5 * fy[k], fz[k])])
+
+
+def _of_sensors(forces: Array, places_m: Array) -> tuple[Array, Array]:
+    """(S, 3) force and (S, 3) moment about the middle of the surface of four sensors' forces.
+
+    Args:
+        forces: (S, 4, 3) forces, N.
+        places_m: Half the sensors' distances along x and y, and their depth below the surface.
+    """
+    lever = np.column_stack([SENSORS * places_m[:2], np.full(4, places_m[2])])  # z points down
+    return forces.sum(axis=1), np.cross(lever, forces).sum(axis=1)
 
 
 def _forces(units: tuple[str, ...]) -> Array:

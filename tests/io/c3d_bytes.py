@@ -7,6 +7,7 @@ import struct
 import numpy as np
 
 INTEL, DEC, MIPS = 84, 85, 86
+GROUPS = ("POINT", "ANALOG", "TRIAL", "FORCE_PLATFORM")
 
 
 def integers(values, processor):
@@ -54,9 +55,9 @@ def c3d_bytes(
 ):
     """A file of points (T, N, 3) and analog samples (T, samples per frame, C).
 
-    scale: of integer points; None for floats. offset, gain: of all channels. extra: records of the groups 1 POINT, 2
-    ANALOG, 3 TRIAL as (number, name, kind, shape, data). seen: (T, N). header_analogs: what the header counts instead
-    of the truth. without: names of ANALOG that are left out.
+    scale: of integer points; None for floats. offset: of all channels; gain: of all or each. extra: records of the
+    GROUPS, counted from 1, as (number, name, kind, shape, data). seen: (T, N). header_analogs: what the header counts
+    instead of the truth. without: names of ANALOG that are left out.
     """
     frames, count, _ = points.shape
     samples = np.zeros((frames, 0, 0)) if analogs is None else analogs
@@ -66,7 +67,7 @@ def c3d_bytes(
     quad[:, :, 3] = 0.0 if seen is None else np.where(seen, 0.0, -1.0)
     numbers = np.hstack([quad.reshape(frames, -1), (samples / gain + offset).reshape(frames, -1)])
     data = floats(numbers, processor) if scale is None else integers(np.round(numbers) % 65536, processor)
-    records = [group(1, "POINT", processor), group(2, "ANALOG", processor), group(3, "TRIAL", processor)]
+    records = [group(k, name, processor) for k, name in enumerate(GROUPS, start=1)]
     own = [
         (1, "USED", 2, (), integers([count], processor)),
         (1, "SCALE", 4, (), floats([-1.0 if scale is None else scale], processor)),

@@ -6,12 +6,26 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbkf.errors import FileFormatError
-from mbkf.io.c3d_plates import RawPlate, check_geometry, plate_axes, wrench_at_surface
+from mbkf.io.c3d_plates import (
+    CALIBRATION_OF_TYPE,
+    CHANNELS_OF_TYPE,
+    RawPlate,
+    check_geometry,
+    plate_axes,
+    wrench_at_surface,
+)
 from tests.io.c3d_builder import CORNERS_MM, PLATE_AXES
 
 A_MM, B_MM, DEPTH_MM = 120.0, 200.0, 55.0
 SENSORS = np.array([[A_MM, B_MM], [-A_MM, B_MM], [-A_MM, -B_MM], [A_MM, -B_MM]])
-CALIBRATION = np.random.default_rng(7).normal(0.0, 1.0, (6, 6)) + 20.0 * np.eye(6)
+CALIBRATIONS = {
+    kind: np.random.default_rng(kind).normal(0.0, 1.0, shape) + 20.0 * np.eye(*shape)
+    for kind, shape in CALIBRATION_OF_TYPE.items()
+}
+N_MM = np.diag([1.0, 1.0, 1.0, 200.0, 200.0, 200.0])
+"""Moments are some hundred times larger in N mm than forces in N."""
+
+CALIBRATIONS[4], CALIBRATIONS[5] = N_MM @ CALIBRATIONS[4] @ np.linalg.inv(N_MM), N_MM @ CALIBRATIONS[5]
 
 forces = st.tuples(st.floats(-300, 300), st.floats(-300, 300), st.floats(50, 2000))
 places = st.tuples(st.floats(-150, 150), st.floats(-150, 150))
@@ -36,10 +50,20 @@ def signals(kind: int, F: np.ndarray, place: np.ndarray, torque: float, origin: 
     if kind == 2:
         return wrench[None]
     if kind == 4:
-        return np.linalg.solve(CALIBRATION, wrench)[None]
-    # Type 3: eight readings at four places whose sum and moment are the wrench (smallest such readings).
-    columns = [np.concatenate([f, np.cross(r, f)]) for r, f in _unit_readings()]
-    return np.linalg.lstsq(np.array(columns).T, wrench, rcond=None)[0][None]
+        return np.linalg.solve(CALIBRATIONS[4], wrench)[None]
+    if kind == 5:
+        return np.linalg.lstsq(CALIBRATIONS[5], wrench, rcond=None)[0][None]
+    # Readings at four places whose sum and moment are the wrench (smallest such readings).
+    readings = _readings_of_sensors() if kind == 6 else _unit_readings()
+    columns = [np.concatenate([f, np.cross(r, f)]) for r, f in readings]
+    found = np.linalg.lstsq(np.array(columns).T, wrench, rcond=None)[0]
+    return (found if kind == 3 else np.linalg.solve(CALIBRATIONS[kind], found))[None]
+
+
+def _readings_of_sensors():
+    for place in SENSORS:
+        for axis in np.eye(3):
+            yield np.array([*place, 0.0]), axis
 
 
 def _unit_readings():
@@ -54,24 +78,23 @@ def _unit_readings():
 
 def arrangement(kind: int, flipped: bool) -> tuple[tuple[float, ...], np.ndarray]:
     """ORIGIN as stored, and the vector from the transducers to the surface's centre in plate axes."""
-    if kind == 3:
+    if kind in {3, 6, 7}:
         return (A_MM, B_MM, DEPTH_MM if flipped else -DEPTH_MM), np.array([0.0, 0.0, -DEPTH_MM])
     vector = np.array([3.0, -2.0, -DEPTH_MM])
     return tuple(-vector if flipped else vector), vector
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", [1, 2, 3, 4])
+@pytest.mark.parametrize("kind", sorted(CHANNELS_OF_TYPE))
 @pytest.mark.parametrize("flipped", [False, True])
 @given(force=forces, place=places, torque=st.floats(-20000, 20000))
 def test_wrench_of_each_type(kind, flipped, force, place, torque):
     world_force = np.array(force)
     F = PLATE_AXES.T @ world_force
     origin, vector = arrangement(kind, flipped)
-    units = ("N",) * 8 if kind == 3 else ("N",) * 3 + ("mm", "mm", "Nmm") if kind == 1 else ("V",) * 6
-    plate = plate_of(
-        kind, signals(kind, F, np.array(place), torque, vector), origin, units, calibration=CALIBRATION
-    )
+    units = ("N",) * 3 + ("mm", "mm", "Nmm") if kind == 1 else ("V",) * CHANNELS_OF_TYPE[kind]
+    readings = signals(kind, F, np.array(place), torque, vector)
+    plate = plate_of(kind, readings, origin, units, calibration=CALIBRATIONS.get(kind))
     arm = PLATE_AXES @ np.array([*place, 0.0]) * 1e-3
     moment = np.cross(arm, world_force) + PLATE_AXES @ [0.0, 0.0, torque * 1e-3]
     check_geometry(plate, "file", "mm")
@@ -108,7 +131,9 @@ def test_axes_are_orthonormal_and_point_down_even_for_surveyed_corners():
 @pytest.mark.parametrize(
     ("plate", "reason"),
     [
-        (plate_of(5, np.zeros((3, 8))), "type 5"),
+        (plate_of(21, np.zeros((3, 8))), "type 21"),
+        (plate_of(5, np.zeros((3, 8))), "type 5 without CAL_MATRIX"),
+        (plate_of(7, np.zeros((3, 8)), calibration=np.eye(8)), "ORIGIN"),
         (plate_of(2, np.zeros((3, 5))), "needs 6 channels, it has 5"),
         (plate_of(2, np.zeros((3, 6)), corners=np.zeros((3, 4))), "no usable CORNERS"),
         (plate_of(2, np.zeros((3, 6)), corners=np.full((3, 4), np.nan)), "no usable CORNERS"),
