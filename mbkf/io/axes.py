@@ -138,7 +138,8 @@ def positions_to_world(values: Array, present: BoolArray, up: str, unit: str) ->
         UnknownName: Unknown axis or unit.
     """
     seen = present & finite(values) & (values != 0.0).any(axis=2)
-    metres = values @ rotation_to_world(up).T * METRES_PER_UNIT[length_unit(unit)]
+    with np.errstate(all="ignore"):  # what is not seen may be any number, or none
+        metres = values @ rotation_to_world(up).T * METRES_PER_UNIT[length_unit(unit)]
     return np.where(seen[:, :, None], metres, np.nan)
 
 

@@ -144,8 +144,9 @@ def plate_readings(
     rotation = rotation_to_world(up)
     corners = (rotation @ plate.corners * METRES_PER_UNIT[unit]).T
     centre = corners.mean(axis=0)
-    wrench = wrench_at_surface(plate, unit, notes)
-    wrench = np.hstack([wrench[:, :3] @ rotation.T, wrench[:, 3:] @ rotation.T])
+    with np.errstate(all="ignore"):  # what is no number is refused below
+        wrench = wrench_at_surface(plate, unit, notes)
+        wrench = np.hstack([wrench[:, :3] @ rotation.T, wrench[:, 3:] @ rotation.T])
     name = f"force plate {plate.number}"
     require_finite(wrench[:, :3], wrench[:, 3:], plate.rate_hz, start_time_s, f"{path}, {name}")
     offset = np.zeros(6)

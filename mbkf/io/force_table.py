@@ -127,8 +127,9 @@ def vertical_axis(forces: Sequence[Array]) -> str | None:
     Args:
         forces: (S, 3) forces in N of each set, in the axes of their file.
     """
-    mean = _mean_force(forces)
-    size = float(np.linalg.norm(mean))
+    with np.errstate(all="ignore"):
+        mean = _mean_force(forces)
+        size = float(np.linalg.norm(mean))
     axis = int(np.argmax(np.abs(mean)))
     if not size >= _LEAST_WEIGHT_N or abs(mean[axis]) < _VERTICAL_SHARE * size:
         return None
@@ -248,7 +249,8 @@ def _columns(table: ForceTable, one: ForceSet, up: str, notes: list[str]) -> _Co
     force, point_vectors, moment_vectors = (vectors(group) for group in (one.force, point, moment))
     if len(given) == 1:  # it is about the vertical that points up
         moment_vectors = np.abs(rotation[2]) * moment_vectors * np.sign(rotation[2, vertical])
-    return _Columns(one.name, *(values @ rotation.T for values in (force, point_vectors, moment_vectors)))
+    with np.errstate(all="ignore"):  # what is no number is refused later
+        return _Columns(one.name, *(values @ rotation.T for values in (force, point_vectors, moment_vectors)))
 
 
 def _metres(table: ForceTable, columns: Sequence[_Columns], threshold_n: float, notes: list[str]) -> float:

@@ -96,12 +96,12 @@ def read_frame_log(path: str | Path) -> tuple[dict[str, object], NDArray]:
             if first["format"] != FORMAT or first["format_version"] > FORMAT_VERSION:
                 raise FileFormatError(source, "not a frame log of this version of mbkf")
             dtype = np.dtype([(name, kind, tuple(shape)) for name, kind, shape in first["dtype"]])
-            data = file.read()
+            header, data = dict(first["header"]), file.read()
+        return header, np.frombuffer(data[: len(data) // dtype.itemsize * dtype.itemsize], dtype=dtype)
     except FileNotFoundError as error:
         raise FileFormatError(source, "no such file; 'mbkf live' keeps it while it runs") from error
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, ZeroDivisionError, OverflowError, MemoryError) as error:
         raise FileFormatError(source, f"not a frame log ({error})") from error
-    return first["header"], np.frombuffer(data[: len(data) // dtype.itemsize * dtype.itemsize], dtype=dtype)
 
 
 def _plain(dtype: np.dtype) -> list[list[Any]]:

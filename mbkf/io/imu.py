@@ -234,7 +234,10 @@ def _lines(path: Path) -> list[tuple[int, list[str]]]:
         raise FileFormatError(path, "cut short: no rows after the column names")
     delimiter = max(",;\t", key=kept[0][1].count)
     cells = csv.reader((line for _, line in kept), delimiter=delimiter)
-    return [(number, row) for (number, _), row in zip(kept, cells, strict=True)]
+    try:
+        return [(number, row) for (number, _), row in zip(kept, cells, strict=True)]
+    except (csv.Error, ValueError) as error:  # a quotation mark that does not end joins rows
+        raise FileFormatError(path, f"damaged ({error}); export it again") from error
 
 
 def _column_names(path: Path, lines: Sequence[tuple[int, list[str]]]) -> tuple[list[str], int]:

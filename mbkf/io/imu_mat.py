@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import scipy.io
-from scipy.io.matlab import MatReadError
 
 from mbkf.errors import FileFormatError
 from mbkf.io.imu import ImuReadings, rate_of
@@ -27,9 +27,20 @@ def read_imu_mat(path: str | Path) -> tuple[ImuReadings, ...]:
     if not path.is_file():
         raise FileFormatError(path, "no such file; name a MATLAB file of BROAD or qmt")
     try:
+        return _sensors(path, _content(path))
+    except (AttributeError, IndexError, TypeError, ValueError, OverflowError, MemoryError) as error:
+        raise FileFormatError(path, f"damaged ({error})") from error
+
+
+def _content(path: Path) -> dict[str, Any]:
+    try:
         content = scipy.io.loadmat(path, squeeze_me=True, struct_as_record=False)
-    except (ValueError, OSError, NotImplementedError, TypeError, MatReadError) as error:
+    except Exception as error:  # scipy tells damage by whatever its parser then comes upon
         raise FileFormatError(path, f"not a MATLAB 5 file ({error})") from error
+    return dict(content)
+
+
+def _sensors(path: Path, content: dict[str, Any]) -> tuple[ImuReadings, ...]:
     if {"imu_acc", "imu_gyr", "sampling_rate"} <= content.keys():
         force, rate = np.asarray(content["imu_acc"], dtype=float), float(content["sampling_rate"])
         truth = content.get("opt_quat")

@@ -21,6 +21,9 @@ _COUNTER_TURN = 65536
 _RATE = re.compile(r"update rate\s*:\s*([0-9.]+)\s*hz", re.IGNORECASE)
 _MATRIX = tuple(f"Mat[{i}][{j}]" for i in (1, 2, 3) for j in (1, 2, 3))
 _QUATERNION = ("Quat_q1", "Quat_q2", "Quat_q3", "Quat_q0")
+_MOST_IN_ROTATION = 1.1
+"""No entry of a rotation is larger, however it was rounded."""
+
 _LOST_SHARE = 0.5
 
 
@@ -57,7 +60,10 @@ def read_xsens(path: str | Path, rate_hz: float | None = None) -> ImuReadings:
         raise InvalidInput(f"{path}: the header states no update rate; give it with --rate")
     names = [name.strip() for name in lines[head].split("\t")]
     table = _table(path, lines, head + 1, names)
-    count = np.unwrap(table[:, names.index(COUNTER)], period=_COUNTER_TURN).astype(int)
+    told = table[:, names.index(COUNTER)]
+    if not (np.abs(told) < _COUNTER_TURN + 1).all():
+        raise FileFormatError(path, f"{COUNTER} is no counter; export the file again")
+    count = np.unwrap(told, period=_COUNTER_TURN).astype(int)
     row = count - count[0]
     if (np.diff(row) <= 0).any() or row[-1] + 1 > len(row) / _LOST_SHARE + 10:
         raise FileFormatError(path, f"{COUNTER} does not count up; export the file again")
@@ -174,6 +180,7 @@ def _orientation(matrix: Array | None, quaternion: Array | None) -> Array | None
     from scipy.spatial.transform import Rotation
 
     found = np.full((len(matrix), 4), np.nan)
-    there = np.isfinite(matrix).all(axis=1)
+    there = np.asarray((np.abs(matrix) <= _MOST_IN_ROTATION).all(axis=1))
+    there &= np.asarray(np.linalg.det(np.where(there[:, None], matrix, 0.0).reshape(-1, 3, 3)) > 0.0)
     found[there] = Rotation.from_matrix(matrix[there].reshape(-1, 3, 3)).as_quat()
     return found

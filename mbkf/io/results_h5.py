@@ -17,6 +17,7 @@ from mbkf.io.atomic import replacing
 from mbkf.io.body_covariance import BodyCovariance
 from mbkf.io.contacts import foot_sources
 from mbkf.io.findings import Finding
+from mbkf.io.hdf5 import DAMAGED, USER_BLOCK, array, check_seal, sealed
 from mbkf.io.results import ARRAYS, DTYPES, OFFSETS, Reconstruction
 from mbkf.io.subject import Subject, SubjectMarker
 
@@ -68,7 +69,7 @@ def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
         OSError: The file cannot be written.
     """
     made = io.BytesIO()  # HDF5 itself does not survive a disk that is full
-    with h5py.File(made, "w") as file:
+    with h5py.File(made, "w", userblock_size=USER_BLOCK) as file:
         file.attrs["format"] = FORMAT
         file.attrs["format_version"] = FORMAT_VERSION
         file.attrs["axes"] = (
@@ -99,7 +100,7 @@ def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
             dataset = file.create_dataset(_KEYS.get(name, name), data=array, **packed)
             dataset.attrs["unit"] = UNITS.get(name, "1")
     with replacing(path) as partial:
-        partial.write_bytes(made.getbuffer())
+        partial.write_bytes(sealed(made))
 
 
 def read_h5(path: str | Path) -> Reconstruction:
@@ -112,6 +113,7 @@ def read_h5(path: str | Path) -> Reconstruction:
     if not source.is_file():
         raise FileFormatError(source, "no such file; make it with 'mbkf reconstruct'")
     try:
+        check_seal(source)
         with h5py.File(source, "r") as file:
             if file.attrs.get("format") != FORMAT:
                 raise FileFormatError(source, "not a reconstruction; make it with 'mbkf reconstruct'")
@@ -133,17 +135,17 @@ def read_h5(path: str | Path) -> Reconstruction:
             for name in ARRAYS:
                 key = _KEYS.get(name, name)
                 if key in file:
-                    values[name] = np.asarray(file[key][()], dtype=DTYPES.get(name, np.float64))
+                    values[name] = array(file, key, DTYPES.get(name, np.float64))
         if "measured" not in values:  # in older files only feet bear, and only what is measured is valid
             values["measured"] = values["valid"]
             values["foot_source"] = foot_sources(values.get("foot_contact"), values["foot_wrench"])
             none = np.zeros((len(values["valid"]), 0, 6))
             values |= {"support_wrench": none, "support_wrench_sd": none, "support_point_m": none[..., :3]}
         return Reconstruction(**values)
-    except (OSError, KeyError, TypeError, ValueError) as error:
-        raise FileFormatError(source, f"damaged or not a reconstruction ({error})") from error
     except FileFormatError:
         raise
+    except DAMAGED as error:
+        raise FileFormatError(source, f"damaged or not a reconstruction ({error})") from error
     except MbkfError as error:
         raise FileFormatError(source, f"damaged: {error}") from error
 
@@ -163,7 +165,7 @@ def _read_covariance(file: h5py.File) -> BodyCovariance | None:
     if _COVARIANCE not in file:
         return None
     factors, markers = (tuple(json.loads(file[_COVARIANCE].attrs[name])) for name in ("factors", "markers"))
-    return BodyCovariance(factors, markers, np.asarray(file[_COVARIANCE][()], dtype=np.float64))
+    return BodyCovariance(factors, markers, array(file, _COVARIANCE, np.float64))
 
 
 def _subject(table: dict[str, Any], covariance: BodyCovariance | None) -> Subject:

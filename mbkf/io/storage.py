@@ -86,6 +86,11 @@ def read_storage(path: str | Path, *, check_rows: bool = True) -> Table:
     if not names or names[0].lower() != "time":
         raise FileFormatError(path, "the first column is not 'time'", start + 1)
     rows = _rows(path, lines, start + 1, len(names))
+    back = np.flatnonzero(~(np.diff(rows[:, 0]) >= 0.0))
+    if len(back):
+        raise FileFormatError(
+            path, "times go back or are no numbers; export it again", start + 2 + int(back[0]) + 1
+        )
     degrees = header.get("indegrees", "no").lower() in {"yes", "true", "1"}
     table = Table(tuple(names[1:]), rows[:, 0], rows[:, 1:], degrees, title, header)
     promised = promised_rows(table)

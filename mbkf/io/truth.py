@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ import numpy as np
 from mbkf.conventions import Array, read_only
 from mbkf.errors import FileFormatError, ShapeError
 from mbkf.io.atomic import replacing
+from mbkf.io.hdf5 import DAMAGED, USER_BLOCK, array, check_seal, sealed
 
 FORMAT = "mbkf truth"
 FORMAT_VERSION = 1
@@ -91,7 +93,8 @@ def write_truth(truth: Truth, path: str | Path) -> None:
     Raises:
         OSError: The file cannot be written.
     """
-    with replacing(path) as partial, h5py.File(partial, "w") as file:
+    made = BytesIO()
+    with h5py.File(made, "w", userblock_size=USER_BLOCK) as file:
         file.attrs["format"] = FORMAT
         file.attrs["format_version"] = FORMAT_VERSION
         file.attrs["axes"] = "x forward, y left, z up; forces are those of the ground on the body"
@@ -101,6 +104,8 @@ def write_truth(truth: Truth, path: str | Path) -> None:
             file.create_dataset(name, data=list(getattr(truth, name)), dtype=h5py.string_dtype())
         for name, unit in UNITS.items():
             file.create_dataset(name, data=getattr(truth, name)).attrs["unit"] = unit
+    with replacing(path) as partial:
+        partial.write_bytes(sealed(made))
 
 
 def read_truth(path: str | Path) -> Truth:
@@ -113,11 +118,12 @@ def read_truth(path: str | Path) -> Truth:
     if not source.is_file():
         raise FileFormatError(source, "no such file; make it with 'mbkf synth'")
     try:
+        check_seal(source)
         with h5py.File(source, "r") as file:
             if file.attrs.get("format") != FORMAT:
                 raise FileFormatError(source, "not a truth file; make it with 'mbkf synth'")
             known = {name for name in (*UNITS, *NAMES) if name in file or name not in SINCE_SUPPORTS}
-            arrays: dict[str, Any] = {name: np.asarray(file[name]) for name in UNITS if name in known}
+            arrays: dict[str, Any] = {name: array(file, name) for name in UNITS if name in known}
             names: dict[str, Any] = {
                 name: tuple(text.decode() for text in file[name][:]) for name in NAMES if name in known
             }
@@ -127,5 +133,7 @@ def read_truth(path: str | Path) -> Truth:
                 version=str(file.attrs["version"]),
                 settings=json.loads(file.attrs["settings"]),
             )
-    except (OSError, KeyError, ValueError, ShapeError) as error:
+    except FileFormatError:
+        raise
+    except (*DAMAGED, ShapeError) as error:
         raise FileFormatError(source, f"damaged ({error})") from error

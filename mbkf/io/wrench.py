@@ -107,6 +107,8 @@ def find_tare(wrench: Array, rate_hz: float) -> Tare:
     """
     size = max(4, round(_WINDOW_S * rate_hz))
     count = len(wrench) // size
+    if not count:
+        return Tare(np.zeros(6), 0.0)
     windows = wrench[: count * size].reshape(count, size, 6)
     means, spread = windows.mean(axis=1), windows[:, :, 2].std(axis=1)
     low, high = UNLOADED_RANGE_N

@@ -12,6 +12,7 @@ from mbkf.io.findings import Finding, not_judged
 from mbkf.io.results import ARRAYS, DTYPES, OFFSETS, Reconstruction
 from mbkf.io.results_h5 import UNITS, read_h5, write_h5
 from tests.io.reconstructions import made_up, made_up_whole
+from tests.sealed import unsealed
 
 
 @pytest.mark.parametrize("frames", [0, 1, 40])
@@ -60,7 +61,7 @@ def test_in_older_files_feet_alone_bear_and_what_is_measured_is_valid(tmp_path):
     r = made_up_whole(valid=np.arange(12) > 3, foot_contact=np.tile([-1, 2], (12, 1)))
     for path in ("dynamic.h5", "kinematic.h5"):
         write_h5(r, tmp_path / path)
-        with h5py.File(tmp_path / path, "a") as file:
+        with unsealed(tmp_path / path) as file:
             for name in ("measured", "foot_source", *(key for key in file if key.startswith("support_"))):
                 del file[name]
     back = read_h5(tmp_path / "dynamic.h5")
@@ -71,14 +72,14 @@ def test_in_older_files_feet_alone_bear_and_what_is_measured_is_valid(tmp_path):
         ("right_foot", "estimated"),
         ("left_foot", "shared"),
     }
-    with h5py.File(tmp_path / "kinematic.h5", "a") as file:
+    with unsealed(tmp_path / "kinematic.h5") as file:
         del file["footing"]
     assert (read_h5(tmp_path / "kinematic.h5").foot_source == 1).all()
 
 
 def test_older_files_say_which_later_frames_they_know_by_the_rest(tmp_path):
     write_h5(made_up(smoothed=True), tmp_path / "motion.h5")
-    with h5py.File(tmp_path / "motion.h5", "a") as file:
+    with unsealed(tmp_path / "motion.h5") as file:
         assert file.attrs["later_frames"] == "smoothed (all later frames known)"
         del file.attrs["later_frames"]
     assert read_h5(tmp_path / "motion.h5").later_frames == "smoothed (all later frames known)"
@@ -86,7 +87,7 @@ def test_older_files_say_which_later_frames_they_know_by_the_rest(tmp_path):
 
 def test_in_older_files_spreads_have_no_offset_and_the_body_no_covariance(tmp_path):
     write_h5(made_up_whole(sd_tau_offset=np.ones((12, 6))), tmp_path / "motion.h5")
-    with h5py.File(tmp_path / "motion.h5", "a") as file:
+    with unsealed(tmp_path / "motion.h5") as file:
         for name in OFFSETS:
             del file[name]
     back = read_h5(tmp_path / "motion.h5")
@@ -97,7 +98,7 @@ def test_in_older_files_spreads_have_no_offset_and_the_body_no_covariance(tmp_pa
 
 def test_older_files_have_no_axes(tmp_path):
     write_h5(made_up(file_axes="x,z,y"), tmp_path / "motion.h5")
-    with h5py.File(tmp_path / "motion.h5", "a") as file:
+    with unsealed(tmp_path / "motion.h5") as file:
         del file.attrs["file_axes"], file.attrs["file_axes_source"]
     back = read_h5(tmp_path / "motion.h5")
     assert (back.file_axes, back.file_axes_source) == ("x,y,z", "")
@@ -105,7 +106,7 @@ def test_older_files_have_no_axes(tmp_path):
 
 def test_older_files_tell_no_ignored_markers(tmp_path):
     write_h5(made_up(markers_ignored={"X": "not known"}, markers_explained=0.5), tmp_path / "motion.h5")
-    with h5py.File(tmp_path / "motion.h5", "a") as file:
+    with unsealed(tmp_path / "motion.h5") as file:
         del file.attrs["markers_ignored"], file.attrs["markers_explained"], file.attrs["names_exchanged"]
         del file.attrs["checks"]
     back = read_h5(tmp_path / "motion.h5")
@@ -118,7 +119,7 @@ def test_a_file_without_a_direction_is_told_in_the_laboratory(tmp_path):
     write_h5(made_up(direction="heading", angles_read="pig", angles_zero="static"), tmp_path / "motion.h5")
     back = read_h5(tmp_path / "motion.h5")
     assert (back.angles_read, back.angles_zero) == ("pig", "static")
-    with h5py.File(tmp_path / "motion.h5", "a") as file:
+    with unsealed(tmp_path / "motion.h5") as file:
         del file.attrs["direction"], file.attrs["angles_read"], file.attrs["angles_zero"]
     back = read_h5(tmp_path / "motion.h5")
     assert (back.direction, back.angles_read, back.angles_zero) == ("laboratory", "model", "axes")
@@ -168,7 +169,7 @@ def test_other_files_are_refused(tmp_path):
 def test_damaged_files_are_refused(tmp_path, damage, message):
     path = tmp_path / "motion.h5"
     write_h5(made_up(), path)
-    with h5py.File(path, "a") as file:
+    with unsealed(path) as file:
         damage(file)
     with pytest.raises(FileFormatError, match=message):
         read_h5(path)

@@ -1,0 +1,72 @@
+"""HDF5 files that may be damaged: sealed with a checksum, since the library may end the process on damage or never end.
+
+The seal is a line of text in the file's user block, the first 512 bytes, which HDF5 leaves to whoever wants them. Files
+of before have none and are read as they are.
+"""
+
+from __future__ import annotations
+
+import zlib
+from io import BytesIO
+from pathlib import Path
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+DAMAGED = (
+    OSError, RuntimeError, KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError, MemoryError,
+)  # fmt: skip
+"""What h5py, and code that works on what it gives, raise of damaged files."""
+
+SEAL, USER_BLOCK = b"mbkf: %d bytes after this block, CRC-32 %08x\n", 512
+"""The line, and the block that it begins."""
+
+HDF5 = b"\x89HDF\r\n\x1a\n"
+"""How HDF5 begins, at the start of the file or after the user block."""
+
+MOST_COMPRESSED, SPARE_BYTES = 1100, 1 << 20
+"""Deflate makes nothing smaller than a thousandth; and what files may hold besides."""
+
+
+def array(file: h5py.File, key: str, dtype: np.dtype | type | None = None) -> NDArray:
+    """A dataset as an array.
+
+    Args:
+        file: The file.
+        key: Name of the dataset.
+        dtype: Type of the array; the dataset's own by default.
+
+    Raises:
+        ValueError: It claims to be larger than the file can hold.
+    """
+    dataset = file[key]
+    if dataset.nbytes > MOST_COMPRESSED * file.id.get_filesize() + SPARE_BYTES:
+        raise ValueError(f"'{key}' claims {dataset.nbytes} bytes, more than the file can hold")
+    return np.asarray(dataset[()], dtype=dtype)
+
+
+def sealed(made: BytesIO) -> bytes:
+    """A file with its seal.
+
+    Args:
+        made: The file, made with ``userblock_size=USER_BLOCK``.
+    """
+    content = made.getvalue()
+    body = content[USER_BLOCK:]
+    return (SEAL % (len(body), zlib.crc32(body))).ljust(USER_BLOCK, b"\0") + body
+
+
+def check_seal(path: Path) -> None:
+    """Makes sure that a file is what was written.
+
+    Raises:
+        ValueError: It is not.
+        OSError: It cannot be read.
+    """
+    content = path.read_bytes()
+    body = content[USER_BLOCK:]
+    if content.startswith(HDF5) or (content.startswith(bytes(USER_BLOCK)) and body.startswith(HDF5)):
+        return  # written before there were seals, or by another program
+    if not body.startswith(HDF5) or not content.startswith(SEAL % (len(body), zlib.crc32(body))):
+        raise ValueError("its checksum does not fit; it was cut short or changed after it was written")
