@@ -47,7 +47,7 @@ def plausible(capture: Capture) -> Capture:
             ("moment", plate.moment_nm, MOST_NM, "N m"),
         ):
             largest = float(np.max(np.abs(values), initial=0.0))
-            if largest > most:
+            if not largest <= most:
                 raise InvalidInput(
                     f"{capture.path}: force plate {plate.name} reads a {what} of {largest:.2g} {unit}; check its scale "
                     "and offset (ANALOG:SCALE, OFFSET), or give the ground reactions with --forces"
