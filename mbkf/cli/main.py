@@ -95,6 +95,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if arguments is None else arguments)
     named = words[:1] if words[:1] and words[0] in COMMANDS else COMMANDS
     args = build_parser(named).parse_args(words)
+    out = getattr(args, "out", None)
+    if out is not None and not out.strip():  # "" would be the folder that the command is called in
+        return _fail("--out names nothing; give the folder or file to write")
     postpone()
     try:
         code = args.run(args)

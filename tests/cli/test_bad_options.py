@@ -24,6 +24,14 @@ def test_mass_that_nobody_states(person, refuse_scale):
     refuse_scale([person.trial_trc], "--mass KG")
 
 
+@pytest.mark.parametrize("command", [["synth", "--motion", "squat"], ["demo"], ["report", "result"]])
+@pytest.mark.parametrize("out", ["", " "])
+def test_an_output_without_a_name_is_not_the_folder_one_is_in(command, out, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main([*command, "--out", out]) == 2
+    assert "--out names nothing" in capsys.readouterr().err and list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize("lag", ["-5", "nan", "inf"])
 def test_lag_that_cannot_be(lag, person, refuse_reconstruct):
     refuse_reconstruct([person.trial, f"--lag={lag}"], "--lag", "positive")
