@@ -111,7 +111,9 @@ def plates_of_table(
         about = factor * moment
         if origin is None:
             origin = point[loaded].mean(axis=0) if loaded.any() else np.zeros(3)
-            with np.errstate(all="ignore"):  # impossible points give impossible moments, which are refused later
+            with np.errstate(
+                all="ignore"
+            ):  # impossible points give impossible moments, which are refused later
                 about = about + np.cross(point - origin, force)
         elif not table.at_point:
             place = ", ".join(f"{value:.3f}" for value in origin)

@@ -30,6 +30,9 @@ _TITLES = (
     "OrigNumFrames",
 )  # fmt: skip
 _HEADER_LINES = 5
+_UNEVEN = 0.25
+"""Share of a frame by which times may be off, by rounding or by an inexact rate."""
+
 _COLUMNS_BEFORE_MARKERS = 2
 _MOST_NAMED = 6
 
@@ -93,8 +96,10 @@ def read_trc(path: str | Path, *, up: str | None = None, unit: str | None = None
     labels = _labels(names, notes)
     times = cells.times_s
     values = cells.of(len(names))[:, :, _order_of_axes(file.lines[4], len(names), notes)]
-    notes += compare_count(file, header.frames, len(times), "frames")
-    notes += compare_rate(header.rate_hz, times)
+    values = _with_gaps(path, times, values, header.rate_hz, notes)
+    notes += compare_count(file, header.frames, len(values), "frames")
+    if len(values) == len(times):
+        notes += compare_rate(header.rate_hz, times)
     used_unit = _unit(path, header.unit, unit, notes)
     positions = positions_to_world(values, finite(values), up, used_unit)
     if unit is None:
@@ -109,6 +114,40 @@ def read_trc(path: str | Path, *, up: str | None = None, unit: str | None = None
         axes=axes_text(rotation_to_world(up)),
         axes_source=source,
     )
+
+
+def _with_gaps(path: Path, times_s: Array, values: Array, rate_hz: float, notes: list[str]) -> Array:
+    """The coordinates with frames of NaN where the Time column says that rows are missing.
+
+    Times are rounded and rates not exact, so that each step from row to row is counted for itself.
+
+    Args:
+        path: The file, for messages.
+        times_s: (T,) the Time column.
+        values: (T, M, 3) coordinates.
+        rate_hz: Frame rate of the header.
+        notes: Receives how many frames are missing.
+
+    Raises:
+        FileFormatError: Times go back, or jump further than the trial is long.
+    """
+    steps = np.diff(times_s) * rate_hz
+    back = np.flatnonzero(steps < -_UNEVEN)
+    if len(back):
+        raise FileFormatError(path, f"in row {back[0] + 2}, the time goes back; export the file again")
+    if not len(steps) or abs(float(np.median(steps)) - 1.0) > _UNEVEN:
+        return values  # the header's rate is not that of the rows, which is told
+    frames = np.concatenate([[0], np.cumsum(np.maximum(np.rint(np.minimum(steps, 1e9)), 1.0))]).astype(int)
+    missing = int(frames[-1]) + 1 - len(values)
+    if not missing:
+        return values
+    if missing > len(values) + rate_hz:
+        row, jump_s = int(np.argmax(steps)) + 2, float(np.max(np.diff(times_s)))
+        raise FileFormatError(path, f"in row {row}, the time jumps by {jump_s:g} s; export the file again")
+    notes.append(f"rows of {missing} frames are missing by the Time column; they are gaps")
+    whole = np.full((frames[-1] + 1, *values.shape[1:]), np.nan)
+    whole[frames] = values
+    return whole
 
 
 def write_trc(markers: MarkerTrajectories, path: str | Path) -> None:

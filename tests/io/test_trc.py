@@ -185,6 +185,38 @@ def test_the_order_of_markers_does_not_matter(tmp_path, order):
     np.testing.assert_allclose(back.positions_m, values, atol=1e-9)
 
 
+def rows_at(times):
+    return [f"{k + 1}\t{t:.3f}\t{100 + k}\t1000\t5\t1\t2\t3" for k, t in enumerate(times)]
+
+
+def lines_of(times, rate=240.0):
+    head = f"{rate}\t{rate}\t{len(times)}\t2\tmm\t{rate}\t1\t{len(times)}"
+    return text(header=head, rows=rows_at(times))
+
+
+def test_missing_rows_are_gaps_where_the_time_column_says_so(tmp_path):
+    """At 240 Hz with times of three decimals, whose steps are 4 or 5 ms."""
+    kept = [k for k in range(60) if k not in {10, 11, 12, 40}]
+    found = read(tmp_path, lines_of([k / 240.0 for k in kept]))
+    seen = found.markers.present.any(axis=1)
+    assert found.markers.frames == 60 and np.flatnonzero(seen).tolist() == kept
+    assert any("rows of 4 frames are missing" in note for note in found.notes)
+    assert not any("Hz" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("at", [5, 20, -1])
+def test_a_time_that_cannot_be_is_refused_with_its_line(tmp_path, at):
+    times = [k / 240.0 for k in range(40)]
+    times[at] = 99.0
+    with pytest.raises(FileFormatError, match=r"row \d+, the time (goes back|jumps by)"):
+        read(tmp_path, lines_of(times))
+
+
+def test_uneven_times_of_another_rate_stay_as_they_are(tmp_path):
+    found = read(tmp_path, lines_of([k / 100.0 for k in range(40)]))
+    assert found.markers.frames == 40 and any("the header is used" in note for note in found.notes)
+
+
 def test_missing_file(tmp_path):
     with pytest.raises(FileFormatError, match="no such file"):
         read_trc(tmp_path / "none.trc")
