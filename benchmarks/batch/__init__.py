@@ -5,14 +5,13 @@ The study is one synthetic walk in many copies. Ratios are of wall times and nee
 
 from __future__ import annotations
 
-from pathlib import Path
 from time import perf_counter
 
 import pyarrow as pa
 
 from benchmarks.batch.faults import fault_rows
 from benchmarks.batch.many import many_rows
-from benchmarks.batch.study import study
+from benchmarks.batch.study import fresh, study
 from benchmarks.checks import Check, Context, information
 from mbkf.pipelines.batch.cluster import LOCAL
 from mbkf.pipelines.batch.run import batch
@@ -56,14 +55,6 @@ def run(context: Context) -> list[Check]:
         *fault_rows(context),
         *many_rows(context),
     ]
-
-
-def fresh(folder: Path) -> Path:
-    """A folder that is not there yet, whatever an earlier run left."""
-    number = 0
-    while (found := folder.with_name(f"{folder.name}-{number}")).exists():
-        number += 1
-    return found
 
 
 def differing(*tables: pa.Table) -> int:

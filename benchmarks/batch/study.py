@@ -29,3 +29,11 @@ def study(folder: Path, persons: int, trials: int) -> Path:
         for trial in range(1, trials + 1):
             shutil.copy(made / "trial.c3d", own / f"walk{trial:02d}.c3d")
     return folder
+
+
+def fresh(folder: Path) -> Path:
+    """A folder that is not there yet, whatever an earlier run left."""
+    number = 0
+    while (found := folder.with_name(f"{folder.name}-{number}")).exists():
+        number += 1
+    return found

@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from benchmarks.batch import OF_THE_RUN, differing, fresh
+from benchmarks.batch import OF_THE_RUN, differing
 from benchmarks.batch.faults import FULL, KILLED, Full, Killed, _befallen
+from benchmarks.batch.study import fresh
 from mbkf.pipelines.batch.outcome import ReconstructTrial, ScalePerson
 from mbkf.pipelines.batch.plan import Person, Trial
 from mbkf.pipelines.reconstruct_settings import ReconstructSettings
