@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.dynamic.captures import SOURCES
+from benchmarks.dynamic.captures import load
 from mbkf.io.capture import read_capture
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
@@ -99,16 +99,10 @@ def real_metrics(name: str, data: Path, changed: Change) -> Iterator[Metric]:
         data: Folder of the reference captures.
         changed: Changes the settings.
     """
-    source = SOURCES[name]
-    folder = data / source.folder
-    forces = None if source.forces is None else folder / source.forces
-    capture = read_capture(folder / source.trial, forces=forces)
-    if source.static is None:
-        subject = scale(None, [capture], mass_kg=source.mass_kg)
-    else:
-        subject = scale(read_capture(folder / source.static), mass_kg=source.mass_kg)
+    person = load(name, data, correct=False)
     for kind, smooth in (("smoothed", True), ("causal", False)):
-        result = reconstruct(capture, subject, settings=changed(ReconstructSettings(smooth=smooth)))
+        settings = changed(ReconstructSettings(smooth=smooth))
+        result = reconstruct(person.capture, person.subject, settings=settings)
         yield from told(f"{name}, {kind}", result, None)
 
 

@@ -35,15 +35,15 @@ def run(context: Context) -> list[Check]:
     seeds = SEEDS[:1] if context.quick else SEEDS
     with in_parallel() as mapper:
         found = mapper(partial(capture_rows, data=data, out=context.out, seeds=seeds), names)
-    rows = [row for some in found for row in some]
-    with single_threaded():
-        for name in names[:2]:
-            rows += time_rows(results(name, data, context.out))
+    rows = [row for some, _ in found for row in some]
+    with single_threaded():  # times need a quiet computer: after all else
+        for _, own in found[:2]:
+            rows += time_rows(own)
         return [*rows, *beside_vqf(context)]
 
 
-def capture_rows(name: str, data: Path, out: Path, seeds: tuple[int, ...]) -> list[Check]:
-    """All rows of a capture but times.
+def capture_rows(name: str, data: Path, out: Path, seeds: tuple[int, ...]) -> tuple[list[Check], Results]:
+    """All rows of a capture but times, and what the tools make of it.
 
     Args:
         name: Name of the capture.
@@ -53,13 +53,14 @@ def capture_rows(name: str, data: Path, out: Path, seeds: tuple[int, ...]) -> li
     """
     with single_threaded():
         found, bounded = results(name, data, out), name in BOUNDED
-        return [
+        rows = [
             *marker_rows(found, bounded),
             *residual_rows(found, bounded),
             *([withheld_row(found)] if name != GAIT2354 else []),
             *hidden_rows(found, seeds, bounded),
             *torque_rows(found, data),
         ]
+        return rows, found
 
 
 def marker_rows(found: Results, bounded: bool) -> list[Check]:

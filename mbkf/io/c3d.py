@@ -67,7 +67,7 @@ def read_c3d(
     content = decode(path, layout)
     parameters = content.parameters
     rate_hz = _rate(path, content)
-    start_s = max(layout.first_frame - 1, 0) / rate_hz
+    start_s = max(content.first_frame - 1, 0) / rate_hz
 
     notes = list(content.notes)
     used_unit = _length_unit(path, parameters, unit, notes)

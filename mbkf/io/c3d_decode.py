@@ -18,7 +18,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
-from mbkf.io.c3d_layout import BLOCK_BYTES, C3dLayout
+from mbkf.io.c3d_layout import BLOCK_BYTES, LAST_FRAME_OF_HEADER, C3dLayout
 from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.c3d_records import ParameterRecord
 
@@ -33,6 +33,8 @@ MOST_SAMPLES = 1000
 
 _UNSIGNED_OFFSET = -16384
 """An analog offset below this, read with a sign, is the middle of an unsigned range."""
+
+TAKEN_AS_UNSIGNED = "analog samples are taken as numbers without a sign, since their OFFSET is that of such"
 
 
 class Processor(Enum):
@@ -74,6 +76,7 @@ class C3dContent:
         residuals: (T, N) negative where a point was not seen.
         analogs: (C, S) analog channels, scaled.
         rate_hz: Frame rate of the header.
+        first_frame: Number of the first frame, counted from 1.
         events: Labels and times in s of the header's events.
         notes: What had to be settled about the layout.
     """
@@ -83,6 +86,7 @@ class C3dContent:
     residuals: Array
     analogs: Array
     rate_hz: float
+    first_frame: int
     events: tuple[tuple[str, float], ...]
     notes: tuple[str, ...] = ()
 
@@ -103,16 +107,18 @@ def decode(path: Path, layout: C3dLayout) -> C3dContent:
         data = file.read(frames * width * layout.bytes_per_number)
     whole = layout.bytes_per_number == 2
     numbers = (processor.integers(data) if whole else processor.floats(data)).reshape(frames, width)
+    unsigned = whole and (_says_unsigned(parameters) or _looks_unsigned(parameters))
     corners = numbers[:, : 4 * layout.points].reshape(frames, layout.points, 4)
     scale = abs(parameters.number("POINT", "SCALE") or float(processor.floats(header[12:16])[0]))
     return C3dContent(
         parameters,
         corners[:, :, :3] * scale if whole else corners[:, :, :3],
         corners[:, :, 3],
-        _analogs(numbers[:, 4 * layout.points :], shape.channels, parameters, whole),
+        _analogs(numbers[:, 4 * layout.points :], shape.channels, parameters, unsigned),
         float(processor.floats(header[20:24])[0]),
+        _first_frame(layout, parameters),
         _header_events(header, processor),
-        shape.notes,
+        (*shape.notes, *((TAKEN_AS_UNSIGNED,) if unsigned and not _says_unsigned(parameters) else ())),
     )
 
 
@@ -179,15 +185,15 @@ def data_layout(path: Path, layout: C3dLayout, parameters: C3dParameters) -> Dat
     Raises:
         FileFormatError: The file holds fewer frames than it promises, or nothing tells how it is laid out.
     """
-    used, samples = _count(parameters.number("ANALOG", "USED")), _samples_per_frame(parameters)
-    kinds = {layout.analog_per_frame: layout.channels}
-    kinds = kinds | {used * samples: used, 0: 0} | kinds
+    used = _count(parameters.number("ANALOG", "USED"))
+    stated = used * _samples_per_frame(parameters)
+    kinds = dict.fromkeys(
+        ((layout.analog_per_frame, layout.channels), (stated, used if stated else 0), (0, 0))
+    )
     for frames in frames_told(layout, parameters):
-        for per_frame, channels in kinds.items():
-            taken = frames * (4 * layout.points + per_frame) * layout.bytes_per_number
-            if 0 <= layout.data_bytes - taken < BLOCK_BYTES:
-                notes = tuple(_told(layout, frames, per_frame))
-                return DataLayout(frames, per_frame, channels if per_frame else 0, notes)
+        fits = [kind for kind in kinds if _fits(layout, frames, kind[0])]
+        if len(fits) == 1 or (fits and used == layout.channels):
+            return DataLayout(frames, *fits[0], tuple(_told(layout, frames, fits[0][0])))
     if layout.frames_present < layout.frames:
         present = f"{layout.frames} frames promised, {layout.frames_present} present"
         raise FileFormatError(path, f"cut short: {present}; copy or export it again")
@@ -202,14 +208,34 @@ def data_layout(path: Path, layout: C3dLayout, parameters: C3dParameters) -> Dat
     return DataLayout(layout.frames, layout.analog_per_frame, layout.channels)
 
 
+def _fits(layout: C3dLayout, frames: int, per_frame: int) -> bool:
+    """Whether so many frames fill the file to its last block."""
+    taken = frames * (4 * layout.points + per_frame) * layout.bytes_per_number
+    return 0 <= layout.data_bytes - taken < BLOCK_BYTES
+
+
 def frames_told(layout: C3dLayout, parameters: C3dParameters) -> tuple[int, ...]:
-    """Numbers of frames that the file tells in one place or another, the header's first; its words end at 65535."""
+    """Numbers of frames that the file tells in one place or another, the likeliest first.
+
+    That is the header's; where its words, which end at 65535, can count no further, the largest.
+    """
     last, first = (
         _two_words(parameters.numbers("TRIAL", f"ACTUAL_{which}_FIELD")) for which in ("END", "START")
     )
     counts = [layout.frames, 0 if last is None or first is None else last - first + 1]
     counts += [_count(parameters.number("POINT", name)) for name in ("LONG_FRAMES", "FRAMES")]
-    return tuple(dict.fromkeys(count for count in counts if count > 0))
+    found = dict.fromkeys(count for count in counts if count > 0)
+    return tuple(sorted(found, reverse=True) if layout.counts_no_further else found)
+
+
+def _first_frame(layout: C3dLayout, parameters: C3dParameters) -> int:
+    """Number of the first frame, counted from 1; beyond the header's words by TRIAL:ACTUAL_START_FIELD."""
+    told = _two_words(parameters.numbers("TRIAL", "ACTUAL_START_FIELD"))
+    return (
+        max(layout.first_frame, told or 0)
+        if layout.first_frame == LAST_FRAME_OF_HEADER
+        else layout.first_frame
+    )
 
 
 def _told(layout: C3dLayout, frames: int, per_frame: int) -> Iterator[str]:
@@ -235,22 +261,30 @@ def _samples_per_frame(parameters: C3dParameters) -> int:
     return round(ratio) if 0.0 < ratio < MOST_SAMPLES else 0
 
 
-def _analogs(samples: Array, channels: int, parameters: C3dParameters, whole: bool) -> Array:
+def _says_unsigned(parameters: C3dParameters) -> bool:
+    return parameters.text("ANALOG", "FORMAT").upper().startswith("UNSIGNED")
+
+
+def _looks_unsigned(parameters: C3dParameters) -> bool:
+    """Whether an offset is the middle of an unsigned range."""
+    return bool((parameters.all_numbers("ANALOG", "OFFSET") < _UNSIGNED_OFFSET).any())
+
+
+def _analogs(samples: Array, channels: int, parameters: C3dParameters, unsigned: bool) -> Array:
     """(C, S) scaled channels of samples (T, C · samples per frame).
 
     Args:
         samples: As the file has them.
         channels: Their number C.
         parameters: With OFFSET, SCALE and GEN_SCALE, which may be missing.
-        whole: Whether samples are integers.
+        unsigned: Whether samples and offsets are integers without a sign.
     """
     if not channels or not samples.size:
         return np.zeros((0, 0))
     raw = samples.reshape(-1, channels).T
     offset = _filled(parameters.all_numbers("ANALOG", "OFFSET"), channels, 0.0)
     scale = _filled(parameters.all_numbers("ANALOG", "SCALE"), channels, 1.0)
-    unsigned = parameters.text("ANALOG", "FORMAT").upper().startswith("UNSIGNED")
-    if whole and (unsigned or bool((offset < _UNSIGNED_OFFSET).any())):
+    if unsigned:
         raw, offset = raw % 65536, offset % 65536
     with np.errstate(all="ignore"):  # samples of a damaged file may be any number, or none
         gain = scale * (parameters.number("ANALOG", "GEN_SCALE", 1.0) or 1.0)

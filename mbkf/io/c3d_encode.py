@@ -22,7 +22,7 @@ Value = Sequence[str] | float | int | Array | NDArray[np.int16]
 INTEL, KEY = 84, 0x50
 PARAMETER_BLOCK = 2
 
-MOST_ENTRIES, MOST_LETTERS, MOST_BYTES = 255, 127, 30000
+MOST_ENTRIES, MOST_LETTERS, MOST_BYTES = 255, 255, 30000
 """What a record has room for: entries of a dimension, letters of a text, and bytes."""
 
 MOST_PARAMETER_BLOCKS = 255
@@ -158,8 +158,12 @@ def _record(number: int, name: str, body: bytes) -> bytes:
 def _bodies(name: str, value: Value) -> Iterator[tuple[str, bytes]]:
     """Name and bytes of a parameter, and of its continuations."""
     if isinstance(value, Sequence):
-        words = [word.encode("utf-8", "replace")[:MOST_LETTERS] for word in value]
+        words = [word.encode("utf-8", "replace") for word in value]
         length = max([len(word) for word in words], default=0) or 1
+        if length > MOST_LETTERS:
+            raise InvalidInput(
+                f"a text of {name} has {length} letters; a C3D file holds {MOST_LETTERS}: shorten it"
+            )
         most = min(MOST_ENTRIES, MOST_BYTES // length)
         for number, at in enumerate(range(0, max(len(words), 1), most), start=1):
             some = words[at : at + most]

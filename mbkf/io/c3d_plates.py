@@ -83,8 +83,7 @@ def plate_axes(corners: Array) -> Array:
     Returns:
         (3, 3) rotation whose columns are the plate's x, y and (downward) z in the axes of the corners.
     """
-    x = corners[:, 0] + corners[:, 3] - corners[:, 1] - corners[:, 2]
-    y = corners[:, 0] + corners[:, 1] - corners[:, 2] - corners[:, 3]
+    x, y = _sides(corners)
     x = x / np.linalg.norm(x)
     z = np.cross(x, y)
     z = z / np.linalg.norm(z)
@@ -158,7 +157,8 @@ def wrench_at_surface(plate: RawPlate, unit: str, notes: list[str] | None = None
     else:
         force = values[:, :3] * _forces(units[:3])
         moment, shift = values[:, 3:] * _moments(units[3:], metre), np.cross(force, origin)
-        factor = _unit_factor(force, moment, shift, _half_sides(plate.corners) * metre)
+        half_sides_m = 0.25 * metre * np.linalg.norm(_sides(plate.corners), axis=1)
+        factor = _unit_factor(force, moment, shift, half_sides_m)
         if factor != 1.0 and notes is not None:
             told = (
                 f"force plate {plate.number}: moments are taken {factor:g} times as large as their unit says"
@@ -199,11 +199,10 @@ def _unit_factor(force: Array, moment: Array, shift: Array, half_sides_m: Array)
     return 1e-3 if reach_m > FAR_M and on_plate(1.0) < SELDOM and on_plate(1e-3) > MOSTLY else 1.0
 
 
-def _half_sides(corners: Array) -> Array:
-    """(2,) half the sides along the plate's x and y, in the corners' unit."""
+def _sides(corners: Array) -> tuple[Array, Array]:
+    """Twice the plate's sides along its x and y, from corners (3, 4) in their order."""
     x = corners[:, 0] + corners[:, 3] - corners[:, 1] - corners[:, 2]
-    y = corners[:, 0] + corners[:, 1] - corners[:, 2] - corners[:, 3]
-    return 0.25 * np.array([np.linalg.norm(x), np.linalg.norm(y)])
+    return x, corners[:, 0] + corners[:, 1] - corners[:, 2] - corners[:, 3]
 
 
 def _of_each_sensor(values: Array) -> Array:

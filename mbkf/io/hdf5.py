@@ -69,4 +69,6 @@ def check_seal(path: Path) -> None:
     if content.startswith(HDF5) or (content.startswith(bytes(USER_BLOCK)) and body.startswith(HDF5)):
         return  # written before there were seals, or by another program
     if not body.startswith(HDF5) or not content.startswith(SEAL % (len(body), zlib.crc32(body))):
-        raise ValueError("its checksum does not fit; it was cut short or changed after it was written")
+        raise ValueError(
+            "its checksum does not fit; it was cut short or changed after it was written; make it again"
+        )

@@ -34,12 +34,12 @@ def plausible(capture: Capture) -> Capture:
     Raises:
         InvalidInput: A frame rate, force or moment is impossible.
     """
-    markers, rates = capture.markers, {"its markers": capture.markers.rate_hz}
+    markers, rates = capture.markers, {"the markers": capture.markers.rate_hz}
     rates |= {f"force plate {plate.name}": plate.rate_hz for plate in capture.plates}
     for name, rate_hz in rates.items():
         if not RATES_HZ[0] <= rate_hz <= RATES_HZ[1]:
             raise InvalidInput(
-                f"{capture.path}: {name} have a rate of {rate_hz:g} Hz; export the trial again"
+                f"{capture.path}: the rate of {name} is {rate_hz:g} Hz; export the trial again"
             )
     for plate in capture.plates:
         for what, values, most, unit in (

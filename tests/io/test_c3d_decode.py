@@ -59,6 +59,12 @@ def test_offsets_of_an_unsigned_range_are_no_signed_ones(tmp_path, stated):
     offset = 33000 if stated else 40000
     found = decoded(tmp_path / "x.c3d", c3d_bytes(POINTS, ANALOGS, scale=0.1, offset=offset, extra=extra))
     np.testing.assert_allclose(found.analogs, ANALOGS.reshape(-1, 2).T)
+    assert bool(found.notes) is not stated
+
+
+def test_a_header_that_contradicts_a_file_too_short_to_tell_is_refused(tmp_path):
+    with pytest.raises(MbkfError, match="ANALOG:USED is 0, the header counts 1"):
+        decoded(tmp_path / "x.c3d", c3d_bytes(POINTS, header_analogs=1))
 
 
 def test_a_header_that_counts_analog_numbers_which_are_not_there_is_overruled(tmp_path):

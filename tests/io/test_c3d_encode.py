@@ -54,6 +54,20 @@ def test_another_library_reads_the_same(tmp_path):
     np.testing.assert_allclose(found["header"]["points"]["frame_rate"], 59.94, rtol=1e-6)
 
 
+@pytest.mark.parametrize("frames", [65530, 65540])
+def test_a_few_frames_beyond_the_header_s_words_are_not_taken_for_padding(tmp_path, frames):
+    points, _, _ = written(tmp_path / "x.c3d", frames=frames, count=1, channels=0)
+    found = decode(tmp_path / "x.c3d", check_layout(tmp_path / "x.c3d"))
+    np.testing.assert_array_equal(found.points, points)
+
+
+@pytest.mark.parametrize("first", [60000, 70000])
+def test_the_first_frame_is_told_beyond_the_header_s_words(tmp_path, first):
+    written(tmp_path / "x.c3d", frames=6000, first=first)
+    found = decode(tmp_path / "x.c3d", check_layout(tmp_path / "x.c3d"))
+    assert found.first_frame == first and len(found.points) == 6000
+
+
 @pytest.mark.parametrize("first", [1, 60000])
 def test_more_frames_than_the_header_counts_are_written_and_read_whole(tmp_path, first):
     path = tmp_path / "x.c3d"
@@ -73,5 +87,7 @@ def test_long_lists_go_on_under_another_name(tmp_path):
 def test_what_does_not_fit_is_refused(tmp_path):
     with pytest.raises(InvalidInput, match="holds 255"):
         written(tmp_path / "x.c3d", MORE={"NUMBERS": np.zeros(300)})
+    with pytest.raises(InvalidInput, match="300 letters"):
+        written(tmp_path / "x.c3d", MORE={"TEXT": ["x" * 300]})
     with pytest.raises(InvalidInput, match="holds 130 560"):
         written(tmp_path / "x.c3d", MORE={f"T{k}": ["x" * 120] * 200 for k in range(9)})

@@ -87,7 +87,7 @@ def test_moments_in_another_unit_are_known_by_where_they_press(tmp_path, moments
     assert any(f"moments are taken {factor:g} times" in note for note in found.notes)
 
 
-def test_moments_of_an_idle_plate_tell_nothing_of_their_unit(tmp_path):
+def test_moments_in_their_own_unit_are_left(tmp_path):
     path = tmp_path / "plate.c3d"
     plate_file(path, 2)
     assert not any("moments are taken" in note for note in read_c3d(path).notes)
