@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -139,22 +140,14 @@ def _posture(path: str, model: HumanModel) -> Array:
     return middle
 
 
-def _write(found: ImuAngles, folder: object, args: argparse.Namespace) -> None:
-    from pathlib import Path
-
+def _write(found: ImuAngles, folder: Path, args: argparse.Namespace) -> None:
     import numpy as np
 
-    from mbkf.io.atomic import replacing
+    from mbkf.io.atomic_folder import replacing_folder
     from mbkf.io.imu_mount import write_mounts
     from mbkf.io.storage import Table, write_storage
 
-    target = Path(str(folder))
-    target.mkdir(parents=True, exist_ok=True)
     degrees = np.degrees(found.angles)
-    write_storage(
-        Table(found.names, found.time_s, degrees, in_degrees=True, title="Coordinates"), target / "angles.mot"
-    )
-    write_mounts(found.mounts, target / "mounts.toml")
     summary = {
         "filter": "file" if args.from_file else args.filter,
         "samples": len(found.time_s),
@@ -165,8 +158,11 @@ def _write(found: ImuAngles, folder: object, args: argparse.Namespace) -> None:
         "mean_deg": {name: float(column.mean()) for name, column in zip(found.names, degrees.T, strict=True)},
         "warnings": list(found.warnings),
     }
-    with replacing(target / "angles.json") as partial:
-        partial.write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+    table = Table(found.names, found.time_s, degrees, in_degrees=True, title="Coordinates")
+    with replacing_folder(folder, last="angles.json") as partial:
+        write_storage(table, partial / "angles.mot")
+        write_mounts(found.mounts, partial / "mounts.toml")
+        (partial / "angles.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
 
 
 def _print(found: ImuAngles) -> None:

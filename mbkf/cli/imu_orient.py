@@ -72,7 +72,8 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.imu.madgwick import MadgwickSettings
     from mbkf.imu.orientation import OrientSettings
     from mbkf.imu.orientation_ekf import OrientationSettings
-    from mbkf.io.atomic import check_folder, replacing
+    from mbkf.io.atomic import check_folder
+    from mbkf.io.atomic_folder import replacing_folder
     from mbkf.io.imu_write import write_orientation_csv
     from mbkf.pipelines.imu.orient import orient, orientation_summary
 
@@ -94,19 +95,19 @@ def run(args: argparse.Namespace) -> int:
             progress=report,
         )
     summary = orientation_summary(result, settings)
-    for k, course in enumerate(result.courses):
-        stem = course.name.replace("/", "_")
-        note = f"orientation: sensor -> {course.frame} by {course.method}"
-        write_orientation_csv(
-            folder / f"{stem}.csv", course.time_s, course.quaternion, course.euler_rad, course.gyro_bias_rad_s,
-            course.sd_rad, note,
-        )  # fmt: skip
-        if result.compared:
-            from mbkf.viz.imu.orientation import write_comparison
+    with replacing_folder(folder, last="orientation.json") as partial:
+        for k, course in enumerate(result.courses):
+            stem = course.name.replace("/", "_")
+            note = f"orientation: sensor -> {course.frame} by {course.method}"
+            write_orientation_csv(
+                partial / f"{stem}.csv", course.time_s, course.quaternion, course.euler_rad, course.gyro_bias_rad_s,
+                course.sd_rad, note,
+            )  # fmt: skip
+            if result.compared:
+                from mbkf.viz.imu.orientation import write_comparison
 
-            write_comparison(course, result.compared[k], folder / f"{stem}_compare.png")
-    with replacing(folder / "orientation.json") as partial:
-        partial.write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+                write_comparison(course, result.compared[k], partial / f"{stem}_compare.png")
+        (partial / "orientation.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
     _print(summary)
     print(folder)
     return 0

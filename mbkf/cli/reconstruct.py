@@ -137,7 +137,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.cli.progress import stages
     from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
-    from mbkf.io.results_folder import write_reconstruction
+    from mbkf.io.results_folder import RESULT_FILES, write_reconstruction
     from mbkf.io.subject import read_subject
     from mbkf.pipelines.presets import with_preset
     from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
@@ -148,7 +148,7 @@ def run(args: argparse.Namespace) -> int:
     subject = read_subject(args.subject)
     capture = read_capture(args.trial, forces=args.forces, **axes_options(args))
     truth = truth_beside(args.trial)
-    folder, imus = check_folder(args.out), _imus(args)
+    folder, imus = check_folder(args.out, RESULT_FILES), _imus(args)
     settings = ReconstructSettings(
         filter=args.filter or "dynamic",
         smooth=not args.causal and args.lag is None,  # a lag of 0 is causal

@@ -4,46 +4,64 @@ from __future__ import annotations
 
 import errno
 import os
-import uuid
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
+from mbkf.io.leftovers import unfinished
 
 
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
     """A temporary file beside ``path`` that takes its place when the block ends without an error.
 
-    Missing folders are made. The temporary name keeps the suffix, since some writers insist on theirs.
+    Missing folders are made. The temporary name keeps the suffix, since some writers insist on theirs. The file is on
+    the disk before it takes its place, so that a power cut leaves the old one or the new one.
 
     Args:
         path: The file to write.
 
     Yields:
-        Where to write instead.
+        Where to write instead: an empty file.
 
     Raises:
         OSError: The folder cannot be made or written to.
     """
     target = Path(path)
     target.parent.mkdir(parents=True, exist_ok=True)
-    temporary = target.with_name(f".{target.stem}-{uuid.uuid4().hex}{target.suffix}")
-    try:
+    with unfinished(target) as temporary:
         yield temporary
+        flush(temporary)
         temporary.replace(target)
+
+
+def flush(path: Path) -> None:
+    """Waits until a file is on the disk; nothing on systems that only flush what one may write to.
+
+    Raises:
+        OSError: It cannot be opened, or not be brought onto the disk.
+    """
+    if os.name != "posix":
+        return
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
     finally:
-        temporary.unlink(missing_ok=True)
+        os.close(descriptor)
 
 
-def check_folder(folder: str | Path) -> Path:
+def check_folder(folder: str | Path, files: Sequence[str] = ()) -> Path:
     """The absolute path of a folder that can be written to; commands call it before long work, to fail early.
 
     Nothing is made, so that a command that fails later leaves no empty folder behind.
 
+    Args:
+        folder: The folder.
+        files: Names of files that are to be written into it.
+
     Raises:
-        FileFormatError: A file stands there or on the way.
+        FileFormatError: A file stands there or on the way, or a folder where a file is to be.
         PermissionError: It may not be written to, or not be made.
     """
     target = Path(folder).absolute()
@@ -51,6 +69,11 @@ def check_folder(folder: str | Path) -> Path:
         if place.exists() and not place.is_dir():
             raise FileFormatError(
                 place, "a file stands where a folder is needed; name another folder with --out"
+            )
+    for place in (target / name for name in files):
+        if place.is_dir():
+            raise FileFormatError(
+                place, "a folder stands where a file is needed; move it, or name another folder with --out"
             )
     nearest = next(place for place in (target, *target.parents) if place.exists())
     if not os.access(nearest, os.W_OK):

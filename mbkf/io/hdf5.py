@@ -1,7 +1,7 @@
 """HDF5 files that may be damaged: sealed with a checksum, since the library may end the process on damage or never end.
 
-The seal is a line of text in the file's user block, the first 512 bytes, which HDF5 leaves to whoever wants them. Files
-of before have none and are read as they are.
+The seal is a line of text in the file's user block, the first 512 bytes, which HDF5 leaves to whoever wants them; a
+second line may tell the run that the file was written by. Files of before have neither and are read as they are.
 """
 
 from __future__ import annotations
@@ -21,6 +21,9 @@ DAMAGED = (
 
 SEAL, USER_BLOCK = b"mbkf: %d bytes after this block, CRC-32 %08x\n", 512
 """The line, and the block that it begins."""
+
+RUN = b"run "
+"""How the second line begins."""
 
 HDF5 = b"\x89HDF\r\n\x1a\n"
 """How HDF5 begins, at the start of the file or after the user block."""
@@ -46,15 +49,29 @@ def array(file: h5py.File, key: str, dtype: np.dtype | type | None = None) -> ND
     return np.asarray(dataset[()], dtype=dtype)
 
 
-def sealed(made: BytesIO) -> bytes:
+def sealed(made: BytesIO, run_id: str = "") -> bytes:
     """A file with its seal.
 
     Args:
         made: The file, made with ``userblock_size=USER_BLOCK``.
+        run_id: What tells the files of one run from those of another.
     """
     content = made.getvalue()
     body = content[USER_BLOCK:]
-    return (SEAL % (len(body), zlib.crc32(body))).ljust(USER_BLOCK, b"\0") + body
+    run = RUN + run_id.encode() + b"\n" if run_id else b""
+    return (SEAL % (len(body), zlib.crc32(body)) + run).ljust(USER_BLOCK, b"\0") + body
+
+
+def run_of(path: Path) -> str:
+    """What was given to :func:`sealed`; empty for a file without it.
+
+    Raises:
+        OSError: The file cannot be read.
+    """
+    with path.open("rb") as file:
+        lines = file.read(USER_BLOCK).split(b"\n")
+    told = lines[1] if len(lines) > 1 else b""
+    return told.removeprefix(RUN).decode("ascii", "replace") if told.startswith(RUN) else ""
 
 
 def check_seal(path: Path) -> None:

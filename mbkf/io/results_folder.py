@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import json
 import math
-import shutil
 import uuid
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, TypedDict
+from typing import Any, TypedDict, cast
 
 from mbkf.errors import FileFormatError
-from mbkf.io.atomic import check_folder
+from mbkf.io.atomic_folder import replacing_folder
+from mbkf.io.hdf5 import run_of
 from mbkf.io.results import Reconstruction
 from mbkf.io.results_h5 import read_h5, write_h5
-from mbkf.io.results_opensim import write_opensim
+from mbkf.io.results_opensim import OPENSIM_FILES, write_opensim
 
 SUMMARY_FILE = "summary.json"
 MOTION_FILE = "motion.h5"
+RESULT_FILES = (SUMMARY_FILE, MOTION_FILE, *OPENSIM_FILES)
+RUN_ID = "run_id"
+"""Key of summary.json, entry of the tables' headers and second line of motion.h5: the same in files of one run."""
 
 
 class AxesTold(TypedDict):
@@ -58,6 +61,7 @@ class Summary(TypedDict):
     """The contents of summary.json: the key numbers of a reconstruction; None where a number does not apply.
 
     Attributes:
+        run_id: A number that all files of one run share.
         trial, protocol, filter: Names of capture, protocol and filter.
         smoothed: Whether all later frames that matter were used.
         later_frames: The same in words: "smoothed (all later frames known)", "causal (as live)" or "fixed lag 60 ms".
@@ -145,8 +149,7 @@ def write_reconstruction(
 ) -> Path:
     """Writes a reconstruction and its summary.
 
-    Everything is first written beside the folder and moved into place at the end, summary.json last; other
-    files of an existing folder stay.
+    The files replace those of an earlier result as one; other files of an existing folder stay.
 
     Args:
         reconstruction: The result.
@@ -157,48 +160,68 @@ def write_reconstruction(
         The folder.
 
     Raises:
-        FileFormatError: A file stands where the folder is needed.
+        FileFormatError: A file stands where the folder is needed, or a folder where a file is.
         OSError: The folder cannot be written to.
     """
-    target = check_folder(folder)
-    partial = target.with_name(f".{target.name}-{uuid.uuid4().hex}")
-    partial.mkdir(parents=True)
-    try:
-        write_h5(reconstruction, partial / MOTION_FILE)
-        write_opensim(reconstruction, partial)
-        text = json.dumps(_without_nan(summary), indent=2, allow_nan=False, ensure_ascii=False)
-        (partial / SUMMARY_FILE).write_text(text + "\n", encoding="utf-8")
-        target.mkdir(exist_ok=True)
-        for file in sorted(partial.iterdir(), key=lambda path: path.name == SUMMARY_FILE):
-            file.replace(target / file.name)
-    finally:
-        shutil.rmtree(partial, ignore_errors=True)
-    return target
+    with replacing_folder(folder, last=SUMMARY_FILE) as partial:
+        write_result_files(reconstruction, summary, partial)
+    return Path(folder).absolute()
+
+
+def write_result_files(reconstruction: Reconstruction, summary: Mapping[str, object], folder: Path) -> None:
+    """Writes the files into a folder that is not in use yet.
+
+    Args:
+        reconstruction: The result.
+        summary: Plain data for summary.json.
+        folder: The folder; it exists.
+
+    Raises:
+        OSError: A file cannot be written.
+    """
+    run_id = uuid.uuid4().hex
+    write_h5(reconstruction, folder / MOTION_FILE, run_id)
+    write_opensim(reconstruction, folder, run_id)
+    plain = _without_nan({RUN_ID: run_id, **summary})
+    text = json.dumps(plain, indent=2, allow_nan=False, ensure_ascii=False)
+    (folder / SUMMARY_FILE).write_text(text + "\n", encoding="utf-8")
 
 
 def read_reconstruction(path: str | Path) -> Reconstruction:
     """Reads a reconstruction from its folder, or from its motion.h5.
 
     Raises:
-        FileFormatError: There is none, or it is damaged.
+        FileFormatError: There is none, it is damaged, or the folder's files are of different runs.
     """
     source = Path(path)
-    if source.is_dir() and not (source / MOTION_FILE).is_file():
+    if not source.is_dir():
+        return read_h5(source)
+    if not (source / MOTION_FILE).is_file():
         raise FileFormatError(source, f"the folder holds no {MOTION_FILE}; make it with 'mbkf reconstruct'")
-    return read_h5(source / MOTION_FILE if source.is_dir() else source)
+    if (source / SUMMARY_FILE).is_file():
+        read_summary(source)
+    return read_h5(source / MOTION_FILE)
 
 
 def read_summary(folder: str | Path) -> Summary:
     """The contents of a folder's summary.json.
 
     Raises:
-        FileFormatError: It is missing or damaged.
+        FileFormatError: It is missing or damaged, or motion.h5 beside it is of another run.
     """
-    path = Path(folder) / SUMMARY_FILE
+    path, motion = Path(folder) / SUMMARY_FILE, Path(folder) / MOTION_FILE
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        summary = json.loads(path.read_text(encoding="utf-8"))
+        if not isinstance(summary, dict):
+            raise ValueError("it holds no table")
+        of_another_run = motion.is_file() and run_of(motion) != summary.get(RUN_ID, "")
+    except (OSError, ValueError, RecursionError) as error:
         raise FileFormatError(path, f"cannot be read ({error}); make it with 'mbkf reconstruct'") from error
+    if of_another_run:
+        raise FileFormatError(
+            Path(folder), f"{SUMMARY_FILE} and {MOTION_FILE} are of different runs; make them again"
+        )
+    return cast(Summary, summary)
 
 
 def _without_nan(value: Any) -> Any:

@@ -62,8 +62,13 @@ _NEVER_WRITTEN = ("covariance",)
 _COVARIANCE = "subject_covariance"
 
 
-def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
+def write_h5(reconstruction: Reconstruction, path: str | Path, run_id: str = "") -> None:
     """Writes a reconstruction, whole or not at all.
+
+    Args:
+        reconstruction: The result.
+        path: The file.
+        run_id: What the files of one run share.
 
     Raises:
         OSError: The file cannot be written.
@@ -100,7 +105,7 @@ def write_h5(reconstruction: Reconstruction, path: str | Path) -> None:
             dataset = file.create_dataset(_KEYS.get(name, name), data=array, **packed)
             dataset.attrs["unit"] = UNITS.get(name, "1")
     with replacing(path) as partial:
-        partial.write_bytes(sealed(made))
+        partial.write_bytes(sealed(made, run_id))
 
 
 def read_h5(path: str | Path) -> Reconstruction:

@@ -10,6 +10,7 @@ columns that are never known are left out altogether; markers.trc keeps every fr
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,21 +24,28 @@ from mbkf.io.results import Reconstruction
 from mbkf.io.storage import Table, write_storage
 from mbkf.io.trc import write_trc
 
+MARKERS_FILE = "markers.trc"
+
 TRANSLATIONS = ("pelvis_tx", "pelvis_ty", "pelvis_tz")
 """Coordinates that are lengths, not angles."""
 
 
-def write_opensim(reconstruction: Reconstruction, folder: Path) -> None:
+def write_opensim(reconstruction: Reconstruction, folder: Path, run_id: str = "") -> None:
     """Writes the files into a folder that exists.
+
+    Args:
+        reconstruction: The result.
+        folder: The folder.
+        run_id: What the files of one run share; told in the tables' headers.
 
     Raises:
         OSError: A file cannot be written.
     """
-    write_storage(angles_table(reconstruction), folder / "angles.mot")
-    write_storage(angles_lab_table(reconstruction), folder / "angles_lab.mot")
-    write_storage(torques_table(reconstruction), folder / "torques.sto")
-    write_storage(reactions_table(reconstruction), folder / "reactions.mot")
-    write_trc(reconstructed_markers(reconstruction), folder / "markers.trc")
+    for name, table in _TABLES.items():
+        made = table(reconstruction)
+        told = {"Run": run_id} if run_id else {}
+        write_storage(replace(made, header={**made.header, **told}), folder / name)
+    write_trc(reconstructed_markers(reconstruction), folder / MARKERS_FILE)
 
 
 def angles_table(reconstruction: Reconstruction) -> Table:
@@ -134,3 +142,14 @@ def _filled(points: Array) -> Array:
         return np.zeros_like(points)
     latest = np.maximum.accumulate(np.where(seen, np.arange(len(points)), -1))
     return points[np.where(latest < 0, int(np.argmax(seen)), latest)]
+
+
+_TABLES: Mapping[str, Callable[[Reconstruction], Table]] = {
+    "angles.mot": angles_table,
+    "angles_lab.mot": angles_lab_table,
+    "torques.sto": torques_table,
+    "reactions.mot": reactions_table,
+}
+
+OPENSIM_FILES = (*_TABLES, MARKERS_FILE)
+"""Names of the files."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from mbkf.conventions import StageCallback
-from mbkf.io.atomic import check_folder, replacing
+from mbkf.io.atomic_folder import replacing_folder
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.subject import Subject, write_subject
 from mbkf.io.truth import write_truth
@@ -66,12 +66,10 @@ def write_folder(subject: Subject, capture: SyntheticCapture, folder: str | Path
         FileFormatError: The folder is a file.
         OSError: The folder cannot be written.
     """
-    folder = check_folder(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    paths = tuple(folder / name for name in FILES)
-    for recorded, path in zip((capture.trial, capture.raw, capture.static), paths[:3], strict=True):
-        write_c3d(recorded, path)
-    with replacing(paths[3]) as partial:
-        write_subject(subject, partial)
-    write_truth(capture.truth, paths[4])
-    return paths
+    with replacing_folder(folder, last=FILES[-1]) as partial:
+        paths = [partial / name for name in FILES]
+        for recorded, path in zip((capture.trial, capture.raw, capture.static), paths[:3], strict=True):
+            write_c3d(recorded, path)
+        write_subject(subject, paths[3])
+        write_truth(capture.truth, paths[4])
+    return tuple(Path(folder).absolute() / name for name in FILES)

@@ -26,6 +26,16 @@ def test_a_failure_leaves_the_old_file_and_nothing_else(tmp_path):
     assert list(tmp_path.iterdir()) == [target]
 
 
+def test_the_unfinished_file_is_empty_and_swept_names_do_not_matter(tmp_path):
+    with replacing(tmp_path / "file.txt") as temporary:
+        assert temporary.read_bytes() == b""
+        temporary.write_text("new")
+        with replacing(tmp_path / "file.txt") as other:
+            assert other != temporary and temporary.exists()
+            other.write_text("newer")
+    assert (tmp_path / "file.txt").read_text() == "new"
+
+
 def test_a_folder_is_checked_and_not_made(tmp_path):
     target = tmp_path / "a" / "b"
     assert check_folder(target) == target
@@ -37,3 +47,10 @@ def test_a_file_on_the_way_is_refused(tmp_path):
     for place in (tmp_path / "out", tmp_path / "out" / "deeper"):
         with pytest.raises(FileFormatError, match="name another folder"):
             check_folder(place)
+
+
+def test_a_folder_in_the_place_of_a_file_is_refused(tmp_path):
+    (tmp_path / "out" / "b.txt").mkdir(parents=True)
+    assert check_folder(tmp_path / "out", ["a.txt"]) == tmp_path / "out"
+    with pytest.raises(FileFormatError, match="a folder stands where a file is needed"):
+        check_folder(tmp_path / "out", ["a.txt", "b.txt"])

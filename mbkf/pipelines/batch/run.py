@@ -12,13 +12,13 @@ import pyarrow.parquet as pq
 from mbkf.conventions import StageCallback
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.atomic import check_folder
+from mbkf.io.leftovers import sweep
 from mbkf.pipelines.batch.cluster import ClusterWorkers
 from mbkf.pipelines.batch.folder import plan_of_folder
 from mbkf.pipelines.batch.lists import plan_of_csv, plan_of_toml
 from mbkf.pipelines.batch.outcome import Outcome, ReconstructTrial, ScalePerson, Status, Task
 from mbkf.pipelines.batch.plan import Person, Plan, Trial
 from mbkf.pipelines.batch.tables import write_tables
-from mbkf.pipelines.batch.trial import remove_partial
 from mbkf.pipelines.batch.workers import Executor, LocalWorkers
 from mbkf.pipelines.reconstruct_settings import ReconstructSettings
 
@@ -69,7 +69,8 @@ def batch(
         return follow(plan, target, settings or ReconstructSettings(), executor, progress, suffix)
     finally:
         executor.close()
-        remove_partial(target)
+        for trial in plan.trials:
+            sweep(target / trial.place)
 
 
 def follow(
@@ -94,7 +95,6 @@ def follow(
         OSError: The folder cannot be written to.
     """
     out.mkdir(parents=True, exist_ok=True)
-    remove_partial(out)
     outcomes = outcomes_of(plan, out, settings, executor, progress)
     return pq.read_table(write_tables(plan, outcomes, out, suffix))
 

@@ -13,7 +13,7 @@ import pyarrow.csv as pa_csv
 import pyarrow.parquet as pq
 
 from mbkf.io.atomic import replacing
-from mbkf.io.results_folder import SUMMARY_FILE
+from mbkf.io.results_folder import RUN_ID, SUMMARY_FILE
 from mbkf.pipelines.batch.curves import SCHEMA
 from mbkf.pipelines.batch.outcome import Outcome, Status
 from mbkf.pipelines.batch.plan import Plan, Trial
@@ -102,14 +102,14 @@ def _rows(pairs: Sequence[tuple[Trial, Outcome]], out: Path) -> list[Row]:
 
 
 def _summary(trial: Trial, outcome: Outcome, out: Path) -> Mapping[str, object]:
-    """The trial's summary; nothing for one that failed."""
+    """The trial's summary without its run's number; nothing for one that failed."""
     if outcome.status == Status.FAILED:
         return {}
     try:
         found = json.loads((out / trial.place / SUMMARY_FILE).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
-    return found if isinstance(found, dict) else {}
+    return {key: value for key, value in found.items() if key != RUN_ID} if isinstance(found, dict) else {}
 
 
 def _flat(values: Mapping[str, object], above: str = "") -> Iterator[tuple[str, object]]:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mbkf.io.atomic import check_folder, replacing
+from mbkf.io.atomic_folder import replacing_folder
 from mbkf.pipelines.imu.stride import StrideMeasurement, stride_summary
 
 STRIDES_FILE, TRAJECTORY_FILE, SUMMARY_FILE = "strides.csv", "trajectory.csv", "summary.json"
@@ -26,7 +26,7 @@ TRAJECTORY_COLUMNS = (
 
 
 def write_strides(measured: StrideMeasurement, folder: str | Path) -> Path:
-    """Writes the tables, summary.json last; blank cells where something is unknown.
+    """Writes the tables, which replace earlier ones as one; blank cells where something is unknown.
 
     Returns:
         The folder, made where missing.
@@ -35,13 +35,12 @@ def write_strides(measured: StrideMeasurement, folder: str | Path) -> Path:
         FileFormatError: A file stands where the folder is needed.
         OSError: The folder cannot be written to.
     """
-    target = check_folder(folder)
-    _write(target / STRIDES_FILE, STRIDE_COLUMNS, _stride_rows(measured))
-    _write(target / TRAJECTORY_FILE, TRAJECTORY_COLUMNS, _trajectory_rows(measured))
-    with replacing(target / SUMMARY_FILE) as partial:
+    with replacing_folder(folder, last=SUMMARY_FILE) as partial:
+        _write(partial / STRIDES_FILE, STRIDE_COLUMNS, _stride_rows(measured))
+        _write(partial / TRAJECTORY_FILE, TRAJECTORY_COLUMNS, _trajectory_rows(measured))
         text = json.dumps(stride_summary(measured), indent=2, allow_nan=False, ensure_ascii=False)
-        partial.write_text(text + "\n", encoding="utf-8")
-    return target
+        (partial / SUMMARY_FILE).write_text(text + "\n", encoding="utf-8")
+    return Path(folder).absolute()
 
 
 def _stride_rows(measured: StrideMeasurement) -> Iterable[list[str]]:
@@ -66,7 +65,7 @@ def _cell(value: float) -> str:
 
 
 def _write(path: Path, columns: Sequence[str], rows: Iterable[list[str]]) -> None:
-    with replacing(path) as partial, partial.open("w", newline="", encoding="utf-8") as file:
+    with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(columns)
         writer.writerows(rows)

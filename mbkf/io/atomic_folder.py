@@ -1,0 +1,104 @@
+"""Replacing a folder as one, so that a reader sees the old files or the new ones and never some of each.
+
+The new folder is made beside the old one, gets the files of the old one that it has none of, and the two exchange
+their names in one step of the system. Where that cannot be done (the folder is a mounted disk or the current one, or
+the system knows no such step) its files are replaced one by one; who reads them together tells by a number in each
+whether they were written together (:mod:`mbkf.io.results_folder`).
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import shutil
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from mbkf.io.atomic import check_folder, flush
+from mbkf.io.leftovers import unfinished
+
+_AT_FDCWD = -100
+_EXCHANGE = 2
+"""Linux's RENAME_EXCHANGE of renameat2, and macOS's RENAME_SWAP of renamex_np."""
+
+
+@contextmanager
+def replacing_folder(folder: str | Path, last: str | None = None) -> Iterator[Path]:
+    """A new folder whose files take the place of those of ``folder`` when the block ends without an error.
+
+    It holds files and no folders. Other files and folders of an existing folder stay. What killed processes left
+    unfinished is swept.
+
+    Args:
+        folder: The folder to write; made where missing.
+        last: The file that says that the others are whole, written last where they cannot be replaced as one.
+
+    Yields:
+        Where to write instead: an empty folder.
+
+    Raises:
+        FileFormatError: A file stands where a folder is needed, or a folder where a file is.
+        OSError: The folder cannot be made or written to.
+    """
+    target = check_folder(folder).resolve()
+    as_one = _can_be_renamed(target)
+    place = target.parent if as_one else target
+    place.mkdir(parents=True, exist_ok=True)
+    with unfinished(target, place, folder=True) as partial:
+        yield partial
+        files = [path.name for path in partial.iterdir() if path.is_file()]
+        check_folder(target, files)
+        for name in files:
+            flush(partial / name)
+        if not target.exists():
+            partial.rename(target)
+        elif not as_one or not _exchanged(target, partial):
+            for name in sorted(files, key=lambda name: name == last):
+                (partial / name).replace(target / name)
+
+
+def _can_be_renamed(target: Path) -> bool:
+    """Whether a folder is no mount, its parent can be written to, and this process does not stand in it."""
+    if not target.exists():
+        return True
+    with suppress(OSError):
+        if Path.cwd().is_relative_to(target):
+            return False
+    return not target.is_mount() and os.access(target.parent, os.W_OK)
+
+
+def _exchanged(target: Path, partial: Path) -> bool:
+    """Gives a finished folder the name of another one, and what only that one holds; false if the system cannot."""
+    for old in target.iterdir():
+        new = partial / old.name
+        if new.exists() or new.is_symlink():
+            continue
+        if old.is_dir() and not old.is_symlink():
+            shutil.copytree(old, new, symlinks=True, copy_function=_linked)
+        else:
+            _linked(old, new)
+    shutil.copymode(target, partial)
+    return _exchange(target, partial)
+
+
+def _linked(old: str | Path, new: str | Path) -> str:
+    """Another name of the same file, or a copy where the file system has only one name for each."""
+    try:
+        os.link(old, new, follow_symlinks=False)
+    except OSError:
+        shutil.copy2(old, new, follow_symlinks=False)
+    return str(new)
+
+
+def _exchange(first: Path, second: Path) -> bool:
+    """Exchanges the names of two folders; false if the system cannot."""
+    a, b = os.fsencode(first), os.fsencode(second)
+    try:
+        library = ctypes.CDLL(None, use_errno=True)
+        if sys.platform == "darwin":
+            return library.renamex_np(a, b, _EXCHANGE) == 0
+        return library.renameat2(_AT_FDCWD, a, _AT_FDCWD, b, _EXCHANGE) == 0
+    except (OSError, AttributeError, TypeError):  # no such library, or no such step in it
+        return False

@@ -1,0 +1,107 @@
+"""Unfinished files and folders: held while their process lives, and swept by the next one if it was killed.
+
+They are called ``.NAME-`` and 32 hexadecimal digits, beside what they are to become. Whoever writes one holds a lock
+on it, which the system lets go when the process ends, however it ends.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import time
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+OLDEST_S = 86_400.0
+"""What is older is swept where the system has no such locks."""
+
+
+@contextmanager
+def unfinished(target: Path, within: Path | None = None, *, folder: bool = False) -> Iterator[Path]:
+    """An empty file or folder that is to take the target's place; what is still there at the end is removed.
+
+    It keeps the target's suffix, since some writers insist on theirs. What killed processes left of the same target is
+    swept first.
+
+    Args:
+        target: What is to be written.
+        within: Where the unfinished one lies; beside the target by default.
+        folder: Whether it is a folder.
+
+    Raises:
+        OSError: It cannot be made.
+    """
+    place = target.parent if within is None else within
+    sweep(target, place)
+    while True:
+        path = place / f".{target.stem}-{uuid.uuid4().hex}{target.suffix}"
+        if folder:
+            path.mkdir()
+        else:
+            path.touch(exist_ok=False)
+        with suppress(FileNotFoundError), _lock(path, wait=True):
+            if not path.exists():
+                continue  # swept before the lock was ours
+            try:
+                yield path
+            finally:
+                remove(path)
+            return
+
+
+def sweep(target: Path, within: Path | None = None) -> None:
+    """Removes what killed processes left unfinished of a file or folder.
+
+    Args:
+        target: What they were to write.
+        within: Where the unfinished ones lie; beside the target by default.
+    """
+    name = re.compile(rf"\.{re.escape(target.stem)}-[0-9a-f]{{32}}{re.escape(target.suffix)}")
+    place = target.parent if within is None else within
+    with suppress(OSError):
+        for path in place.iterdir():
+            if name.fullmatch(path.name) and not path.is_symlink():
+                _remove_if_left(path)
+
+
+def remove(path: Path) -> None:
+    """Removes a file or folder, if it is there."""
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        path.unlink(missing_ok=True)
+
+
+def _remove_if_left(path: Path) -> None:
+    with suppress(OSError), _lock(path, wait=False) as ours:
+        if ours or (ours is None and time.time() - path.stat().st_mtime > OLDEST_S):
+            remove(path)
+
+
+@contextmanager
+def _lock(path: Path, wait: bool) -> Iterator[bool | None]:
+    """Whether the lock on a path is ours; None where the system or its file system has no locks.
+
+    Raises:
+        OSError: The path is not there.
+    """
+    try:
+        import fcntl
+    except ImportError:  # not POSIX, where what is open cannot be renamed either
+        yield None
+        return
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        ours: bool | None = True
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+        except BlockingIOError:
+            ours = False
+        except OSError:
+            ours = None
+        yield ours
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,115 @@
+"""A folder is replaced as one: every state that another process can see is the old one or the new one."""
+
+import os
+import sys
+import threading
+
+import pytest
+
+from mbkf.errors import FileFormatError
+from mbkf.io import atomic_folder
+from mbkf.io.atomic_folder import replacing_folder
+
+NAMES = ("a.txt", "b.txt", "last.txt")
+
+
+def write(folder, text, names=NAMES):
+    with replacing_folder(folder, last="last.txt") as partial:
+        for name in names:
+            (partial / name).write_text(text)
+
+
+def contents(folder):
+    return {path.name: path.read_text() for path in folder.iterdir() if path.is_file()}
+
+
+@pytest.fixture(params=["as one", "one by one", "current", "not exchanged"])
+def way(request, tmp_path, monkeypatch):
+    """A folder that holds an old result, and every way in which it may have to be replaced."""
+    target = tmp_path / "result"
+    write(target, "old")
+    if request.param == "one by one":
+        monkeypatch.setattr(atomic_folder, "_can_be_renamed", lambda target: False)
+    if request.param == "current":
+        monkeypatch.chdir(target)
+    if request.param == "not exchanged":
+        monkeypatch.setattr(atomic_folder, "_exchange", lambda first, second: False)
+    return target
+
+
+def test_new_files_take_the_place_of_the_old_and_others_stay(way, tmp_path):
+    (way / "mine").mkdir()
+    (way / "mine" / "note.md").write_text("mine")
+    (way / "other.txt").write_text("other")
+    (way / "link").symlink_to("other.txt")
+    write(way, "new")
+    assert contents(way) == {**dict.fromkeys(NAMES, "new"), "other.txt": "other", "link": "other"}
+    assert (way / "mine" / "note.md").read_text() == "mine" and (way / "link").is_symlink()
+    assert [path.name for path in tmp_path.iterdir()] == ["result"]
+    assert not [path for path in way.iterdir() if path.name.startswith(".")]
+
+
+def test_a_failure_changes_nothing(way, tmp_path):
+    with pytest.raises(ValueError, match="halfway"), replacing_folder(way) as partial:
+        (partial / "a.txt").write_text("half")
+        raise ValueError("halfway")
+    assert contents(way) == dict.fromkeys(NAMES, "old")
+    assert [path.name for path in tmp_path.iterdir()] == ["result"]
+
+
+def test_a_folder_where_a_file_is_to_be_is_refused(way):
+    (way / "c.txt").mkdir()
+    with pytest.raises(FileFormatError, match="a folder stands where a file is needed"):
+        write(way, "new", ("a.txt", "c.txt"))
+    assert contents(way) == dict.fromkeys(NAMES, "old")
+
+
+def test_it_is_made_where_missing(tmp_path):
+    write(tmp_path / "deep" / "result", "new")
+    assert contents(tmp_path / "deep" / "result") == dict.fromkeys(NAMES, "new")
+    with pytest.raises(FileFormatError, match="a file stands where a folder is needed"):
+        write(tmp_path / "deep" / "result" / "a.txt", "new")
+
+
+def test_a_link_to_a_folder_stays_a_link(tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "result").symlink_to("elsewhere")
+    write(tmp_path / "result", "new")
+    assert (tmp_path / "result").is_symlink()
+    assert contents(tmp_path / "elsewhere") == dict.fromkeys(NAMES, "new")
+
+
+def test_permissions_stay(tmp_path):
+    write(tmp_path / "result", "old")
+    (tmp_path / "result").chmod(0o750)
+    write(tmp_path / "result", "new")
+    assert (tmp_path / "result").stat().st_mode & 0o777 == 0o750
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="needs Linux's exchange of names")
+def test_whoever_reads_meanwhile_sees_one_run(tmp_path):
+    """A folder opened once shows files of one run only, and there is one to be opened at every instant."""
+    target = tmp_path / "result"
+    write(target, "0")
+    seen, done = [], threading.Event()
+
+    def look():
+        while not done.is_set():
+            opened = os.open(target, os.O_RDONLY)
+            try:
+                files = [os.open(name, os.O_RDONLY, dir_fd=opened) for name in NAMES]
+                seen.append({os.read(file, 10) for file in files})
+                for file in files:
+                    os.close(file)
+            except FileNotFoundError:
+                pass  # that one was replaced meanwhile, and is removed
+            finally:
+                os.close(opened)
+
+    reader = threading.Thread(target=look)
+    reader.start()
+    for run in range(1, 60):
+        write(target, str(run))
+    done.set()
+    reader.join()
+    assert len(seen) > 20 and all(len(texts) == 1 for texts in seen)

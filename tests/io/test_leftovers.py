@@ -1,0 +1,76 @@
+"""What a killed process left unfinished is swept by the next; what a living one writes is not."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from mbkf.io import leftovers
+from mbkf.io.leftovers import sweep, unfinished
+
+HOLD = """
+import sys, time
+from pathlib import Path
+from mbkf.io.leftovers import unfinished
+with unfinished(Path(sys.argv[1]), folder=sys.argv[2] == "folder") as path:
+    print(path, flush=True)
+    time.sleep(60)
+"""
+
+
+@pytest.mark.parametrize("folder", [False, True])
+def test_it_is_there_while_it_is_written_and_gone_afterwards(tmp_path, folder):
+    target = tmp_path / "walk.c3d"
+    with unfinished(target, folder=folder) as path:
+        assert path.is_dir() == folder and path.parent == tmp_path
+        assert path.name.startswith(".walk-") and path.suffix == ".c3d"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_took_its_place_stays(tmp_path):
+    with unfinished(tmp_path / "a") as path:
+        path.rename(tmp_path / "a")
+    assert [path.name for path in tmp_path.iterdir()] == ["a"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs POSIX locks")
+@pytest.mark.parametrize("kind", ["file", "folder"])
+def test_a_killed_process_leaves_it_and_the_next_sweeps_it(tmp_path, kind):
+    target = tmp_path / "result"
+    process = subprocess.Popen(
+        [sys.executable, "-c", HOLD, str(target), kind], stdout=subprocess.PIPE, text=True
+    )
+    left = tmp_path / Path(process.stdout.readline().strip()).name
+    sweep(target)
+    assert left.exists()
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
+    sweep(tmp_path / "other")
+    assert left.exists()
+    with unfinished(target, folder=True) as path:
+        assert not left.exists() and path.exists()
+
+
+def test_without_locks_only_what_is_old_is_swept(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "fcntl", None)
+    names = [f".result-{digit * 32}" for digit in "ab"]
+    for name in names:
+        (tmp_path / name).mkdir()
+    long_ago = time.time() - leftovers.OLDEST_S - 60.0
+    os.utime(tmp_path / names[0], (long_ago, long_ago))
+    sweep(tmp_path / "result")
+    assert [path.name for path in tmp_path.iterdir()] == [names[1]]
+
+
+def test_names_of_others_and_links_stay(tmp_path):
+    others = [".result-1234", "result-" + "a" * 32, ".result-" + "g" * 32, ".result-" + "a" * 32 + ".txt"]
+    for name in others:
+        (tmp_path / name).touch()
+    (tmp_path / ("." + "result-" + "b" * 32)).symlink_to(tmp_path / others[0])
+    sweep(tmp_path / "result")
+    assert len(list(tmp_path.iterdir())) == len(others) + 1
+    sweep(tmp_path / "nowhere" / "result")
