@@ -7,7 +7,7 @@ import math
 import uuid
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, TypedDict, cast
+from typing import Any, NotRequired, TypedDict, cast
 
 from mbkf.errors import FileFormatError
 from mbkf.io.atomic_folder import replacing_folder
@@ -61,7 +61,7 @@ class Summary(TypedDict):
     """The contents of summary.json: the key numbers of a reconstruction; None where a number does not apply.
 
     Attributes:
-        run_id: A number that all files of one run share.
+        run_id: A number that all files of one run share; given when they are written.
         trial, protocol, filter: Names of capture, protocol and filter.
         smoothed: Whether all later frames that matter were used.
         later_frames: The same in words: "smoothed (all later frames known)", "causal (as live)" or "fixed lag 60 ms".
@@ -98,6 +98,7 @@ class Summary(TypedDict):
         settings: Settings of the run, as plain data.
     """
 
+    run_id: NotRequired[str]
     trial: str
     protocol: str
     filter: str

@@ -1,6 +1,7 @@
 """A folder is replaced as one: every state that another process can see is the old one or the new one."""
 
 import os
+import subprocess
 import sys
 import threading
 
@@ -113,3 +114,39 @@ def test_whoever_reads_meanwhile_sees_one_run(tmp_path):
     done.set()
     reader.join()
     assert len(seen) > 20 and all(len(texts) == 1 for texts in seen)
+
+
+KILLED = """
+import os, signal, sys
+from mbkf.io.atomic_folder import replacing_folder
+target, at = sys.argv[1], int(sys.argv[2])
+count = 0
+def step(event, args):
+    global count
+    if event.startswith(("os.", "ctypes.dlsym", "open")):
+        count += 1
+        if count == at:
+            os.kill(os.getpid(), signal.SIGKILL)
+sys.addaudithook(step)
+with replacing_folder(target, last="last.txt") as partial:
+    for name in ("a.txt", "b.txt", "last.txt"):
+        (partial / name).write_text("new")
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="needs Linux's exchange of names")
+def test_a_kill_at_any_step_leaves_the_old_or_the_new(tmp_path):
+    target, seen = tmp_path / "result", []
+    for at in range(1, 500):
+        write(target, "old")
+        (target / "mine.txt").write_text("mine")
+        done = subprocess.run([sys.executable, "-c", KILLED, str(target), str(at)], check=False)
+        found = contents(target)
+        assert found.pop("mine.txt") == "mine"
+        assert set(found) == set(NAMES) and len(set(found.values())) == 1, (at, found)
+        seen.append(found["a.txt"])
+        if done.returncode == 0:
+            break
+    assert seen == sorted(seen, reverse=True) and set(seen) == {"old", "new"}
+    write(target, "next")
+    assert [path.name for path in tmp_path.iterdir()] == ["result"]

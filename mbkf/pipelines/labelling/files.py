@@ -27,8 +27,10 @@ def write_labels(
         FileFormatError: The file cannot be written.
     """
     path = Path(path)
+    told = path.with_suffix(".json")
     labelled, summary = labelled_capture(raw, found), label_summary(found, compared)
+    told.unlink(missing_ok=True)  # so that none ever stands beside another capture than its own
     write_capture(labelled, path)
-    with replacing(path.with_suffix(".json")) as partial:
+    with replacing(told) as partial:
         partial.write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
     return summary
