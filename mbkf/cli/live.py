@@ -320,6 +320,8 @@ def _recover(folder: Path) -> int:
     if summary is None:
         raise InvalidInput(f"nothing can be recovered: {problem}")
     print(f"{folder}: {summary['frames']} frames recovered")
+    for note in (text for text in summary["warnings"] if text.startswith("live: ")):
+        print(note.removeprefix("live: "))
     return 0
 
 
@@ -340,10 +342,16 @@ def _told(outcome: LiveOutcome, folder: Path) -> int:
         f"{report['frames_in']} frames came, {report['frames_lost']} were lost; latency median "
         f"{_ms(report['latency_ms_median'])}, 99 % {_ms(report['latency_ms_p99'])} ms{lag}; {report['ended_by']}"
     )
+    if report["frames_unanswered"]:
+        print(f"{report['frames_unanswered']} frames that came before the end were not answered any more")
+    missing = report["frames_not_written"]
     if outcome.problem is not None:
         where = f"; its log is kept, 'mbkf live --recover {folder}' makes them" if report["log"] else ""
-        raise InvalidInput(f"the results could not be written: {outcome.problem}{where}")
-    return 0
+        gone = f"; {missing} frames could not be logged and are gone" if missing else ""
+        raise InvalidInput(f"the results could not be written: {outcome.problem}{where}{gone}")
+    if missing:
+        raise InvalidInput(f"{missing} frames could not be logged and are missing in the results")
+    return 1 if outcome.failed else 0
 
 
 def _ms(value: Any) -> str:

@@ -1,15 +1,18 @@
 """A log that grows row by row and stays readable after a crash: one line of JSON, then rows of fixed size.
 
-A row that was written stays, also when the process is killed or the disk is full; a row cut off at the end is ignored.
+A row that was written stays, also when the process is killed or the disk is full. Behind each row stands its CRC-32,
+which begins with the row's place, so that what a power cut left of the end (zeros, a part of a row, old blocks of a
+disk) is known and left out.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import zlib
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +20,10 @@ from numpy.typing import NDArray
 from mbkf.errors import FileFormatError
 
 FORMAT = "mbkf frame log"
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
+"""Version 1 had no checksums."""
+
+CHECKSUM = np.dtype("<u4")
 
 
 class FrameLogWriter:
@@ -41,7 +47,7 @@ class FrameLogWriter:
             OSError: The file cannot be written.
         """
         self.path, self.rows = Path(path), 0
-        self.dtype = dtype
+        self.dtype, self._size = dtype, dtype.itemsize + CHECKSUM.itemsize
         first = {"format": FORMAT, "format_version": FORMAT_VERSION, "dtype": _plain(dtype), "header": header}
         self._file = self.path.open("wb", buffering=0)
         line = (json.dumps(first) + "\n").encode()
@@ -54,18 +60,18 @@ class FrameLogWriter:
         Raises:
             OSError: Not all of them could be written. Those that were stay; a cut one is removed.
         """
-        data = np.ascontiguousarray(rows, dtype=self.dtype).tobytes()
+        plain = np.ascontiguousarray(rows, dtype=self.dtype)
         try:
-            self._write(data)
+            self._write(_with_checksums(plain, self.rows))
         finally:
             size = os.fstat(self._file.fileno()).st_size
-            self.rows = (size - self._start) // self.dtype.itemsize
-            whole = self._start + self.rows * self.dtype.itemsize
+            self.rows = (size - self._start) // self._size
+            whole = self._start + self.rows * self._size
             if whole != size:
                 self._file.truncate(whole)
                 self._file.seek(whole)
 
-    def _write(self, data: bytes) -> None:
+    def _write(self, data: bytes | memoryview) -> None:
         left = memoryview(data)
         while left:
             left = left[self._file.write(left) :]
@@ -83,8 +89,22 @@ class FrameLogWriter:
         self.close()
 
 
-def read_frame_log(path: str | Path) -> tuple[dict[str, object], NDArray]:
-    """Header and rows of a log; a row cut off at its end is left out.
+class FrameLog(NamedTuple):
+    """Contents of a log.
+
+    Attributes:
+        header: Plain data that belongs to all rows.
+        rows: (N,) rows up to the first one that is damaged.
+        damaged: How many rows follow that are not as they were written, a part of one counted.
+    """
+
+    header: dict[str, object]
+    rows: NDArray
+    damaged: int
+
+
+def read_frame_log(path: str | Path) -> FrameLog:
+    """Header and rows of a log, as far as they are as they were written.
 
     Raises:
         FileFormatError: The file is missing or no log.
@@ -93,15 +113,47 @@ def read_frame_log(path: str | Path) -> tuple[dict[str, object], NDArray]:
     try:
         with source.open("rb") as file:
             first = json.loads(file.readline())
-            if first["format"] != FORMAT or first["format_version"] > FORMAT_VERSION:
+            version = first["format_version"]
+            if first["format"] != FORMAT or version > FORMAT_VERSION:
                 raise FileFormatError(source, "not a frame log of this version of mbkf")
             dtype = np.dtype([(name, kind, tuple(shape)) for name, kind, shape in first["dtype"]])
             header, data = dict(first["header"]), file.read()
-        return header, np.frombuffer(data[: len(data) // dtype.itemsize * dtype.itemsize], dtype=dtype)
+        checked = CHECKSUM.itemsize if version > 1 else 0
+        size = dtype.itemsize + checked
+        stored = np.frombuffer(data[: len(data) // size * size], dtype=np.uint8).reshape(-1, size)
+        good = _good_rows(stored) if checked else len(stored)
+        rows = np.frombuffer(stored[:good, : dtype.itemsize].tobytes(), dtype=dtype)
+        return FrameLog(header, rows, len(stored) - good + (len(data) % size > 0))
     except FileNotFoundError as error:
         raise FileFormatError(source, "no such file; 'mbkf live' keeps it while it runs") from error
-    except (ValueError, KeyError, TypeError, ZeroDivisionError, OverflowError, MemoryError) as error:
+    except (
+        OSError, ValueError, KeyError, TypeError, ZeroDivisionError, OverflowError, MemoryError, RecursionError,
+    ) as error:  # fmt: skip
         raise FileFormatError(source, f"not a frame log ({error})") from error
+
+
+def _with_checksums(rows: NDArray, first: int) -> memoryview:
+    """The bytes of rows, each followed by its checksum.
+
+    Args:
+        rows: (N,) the rows, contiguous.
+        first: Place of the first one in the log.
+    """
+    size = rows.dtype.itemsize
+    stored = np.empty((len(rows), size + CHECKSUM.itemsize), dtype=np.uint8)
+    stored[:, :size] = np.frombuffer(rows.tobytes(), dtype=np.uint8).reshape(len(rows), size)
+    sums = [zlib.crc32(row[:size].data, first + k) for k, row in enumerate(stored)]
+    stored[:, size:] = np.array(sums, dtype=CHECKSUM).view(np.uint8).reshape(len(rows), -1)
+    return memoryview(stored.tobytes())
+
+
+def _good_rows(stored: NDArray[np.uint8]) -> int:
+    """How many rows from the first on fit their checksums, (N, S) bytes."""
+    sums = np.ascontiguousarray(stored[:, -CHECKSUM.itemsize :]).view(CHECKSUM)[:, 0]
+    for k, row in enumerate(stored):
+        if zlib.crc32(row[: -CHECKSUM.itemsize].data, k) != sums[k]:
+            return k
+    return len(stored)
 
 
 def _plain(dtype: np.dtype) -> list[list[Any]]:

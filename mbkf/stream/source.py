@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array
 from mbkf.io.records import PlateReadings
 
+LARGEST_COUNT = 10**12
+"""No source counts further: at 1000 Hz that is thirty years."""
+
 FARTHEST_M = 100.0
 """A point farther from the origin than this is no measurement: no camera volume is that large."""
 

@@ -27,22 +27,62 @@ def test_rows_and_header_come_back(tmp_path):
         log.append(rows(3))
         log.append(rows(2, 3))
         assert log.rows == 5
-        header, found = read_frame_log(log.path)  # also while it is written
+        header, found, damaged = read_frame_log(log.path)  # also while it is written
+    assert damaged == 0
     assert header == {"rate": 100.0, "names": ["Ä"], "far": float("inf")}
     assert found.dtype == DTYPE
     np.testing.assert_array_equal(found["number"], np.arange(5))
     np.testing.assert_array_equal(found["q"], np.concatenate([rows(3)["q"], rows(2, 3)["q"]]))
 
 
-@given(cut=st.integers(0, 3 * DTYPE.itemsize))
+SIZE = DTYPE.itemsize + 4
+"""A row and its checksum."""
+
+
+def logged(path, count):
+    with FrameLogWriter(path, DTYPE, {}) as log:
+        for k in range(count):
+            log.append(rows(1, k))
+    return path.read_bytes()
+
+
+@given(cut=st.integers(0, 3 * SIZE))
 def test_a_row_that_was_cut_off_is_ignored(tmp_path_factory, cut):
     path = tmp_path_factory.mktemp("log") / "x.log"
-    with FrameLogWriter(path, DTYPE, {}) as log:
-        log.append(rows(3))
-    whole = path.read_bytes()
+    whole = logged(path, 3)
     path.write_bytes(whole[: len(whole) - cut])
-    _, found = read_frame_log(path)
-    assert found["number"].tolist() == list(range((3 * DTYPE.itemsize - cut) // DTYPE.itemsize))
+    _, found, damaged = read_frame_log(path)
+    assert found["number"].tolist() == list(range((3 * SIZE - cut) // SIZE))
+    assert damaged == (cut % SIZE > 0)
+
+
+@given(at=st.integers(0, 5 * SIZE - 1), value=st.integers(1, 255))
+def test_rows_before_a_changed_byte_are_kept(tmp_path_factory, at, value):
+    path = tmp_path_factory.mktemp("log") / "x.log"
+    whole = bytearray(logged(path, 5))
+    whole[len(whole) - 5 * SIZE + at] ^= value
+    path.write_bytes(whole)
+    _, found, damaged = read_frame_log(path)
+    assert found["number"].tolist() == list(range(at // SIZE))
+    assert damaged == 5 - at // SIZE
+
+
+@pytest.mark.parametrize("tail", [bytes(7), bytes(SIZE), bytes(10 * SIZE + 3), b"\xff" * 3 * SIZE])
+def test_a_tail_of_zeros_or_of_anything_is_left_out(tmp_path, tail):
+    whole = logged(tmp_path / "x.log", 4)
+    (tmp_path / "x.log").write_bytes(whole + tail)
+    _, found, damaged = read_frame_log(tmp_path / "x.log")
+    assert found["number"].tolist() == [0, 1, 2, 3]
+    assert damaged == -(-len(tail) // SIZE)
+    (tmp_path / "x.log").write_bytes(whole + whole[-SIZE:])  # the last block once more
+    assert len(read_frame_log(tmp_path / "x.log").rows) == 4
+
+
+def test_logs_of_before_there_were_checksums_are_read(tmp_path):
+    whole = logged(tmp_path / "x.log", 0).replace(b'"format_version": 2', b'"format_version": 1')
+    (tmp_path / "x.log").write_bytes(whole + rows(3).tobytes() + b"\0" * 5)
+    _, found, damaged = read_frame_log(tmp_path / "x.log")
+    assert (found["number"].tolist(), damaged) == ([0, 1, 2], 1)
 
 
 def test_after_a_failure_writing_goes_on_at_a_whole_row(tmp_path, monkeypatch):
@@ -50,7 +90,7 @@ def test_after_a_failure_writing_goes_on_at_a_whole_row(tmp_path, monkeypatch):
         write = log._write
 
         def broken(data):
-            write(data[: DTYPE.itemsize + 7])
+            write(data[: SIZE + 7])
             raise OSError("no space left on device")
 
         monkeypatch.setattr(log, "_write", broken)
@@ -62,7 +102,9 @@ def test_after_a_failure_writing_goes_on_at_a_whole_row(tmp_path, monkeypatch):
     assert read_frame_log(tmp_path / "x.log")[1]["number"].tolist() == [0, 1, 2]
 
 
-@pytest.mark.parametrize("text", ["", "{}", "no json\n", '{"format": "other", "format_version": 1}\n'])
+@pytest.mark.parametrize(
+    "text", ["", "{}", "no json\n", "[" * 100_000 + "\n", '{"format": "other", "format_version": 1}\n']
+)
 def test_other_files_are_refused(tmp_path, text):
     path = tmp_path / "x.log"
     with pytest.raises(FileFormatError, match="no such file"):

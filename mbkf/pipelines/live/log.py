@@ -21,6 +21,9 @@ from mbkf.io.records import PlateReadings
 FRAMES_FILE, PLATES_FILE, SUBJECT_FILE = "frames.log", "plates.log", "subject.toml"
 """Files of the log's folder."""
 
+LONGEST_GAP_S = 3600.0
+"""What comes after a longer gap is left out of the results, which hold a row for every frame."""
+
 
 @dataclass(frozen=True)
 class LiveStream:
@@ -96,6 +99,7 @@ class Logged:
         settings: Of the run.
         first: Number of its first frame.
         rows: (T,) one row per frame from there on; those of lost frames are blank.
+        left_out: How many rows and samples were damaged, or came after too long a gap.
     """
 
     stream: LiveStream
@@ -103,6 +107,7 @@ class Logged:
     settings: dict[str, object]
     first: int
     rows: NDArray
+    left_out: int = 0
 
 
 def read_live_log(folder: Path) -> Logged:
@@ -111,11 +116,18 @@ def read_live_log(folder: Path) -> Logged:
     Raises:
         FileFormatError: There is no log, or not one row in it.
     """
-    described, rows = read_frame_log(folder / FRAMES_FILE)
-    header: dict[str, Any] = described
+    frames, plates_log = read_frame_log(folder / FRAMES_FILE), read_frame_log(folder / PLATES_FILE)
+    header: dict[str, Any] = frames.header
+    try:
+        plate_hz = float(header["plates"][0]["rate_hz"]) if header["plates"] else 0.0
+        rows = _without_leaps(frames.rows, "number", float(header["rate_hz"]))
+        samples = _without_leaps(plates_log.rows, "index", plate_hz)
+    except (KeyError, TypeError, ValueError, IndexError) as error:
+        raise FileFormatError(folder / FRAMES_FILE, f"is no log of a live run ({error})") from error
+    left_out = frames.damaged + plates_log.damaged
+    left_out += len(frames.rows) - len(rows) + len(plates_log.rows) - len(samples)
     if not len(rows):
         raise FileFormatError(folder / FRAMES_FILE, "no frame was written")
-    _, samples = read_frame_log(folder / PLATES_FILE)
     first = int(rows["number"][0])
     whole = blank(rows.dtype, int(rows["number"][-1]) - first + 1)
     whole["number"] = first + np.arange(len(whole))
@@ -125,7 +137,20 @@ def read_live_log(folder: Path) -> Logged:
         for k, plate in enumerate(header["plates"])
     )
     stream = LiveStream(header["trial"], header["rate_hz"], header["start_time_s"], plates)
-    return Logged(stream, tuple(header["markers"]), header["settings"], first, whole)
+    return Logged(stream, tuple(header["markers"]), header["settings"], first, whole, left_out)
+
+
+def _without_leaps(rows: NDArray, count: str, rate_hz: float) -> NDArray:
+    """Rows up to the first one whose count does not go on, or goes on after too long a gap.
+
+    Args:
+        rows: The rows.
+        count: Their field that counts.
+        rate_hz: How often it counts.
+    """
+    steps = np.diff(rows[count])
+    wrong = np.flatnonzero((steps <= 0) | (steps > LONGEST_GAP_S * rate_hz))
+    return rows[: wrong[0] + 1] if len(wrong) else rows
 
 
 def _described(plate: PlateReadings) -> dict[str, object]:

@@ -30,6 +30,11 @@ def live_results(folder: Path, notes: tuple[str, ...] = ()) -> Reconstruction:
         NotObservable: In no frame did the markers fit the body.
     """
     logged = read_live_log(folder)
+    if logged.left_out:
+        notes = (
+            *notes,
+            f"live: {logged.left_out} rows of the log are damaged, or came after a gap of an hour",
+        )
     subject = read_subject(folder / SUBJECT_FILE)
     chosen = str(logged.settings["filter"])
     settings = ReconstructSettings(filter=chosen, smooth=False, correct_markers=False)

@@ -19,7 +19,7 @@ from mbkf.stream.lsl.format import (
     read_marker_info,
     read_plates_info,
 )
-from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription
+from mbkf.stream.source import LARGEST_COUNT, PlateSamples, SourceFrame, StreamDescription
 
 OPEN_S = 3.0
 """How long a stream that was found may take to answer."""
@@ -62,6 +62,7 @@ class LslSource:
         self._newest_sample: int | None = None
         self._heard_plates_s = 0.0
         self._overdue = 0
+        self._number_before = 0
 
     def connect(self, timeout_s: float) -> StreamDescription | None:
         """The first marker stream that is found, with its plates."""
@@ -159,7 +160,7 @@ class LslSource:
 
     def _number(self, sample: Array, stamp: float) -> int:
         if self._counted:
-            return int(sample[self._layout.counter])
+            return _count(float(sample[self._layout.counter]))
         if not self._first_stamp:
             self._first_stamp = stamp
         assert self._stream is not None
@@ -171,6 +172,7 @@ class LslSource:
         stream = self._stream
         if self._plates is None:
             return PlateSamples.none(len(stream.plates))
+        self._number_before = number = number if abs(number) <= LARGEST_COUNT else self._number_before + 1
         ratio = stream.plate_rate_hz / stream.rate_hz
         offset = (stream.start_time_s - stream.plates[0].start_time_s) * stream.plate_rate_hz
         until = offset + (number + 0.5) * ratio - WHOLE
@@ -191,8 +193,10 @@ class LslSource:
                 )
                 if len(found):
                     self._heard_plates_s = time.perf_counter()
-                    parts.append(self._placed(found, stamps))
-                    self._newest_sample = int(parts[-1].index[-1])
+                    placed = self._placed(found, stamps)
+                    if len(placed.index):
+                        parts.append(placed)
+                        self._newest_sample = int(placed.index[-1])
                     missing = self._missing(until)
                 if missing <= 0 or not (len(found) or wait):
                     break
@@ -225,6 +229,8 @@ class LslSource:
     def _placed(self, samples: Array, stamps: Array) -> PlateSamples:
         assert self._stream is not None
         if self._counted:
+            counts = samples[:, self._plate_layout.counter]
+            samples = samples[np.abs(counts) <= LARGEST_COUNT]
             index = samples[:, self._plate_layout.counter].astype(int)
         else:
             index = np.round((stamps - self._first_stamp) * self._stream.plate_rate_hz).astype(int)
@@ -280,3 +286,8 @@ class LslSource:
             time.sleep(timeout_s)
             return None
         return self._inlet(found[0], counted=self._counted)
+
+
+def _count(value: float) -> int:
+    """A frame's number; one beyond :data:`LARGEST_COUNT` where there is none."""
+    return int(value) if abs(value) <= LARGEST_COUNT else LARGEST_COUNT + 1

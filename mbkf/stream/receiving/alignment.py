@@ -10,6 +10,7 @@ import numpy as np
 from mbkf.conventions import Array, read_only
 from mbkf.stream.receiving.numbering import Numbered, Numbering
 from mbkf.stream.receiving.plate_buffer import PlateBuffer
+from mbkf.stream.receiving.rate import RateWatch
 from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription, plausible
 
 BRIDGED_S = 1.0
@@ -18,6 +19,10 @@ anew."""
 
 ALIGNED_S = 0.25
 """After a source restarted its count, plate samples whose own count fits that of the frames within this keep it."""
+
+PLATES_OFF_S, PLATES_OFF_FRAMES = 5.0, 10
+"""Plates whose count is off by more than this, or does not go on, in so many frames one after another count anew; a
+reader that is behind finds them ahead by less."""
 
 NO_POINTS = read_only(np.zeros((0, 3)))
 """The points without names of a frame that has none."""
@@ -51,11 +56,17 @@ class FrameAlignment:
 
     Attributes:
         frames_in: Frames that arrived.
-        lost: Frames that did not, or came too late.
+        lost: Frames that did not.
+        late: Frames that arrived too late, twice or out of order, and were left out.
     """
 
     def __init__(
-        self, stream: StreamDescription, columns: Array | None, note: Note, mass_kg: float | None = None
+        self,
+        stream: StreamDescription,
+        columns: Array | None,
+        note: Note,
+        mass_kg: float | None = None,
+        live: bool = True,
     ) -> None:
         """An alignment that has seen no frame yet.
 
@@ -64,25 +75,30 @@ class FrameAlignment:
             columns: (M,) columns of the subject's markers in the stream; None for points without names.
             note: Called with events.
             mass_kg: The person's mass, by which readings of the plates are judged; None for not at all.
+            live: Whether frames come when they were measured, not as fast as a file can be read.
         """
+        self._live = live
         self._stream, self._columns, self._note = stream, columns, note
         self._numbering = Numbering(stream.rate_hz)
         self._plates = PlateBuffer(stream, mass_kg)
         self._ratio = stream.plate_rate_hz / stream.rate_hz
         self._plate_shift = 0
+        self._plates_strange = 0
         self._heard_s: float | None = None
         self._plates_silent = False
-        self.frames_in = 0
-        self.lost = 0
+        self._rates = RateWatch(stream.rate_hz)
+        self.frames_in = self.lost = self.late = 0
 
     def accept(self, frame: SourceFrame) -> tuple[list[ReadyFrame], PlateSamples]:
         """Takes the next frame; returns aligned frames, lost ones before it included, and the plates' new samples."""
         self.frames_in += 1
         place = self._numbering.place(frame.number, frame.arrival_s)
         if place.number is None:
+            self.late += 1
             self._note("late", "frames arrived late, twice or out of order and were left out", None, 1)
             return [], self._take_plates(frame, place)
         self._note_losses(place)
+        self._check_rate(frame, place)
         samples = self._take_plates(frame, place)
         ready = self._missing(place, frame.arrival_s) if place.lost else []
         markers, points = self._points(frame, place.number)
@@ -103,7 +119,23 @@ class FrameAlignment:
             for n in range(place.number - place.lost, place.number)
         ]
 
+    def _check_rate(self, frame: SourceFrame, place: Numbered) -> None:
+        """Tells of frames that come at another rate than the stream states, since velocities are wrong by as much."""
+        assert place.number is not None
+        if self._live and (rate := self._rates.unlike(place.number, frame.arrival_s)) is not None:
+            self._note(
+                "rate",
+                f"frames come at {rate:.0f} Hz, the stream states {self._stream.rate_hz:g} Hz: times, velocities and "
+                "torques are wrong",
+                place.number,
+                1,
+            )
+
     def _note_losses(self, place: Numbered) -> None:
+        if place.uncounted:
+            self._note(
+                "count", "frames came with an impossible count; they follow those before", place.number, 1
+            )
         if place.reset:
             way = "back" if place.backwards else "ahead"
             self._note(
@@ -135,6 +167,7 @@ class FrameAlignment:
         before, refused = self._plates.missing, self._plates.refused
         if self._plate_shift:
             samples = PlateSamples(samples.index + self._plate_shift, samples.wrench)
+        samples = self._in_step(samples, place.number)
         taken = self._plates.put(samples)
         if self._plates.missing > before:
             self._note(
@@ -151,6 +184,27 @@ class FrameAlignment:
                 self._plates.refused - refused,
             )
         return taken
+
+    def _in_step(self, samples: PlateSamples, number: int | None) -> PlateSamples:
+        """Samples whose count goes on with that of the frames; none, until it is sure that the plates count anew."""
+        if number is None or not len(samples.index) or not self._stream.plates:
+            return samples
+        newest, now = int(samples.index[-1]), self._plates.position(number)
+        known = self._plates.newest
+        off = abs(newest - now) > PLATES_OFF_S * self._stream.plate_rate_hz
+        if not off and (known is None or newest > known):
+            self._plates_strange = 0
+            return samples
+        self._plates_strange += 1
+        if self._plates_strange < PLATES_OFF_FRAMES:
+            return PlateSamples.none(len(self._stream.plates)) if off else samples
+        self._plates_strange = 0
+        shift = round(now) - newest
+        self._plate_shift += shift
+        self._note(
+            "plates clock", "the count of the plates jumped; their samples are taken as of now", number, 1
+        )
+        return PlateSamples(samples.index + shift, samples.wrench)
 
     def _realign(self, frame: SourceFrame, number: int) -> None:
         """Aligns the plates with the frames' new count: by their own count where it fits, else by the latest sample."""

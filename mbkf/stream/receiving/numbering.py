@@ -1,13 +1,16 @@
 """Frame numbers that never decrease; lost, late and unordered frames are recognised by the source's own count.
 
 A source that restarts counts from zero again, and its count may jump; the number of missing frames then follows from
-the time that passed on this computer.
+the time that passed on this computer. A count that no source can have reached is no count: that frame follows the one
+before.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+
+from mbkf.stream.source import LARGEST_COUNT
 
 LATE_S = 0.5
 """A frame that is behind by less than this is late or out of order; more, and the source's count has been set back."""
@@ -28,12 +31,14 @@ class Numbered:
         lost: How many frames are missing before it.
         reset: Whether the source's count jumped, so that the number follows from the time that passed.
         backwards: Whether it jumped back.
+        uncounted: Whether the source's count was impossible.
     """
 
     number: int | None
     lost: int
     reset: bool = False
     backwards: bool = False
+    uncounted: bool = False
 
 
 class Numbering:
@@ -53,6 +58,8 @@ class Numbering:
             number: As the source counts.
             arrival_s: When it arrived.
         """
+        if abs(number) > LARGEST_COUNT:
+            return self._following(arrival_s)
         if self._last is None:
             self._last, self._last_s = number, arrival_s
             return Numbered(number, 0)
@@ -73,3 +80,13 @@ class Numbering:
         lost = here - self._last - 1
         self._last, self._last_s = here, arrival_s
         return Numbered(here, lost, reset, backwards)
+
+    def _following(self, arrival_s: float) -> Numbered:
+        """The place after the frame before, or after as many as the time that passed tells."""
+        if self._last is None:
+            self._last, self._last_s = 0, arrival_s
+            return Numbered(0, 0, uncounted=True)
+        passed = (arrival_s - self._last_s) * self._rate_hz
+        lost = round(passed) - 1 if passed > SLACK_S * self._rate_hz else 0
+        self._last, self._last_s = self._last + 1 + lost, arrival_s
+        return Numbered(self._last, lost, uncounted=True)

@@ -24,6 +24,8 @@ class Reader:
 
     Attributes:
         overwritten: Frames that the filter was too slow for.
+        too_late: Frames that were read when the run had ended, or that ended it.
+        failure: What ended the thread unforeseen; None where nothing did.
     """
 
     def __init__(
@@ -45,7 +47,8 @@ class Reader:
         """
         self._source, self._alignment, self._buffer = source, alignment, buffer
         self._samples, self._note = samples, note
-        self.overwritten = 0
+        self.overwritten = self.too_late = 0
+        self.failure: Exception | None = None
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="mbkf-reader", daemon=True)
 
@@ -60,6 +63,15 @@ class Reader:
         self._thread.join(timeout=5.0)
 
     def _run(self) -> None:
+        try:
+            self._read()
+        except Exception as error:  # a dead thread must end the run
+            self.failure = error
+            self._note("failed", f"the reading thread failed ({type(error).__name__}: {error})")
+        finally:
+            self._buffer.close()
+
+    def _read(self) -> None:
         while not self._stopping.is_set():
             try:
                 frame = self._source.read(READ_S)
@@ -73,11 +85,21 @@ class Reader:
                 self._note(kind, what)
             if frame is None:
                 continue
-            ready, samples = self._alignment.accept(frame)
+            try:
+                ready, samples = self._alignment.accept(frame)
+            except Exception:
+                self.too_late += 1
+                raise
             for one in ready:
-                gone = [old for old in self._buffer.put(one) if not old.lost]
-                if gone:
-                    self.overwritten += len(gone)
-                    self._note("overwritten", "the filter could not keep up; only the latest frame was kept")
+                self._put(one)
             self._samples(samples)
-        self._buffer.close()
+
+    def _put(self, frame: ReadyFrame) -> None:
+        overwritten = self._buffer.put(frame)
+        if overwritten is None:
+            self.too_late += not frame.lost
+            return
+        gone = sum(not old.lost for old in overwritten)
+        if gone:
+            self.overwritten += gone
+            self._note("overwritten", "the filter could not keep up; only the latest frame was kept")

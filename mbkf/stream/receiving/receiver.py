@@ -41,7 +41,7 @@ class Receiver:
             mass_kg: The person's mass, by which readings of the plates are judged; None for not at all.
         """
         self.rate_hz = stream.rate_hz
-        self._alignment = FrameAlignment(stream, columns, note, mass_kg)
+        self._alignment = FrameAlignment(stream, columns, note, mass_kg, live=not source.patient)
         self._buffer: RingBuffer[ReadyFrame] = RingBuffer(self._frames(START_SLACK_S), source.patient)
         self._reader = Reader(
             source, self._alignment, self._buffer, samples, lambda kind, what: note(kind, what, None, 1)
@@ -82,11 +82,21 @@ class Receiver:
         """Frames lost so far: on the way here, and in the ring buffer."""
         return self._alignment.lost + self._reader.overwritten
 
+    @property
+    def failure(self) -> Exception | None:
+        """What ended the reading thread; None where nothing did."""
+        return self._reader.failure
+
+    @property
+    def left(self) -> int:
+        """Frames that arrived and were neither taken nor overwritten."""
+        return self._reader.too_late + sum(not frame.lost for frame in self._buffer.left())
+
     def counts(self) -> dict[str, int]:
-        """Numbers of frames for live.json: received (those still in the buffer left out) and lost, by cause."""
-        left = sum(not frame.lost for frame in self._buffer.left())
+        """Numbers of frames for live.json: received, left out as late, and lost, by cause."""
         return {
-            "frames_in": self._alignment.frames_in - left,
+            "frames_in": self._alignment.frames_in,
+            "frames_late": self._alignment.late,
             "frames_lost": self.lost,
             "frames_lost_on_the_way": self._alignment.lost,
             "frames_overwritten": self._reader.overwritten,

@@ -29,14 +29,14 @@ class RingBuffer(Generic[T]):
             self._size = max(1, size)
             self._changed.notify_all()
 
-    def put(self, item: T) -> list[T]:
-        """A new item; what a closed buffer is given is dropped. Returns the items it overwrote."""
+    def put(self, item: T) -> list[T] | None:
+        """A new item. Returns the items it overwrote; None where the buffer is closed, and the item is not taken."""
         with self._changed:
             while self._patient and len(self._items) >= self._size and not self._closed:
                 self._changed.wait()
             overwritten: list[T] = []
             if self._closed:
-                return overwritten
+                return None
             if len(self._items) >= self._size:
                 overwritten.extend(self._items)
                 self._items.clear()

@@ -45,14 +45,18 @@ class _Log:
         while self.waiting > MOST_HELD_BYTES:
             gone = self.rows.popleft()
             self.waiting -= gone.nbytes
-            self.dropped += len(gone)
+            self.dropped += _arrived(gone)
 
 
 class LogWriter:
     """A thread that appends rows to a :class:`LiveLog`."""
 
     def __init__(
-        self, log: LiveLog, failed: Callable[[OSError], None], report: Callable[[], None] | None = None
+        self,
+        log: LiveLog,
+        failed: Callable[[OSError], None],
+        report: Callable[[], None],
+        died: Callable[[Exception], None],
     ) -> None:
         """Starts the thread.
 
@@ -60,8 +64,9 @@ class LogWriter:
             log: The log.
             failed: Called with the error where writing failed.
             report: Called every few seconds.
+            died: Called with the error that ended the thread unforeseen.
         """
-        self._log, self._failed, self._report = log, failed, report
+        self._log, self._failed, self._report, self._died = log, failed, report, died
         self._logs = (_Log(log.frames), _Log(log.plates))
         self._changed = threading.Condition()
         self._closing = False
@@ -83,16 +88,22 @@ class LogWriter:
             self._logs[1].put(rows)
 
     def close(self) -> int:
-        """Writes the remaining rows where possible, and returns the number of frames that are not in the log."""
+        """Writes the remaining rows where possible, and returns how many frames that arrived are not in the log."""
         with self._changed:
             self._closing = True
             self._changed.notify_all()
         self._thread.join()
         self._log.close()
         frames = self._logs[0]
-        return frames.dropped + sum(len(rows) for rows in frames.rows)
+        return frames.dropped + sum(_arrived(rows) for rows in frames.rows)
 
     def _run(self) -> None:
+        try:
+            self._write()
+        except Exception as error:  # a dead thread must end the run
+            self._died(error)
+
+    def _write(self) -> None:
         pause, unreported_s = EVERY_S, 0.0
         while True:
             with self._changed:
@@ -100,7 +111,7 @@ class LogWriter:
                 closing = self._closing
             pause = EVERY_S if all([self._flush(log) for log in self._logs]) else AGAIN_S
             unreported_s += pause
-            if self._report is not None and unreported_s >= REPORTED_S:
+            if unreported_s >= REPORTED_S:
                 unreported_s = 0.0
                 self._report()
             if closing:
@@ -128,3 +139,9 @@ class LogWriter:
                 log.waiting += left.nbytes
                 log.shed()
         return not len(left)
+
+
+def _arrived(rows: NDArray) -> int:
+    """How many of some rows of frames are of frames that arrived; lost ones have no latency."""
+    latency = rows["latency_s"] if "latency_s" in (rows.dtype.names or ()) else np.empty(0)
+    return int(np.isfinite(latency).sum())

@@ -21,9 +21,16 @@ from mbkf.stream.run.statistics import RunStatistics
 TAKE_S = 0.1
 """How long a frame is waited for before the loop checks whether it is to end."""
 
+TIME_OVER = "the time was over"
+"""What ends a run that was to last so long: frames that come later are none of its own."""
+
 
 class FilterLoop:
-    """Gives frames to the filter and its answers to the output."""
+    """Gives frames to the filter and its answers to the output.
+
+    Attributes:
+        failed: Whether an unforeseen error ended it.
+    """
 
     def __init__(
         self,
@@ -47,6 +54,7 @@ class FilterLoop:
         self._waiting: deque[ReadyFrame] = deque()
         self._starting_until_s = 0.0
         self._silent = False
+        self.failed = False
 
     def run(self, stop: threading.Event, seconds: float | None) -> str:
         """Answers frames until the run ends; an unforeseen error ends it, too, and keeps what was found until then.
@@ -65,7 +73,7 @@ class FilterLoop:
                 self._feed(frame, markers)
             self._answer(self._setup.filter.finish())
         except Exception as error:
-            latest = self._statistics.latest
+            latest, self.failed = self._statistics.latest, True
             ended_by = f"an unforeseen {type(error).__name__}: {error}"
             self._note("failed", ended_by, None if latest is None else latest.number, 1)
         return ended_by
@@ -91,7 +99,7 @@ class FilterLoop:
                 tracked = (latest.number - first.number + 1) / self._setup.stream.rate_hz
                 over = frame is None and now - first.arrival_s >= seconds
                 if over or tracked >= seconds:
-                    return "the time was over"
+                    return TIME_OVER
         return "it was stopped"
 
     def _take(self, frame: ReadyFrame) -> None:

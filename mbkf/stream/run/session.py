@@ -18,7 +18,7 @@ from mbkf.stream.run.connecting import wait_for
 from mbkf.stream.run.events import EventLog
 from mbkf.stream.run.folder import LOG_FOLDER, drop_log, open_log, write_results
 from mbkf.stream.run.log_writer import LogWriter
-from mbkf.stream.run.loop import FilterLoop
+from mbkf.stream.run.loop import TIME_OVER, FilterLoop
 from mbkf.stream.run.low_latency import low_latency
 from mbkf.stream.run.output import RunOutput
 from mbkf.stream.run.report import LIVE_FILE, ReportFile
@@ -38,11 +38,13 @@ class LiveOutcome:
         report: The contents of live.json.
         summary: The contents of summary.json; None where no results could be made.
         problem: Why not.
+        failed: Whether an unforeseen error ended the run.
     """
 
     report: dict[str, object]
     summary: Summary | None
     problem: str | None
+    failed: bool = False
 
 
 class LiveSession:
@@ -126,7 +128,13 @@ class LiveSession:
         def report_running() -> None:
             report.write(self._report(RUNNING, receiver, statistics))
 
-        writer = LogWriter(log, self._disk_failed, report_running)
+        def log_died(error: Exception) -> None:
+            died.append(error)
+            note("failed", f"writing the log failed ({type(error).__name__}: {error})")
+            receiver.stop()
+
+        died: list[Exception] = []
+        writer = LogWriter(log, self._disk_failed, report_running, log_died)
         receiver = Receiver(
             self._source, setup.stream, setup.columns, writer.put_samples, note, self._subject.mass_kg
         )
@@ -143,16 +151,24 @@ class LiveSession:
         if statistics.latest is None or (problem is None and not unwritten and not keep_log):
             drop_log(self._folder)
         kept = self._folder / LOG_FOLDER
+        threads = [error for error in (receiver.failure, *died) if error is not None]
+        if threads:
+            ended_by = f"an unforeseen {type(threads[0]).__name__}: {threads[0]}"
+        left = receiver.left
+        of_the_run = left if ended_by != TIME_OVER else 0
         plain = self._report(
             "finished" if problem is None else "results missing",
             receiver,
             statistics,
             ended_by=ended_by,
+            frames_written=statistics.answered_frames - unwritten,
             frames_not_written=unwritten,
+            frames_in=receiver.counts()["frames_in"] - left + of_the_run,
+            frames_unanswered=of_the_run + statistics.processed - statistics.answered_frames,
             log=str(kept) if kept.is_dir() else None,
         )
         report.write(plain, last=True)
-        return LiveOutcome(plain, summary, problem)
+        return LiveOutcome(plain, summary, problem, failed=loop.failed or bool(threads))
 
     def _write_results(self) -> tuple[Summary | None, str | None]:
         """The results from the log: their summary, or why there are none."""

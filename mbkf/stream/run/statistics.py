@@ -40,6 +40,11 @@ class RunStatistics:
         """
         (self._at_start_s if at_start else self._latencies_s).append(latency_s)
 
+    @property
+    def answered_frames(self) -> int:
+        """How many frames that arrived were answered."""
+        return len(self._latencies_s) + len(self._at_start_s)
+
     def latencies(self, recent: bool) -> dict[str, float | None]:
         """Latencies in ms, of recent frames only where asked for."""
         count = RECENT_FRAMES if recent else 0

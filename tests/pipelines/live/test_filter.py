@@ -10,6 +10,7 @@ from mbkf.filters.kinematic.tracking import warm_up_frames
 from mbkf.filters.record import FrameRecorder, blank
 from mbkf.filters.tracking import track, track_of
 from mbkf.filters.tracking_loop import followed
+from mbkf.io.frame_log import FrameLogWriter, read_frame_log
 from mbkf.io.subject import write_subject
 from mbkf.pipelines.live.filter import LiveFilter, live_inputs
 from mbkf.pipelines.live.log import (
@@ -252,7 +253,8 @@ def test_a_log_without_frames_or_without_a_body_gives_no_results(log):
     nobody["number"] = np.arange(5)
     whole = (log / FRAMES_FILE).read_bytes()
     header = whole[: whole.index(b"\n") + 1]
-    (log / FRAMES_FILE).write_bytes(header + nobody.tobytes())
+    with FrameLogWriter(log / FRAMES_FILE, nobody.dtype, read_frame_log(log / FRAMES_FILE).header) as writer:
+        writer.append(nobody)
     with pytest.raises(NotObservable, match="no frame of the stream"):
         live_results(log)
     (log / FRAMES_FILE).write_bytes(header)

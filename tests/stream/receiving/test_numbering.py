@@ -77,3 +77,23 @@ def test_numbers_always_rise(steps):
     # Never faster than time allows, give or take the slack.
     if numbers:
         assert numbers[-1] - numbers[0] <= arrival_s * RATE_HZ + (len(numbers) + 1) * (RATE_HZ + 1)
+
+
+@given(st.dictionaries(st.integers(0, 59), st.sampled_from([2**60, -(2**60), 10**13, 10**300]), max_size=30))
+def test_impossible_counts_follow_the_frame_before(strange):
+    counts = [strange.get(n, n) for n in range(60)]
+    found = placed(in_time(counts))
+    first = next((n for n in range(60) if n not in strange), 60)
+    shift = 0 if first == 0 else None
+    numbers = [place.number for place in found]
+    assert all(b > a for a, b in pairwise(numbers))
+    assert [place.uncounted for place in found] == [n in strange for n in range(60)]
+    if shift == 0:
+        assert numbers == list(range(60))
+        assert not any(place.lost or place.reset for place in found)
+
+
+def test_after_a_pause_an_impossible_count_is_placed_by_the_time():
+    found = placed([(0, 0.0), (2**60, 0.01), (2**60, 3.01)])
+    assert [place.number for place in found] == [0, 1, 301]
+    assert found[2].lost == 299 and found[2].uncounted

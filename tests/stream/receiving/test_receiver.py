@@ -29,6 +29,7 @@ def test_all_frames_come_in_order():
     assert numbers == list(range(30))
     assert receiver.counts() == {
         "frames_in": 30,
+        "frames_late": 0,
         "frames_lost": 0,
         "frames_lost_on_the_way": 0,
         "frames_overwritten": 0,
@@ -55,11 +56,11 @@ def test_frames_that_are_not_taken_in_time_are_overwritten():
     for thread in threading.enumerate():
         if thread.name == "mbkf-reader":
             thread.join(5.0)
-    counts = receiver.counts()
+    counts, held = receiver.counts(), receiver.left
     assert counts["frames_overwritten"] > 0
     left = 0
     while receiver.take(0.0) is not None:
         left += 1
-    assert counts["frames_in"] == 30 - left
+    assert (counts["frames_in"], held) == (30, left)
     assert counts["frames_overwritten"] + left == 30
     receiver.stop()
