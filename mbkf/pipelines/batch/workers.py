@@ -6,6 +6,9 @@ a process of its own: the one that dies again is told so, the others are done.
 
 from __future__ import annotations
 
+import os
+import threading
+import time
 import warnings
 from collections.abc import Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, wait
@@ -21,6 +24,9 @@ AHEAD = 2
 on at once, whose manager would stumble over tasks that still wait with it when an interruption ends it."""
 
 ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
+
+WATCH_S = 1.0
+"""So often a worker looks whether its parent still lives."""
 
 LEAVES = "A worker stopped while some jobs were given to the executor"
 
@@ -99,7 +105,29 @@ class LocalWorkers:
         self._pool = self._started(workers)
 
     def _started(self, workers: int) -> ProcessPoolExecutor:
-        return ProcessPoolExecutor(max_workers=workers, timeout=None, env=ONE_THREAD)
+        return ProcessPoolExecutor(
+            max_workers=workers,
+            timeout=None,
+            env=ONE_THREAD,
+            initializer=end_without,
+            initargs=(os.getpid(),),
+        )
+
+
+def end_without(parent: int) -> None:
+    """Ends this process soon after its parent has gone, which may have been killed and not told it.
+
+    Args:
+        parent: Number of the parent's process.
+    """
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(WATCH_S)
+        os._exit(1)
+
+    if os.getppid() == parent:  # elsewhere a process keeps the number of a parent that is gone
+        threading.Thread(target=watch, name="mbkf-parent", daemon=True).start()
 
 
 def _broke(future: Future[Outcome]) -> bool:

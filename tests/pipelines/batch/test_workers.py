@@ -1,6 +1,10 @@
 """Workers give every task's outcome once; a killed one costs only the task that it died of."""
 
 import os
+import subprocess
+import sys
+import time
+from pathlib import Path
 
 import pytest
 
@@ -53,3 +57,38 @@ def test_a_worker_that_is_killed_costs_only_its_task(workers, tmp_path):
 
 def test_no_task_is_no_outcome(workers):
     assert list(workers.run([])) == []
+
+
+ORPHANED = """
+import sys, time
+from pathlib import Path
+from mbkf.pipelines.batch.workers import LocalWorkers
+from tests.batch_tasks import Answer
+workers = LocalWorkers(2)
+list(workers.run(Answer(k, Path(sys.argv[1])) for k in range(8)))
+print("ready", flush=True)
+time.sleep(60)
+"""
+
+
+def lives(number):
+    """Whether a process runs; one that has ended and is not asked for by its parent does not."""
+    try:
+        return Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
+def test_workers_end_after_a_parent_that_was_killed(tmp_path):
+    with subprocess.Popen(
+        [sys.executable, "-c", ORPHANED, str(tmp_path)], stdout=subprocess.PIPE, text=True
+    ) as parent:
+        assert parent.stdout.readline() == "ready\n"
+        numbers = {int(path.name.split("-")[1]) for path in tmp_path.iterdir()}
+        assert numbers and all(lives(number) for number in numbers)
+        parent.kill()
+    until = time.monotonic() + 20.0
+    while any(lives(number) for number in numbers) and time.monotonic() < until:
+        time.sleep(0.1)
+    assert not any(lives(number) for number in numbers)
