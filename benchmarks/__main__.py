@@ -108,6 +108,13 @@ def _parser() -> argparse.ArgumentParser:
         help=f"another source tree, with which the time of a step is compared (default: ${OLD_VARIABLE})",
     )
     parser.add_argument(
+        "--minutes",
+        type=float,
+        default=0.0,
+        metavar="M",
+        help="robustness: also follow a stream with faults live for so long",
+    )
+    parser.add_argument(
         "--out",
         type=Path,
         metavar="DIR",
@@ -157,7 +164,7 @@ def _console() -> Console:
 
 def context_of(args: argparse.Namespace, out: Path) -> Context:
     """A benchmark's input from the command line, with its folder."""
-    return Context(data=args.data, out=out.resolve(), quick=args.quick, old=args.old)
+    return Context(data=args.data, out=out.resolve(), quick=args.quick, old=args.old, minutes=args.minutes)
 
 
 def _table(name: str, checks: Sequence[Check], seconds: float) -> Table:

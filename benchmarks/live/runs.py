@@ -184,10 +184,15 @@ def _watch(errors: IO[str] | None, view: bool) -> None:
     for line in errors or ():
         found = PAGE.search(line)
         if view and found:
-            threading.Thread(target=_follow, args=(found[1],), daemon=True).start()
+            threading.Thread(target=follow_page, args=(found[1],), daemon=True).start()
 
 
-def _follow(url: str) -> None:
+def follow_page(url: str) -> None:
+    """Receives what a page would, until it ends; returns where nobody serves it.
+
+    Args:
+        url: The page's address, token included.
+    """
     address, _, query = url.partition("?")
     origin = Origin(address.rstrip("/"))
     stream = f"ws{origin.removeprefix('http')}/frames" + (f"?{query}" if query else "")

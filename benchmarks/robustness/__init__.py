@@ -1,7 +1,9 @@
 """Damaged files of every format, read in processes that may die: only the program's own errors may come of them.
 
 Seeds are new in each run. What a seed damages is always the same, so that what failed can be seen again:
-``python -m benchmarks.robustness.child FOLDER DATA FORMAT:SEED``, as the row names it.
+``python -m benchmarks.robustness.child FOLDER DATA FORMAT:SEED``, as the row names it. Then streams go wrong
+(:mod:`benchmarks.robustness.stream_faults`), and with ``--minutes M`` a live run goes on for so long
+(:mod:`benchmarks.robustness.soak`).
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ from functools import partial
 from pathlib import Path
 
 from benchmarks.checks import Check, Context, information
+from benchmarks.robustness import soak, stream_faults
 from benchmarks.robustness.child import FOREIGN, IMPOSSIBLE, READ, REFUSED
 from benchmarks.robustness.formats import formats
 
@@ -41,7 +44,10 @@ def run(context: Context) -> list[Check]:
     with ThreadPoolExecutor(WORKERS) as pool:
         for some in pool.map(partial(read_all, folder=folder, data=context.data), chunks):
             found |= some
-    return rows(found)
+    checks = [*rows(found), *stream_faults.rows(context.out / "streams", context.quick)]
+    if context.minutes > 0.0:
+        checks += soak.rows(context.out / "soak", context.minutes)
+    return checks
 
 
 def rows(found: dict[str, str]) -> list[Check]:
