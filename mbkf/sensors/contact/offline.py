@@ -264,7 +264,7 @@ def _touching(
     """
     touching = np.zeros((len(soles), 2), dtype=bool)
     known = ~np.isnan(soles[:, 0, 0, 0])
-    if not known.any():
+    if len(soles) < 2 or not known.any():  # a single frame has no speed
         return touching
     lowest = soles[:, :, :, 2].min(axis=2)
     loaded = _on_plate(foot) & known[:, None]

@@ -135,6 +135,9 @@ class NatNetClient:
             if self._turn.acquire(blocking=False):
                 try:
                     self._receive(0.0, LEAST_HELD)
+                except Exception as error:  # without this thread the server hears no more of us
+                    self._tell("connection", f"receiving failed ({type(error).__name__}: {error})")
+                    self._closing.wait(PAUSE_S)
                 finally:
                     self._turn.release()
             if time.monotonic() >= due:
@@ -180,6 +183,8 @@ class NatNetClient:
                 self.described.set()
         except InvalidPacket as error:
             self.refuse(error)
+        except Exception as error:  # no packet ends the reception
+            self.refuse(InvalidPacket(f"NatNet: an unforeseen {type(error).__name__}: {error}"))
 
     def _ask(self) -> None:
         if not self.answered.is_set():

@@ -123,8 +123,8 @@ class NatNetSource:
                 return None
             try:
                 return Arrived(held[0], read_frame(held[1], client.version))
-            except InvalidPacket as error:
-                client.refuse(error)
+            except (InvalidPacket, ArithmeticError, ValueError, MemoryError) as error:
+                client.refuse(InvalidPacket(str(error)))
                 if time.perf_counter() > until:
                     return None
 

@@ -24,12 +24,19 @@ class SendingThread:
             held: Frames that may wait.
         """
         self._send = send
+        self._error: Exception | None = None
         self._buffer: RingBuffer[LiveFrame] = RingBuffer(held)
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
         self._thread.start()
 
     def take(self, frame: LiveFrame) -> None:
-        """A new frame."""
+        """A new frame.
+
+        Raises:
+            Exception: What the function raised, which ended the thread.
+        """
+        if self._error is not None:
+            raise self._error
         self._buffer.put(frame)
 
     def close(self) -> None:
@@ -40,5 +47,10 @@ class SendingThread:
     def _run(self) -> None:
         while not self._buffer.ended:
             frame = self._buffer.take(0.5)
-            if frame is not None:
+            if frame is None:
+                continue
+            try:
                 self._send(frame)
+            except Exception as error:  # told with the next frame
+                self._error = error
+                return

@@ -58,7 +58,7 @@ class LogWriter:
         report: Callable[[], None],
         died: Callable[[Exception], None],
     ) -> None:
-        """Starts the thread.
+        """A thread that is not started yet.
 
         Args:
             log: The log.
@@ -71,6 +71,9 @@ class LogWriter:
         self._changed = threading.Condition()
         self._closing = False
         self._thread = threading.Thread(target=self._run, name="mbkf-log", daemon=True)
+
+    def start(self) -> None:
+        """Begins to write."""
         self._thread.start()
 
     def put_row(self, row: NDArray) -> None:

@@ -141,10 +141,16 @@ class LiveSession:
         output = RunOutput(setup, sinks, writer.put_row, statistics, note)
         loop = FilterLoop(setup, receiver, output, statistics, note)
         with single_threaded(), low_latency():
+            writer.start()
             receiver.start()
             ended_by = loop.run(stop, seconds)
             receiver.stop()
-        self._source.close()
+        try:
+            self._source.close()
+        except (
+            Exception
+        ) as error:  # libraries of sources raise errors of any kind; the results are still to be made
+            note("source", f"the source could not be closed ({type(error).__name__}: {error})")
         output.close()
         unwritten = writer.close()
         summary, problem = self._write_results()

@@ -180,3 +180,17 @@ def test_a_group_is_joined(server):
 def test_wrong_addresses_are_refused(server, local, port, multicast, fragment):
     with pytest.raises(InvalidInput, match=fragment):
         NatNetClient(server, local, port, multicast)
+
+
+def test_an_error_that_nobody_foresaw_is_told_and_costs_its_packet(server, client, monkeypatch):
+    def broken(packet, version):
+        raise ZeroDivisionError("no")
+
+    monkeypatch.setattr("mbkf.stream.natnet.client.read_descriptions", broken)
+    server.hear(packets.CONNECT)
+    server.send(layouts.answer((4, 1)))
+    server.hear(packets.REQUEST_DESCRIPTIONS)
+    server.send(described(), frame(9))
+    assert client.take(PATIENCE_S)[1] == frame(9)
+    ((kind, what),) = client.news()
+    assert kind == "packets" and "ZeroDivisionError" in what

@@ -226,6 +226,7 @@ def test_a_disk_that_was_full_gets_the_rows_later(log, monkeypatch):
 
     monkeypatch.setattr(log.frames, "_write", full)
     writer = LogWriter(log, failures.append, lambda: None, failures.append)
+    writer.start()
     for number in range(20):
         writer.put_row(row(log, number))
     until = time.monotonic() + 5.0
@@ -246,6 +247,7 @@ def test_rows_written_before_the_disk_is_full_stay(log, monkeypatch):
 
     monkeypatch.setattr(log.frames, "_write", full)
     writer = LogWriter(log, failures.append, lambda: None, failures.append)
+    writer.start()
     for number in range(5, 12):
         writer.put_row(row(log, number))
     assert writer.close() == 7
@@ -374,3 +376,21 @@ def test_a_last_frame_whose_number_leaps_costs_only_itself(tmp_path, capture, su
         writer.append(changed)
     assert main(["live", "--recover", str(tmp_path)]) == 0
     assert read_reconstruction(tmp_path).frames == len(rows) - 1
+
+
+def test_a_source_that_cannot_be_closed_leaves_the_results(tmp_path, capture, subject, monkeypatch):
+    def fails(self):
+        raise OSError(errno.EIO, "no")
+
+    monkeypatch.setattr(ScriptedSource, "close", fails)
+    outcome = follow(tmp_path, *frames_of(capture), subject)
+    assert not outcome.failed and kinds(outcome) == {"source"}
+    assert read_reconstruction(tmp_path).frames == 80
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_a_few_frames_give_results_or_a_reason(tmp_path, capture, subject, count):
+    stream, frames = frames_of(capture)
+    outcome = follow(tmp_path, stream, frames[:count], subject)
+    assert placed(outcome.report) == {"written": count} and not outcome.failed
+    assert (outcome.problem is None) == (tmp_path / "motion.h5").exists()
