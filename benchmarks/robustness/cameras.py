@@ -28,7 +28,7 @@ class Camera(Protocol):
     """A camera system.
 
     Attributes:
-        sent: Frames sent while somebody listened.
+        sent: Frames sent.
     """
 
     sent: int
@@ -75,7 +75,7 @@ class LslCamera:
         """Sends a frame under a number."""
         if self._player is None:
             return
-        self.sent += self._player.listening()
+        self.sent += 1
         self._player.send(replace(frame, number=number), 0.0)  # type: ignore[arg-type]
 
     def nonsense(self, packet: bytes, foreign: bool) -> None:
@@ -109,7 +109,7 @@ class NatNetCamera(NatNetPlayer):
         if not self._open:
             return
         count = int(number) % NUMBERS if np.isfinite(number) else NUMBERS - 1
-        self.sent += bool(self._heard)
+        self.sent += 1
         self._to_all(self._numbered(frame, count))
 
     def nonsense(self, packet: bytes, foreign: bool) -> None:

@@ -75,7 +75,7 @@ def told(report: dict[str, float], sent: int, memory: list[float], code: int) ->
 
     Args:
         report: The contents of live.json.
-        sent: Frames sent while somebody listened.
+        sent: Frames sent.
         memory: Memory of the process, MB, once a second.
         code: Its exit code.
     """

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-WATCHED_S = 3.0
-"""The rate is measured over so long."""
+WATCHED_S = 2.0
+"""The rate is measured over so long, and told when it is another one twice in a row: a pause is none."""
 
 UNLIKE = 0.1
 """A rate that is off by more than this share is another one."""
@@ -17,9 +17,10 @@ class RateWatch:
         self._rate_hz = rate_hz
         self._begin: tuple[int, float] | None = None
         self._frames = 0
+        self._unlike_before = False
 
     def unlike(self, number: int, arrival_s: float) -> float | None:
-        """The measured rate, Hz, at the end of a stretch in which it was another; None else.
+        """The measured rate, Hz, at the end of a stretch in which it was another, as in the one before; None else.
 
         Frames that come too fast are so by their arrivals, also where their count follows the clock. Those that come
         too slowly are so by their count: else they are lost ones.
@@ -37,6 +38,6 @@ class RateWatch:
             return None
         came, counted = self._frames / passed, (number - self._begin[0]) / passed
         self._begin, self._frames = (number, arrival_s), 0
-        if came > (1.0 + UNLIKE) * self._rate_hz:
-            return came
-        return counted if counted < (1.0 - UNLIKE) * self._rate_hz else None
+        fast, slow = came > (1.0 + UNLIKE) * self._rate_hz, counted < (1.0 - UNLIKE) * self._rate_hz
+        lasting, self._unlike_before = self._unlike_before, fast or slow
+        return (came if fast else counted) if lasting and (fast or slow) else None

@@ -167,7 +167,7 @@ def test_a_single_wild_sample_does_not_end_the_plates(capture):
 
 def test_another_rate_is_told_of_live_streams_only(capture):
     stream, frames = frames_of(capture)
-    slow = [replace(f, arrival_s=frames[0].arrival_s + f.number / 20.0) for f in frames]
+    slow = [replace(f, arrival_s=frames[0].arrival_s + f.number / 15.0) for f in frames]
     for live, expected in ((True, {"rate"}), (False, set())):
         notes = []
         alignment = FrameAlignment(stream, np.arange(5), lambda *note: notes.append(note), live=live)  # noqa: B023

@@ -22,8 +22,8 @@ def test_the_stated_rate_is_no_event(rate_hz):
 @pytest.mark.parametrize("rate_hz", [30.0, 80.0, 300.0])
 def test_another_rate_is_told_once_a_while(rate_hz):
     found = told(frames(rate_hz, 4.2 * WATCHED_S))
-    assert len(found) == 4
-    assert found == pytest.approx([rate_hz] * 4, rel=0.02)
+    assert len(found) == 3
+    assert found == pytest.approx([rate_hz] * 3, rel=0.02)
 
 
 def test_frames_that_count_by_the_clock_are_too_fast_but_not_too_slow():
@@ -33,7 +33,7 @@ def test_frames_that_count_by_the_clock_are_too_fast_but_not_too_slow():
 
 
 def test_a_pause_and_a_burst_are_no_rate():
-    pairs = [(k, (k + (50 if k > 300 else 0)) / 100.0) for k in range(1000)]
+    pairs = [(k, (k + (100 if k > 300 else 0)) / 100.0) for k in range(1000)]
     held = [(number, 5.2 if 5.0 < at < 5.2 else at) for number, at in frames(100.0, 10.0)]
     assert told(held) == []
-    assert len(told(pairs)) <= 1
+    assert told(pairs) == []
