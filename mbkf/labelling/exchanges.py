@@ -56,6 +56,10 @@ BOTH_SEEN = 0.2
 """Both markers must be seen in this share of an exchange: of one alone, with its rigid neighbours hidden as well, limbs
 that are bent further than usual look like another name."""
 
+KEPT_COS = 0.5
+"""Over a gap δ may turn with the body, by 120° between knees that pass each other: an exchange turns what it then was
+about, and leaves it further than this from where it was before. Nearer, no names were exchanged in the gap."""
+
 OBSERVED_SD_M, FEW = 0.008, 20
 """Least spread of a distance as the capture has it, and how many frames looked at must show it."""
 
@@ -251,7 +255,7 @@ def _chosen(shown_m: Array, distances: Distances, pairs: Indices) -> list[Exchan
             if not looked.any() or both.sum() < BOTH_SEEN * looked.sum():
                 continue
             ends = [t for t in (first - 1, end - 1) if 0 <= t < len(turn)]
-            if any(turn[t, p] >= 0.0 for t in ends):
+            if any(turn[t, p] >= 0.0 or _kept(delta[:, p], t) for t in ends):
                 continue
             told = bool(ends) and all(turn[t, p] < 0.0 for t in ends)
             least, most = (LEAST_GAIN, LEFT) if told else (SURE_GAIN, SURELY_LEFT)
@@ -264,6 +268,16 @@ def _chosen(shown_m: Array, distances: Distances, pairs: Indices) -> list[Exchan
         if not any({one.a, one.b} & {other.a, other.b} for other in chosen):
             chosen.append(one)
     return chosen
+
+
+def _kept(delta: Array, t: int) -> bool:
+    """Whether δ (T, 3) has its direction before a gap about frames t and t + 1 still after it."""
+    seen = np.flatnonzero(~np.isnan(delta[:, 0]))
+    after = int(np.searchsorted(seen, t, side="right"))
+    if not 0 < after < len(seen):
+        return False
+    one, other = delta[seen[after - 1]], delta[seen[after]]
+    return bool(one @ other > KEPT_COS * np.linalg.norm(one) * np.linalg.norm(other))
 
 
 def _gains(shown_m: Array, distances: Distances, pairs: Indices) -> tuple[Array, Array, Array]:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.labelling.exchanges import Distances, body_distances, exchanges, observed_distances, put_right
+from mbkf.model.clinical import dof_names
 from mbkf.model.protocol import load_protocol
 from tests.labelling.bodies import posture, reference_sensor
 
@@ -133,3 +134,23 @@ def test_a_thousand_frames_take_a_fraction_of_a_second(expected):
     begin = time.perf_counter()
     exchanges(positions, expected)
     assert time.perf_counter() - begin < 1.0
+
+
+def crouching(frames):
+    """(T, M, 3) markers of a body that bends hips and knees by 80° for a moment, with noise."""
+    sensor, rng = reference_sensor(), np.random.default_rng(0)
+    model, names, bent = sensor.model, dof_names(sensor.model), np.zeros(sensor.model.nv)
+    for side in ("right", "left"):
+        bent[names.index(f"{side}_thigh_y")], bent[names.index(f"{side}_shank_y")] = -1.4, 1.5
+    depth = (0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(frames) / frames)) ** 4
+    positions = [sensor.positions(model.integrate(model.neutral(), share * bent)) for share in depth]
+    return np.array(positions) + rng.normal(0.0, 0.001, (frames, len(sensor.segments), 3))
+
+
+@pytest.mark.parametrize("hidden", [["RASI"], ["RASI", "LASI"], ["RASI", "SACR"]])
+def test_hips_bent_further_than_usual_between_two_gaps_are_no_exchange(hidden, expected):
+    """Distances from pelvis to knees then speak for the other side's name, but nothing has turned over the gaps."""
+    positions, gone = crouching(240), [NAMES.index(name) for name in hidden]
+    for gap in (slice(97, 100), slice(140, 143)):
+        positions[gap, gone] = np.nan
+    assert exchanges(positions, expected) == ()
