@@ -180,6 +180,8 @@ def track_of(q, v, a, **known):
         "marker_nis": np.zeros((frames, 0)),
         "marker_spread_m": np.zeros((frames, 0)),
         "step_seconds": np.zeros(frames),
+        "known": np.ones(frames, bool),
+        "uncorrected": np.zeros(frames, bool),
         "starts": (0,),
         "smoothed": False,
         "covariance": None,

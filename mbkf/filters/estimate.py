@@ -88,6 +88,8 @@ class Posterior(NamedTuple):
         changes: (2, 2, 6) change of the feet's wrenches since the frame before, and of that change, as they were known
             at once; None where they are not.
         later: Whether later frames have corrected it and its covariance.
+        uncorrected: Whether later frames should have, and what they made of it was no person
+            (:mod:`mbkf.filters.person`).
         plate_noise: What is known of the noise of the plates' forces, N; None where the filter does not ask, or at a
             start.
     """
@@ -106,6 +108,7 @@ class Posterior(NamedTuple):
     changes: Array | None = None
     later: bool = False
     plate_noise: WhiteNoise | None = None
+    uncorrected: bool = False
 
 
 class Prediction(NamedTuple):

@@ -2,7 +2,7 @@
 
 The information of later readings fades within a few tenths of a second, so a window that looks ``ahead_s`` beyond its
 end is smoothed as well as by the whole trial, and memory does not grow with the trial. Live, the result of a frame is
-known at most ``lag_s`` later.
+known at most ``lag_s`` later. A window of which smoothing makes no person keeps the filter's own estimates.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mbkf.filters.estimate import Posterior, Recording, TrackingFilter
+from mbkf.filters.person import corrected_or_own
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,11 @@ class FixedLagSmoother:
 
     def _smooth(self, wanted: int) -> list[tuple[int, Posterior]]:
         until = self._given + wanted
-        smoothed = self.filter.smooth(self._run, self.recording, self._first, until)
+        smoothed = corrected_or_own(
+            self._run[:until],
+            lambda: self.filter.smooth(self._run, self.recording, self._first, until),
+            self.filter.model,
+        )
         done = list(enumerate(smoothed, start=self._first))[self._given :]
         self._run, self._given = self._run[until - 1 :], 1
         self._first += until - 1

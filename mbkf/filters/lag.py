@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import deque
 
 from mbkf.filters.estimate import Posterior, TrackingFilter
+from mbkf.filters.person import corrected_or_own
 from mbkf.numerics.passage import LaterWindow
 
 
@@ -60,7 +61,12 @@ class FixedLag:
 
     def _first(self) -> tuple[int, Posterior]:
         t, estimate = self._waiting.popleft()
-        self._given = self.filter.corrected(estimate, self._window.told(), self._given)
+        before = self._given
+        (self._given,) = corrected_or_own(
+            [estimate],
+            lambda: [self.filter.corrected(estimate, self._window.told(), before)],
+            self.filter.model,
+        )
         if self._waiting:
             self._window.drop()
         return t, self._given

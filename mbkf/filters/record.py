@@ -36,6 +36,7 @@ FIELDS = (
     Field("known", "?"),
     Field("started", "?"),
     Field("tracked", "?"),
+    Field("uncorrected", "?"),
     Field("readings", "<i8"),
     Field("footing", "<i8", "2"),
     Field("refused", "?", "M"),
@@ -72,7 +73,8 @@ FIELDS = (
 """The declaration.
 
 number: of the frame. known: whether there is an estimate. started: whether the filter was (re)started in it. tracked:
-whether enough instruments read. readings, nis: numbers in the normalised innovation squared, and its value, NaN at a
+whether enough instruments read. uncorrected: whether it is the filter's own since later frames made no person of it
+(:mod:`mbkf.filters.person`). readings, nis: numbers in the normalised innovation squared, and its value, NaN at a
 start; readings_by_kind, nis_by_kind: the same by :data:`mbkf.conventions.READING_KINDS`; marker_nis, marker_spread_m:
 of each marker per coordinate, and the spread it is in units of (:mod:`mbkf.filters.innovations`). footing: what right
 and left foot stand on (:class:`mbkf.sensors.contact.records.Contact`). refused: markers seen but outside their gate.
@@ -208,6 +210,7 @@ class FrameRecorder:
 
     def motion(self, row: NDArray, posterior: Posterior) -> Spread:
         """The estimate and its standard deviations; it may be a smoothed one."""
+        row["uncorrected"] = posterior.uncorrected
         for name in MOTION:
             row[name] = getattr(posterior, name)
         row["support"] = np.nan if posterior.support is None else posterior.support

@@ -50,8 +50,10 @@ class Track:
         marker_nis: (T, M) of each marker per coordinate, NaN where it was not used.
         marker_spread_m: (T, M) the spread it is told in units of, m.
         step_seconds: (T,) computing time of each step.
+        known: (T,) whether there is an estimate at all; after the first start there is none of what was no person.
+        uncorrected: (T,) frames that stand as the filter had them, since later frames made no person of them.
         starts: Frames at which the filter was started or restarted.
-        smoothed: Whether it was smoothed, with all later frames that matter.
+        smoothed: Whether it was smoothed, with all later frames that matter, in more than the uncorrected frames.
         covariance: (T, 2 nv, 2 nv) full covariances, or None.
     """
 
@@ -86,6 +88,8 @@ class Track:
     marker_nis: Array
     marker_spread_m: Array
     step_seconds: Array
+    known: BoolArray
+    uncorrected: BoolArray
     starts: tuple[int, ...]
     smoothed: bool
     covariance: Array | None
@@ -159,10 +163,11 @@ def track_of(rows: NDArray, smoothed: bool = False, covariance: Array | None = N
     """
     asked = rows["footing"][:, 0] != UNASKED
     named = {f.name: rows[f.name] for f in fields(Track) if f.name in (rows.dtype.names or ())}
+    named.setdefault("uncorrected", np.zeros(len(rows), dtype=bool))  # older logs lack it
     return Track(
         **{name: np.array(values) for name, values in named.items()},
         contact=np.where(asked[:, None], rows["footing"], 0) if asked.any() else None,
         starts=tuple(int(t) for t in np.flatnonzero(rows["started"])),
-        smoothed=smoothed,
+        smoothed=smoothed and not rows["uncorrected"][rows["known"]].all(),
         covariance=covariance,
     )

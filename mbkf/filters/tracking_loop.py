@@ -1,11 +1,17 @@
-"""A filter's way through a trial, frame by frame: start, steps, and a restart after a loss."""
+"""A filter's way through a trial, frame by frame: start, steps, and a restart after a loss.
+
+An estimate that is no person is given to nobody: the frame has none, and the next one starts anew.
+"""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterator
 
+import numpy as np
+
 from mbkf.filters.estimate import Posterior, Prediction, Recording, TrackingFilter
+from mbkf.filters.person import is_person
 
 
 class TrackingLoop:
@@ -13,12 +19,14 @@ class TrackingLoop:
 
     Attributes:
         filter: The filter.
-        estimate: The latest estimate, None before the first start.
+        estimate: The latest estimate, None before the first start and after one that was no person.
+        no_person: Whether the latest frame has no estimate since that was no person.
     """
 
     def __init__(self, filter: TrackingFilter) -> None:
         self.filter = filter
         self.estimate: Posterior | None = None
+        self.no_person = False
         self._lost_for = 0
         self._prediction: Prediction | None = None
 
@@ -40,10 +48,15 @@ class TrackingLoop:
         """The estimate of frame t, the one after the latest; None as long as no start has succeeded."""
         before, fresh = self.estimate, None
         prediction, self._prediction = self._prediction, None
-        if self.must_start:
-            fresh = self.filter.start(recording, t, None if before is None else before.q)
-        if fresh is None and before is not None:
-            fresh = self.filter.step(before, recording, t, prediction)
+        with np.errstate(all="ignore"):  # what comes of it is looked at
+            if self.must_start:
+                fresh = self.filter.start(recording, t, None if before is None else before.q)
+            if fresh is None and before is not None:
+                fresh = self.filter.step(before, recording, t, prediction)
+        self.no_person = fresh is not None and not is_person(fresh, self.filter.model)
+        if self.no_person:
+            self.forget()
+            return None
         if fresh is not None:
             self.estimate = fresh
             self._lost_for = 0 if fresh.tracked else self._lost_for + 1

@@ -70,6 +70,8 @@ class Reconstruction:
         protocol: Marker protocol.
         filter: "kinematic", "torque" or "dynamic".
         smoothed: Whether all later frames that matter were used, too; see ``lag_ms`` for those of a fixed lag.
+        uncorrected: Number of frames that stand as the filter alone had them, since what later frames made of them was
+            no person.
         version: Version of mbkf.
         subject: The scaled person.
         rate_hz: Frame rate.
@@ -215,6 +217,7 @@ class Reconstruction:
     markers_ignored: dict[str, str] = field(default_factory=dict)
     markers_explained: float = 1.0
     names_exchanged: tuple[tuple[str, str, int], ...] = ()
+    uncorrected: int = 0
     checks: tuple[Finding, ...] = ()
     sd_q_offset: Array | None = None
     sd_v_offset: Array | None = None
@@ -266,10 +269,11 @@ class Reconstruction:
 
     @property
     def later_frames(self) -> str:
-        """Which later frames an estimate knows, in words: all, none, or those of a fixed lag."""
-        if self.smoothed:
-            return SMOOTHED
-        return f"fixed lag {self.lag_ms:g} ms" if self.lag_ms else CAUSAL
+        """Which later frames an estimate knows, in words: all, none, or those of a fixed lag; and how many do not."""
+        if not (self.smoothed or self.lag_ms):
+            return CAUSAL
+        told = SMOOTHED if self.smoothed else f"fixed lag {self.lag_ms:g} ms"
+        return f"{told}, but {self.uncorrected} of {self.frames} frames causal" if self.uncorrected else told
 
     @property
     def present(self) -> BoolArray:

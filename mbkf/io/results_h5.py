@@ -83,6 +83,7 @@ def write_h5(reconstruction: Reconstruction, path: str | Path, run_id: str = "")
         for name in _TEXTS:
             file.attrs[name] = getattr(reconstruction, name)
         file.attrs["smoothed"] = reconstruction.smoothed
+        file.attrs["uncorrected"] = reconstruction.uncorrected
         file.attrs["later_frames"] = reconstruction.later_frames  # for readers; it follows from the rest
         file.attrs["rate_hz"] = reconstruction.rate_hz
         file.attrs["settings"] = json.dumps(reconstruction.settings, default=_plain)
@@ -127,6 +128,7 @@ def read_h5(path: str | Path) -> Reconstruction:
             # Older files lack direction, reading, axes, checks, ignored and exchanged markers: theirs are the defaults.
             values: dict[str, Any] = {name: str(file.attrs[name]) for name in _TEXTS if name in file.attrs}
             values["smoothed"] = bool(file.attrs["smoothed"])
+            values["uncorrected"] = int(file.attrs.get("uncorrected", 0))
             values["rate_hz"] = float(file.attrs["rate_hz"])
             values["settings"] = json.loads(file.attrs["settings"])
             values["markers_ignored"] = json.loads(file.attrs.get("markers_ignored", "{}"))

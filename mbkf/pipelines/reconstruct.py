@@ -30,8 +30,9 @@ from mbkf.pipelines.results.clinical import clinical_motion
 from mbkf.pipelines.results.progression import PELVIS_FRAMES, pelvis_frame
 from mbkf.pipelines.results.reactions import reactions
 from mbkf.pipelines.results.readings import ANGLES, angle_reading, zero_posture
+from mbkf.pipelines.results.summary import ROOT_DOFS
 from mbkf.pipelines.results.supports import supports_told
-from mbkf.pipelines.results.validity import torques_known
+from mbkf.pipelines.results.validity import torques_known, torques_possible
 from mbkf.pipelines.trial.exchanged import exchange_notes, names_put_right
 from mbkf.pipelines.trial.filters import FILTERS, FilterInputs, standard, tracking_filter
 from mbkf.pipelines.trial.inputs import trial_inputs
@@ -242,9 +243,11 @@ def assemble(
     supports = ground.supports
     bears = bearing(supports.wrench)
     known = torques_known(model, clinical.names, clinical.moments_sd, ground.foot_source, bears)
+    known &= torques_possible(tau, ROOT_DOFS, model.mass_kg)
     return Reconstruction(
         trial=Path(capture.path).stem or "capture", protocol=subject.protocol, filter=settings.filter,
-        smoothed=result.smoothed, version=__version__, subject=subject, rate_hz=measured.rate_hz,
+        smoothed=result.smoothed, uncorrected=int(result.uncorrected.sum()),
+        version=__version__, subject=subject, rate_hz=measured.rate_hz,
         times_s=measured.times_s,
         dof_names=names, q=result.q, v=result.v, a=result.a, tau=tau, sd_q=result.position_sd,
         sd_v=result.velocity_sd, sd_tau=tau_sd, sd_q_offset=result.position_offset,
@@ -321,6 +324,17 @@ def _warnings(result: Track, names: tuple[str, ...], unobservable: BoolArray) ->
         warnings.append(
             f"{lost} of {len(result.tracked)} frames have too few markers within the gate to track the body, "
             "or most of them far from where it was"
+        )
+    if result.uncorrected.any():
+        warnings.append(
+            f"what later frames made of {int(result.uncorrected.sum())} of {len(result.tracked)} frames is no person: "
+            "they stand as the filter alone had them; readings contradict each other, see the units and the checks"
+        )
+    gone = int((~result.known[result.starts[0] :]).sum()) if result.starts else 0
+    if gone:
+        warnings.append(
+            f"in {gone} frames the readings lead to no person that moves: nothing is told of them, and they do not "
+            "count as tracked; see the units and the checks"
         )
     if len(result.starts) > 1:
         warnings.append("the filter started anew at frames " + ", ".join(str(t) for t in result.starts[1:]))

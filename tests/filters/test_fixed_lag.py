@@ -10,7 +10,7 @@ from mbkf.filters.tracking import track
 from mbkf.pipelines.trial.filters import FILTERS
 from tests.dynamics import DT
 from tests.followed import WHOLE, errors, estimates, made, made_filter, recording, tracked, without
-from tests.motions import angle_errors
+from tests.motions import angle_errors, reference_model
 
 SHORT = SmoothingSettings(window_s=0.1, ahead_s=0.2)
 """Windows of 10 frames that look 20 frames ahead; the lag is 30."""
@@ -21,7 +21,7 @@ every_filter = pytest.mark.parametrize("name", FILTERS)
 class Counter:
     """A filter that smooths nothing and remembers what it was asked; estimates are plain numbers."""
 
-    dt_s = DT
+    dt_s, model = DT, reference_model()
 
     def __init__(self):
         self.asked = []
@@ -32,7 +32,10 @@ class Counter:
 
 
 class Told:
-    """An estimate that only knows its frame and whether it was a start."""
+    """An estimate at rest that only knows its frame and whether it was a start."""
+
+    q, v, a = reference_model().neutral(), np.zeros(1), np.zeros(1)
+    wrench, tracked = np.zeros((2, 6)), True
 
     def __init__(self, t, started=False):
         self.t, self.started = t, started

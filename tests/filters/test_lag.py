@@ -11,7 +11,7 @@ from mbkf.pipelines.trial.filters import FILTERS
 from tests.dynamics import DT
 from tests.filters.test_fixed_lag import Told
 from tests.followed import FRAMES, SETTLED, WHOLE, errors, estimates, made_filter, recording, tracked, without
-from tests.motions import angle_errors
+from tests.motions import angle_errors, reference_model
 
 LAG_S = 0.06
 
@@ -21,7 +21,7 @@ every_filter = pytest.mark.parametrize("name", FILTERS)
 class Counter:
     """A filter whose estimates are frames and whose corrections remember how many frames told of them."""
 
-    dt_s = DT
+    dt_s, model = DT, reference_model()
 
     def __init__(self):
         self.befores = {}

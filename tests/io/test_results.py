@@ -56,6 +56,11 @@ def test_a_lag_is_read_from_the_settings():
         ({"settings": {"lag_ms": 0.0}}, "causal (as live)"),
         ({"settings": {"lag_ms": 60.0}}, "fixed lag 60 ms"),
         ({"settings": {"lag_ms": 0.0}, "smoothed": True}, "smoothed (all later frames known)"),
+        (
+            {"smoothed": True, "uncorrected": 3},
+            "smoothed (all later frames known), but 3 of 12 frames causal",
+        ),
+        ({"settings": {"lag_ms": 60.0}, "uncorrected": 1}, "fixed lag 60 ms, but 1 of 12 frames causal"),
     ],
 )
 def test_which_later_frames_an_estimate_knows_is_told_in_words(changes, told):

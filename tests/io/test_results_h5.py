@@ -85,6 +85,14 @@ def test_older_files_say_which_later_frames_they_know_by_the_rest(tmp_path):
     assert read_h5(tmp_path / "motion.h5").later_frames == "smoothed (all later frames known)"
 
 
+def test_how_many_frames_later_ones_left_alone_is_kept(tmp_path):
+    write_h5(made_up(smoothed=True, uncorrected=3), tmp_path / "motion.h5")
+    assert read_h5(tmp_path / "motion.h5").uncorrected == 3
+    with unsealed(tmp_path / "motion.h5") as file:
+        del file.attrs["uncorrected"]
+    assert read_h5(tmp_path / "motion.h5").uncorrected == 0
+
+
 def test_in_older_files_spreads_have_no_offset_and_the_body_no_covariance(tmp_path):
     write_h5(made_up_whole(sd_tau_offset=np.ones((12, 6))), tmp_path / "motion.h5")
     with unsealed(tmp_path / "motion.h5") as file:

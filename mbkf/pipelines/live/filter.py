@@ -188,8 +188,8 @@ class LiveFilter:
         try:
             with np.errstate(all="ignore"):  # what comes of it is looked at
                 estimate = self.loop.advance(recording, 0)
-            if estimate is not None and not np.isfinite(estimate.q).all():
-                raise ArithmeticError("the estimate is not a number")
+            if self.loop.no_person:
+                raise ArithmeticError("the estimate is no person")
         except NUMERICAL as error:
             self.loop.forget()
             return LiveStep(number, None, awaited, time.perf_counter() - begin, str(error))

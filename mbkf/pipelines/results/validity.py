@@ -20,6 +20,20 @@ A fifth of the ankle's and a third of hip's and knee's peak in walking (Winter 2
 joint of the legs has 0.06 in squats and 0.17 in walking (dynamic filter), with one plate under both feet 0.26. With a
 foot that nothing reads it depends on the movement: frames in which the load changes quickly do not count."""
 
+MOST_NM_PER_KG = 30.0
+"""No joint of a person bears a larger torque, per body mass, N m/kg: three times the largest of landings and throws."""
+
+
+def torques_possible(tau: Array, root_dofs: int, mass_kg: float) -> BoolArray:
+    """(T,) whether no joint's torque is beyond what a person's joints bear; where there is none, none is.
+
+    Args:
+        tau: (T, nv) generalised forces; the root's are left out.
+        root_dofs: How many of them are the root's, the first ones.
+        mass_kg: Body mass.
+    """
+    return np.asarray(~(np.abs(tau[:, root_dofs:]) > MOST_NM_PER_KG * mass_kg).any(axis=1))
+
 
 def torques_known(
     model: Body, names: tuple[str, ...], moments_sd: Array, foot_source: Array, bears: BoolArray

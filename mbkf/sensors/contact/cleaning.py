@@ -38,6 +38,7 @@ WORDS = {
     Fault.DROPOUT: "zeros under a standing foot",
     Fault.SATURATED: "cut off at the converter's limit",
     Fault.STUCK: "stuck at one reading",
+    Fault.GAIN: "of a plate whose forces would throw the body; are its unit and gain right?",
     Fault.SIGN: "of a plate that pulls where it should push; is its sign wrong?",
 }
 

@@ -6,6 +6,7 @@ dropout    exact zeros that a loaded plate falls to, and rises from, within one 
 saturated  a channel stays at its largest value of the trial, as a converter's limit cuts a peak off
 stuck      a loaded plate repeats the very same six numbers
 sign       a plate that pulls where it should push
+gain       a plate that bears what no body does for so long that it would be thrown
 =========  ========================================================================================================
 
 Impacts are real: the vertical force under a running foot rises by 100 to 300 body weights per second. So a jump alone
@@ -16,8 +17,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbkf.conventions import Array, BoolArray
-from mbkf.sensors.contact.possible import Fault, Faults, impossible
+from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
+from mbkf.sensors.contact.possible import MOST_WEIGHTS, Fault, Faults, impossible
 
 JUMP_WEIGHTS, JUMP_RATE = 0.5, 1000.0
 """A change from one sample to the next beyond 0.5 body weights and 1000 of them per second is no foot's."""
@@ -48,6 +49,10 @@ STUCK_WEIGHTS = 0.05
 SIGN_S = 0.05
 """A plate that pulls by more than it can for this long, and on the whole more than it pushes, has the wrong sign."""
 
+BORNE_WEIGHTS, THROWN_M_S = 8.0, 15.0
+"""A force beyond what a body can bear with all that it may carry throws it: no contact adds more to its speed than
+this, which is that of a fall from 11 m."""
+
 NO_FAULT = np.int8(Fault.NONE)
 
 
@@ -66,6 +71,8 @@ def faults_of(wrench: Array, rate_hz: float, weight_n: float, reach_m: float) ->
     faults = impossible(wrench, weight_n, reach_m)
     if _pulls(wrench, faults, rate_hz, weight_n):
         return np.where(faults == Fault.NOT_A_NUMBER, faults, np.int8(Fault.SIGN))
+    if _throws(wrench, rate_hz, weight_n):
+        return np.where(faults == Fault.NOT_A_NUMBER, faults, np.int8(Fault.GAIN))
     for kind, found in (
         (Fault.STUCK, _stuck(wrench, faults, rate_hz, weight_n)),
         (Fault.SATURATED, _saturated(wrench, faults, rate_hz, weight_n)),
@@ -102,6 +109,14 @@ def _pulls(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) -> bo
     vertical = wrench[(faults != Fault.NOT_A_NUMBER) & (faults != Fault.FORCE), 2]
     loaded = np.abs(vertical) > STUCK_WEIGHTS * weight_n
     return bool(vertical[loaded].sum() < 0.0)
+
+
+def _throws(wrench: Array, rate_hz: float, weight_n: float) -> bool:
+    """Whether some contact's force, less what a body bears, would throw it: ∫ (F_z − 8 W) dt > 15 m/s · W/g."""
+    vertical = np.clip(np.nan_to_num(wrench[:, 2]), 0.0, MOST_WEIGHTS * weight_n) / weight_n
+    contacts = runs(vertical > STUCK_WEIGHTS)
+    least = THROWN_M_S / GRAVITY_M_S2 * rate_hz
+    return any((vertical[first:after] - BORNE_WEIGHTS).sum() > least for first, after in contacts)
 
 
 def _equal_runs(same: BoolArray, least: int) -> list[tuple[int, int]]:

@@ -55,6 +55,7 @@ class Fault(IntEnum):
     SATURATED = 8
     STUCK = 9
     SIGN = 10
+    GAIN = 11
 
 
 Faults = NDArray[np.int8]

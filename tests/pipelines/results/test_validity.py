@@ -5,7 +5,13 @@ import pytest
 
 from mbkf.io.contacts import Source
 from mbkf.model.clinical import ClinicalAngles
-from mbkf.pipelines.results.validity import TORQUE_SD_NM_PER_KG, joints_to_root, torques_known
+from mbkf.pipelines.results.validity import (
+    MOST_NM_PER_KG,
+    TORQUE_SD_NM_PER_KG,
+    joints_to_root,
+    torques_known,
+    torques_possible,
+)
 from tests.motions import reference_model
 
 NAMES = ClinicalAngles(reference_model()).names
@@ -75,3 +81,12 @@ def test_a_filter_that_asks_for_no_other_parts():
         False,
         False,
     ]
+
+
+def test_a_torque_that_no_joint_bears_is_not_possible():
+    tau = np.zeros((5, 8))
+    tau[0, 0] = 1e6  # the root's
+    tau[1, 6], tau[2, 7] = 0.99 * MOST_NM_PER_KG * 70.0, -1.01 * MOST_NM_PER_KG * 70.0
+    tau[3, 6] = np.nan
+    tau[4, 7] = np.inf
+    assert torques_possible(tau, 6, 70.0).tolist() == [True, True, False, True, False]

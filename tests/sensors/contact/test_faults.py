@@ -115,6 +115,26 @@ def test_a_plate_of_the_wrong_sign_is_refused_whole():
     assert (faults(half)[500:600] == Fault.PULL).all()
 
 
+@pytest.mark.parametrize("rate_hz", [100.0, 1000.0])
+def test_a_plate_whose_forces_would_throw_the_body_is_refused_whole(rate_hz):
+    """20 times a step of 0.7 s is 12 body weights more than a body bears: 82 m/s."""
+    wrench = 20.0 * stance(rate_hz)
+    assert (faults(wrench, rate_hz) == Fault.GAIN).all()
+    wrench[3] = np.nan
+    assert faults(wrench, rate_hz)[3] == Fault.NOT_A_NUMBER
+    assert not (faults(6.0 * stance(rate_hz), rate_hz) == Fault.GAIN).any()  # with a load on the shoulders
+
+
+def test_the_hardest_contacts_throw_nobody():
+    """15.2 body weights in the step of a triple jump (0.16 s), 11 in a landing (0.05 s) that ends in standing."""
+    t = np.arange(SAMPLES) / RATE_HZ
+    for peak, width_s in ((15.2, 0.16), (11.0, 0.05)):
+        weights = np.maximum(peak * np.sin(np.pi * np.clip((t - 0.2) / width_s, 0.0, 1.0)), 1.0 * (t > 0.2))
+        wrench = np.zeros((SAMPLES, 6))
+        wrench[:, 2] = WEIGHT_N * weights + np.random.default_rng(0).normal(size=SAMPLES)
+        assert not (faults(wrench) == Fault.GAIN).any()
+
+
 def test_nothing_but_faults_is_refused_without_an_error():
     assert (faults(np.full((30, 6), np.nan)) == Fault.NOT_A_NUMBER).all()
     assert faults(np.zeros((0, 6))).shape == (0,)
