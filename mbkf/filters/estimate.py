@@ -88,6 +88,7 @@ class Posterior(NamedTuple):
         changes: (2, 2, 6) change of the feet's wrenches since the frame before, and of that change, as they were known
             at once; None where they are not.
         later: Whether later frames have corrected it and its covariance.
+        lost: Whether the body is elsewhere than it was predicted: most markers, and at least half of all, lie far off.
         uncorrected: Whether later frames should have, and what they made of it was no person
             (:mod:`mbkf.filters.person`).
         plate_noise: What is known of the noise of the plates' forces, N; None where the filter does not ask, or at a
@@ -108,6 +109,7 @@ class Posterior(NamedTuple):
     changes: Array | None = None
     later: bool = False
     plate_noise: WhiteNoise | None = None
+    lost: bool = False
     uncorrected: bool = False
 
 

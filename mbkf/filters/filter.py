@@ -146,6 +146,12 @@ class Step(NamedTuple, Generic[StateT]):
         return self.decisions.notes.observed and not self.decisions.notes.lost
 
     @property
+    def lost(self) -> bool:
+        """Whether most markers, and at least half of all, were seen far from where they were predicted."""
+        notes = self.decisions.notes
+        return notes.lost and 2 * int(np.count_nonzero(notes.seen)) >= len(notes.seen)
+
+    @property
     def refused(self) -> BoolArray:
         """(M,) markers seen but outside their gate."""
         notes = self.decisions.notes

@@ -18,8 +18,8 @@ from mbkf.sensors.contact.possible import MOST_WEIGHTS
 from mbkf.sensors.gating import TRACK_LOSS_M
 
 MOST_RAD_S = 300.0
-"""No joint turns faster, rad/s. The fastest that is known, the shoulder of a pitcher, reaches 126 in the mean of professionals
-(Fleisig 1999: 7,240°/s)."""
+"""No joint turns faster, rad/s. The fastest that is known, the shoulder of a pitcher, reaches 126 in the mean of
+professionals (Fleisig 1999: 7,240°/s)."""
 
 DOUBT = 2.0
 """An estimated force may exceed the largest known one, :data:`mbkf.sensors.contact.possible.MOST_WEIGHTS`, by this."""

@@ -1,6 +1,9 @@
 """A filter's way through a trial, frame by frame: start, steps, and a restart after a loss.
 
-An estimate that is no person is given to nobody: the frame has none, and the next one starts anew.
+Where a frame shows the body elsewhere than it was predicted (it was moved while it was hidden, or the capture has a
+cut), or the estimate is no person, the frame is asked for again and starts anew: a filter would take a jump for a
+movement, and its readings would correct the frames before. Where what comes of that is no person either, the frame has no
+estimate, and the next one starts anew.
 """
 
 from __future__ import annotations
@@ -20,13 +23,14 @@ class TrackingLoop:
     Attributes:
         filter: The filter.
         estimate: The latest estimate, None before the first start and after one that was no person.
+        again: Whether the latest frame has no answer yet and is to be asked for again, with those after it.
         no_person: Whether the latest frame has no estimate since that was no person.
     """
 
     def __init__(self, filter: TrackingFilter) -> None:
         self.filter = filter
         self.estimate: Posterior | None = None
-        self.no_person = False
+        self.again = self.no_person = False
         self._lost_for = 0
         self._prediction: Prediction | None = None
 
@@ -34,7 +38,7 @@ class TrackingLoop:
     def must_start(self) -> bool:
         """Whether the next frame tries a start, which looks at the frames after it, too."""
         lost = self._lost_for * self.filter.dt_s > self.filter.restart_after_s
-        return self.estimate is None or lost
+        return self.estimate is None or lost or self.again
 
     def predict(self) -> Prediction | None:
         """What the next frame should show, None where it has to start; the step into that frame goes on from it."""
@@ -45,17 +49,22 @@ class TrackingLoop:
         return self._prediction
 
     def advance(self, recording: Recording, t: int) -> Posterior | None:
-        """The estimate of frame t, the one after the latest; None as long as no start has succeeded."""
+        """The estimate of frame t, the one after the latest; None as long as no start has succeeded, and ``again``."""
         before, fresh = self.estimate, None
         prediction, self._prediction = self._prediction, None
+        starting, self.again = self.must_start, False
         with np.errstate(all="ignore"):  # what comes of it is looked at
-            if self.must_start:
+            if starting:
                 fresh = self.filter.start(recording, t, None if before is None else before.q)
             if fresh is None and before is not None:
                 fresh = self.filter.step(before, recording, t, prediction)
-        self.no_person = fresh is not None and not is_person(fresh, self.filter.model)
+        astray = fresh is not None and not is_person(fresh, self.filter.model)
+        self.no_person = astray and starting
         if self.no_person:
             self.forget()
+            return None
+        if fresh is not None and not starting and (astray or fresh.lost):
+            self.again = True
             return None
         if fresh is not None:
             self.estimate = fresh
@@ -64,7 +73,7 @@ class TrackingLoop:
 
     def forget(self) -> None:
         """Nothing is known any more; the next frame has to start anew."""
-        self.estimate, self._lost_for, self._prediction = None, 0, None
+        self.estimate, self._lost_for, self._prediction, self.again = None, 0, None, False
 
 
 def followed(filter: TrackingFilter, recording: Recording) -> Iterator[tuple[int, Posterior, float]]:
@@ -73,5 +82,7 @@ def followed(filter: TrackingFilter, recording: Recording) -> Iterator[tuple[int
     for t in range(len(recording)):
         begin = time.perf_counter()
         fresh = loop.advance(recording, t)
+        if loop.again:
+            fresh = loop.advance(recording, t)
         if fresh is not None:
             yield t, fresh, time.perf_counter() - begin

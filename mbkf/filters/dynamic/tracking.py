@@ -69,7 +69,7 @@ class DynamicTracking(TrackingFilter):
             return None
         state, a = found.state, found.accelerations.mean(axis=0)
         first = self.kalman.first(state.q, state.v, a, state.P, recording.frame(t))
-        return self._estimate(first)._replace(tracked=True, started=True, lag=None)
+        return self._estimate(first)._replace(tracked=True, started=True, lag=None, lost=False)
 
     def predict(self, before: Posterior) -> Prediction:
         """By the filter's own plant."""
@@ -301,4 +301,5 @@ class DynamicTracking(TrackingFilter):
             lag,
             changes,
             plate_noise=noise,
+            lost=step.lost,
         )

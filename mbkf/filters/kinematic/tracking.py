@@ -145,7 +145,8 @@ class KinematicTracking(TrackingFilter):
         settled = since >= len(was.settling)
         a = (state.v - was.state.v) / self.dt_s if settled else was.settling[since]
         inner = KinematicRecord(state, step, was.state, was.settling, since)
-        return Posterior(state.q, state.v, a, NO_WRENCH, None, step.refused, step.tracked, False, inner)
+        seen = step.refused, step.tracked, False
+        return Posterior(state.q, state.v, a, NO_WRENCH, None, *seen, inner, lost=step.lost)
 
     def _memory(self, was: KinematicRecord) -> Memory:
         return self.kalman.begin() if was.step is None else was.step.memory

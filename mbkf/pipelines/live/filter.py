@@ -176,23 +176,30 @@ class LiveFilter:
         while self._waiting:
             if self.loop.must_start and len(self._waiting) <= ahead:
                 break
-            steps.append(self._step(awaited or self.loop.must_start))
+            step = self._step(awaited or self.loop.must_start)
+            if step is not None:
+                steps.append(step)
         return steps
 
-    def _step(self, awaited: bool) -> LiveStep:
+    def _step(self, awaited: bool) -> LiveStep | None:
+        """Answer to the first frame that waits; None where it goes on waiting, to start anew with those after it."""
         begin, self._predicting_s = time.perf_counter() - self._predicting_s, 0.0
         number = self._waiting[0][0]
         waiting = list(self._waiting) if self.loop.must_start else [self._waiting[0]]
         recording = Recording.of([frame for _, frame in waiting], self._filter.dt_s)
-        self._waiting.popleft()
         try:
             with np.errstate(all="ignore"):  # what comes of it is looked at
                 estimate = self.loop.advance(recording, 0)
+            if self.loop.again:
+                self._predicting_s = time.perf_counter() - begin
+                return None
             if self.loop.no_person:
                 raise ArithmeticError("the estimate is no person")
         except NUMERICAL as error:
+            self._waiting.popleft()
             self.loop.forget()
             return LiveStep(number, None, awaited, time.perf_counter() - begin, str(error))
+        self._waiting.popleft()
         return LiveStep(number, estimate, awaited, time.perf_counter() - begin)
 
 
