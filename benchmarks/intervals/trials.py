@@ -74,10 +74,17 @@ def judged(key: Key) -> tuple[Judged, Judged]:
         reconstruct(trial, subject, settings=ReconstructSettings(smooth=smooth, checks=False))
         for smooth in (False, True)
     ]
-    return _against(key, both[0], made.truth), _against(key, both[1], made.truth)
+    return against(key, both[0], made.truth), against(key, both[1], made.truth)
 
 
-def _against(key: Key, found: Reconstruction, truth: Truth) -> Judged:
+def against(key: Key, found: Reconstruction, truth: Truth) -> Judged:
+    """A reconstruction's errors over its stated standard deviations.
+
+    Args:
+        key: The trial.
+        found: Its reconstruction.
+        truth: The truth in the same frames.
+    """
     model = HumanModel.of(found.subject)
     settled = (found.times_s >= found.times_s[0] + SETTLING_S) & found.tracked
     q = np.array([model.difference(a, b) for a, b in zip(found.q[settled], truth.q[settled], strict=True)])

@@ -2,8 +2,8 @@
 
 Where a frame shows the body elsewhere than it was predicted (it was moved while it was hidden, or the capture has a
 cut), or the estimate is no person, the frame is asked for again and starts anew: a filter would take a jump for a
-movement, and its readings would correct the frames before. Where what comes of that is no person either, the frame has no
-estimate, and the next one starts anew.
+movement, and its readings would correct the frames before. Where what comes of that is no person either, the frame has
+no estimate, and the next one starts anew.
 """
 
 from __future__ import annotations
