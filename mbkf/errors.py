@@ -6,9 +6,21 @@ import difflib
 from collections.abc import Iterable
 from pathlib import Path
 
+MOST_LETTERS = 1000
+"""Length of the longest text of an error; what a damaged file holds may be longer."""
+
 
 class MbkfError(Exception):
     """Root of all errors of this package; its text is one line a person can act on."""
+
+    def __str__(self) -> str:
+        """The text: cut where it is long, letters that steer a terminal as their codes."""
+        text = super().__str__()
+        if len(text) > MOST_LETTERS:
+            text = f"{text[: MOST_LETTERS // 2]} … {text[-MOST_LETTERS // 2 :]}"
+        return "".join(
+            letter if letter.isprintable() or letter == "\n" else ascii(letter)[1:-1] for letter in text
+        )
 
 
 class FileFormatError(MbkfError):

@@ -7,6 +7,7 @@ Each outcome is a line of its own, and so is what begins: a death is known to be
 
 from __future__ import annotations
 
+import shutil
 import sys
 import traceback
 import warnings
@@ -35,6 +36,8 @@ def outcome(name: str, one: Format, seed: int, folder: Path) -> str:
     place = folder / f"{name}-{seed}"
     place.mkdir(parents=True, exist_ok=True)
     path = place / one.file.name
+    for other in one.beside:
+        shutil.copy(other, place)
     path.write_bytes(mutated(one.file.read_bytes(), seed, one.text))
     try:
         with warnings.catch_warnings():
@@ -47,8 +50,7 @@ def outcome(name: str, one: Format, seed: int, folder: Path) -> str:
         where = f"{Path(own[-1].filename).name}:{own[-1].lineno}" if own else "?"
         return f"{FOREIGN} {type(error).__name__} in {where}: {' '.join(str(error).split())[:80]}"
     finally:
-        path.unlink()
-        place.rmdir()
+        shutil.rmtree(place)
 
 
 def main(words: Iterable[str]) -> None:

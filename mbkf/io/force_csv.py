@@ -12,7 +12,6 @@ plates (NatNet SDK, description of force plates).
 
 from __future__ import annotations
 
-import csv
 import re
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -27,7 +26,7 @@ from mbkf.io.force_names import ForceSet, force_column, force_sets
 from mbkf.io.force_table import ForceTable, plates_of_table, up_of_table
 from mbkf.io.plate_table import PlateTable, check_corners, faced_axis, plates_with_corners
 from mbkf.io.records import PlateReadings
-from mbkf.io.text import TextFile, even_rate, number, numbers, read_text
+from mbkf.io.text import TextFile, csv_rows, even_rate, number, numbers, read_text
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
 
 _MOST_HEADER_LINES = 60
@@ -124,27 +123,28 @@ def _beside(path: Path) -> tuple[Path, ...]:
     return tuple(found[key] for key in sorted(found)) or (path,)
 
 
-def _cells(text: str) -> list[str]:
+def _cells(file: TextFile, index: int) -> list[str]:
     """Cells of a line: between tabs, else semicolons (with decimal commas), else commas, else blanks."""
+    text = file.lines[index]
     delimiter = next((mark for mark in "\t;," if mark in text), None)
     if delimiter is None:
         return text.split()
-    cells = [cell.strip() for cell in next(csv.reader([text], delimiter=delimiter))]
+    cells = [cell.strip() for cell in next(csv_rows([text], file.path, index + 1, delimiter))]
     return cells if delimiter == "," else [_DECIMAL_COMMA.sub(".", cell) for cell in cells]
 
 
 def _titled(file: TextFile) -> _Titled:
     settings: list[list[str]] = []
-    for index, text in enumerate(file.lines[:_MOST_HEADER_LINES]):
-        cells = _cells(text)
+    for index in range(min(len(file.lines), _MOST_HEADER_LINES)):
+        cells = _cells(file, index)
         found = [column for cell in cells if (column := force_column(cell)) is not None]
         if {column.axis for column in found if column.quantity == "force"} == {0, 1, 2}:
-            after = _cells(file.lines[index + 1]) if index + 1 < len(file.lines) else []
+            after = _cells(file, index + 1) if index + 1 < len(file.lines) else []
             units = after if any(after) and not any(number(cell) is not None for cell in after) else []
             return _Titled(cells, units, settings, index + (2 if units else 1))
         settings.append(cells)
     titles = _titles_of_name(file.path.stem)
-    width = len(_cells(file.lines[0])) if file.lines else 0
+    width = len(_cells(file, 0)) if file.lines else 0
     if titles and len(titles) == width:
         return _Titled(titles, [], [], 0)
     raise FileFormatError(file.path, "no line names the columns of a force (Fx, Fy, Fz …); give them names")
@@ -164,8 +164,8 @@ def _table(file: TextFile, titled: _Titled) -> ForceTable:
     """The numbers below the titles, with their rate."""
     rows: list[list[float]] = []
     width = len(titled.titles)
-    for line, text in enumerate(file.lines[titled.start :], start=titled.start + 1):
-        cells = _cells(text)
+    for line in range(titled.start + 1, len(file.lines) + 1):
+        cells = _cells(file, line - 1)
         if not any(cells):
             if rows:
                 break  # another table may follow

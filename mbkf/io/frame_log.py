@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.errors import FileFormatError
+from mbkf.io.plain_data import parse_json
 
 FORMAT = "mbkf frame log"
 FORMAT_VERSION = 2
@@ -112,7 +113,7 @@ def read_frame_log(path: str | Path) -> FrameLog:
     source = Path(path)
     try:
         with source.open("rb") as file:
-            first = json.loads(file.readline())
+            first = parse_json(file.readline())
             version = first["format_version"]
             if first["format"] != FORMAT or version > FORMAT_VERSION:
                 raise FileFormatError(source, "not a frame log of this version of mbkf")

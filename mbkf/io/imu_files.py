@@ -15,6 +15,7 @@ from pathlib import Path
 from mbkf.errors import FileFormatError
 from mbkf.io.imu import ImuReadings, read_imu_csv
 from mbkf.io.imu_xsens import is_xsens, read_xsens, read_xsens_folder
+from mbkf.io.plausible_imu import plausible_readings
 from mbkf.io.readers import FOLDER, FileFormat, FormatRegistry
 
 
@@ -78,13 +79,13 @@ def read_imu(
 
     Raises:
         FileFormatError: The file is missing, of no known kind, or broken.
-        InvalidInput: A unit or rate is missing.
+        InvalidInput: A unit or rate is missing, or a time or reading is impossible.
         UnknownName: Unknown unit.
     """
     path = Path(path)
     if not path.exists():
         raise FileFormatError(path, "no such file; name a table of inertial readings")
-    return IMUS.format_of(path).read(path, ImuOptions(units, rate_hz))
+    return plausible_readings(IMUS.format_of(path).read(path, ImuOptions(units, rate_hz)), str(path))
 
 
 @register_imu_reader(".csv", ".tsv", ".txt", title="table")

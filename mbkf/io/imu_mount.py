@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +11,7 @@ import numpy as np
 from mbkf.conventions import Array, read_only
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.atomic import replacing
+from mbkf.io.plain_data import read_toml
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def read_mounts(path: str | Path) -> tuple[ImuMount, ...]:
     """
     source = Path(path)
     try:
-        table = tomllib.loads(source.read_text(encoding="utf-8"))
+        table = read_toml(source)
         return tuple(
             ImuMount(
                 entry["name"],
@@ -89,5 +89,5 @@ def read_mounts(path: str | Path) -> tuple[ImuMount, ...]:
         ) from error
     except InvalidInput as error:
         raise FileFormatError(source, str(error)) from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, KeyError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError) as error:
         raise FileFormatError(source, f"not a file of sensor mounts ({error})") from error

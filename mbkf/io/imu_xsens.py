@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +12,8 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.imu import ImuReadings
+from mbkf.io.loose_xml import read_loose_xml
+from mbkf.io.text import number
 
 COUNTER = "PacketCounter"
 """The column that every such file has."""
@@ -54,7 +55,7 @@ def read_xsens(path: str | Path, rate_hz: float | None = None) -> ImuReadings:
     head = next((k for k, line in enumerate(lines[:30]) if line.startswith(COUNTER)), None)
     if head is None:
         raise FileFormatError(path, f"not an Xsens text export (no column {COUNTER})")
-    stated = next((float(m[1]) for line in lines[:head] if (m := _RATE.search(line))), None)
+    stated = next((number(m[1]) for line in lines[:head] if (m := _RATE.search(line))), None)
     rate = rate_hz or stated
     if rate is None:
         raise InvalidInput(f"{path}: the header states no update rate; give it with --rate")
@@ -137,14 +138,10 @@ def _mapping(folder: Path) -> dict[str, str]:
     """End of a file's name → name in an OpenSense mapping."""
     found: dict[str, str] = {}
     for path in folder.glob("*.xml"):
-        try:
-            root = ET.parse(path).getroot()
-        except ET.ParseError as error:
-            raise FileFormatError(path, f"not XML ({error}); correct it or take it away") from error
-        for sensor in root.iter("ExperimentalSensor"):
-            name = sensor.findtext("name_in_model")
+        for sensor in read_loose_xml(path).every("ExperimentalSensor"):
+            name = sensor.said("name_in_model")
             if name:
-                found[sensor.get("name", "")] = name.strip().removesuffix("_imu")
+                found[sensor.name] = name.removesuffix("_imu")
     return found
 
 
@@ -155,18 +152,16 @@ def _named(one: ImuReadings, names: dict[str, str]) -> ImuReadings:
 
 def _table(path: Path, lines: Sequence[str], start: int, names: Sequence[str]) -> Array:
     rows = []
-    for number, line in enumerate(lines[start:], start=start + 1):
+    for row, line in enumerate(lines[start:], start=start + 1):
         if not line.strip():
             continue
         cells = line.split("\t")
         if len(cells) < len(names):
-            raise FileFormatError(
-                path, f"{len(cells)} cells for {len(names)} columns; export it again", number
-            )
+            raise FileFormatError(path, f"{len(cells)} cells for {len(names)} columns; export it again", row)
         try:
             rows.append([float(cell) if cell.strip() else np.nan for cell in cells[: len(names)]])
         except ValueError as error:
-            raise FileFormatError(path, f"not a number ({error})", number) from error
+            raise FileFormatError(path, f"not a number ({error})", row) from error
     if len(rows) < 2:
         raise FileFormatError(path, "cut short: no samples after the column names", start)
     return np.array(rows)

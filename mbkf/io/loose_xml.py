@@ -17,13 +17,16 @@ from mbkf.errors import FileFormatError
 
 _TOKEN = re.compile(
     r"<!--.*?(?:-->|\Z)|<!\[CDATA\[(?P<raw>.*?)(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)"
-    r"|<!DOCTYPE[^\[>]*(?:\[.*?\]\s*)?>"
+    r"|<!DOCTYPE[^\[>]*(?:\[[^\]]*\]?\s*)?>?"
     r"|</\s*(?P<end>[\w.:-]+)[^<>]*>?"
     r"|<(?P<start>[A-Za-z_][\w.:-]*)(?P<attributes>[^<>]*)>"
     r"|(?P<text>[^<]+|<)",
     re.DOTALL | re.IGNORECASE,
 )
-_ATTRIBUTE = re.compile(r"([\w.:-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)'|[\"']?([^\s\"']+))")
+_ATTRIBUTE = re.compile(r"(?<![\w.:-])([\w.:-]++)\s*+=\s*(?:\"([^\"]*)\"|'([^']*)'|[\"']?([^\s\"']+))")
+MOST_DEPTH = 200
+"""Elements in elements that are told apart; what is nested deeper counts as side by side."""
+
 _CHARACTER = re.compile(r"&(?:#(\d{1,7})|#x([0-9a-fA-F]{1,6})|(amp|lt|gt|quot|apos));")
 _NAMED = {"amp": "&", "lt": "<", "gt": ">", "quot": '"', "apos": "'"}
 _DECLARED = re.compile(rb"<\?xml[^>]*encoding\s*=\s*[\"']([\w.-]+)[\"']", re.IGNORECASE)
@@ -100,24 +103,36 @@ def parse_loose_xml(text: str, never_nested: frozenset[str] = frozenset()) -> El
     """
     root = Element("")
     open_: list[Element] = [root]
+    said: list[str] = []
     for token in _TOKEN.finditer(text):
+        if token["start"] or token["end"]:
+            _say(open_, said)
         if token["start"]:
             _open(open_, token["start"], never_nested)
             pairs = _ATTRIBUTE.findall(token["attributes"])
             made = Element(token["start"], {key: _plain("".join(values)) for key, *values in pairs})
             open_[-1].children.append(made)
-            if not token["attributes"].endswith("/"):
+            if not token["attributes"].endswith("/") and len(open_) <= MOST_DEPTH:
                 open_.append(made)
         elif token["end"]:
             _close(open_, token["end"])
         elif token["text"] or token["raw"]:
-            open_[-1].text += token["raw"] or _plain(token["text"])
+            said.append(token["raw"] or _plain(token["text"]))
+    _say(open_, said)
     waiting = [root]
     while waiting:
         one = waiting.pop()
         one.text = one.text.strip()
         waiting.extend(one.children)
     return root
+
+
+def _say(open_: list[Element], said: list[str]) -> None:
+    """Gives the innermost element what was said in it; between elements there is white space only."""
+    text = "".join(said)
+    said.clear()
+    if len(open_) > 1 and (open_[-1].text or text.strip()):
+        open_[-1].text += text
 
 
 def _open(open_: list[Element], tag: str, never_nested: frozenset[str]) -> None:

@@ -10,7 +10,6 @@ Source: OptiTrack documentation, page Data Export: CSV (docs.optitrack.com).
 
 from __future__ import annotations
 
-import csv
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +21,7 @@ from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.axes import check_body_size, finite, length_unit, positions_to_world, up_axis
 from mbkf.io.labels import unique_labels, without_subject
 from mbkf.io.records import Capture, MarkerTrajectories
-from mbkf.io.text import TextFile, compare_count, compare_rate, number, numbers, read_text
+from mbkf.io.text import TextFile, compare_count, compare_rate, csv_rows, number, numbers, read_text
 
 _MOST_HEADER_LINES = 20
 _UNLABELLED = re.compile(r"(?:unlabeled|unlabelled)\W*(?P<number>\d+)", re.IGNORECASE)
@@ -85,13 +84,13 @@ def read_motive(path: str | Path, *, up: str | None = None, unit: str | None = N
 
 
 def _take(file: TextFile) -> _Take:
-    first = next(csv.reader(file.lines[:1]), [])
+    first = next(csv_rows(file.lines[:1], file.path), [])
     if not first or first[0].strip().lower() != "format version":
         raise FileFormatError(file.path, "not an export of Motive (it does not begin with Format Version)", 1)
     cells = [cell.strip() for cell in first]
     entries = {name.lower(): value for name, value in zip(cells[::2], cells[1::2], strict=False)}
     titles: list[list[str]] = []
-    for index, row in enumerate(csv.reader(file.lines[1:_MOST_HEADER_LINES]), start=1):
+    for index, row in enumerate(csv_rows(file.lines[1:_MOST_HEADER_LINES], file.path, 2), start=1):
         words = [cell.strip() for cell in row]
         if not any(words):
             continue
@@ -147,7 +146,7 @@ def _rows(file: TextFile, take: _Take, columns: list[list[int]]) -> tuple[Array,
         raise FileFormatError(file.path, "no column of times; export it with its header", take.start)
     wanted = [time, *(index for triple in columns for index in triple)]
     table, widths = [], []
-    for line, row in enumerate(csv.reader(file.lines[take.start :]), start=take.start + 1):
+    for line, row in enumerate(csv_rows(file.lines[take.start :], file.path, take.start + 1), take.start + 1):
         if not any(cell.strip() for cell in row):
             continue
         widths.append(len(row))

@@ -17,6 +17,9 @@ from mbkf.conventions import Array, read_only
 from mbkf.errors import FileFormatError
 from mbkf.io.loose_xml import Element, read_loose_xml
 
+LARGEST = 1e6
+"""No length (m, or mm by mistake), angle or coefficient of a body's joints is larger."""
+
 _NEVER_NESTED = frozenset({"Marker", "Body", "PhysicalOffsetFrame", "TransformAxis"})
 _ROTATIONS = ("rotation1", "rotation2", "rotation3")
 _TRANSLATIONS = ("translation1", "translation2", "translation3")
@@ -187,13 +190,15 @@ def _at_zero(joint: Element) -> Array:
 _NO_FUNCTION = ("coordinates", "axis")
 
 
-def _value_at_zero(function: Element) -> float:
+def _value_at_zero(function: Element, depth: int = 4) -> float:
     """The value of one of OpenSim's functions where its argument is zero; 0 for one that is not known."""
+    if depth == 0:
+        return 0.0
     inner = [one for one in function.children if one.children or one.tag == "Constant"]
     if function.tag == "function" and inner:
-        return _value_at_zero(inner[0])
+        return _value_at_zero(inner[0], depth - 1)
     if function.tag == "MultiplierFunction":
-        scale, value = _list(function.said("scale")), _value_at_zero(inner[0]) if inner else 0.0
+        scale, value = _list(function.said("scale")), _value_at_zero(inner[0], depth - 1) if inner else 0.0
         return (scale[0] if scale else 1.0) * value
     if function.tag == "Constant":
         return (_list(function.said("value")) or [0.0])[0]
@@ -236,9 +241,9 @@ def _numbers(text: str) -> Array | None:
 
 
 def _list(text: str) -> list[float]:
-    """Finite numbers, none where any word is something else."""
+    """Numbers of a body's size, none where any word is something else."""
     try:
         found = [float(word) for word in text.replace(",", " ").split()]
     except ValueError:
         return []
-    return found if np.isfinite(found).all() else []
+    return found if all(abs(number) <= LARGEST for number in found) else []

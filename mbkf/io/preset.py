@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import Any
 
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.atomic import replacing
+from mbkf.io.plain_data import read_toml
 
 FOLDER_VARIABLE = "MBKF_PRESETS"
 """Environment variable that names the folder of named presets."""
@@ -89,7 +89,7 @@ def read_preset(path: str | Path) -> Preset:
     """
     source = Path(path)
     try:
-        table = tomllib.loads(source.read_text(encoding="utf-8"))
+        table = read_toml(source)
         unknown = [key for key in table if key not in _KEYS]
         if unknown:
             raise UnknownName("entry", unknown[0], _KEYS, str(source))
@@ -106,9 +106,9 @@ def read_preset(path: str | Path) -> Preset:
         )
     except FileNotFoundError as error:
         raise FileFormatError(source, f"no such file; {_HINT}") from error
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, UnicodeError) as error:
         raise FileFormatError(source, f"cannot be read ({error})") from error
-    except (tomllib.TOMLDecodeError, AttributeError, KeyError, TypeError, ValueError) as error:
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise FileFormatError(source, f"not a preset file ({error}); {_HINT}") from error
 
 

@@ -12,6 +12,7 @@ from typing import Any, NotRequired, TypedDict, cast
 from mbkf.errors import FileFormatError
 from mbkf.io.atomic_folder import replacing_folder
 from mbkf.io.hdf5 import run_of
+from mbkf.io.plain_data import parse_json
 from mbkf.io.results import Reconstruction
 from mbkf.io.results_h5 import read_h5, write_h5
 from mbkf.io.results_opensim import OPENSIM_FILES, write_opensim
@@ -212,11 +213,9 @@ def read_summary(folder: str | Path) -> Summary:
     """
     path, motion = Path(folder) / SUMMARY_FILE, Path(folder) / MOTION_FILE
     try:
-        summary = json.loads(path.read_text(encoding="utf-8"))
-        if not isinstance(summary, dict):
-            raise ValueError("it holds no table")
+        summary = parse_json(path.read_text(encoding="utf-8"))
         of_another_run = motion.is_file() and run_of(motion) != summary.get(RUN_ID, "")
-    except (OSError, ValueError, RecursionError) as error:
+    except (OSError, ValueError) as error:
         raise FileFormatError(path, f"cannot be read ({error}); make it with 'mbkf reconstruct'") from error
     if of_another_run:
         raise FileFormatError(

@@ -14,6 +14,7 @@ from mbkf.errors import FileFormatError, ShapeError, UnknownName
 from mbkf.io.atomic import replacing
 
 _WRITTEN_BY_US = {"nrows", "ncolumns", "indegrees", "version", "datarows", "datacolumns", "range", "name"}
+_MOST_DIGITS = 16
 _MOST_HEADER_LINES = 500
 
 
@@ -103,7 +104,7 @@ def read_storage(path: str | Path, *, check_rows: bool = True) -> Table:
 def promised_rows(table: Table) -> int | None:
     """Rows that a table's header promises, or None where it states no number."""
     text = table.header.get("nrows", table.header.get("datarows", "")).strip()
-    return int(text) if text.isdigit() else None
+    return int(text) if text.isdecimal() and len(text) < _MOST_DIGITS else None
 
 
 def write_storage(table: Table, path: str | Path) -> None:

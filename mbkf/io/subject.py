@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import tomllib
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,7 +15,12 @@ from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.atomic import replacing
 from mbkf.io.body_covariance import BodyCovariance, read_covariance
 from mbkf.io.inertia import SegmentInertia, inertia_lines, parse_inertia
+from mbkf.io.plain_data import number_between, parse_json, read_toml
+from mbkf.io.plausible import MASSES_KG
 from mbkf.io.text import toml_text
+
+FARTHEST_M, SCALES, HEIGHTS_M = 3.0, (0.05, 20.0), (0.3, 2.8)
+"""Marker places in their segments, factors to the reference body and heights are within these."""
 
 STANDING_KEY = "standing_q"
 """Key of a subject's report under which the posture of the static trial stands: its configuration, nq numbers."""
@@ -189,15 +193,17 @@ def read_subject(path: str | Path) -> Subject:
     """
     source = Path(path)
     try:
-        table = tomllib.loads(source.read_text(encoding="utf-8"))
+        table = read_toml(source)
         return Subject(
             body=table["body"],
-            mass_kg=float(table["mass_kg"]),
-            scale_factors={name: float(value) for name, value in table["scale_factors"].items()},
+            mass_kg=_mass_kg(float(table["mass_kg"])),
+            scale_factors={
+                name: number_between(table["scale_factors"], name, *SCALES) for name in table["scale_factors"]
+            },
             markers=tuple(_marker(entry) for entry in table.get("marker", ())),
             protocol=table["protocol"],
-            height_m=table.get("height_m"),
-            report=json.loads(table.get("report", "{}")),
+            height_m=number_between(table, "height_m", *HEIGHTS_M) if "height_m" in table else None,
+            report=dict(parse_json(table.get("report", "{}"))),
             body_text=str(table.get("body_text", "")),
             inertia=parse_inertia(table.get("inertia", {})),
             covariance=read_covariance(table["covariance"]) if "covariance" in table else None,
@@ -209,24 +215,31 @@ def read_subject(path: str | Path) -> Subject:
         raise FileFormatError(source, reason) from error
     except InvalidInput as error:
         raise InvalidInput(f"{source}: {error}") from error
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, UnicodeError) as error:
         raise FileFormatError(source, f"cannot be read ({error})") from error
-    except (tomllib.TOMLDecodeError, AttributeError, KeyError, TypeError, ValueError) as error:
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise FileFormatError(source, f"not a subject file ({error}); make it with 'mbkf scale'") from error
+
+
+def _mass_kg(value: float) -> float:
+    """A mass that a person may have; one that is not positive is refused with the person."""
+    if value > 0.0 and not MASSES_KG[0] <= value <= MASSES_KG[1]:
+        raise InvalidInput(f"mass_kg must be between {MASSES_KG[0]:g} and {MASSES_KG[1]:g}, got {value:g}")
+    return value
 
 
 def _marker(entry: dict[str, Any]) -> SubjectMarker:
     position = read_only(entry["position_m"])
-    if position.shape != (3,) or not np.isfinite(position).all():
-        raise ValueError(f"marker {entry['name']} needs three finite coordinates")
+    if position.shape != (3,) or not (np.abs(position) <= FARTHEST_M).all():
+        raise ValueError(f"marker {entry['name']} needs three finite coordinates of at most {FARTHEST_M:g} m")
     return SubjectMarker(
         entry["name"],
         entry["segment"],
         position,
-        float(entry["noise_m"]),
-        float(entry["session_sd_m"]),
+        number_between(entry, "noise_m", 0.0, FARTHEST_M),
+        number_between(entry, "session_sd_m", 0.0, FARTHEST_M),
         tuple(entry.get("aliases", ())),
-        float(entry.get("correlated_m", 0.0)),
+        number_between(entry, "correlated_m", 0.0, FARTHEST_M, 0.0),
         float(entry.get("correlation_s", 0.0)),
     )
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -63,6 +64,26 @@ def numbers(cells: Sequence[str], path: Path, line: int) -> list[float]:
         return [float(cell) if cell.strip() else math.nan for cell in cells]
     except ValueError as error:
         raise FileFormatError(path, f"not a number ({error}); correct or blank it", line) from error
+
+
+def csv_rows(lines: Sequence[str], path: Path, first: int = 1, delimiter: str = ",") -> Iterator[list[str]]:
+    """Cells of lines, of which quotation marks may join some.
+
+    Args:
+        lines: The lines.
+        path: The file, for messages.
+        first: Number of the first line, from 1.
+        delimiter: What stands between cells.
+
+    Raises:
+        FileFormatError: A cell is as long as no cell is, since a quotation mark does not end; names the line.
+    """
+    rows = csv.reader(lines, delimiter=delimiter)
+    try:
+        yield from rows
+    except csv.Error as error:
+        line = first - 1 + rows.line_num
+        raise FileFormatError(path, f"damaged ({error}); export it again", line) from error
 
 
 def number(word: str) -> float | None:

@@ -7,7 +7,6 @@ the body as in "femoral epicondyle"). It must be covered without rest: a name wi
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -15,6 +14,7 @@ from pathlib import Path
 
 from mbkf.conventions import TomlTable, data_folder
 from mbkf.errors import FileFormatError
+from mbkf.io.plain_data import read_toml
 
 Odds = Mapping[str, float]
 """Probability by place: a landmark or segment of human18 without its side."""
@@ -258,13 +258,13 @@ def load_dictionary(path: Path | None = None) -> Dictionary:
     """
     path = path or data_folder("markers") / "dictionary" / "spellings.toml"
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
+        table = read_toml(path)
         groups = [_group(entry) for entry in table["place"]]
         modifiers, objects = table["modifiers"], table["objects"]
         computed = frozenset(table["computed"]["words"])
     except OSError as error:
         raise FileFormatError(path, f"cannot be read ({error.strerror})") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, KeyError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError) as error:
         raise FileFormatError(path, f"not a valid dictionary of spellings ({error})") from error
     seen: set[str] = set()
     for group in groups:

@@ -10,7 +10,6 @@ pelvis.
 
 from __future__ import annotations
 
-import tomllib
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ import numpy as np
 
 from mbkf.conventions import Array, data_folder, read_only
 from mbkf.errors import FileFormatError, MbkfError, UnknownName
+from mbkf.io.plain_data import parse_toml
 from mbkf.model.body_checks import check_body
 from mbkf.model.clinical_table import ClinicalJoint, clinical_joints
 from mbkf.model.description import (
@@ -93,13 +93,13 @@ def parse_body(text: str, path: str | Path) -> BodyDescription:
 
 def _parse(text: str, path: Path, kept: str) -> BodyDescription:
     try:
-        body = _body(tomllib.loads(text), path, kept)
+        body = _body(parse_toml(text), path, kept)
         check_body(body)
     except MbkfError:
         raise
     except KeyError as error:
         raise FileFormatError(path, f"not a valid body description (it lacks {error})") from error
-    except (tomllib.TOMLDecodeError, AttributeError, TypeError, ValueError) as error:
+    except (AttributeError, TypeError, ValueError) as error:
         raise FileFormatError(path, f"not a valid body description ({error})") from error
     return body
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import tomllib
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
@@ -13,6 +13,7 @@ import numpy as np
 
 from mbkf.conventions import Array, data_folder, read_only
 from mbkf.errors import FileFormatError, UnknownName
+from mbkf.io.plain_data import number_between, read_toml
 from mbkf.io.subject import match_names
 from mbkf.model.body_file import load_body
 from mbkf.model.description import BodyDescription
@@ -26,6 +27,9 @@ neural network found in videos (a joint centre or a feature); followed, with noi
 DEFAULT_PLACEMENT_SD_M = {"anatomical": 0.010, "technical": 0.060, "computed": 0.006, "keypoint": 0.025}
 DEFAULT_NOISE_M = {"anatomical": 0.005, "technical": 0.005, "computed": 0.005, "keypoint": 0.020}
 DEFAULT_CORRELATED_M = {"anatomical": 0.0, "technical": 0.0, "computed": 0.0, "keypoint": 0.010}
+FARTHEST_M, MOST_SD_MM = 3.0, 1000.0
+"""No marker sits further from its segment's origin, nor is less known where it sits."""
+
 DEFAULT_CORRELATION_S = 0.3
 
 
@@ -160,25 +164,25 @@ def detect_protocol(names: Iterable[str], body: BodyDescription | None = None) -
 
 def _parse(path: Path, body: BodyDescription | None = None) -> Protocol:
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
+        table = read_toml(path)
         own = _own_body(table, path)
         body = body or own
         markers: list[ProtocolMarker] = []
         for entry in table["marker"]:
             markers += _markers(entry, body, own, path)
-        name = table["name"]
+        name, title = table["name"], table.get("title", table["name"])
+        if not isinstance(name, str) or not isinstance(title, str):
+            raise ValueError("name and title must be texts")
         ignored = {str(one["name"]): str(one.get("reason", "")) for one in table.get("ignored", [])}
     except OSError as error:
         raise FileFormatError(path, f"cannot be read ({error.strerror})") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, KeyError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError) as error:
         raise FileFormatError(path, f"not a valid protocol ({error})") from error
-    names = [marker.name for marker in markers]
-    for marker in names:
-        if names.count(marker) > 1:
+    names = Counter(marker.name for marker in markers)
+    for marker, times in names.items():
+        if times > 1:
             raise FileFormatError(path, f"marker '{marker}' stands twice")
-    return Protocol(
-        name, table.get("title", name), body, tuple(markers), str(table.get("source", "")), ignored
-    )
+    return Protocol(name, title, body, tuple(markers), str(table.get("source", "")), ignored)
 
 
 def _own_body(table: dict[str, Any], path: Path) -> BodyDescription:
@@ -249,8 +253,11 @@ def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> Protoco
     else:
         segment = entry["segment"]
         position = read_only(entry["position_m"])
-        if position.shape != (3,) or not np.isfinite(position).all():
-            raise FileFormatError(path, f"marker {entry['name']}: position_m needs three finite numbers")
+        if position.shape != (3,) or not (np.abs(position) <= FARTHEST_M).all():
+            reason = (
+                f"marker {entry['name']}: position_m needs three finite numbers of at most {FARTHEST_M:g} m"
+            )
+            raise FileFormatError(path, reason)
     if segment not in {s.name for s in body.segments}:
         raise UnknownName("segment", segment, [s.name for s in body.segments], where)
     if not isinstance(entry.get("static_only", False), bool):
@@ -259,17 +266,28 @@ def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> Protoco
     if kind not in KINDS:
         raise UnknownName("marker kind", kind, KINDS, where)
     noise, correlated, lasting = _noise(entry, kind, path)
+    texts = [
+        entry["name"],
+        entry.get("mirror", "-"),
+        *entry.get("aliases", ()),
+        *entry.get("mirror_aliases", ()),
+    ]
+    if not all(isinstance(text, str) for text in texts):
+        raise ValueError(f"marker {entry['name']}: names and aliases are texts")
     return ProtocolMarker(
         name=entry["name"],
         segment=segment,
         position_m=position,
         kind=kind,
-        placement_sd_m=entry.get("placement_sd_mm", 1e3 * DEFAULT_PLACEMENT_SD_M[kind]) / 1e3,
+        placement_sd_m=number_between(
+            entry, "placement_sd_mm", 0.0, MOST_SD_MM, 1e3 * DEFAULT_PLACEMENT_SD_M[kind]
+        )
+        / 1e3,
         noise_m=noise,
         aliases=tuple(entry.get("aliases", ())),
         static_only=entry.get("static_only", False),
         landmark=entry.get("landmark", ""),
-        probability=float(entry.get("probability", 1.0)),
+        probability=number_between(entry, "probability", 0.0, 1.0, 1.0),
         alternatives=tuple((str(other), float(odds)) for other, odds in entry.get("alternatives", [])),
         correlated_m=correlated,
         correlation_s=lasting,
@@ -278,7 +296,7 @@ def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> Protoco
 
 def _noise(entry: dict[str, Any], kind: str, path: Path) -> tuple[float, float, float]:
     """Noise, m, the part of it that stays for a while, m, and for how long, s."""
-    noise = entry.get("noise_mm", 1e3 * DEFAULT_NOISE_M[kind]) / 1e3
+    noise = number_between(entry, "noise_mm", 0.0, MOST_SD_MM, 1e3 * DEFAULT_NOISE_M[kind]) / 1e3
     usual = min(DEFAULT_CORRELATED_M[kind], 0.5 * noise)
     correlated = entry.get("correlated_mm", 1e3 * usual) / 1e3
     lasting = entry.get("correlation_s", DEFAULT_CORRELATION_S if correlated else 0.0)

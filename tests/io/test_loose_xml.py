@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbkf.errors import FileFormatError
-from mbkf.io.loose_xml import parse_loose_xml, read_loose_xml
+from mbkf.io.loose_xml import MOST_DEPTH, parse_loose_xml, read_loose_xml
 
 tags = st.sampled_from(["a", "b", "c", "Marker", "x.y", "x-y"])
 words = st.text(st.characters(min_codepoint=32, exclude_categories=["Cs", "Cc"])).map(str.strip)
@@ -128,3 +128,29 @@ def test_what_is_no_xml_is_refused(content, tmp_path):
         read_loose_xml(tmp_path / "a.osim")
     with pytest.raises(FileFormatError, match="no such file"):
         read_loose_xml(tmp_path / "b.osim")
+
+
+@pytest.mark.parametrize(
+    "bomb",
+    [
+        200_000 * "<",
+        100_000 * "<a>" + 100_000 * "</b>",
+        20_000 * "<!DOCTYPE[",
+        20_000 * "<!DOCTYPE a[]",
+        f"<a {400_000 * 'x'}>",
+        50_000 * "x<b/>",
+        50_000 * "<a",
+        50_000 * "<![CDATA[x]]>",
+    ],
+    ids=["brackets", "ends", "types", "closed types", "attribute", "texts", "starts", "raw"],
+)
+def test_what_costs_quadratic_time_elsewhere_is_read(bomb):
+    root = parse_loose_xml(f"<all>{bomb}")
+    assert root.children[0].tag == "all"
+
+
+def test_depth_is_bounded():
+    one, depth = parse_loose_xml(10 * MOST_DEPTH * "<a>"), 0
+    while one.children:
+        one, depth = one.children[0], depth + 1
+    assert depth == MOST_DEPTH + 1

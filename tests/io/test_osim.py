@@ -108,3 +108,19 @@ def test_other_files_are_refused(text, reason, tmp_path):
     (tmp_path / "model.osim").write_text(text, encoding="utf-8")
     with pytest.raises(FileFormatError, match=reason):
         read_osim(tmp_path / "model.osim")
+
+
+def test_hostile_nesting_and_lengths_cost_time_in_proportion_and_are_survived(tmp_path):
+    path = tmp_path / "a.osim"
+    function = "<function>" * 5000
+    axis = f'<TransformAxis name="translation1"><axis>1 0 0</axis>{function}</TransformAxis>'
+    path.write_text(
+        "<Model><JointSet><objects><PinJoint><socket_parent_frame>pelvis</socket_parent_frame>"
+        f"<socket_child_frame>femur_r</socket_child_frame><SpatialTransform>{axis}</SpatialTransform></PinJoint>"
+        "</objects></JointSet><MarkerSet>"
+        '<Marker name="A"><body>pelvis</body><location>0 0 0.1</location></Marker>'
+        '<Marker name="B"><body>pelvis</body><location>0 0 1e300</location></Marker></MarkerSet></Model>'
+    )
+    found = read_osim(path)
+    assert [marker.name for marker in found.markers] == ["A"] and list(found.damaged) == ["B"]
+    np.testing.assert_array_equal(found.joints[0].child_in_parent, np.eye(4))

@@ -15,7 +15,7 @@ from mbkf.io.subject import Subject, SubjectMarker, match_names, read_subject, w
 # TOML cannot hold lone surrogates, nor can UTF-8.
 TEXT = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=12)
 LENGTH = st.floats(-2, 2)
-POSITIVE = st.floats(1e-6, 1e3)
+POSITIVE = st.floats(1e-6, 3.0)
 FACTOR_NAMES = st.sampled_from(["head", "right_thigh", "trunk_depth", "left_foot_width"])
 PLAIN = st.recursive(
     st.none()
@@ -38,7 +38,7 @@ MARKERS = st.builds(
 SUBJECTS = st.builds(
     Subject,
     body=TEXT,
-    mass_kg=POSITIVE,
+    mass_kg=st.floats(0.5, 500.0),
     scale_factors=st.dictionaries(FACTOR_NAMES, st.floats(0.5, 1.6)),
     markers=st.lists(MARKERS, max_size=4).map(tuple),
     protocol=TEXT,
@@ -136,6 +136,9 @@ def test_impossible_masses_are_refused(subject, mass):
         ("position_m = [0.01, -0.05, -0.4]", "position_m = [0.01, -0.05]", "marker RKNE needs three"),
         ("position_m = [0.01, -0.05, -0.4]", "position_m = [0.01, nan, 0.2]", "marker RKNE needs three"),
         ("noise_m = 0.005", "", "noise_m"),
+        ("noise_m = 0.005", "noise_m = 1e9", "noise_m must be a number between 0 and 3"),
+        ("position_m = [0.01, -0.05, -0.4]", "position_m = [0.01, 1e9, 0.2]", "at most 3 m"),
+        ("head = 1.05", "head = -1.0", "between 0.05 and 20"),
         ("[[marker]]", "[marker]", "not a subject file"),
         ("report = ", "report = 'x' # ", "not a subject file"),
         ('segment = "right_thigh"', "segment = right_thigh", "not a subject file"),

@@ -4,7 +4,16 @@ import numpy as np
 import pytest
 
 from mbkf.errors import FileFormatError
-from mbkf.io.text import TextFile, compare_count, compare_rate, even_rate, number, numbers, read_text
+from mbkf.io.text import (
+    TextFile,
+    compare_count,
+    compare_rate,
+    csv_rows,
+    even_rate,
+    number,
+    numbers,
+    read_text,
+)
 
 
 @pytest.mark.parametrize(("content", "whole"), [("a\nb\n", True), ("a\r\nb\r\n", True), ("a\nb", False)])
@@ -54,3 +63,11 @@ def test_even_times(tmp_path):
     ):
         with pytest.raises(FileFormatError, match=reason):
             even_rate(tmp_path, times)
+
+
+def test_cells_of_csv_lines_and_a_quotation_mark_without_end(tmp_path):
+    assert list(csv_rows(['a,"b;c"', "", "1;2"], tmp_path, delimiter=";")) == [['a,"b', 'c"'], [], ["1", "2"]]
+    lines = ["a,b", '"' + 70_000 * "x", 70_000 * "y"]
+    with pytest.raises(FileFormatError, match=r"line 12: damaged .*field larger") as caught:
+        list(csv_rows(lines, tmp_path / "a.csv", 10))
+    assert caught.value.line == 12

@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from mbkf.conventions import Array
+from mbkf.errors import FileFormatError
 from mbkf.io.atomic import replacing
 from mbkf.io.results import Reconstruction
 from mbkf.io.results_opensim import TRANSLATIONS
@@ -53,14 +54,37 @@ class Curve(NamedTuple):
     sd: Array
 
 
+def read_curves(path: Path) -> pa.Table:
+    """Reads a file of :func:`write_curves`.
+
+    Raises:
+        FileFormatError: It is damaged.
+        OSError: It cannot be read.
+    """
+    try:
+        return pq.read_table(path, schema=SCHEMA, page_checksum_verification=True)
+    except (pa.ArrowException, OSError, ValueError) as error:
+        reason = f"damaged ({error}); delete its folder and run the batch again"
+        raise FileFormatError(path, reason) from error
+
+
 def write_curves(r: Reconstruction, path: Path) -> None:
     """Writes the curves of a reconstruction's gait cycles as Parquet; without gait a table without rows.
 
     Raises:
         OSError: It cannot be written.
     """
+    write_curves_table(curves_of(r), path)
+
+
+def write_curves_table(curves: pa.Table, path: Path) -> None:
+    """Writes curves of :data:`SCHEMA` as Parquet with checksums.
+
+    Raises:
+        OSError: It cannot be written.
+    """
     with replacing(path) as partial:
-        pq.write_table(curves_of(r), partial, compression="zstd")
+        pq.write_table(curves, partial, compression="zstd", write_page_checksum=True)
 
 
 def curves_of(r: Reconstruction) -> pa.Table:

@@ -11,13 +11,13 @@ protocol.
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
 from mbkf.io.capture import CAPTURES, FORCES
+from mbkf.io.plain_data import read_toml
 from mbkf.pipelines.batch.plan import MOST_LOOKED_AT, MOST_MOVING, Files, Person, Plan, Trial, planned
 
 CAPTURE_SUFFIXES = (".c3d", ".trc")
@@ -151,7 +151,7 @@ def _stated(root: Path, place: Path) -> _Stated:
 
 def _read(file: Path) -> Mapping[str, float | str]:
     try:
-        stated = tomllib.loads(file.read_text(encoding="utf-8"))
+        stated = read_toml(file)
     except (OSError, ValueError) as error:
         raise FileFormatError(file, f"is no session file ({error})") from error
     return {key: checked_entry(key, stated[key], file) for key in STATED if key in stated}

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from mbkf.io.atomic import replacing
+from mbkf.io.plain_data import parse_json
 from mbkf.version import __version__
 
 RECORD = "batch.json"
@@ -34,7 +35,7 @@ def fingerprint(files: Sequence[Path], settings: Mapping[str, object]) -> dict[s
 def is_made_from(record: Path, made_from: Mapping[str, object]) -> bool:
     """Whether a record says that its result was made from the same; file names do not count, contents do."""
     try:
-        found = json.loads(record.read_text(encoding="utf-8"))
+        found = parse_json(record.read_text(encoding="utf-8"))
         return _contents(found) == _contents(made_from)
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return False

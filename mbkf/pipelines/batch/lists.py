@@ -19,13 +19,13 @@ CSV, a row per trial: columns ``subject`` and ``trial``, and ``session``, ``stat
 from __future__ import annotations
 
 import csv
-import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
 
 from mbkf.errors import FileFormatError
+from mbkf.io.plain_data import read_toml
 from mbkf.pipelines.batch.folder import STATED, checked_entry
 from mbkf.pipelines.batch.plan import MOST_MOVING, Files, Person, Plan, Trial, planned
 
@@ -42,7 +42,7 @@ def plan_of_toml(file: Path) -> Plan:
         InvalidInput: It names no trial, or one place twice.
     """
     try:
-        listed = tomllib.loads(file.read_text(encoding="utf-8"))
+        listed = read_toml(file)
     except (OSError, ValueError) as error:
         raise FileFormatError(file, f"is no list in TOML ({error})") from error
     entries = listed.get("subject")

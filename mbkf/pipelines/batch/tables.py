@@ -13,8 +13,9 @@ import pyarrow.csv as pa_csv
 import pyarrow.parquet as pq
 
 from mbkf.io.atomic import replacing
+from mbkf.io.plain_data import parse_json
 from mbkf.io.results_folder import RUN_ID, SUMMARY_FILE
-from mbkf.pipelines.batch.curves import SCHEMA
+from mbkf.pipelines.batch.curves import SCHEMA, read_curves
 from mbkf.pipelines.batch.outcome import Outcome, Status
 from mbkf.pipelines.batch.plan import Plan, Trial
 from mbkf.pipelines.batch.trial import CURVES_FILE
@@ -106,10 +107,10 @@ def _summary(trial: Trial, outcome: Outcome, out: Path) -> Mapping[str, object]:
     if outcome.status == Status.FAILED:
         return {}
     try:
-        found = json.loads((out / trial.place / SUMMARY_FILE).read_text(encoding="utf-8"))
+        found = parse_json((out / trial.place / SUMMARY_FILE).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
-    return {key: value for key, value in found.items() if key != RUN_ID} if isinstance(found, dict) else {}
+    return {key: value for key, value in found.items() if key != RUN_ID}
 
 
 def _flat(values: Mapping[str, object], above: str = "") -> Iterator[tuple[str, object]]:
@@ -146,7 +147,7 @@ def _curves(pairs: Sequence[tuple[Trial, Outcome]], out: Path) -> Iterator[pa.Ta
         file = out / trial.place / CURVES_FILE
         if outcome.status == Status.FAILED or not file.is_file():
             continue
-        table = pq.read_table(file, schema=SCHEMA)
+        table = read_curves(file)
         for place, name in enumerate(
             (trial.person.name, trial.person.session, trial.name or trial.path.stem)
         ):

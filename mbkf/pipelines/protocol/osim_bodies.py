@@ -111,13 +111,17 @@ def poses_at_zero(joints: tuple[OsimJoint, ...]) -> dict[str, Array]:
     """(4, 4) frame of every body in the ground with all coordinates at zero; bodies that hang on nothing are left out.
 
     Args:
-        joints: The joints of a model; those of :data:`COMMON_JOINTS` stand in for bodies that it does not join.
+        joints: The joints of a model; those of :data:`COMMON_JOINTS` stand in for bodies that it does not join, or
+            joins to what hangs on nothing.
     """
-    by_child = {joint.child: joint for joint in (*COMMON_JOINTS, *joints)}
+    common = {joint.child: joint for joint in COMMON_JOINTS}
+    by_child = common | {joint.child: joint for joint in joints}
     poses: dict[str, Array] = {"ground": np.eye(4), "pelvis": np.eye(4)}
     left = {child: joint for child, joint in by_child.items() if child not in poses}
     while True:
         ready = [joint for joint in left.values() if joint.parent in poses]
+        if not ready:
+            ready = [joint for child, joint in common.items() if child in left and joint.parent in poses][:1]
         if not ready:
             return poses
         for joint in ready:

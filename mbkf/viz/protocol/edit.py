@@ -8,6 +8,7 @@ import threading
 from pathlib import Path
 
 from mbkf.errors import InvalidInput, MbkfError
+from mbkf.io.plain_data import parse_json
 from mbkf.model.protocol import Protocol
 from mbkf.model.protocol_file import checked_name, write_protocol
 from mbkf.pipelines.protocol.editing import Choice, edited
@@ -62,9 +63,7 @@ class EditPage:
                 :class:`~mbkf.pipelines.protocol.editing.Choice` for WHAT.
         """
         try:
-            asked = json.loads(word)
-            if not isinstance(asked, dict):
-                raise InvalidInput("the page said something that is no request")
+            asked = parse_json(word)
             if asked.get("do") == "save":
                 return json.dumps(self._save(asked.get("choices")))
             if asked.get("do") == "done":
@@ -74,7 +73,7 @@ class EditPage:
         except (MbkfError, OSError) as error:
             return json.dumps({"trouble": str(error)})
         except ValueError:
-            return json.dumps({"trouble": "the page said something that is no JSON"})
+            return json.dumps({"trouble": "the page said something that is no request in JSON"})
 
     def _save(self, choices: object) -> dict[str, object]:
         known = (

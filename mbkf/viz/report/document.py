@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from html import escape
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import Any
 
 from mbkf.errors import FileFormatError
 from mbkf.io.atomic import replacing
+from mbkf.io.plain_data import parse_json
 from mbkf.io.results import Reconstruction
 from mbkf.pipelines.gait.cycles import find_gait
 from mbkf.pipelines.results.progression import LABORATORY
@@ -92,12 +92,12 @@ def read_labels(path: str | Path) -> dict[str, object]:
     """
     source = Path(path)
     try:
-        found = json.loads(source.read_text(encoding="utf-8"))
+        found = parse_json(source.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise FileFormatError(source, f"cannot be read ({error}); make it with 'mbkf label'") from error
-    if not isinstance(found, dict) or "ghosts_dropped" not in found:
+    if "ghosts_dropped" not in found:
         raise FileFormatError(source, "is not what 'mbkf label' writes beside a labelled capture")
-    return found
+    return dict(found)
 
 
 def labels_of(folder: str | Path, trial: str) -> dict[str, object] | None:

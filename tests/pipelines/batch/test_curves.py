@@ -6,9 +6,10 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
+from mbkf.errors import FileFormatError
 from mbkf.io.capture import read_capture
 from mbkf.io.subject import read_subject
-from mbkf.pipelines.batch.curves import SCHEMA, curves_of, write_curves
+from mbkf.pipelines.batch.curves import SCHEMA, curves_of, read_curves, write_curves, write_curves_table
 from mbkf.pipelines.gait.cycles import POINTS, find_gait, over_cycle
 from mbkf.pipelines.reconstruct import reconstruct
 from mbkf.pipelines.reconstruct_settings import ReconstructSettings
@@ -100,3 +101,16 @@ def test_the_file_is_the_table(tmp_path):
     assert found.schema.names == SCHEMA.names
     for name, values in columns().items():
         np.testing.assert_array_equal(np.array(found[name].to_pylist()), values)
+
+
+def test_what_is_written_is_read_and_damage_is_told(tmp_path):
+    path = tmp_path / "curves.parquet"
+    table = curves_of(walked())
+    write_curves_table(table, path)
+    assert read_curves(path).equals(table)
+    content = bytearray(path.read_bytes())
+    content[len(content) // 3] ^= 0xFF
+    for damaged in (bytes(content), bytes(content[: len(content) // 2]), b""):
+        path.write_bytes(damaged)
+        with pytest.raises(FileFormatError, match="delete its folder and run the batch again"):
+            read_curves(path)

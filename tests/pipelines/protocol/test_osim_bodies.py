@@ -76,3 +76,14 @@ def test_a_model_s_joints_go_before_the_common_ones_and_loose_bodies_are_left_ou
 def test_a_head_begins_where_its_markers_come_to_the_head(heights, origin):
     """Heights of public sets: of Clouthier 2021, of Pose2Sim, and of a frame in the skull."""
     assert head_origin(np.array(heights)) == origin
+
+
+def test_joints_that_hang_on_nothing_or_each_other_leave_the_common_ones():
+    common = poses_at_zero(())
+    pose = np.eye(4)
+    loops = [("nowhere", "femur_r"), ("toes_l", "tibia_l"), ("mast", "boom"), ("boom", "mast")]
+    joints = tuple(OsimJoint(parent, child, pose, np.zeros(3)) for parent, child in loops)
+    found = poses_at_zero(joints)
+    assert found.keys() == common.keys()
+    for body, place in common.items():
+        np.testing.assert_array_equal(found[body], place)
