@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import scipy.io
 
-from mbkf.errors import FileFormatError
+from mbkf.conventions import Array
+from mbkf.errors import FileFormatError, ShapeError
 from mbkf.io.imu import ImuReadings, rate_of
+from mbkf.io.mat5 import Variable, read_mat5
 
 _XYZW = [1, 2, 3, 0]
 
@@ -27,47 +28,52 @@ def read_imu_mat(path: str | Path) -> tuple[ImuReadings, ...]:
     if not path.is_file():
         raise FileFormatError(path, "no such file; name a MATLAB file of BROAD or qmt")
     try:
-        return _sensors(path, _content(path))
-    except (AttributeError, IndexError, TypeError, ValueError, OverflowError, MemoryError) as error:
-        raise FileFormatError(path, f"damaged ({error})") from error
+        return _sensors(path, read_mat5(path))
+    except (ShapeError, ValueError, IndexError) as error:
+        raise FileFormatError(path, f"damaged, or no MATLAB file of BROAD or qmt ({error})") from error
 
 
-def _content(path: Path) -> dict[str, Any]:
-    try:
-        content = scipy.io.loadmat(path, squeeze_me=True, struct_as_record=False)
-    except Exception as error:  # scipy tells damage by whatever its parser then comes upon
-        raise FileFormatError(path, f"not a MATLAB 5 file ({error})") from error
-    return dict(content)
-
-
-def _sensors(path: Path, content: dict[str, Any]) -> tuple[ImuReadings, ...]:
-    if {"imu_acc", "imu_gyr", "sampling_rate"} <= content.keys():
-        force, rate = np.asarray(content["imu_acc"], dtype=float), float(content["sampling_rate"])
-        truth = content.get("opt_quat")
+def _sensors(path: Path, content: Mapping[str, Variable]) -> tuple[ImuReadings, ...]:
+    arrays = {name: one for name, one in content.items() if isinstance(one, np.ndarray)}
+    if {"imu_acc", "imu_gyr", "sampling_rate"} <= arrays.keys():
+        force, rate, truth = arrays["imu_acc"], float(arrays["sampling_rate"].item()), arrays.get("opt_quat")
+        if not rate > 0.0:
+            raise ValueError(f"sampling_rate is {rate:g} Hz")
         return (
             ImuReadings(
                 path.stem,
-                np.arange(len(force)) / rate,
+                np.arange(len(np.atleast_1d(force))) / rate,
                 force,
-                content["imu_gyr"],
-                content.get("imu_mag"),
+                arrays["imu_gyr"],
+                arrays.get("imu_mag"),
                 rate,
                 "optical orientation in ENU",
-                None if truth is None else np.asarray(truth, dtype=float)[:, _XYZW],
+                None if truth is None else _xyzw(truth),
             ),
         )
-    segments = {name: one for name, one in content.items() if hasattr(one, "acc") and hasattr(one, "gyr")}
-    if segments and "t" in content:
-        times = np.asarray(content["t"], dtype=float)
+    segments = {
+        name: one
+        for name, one in content.items()
+        if not isinstance(one, np.ndarray) and {"acc", "gyr"} <= one.keys()
+    }
+    if segments and "t" in arrays:
+        times = np.atleast_1d(arrays["t"])
         rate = rate_of(times, str(path))
         note = "orientation by six axes, z up, heading arbitrary"
         return tuple(
             ImuReadings(
-                name, times, one.acc, one.gyr, None, rate, note,
-                np.asarray(one.quat, dtype=float)[:, _XYZW] if hasattr(one, "quat") else None,
+                name, times, one["acc"], one["gyr"], None, rate, note,
+                _xyzw(one["quat"]) if "quat" in one else None,
             )
             for name, one in segments.items()
         )  # fmt: skip
     raise FileFormatError(
         path, "no sensor found; BROAD has imu_acc and imu_gyr, qmt a struct per segment and t"
     )
+
+
+def _xyzw(wxyz: Array) -> Array:
+    """(T, 4) quaternions with their scalar last, from (T, 4) with it first."""
+    if wxyz.ndim != 2 or wxyz.shape[1] != 4:
+        raise ShapeError("quaternions", "(T, 4)", wxyz.shape)
+    return wxyz[:, _XYZW]
