@@ -3,7 +3,7 @@
 A plate's own axes follow from its corners, which lie in its quadrants (+x+y), (−x+y), (−x−y), (+x−y); its z
 points down, and the channels hold the force of the plate on the body, so that a standing person reads −Fz.
 ORIGIN is the vector from the point the channels refer to, O, to the centre of the surface, S, in plate axes
-(its z is negative; often stored with the opposite sign). Moments move by M_S = M_O + F × ORIGIN. Layouts:
+(its z is negative; for other signs see :mod:`mbkf.io.c3d_origin`). Moments move by M_S = M_O + F × ORIGIN. Layouts:
 
 - type 1: Fx Fy Fz, centre of pressure x y, free moment Tz;
 - type 2: Fx Fy Fz Mx My Mz;
@@ -26,6 +26,16 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
 from mbkf.io.axes import METRES_PER_UNIT
+from mbkf.io.c3d_origin import (
+    LEAST_LOADED,
+    LOADED_N,
+    MOSTLY,
+    SELDOM,
+    pressed_m,
+    share_on_plate,
+    turned_by_depth,
+    turned_by_pressure,
+)
 
 CHANNELS_OF_TYPE = {1: 6, 2: 6, 3: 8, 4: 6, 5: 8, 6: 12, 7: 8}
 """Number of analog channels of each plate type that can be read."""
@@ -39,14 +49,8 @@ SENSORS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
 _FORCE_UNITS = {"n": 1.0, "newton": 1.0, "newtons": 1.0, "kn": 1000.0, "lbf": 4.4482216152605}
 _LEAST_SIDE_M = 0.02
 
-LOADED_N, LEAST_LOADED = 100.0, 20
-"""Load from which a sample tells where it presses, and how many of them tell the moments' unit."""
-
-STILL_M, FAR_M, BESIDE_M = 0.001, 10.0, 0.05
-"""No one stands this still, nor so far from a plate's middle; and how far beside it errors may place a pressure."""
-
-MOSTLY, SELDOM = 0.9, 0.1
-"""Shares of samples that press on the plate."""
+STILL_M, FAR_M = 0.001, 10.0
+"""No one stands this still, nor so far from a plate's middle."""
 
 
 @dataclass(frozen=True)
@@ -131,15 +135,15 @@ def wrench_at_surface(plate: RawPlate, unit: str, notes: list[str] | None = None
     Args:
         plate: The plate, checked.
         unit: The file's length unit, in which moments are N times that unit unless they state their own.
-        notes: Receives that moments are in another unit, which is known by where they would press.
+        notes: Receives that moments are in another unit, which is known by where they would press, and that ORIGIN has
+            another sign.
 
     Returns:
         (S, 6) force in N and moment in N m in the file's axes (not the plate's).
     """
-    metre = METRES_PER_UNIT[unit]
-    origin = plate.origin * metre
-    if origin[2] > 0.0:
-        origin = -origin
+    metre, name = METRES_PER_UNIT[unit], f"force plate {plate.number}"
+    told: list[str] = notes if notes is not None else []
+    origin = turned_by_depth(plate.origin * metre, name, told)
     values, units = plate.readings, plate.units
     if plate.kind in CALIBRATION_OF_TYPE:
         assert plate.calibration is not None  # check_geometry has seen to it
@@ -156,14 +160,16 @@ def wrench_at_surface(plate: RawPlate, unit: str, notes: list[str] | None = None
         force, moment = _of_sensors(joined.reshape(-1, 4, 3), np.abs(plate.origin) * metre)
     else:
         force = values[:, :3] * _forces(units[:3])
-        moment, shift = values[:, 3:] * _moments(units[3:], metre), np.cross(force, origin)
+        moment = values[:, 3:] * _moments(units[3:], metre)
         half_sides_m = 0.25 * metre * np.linalg.norm(_sides(plate.corners), axis=1)
+        origin = turned_by_pressure(origin, force, moment, half_sides_m, name, told)
+        shift = np.cross(force, origin)
         factor = _unit_factor(force, moment, shift, half_sides_m)
-        if factor != 1.0 and notes is not None:
-            told = (
-                f"force plate {plate.number}: moments are taken {factor:g} times as large as their unit says"
+        if factor != 1.0:
+            told.append(
+                f"{name}: moments are taken {factor:g} times as large as their unit says, since the centre of "
+                "pressure is then on the plate"
             )
-            notes.append(f"{told}, since the centre of pressure is then on the plate")
         moment = factor * moment + shift
     axes = plate_axes(plate.corners)
     return np.hstack([force @ axes.T, moment @ axes.T])
@@ -185,15 +191,11 @@ def _unit_factor(force: Array, moment: Array, shift: Array, half_sides_m: Array)
     if np.count_nonzero(loaded) < LEAST_LOADED:
         return 1.0
 
-    def pressed_m(values: Array) -> Array:
-        return np.column_stack([-values[:, 1], values[:, 0]]) / force[:, 2:]
-
     def on_plate(factor: float) -> float:
-        place = pressed_m(factor * moment[loaded] + shift[loaded])
-        return float((np.abs(place) < half_sides_m + BESIDE_M).all(axis=1).mean())
+        return share_on_plate(force, factor * moment + shift, half_sides_m)
 
-    force = force[loaded]
-    reach_m = float(np.percentile(np.linalg.norm(pressed_m(moment[loaded]), axis=1), 95.0))
+    force, moment, shift = force[loaded], moment[loaded], shift[loaded]
+    reach_m = float(np.percentile(np.linalg.norm(pressed_m(force, moment), axis=1), 95.0))
     if reach_m < STILL_M and on_plate(1e3) > MOSTLY:
         return 1e3
     return 1e-3 if reach_m > FAR_M and on_plate(1.0) < SELDOM and on_plate(1e-3) > MOSTLY else 1.0

@@ -28,11 +28,11 @@ def loads(samples, rng):
     return force, place, torque, ~idle
 
 
-def plate_file(path, kind, turn=TURNS[0], processor=INTEL, whole=False, moments=1.0):
-    """Writes a file; its moments are those of N mm times a factor."""
+def plate_file(path, kind, turn=TURNS[0], processor=INTEL, whole=False, moments=1.0, flipped=False):
+    """Writes a file; its moments are those of N mm times a factor, ORIGIN is of either sign."""
     rng = np.random.default_rng(kind)
     force, place, torque, loaded = loads(FRAMES * PER_FRAME, rng)
-    axes, (origin, vector) = turn @ PLATE_AXES, arrangement(kind, False)
+    axes, (origin, vector) = turn @ PLATE_AXES, arrangement(kind, flipped)
     rows = [signals(kind, axes.T @ F, p, m, vector)[0] for F, p, m in zip(force, place, torque, strict=True)]
     channels = np.array(rows)
     if kind == 1:
@@ -91,6 +91,19 @@ def test_moments_in_their_own_unit_are_left(tmp_path):
     path = tmp_path / "plate.c3d"
     plate_file(path, 2)
     assert not any("moments are taken" in note for note in read_c3d(path).notes)
+
+
+@pytest.mark.parametrize("kind", sorted(CHANNELS_OF_TYPE))
+def test_either_sign_of_origin_presses_where_it_was_pressed_and_the_wrong_one_is_told(tmp_path, kind):
+    path, told = tmp_path / "plate.c3d", "mm above the surface; it is taken with the opposite sign"
+    places = []
+    for flipped in (False, True):
+        _, _, pressed, loaded = plate_file(path, kind, flipped=flipped)
+        found = read_c3d(path)
+        places.append(found.plates[0].centre_of_pressure_m[loaded])
+        assert np.linalg.norm(places[-1] - pressed[loaded], axis=1).max() < 1e-4
+        assert any(told in note for note in found.notes) is flipped
+    assert np.linalg.norm(places[0] - places[1], axis=1).max() < 1e-4
 
 
 def test_such_a_file_is_a_capture(tmp_path):
