@@ -29,6 +29,9 @@ CHUNK = 100
 
 WORKERS = 2
 HANG_S = 20.0
+MOST_CPU_S = 2.0
+"""Processor time after which a damaged file should have been refused."""
+
 DIED, HUNG = "died", "hung"
 
 
@@ -54,11 +57,18 @@ def rows(found: dict[str, str]) -> list[Check]:
     """What became of the files, by their names and seeds."""
     kinds = Counter(outcome.split()[0] for outcome in found.values())
     foreign = Counter(outcome for outcome in found.values() if outcome.startswith(FOREIGN))
+    refused = (
+        (float(outcome.split()[1]), f" ({word})")
+        for word, outcome in found.items()
+        if outcome.startswith(f"{REFUSED} ")
+    )
+    slowest = max(refused, default=(0.0, ""))
     shown = {outcome: word for word, outcome in found.items()}
     return [
         information("damaged files", float(len(found))),
         information("read nevertheless", float(kinds[READ])),
         information("refused", float(kinds[REFUSED])),
+        Check(f"slowest refusal{slowest[1]}", slowest[0], MOST_CPU_S, "<=", "s"),
         Check("of which the process died", float(kinds[DIED]), 0.0, "<="),
         Check(f"that took more than {HANG_S:g} s", float(kinds[HUNG]), 0.0, "<=", ""),
         Check("that ended in an error of another kind, or asked for 1 GB", float(kinds[FOREIGN]), 0.0, "<="),

@@ -2,13 +2,15 @@
 
     python -m benchmarks.robustness.child FOLDER DATA FORMAT:SEED …
 
-Each outcome is a line of its own, and so is what begins: a death is known to be of what began last.
+Each outcome is a line of its own, with the processor's seconds where the file was read or refused, and so is what
+begins: a death is known to be of what began last.
 """
 
 from __future__ import annotations
 
 import shutil
 import sys
+import time
 import traceback
 import warnings
 from collections.abc import Iterable
@@ -57,11 +59,16 @@ def main(words: Iterable[str]) -> None:
     """Reads what the words name, a line before and after each."""
     folder, data, *asked = words
     known = formats(Path(folder), Path(data) if data else None)
+    for name in {word.split(":")[0] for word in asked}:
+        known[name].read(known[name].file)  # what a reader imports is no part of what a file costs
     _limit_memory()
     for word in asked:
         name, seed = word.split(":")
         print("begin", word, flush=True)
-        print("end", word, outcome(name, known[name], int(seed), Path(folder) / "damaged"), flush=True)
+        begun = time.process_time()
+        what = outcome(name, known[name], int(seed), Path(folder) / "damaged")
+        took = f" {time.process_time() - begun:.3f}" if what in {READ, REFUSED} else ""
+        print("end", word, what + took, flush=True)
 
 
 def _limit_memory() -> None:

@@ -25,6 +25,7 @@ from mbkf.model.protocol import load_protocol
 from mbkf.pipelines.batch.curves import read_curves
 from mbkf.pipelines.batch.inputs import is_made_from
 from mbkf.pipelines.batch.run import plan_of
+from mbkf.pipelines.info import describe
 from mbkf.pipelines.protocol.from_osim import import_osim
 from mbkf.viz.report.document import read_labels
 
@@ -71,6 +72,7 @@ def _captures(folder: Path) -> dict[str, Format]:
     plate_files = tuple(sorted(folder.glob("qualisys_f_*.tsv")))
     return {
         "c3d": Format(folder / "trial.c3d", _capture, False),
+        "c3d.info": Format(folder / "trial.c3d", _read(lambda path: describe(read_capture(path))), False),
         "trc": Format(markers, _capture, True),
         "motive": Format(folder / "motive.csv", _capture, True),
         "qualisys": Format(folder / "qualisys.tsv", _capture, True, plate_files),

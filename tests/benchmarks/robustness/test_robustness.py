@@ -59,9 +59,16 @@ def test_a_process_that_dies_or_hangs_costs_only_its_file(monkeypatch, tmp_path)
     assert rows["of which the process died"].value == 1.0 and not rows["of which the process died"].passed
 
 
+def test_the_slowest_refusal_is_named():
+    found = {"a:1": "refused 0.100", "a:2": "refused 2.500", "b:3": "read 9.000"}
+    (row,) = [row for row in robustness.rows(found) if row.name.startswith("slowest refusal")]
+    assert (row.name, row.value, row.unit, row.passed) == ("slowest refusal (a:2)", 2.5, "s", False)
+    assert robustness.rows({})[3].value == 0.0
+
+
 @pytest.mark.slow
 def test_damaged_files_of_every_format_are_read_or_refused(tmp_path):
     names = sorted(formats(tmp_path))
     found = robustness.read_all([f"{name}:{seed}" for name in names for seed in range(8)], tmp_path, None)
     assert len(found) == 8 * len(names)
-    assert set(found.values()) <= {child.READ, child.REFUSED}, found
+    assert {outcome.split()[0] for outcome in found.values()} <= {child.READ, child.REFUSED}, found
