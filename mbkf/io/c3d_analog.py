@@ -15,6 +15,7 @@ from mbkf.io.c3d_plates import CALIBRATION_OF_TYPE, RawPlate, check_geometry, wr
 from mbkf.io.records import AnalogChannel, CaptureEvent, PlateReadings
 from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare, require_finite
 
+_NAMED = 6
 _OFF_PLATE_M = 0.1
 _OFF_PLATE_SHARE = 0.5
 
@@ -67,12 +68,12 @@ def raw_plates(path: Path, content: C3dContent, unit: str, notes: list[str]) -> 
     corners = parameters.per_plate("CORNERS", (3, 4))
     origins = parameters.per_plate("ORIGIN", (3,))
     units = parameters.texts("ANALOG", "UNITS") + [""] * len(analog)
-    plates = []
+    plates, silent = [], []
     for i in range(used):
         indices = channels[i].astype(int) - 1 if i < len(channels) else np.zeros(0, dtype=int)
         indices = indices[indices >= 0]
         if not analog.size or not indices.size:
-            notes.append(f"force plate {i + 1} has no analog channels and is left out")
+            silent.append(i + 1)
             continue
         if indices.max() >= len(analog):
             reason = f"force plate {i + 1} names channel {indices.max() + 1}, the file has {len(analog)}"
@@ -90,6 +91,11 @@ def raw_plates(path: Path, content: C3dContent, unit: str, notes: list[str]) -> 
         )
         check_geometry(plate, str(path), unit)
         plates.append(plate)
+    if len(silent) == 1:
+        notes.append(f"force plate {silent[0]} has no analog channels and is left out")
+    elif silent:
+        named = ", ".join(map(str, silent[:_NAMED])) + (" …" if len(silent) > _NAMED else "")
+        notes.append(f"{len(silent)} force plates have no analog channels and are left out: {named}")
     return plates
 
 

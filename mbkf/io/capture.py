@@ -176,7 +176,7 @@ def read_capture(
     capture = _declared(kind.read(path, options), up)
     if forces is not None:
         capture = _with_forces(capture, Path(forces), kind, options)
-    capture = plausible(capture)
+    capture = plausible(capture, None if forces is None else Path(forces))
     if matrix is None:
         return capture
     return turned(capture, matrix @ axes_matrix(capture.axes).T, AxesSource.GIVEN)

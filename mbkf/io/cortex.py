@@ -18,7 +18,7 @@ import numpy as np
 from mbkf.errors import FileFormatError
 from mbkf.io.force_table import ForceTable, plates_of_table, up_of_table
 from mbkf.io.records import PlateReadings
-from mbkf.io.text import TextFile, compare_count, number, numbers, read_text
+from mbkf.io.text import TextFile, check_order, compare_count, number, numbers, read_text
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
 
 _MOST_HEADER_LINES = 20
@@ -69,6 +69,7 @@ def read_forces_cortex(
     if rate_hz is None or not rate_hz > 0.0:
         raise FileFormatError(file.path, "the header gives no SampleRate; write SampleRate=… into it")
     values = np.array(rows)
+    check_order(file.path, values[:, 0], "the number of the sample")
     table = ForceTable(
         str(path), tuple(names[1:]), values[:, 1:], rate_hz, (values[0, 0] - 1.0) / rate_hz, None, None, False
     )

@@ -26,7 +26,7 @@ from mbkf.io.force_names import ForceSet, force_column, force_sets
 from mbkf.io.force_table import ForceTable, plates_of_table, up_of_table
 from mbkf.io.plate_table import PlateTable, check_corners, faced_axis, plates_with_corners
 from mbkf.io.records import PlateReadings
-from mbkf.io.text import TextFile, csv_rows, even_rate, number, numbers, read_text
+from mbkf.io.text import TextFile, check_order, csv_rows, even_rate, number, numbers, read_text
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
 
 _MOST_HEADER_LINES = 60
@@ -204,14 +204,18 @@ def _timing(path: Path, names: list[str], values: Array, settings: list[list[str
         column = values[:, index]
         if np.isfinite(column).all() and (np.diff(column) > 0.0).all():
             return even_rate(path, column), float(column[0])
+        if names[index].startswith("time") and np.isfinite(column).all():
+            check_order(path, column, "the time")
     rate_hz = _stated_rate(settings)
     if rate_hz is None:
         raise FileFormatError(path, "states neither times nor a sample rate; add a column of times")
     frames = [i for i, name in enumerate(names) if "frame" in name]
     if len(frames) < 2:
         return rate_hz, 0.0
-    frame, sub = values[:, frames[0]], values[:, frames[1]]
-    return rate_hz, float((frame[0] - 1.0) * (sub.max() + 1.0) + sub[0]) / rate_hz
+    sub = values[:, frames[1]]
+    counted = (values[:, frames[0]] - 1.0) * (sub.max() + 1.0) + sub
+    check_order(path, counted, "the frame")
+    return rate_hz, float(counted[0]) / rate_hz
 
 
 def _stated_rate(settings: list[list[str]]) -> float | None:

@@ -57,7 +57,7 @@ def read_xsens(path: str | Path, rate_hz: float | None = None) -> ImuReadings:
         raise FileFormatError(path, f"not an Xsens text export (no column {COUNTER})")
     stated = next((number(m[1]) for line in lines[:head] if (m := _RATE.search(line))), None)
     rate = rate_hz or stated
-    if rate is None:
+    if rate is None or not rate > 0.0:
         raise InvalidInput(f"{path}: the header states no update rate; give it with --rate")
     names = [name.strip() for name in lines[head].split("\t")]
     table = _table(path, lines, head + 1, names)

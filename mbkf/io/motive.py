@@ -21,7 +21,16 @@ from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.axes import check_body_size, finite, length_unit, positions_to_world, up_axis
 from mbkf.io.labels import unique_labels, without_subject
 from mbkf.io.records import Capture, MarkerTrajectories
-from mbkf.io.text import TextFile, compare_count, compare_rate, csv_rows, number, numbers, read_text
+from mbkf.io.text import (
+    TextFile,
+    check_order,
+    compare_count,
+    compare_rate,
+    csv_rows,
+    number,
+    numbers,
+    read_text,
+)
 
 _MOST_HEADER_LINES = 20
 _UNLABELLED = re.compile(r"(?:unlabeled|unlabelled)\W*(?P<number>\d+)", re.IGNORECASE)
@@ -160,6 +169,7 @@ def _rows(file: TextFile, take: _Take, columns: list[list[int]]) -> tuple[Array,
     if not file.whole and widths[-1] < widths[0]:
         raise FileFormatError(file.path, "cut short within a row; copy or export it again", len(file.lines))
     values = np.array(table)
+    check_order(file.path, values[:, 0], "the time")
     return values[:, 0], values[:, 1:].reshape(len(values), len(columns), 3)
 
 

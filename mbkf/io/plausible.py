@@ -7,6 +7,7 @@ of tons; one such sample carries a filter away.
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -28,8 +29,12 @@ MASSES_KG = (0.5, 500.0)
 _NAMED = 3
 
 
-def plausible(capture: Capture) -> Capture:
+def plausible(capture: Capture, forces: Path | None = None) -> Capture:
     """The capture without markers that lie further away than any laboratory reaches, which is told.
+
+    Args:
+        capture: What was read.
+        forces: The file that its plates come from, where they have one of their own.
 
     Raises:
         InvalidInput: A frame rate, force or moment is impossible.
@@ -38,9 +43,8 @@ def plausible(capture: Capture) -> Capture:
     rates |= {f"force plate {plate.name}": plate.rate_hz for plate in capture.plates}
     for name, rate_hz in rates.items():
         if not RATES_HZ[0] <= rate_hz <= RATES_HZ[1]:
-            raise InvalidInput(
-                f"{capture.path}: the rate of {name} is {rate_hz:g} Hz; export the trial again"
-            )
+            file = forces if forces is not None and name != "the markers" else capture.path
+            raise InvalidInput(f"{file}: the rate of {name} is {rate_hz:g} Hz; export the trial again")
     for plate in capture.plates:
         for what, values, most, unit in (
             ("force", plate.force_n, MOST_N, "N"),
@@ -49,8 +53,8 @@ def plausible(capture: Capture) -> Capture:
             largest = float(np.max(np.abs(values), initial=0.0))
             if not largest <= most:
                 raise InvalidInput(
-                    f"{capture.path}: force plate {plate.name} reads a {what} of {largest:.2g} {unit}; check its scale "
-                    "and offset (ANALOG:SCALE, OFFSET), or give the ground reactions with --forces"
+                    f"{forces or capture.path}: force plate {plate.name} reads a {what} of {largest:.2g} {unit}; "
+                    "check its scale and offset (ANALOG:SCALE, OFFSET), or give the ground reactions with --forces"
                 )
     far = np.abs(markers.positions_m).max(axis=2, initial=0.0) > FARTHEST_M
     if not far.any():

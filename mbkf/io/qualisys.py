@@ -34,7 +34,7 @@ from mbkf.io.force_names import force_sets
 from mbkf.io.labels import unique_labels, without_subject
 from mbkf.io.plate_table import PlateTable, check_corners, faced_axis, plates_with_corners
 from mbkf.io.records import AxesSource, Capture, CaptureEvent, MarkerTrajectories, PlateReadings
-from mbkf.io.text import TextFile, compare_count, compare_rate, number, numbers, read_text
+from mbkf.io.text import TextFile, check_order, compare_count, compare_rate, number, numbers, read_text
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N, offset_remarks
 
 _KEY = re.compile(r"[A-Z][A-Z0-9_]+")
@@ -272,6 +272,8 @@ def _trajectories(table: QualisysTable, count: int, notes: list[str]) -> tuple[A
     if times is not None and not np.isfinite(times).all():
         notes.append("rows without a time; times follow from FREQUENCY")
         times = None
+    if times is not None:
+        check_order(table.file.path, times, "the time")
     return times, values.reshape(len(values), count, 3)
 
 
@@ -305,6 +307,8 @@ def _plate(path: Path, notes: list[str]) -> PlateTable:
         for group in (columns.force, columns.moment, columns.point)
     )
     times = [i for i, title in enumerate(titles[:2]) if title.lower() == "time"]
+    if times and np.isfinite(table.values[:, times[0]]).all():
+        check_order(path, table.values[:, times[0]], "the time")
     match = _PLATE_FILE.fullmatch(path.stem)
     plate = PlateTable(
         str(path),

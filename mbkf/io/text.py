@@ -130,6 +130,32 @@ def compare_rate(rate_hz: float, times_s: Array) -> list[str]:
     return []
 
 
+def check_order(path: Path, counted: Array, what: str, first_line: int | None = None) -> None:
+    """Refuses rows that stand in another order than they were measured, or of which some are missing.
+
+    Args:
+        path: The file, for the message.
+        counted: (T,) what goes up by the same step from row to row: times, or numbers of samples.
+        what: Its name, for the message.
+        first_line: Line of the first row, where each row is a line.
+
+    Raises:
+        FileFormatError: A step is less than half or more than one and a half of the usual one; names the line.
+    """
+    with np.errstate(invalid="ignore"):  # what is no number is no step
+        steps = np.diff(counted)
+    finite = steps[np.isfinite(steps)]
+    usual = float(np.median(finite)) if len(finite) else 1.0
+    uneven = ~((steps > 0.5 * usual) & (steps < 1.5 * usual)) if usual > 0.0 else ~(steps > 0.0)
+    if uneven.any():
+        row = int(np.argmax(uneven)) + 1
+        line = None if first_line is None else first_line + row
+        reason = (
+            f"{what} goes from {counted[row - 1]:.6g} to {counted[row]:.6g}; rows are missing or out of order"
+        )
+        raise FileFormatError(path, f"{reason}; export it again", line)
+
+
 def even_rate(path: Path, times_s: Array) -> float:
     """Sample rate in Hz of (T,) evenly spaced times; rounded ones count as even.
 

@@ -6,6 +6,7 @@ import pytest
 from mbkf.errors import FileFormatError
 from mbkf.io.text import (
     TextFile,
+    check_order,
     compare_count,
     compare_rate,
     csv_rows,
@@ -71,3 +72,20 @@ def test_cells_of_csv_lines_and_a_quotation_mark_without_end(tmp_path):
     with pytest.raises(FileFormatError, match=r"line 12: damaged .*field larger") as caught:
         list(csv_rows(lines, tmp_path / "a.csv", 10))
     assert caught.value.line == 12
+
+
+def test_rows_in_their_order_are_left_and_others_refused_with_their_line(tmp_path):
+    path, told = tmp_path / "a.csv", r"the time goes from .*rows are missing or out of order"
+    for counted in ([], [3.0], [0.0, 0.01, 0.0201, 0.0299], [5.0, 6.0, 7.0]):
+        check_order(path, np.array(counted), "the time")
+    for counted, row in (
+        ([0, 1, 3, 4], 2),
+        ([0, 1, 1, 2, 3], 2),
+        ([3, 2, 1], 1),
+        ([0, 1, 2, np.inf, np.inf], 3),
+    ):
+        with pytest.raises(FileFormatError, match=told) as caught:
+            check_order(path, np.array(counted, dtype=float), "the time", 10)
+        assert caught.value.line == 10 + row
+    with pytest.raises(FileFormatError, match="goes from 0 to nan"):
+        check_order(path, np.array([0.0, np.nan, 2.0]), "the time")
