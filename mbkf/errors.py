@@ -14,13 +14,11 @@ class MbkfError(Exception):
     """Root of all errors of this package; its text is one line a person can act on."""
 
     def __str__(self) -> str:
-        """The text: cut where it is long, letters that steer a terminal as their codes."""
-        text = super().__str__()
+        """The text: in one line, cut where it is long, letters that steer a terminal as their codes."""
+        text = " ".join(super().__str__().splitlines())
         if len(text) > MOST_LETTERS:
             text = f"{text[: MOST_LETTERS // 2]} … {text[-MOST_LETTERS // 2 :]}"
-        return "".join(
-            letter if letter.isprintable() or letter == "\n" else ascii(letter)[1:-1] for letter in text
-        )
+        return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text)
 
 
 class FileFormatError(MbkfError):

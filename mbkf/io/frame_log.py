@@ -127,9 +127,9 @@ def read_frame_log(path: str | Path) -> FrameLog:
         return FrameLog(header, rows, len(stored) - good + (len(data) % size > 0))
     except FileNotFoundError as error:
         raise FileFormatError(source, "no such file; 'mbkf live' keeps it while it runs") from error
-    except (
-        OSError, ValueError, KeyError, TypeError, ZeroDivisionError, OverflowError, MemoryError, RecursionError,
-    ) as error:  # fmt: skip
+    except OSError as error:
+        raise FileFormatError(source, f"cannot be read ({error.strerror})") from error
+    except (ValueError, KeyError, TypeError, ZeroDivisionError, OverflowError, MemoryError) as error:
         raise FileFormatError(source, f"not a frame log ({error})") from error
 
 

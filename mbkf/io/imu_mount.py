@@ -13,6 +13,9 @@ from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.atomic import replacing
 from mbkf.io.plain_data import read_toml
 
+FARTHEST_M = 3.0
+"""No sensor sits further from the origin of its segment."""
+
 
 @dataclass(frozen=True)
 class ImuMount:
@@ -37,6 +40,10 @@ class ImuMount:
         if self.position_m.shape != (3,) or rotation.shape != (4,) or not size > 0.5:
             raise InvalidInput(
                 f"sensor {self.name}: a position of three and a quaternion of four numbers are needed"
+            )
+        if not (np.abs(self.position_m) <= FARTHEST_M).all():
+            raise InvalidInput(
+                f"sensor {self.name}: its position lies more than {FARTHEST_M:g} m from its segment's origin"
             )
         object.__setattr__(self, "rotation", read_only(rotation / size))
 

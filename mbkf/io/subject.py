@@ -196,7 +196,7 @@ def read_subject(path: str | Path) -> Subject:
         table = read_toml(source)
         return Subject(
             body=table["body"],
-            mass_kg=_mass_kg(float(table["mass_kg"])),
+            mass_kg=_mass_kg(table["mass_kg"]),
             scale_factors={
                 name: number_between(table["scale_factors"], name, *SCALES) for name in table["scale_factors"]
             },
@@ -221,8 +221,11 @@ def read_subject(path: str | Path) -> Subject:
         raise FileFormatError(source, f"not a subject file ({error}); make it with 'mbkf scale'") from error
 
 
-def _mass_kg(value: float) -> float:
+def _mass_kg(stated: Any) -> float:
     """A mass that a person may have; one that is not positive is refused with the person."""
+    value = float(stated)
+    if isinstance(stated, bool):
+        raise ValueError("mass_kg is no number")
     if value > 0.0 and not MASSES_KG[0] <= value <= MASSES_KG[1]:
         raise InvalidInput(f"mass_kg must be between {MASSES_KG[0]:g} and {MASSES_KG[1]:g}, got {value:g}")
     return value

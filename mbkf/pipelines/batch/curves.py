@@ -58,9 +58,10 @@ def read_curves(path: Path) -> pa.Table:
     """Reads a file of :func:`write_curves`.
 
     Raises:
-        FileFormatError: It is damaged.
-        OSError: It cannot be read.
+        FileFormatError: It is missing or damaged.
     """
+    if not path.is_file():
+        raise FileFormatError(path, "no such file; delete its folder and run the batch again")
     try:
         return pq.read_table(path, schema=SCHEMA, page_checksum_verification=True)
     except (pa.ArrowException, OSError, ValueError) as error:
