@@ -86,6 +86,12 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("names", nargs="*", metavar="NAME", help="benchmarks to run (default: all)")
     parser.add_argument("--quick", action="store_true", help="shorter runs, for a first look")
     parser.add_argument(
+        "--minutes",
+        type=float,
+        metavar="M",
+        help="robustness: a live run of so many minutes in place of its rows",
+    )
+    parser.add_argument(
         "--gate",
         action="store_true",
         help="instead of benchmarks: quick metrics from end to end against the committed baseline",
@@ -106,13 +112,6 @@ def _parser() -> argparse.ArgumentParser:
         metavar="TREE",
         default=os.environ.get(OLD_VARIABLE) or None,
         help=f"another source tree, with which the time of a step is compared (default: ${OLD_VARIABLE})",
-    )
-    parser.add_argument(
-        "--minutes",
-        type=float,
-        default=0.0,
-        metavar="M",
-        help="robustness: also follow a stream with faults live for so long",
     )
     parser.add_argument(
         "--out",
@@ -164,7 +163,7 @@ def _console() -> Console:
 
 def context_of(args: argparse.Namespace, out: Path) -> Context:
     """A benchmark's input from the command line, with its folder."""
-    return Context(data=args.data, out=out.resolve(), quick=args.quick, old=args.old, minutes=args.minutes)
+    return Context(args.data, out.resolve(), args.quick, args.old, args.minutes)
 
 
 def _table(name: str, checks: Sequence[Check], seconds: float) -> Table:

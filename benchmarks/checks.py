@@ -53,15 +53,15 @@ class Context:
         data: Folder of the public reference captures, or None when there is none.
         out: Folder for the benchmark's files; exists.
         quick: Whether to do a shorter run, for a first look.
-        minutes: How long to go on, for a benchmark that lasts as long as one asks; 0 for not at all.
         old: Folder of another source tree that this one is compared with, or None when there is none.
+        minutes: How long a benchmark that can run for long is to run in place of its rows; None for its rows.
     """
 
     data: Path | None
     out: Path
     quick: bool = False
     old: Path | None = None
-    minutes: float = 0.0
+    minutes: float | None = None
 
     def require_data(self) -> Path:
         """The folder of reference captures.

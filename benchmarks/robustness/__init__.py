@@ -2,7 +2,7 @@
 
 Seeds are new in each run. What a seed damages is always the same, so that what failed can be seen again:
 ``python -m benchmarks.robustness.child FOLDER DATA FORMAT:SEED``, as the row names it. Then streams go wrong
-(:mod:`benchmarks.robustness.stream_faults`), and with ``--minutes M`` a live run goes on for so long
+(:mod:`benchmarks.robustness.stream_faults`); with ``--minutes M`` a live run goes on for so long in place of all that
 (:mod:`benchmarks.robustness.soak`).
 """
 
@@ -19,9 +19,10 @@ from functools import partial
 from pathlib import Path
 
 from benchmarks.checks import Check, Context, information
-from benchmarks.robustness import soak, stream_faults
 from benchmarks.robustness.child import FOREIGN, IMPOSSIBLE, READ, REFUSED
 from benchmarks.robustness.formats import formats
+from benchmarks.robustness.soak import soak_rows
+from benchmarks.robustness.stream_faults import stream_rows
 
 MUTANTS, QUICK_MUTANTS = 20_000, 600
 CHUNK = 100
@@ -36,7 +37,9 @@ DIED, HUNG = "died", "hung"
 
 
 def run(context: Context) -> list[Check]:
-    """All rows."""
+    """All rows; those of a long live run alone where its minutes are given."""
+    if context.minutes is not None:
+        return list(soak_rows(context))
     folder = context.out / "files"
     folder.mkdir(parents=True, exist_ok=True)
     names = sorted(formats(folder, context.data))
@@ -47,10 +50,7 @@ def run(context: Context) -> list[Check]:
     with ThreadPoolExecutor(WORKERS) as pool:
         for some in pool.map(partial(read_all, folder=folder, data=context.data), chunks):
             found |= some
-    checks = [*rows(found), *stream_faults.rows(context.out / "streams", context.quick)]
-    if context.minutes > 0.0:
-        checks += soak.rows(context.out / "soak", context.minutes)
-    return checks
+    return [*rows(found), *stream_rows(context)]
 
 
 def rows(found: dict[str, str]) -> list[Check]:

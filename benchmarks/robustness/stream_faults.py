@@ -1,217 +1,125 @@
-"""Faults of streams over LSL and NatNet: no thread of a live run may die, and every frame must be accounted for.
+"""Disturbed streams, followed by live runs in processes of their own: none may die, and every frame is accounted for.
 
-    python -m benchmarks.robustness.stream_faults FOLDER PROTOCOL:FAULT:SEED …
-
-plays a walk into live runs, each with one fault in its middle, and prints what became of each in a line of its own.
+What a seed disturbs is always the same, so that what failed can be seen again:
+``python -m benchmarks.robustness.stream_child FOLDER PROTOCOL FAULT:SEED``, as the row names it.
 """
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-
-from benchmarks.checks import Check, information
-from benchmarks.robustness.cameras import CAMERAS, Camera
-from benchmarks.robustness.faults import FAULTS, Fault, Nonsense, Pause, Restart, Send, Step
-from mbkf.errors import MbkfError
-from mbkf.io.capture import read_capture
-from mbkf.io.subject import read_subject
-from mbkf.pipelines.reconstruct import ReconstructSettings
+from benchmarks.checks import Check, Context, information
+from benchmarks.robustness.stream_kinds import KINDS, LSL, NATNET
 from mbkf.pipelines.synth import synthesise, write_folder
-from mbkf.stream.played import Played, played
-from mbkf.stream.run.session import LiveSession
 
-TIMES, QUICK_TIMES = 3, 1
+TIMES = 3
+"""Each fault is played so often, with a seed of its own each time."""
+
+SECONDS = 2.6
+CHUNK = 12
+"""So many runs a process follows before the next takes over."""
+
 WORKERS = 2
-CHUNK = 8
-"""So many runs a process makes."""
-
-SECONDS, RATE_HZ = 2.0, 100.0
-BEGINS, ENDS = 70, 135
-"""Frames between which the fault is."""
-
-WAIT_S, LINGER_S, HANG_S = 20.0, 0.4, 60.0
-PLACES = ("written", "not_written", "overwritten", "late", "unanswered")
-"""Where a frame that came may be, as live.json counts them."""
-
-HELD, DEAD, LOST, HUNG = "held", "a thread died", "frames not accounted for", "hung"
+HANG_S = 40.0
+Told = dict[str, object]
 
 
-def rows(folder: Path, quick: bool) -> list[Check]:
-    """All faults over all protocols, several times each.
-
-    Args:
-        folder: For the files.
-        quick: Whether once only.
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    write_folder(*synthesise("walk", seconds=SECONDS, rate_hz=RATE_HZ), folder / "walk")
+def stream_rows(context: Context) -> Iterator[Check]:
+    """The rows of disturbed streams: each fault three times over each protocol of it; once over one when quick."""
+    folder = context.out / "streams"
+    subject, walk = synthesise("walk", seconds=SECONDS, rate_hz=100.0)
+    write_folder(subject, walk, folder)
     first = time.time_ns() % 2**31
-    times = QUICK_TIMES if quick else TIMES
-    words = [
-        f"{protocol}:{fault}:{first + k}" for k in range(times) for protocol in CAMERAS for fault in FAULTS
-    ]
-    chunks = [words[at : at + CHUNK] for at in range(0, len(words), CHUNK)]
-    found: dict[str, str] = {}
+    jobs = chunks(1 if context.quick else TIMES, context.quick, first)
     with ThreadPoolExecutor(WORKERS) as pool:
-        for some in pool.map(partial(_in_a_process, folder), chunks):
-            found |= some
-    return told(found)
+        found = {
+            word: told
+            for some in pool.map(partial(follow, folder=folder), jobs)
+            for word, told in some.items()
+        }
+    yield from rows(found)
 
 
-def told(found: dict[str, str]) -> list[Check]:
-    """What became of the runs, by their words."""
-    count = {kind: sum(outcome.startswith(kind) for outcome in found.values()) for kind in (DEAD, LOST, HUNG)}
+def chunks(times: int, alternate: bool, first: int) -> list[tuple[str, list[str]]]:
+    """Protocols and what is followed over each, ``FAULT:SEED``, in jobs.
+
+    Args:
+        times: How often each fault is played.
+        alternate: Whether a fault of both protocols is played over one of them only.
+        first: The first seed.
+    """
+    words: dict[str, list[str]] = {LSL: [], NATNET: []}
+    for k, (name, kind) in enumerate(KINDS.items()):
+        chosen = kind.protocols[k % len(kind.protocols) :][:1] if alternate else kind.protocols
+        for j, protocol in enumerate(chosen):
+            words[protocol] += [f"{name}:{first + 10 * (2 * k + j) + time}" for time in range(times)]
     return [
-        information(f"runs with one of {len(FAULTS)} stream faults", float(len(found))),
-        Check("of which a thread died", float(count[DEAD]), 0.0, "<="),
-        Check("of which frames were not accounted for", float(count[LOST]), 0.0, "<="),
-        Check("of which the process hung or died", float(count[HUNG]), 0.0, "<="),
-        *(information(f"{word}: {outcome}", 1.0) for word, outcome in found.items() if outcome != HELD),
+        (protocol, some[at : at + CHUNK])
+        for protocol, some in words.items()
+        for at in range(0, len(some), CHUNK)
     ]
 
 
-def _in_a_process(folder: Path, words: Sequence[str]) -> dict[str, str]:
-    command = [sys.executable, "-m", "benchmarks.robustness.stream_faults", str(folder), *words]
-    found: dict[str, str] = {}
-    try:
-        done = subprocess.run(
-            command, capture_output=True, text=True, timeout=HANG_S * len(words), check=False
-        )
-        lines = done.stdout.splitlines()
-    except subprocess.TimeoutExpired as late:
-        lines = (late.stdout or b"").decode().splitlines()
-    for line in lines:
-        if line.startswith("end "):
-            word, _, outcome = line.removeprefix("end ").partition(" = ")
-            found[word] = outcome
-    return {word: found.get(word, HUNG) for word in words}
+def rows(found: dict[str, Told]) -> Iterator[Check]:
+    """What became of the runs, by protocol, fault and seed."""
+    kinds = len({word.split(" ", 1)[1].rsplit(":", 1)[0] for word in found})
+    name = f"{kinds} stream faults × {TIMES if len(found) > len(KINDS) else 1} over LSL and NatNet"
+    died = {word: told["died"] for word, told in found.items() if told.get("died")}
+    wrong = {word: told["unaccounted"] for word, told in found.items() if told.get("unaccounted")}
+    without = {word: told["problem"] for word, told in found.items() if told.get("problem")}
+    astray = [word for word, told in found.items() if not told.get("died") and not told.get("tracked")]
+    yield information("disturbed runs", float(len(found)))
+    yield Check(f"{name}: threads died", float(len(died)), 0.0, "<=")
+    yield Check(
+        f"{name}: frames not accounted for", float(sum(int(str(n)) for n in wrong.values())), 0.0, "<="
+    )
+    yield Check(f"{name}: runs without results", float(len(without)), 0.0, "<=")
+    yield Check(f"{name}: runs not tracked at their end", float(len(astray)), 0.0, "<=")
+    for listed in (died, wrong, without, {word: "not tracked at its end" for word in astray}):
+        yield from (information(f"{word}: {what}"[:200], 1.0) for word, what in listed.items())
 
 
-def main(words: Iterable[str]) -> None:
-    """Makes the runs that the words name."""
-    folder, *asked = words
-    walk = Path(folder) / "walk"
-    capture, subject = played(read_capture(walk / "trial.c3d")), read_subject(walk / "subject.toml")
-    dead: list[str] = []
-    threading.excepthook = lambda args: dead.append(f"{args.exc_type.__name__} in {args.thread}")
-    for word in asked:
-        protocol, fault, seed = word.split(":")
-        out = Path(folder) / f"{protocol}-{fault.replace(' ', '-')}-{seed}"
-        dead.clear()
-        camera = CAMERAS[protocol](capture)
-        settings = ReconstructSettings(smooth=False, correct_markers=False)
-        session = LiveSession(camera.source(), subject, settings, out, protocol)
-        outcome = run(session, camera, list(steps(capture, FAULTS[fault], int(seed))), capture, dead)
-        print(f"end {word} = {outcome}", flush=True)
-
-
-def run(session: LiveSession, camera: Camera, sent: Sequence[Step], capture: Played, dead: list[str]) -> str:
-    """What becomes of a live run with a fault in its middle.
+def follow(job: tuple[str, Sequence[str]], folder: Path) -> dict[str, Told]:
+    """What becomes of runs; a process that dies or hangs is replaced for the next.
 
     Args:
-        session: The run, not connected yet.
-        camera: What it follows.
-        sent: What the camera does.
-        capture: What it shows.
-        dead: Threads that died of an error meanwhile.
+        job: The protocol, and ``FAULT:SEED`` of each run.
+        folder: Where capture and subject are.
     """
-    stop, finished = threading.Event(), threading.Event()
-    sender = threading.Thread(target=_play, args=(camera, capture, sent, stop, finished), name="camera")
-    sender.start()
-    try:
-        if not session.connect(stop, WAIT_S):
-            return f"{HUNG}: never connected"
-        outcome = session.run(stop)
-    except MbkfError as error:
-        return f"{HUNG}: {error}"
-    finally:
-        finished.set()
-        stop.set()
-        sender.join()
-        camera.close()
-    report = outcome.report
-    if outcome.failed or dead:
-        return f"{DEAD}: {report['ended_by']} {dead}"
-    counts = {name: report[f"frames_{name}"] for name in PLACES}
-    if report["frames_in"] != sum(counts.values()):  # type: ignore[arg-type]
-        return f"{LOST}: {report['frames_in']} came, {counts}"
-    came, lost = int(str(report["frames_in"])), int(str(report["frames_lost_on_the_way"]))
-    whole = not any(isinstance(step, Restart) for step in sent)
-    if came > camera.sent or (whole and came + lost < camera.sent):
-        return f"{LOST}: {came} came of {camera.sent} sent, {lost} are told lost"
-    return HELD
+    protocol, words = job
+    found: dict[str, Told] = {}
+    left = list(words)
+    while left:
+        begun = _one_process(protocol, left, folder, found)
+        if begun not in found:
+            found[begun or left[0]] = {"died": ["the process died or hung"]}
+        left = [word for word in left if word not in found]
+    return {f"{protocol} {word}": told for word, told in found.items()}
 
 
-def _play(
-    camera: Camera,
-    capture: Played,
-    sent: Sequence[Step],
-    stop: threading.Event,
-    finished: threading.Event,
-) -> None:
-    """Does what a camera is to do as soon as somebody listens, and ends the run then.
-
-    Args:
-        camera: The camera.
-        capture: What it shows.
-        sent: What it does.
-        stop: Set at the end.
-        finished: Set when the run has ended.
-    """
-    until = time.monotonic() + WAIT_S
-    while not camera.listening() and not finished.is_set() and time.monotonic() < until:
-        time.sleep(0.01)
-    begin, late = time.perf_counter(), 0.0
-    for step in sent:
-        if finished.is_set():
-            return
-        match step:
-            case Pause(seconds):
-                time.sleep(seconds)
-                late += seconds
-            case Nonsense(packet, foreign):
-                camera.nonsense(packet, foreign)
-            case Restart(seconds, returns, renamed):
-                camera.restart(None)
-                time.sleep(seconds)
-                late += seconds
-                if returns:
-                    camera.restart(_renamed(capture) if renamed else capture)
-            case Send(frame, number):
-                time.sleep(max(0.0, begin + late + frame.number / RATE_HZ - time.perf_counter()))
-                camera.frame(frame, number)
-    time.sleep(LINGER_S)
-    stop.set()
-
-
-def steps(capture: Played, fault: Fault, seed: int) -> Iterator[Step]:
-    """What is sent: all frames, those in the middle as the fault has it.
-
-    Args:
-        capture: The frames.
-        fault: The fault.
-        seed: Of its chance.
-    """
-    frames = list(capture.frames())
-    yield from (Send(frame, frame.number) for frame in frames[:BEGINS])
-    yield from fault(frames[BEGINS:ENDS], np.random.default_rng(seed))
-    yield from (Send(frame, frame.number) for frame in frames[ENDS:])
-
-
-def _renamed(capture: Played) -> Played:
-    names = tuple(f"other {name}" for name in capture.stream.marker_names)
-    return replace(capture, stream=replace(capture.stream, marker_names=names))
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])
+def _one_process(protocol: str, words: Sequence[str], folder: Path, found: dict[str, Told]) -> str | None:
+    """Follows runs until the process ends; returns the one that it began last."""
+    command = [sys.executable, "-m", "benchmarks.robustness.stream_child", str(folder), protocol, *words]
+    begun: str | None = None
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
+        assert process.stdout is not None
+        clock = threading.Timer(HANG_S, process.kill)
+        clock.start()
+        for line in process.stdout:
+            clock.cancel()
+            told = json.loads(line)
+            begun = told.get("begin", begun)
+            if "end" in told:
+                found[told["end"]] = told
+            clock = threading.Timer(HANG_S, process.kill)
+            clock.start()
+        clock.cancel()
+    return begun

@@ -316,17 +316,17 @@ def _recover(folder: Path) -> int:
     from mbkf.errors import InvalidInput
     from mbkf.stream.run.folder import write_results
 
-    summary, problem = write_results(folder, ("live: made from the log of a run that broke off",))
-    if summary is None:
-        raise InvalidInput(f"nothing can be recovered: {problem}")
-    print(f"{folder}: {summary['frames']} frames recovered")
-    for note in (text for text in summary["warnings"] if text.startswith("live: ")):
-        print(note.removeprefix("live: "))
+    written = write_results(folder, ("live: made from the log of a run that broke off",))
+    for sentence in written.left_out:
+        _say(f"mbkf: {sentence}")
+    if written.summary is None:
+        raise InvalidInput(f"nothing can be recovered: {written.problem}")
+    print(f"{folder}: {written.summary['frames']} frames recovered")
     return 0
 
 
 def _told(outcome: LiveOutcome, folder: Path) -> int:
-    """Prints how the run went.
+    """Prints how the run went; 1 where it failed and yet left results.
 
     Raises:
         InvalidInput: Its results could not be written.
@@ -342,16 +342,20 @@ def _told(outcome: LiveOutcome, folder: Path) -> int:
         f"{report['frames_in']} frames came, {report['frames_lost']} were lost; latency median "
         f"{_ms(report['latency_ms_median'])}, 99 % {_ms(report['latency_ms_p99'])} ms{lag}; {report['ended_by']}"
     )
-    if report["frames_unanswered"]:
-        print(f"{report['frames_unanswered']} frames that came before the end were not answered any more")
-    missing = report["frames_not_written"]
+    failed = [] if outcome.failure is None else [f"it ended early: {outcome.failure}"]
+    logged, unlogged = report["frames_written"], report["frames_not_written"]
+    if unlogged:
+        failed.append(f"{unlogged} frames were never logged and cannot be recovered")
     if outcome.problem is not None:
-        where = f"; its log is kept, 'mbkf live --recover {folder}' makes them" if report["log"] else ""
-        gone = f"; {missing} frames could not be logged and are gone" if missing else ""
-        raise InvalidInput(f"the results could not be written: {outcome.problem}{where}{gone}")
-    if missing:
-        raise InvalidInput(f"{missing} frames could not be logged and are missing in the results")
-    return 1 if outcome.failed else 0
+        failed.insert(0, f"the results could not be written: {outcome.problem}")
+        if report["log"] and logged:
+            failed.append(
+                f"{logged} frames are in its log, of which 'mbkf live --recover {folder}' makes results"
+            )
+        raise InvalidInput("; ".join(failed))
+    if failed:
+        _say(f"mbkf: error: {'; '.join(failed)}; {folder} holds the results of {logged} frames")
+    return 1 if failed else 0
 
 
 def _ms(value: Any) -> str:

@@ -1,8 +1,9 @@
-"""A log that grows row by row and stays readable after a crash: one line of JSON, then rows of fixed size.
+"""A log that grows row by row and stays readable after a crash: two lines of text, then rows of fixed size.
 
-A row that was written stays, also when the process is killed or the disk is full. Behind each row stands its CRC-32,
-which begins with the row's place, so that what a power cut left of the end (zeros, a part of a row, old blocks of a
-disk) is known and left out.
+The first line is JSON: version, type of a row, header. The second is its CRC-32 in hexadecimal. Each row is followed by
+its own CRC-32 (four bytes, little endian), that of its place among the rows and of its bytes. A row that was written
+stays, also when the process is killed or the disk is full; what follows the first row that is not whole (cut off,
+zero-filled after a power cut, overwritten) is left out when the log is read.
 """
 
 from __future__ import annotations
@@ -22,9 +23,23 @@ from mbkf.io.plain_data import parse_json
 
 FORMAT = "mbkf frame log"
 FORMAT_VERSION = 2
-"""Version 1 had no checksums."""
+"""Version 1 had neither checksum; it is still read, as far as its rows are whole."""
 
-CHECKSUM = np.dtype("<u4")
+_CHECKSUM = np.dtype("<u4")
+
+
+class FrameLog(NamedTuple):
+    """Contents of a log.
+
+    Attributes:
+        header: Plain data that belongs to all rows.
+        rows: (T,) rows before the first damaged one.
+        left_out: Number of rows from there on, a cut one included.
+    """
+
+    header: dict[str, object]
+    rows: NDArray
+    left_out: int
 
 
 class FrameLogWriter:
@@ -48,10 +63,12 @@ class FrameLogWriter:
             OSError: The file cannot be written.
         """
         self.path, self.rows = Path(path), 0
-        self.dtype, self._size = dtype, dtype.itemsize + CHECKSUM.itemsize
+        self.dtype = dtype
+        self._size = dtype.itemsize + _CHECKSUM.itemsize
         first = {"format": FORMAT, "format_version": FORMAT_VERSION, "dtype": _plain(dtype), "header": header}
         self._file = self.path.open("wb", buffering=0)
         line = (json.dumps(first) + "\n").encode()
+        line += _line_checksum(line)
         self._start = len(line)
         self._write(line)
 
@@ -61,9 +78,11 @@ class FrameLogWriter:
         Raises:
             OSError: Not all of them could be written. Those that were stay; a cut one is removed.
         """
-        plain = np.ascontiguousarray(rows, dtype=self.dtype)
+        plain = np.ascontiguousarray(rows, dtype=self.dtype).view(np.uint8).reshape(len(rows), -1)
+        sums = _checksums(plain, self.rows)
+        data = np.concatenate([plain, sums.view(np.uint8).reshape(len(rows), -1)], axis=1).tobytes()
         try:
-            self._write(_with_checksums(plain, self.rows))
+            self._write(data)
         finally:
             size = os.fstat(self._file.fileno()).st_size
             self.rows = (size - self._start) // self._size
@@ -72,7 +91,7 @@ class FrameLogWriter:
                 self._file.truncate(whole)
                 self._file.seek(whole)
 
-    def _write(self, data: bytes | memoryview) -> None:
+    def _write(self, data: bytes) -> None:
         left = memoryview(data)
         while left:
             left = left[self._file.write(left) :]
@@ -90,41 +109,25 @@ class FrameLogWriter:
         self.close()
 
 
-class FrameLog(NamedTuple):
-    """Contents of a log.
-
-    Attributes:
-        header: Plain data that belongs to all rows.
-        rows: (N,) rows up to the first one that is damaged.
-        damaged: How many rows follow that are not as they were written, a part of one counted.
-    """
-
-    header: dict[str, object]
-    rows: NDArray
-    damaged: int
-
-
 def read_frame_log(path: str | Path) -> FrameLog:
-    """Header and rows of a log, as far as they are as they were written.
+    """Header and rows of a log, as far as it is undamaged.
 
     Raises:
-        FileFormatError: The file is missing or no log.
+        FileFormatError: The file is missing or no log, or its header is damaged.
     """
     source = Path(path)
     try:
         with source.open("rb") as file:
-            first = parse_json(file.readline())
+            line = file.readline()
+            first = parse_json(line)
             version = first["format_version"]
-            if first["format"] != FORMAT or version > FORMAT_VERSION:
+            if first["format"] != FORMAT or version not in range(1, FORMAT_VERSION + 1):
                 raise FileFormatError(source, "not a frame log of this version of mbkf")
+            if version > 1 and file.readline() != _line_checksum(line):
+                raise FileFormatError(source, "not a frame log (its header is damaged)")
             dtype = np.dtype([(name, kind, tuple(shape)) for name, kind, shape in first["dtype"]])
             header, data = dict(first["header"]), file.read()
-        checked = CHECKSUM.itemsize if version > 1 else 0
-        size = dtype.itemsize + checked
-        stored = np.frombuffer(data[: len(data) // size * size], dtype=np.uint8).reshape(-1, size)
-        good = _good_rows(stored) if checked else len(stored)
-        rows = np.frombuffer(stored[:good, : dtype.itemsize].tobytes(), dtype=dtype)
-        return FrameLog(header, rows, len(stored) - good + (len(data) % size > 0))
+        return FrameLog(header, *_rows(data, dtype, checked=version > 1))
     except FileNotFoundError as error:
         raise FileFormatError(source, "no such file; 'mbkf live' keeps it while it runs") from error
     except OSError as error:
@@ -133,28 +136,32 @@ def read_frame_log(path: str | Path) -> FrameLog:
         raise FileFormatError(source, f"not a frame log ({error})") from error
 
 
-def _with_checksums(rows: NDArray, first: int) -> memoryview:
-    """The bytes of rows, each followed by its checksum.
+def _rows(data: bytes, dtype: np.dtype, checked: bool) -> tuple[NDArray, int]:
+    """Rows before the first damaged one, and how many there are from there on."""
+    size = dtype.itemsize + (_CHECKSUM.itemsize if checked else 0)
+    count, cut = divmod(len(data), size)
+    stored = np.frombuffer(data, np.uint8, count * size).reshape(count, size)
+    plain = np.ascontiguousarray(stored[:, : dtype.itemsize])
+    whole = count
+    if checked:
+        wrong = (
+            _checksums(plain, 0) != np.ascontiguousarray(stored[:, dtype.itemsize :]).view(_CHECKSUM)[:, 0]
+        )
+        whole = int(wrong.argmax()) if wrong.any() else count
+    return plain[:whole].view(dtype)[:, 0], count - whole + (cut > 0)
 
-    Args:
-        rows: (N,) the rows, contiguous.
-        first: Place of the first one in the log.
-    """
-    size = rows.dtype.itemsize
-    stored = np.empty((len(rows), size + CHECKSUM.itemsize), dtype=np.uint8)
-    stored[:, :size] = np.frombuffer(rows.tobytes(), dtype=np.uint8).reshape(len(rows), size)
-    sums = [zlib.crc32(row[:size].data, first + k) for k, row in enumerate(stored)]
-    stored[:, size:] = np.array(sums, dtype=CHECKSUM).view(np.uint8).reshape(len(rows), -1)
-    return memoryview(stored.tobytes())
+
+def _checksums(plain: NDArray[np.uint8], first: int) -> NDArray[np.uint32]:
+    """(n,) CRC-32 of rows (n, bytes), of which the first has that place in the log."""
+    places = np.arange(first, first + len(plain), dtype="<u8").tobytes()
+    crc = zlib.crc32
+    return np.fromiter(
+        (crc(row, crc(places[8 * k : 8 * k + 8])) for k, row in enumerate(plain)), _CHECKSUM, len(plain)
+    )
 
 
-def _good_rows(stored: NDArray[np.uint8]) -> int:
-    """How many rows from the first on fit their checksums, (N, S) bytes."""
-    sums = np.ascontiguousarray(stored[:, -CHECKSUM.itemsize :]).view(CHECKSUM)[:, 0]
-    for k, row in enumerate(stored):
-        if zlib.crc32(row[: -CHECKSUM.itemsize].data, k) != sums[k]:
-            return k
-    return len(stored)
+def _line_checksum(line: bytes) -> bytes:
+    return b"%08x\n" % zlib.crc32(line)
 
 
 def _plain(dtype: np.dtype) -> list[list[Any]]:

@@ -1,22 +1,12 @@
-"""Who may ask a server of this computer: its own programs and pages without, others with a token.
-
-A server bound to this computer's own address needs no token, but another web page must not reach it by the visitor's
-browser, neither directly (its requests carry an Origin that is not the server's) nor by a name of its own that it lets
-point here (its requests carry that name as Host).
-"""
+"""This computer's own address: servers bound to it need no token; and which requests other web pages caused."""
 
 from __future__ import annotations
 
-import hmac
 import ipaddress
-import re
 from urllib.parse import urlsplit
 
 LOOPBACK = "127.0.0.1"
 """The address servers are bound to unless another one is asked for."""
-
-OWN_PAGES = re.compile(r"https?://(localhost|127\.0\.0\.1|\[::1\])(:\d+)?")
-"""Origins of pages that this computer serves."""
 
 
 def is_loopback(address: str) -> bool:
@@ -27,27 +17,24 @@ def is_loopback(address: str) -> bool:
         return address == "localhost"
 
 
-def names_this_computer(host: str) -> bool:
-    """Whether the Host of a request, port included, is this computer's own name for itself."""
-    try:
-        return is_loopback(urlsplit(f"//{host}").hostname or "")
-    except ValueError:
-        return False
+def own_request(host: str, origin: str | None, local: bool, any_port: bool = False) -> bool:
+    """Whether a request comes from a program or from the server's own page, and not from another web page.
 
-
-def is_page_of(origin: str | None, host: str) -> bool:
-    """Whether a request comes from a page of this very server, or from a program.
+    A page elsewhere that its visitor's browser lets ask this computer tells its origin; one that has given its own name
+    this computer's address (DNS rebinding) asks for that name as the host.
 
     Args:
-        origin: Its Origin; None for a program.
-        host: Its Host.
+        host: The request's ``Host``.
+        origin: Its ``Origin``, which browsers add; None without.
+        local: Whether the server is bound to this computer's own address, so that only that may be asked for.
+        any_port: Whether pages that another port of the same computer serves count as own, for a server without pages.
     """
     try:
-        return origin is None or urlsplit(origin).netloc == host
-    except ValueError:
+        named, page = urlsplit(f"//{host}").hostname or "", urlsplit(origin or "")
+        if local and not is_loopback(named):
+            return False
+        if origin is None or (any_port and local and is_loopback(page.hostname or "")):
+            return True
+        return bool(page.netloc) and (page.hostname == named if any_port else page.netloc == host)
+    except ValueError:  # no host at all
         return False
-
-
-def is_token(given: str, token: str) -> bool:
-    """Whether a token is the right one, in a time that does not tell how much of it is."""
-    return hmac.compare_digest(given.encode(), token.encode())

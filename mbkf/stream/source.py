@@ -11,11 +11,14 @@ from numpy.typing import NDArray
 from mbkf.conventions import Array
 from mbkf.io.records import PlateReadings
 
-LARGEST_COUNT = 10**12
-"""No source counts further: at 1000 Hz that is thirty years."""
-
 FARTHEST_M = 100.0
 """A point farther from the origin than this is no measurement: no camera volume is that large."""
+
+LARGEST_COUNT = 2**36
+"""A count of frames or samples beyond this, either way, is none: at 1000 Hz it is that of two years."""
+
+UNCOUNTED = -(2**62)
+"""Number of a frame or a sample whose count cannot be read (NaN, infinite, absurdly large)."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +50,8 @@ class PlateSamples:
     """Readings of all plates, one after the other.
 
     Attributes:
-        index: (S,) numbers of the samples, ascending.
+        index: (S,) numbers of the samples, ascending; of a source as it counts, :data:`UNCOUNTED` where that cannot be
+            read.
         wrench: (S, K, 6) force N and moment N m about each plate's own origin, world axes.
     """
 
@@ -65,7 +69,7 @@ class SourceFrame:
     """One frame as a source delivers it; world axes, m.
 
     Attributes:
-        number: As the source counts frames.
+        number: As the source counts frames, :data:`UNCOUNTED` where that cannot be read.
         arrival_s: When it arrived, on the clock of ``time.perf_counter``.
         markers_m: (M, 3) named markers, NaN where missing.
         unlabelled_m: (N, 3) points without names.
@@ -107,6 +111,13 @@ class FrameSource(Protocol):
 
     def close(self) -> None:
         """Lets go of the stream."""
+
+
+def counts(values: Array | np.float64) -> NDArray[np.int64]:
+    """(n,) whole numbers of counts that came as numbers (n,); :data:`UNCOUNTED` for what is none."""
+    with np.errstate(invalid="ignore"):
+        known = np.abs(values) <= LARGEST_COUNT
+    return np.where(known, np.round(np.where(known, values, 0.0)), UNCOUNTED).astype(np.int64)
 
 
 def plausible(points_m: Array) -> tuple[Array, int]:

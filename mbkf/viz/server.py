@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import hmac
 import logging
 import secrets
 import socket
@@ -23,7 +24,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 from mbkf.errors import InvalidInput
-from mbkf.stream.loopback import LOOPBACK, is_loopback, is_page_of, is_token, names_this_computer
+from mbkf.stream.loopback import LOOPBACK, is_loopback, own_request
 
 SEND_PERIOD_S = 1.0 / 30.0
 LONGEST_SLEEP_S = 0.2
@@ -160,8 +161,8 @@ class PageServer:
     def _allowed(self, request: Request, token: str) -> bool:
         """Whether the request carries the token and comes from this page rather than from another web page."""
         host, origin = request.headers.get("Host", ""), request.headers.get("Origin")
-        own_name = not self._local or names_this_computer(host)
-        return own_name and is_page_of(origin, host) and is_token(token, self.token)
+        own = own_request(host, origin, self._local)
+        return own and hmac.compare_digest(token.encode(), self.token.encode())
 
     async def _stream(self, connection: ServerConnection) -> None:
         """Sends the newest row whenever there is one; a slow page gets fewer rows, never old ones."""

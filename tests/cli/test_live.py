@@ -21,6 +21,7 @@ from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture import read_capture
 from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.subject import read_subject
+from mbkf.pipelines.live.log import FRAMES_FILE
 from mbkf.pipelines.live.results import live_results
 from mbkf.stream.run.folder import LOG_FOLDER
 from mbkf.viz.live.page import LivePage
@@ -123,6 +124,19 @@ def test_a_replay_is_followed(person, tmp_path, capsys, protocol):
     found, again = read_reconstruction(out), live_results(out / LOG_FOLDER)
     np.testing.assert_array_equal(found.tau, again.tau)
     assert found.tracked.all()
+
+
+def test_a_damaged_log_is_recovered_as_far_as_it_is_whole(person, tmp_path, capsys):
+    out = tmp_path / "out"
+    words = ["live", "--from", f"file:{person.trial}", "--subject", person.subject, "--speed", 0]
+    assert run([*words, "--keep-log", "--out", out]) == 0
+    path = out / LOG_FOLDER / FRAMES_FILE
+    path.write_bytes(path.read_bytes()[:-10] + bytes(10))
+    capsys.readouterr()
+    assert run(["live", "--recover", out]) == 0
+    told = capsys.readouterr()
+    assert "59 frames recovered" in told.out
+    assert told.err == "mbkf: 1 frames are left out: frames.log is damaged from there on\n"
 
 
 def test_ctrl_c_leaves_complete_files(person, tmp_path):

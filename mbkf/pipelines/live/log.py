@@ -21,8 +21,10 @@ from mbkf.io.records import PlateReadings
 FRAMES_FILE, PLATES_FILE, SUBJECT_FILE = "frames.log", "plates.log", "subject.toml"
 """Files of the log's folder."""
 
-LONGEST_GAP_S = 3600.0
-"""What comes after a longer gap is left out of the results, which hold a row for every frame."""
+MOST_MISSING, MISSING_PER_ROW = 60_000, 4
+"""Between the rows of a log so many may be missing in all, and so many more for each that is there: ten minutes at
+100 Hz. What follows a longer gap, or a number that does not rise, is left out; no number decides how much memory is
+asked for."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +101,7 @@ class Logged:
         settings: Of the run.
         first: Number of its first frame.
         rows: (T,) one row per frame from there on; those of lost frames are blank.
-        left_out: How many rows and samples were damaged, or came after too long a gap.
+        left_out: A sentence for each file of which rows are left out, since they or those before are damaged.
     """
 
     stream: LiveStream
@@ -107,50 +109,59 @@ class Logged:
     settings: dict[str, object]
     first: int
     rows: NDArray
-    left_out: int = 0
+    left_out: tuple[str, ...] = ()
 
 
 def read_live_log(folder: Path) -> Logged:
-    """Reads what :class:`LiveLog` wrote, as far as it came.
+    """Reads what :class:`LiveLog` wrote, as far as it came and is undamaged.
 
     Raises:
         FileFormatError: There is no log, or not one row in it.
     """
-    frames, plates_log = read_frame_log(folder / FRAMES_FILE), read_frame_log(folder / PLATES_FILE)
-    header: dict[str, Any] = frames.header
-    try:
-        plate_hz = float(header["plates"][0]["rate_hz"]) if header["plates"] else 0.0
-        rows = _without_leaps(frames.rows, "number", float(header["rate_hz"]))
-        samples = _without_leaps(plates_log.rows, "index", plate_hz)
-    except (KeyError, TypeError, ValueError, IndexError) as error:
-        raise FileFormatError(folder / FRAMES_FILE, f"is no log of a live run ({error})") from error
-    left_out = frames.damaged + plates_log.damaged
-    left_out += len(frames.rows) - len(rows) + len(plates_log.rows) - len(samples)
+    log = read_frame_log(folder / FRAMES_FILE)
+    header: dict[str, Any] = log.header
+    rows = log.rows[: _believable(log.rows["number"])]
     if not len(rows):
         raise FileFormatError(folder / FRAMES_FILE, "no frame was written")
     first = int(rows["number"][0])
     whole = blank(rows.dtype, int(rows["number"][-1]) - first + 1)
     whole["number"] = first + np.arange(len(whole))
     whole[rows["number"] - first] = rows
+    samples, samples_lost = _samples(folder / PLATES_FILE, len(header["plates"]))
     plates = tuple(
         _with_readings(plate, samples["index"], samples["wrench"][:, k])
         for k, plate in enumerate(header["plates"])
     )
     stream = LiveStream(header["trial"], header["rate_hz"], header["start_time_s"], plates)
-    return Logged(stream, tuple(header["markers"]), header["settings"], first, whole, left_out)
+    frames_lost = _told(len(log.rows) - len(rows) + log.left_out, "frames", FRAMES_FILE)
+    told = tuple(sentence for sentence in (frames_lost, samples_lost) if sentence)
+    return Logged(stream, tuple(header["markers"]), header["settings"], first, whole, told)
 
 
-def _without_leaps(rows: NDArray, count: str, rate_hz: float) -> NDArray:
-    """Rows up to the first one whose count does not go on, or goes on after too long a gap.
+def _samples(path: Path, plates: int) -> tuple[NDArray, str]:
+    """Samples of the plates, none where their file is unreadable; and what of them is left out, in words."""
+    try:
+        log = read_frame_log(path)
+    except FileFormatError as error:
+        return np.zeros(0, dtype=plates_dtype(plates)), f"the plates' samples are left out: {error}"
+    rows = log.rows[: _believable(log.rows["index"])]
+    return rows, _told(len(log.rows) - len(rows) + log.left_out, "samples of the plates", PLATES_FILE)
 
-    Args:
-        rows: The rows.
-        count: Their field that counts.
-        rate_hz: How often it counts.
-    """
-    steps = np.diff(rows[count])
-    wrong = np.flatnonzero((steps <= 0) | (steps > LONGEST_GAP_S * rate_hz))
-    return rows[: wrong[0] + 1] if len(wrong) else rows
+
+def _told(count: int, what: str, file: str) -> str:
+    return f"{count} {what} are left out: {file} is damaged from there on" if count else ""
+
+
+def _believable(numbers: NDArray[np.int64]) -> int:
+    """How many rows from the first one on have numbers that rise and are not too far apart."""
+    if len(numbers) < 2:
+        return len(numbers)
+    later = np.arange(1, len(numbers))
+    missing = (
+        numbers[1:].astype(float) - float(numbers[0]) - later
+    )  # as floats: differences of integers may overflow
+    wrong = (numbers[1:] <= numbers[:-1]) | (missing > MOST_MISSING + MISSING_PER_ROW * later)
+    return 1 + int(wrong.argmax()) if wrong.any() else len(numbers)
 
 
 def _described(plate: PlateReadings) -> dict[str, object]:

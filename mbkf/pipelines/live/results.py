@@ -11,7 +11,7 @@ from mbkf.errors import NotObservable
 from mbkf.filters.tracking import track_of
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results import Reconstruction
-from mbkf.io.subject import read_subject
+from mbkf.io.subject import Subject, read_subject
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.live.filter import live_inputs
 from mbkf.pipelines.live.log import SUBJECT_FILE, Logged, read_live_log
@@ -19,7 +19,7 @@ from mbkf.pipelines.reconstruct import ReconstructSettings, assemble
 
 
 def live_results(folder: Path, notes: tuple[str, ...] = ()) -> Reconstruction:
-    """Motion, torques and reactions of a logged run.
+    """Motion, torques and reactions of a logged run; what its damaged log lacks stands in their warnings.
 
     Args:
         folder: The log.
@@ -29,13 +29,21 @@ def live_results(folder: Path, notes: tuple[str, ...] = ()) -> Reconstruction:
         FileFormatError: The log is missing or damaged.
         NotObservable: In no frame did the markers fit the body.
     """
-    logged = read_live_log(folder)
-    if logged.left_out:
-        notes = (
-            *notes,
-            f"live: {logged.left_out} rows of the log are damaged, or came after a gap of an hour",
-        )
-    subject = read_subject(folder / SUBJECT_FILE)
+    return results_of(read_live_log(folder), read_subject(folder / SUBJECT_FILE), notes)
+
+
+def results_of(logged: Logged, subject: Subject, notes: tuple[str, ...] = ()) -> Reconstruction:
+    """The same from what was read of the log.
+
+    Args:
+        logged: Contents of the log.
+        subject: The person.
+        notes: Remarks for the reader.
+
+    Raises:
+        NotObservable: In no frame did the markers fit the body.
+    """
+    notes = (*notes, *(f"live: {sentence}" for sentence in logged.left_out))
     chosen = str(logged.settings["filter"])
     settings = ReconstructSettings(filter=chosen, smooth=False, correct_markers=False)
     result = track_of(logged.rows)

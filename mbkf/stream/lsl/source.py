@@ -19,7 +19,7 @@ from mbkf.stream.lsl.format import (
     read_marker_info,
     read_plates_info,
 )
-from mbkf.stream.source import LARGEST_COUNT, PlateSamples, SourceFrame, StreamDescription
+from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription, counts
 
 OPEN_S = 3.0
 """How long a stream that was found may take to answer."""
@@ -33,6 +33,9 @@ what is answered without them stays wrong."""
 
 GIVEN_UP = 4
 """After so many frames in a row whose plates came too late, plates are not waited for until they are in time again."""
+
+JUMP_S = 0.5
+"""Plates that are behind their frame by more are not waited for: they cannot come in time, or a count has jumped."""
 
 CHUNK = 64
 """Samples of the plates fetched at a time; liblsl is given room for so many, whether they come or not."""
@@ -62,7 +65,6 @@ class LslSource:
         self._newest_sample: int | None = None
         self._heard_plates_s = 0.0
         self._overdue = 0
-        self._number_before = 0
 
     def connect(self, timeout_s: float) -> StreamDescription | None:
         """The first marker stream that is found, with its plates."""
@@ -141,6 +143,8 @@ class LslSource:
         )
         try:
             inlet.open_stream(OPEN_S)
+            if not counted:  # else the first frames wait for it
+                inlet.time_correction(OPEN_S)
         except (self._lsl.util.LostError, self._lsl.util.TimeoutError):
             return None
         return inlet
@@ -159,12 +163,12 @@ class LslSource:
         return plates, self._plate_layout
 
     def _number(self, sample: Array, stamp: float) -> int:
-        if self._counted:
-            return _count(float(sample[self._layout.counter]))
-        if not self._first_stamp:
-            self._first_stamp = stamp
         assert self._stream is not None
-        return round((stamp - self._first_stamp) * self._stream.rate_hz)
+        if self._counted:
+            return int(counts(sample[self._layout.counter]))
+        if not self._first_stamp and np.isfinite(stamp):
+            self._first_stamp = stamp
+        return int(counts(np.float64((stamp - self._first_stamp) * self._stream.rate_hz)))
 
     def _samples(self, number: int, arrival_s: float) -> PlateSamples:
         """What the plates read since the frame before, waited for until the end of this frame."""
@@ -172,11 +176,11 @@ class LslSource:
         stream = self._stream
         if self._plates is None:
             return PlateSamples.none(len(stream.plates))
-        self._number_before = number = number if abs(number) <= LARGEST_COUNT else self._number_before + 1
         ratio = stream.plate_rate_hz / stream.rate_hz
         offset = (stream.start_time_s - stream.plates[0].start_time_s) * stream.plate_rate_hz
-        until = offset + (number + 0.5) * ratio - WHOLE
-        patience = 0.5 / stream.rate_hz + LATE_S if self._overdue < GIVEN_UP else 0.0
+        until = offset + (number + 0.5) * ratio - WHOLE  # long ago for a frame without a number
+        # Each wait in vain halves the next: frames go on coming meanwhile, and the filter has room for a few only.
+        patience = (0.5 / stream.rate_hz + LATE_S) * 0.5**self._overdue if self._overdue < GIVEN_UP else 0.0
         deadline = arrival_s + patience
         parts: list[PlateSamples] = []
         before = self._newest_sample
@@ -186,17 +190,16 @@ class LslSource:
             missing = self._missing(until)
             while True:  # asked once at least: a source that counts anew is ahead of itself
                 heard_until = min(deadline, self._heard_plates_s + QUIET_S)
-                wait = max(0.0, heard_until - time.perf_counter()) if missing > 0 else 0.0
+                due = 0 < missing <= JUMP_S * stream.plate_rate_hz
+                wait = max(0.0, heard_until - time.perf_counter()) if due else 0.0
                 # All that a frame brings in one call: each return waits for the interpreter.
                 found, stamps = self._plates.pull_chunk(
                     timeout=wait, max_samples=CHUNK, min_samples=max(1, min(missing, int(ratio), CHUNK))
                 )
                 if len(found):
                     self._heard_plates_s = time.perf_counter()
-                    placed = self._placed(found, stamps)
-                    if len(placed.index):
-                        parts.append(placed)
-                        self._newest_sample = int(placed.index[-1])
+                    parts.append(self._placed(found, stamps))
+                    self._newest_sample = int(parts[-1].index[-1])
                     missing = self._missing(until)
                 if missing <= 0 or not (len(found) or wait):
                     break
@@ -220,7 +223,7 @@ class LslSource:
         elif self._overdue < GIVEN_UP:
             self._overdue += waited_out
         elif comes and missing < LATE_S * self._stream.plate_rate_hz:
-            self._overdue = 0
+            self._overdue = GIVEN_UP - 1
 
     def _missing(self, until: float) -> int:
         """How many samples there are to come until that index."""
@@ -229,15 +232,9 @@ class LslSource:
     def _placed(self, samples: Array, stamps: Array) -> PlateSamples:
         assert self._stream is not None
         if self._counted:
-            counts = samples[:, self._plate_layout.counter]
-            samples = samples[np.abs(counts) <= LARGEST_COUNT]
-            index = samples[:, self._plate_layout.counter].astype(int)
+            index = counts(samples[:, self._plate_layout.counter])
         else:
-            index = np.round((stamps - self._first_stamp) * self._stream.plate_rate_hz).astype(int)
-        steps = np.diff(index)
-        if len(steps) and steps.min() <= 0:
-            rising = np.concatenate([[True], np.diff(np.maximum.accumulate(index)) > 0])
-            index, samples = index[rising], samples[rising]
+            index = counts((np.asarray(stamps) - self._first_stamp) * self._stream.plate_rate_hz)
         return PlateSamples(index, self._plate_layout.wrenches(samples))
 
     def _lose(self, what: str) -> None:
@@ -265,6 +262,7 @@ class LslSource:
                 raise InvalidInput(f"the stream '{self._name}' came back with other markers or another rate")
         except (MbkfError, self._lsl.util.LostError, self._lsl.util.TimeoutError) as error:
             self._news.append(("refused", str(error)))
+            time.sleep(timeout_s)
             return False
         self._markers, self._layout = inlet, layout
         self._news.append(("markers back", f"the stream '{self._name}' is back"))
@@ -275,10 +273,24 @@ class LslSource:
         if "plates" not in self._finders:
             return
         inlet = self._again("plates", 0.0)
-        if inlet is not None:
-            self._plates, self._heard_plates_s = inlet, 0.0
-            self._news.append(("plates back", f"the stream '{self._plates_name}' is back"))
-            del self._finders["plates"]
+        if inlet is None:
+            return
+        assert self._stream is not None
+        del self._finders["plates"]
+        try:
+            plates, layout = read_plates_info(inlet.info(OPEN_S))
+            if [one.name for one in plates] != [one.name for one in self._stream.plates]:
+                raise InvalidInput(f"the stream '{self._plates_name}' came back with other plates")
+            if plates[0].rate_hz != self._stream.plate_rate_hz:
+                raise InvalidInput(f"the stream '{self._plates_name}' came back with another rate")
+        except MbkfError as error:
+            self._news.append(("plates refused", f"{error}; going on without plates"))
+            return
+        except (self._lsl.util.LostError, self._lsl.util.TimeoutError):  # gone again
+            self._lose("plates")
+            return
+        self._plates, self._plate_layout, self._heard_plates_s = inlet, layout, 0.0
+        self._news.append(("plates back", f"the stream '{self._plates_name}' is back"))
 
     def _again(self, what: str, timeout_s: float) -> Any:
         found = self._finders[what].results()
@@ -286,8 +298,3 @@ class LslSource:
             time.sleep(timeout_s)
             return None
         return self._inlet(found[0], counted=self._counted)
-
-
-def _count(value: float) -> int:
-    """A frame's number; one beyond :data:`LARGEST_COUNT` where there is none."""
-    return int(value) if abs(value) <= LARGEST_COUNT else LARGEST_COUNT + 1

@@ -74,6 +74,7 @@ class NatNetClient:
         self.dropped = self.unreadable = 0
         self._alone = multicast is None
         self._frames: deque[tuple[float, bytes]] = deque()
+        self._sender: str | None = None
         self._news: deque[tuple[str, str]] = deque()
         self._told: set[str] = set()
         self._command, self._data = _sockets(local, port, multicast)
@@ -150,19 +151,34 @@ class NatNetClient:
             one: socket.socket = key.fileobj  # type: ignore[assignment]
             for _ in range(most):
                 try:
-                    packet = one.recv(_LARGEST)
+                    packet, (sender, *_) = one.recvfrom(_LARGEST)
                 except BlockingIOError:
                     break
                 except OSError:  # the server does not listen, or the network is gone
                     self._closing.wait(PAUSE_S)
                     break
                 arrival_s = time.perf_counter()
+                if not self._ours(sender):
+                    self._tell("stranger", f"packets of another sender, {sender}, are left out")
+                    continue
                 if packet[:2] != _FRAME:
                     self._take_message(packet)
                     continue
                 if len(self._frames) >= self.most_held:
                     self._drop()
                 self._frames.append((arrival_s, packet))
+
+    def _ours(self, sender: str) -> bool:
+        """Whether packets of an address are the server's: its own, or the first that sent any if that sends none.
+
+        A server with several addresses may answer from another one than it is asked at.
+        """
+        if sender == self._sender:
+            return True
+        if self._sender is None or sender == self._server[0]:
+            self._sender = sender
+            return True
+        return False
 
     def _drop(self) -> None:
         with suppress(IndexError):  # read in this moment

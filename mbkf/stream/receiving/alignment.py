@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import ceil
 from typing import NamedTuple
 
 import numpy as np
 
 from mbkf.conventions import Array, read_only
-from mbkf.stream.receiving.numbering import Numbered, Numbering
+from mbkf.io.resample import WHOLE
+from mbkf.stream.receiving.numbering import Numbered, Numbering, readable
 from mbkf.stream.receiving.plate_buffer import PlateBuffer
-from mbkf.stream.receiving.rate import RateWatch
+from mbkf.stream.receiving.rate_watch import RateWatch
+from mbkf.stream.receiving.sample_numbering import SampleNumbering
 from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription, plausible
 
 BRIDGED_S = 1.0
 """A gap up to this long is filled with empty frames, which keep the filter's clock true; after a longer one it starts
 anew."""
-
-ALIGNED_S = 0.25
-"""After a source restarted its count, plate samples whose own count fits that of the frames within this keep it."""
-
-PLATES_OFF_S, PLATES_OFF_FRAMES = 5.0, 10
-"""Plates whose count is off by more than this, or does not go on, in so many frames one after another count anew; a
-reader that is behind finds them ahead by less."""
 
 NO_POINTS = read_only(np.zeros((0, 3)))
 """The points without names of a frame that has none."""
@@ -56,8 +52,8 @@ class FrameAlignment:
 
     Attributes:
         frames_in: Frames that arrived.
-        lost: Frames that did not.
         late: Frames that arrived too late, twice or out of order, and were left out.
+        lost: Frames that did not arrive, or too late.
     """
 
     def __init__(
@@ -66,7 +62,7 @@ class FrameAlignment:
         columns: Array | None,
         note: Note,
         mass_kg: float | None = None,
-        live: bool = True,
+        live: bool = False,
     ) -> None:
         """An alignment that has seen no frame yet.
 
@@ -75,30 +71,31 @@ class FrameAlignment:
             columns: (M,) columns of the subject's markers in the stream; None for points without names.
             note: Called with events.
             mass_kg: The person's mass, by which readings of the plates are judged; None for not at all.
-            live: Whether frames come when they were measured, not as fast as a file can be read.
+            live: Whether frames come as they are taken, so that their rate can be measured.
         """
-        self._live = live
         self._stream, self._columns, self._note = stream, columns, note
         self._numbering = Numbering(stream.rate_hz)
         self._plates = PlateBuffer(stream, mass_kg)
         self._ratio = stream.plate_rate_hz / stream.rate_hz
-        self._plate_shift = 0
-        self._plates_strange = 0
+        self._samples = SampleNumbering(stream.plate_rate_hz)
+        plates_from_s = stream.plates[0].start_time_s if stream.plates else stream.start_time_s
+        self._plate_offset = (stream.start_time_s - plates_from_s) * stream.plate_rate_hz
+        self._rate = RateWatch(stream.rate_hz) if live else None
+        self._latest = 0
         self._heard_s: float | None = None
         self._plates_silent = False
-        self._rates = RateWatch(stream.rate_hz)
-        self.frames_in = self.lost = self.late = 0
+        self.frames_in = self.late = self.lost = 0
 
     def accept(self, frame: SourceFrame) -> tuple[list[ReadyFrame], PlateSamples]:
         """Takes the next frame; returns aligned frames, lost ones before it included, and the plates' new samples."""
         self.frames_in += 1
         place = self._numbering.place(frame.number, frame.arrival_s)
+        self._watch_rate(frame.arrival_s, place.number)
         if place.number is None:
             self.late += 1
             self._note("late", "frames arrived late, twice or out of order and were left out", None, 1)
             return [], self._take_plates(frame, place)
-        self._note_losses(place)
-        self._check_rate(frame, place)
+        self._note_losses(frame, place)
         samples = self._take_plates(frame, place)
         ready = self._missing(place, frame.arrival_s) if place.lost else []
         markers, points = self._points(frame, place.number)
@@ -119,28 +116,13 @@ class FrameAlignment:
             for n in range(place.number - place.lost, place.number)
         ]
 
-    def _check_rate(self, frame: SourceFrame, place: Numbered) -> None:
-        """Tells of frames that come at another rate than the stream states, since velocities are wrong by as much."""
-        assert place.number is not None
-        if self._live and (rate := self._rates.unlike(place.number, frame.arrival_s)) is not None:
-            self._note(
-                "rate",
-                f"frames come at {rate:.0f} Hz, the stream states {self._stream.rate_hz:g} Hz: times, velocities and "
-                "torques are wrong",
-                place.number,
-                1,
-            )
-
-    def _note_losses(self, place: Numbered) -> None:
-        if place.uncounted:
-            self._note(
-                "count", "frames came with an impossible count; they follow those before", place.number, 1
-            )
+    def _note_losses(self, frame: SourceFrame, place: Numbered) -> None:
         if place.reset:
             way = "back" if place.backwards else "ahead"
+            jumped = f"jumped {way}" if readable(frame.number) else "cannot be read"
             self._note(
                 "clock",
-                f"the source's count jumped {way}; time here decides how many frames are missing",
+                f"the source's count {jumped}; time here decides how many frames are missing",
                 place.number,
                 1,
             )
@@ -160,14 +142,22 @@ class FrameAlignment:
             self._note("nonsense", "points too far away to be true were left out", number, wrong)
         return markers, points
 
+    def _watch_rate(self, arrival_s: float, number: int | None) -> None:
+        """Tells once of frames that come at another rate than the stream states."""
+        found = None if self._rate is None else self._rate.arrived(arrival_s, number)
+        if found is not None:
+            self._rate = None
+            self._note(
+                "rate",
+                f"frames come at {found:.4g} Hz where the stream states {self._stream.rate_hz:.4g} Hz; times and "
+                "velocities are those of the stated rate",
+                number,
+                1,
+            )
+
     def _take_plates(self, frame: SourceFrame, place: Numbered) -> PlateSamples:
-        samples = frame.plates
-        if place.reset and place.number is not None and len(samples.index):
-            self._realign(frame, place.number)
+        samples = self._numbered(frame, place)
         before, refused = self._plates.missing, self._plates.refused
-        if self._plate_shift:
-            samples = PlateSamples(samples.index + self._plate_shift, samples.wrench)
-        samples = self._in_step(samples, place.number)
         taken = self._plates.put(samples)
         if self._plates.missing > before:
             self._note(
@@ -185,34 +175,26 @@ class FrameAlignment:
             )
         return taken
 
-    def _in_step(self, samples: PlateSamples, number: int | None) -> PlateSamples:
-        """Samples whose count goes on with that of the frames; none, until it is sure that the plates count anew."""
-        if number is None or not len(samples.index) or not self._stream.plates:
+    def _numbered(self, frame: SourceFrame, place: Numbered) -> PlateSamples:
+        """The plates' samples with numbers that rise; those without one are left out."""
+        if place.number is not None:
+            self._latest = place.number
+        number, samples, fitting = self._latest, frame.plates, None
+        if place.reset and place.number is not None and readable(frame.number):
+            fitting = round((place.number - frame.number) * self._ratio)
+        wanted = ceil(self._plate_offset + (number + 0.5) * self._ratio - WHOLE)
+        jumps = self._samples.jumps
+        index, kept = self._samples.place(samples.index, frame.arrival_s, wanted, fitting)
+        if self._samples.jumps > jumps and not place.reset:
+            self._note(
+                "plates clock",
+                "the plates' count jumped; their samples go on with the frames",
+                place.number,
+                self._samples.jumps - jumps,
+            )
+        if index is samples.index:
             return samples
-        newest, now = int(samples.index[-1]), self._plates.position(number)
-        known = self._plates.newest
-        off = abs(newest - now) > PLATES_OFF_S * self._stream.plate_rate_hz
-        if not off and (known is None or newest > known):
-            self._plates_strange = 0
-            return samples
-        self._plates_strange += 1
-        if self._plates_strange < PLATES_OFF_FRAMES:
-            return PlateSamples.none(len(self._stream.plates)) if off else samples
-        self._plates_strange = 0
-        shift = round(now) - newest
-        self._plate_shift += shift
-        self._note(
-            "plates clock", "the count of the plates jumped; their samples are taken as of now", number, 1
-        )
-        return PlateSamples(samples.index + shift, samples.wrench)
-
-    def _realign(self, frame: SourceFrame, number: int) -> None:
-        """Aligns the plates with the frames' new count: by their own count where it fits, else by the latest sample."""
-        newest = int(frame.plates.index[-1])
-        fitting = round((number - frame.number) * self._ratio)
-        wanted = round((number + 0.5) * self._ratio) - newest
-        fits = abs(fitting - wanted) <= ALIGNED_S * self._stream.plate_rate_hz
-        self._plate_shift = fitting if fits else wanted
+        return PlateSamples(index, samples.wrench if kept is None else samples.wrench[kept])
 
     def _check_plates(self, frame: SourceFrame, number: int) -> None:
         if not self._stream.plates:

@@ -1,8 +1,7 @@
 """Frame numbers that never decrease; lost, late and unordered frames are recognised by the source's own count.
 
-A source that restarts counts from zero again, and its count may jump; the number of missing frames then follows from
-the time that passed on this computer. A count that no source can have reached is no count: that frame follows the one
-before.
+A source that restarts counts from zero again, and its count may jump or be none; the number of missing frames then
+follows from the time that passed on this computer since the last frame whose count was as expected.
 """
 
 from __future__ import annotations
@@ -22,6 +21,11 @@ SLACK_S = 1.0
 """A count that runs ahead of the time that passed by more than this has jumped."""
 
 
+def readable(number: int) -> bool:
+    """Whether a source's count may be one."""
+    return -LARGEST_COUNT <= number <= LARGEST_COUNT
+
+
 @dataclass(frozen=True)
 class Numbered:
     """A frame's place.
@@ -31,62 +35,83 @@ class Numbered:
         lost: How many frames are missing before it.
         reset: Whether the source's count jumped, so that the number follows from the time that passed.
         backwards: Whether it jumped back.
-        uncounted: Whether the source's count was impossible.
     """
 
     number: int | None
     lost: int
     reset: bool = False
     backwards: bool = False
-    uncounted: bool = False
 
 
 class Numbering:
-    """Numbers frames, from the number of the first one on."""
+    """Numbers frames, from the number of the first one on; from 0 where that has none."""
 
     def __init__(self, rate_hz: float) -> None:
         self._rate_hz = rate_hz
-        self._shift = 0
+        self._shift: int | None = None
         self._last: int | None = None
         self._last_s = 0.0
+        self._trusted, self._trusted_s = 0, 0.0
+        self._shift_before: int | None = None
+        self._late = 0
         self._behind: list[int] = []
 
     def place(self, number: int, arrival_s: float) -> Numbered:
         """Place of the next frame.
 
         Args:
-            number: As the source counts.
+            number: As the source counts; beyond :data:`mbkf.stream.source.LARGEST_COUNT` it is not believed.
             arrival_s: When it arrived.
         """
-        if abs(number) > LARGEST_COUNT:
-            return self._following(arrival_s)
+        known = readable(number)
         if self._last is None:
-            self._last, self._last_s = number, arrival_s
-            return Numbered(number, 0)
-        here, backwards = number + self._shift, False
+            self._shift = 0 if known else None
+            return self._taken(number if known else 0, arrival_s, 0, not known)
+        if not known:
+            return self._by_time(None, arrival_s)
+        if self._shift is None:
+            return self._by_time(number, arrival_s)
         passed = (arrival_s - self._last_s) * self._rate_hz
-        reset = here - self._last > passed + SLACK_S * self._rate_hz
+        if self._is_back(number, passed):
+            self._shift, self._shift_before = self._shift_before, None
+        assert self._shift is not None
+        here = number + self._shift
         if here <= self._last:
+            self._late += 1
+            if self._late > LATE_S * self._rate_hz:  # it stands still
+                return self._by_time(None, arrival_s)
             self._behind.append(number)
             recent = self._behind[-BACK_FRAMES:]
             onward = len(recent) == BACK_FRAMES and all(b > a for a, b in pairwise(recent))
             if self._last - here < LATE_S * self._rate_hz and not onward:
                 return Numbered(None, 0)
-            reset = backwards = True
-        if reset:
-            here = self._last + max(1, round(passed))
-            self._shift = here - number
-        self._behind.clear()
-        lost = here - self._last - 1
-        self._last, self._last_s = here, arrival_s
-        return Numbered(here, lost, reset, backwards)
+            return self._by_time(number, arrival_s, backwards=True)
+        if here - self._last > passed + SLACK_S * self._rate_hz:
+            return self._by_time(number, arrival_s)
+        return self._taken(here, arrival_s, here - self._last - 1)
 
-    def _following(self, arrival_s: float) -> Numbered:
-        """The place after the frame before, or after as many as the time that passed tells."""
-        if self._last is None:
-            self._last, self._last_s = 0, arrival_s
-            return Numbered(0, 0, uncounted=True)
-        passed = (arrival_s - self._last_s) * self._rate_hz
-        lost = round(passed) - 1 if passed > SLACK_S * self._rate_hz else 0
-        self._last, self._last_s = self._last + 1 + lost, arrival_s
-        return Numbered(self._last, lost, uncounted=True)
+    def _is_back(self, number: int, passed: float) -> bool:
+        """Whether a count that had jumped goes on as if it had not: single counts are wrong at times."""
+        if self._shift_before is None or self._shift is None or self._last is None:
+            return False
+        jumped, before = number + self._shift - self._last, number + self._shift_before - self._last
+        return jumped != 1 and 1 <= before <= passed + BACK_FRAMES
+
+    def _by_time(self, number: int | None, arrival_s: float, backwards: bool = False) -> Numbered:
+        """Place of a frame whose count has jumped, or is none; the count goes on from there."""
+        assert self._last is not None
+        since = self._trusted + round((arrival_s - self._trusted_s) * self._rate_hz)
+        here = max(self._last + 1, since)
+        if number is not None:
+            self._shift_before, self._shift = self._shift, here - number
+        return self._taken(here, arrival_s, here - self._last - 1, True, backwards)
+
+    def _taken(
+        self, here: int, arrival_s: float, lost: int, reset: bool = False, backwards: bool = False
+    ) -> Numbered:
+        if not reset or self._last is None:
+            self._late = 0
+            self._trusted, self._trusted_s = here, arrival_s
+        self._last, self._last_s = here, arrival_s
+        self._behind.clear()
+        return Numbered(here, lost, reset, backwards)

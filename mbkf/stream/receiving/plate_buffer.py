@@ -132,7 +132,7 @@ class PlateBuffer:
         newest = self.newest
         if newest is None:
             return self._unread
-        position = self.position(number)
+        position = self._position(number)
         oldest = max(self._oldest, newest - len(self._values) + 1)
         if not oldest - OUTSIDE <= position <= newest + OUTSIDE:
             return self._unread
@@ -165,7 +165,7 @@ class PlateBuffer:
         loads[:, 5] += x * fy - y * fx
         return loads
 
-    def position(self, number: int) -> float:
+    def _position(self, number: int) -> float:
         """Where the middle of a frame lies, in samples."""
         time_s = self._frames_from_s + number / self._frame_rate_hz
         return (time_s - self._from_s) * self._rate_hz

@@ -1,4 +1,7 @@
-"""The thread that reads a source and writes aligned frames into the ring buffer; source errors do not end it."""
+"""The thread that reads a source and writes aligned frames into the ring buffer.
+
+Errors of the source do not end it; any other error does, and is told to the run, which cannot go on without it.
+"""
 
 from __future__ import annotations
 
@@ -24,8 +27,6 @@ class Reader:
 
     Attributes:
         overwritten: Frames that the filter was too slow for.
-        too_late: Frames that were read when the run had ended, or that ended it.
-        failure: What ended the thread unforeseen; None where nothing did.
     """
 
     def __init__(
@@ -35,6 +36,7 @@ class Reader:
         buffer: RingBuffer[ReadyFrame],
         samples: Callable[[PlateSamples], None],
         note: Callable[[str, str], None],
+        failed: Callable[[BaseException], None] | None = None,
     ) -> None:
         """A thread that is not started yet.
 
@@ -44,11 +46,11 @@ class Reader:
             buffer: Takes the aligned frames.
             samples: Called with the plates' new samples.
             note: Called with events.
+            failed: Called with the error that ends the thread.
         """
         self._source, self._alignment, self._buffer = source, alignment, buffer
-        self._samples, self._note = samples, note
-        self.overwritten = self.too_late = 0
-        self.failure: Exception | None = None
+        self._samples, self._note, self._failed = samples, note, failed
+        self.overwritten = 0
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="mbkf-reader", daemon=True)
 
@@ -65,9 +67,10 @@ class Reader:
     def _run(self) -> None:
         try:
             self._read()
-        except Exception as error:  # a dead thread must end the run
-            self.failure = error
-            self._note("failed", f"the reading thread failed ({type(error).__name__}: {error})")
+        except BaseException as error:
+            if self._failed is None:
+                raise
+            self._failed(error)
         finally:
             self._buffer.close()
 
@@ -75,31 +78,21 @@ class Reader:
         while not self._stopping.is_set():
             try:
                 frame = self._source.read(READ_S)
+                news = self._source.news()
             except EOFError:
-                break
+                return
             except Exception as error:  # libraries of sources raise errors of any kind
                 self._note("source", f"the source failed ({type(error).__name__}: {error})")
                 self._stopping.wait(PAUSE_S)
                 continue
-            for kind, what in self._source.news():
+            for kind, what in news:
                 self._note(kind, what)
             if frame is None:
                 continue
-            try:
-                ready, samples = self._alignment.accept(frame)
-            except Exception:
-                self.too_late += 1
-                raise
+            ready, samples = self._alignment.accept(frame)
             for one in ready:
-                self._put(one)
+                gone = [old for old in self._buffer.put(one) if not old.lost]
+                if gone:
+                    self.overwritten += len(gone)
+                    self._note("overwritten", "the filter could not keep up; only the latest frame was kept")
             self._samples(samples)
-
-    def _put(self, frame: ReadyFrame) -> None:
-        overwritten = self._buffer.put(frame)
-        if overwritten is None:
-            self.too_late += not frame.lost
-            return
-        gone = sum(not old.lost for old in overwritten)
-        if gone:
-            self.overwritten += gone
-            self._note("overwritten", "the filter could not keep up; only the latest frame was kept")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 from mbkf.conventions import Array
 from mbkf.stream.receiving.alignment import FrameAlignment, Note, ReadyFrame
@@ -12,6 +13,24 @@ from mbkf.stream.source import FrameSource, PlateSamples, StreamDescription
 
 SLACK_S, START_SLACK_S = 0.25, 5.0
 """The ring buffer holds the frames of this time: a pause of the machine, and a start of the filter with its search."""
+
+
+class FrameCounts(NamedTuple):
+    """Frames by what became of them; ``received - late - overwritten - queued`` were taken.
+
+    Attributes:
+        received: Those that arrived.
+        late: Those that arrived too late, twice or out of order.
+        lost_on_the_way: Those that never arrived, or too late, by the source's count.
+        overwritten: Those that the filter was too slow for.
+        queued: Those that have not been taken.
+    """
+
+    received: int
+    late: int
+    lost_on_the_way: int
+    overwritten: int
+    queued: int
 
 
 class Receiver:
@@ -29,6 +48,7 @@ class Receiver:
         samples: Callable[[PlateSamples], None],
         note: Note,
         mass_kg: float | None = None,
+        failed: Callable[[BaseException], None] | None = None,
     ) -> None:
         """The thread is not started yet.
 
@@ -39,12 +59,19 @@ class Receiver:
             samples: Called with the plates' new samples.
             note: Called with events.
             mass_kg: The person's mass, by which readings of the plates are judged; None for not at all.
+            failed: Called with the error that ends the thread.
         """
         self.rate_hz = stream.rate_hz
         self._alignment = FrameAlignment(stream, columns, note, mass_kg, live=not source.patient)
+        self._patient = source.patient
         self._buffer: RingBuffer[ReadyFrame] = RingBuffer(self._frames(START_SLACK_S), source.patient)
         self._reader = Reader(
-            source, self._alignment, self._buffer, samples, lambda kind, what: note(kind, what, None, 1)
+            source,
+            self._alignment,
+            self._buffer,
+            samples,
+            lambda kind, what: note(kind, what, None, 1),
+            failed,
         )
 
     def start(self) -> None:
@@ -82,25 +109,24 @@ class Receiver:
         """Frames lost so far: on the way here, and in the ring buffer."""
         return self._alignment.lost + self._reader.overwritten
 
-    @property
-    def failure(self) -> Exception | None:
-        """What ended the reading thread; None where nothing did."""
-        return self._reader.failure
+    def counts(self, until: int | None = None) -> FrameCounts:
+        """Numbers of frames.
 
-    @property
-    def left(self) -> int:
-        """Frames that arrived and were neither taken nor overwritten."""
-        return self._reader.too_late + sum(not frame.lost for frame in self._buffer.left())
+        Frames in the buffer that lie beyond the end of what was asked for, and those of a file, which still has them,
+        were not received.
 
-    def counts(self) -> dict[str, int]:
-        """Numbers of frames for live.json: received, left out as late, and lost, by cause."""
-        return {
-            "frames_in": self._alignment.frames_in,
-            "frames_late": self._alignment.late,
-            "frames_lost": self.lost,
-            "frames_lost_on_the_way": self._alignment.lost,
-            "frames_overwritten": self._reader.overwritten,
-        }
+        Args:
+            until: Number of the last frame asked for; None where none is beyond it.
+        """
+        queued = beyond = 0
+        for frame in self._buffer.left():
+            if not frame.lost:
+                queued += 1
+                beyond += self._patient or (until is not None and frame.number > until)
+        alignment, overwritten = self._alignment, self._reader.overwritten
+        return FrameCounts(
+            alignment.frames_in - beyond, alignment.late, alignment.lost, overwritten, queued - beyond
+        )
 
     def _frames(self, seconds: float) -> int:
         return round(seconds * self.rate_hz)

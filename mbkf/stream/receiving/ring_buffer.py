@@ -29,15 +29,13 @@ class RingBuffer(Generic[T]):
             self._size = max(1, size)
             self._changed.notify_all()
 
-    def put(self, item: T) -> list[T] | None:
-        """A new item. Returns the items it overwrote; None where the buffer is closed, and the item is not taken."""
+    def put(self, item: T) -> list[T]:
+        """A new item; a closed buffer overwrites none. Returns the items it overwrote."""
         with self._changed:
             while self._patient and len(self._items) >= self._size and not self._closed:
                 self._changed.wait()
             overwritten: list[T] = []
-            if self._closed:
-                return None
-            if len(self._items) >= self._size:
+            if len(self._items) >= self._size and not self._closed:
                 overwritten.extend(self._items)
                 self._items.clear()
             self._items.append(item)

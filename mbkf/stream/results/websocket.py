@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import hmac
 import json
 import math
 import secrets
 import threading
 from http import HTTPStatus
-from urllib.parse import parse_qs, urlsplit
+from urllib.parse import parse_qs, urlparse
 
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
@@ -16,14 +17,7 @@ from websockets.sync.server import ServerConnection, serve
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.model.body import Body
-from mbkf.stream.loopback import (
-    LOOPBACK,
-    OWN_PAGES,
-    is_loopback,
-    is_page_of,
-    is_token,
-    names_this_computer,
-)
+from mbkf.stream.loopback import LOOPBACK, is_loopback, own_request
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.stream.results.sending import SendingThread
 from mbkf.stream.results.values import ResultValues
@@ -65,8 +59,8 @@ class WebSocketResults:
         Raises:
             InvalidInput: The address or port cannot be listened on.
         """
-        self._own = is_loopback(address)
-        self._token = token or ("" if self._own else secrets.token_urlsafe(16))
+        self._local = is_loopback(address)
+        self._token = token if self._local else token or secrets.token_urlsafe(16)
         self._values = ResultValues(model)
         self._changed = threading.Condition()
         self._newest, self._count, self._closed = "", 0, False
@@ -100,18 +94,17 @@ class WebSocketResults:
         self._server.shutdown()
         self._thread.join(timeout=5.0)
 
-    def _check(self, connection: ServerConnection, request: Request) -> Response | None:
-        """Refuses clients without the token, and web pages that neither this computer nor this server sent."""
-        host, origin = request.headers.get("Host", ""), request.headers.get("Origin")
-        if self._own and not names_this_computer(host):
-            return connection.respond(HTTPStatus.FORBIDDEN, "this computer is not called so\n")
-        own_page = origin is not None and self._own and OWN_PAGES.fullmatch(origin) is not None
-        if not own_page and not is_page_of(origin, host):
-            return connection.respond(HTTPStatus.FORBIDDEN, "other web pages may not listen\n")
-        given = parse_qs(urlsplit(request.path).query).get("token", [""])[0]
-        if not is_token(given, self._token):
-            return connection.respond(HTTPStatus.FORBIDDEN, "a token is needed\n")
-        return None
+    def _check(self, _connection: ServerConnection, request: Request) -> Response | None:
+        """Refuses what other web pages caused, and clients without the token."""
+        headers = request.headers
+        if not own_request(headers.get("Host", ""), headers.get("Origin"), self._local, any_port=True):
+            return _connection.respond(HTTPStatus.FORBIDDEN, "another web page may not listen\n")
+        if self._token is None:
+            return None
+        given = parse_qs(urlparse(request.path).query).get("token", [""])[0]
+        if hmac.compare_digest(given.encode(), self._token.encode()):
+            return None
+        return _connection.respond(HTTPStatus.FORBIDDEN, "a token is needed\n")
 
     def _serve(self, connection: ServerConnection) -> None:
         greeting = {"names": self._values.names, "units": self._values.units}

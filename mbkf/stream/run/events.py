@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass
 MERGED_S = 2.0
 """An event of the same kind within this time prolongs the one before."""
 
-MOST = 500
+MOST = 300
 """No more events than this are listed one by one."""
 
 

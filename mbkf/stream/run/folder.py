@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import shutil
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from mbkf.errors import MbkfError
 from mbkf.io.atomic import replacing
 from mbkf.io.results_folder import Summary, write_reconstruction
-from mbkf.io.subject import Subject, write_subject
-from mbkf.pipelines.live.log import SUBJECT_FILE, LiveLog, LiveStream
-from mbkf.pipelines.live.results import live_results
+from mbkf.io.subject import Subject, read_subject, write_subject
+from mbkf.pipelines.live.log import SUBJECT_FILE, LiveLog, LiveStream, read_live_log
+from mbkf.pipelines.live.results import results_of
 from mbkf.pipelines.reconstruct import ReconstructSettings, recorded
 from mbkf.pipelines.results.summary import summarise
 from mbkf.stream.source import StreamDescription
@@ -53,20 +54,40 @@ def open_log(
     return log
 
 
-def write_results(folder: Path, notes: tuple[str, ...]) -> tuple[Summary | None, str | None]:
-    """Makes the results from the log and writes them; returns the summary, or the reason why there is none.
+class WrittenResults(NamedTuple):
+    """What became of a run's log.
+
+    Attributes:
+        summary: The contents of summary.json; None where no results could be made.
+        problem: Why not.
+        left_out: A sentence for each file of the log of which rows are left out, since it is damaged.
+    """
+
+    summary: Summary | None
+    problem: str | None
+    left_out: tuple[str, ...] = ()
+
+
+def write_results(folder: Path, notes: tuple[str, ...]) -> WrittenResults:
+    """Makes the results from the log and writes them.
 
     Args:
         folder: The output folder.
         notes: Remarks for the reader.
     """
+    log = folder / LOG_FOLDER
+    left_out: tuple[str, ...] = ()
     try:
-        found = live_results(folder / LOG_FOLDER, notes)
+        logged = read_live_log(log)
+        left_out = logged.left_out
+        found = results_of(logged, read_subject(log / SUBJECT_FILE), notes)
         summary = summarise(found)
         write_reconstruction(found, summary, folder)
     except (MbkfError, OSError) as error:
-        return None, str(error)
-    return summary, None
+        return WrittenResults(None, str(error), left_out)
+    except Exception as error:  # the log must outlive whatever a damaged or strange one brings about
+        return WrittenResults(None, f"an unforeseen {type(error).__name__}: {error}", left_out)
+    return WrittenResults(summary, None, left_out)
 
 
 def drop_log(folder: Path) -> None:

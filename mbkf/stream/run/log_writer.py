@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -27,6 +28,11 @@ MOST_HELD_BYTES = 256 * 1024 * 1024
 """Most memory held while nothing can be written; the oldest rows are dropped first."""
 
 
+def arrived(rows: NDArray) -> int:
+    """How many rows are of frames that arrived: those have a latency, lost ones between them have none."""
+    return int(np.isfinite(rows["latency_s"]).sum()) if "latency_s" in (rows.dtype.names or ()) else 0
+
+
 @dataclass
 class _Log:
     """Rows on their way into one file."""
@@ -35,6 +41,7 @@ class _Log:
     rows: deque[NDArray] = field(default_factory=deque)
     waiting: int = 0
     dropped: int = 0
+    written: int = 0
 
     def put(self, rows: NDArray) -> None:
         self.rows.append(rows)
@@ -45,7 +52,7 @@ class _Log:
         while self.waiting > MOST_HELD_BYTES:
             gone = self.rows.popleft()
             self.waiting -= gone.nbytes
-            self.dropped += _arrived(gone)
+            self.dropped += arrived(gone)
 
 
 class LogWriter:
@@ -55,25 +62,22 @@ class LogWriter:
         self,
         log: LiveLog,
         failed: Callable[[OSError], None],
-        report: Callable[[], None],
-        died: Callable[[Exception], None],
+        report: Callable[[], None] | None = None,
+        died: Callable[[BaseException], None] | None = None,
     ) -> None:
-        """A thread that is not started yet.
+        """Starts the thread.
 
         Args:
             log: The log.
             failed: Called with the error where writing failed.
             report: Called every few seconds.
-            died: Called with the error that ended the thread unforeseen.
+            died: Called with any other error, which ends the thread.
         """
         self._log, self._failed, self._report, self._died = log, failed, report, died
         self._logs = (_Log(log.frames), _Log(log.plates))
         self._changed = threading.Condition()
         self._closing = False
         self._thread = threading.Thread(target=self._run, name="mbkf-log", daemon=True)
-
-    def start(self) -> None:
-        """Begins to write."""
         self._thread.start()
 
     def put_row(self, row: NDArray) -> None:
@@ -90,20 +94,25 @@ class LogWriter:
         with self._changed:
             self._logs[1].put(rows)
 
-    def close(self) -> int:
-        """Writes the remaining rows where possible, and returns how many frames that arrived are not in the log."""
+    def close(self) -> tuple[int, int]:
+        """Writes the remaining rows where possible; numbers of frames that arrived and are, or are not, in the log."""
         with self._changed:
             self._closing = True
             self._changed.notify_all()
         self._thread.join()
+        for log in self._logs:  # what a thread that died has left
+            with suppress(Exception):
+                self._flush(log)
         self._log.close()
         frames = self._logs[0]
-        return frames.dropped + sum(_arrived(rows) for rows in frames.rows)
+        return frames.written, frames.dropped + sum(arrived(rows) for rows in frames.rows)
 
     def _run(self) -> None:
         try:
             self._write()
-        except Exception as error:  # a dead thread must end the run
+        except BaseException as error:
+            if self._died is None:
+                raise
             self._died(error)
 
     def _write(self) -> None:
@@ -114,7 +123,7 @@ class LogWriter:
                 closing = self._closing
             pause = EVERY_S if all([self._flush(log) for log in self._logs]) else AGAIN_S
             unreported_s += pause
-            if unreported_s >= REPORTED_S:
+            if self._report is not None and unreported_s >= REPORTED_S:
                 unreported_s = 0.0
                 self._report()
             if closing:
@@ -133,7 +142,9 @@ class LogWriter:
             log.writer.append(together)
         except OSError as error:
             self._failed(error)
-        left = together[log.writer.rows - before :]
+        done = log.writer.rows - before
+        log.written += arrived(together[:done])
+        left = together[done:]
         with self._changed:
             for _ in rows:
                 log.waiting -= log.rows.popleft().nbytes
@@ -142,9 +153,3 @@ class LogWriter:
                 log.waiting += left.nbytes
                 log.shed()
         return not len(left)
-
-
-def _arrived(rows: NDArray) -> int:
-    """How many of some rows of frames are of frames that arrived; lost ones have no latency."""
-    latency = rows["latency_s"] if "latency_s" in (rows.dtype.names or ()) else np.empty(0)
-    return int(np.isfinite(latency).sum())

@@ -14,6 +14,7 @@ from mbkf.sensors.block import Frame
 from mbkf.stream.receiving.alignment import BRIDGED_S, Note, ReadyFrame
 from mbkf.stream.receiving.reader import SILENT_S
 from mbkf.stream.receiving.receiver import START_SLACK_S, Receiver
+from mbkf.stream.run.failure import Failure
 from mbkf.stream.run.output import RunOutput
 from mbkf.stream.run.setup import LiveSetup
 from mbkf.stream.run.statistics import RunStatistics
@@ -21,15 +22,12 @@ from mbkf.stream.run.statistics import RunStatistics
 TAKE_S = 0.1
 """How long a frame is waited for before the loop checks whether it is to end."""
 
-TIME_OVER = "the time was over"
-"""What ends a run that was to last so long: frames that come later are none of its own."""
-
 
 class FilterLoop:
     """Gives frames to the filter and its answers to the output.
 
     Attributes:
-        failed: Whether an unforeseen error ended it.
+        until: Number of the last frame asked for; None where the end was not a matter of time.
     """
 
     def __init__(
@@ -39,6 +37,7 @@ class FilterLoop:
         output: RunOutput,
         statistics: RunStatistics,
         note: Note,
+        failure: Failure,
     ) -> None:
         """Connects the parts of a run.
 
@@ -48,13 +47,15 @@ class FilterLoop:
             output: Where answers go.
             statistics: Counts frames.
             note: Called with events.
+            failure: What has failed; once something has, what was received is answered and the run ends.
         """
+        self._failure = failure
+        self.until: int | None = None
         self._setup, self._receiver, self._output = setup, receiver, output
         self._statistics, self._note = statistics, note
         self._waiting: deque[ReadyFrame] = deque()
         self._starting_until_s = 0.0
         self._silent = False
-        self.failed = False
 
     def run(self, stop: threading.Event, seconds: float | None) -> str:
         """Answers frames until the run ends; an unforeseen error ends it, too, and keeps what was found until then.
@@ -66,6 +67,7 @@ class FilterLoop:
         Returns:
             What ended the run, in words.
         """
+        ended_by = ""
         try:
             ended_by = self._track(stop, seconds)
             labels = self._setup.labels
@@ -73,15 +75,15 @@ class FilterLoop:
                 self._feed(frame, markers)
             self._answer(self._setup.filter.finish())
         except Exception as error:
-            latest, self.failed = self._statistics.latest, True
-            ended_by = f"an unforeseen {type(error).__name__}: {error}"
-            self._note("failed", ended_by, None if latest is None else latest.number, 1)
-        return ended_by
+            self._failure.of("the filter", error)
+        return self._failure.cause or ended_by
 
     def _track(self, stop: threading.Event, seconds: float | None) -> str:
         """Answers frames until something ends the run; returns what did."""
         statistics = self._statistics
         while not stop.is_set():
+            if self._failure.cause is not None:
+                self._receiver.stop()
             frame = self._receiver.take(TAKE_S)
             now = time.perf_counter()
             first, latest = statistics.first, statistics.latest
@@ -99,7 +101,8 @@ class FilterLoop:
                 tracked = (latest.number - first.number + 1) / self._setup.stream.rate_hz
                 over = frame is None and now - first.arrival_s >= seconds
                 if over or tracked >= seconds:
-                    return TIME_OVER
+                    self.until = latest.number
+                    return "the time was over"
         return "it was stopped"
 
     def _take(self, frame: ReadyFrame) -> None:
@@ -116,7 +119,6 @@ class FilterLoop:
                 self._note("cut", "a gap was too long to bridge: the filter starts anew", frame.number, 1)
                 self._answer(self._setup.filter.cut())
         if not frame.lost:
-            self._statistics.processed += 1
             self._output.arrived(frame.arrival_s)
         self._push(frame)
 

@@ -38,7 +38,7 @@ class RunOutput:
         """
         self._rows: FrameRecorder = setup.rows
         self._maker: FrameMaker = setup.maker
-        self._sinks = list(sinks)
+        self._sinks, self._opened = list(sinks), tuple(sinks)
         self._put_row, self._statistics, self._note = put_row, statistics, note
 
     def arrived(self, arrival_s: float) -> None:
@@ -62,6 +62,7 @@ class RunOutput:
         now = time.perf_counter()
         latency = now - ready.arrival_s
         if not ready.lost:
+            self._statistics.processed += 1
             row["latency_s"] = latency
             self._statistics.answered(now - complete_s, at_start)
         if step.estimate is not None and step.estimate.started:
@@ -78,8 +79,11 @@ class RunOutput:
 
     def close(self) -> None:
         """Tells the listeners that no more frames follow."""
-        for sink in self._sinks:
-            sink.close()
+        for sink in self._opened:
+            try:
+                sink.close()
+            except Exception as error:  # the results are still to be written
+                self._note("viewer", f"a listener failed at the end ({error})", None, 1)
 
     def _show(self, ready: ReadyFrame, row: NDArray, latency_s: float, lost: int) -> None:
         shown = self._maker.frame(ready, row, latency_s, lost)

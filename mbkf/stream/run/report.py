@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from mbkf.stream.receiving.receiver import FrameCounts
+
 LIVE_FILE = "live.json"
 
 ROOM_BYTES = 128 * 1024
@@ -45,6 +47,32 @@ class ReportFile:
             file.write(text if last else text.ljust(ROOM_BYTES))
             if last:
                 file.truncate()
+
+
+def frame_report(counts: FrameCounts, answered: int, unlogged: int, running: bool) -> dict[str, int]:
+    """What became of the frames: each one received was written, or is counted under one reason why it was not.
+
+    ``frames_in = frames_written + frames_not_written + frames_unanswered + frames_late + frames_overwritten``, and
+    ``frames_lost = frames_lost_on_the_way + frames_overwritten + frames_unanswered + frames_not_written``; a frame that
+    came late had been missed on the way before.
+
+    Args:
+        counts: Of the receiving side.
+        answered: Frames received for which there is a row.
+        unlogged: Of these, frames whose rows are not in the log.
+        running: Whether the run goes on; frames that wait to be answered are then not counted as received.
+    """
+    waiting = counts.received - counts.late - counts.overwritten - answered
+    unanswered = 0 if running else waiting
+    return {
+        "frames_in": counts.received - (waiting if running else 0),
+        "frames_lost": counts.lost_on_the_way + counts.overwritten + unanswered + unlogged,
+        "frames_lost_on_the_way": counts.lost_on_the_way,
+        "frames_overwritten": counts.overwritten,
+        "frames_late": counts.late,
+        "frames_unanswered": unanswered,
+        "frames_processed": answered,
+    }
 
 
 def latency_summary(latencies_s: Sequence[float], at_start_s: Sequence[float]) -> dict[str, float | None]:

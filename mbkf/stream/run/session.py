@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from mbkf.io.results_folder import Summary
@@ -12,16 +14,17 @@ from mbkf.io.subject import Subject
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.live.filter import live_settings
 from mbkf.pipelines.reconstruct import ReconstructSettings
-from mbkf.stream.receiving.receiver import Receiver
+from mbkf.stream.receiving.receiver import FrameCounts, Receiver
 from mbkf.stream.results.frame import FrameSink
 from mbkf.stream.run.connecting import wait_for
 from mbkf.stream.run.events import EventLog
-from mbkf.stream.run.folder import LOG_FOLDER, drop_log, open_log, write_results
+from mbkf.stream.run.failure import Failure
+from mbkf.stream.run.folder import LOG_FOLDER, WrittenResults, drop_log, open_log, write_results
 from mbkf.stream.run.log_writer import LogWriter
-from mbkf.stream.run.loop import TIME_OVER, FilterLoop
+from mbkf.stream.run.loop import FilterLoop
 from mbkf.stream.run.low_latency import low_latency
 from mbkf.stream.run.output import RunOutput
-from mbkf.stream.run.report import LIVE_FILE, ReportFile
+from mbkf.stream.run.report import LIVE_FILE, ReportFile, frame_report
 from mbkf.stream.run.setup import LiveSetup, prepare
 from mbkf.stream.run.statistics import RunStatistics
 from mbkf.stream.source import FrameSource
@@ -38,13 +41,13 @@ class LiveOutcome:
         report: The contents of live.json.
         summary: The contents of summary.json; None where no results could be made.
         problem: Why not.
-        failed: Whether an unforeseen error ended the run.
+        failure: What ended the run early, in words; None where nothing failed.
     """
 
     report: dict[str, object]
     summary: Summary | None
     problem: str | None
-    failed: bool = False
+    failure: str | None = None
 
 
 class LiveSession:
@@ -120,69 +123,74 @@ class LiveSession:
             OSError: Nothing can be written to the folder.
         """
         setup, note, statistics = self.setup, self._events.note, RunStatistics()
-        report = ReportFile(self._folder / LIVE_FILE)
+        report, failure = ReportFile(self._folder / LIVE_FILE), Failure()
         log = open_log(
             self._folder, setup.stream, setup.rows.dtype, self._settings, setup.names, self._subject
         )
 
         def report_running() -> None:
-            report.write(self._report(RUNNING, receiver, statistics))
+            with suppress(OSError):  # the disk is full; the next one may have room
+                report.write(self._report(RUNNING, receiver.counts(), statistics))
 
-        def log_died(error: Exception) -> None:
-            died.append(error)
-            note("failed", f"writing the log failed ({type(error).__name__}: {error})")
-            receiver.stop()
-
-        died: list[Exception] = []
-        writer = LogWriter(log, self._disk_failed, report_running, log_died)
+        writer = LogWriter(log, self._disk_failed, report_running, partial(failure.of, "writing the log"))
         receiver = Receiver(
-            self._source, setup.stream, setup.columns, writer.put_samples, note, self._subject.mass_kg
+            self._source,
+            setup.stream,
+            setup.columns,
+            writer.put_samples,
+            note,
+            self._subject.mass_kg,
+            partial(failure.of, "reading the stream"),
         )
         output = RunOutput(setup, sinks, writer.put_row, statistics, note)
-        loop = FilterLoop(setup, receiver, output, statistics, note)
+        loop = FilterLoop(setup, receiver, output, statistics, note, failure)
         with single_threaded(), low_latency():
-            writer.start()
             receiver.start()
             ended_by = loop.run(stop, seconds)
             receiver.stop()
-        try:
-            self._source.close()
-        except (
-            Exception
-        ) as error:  # libraries of sources raise errors of any kind; the results are still to be made
-            note("source", f"the source could not be closed ({type(error).__name__}: {error})")
+        self._close_source()
         output.close()
-        unwritten = writer.close()
-        summary, problem = self._write_results()
-        if statistics.latest is None or (problem is None and not unwritten and not keep_log):
+        logged, unlogged = writer.close()
+        if failure.cause is not None:
+            note("failed", failure.cause)
+        if unlogged:
+            note(
+                "disk",
+                f"{unlogged} of {logged + unlogged} answered frames are not in the log, nor in the results",
+            )
+        written = self._write_results()
+        problem, complete = written.problem, not (unlogged or written.left_out)
+        if statistics.latest is None or (problem is None and complete and not keep_log):
             drop_log(self._folder)
         kept = self._folder / LOG_FOLDER
-        threads = [error for error in (receiver.failure, *died) if error is not None]
-        if threads:
-            ended_by = f"an unforeseen {type(threads[0]).__name__}: {threads[0]}"
-        left = receiver.left
-        of_the_run = left if ended_by != TIME_OVER else 0
         plain = self._report(
-            "finished" if problem is None else "results missing",
-            receiver,
+            "results missing" if problem is not None else "finished" if failure.cause is None else "failed",
+            receiver.counts(loop.until),
             statistics,
+            unlogged,
             ended_by=ended_by,
-            frames_written=statistics.answered_frames - unwritten,
-            frames_not_written=unwritten,
-            frames_in=receiver.counts()["frames_in"] - left + of_the_run,
-            frames_unanswered=of_the_run + statistics.processed - statistics.answered_frames,
+            frames_written=logged,
+            frames_not_written=unlogged,
             log=str(kept) if kept.is_dir() else None,
         )
         report.write(plain, last=True)
-        return LiveOutcome(plain, summary, problem, failed=loop.failed or bool(threads))
+        return LiveOutcome(plain, written.summary, problem, failure.cause)
 
-    def _write_results(self) -> tuple[Summary | None, str | None]:
-        """The results from the log: their summary, or why there are none."""
+    def _close_source(self) -> None:
+        try:
+            self._source.close()
+        except Exception as error:  # the results are still to be written
+            self._events.note("source", f"the source failed at the end ({type(error).__name__}: {error})")
+
+    def _write_results(self) -> WrittenResults:
+        """The results from the log, or why there are none."""
         notes = tuple(f"live: {event['what']} ({event['count']} times)" for event in self._events.plain())
-        summary, problem = write_results(self._folder, notes)
-        if problem is not None:
-            self._events.note("results", f"the results could not be written: {problem}")
-        return summary, problem
+        written = write_results(self._folder, notes)
+        for sentence in written.left_out:
+            self._events.note("log", sentence)
+        if written.problem is not None:
+            self._events.note("results", f"the results could not be written: {written.problem}")
+        return written
 
     def _disk_failed(self, error: OSError) -> None:
         why = error.strerror or error
@@ -191,7 +199,7 @@ class LiveSession:
         )
 
     def _report(
-        self, state: str, receiver: Receiver, statistics: RunStatistics, **more: object
+        self, state: str, counts: FrameCounts, statistics: RunStatistics, unlogged: int = 0, **more: object
     ) -> dict[str, object]:
         """The contents of live.json."""
         stream = self.setup.stream
@@ -201,8 +209,7 @@ class LiveSession:
             "trial": stream.trial,
             "filter": self._settings.filter,
             "lag_ms": 1e3 * self.setup.filter.lag_frames / stream.rate_hz,
-            **receiver.counts(),
-            "frames_processed": statistics.processed,
+            **frame_report(counts, statistics.processed, unlogged, running=state == RUNNING),
             **statistics.latencies(recent=state == RUNNING),
             **statistics.rates(stream.rate_hz),
             **self._scaling,

@@ -16,7 +16,7 @@ class RunStatistics:
 
     Attributes:
         first, latest: First and latest frame taken, None before the first.
-        processed: Frames that arrived and were given to the filter.
+        processed: Frames that arrived and were answered; of them there is a row for the log.
         starts: Starts of the filter, the first included.
     """
 
@@ -39,11 +39,6 @@ class RunStatistics:
         It is that besides the lag: from the arrival of the last frame that the answer knows.
         """
         (self._at_start_s if at_start else self._latencies_s).append(latency_s)
-
-    @property
-    def answered_frames(self) -> int:
-        """How many frames that arrived were answered."""
-        return len(self._latencies_s) + len(self._at_start_s)
 
     def latencies(self, recent: bool) -> dict[str, float | None]:
         """Latencies in ms, of recent frames only where asked for."""

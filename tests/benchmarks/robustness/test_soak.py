@@ -1,59 +1,98 @@
-"""What a long run counts is judged exactly, and its frames go on for ever."""
+"""A long run's laps go on counting, its memory is watched from when it is warm, and its rows are bounded."""
 
-from itertools import islice
+import io
+import json
+import os
+import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from benchmarks.robustness.faults import Send
-from benchmarks.robustness.soak import FAULT_EVERY, LOOK_S, WARM_S, endless, memory_mb, steps, told
-from mbkf.pipelines.synth import synthesise
+from benchmarks import robustness
+from benchmarks.checks import Context
+from benchmarks.robustness import soak
+from benchmarks.robustness.stream_child import ACCOUNTS
+from mbkf.errors import InvalidInput
 from mbkf.stream.played import played
+from tests.captures import made_capture
 
 
-@pytest.fixture(scope="module")
-def capture():
-    return played(synthesise("squat", seconds=1.0)[1].trial)
+class Wire:
+    """Keeps what is sent."""
+
+    def __init__(self):
+        self.sent, self.acts = [], []
+
+    def listening(self):
+        return True
+
+    def send(self, one):
+        self.sent.append(one)
+        return True
+
+    def __getattr__(self, name):
+        return lambda: self.acts.append(name)
 
 
-def test_frames_and_samples_are_counted_on(capture):
-    found = list(islice(endless(capture), 200))
-    assert [frame.number for frame in found] == list(range(200))
-    index = np.concatenate([frame.plates.index for frame in found])
-    np.testing.assert_array_equal(index, np.arange(len(index)))
-    np.testing.assert_array_equal(found[0].markers_m, capture.markers_m[1])
+def test_laps_go_on_counting(monkeypatch):
+    monkeypatch.setattr(soak.time, "sleep", lambda _: None)
+    walk, wire = played(made_capture(260)), Wire()
+    laps = soak.Laps(walk, wire, 0)
+    laps._names = ["markers infinite"]
+    for lap in range(3):
+        laps._lap(lap)
+    assert [one.number for one in wire.sent] == list(range(3 * 260))
+    assert {one.plates_ahead for one in wire.sent} == {0.0, 2600.0, 5200.0}
+    assert (laps.sent, laps.faults) == (780, {"markers infinite": 2})
+    assert np.isinf(wire.sent[350].markers_m).any() and not np.isinf(wire.sent[90].markers_m).any()
+    again = soak.Laps(walk, wire, 0)
+    assert len(again._names) >= 30 and not soak.FINAL & set(again._names)
 
 
-def test_a_fault_comes_every_while_and_frames_go_on(capture):
-    found = list(islice(steps(capture, np.random.default_rng(0)), 3 * FAULT_EVERY))
-    frames = [step.frame.number for step in found if isinstance(step, Send)]
-    assert frames[: FAULT_EVERY // 2] == list(range(FAULT_EVERY // 2))
-    assert max(frames) > FAULT_EVERY
+def test_memory_is_compared_with_that_of_a_warm_run(monkeypatch):
+    monkeypatch.setattr(soak, "WARM_SHARE", 0.0)
+    memory = soak.Memory(os.getpid(), 1.0)
+    until = time.monotonic() + 10.0
+    while not memory.bytes and time.monotonic() < until:
+        time.sleep(0.05)
+    memory.end()
+    assert memory.bytes[0] > 2**20
+    memory.bytes = [100, 104, 97]
+    assert memory.growth == pytest.approx(0.04)
+    memory.bytes = []
+    assert np.isnan(memory.growth)
 
 
-def report(**more):
-    counts = {"written": 90, "not_written": 0, "overwritten": 4, "late": 5, "unanswered": 1}
-    return {"frames_in": 100, "frames_lost": 7, **{f"frames_{k}": v for k, v in counts.items()}, **more}
+def test_frames_that_are_in_no_count_break_the_bound(tmp_path, monkeypatch):
+    rows = np.zeros(5, dtype=[("latency_s", float)])
+    rows["latency_s"][4] = np.nan
+    monkeypatch.setattr(soak, "read_live_log", lambda _: SimpleNamespace(rows=rows))
+    report = dict.fromkeys(ACCOUNTS, 0) | {"frames_written": 4, "frames_late": 2, "frames_in": 6}
+    report |= {"frames_lost_on_the_way": 1, "starts": 1}
+    laps = SimpleNamespace(faults={"a": 2}, sent=6)
+    memory, readers = SimpleNamespace(growth=0.01, bytes=[2**20]), SimpleNamespace(messages=9, lines=[])
+
+    def told(**change):
+        (tmp_path / "live.json").write_text(json.dumps(report | change))
+        checks = soak._rows(tmp_path, 0, laps, memory, readers, 1.0)
+        return {check.name.split(": ")[1]: check for check in checks}
+
+    assert all(check.passed for check in told().values())
+    assert told(frames_late=1)["frames not accounted for"].value == 1
+    assert told(frames_written=3, frames_late=3)["frames not accounted for"].value == 1
+    assert told(frames_in=8, frames_late=4)["frames not accounted for"].value == 2
 
 
-@pytest.mark.parametrize(
-    ("changes", "sent", "last_mb", "code", "broken"),
-    [
-        ({}, 100, 205.0, 0, set()),
-        ({"frames_in": 101}, 101, 205.0, 0, {"live: frames not accounted for"}),
-        ({}, 99, 205.0, 0, {"live: frames not accounted for"}),
-        ({}, 100, 220.0, 0, {"live: memory at the end over that when warm, at most"}),
-        ({}, 100, 180.0, 0, {"live: memory at the end over that when warm, at least"}),
-        ({}, 100, 200.0, 1, {"live: exit code"}),
-    ],
-)
-def test_what_is_lost_or_grows_breaks_its_bound(changes, sent, last_mb, code, broken):
-    memory = [100.0] * round(WARM_S / LOOK_S) + [200.0, last_mb]
-    checks = told(report(**changes), sent, memory, code)
-    assert {check.name for check in checks if not check.passed} == broken
+def test_readers_take_addresses_from_what_is_said():
+    readers = soak.Readers(io.StringIO("waiting\npage: http://127.0.0.1:1/\nresults: ws://127.0.0.1:1/\n"))
+    until = time.monotonic() + 10.0
+    while len(readers.lines) < 3 and time.monotonic() < until:
+        time.sleep(0.01)
+    assert readers.messages == 0
 
 
-def test_a_process_has_memory(capture):
-    import os
-
-    assert len(capture) and (np.isnan(memory_mb(2**30)) and memory_mb(os.getpid()) > 10.0)
+@pytest.mark.parametrize("minutes", [0.0, -1.0, float("nan")])
+def test_a_time_that_is_none_is_refused(tmp_path, minutes):
+    with pytest.raises(InvalidInput, match="--minutes"):
+        robustness.run(Context(None, tmp_path, minutes=minutes))

@@ -251,12 +251,11 @@ def test_a_log_without_frames_or_without_a_body_gives_no_results(log):
     live = read_live_log(log)
     nobody = blank(live.rows.dtype, 5)
     nobody["number"] = np.arange(5)
-    whole = (log / FRAMES_FILE).read_bytes()
-    header = whole[: whole.index(b"\n") + 1]
-    with FrameLogWriter(log / FRAMES_FILE, nobody.dtype, read_frame_log(log / FRAMES_FILE).header) as writer:
+    header = read_frame_log(log / FRAMES_FILE).header
+    with FrameLogWriter(log / FRAMES_FILE, nobody.dtype, header) as writer:
         writer.append(nobody)
     with pytest.raises(NotObservable, match="no frame of the stream"):
         live_results(log)
-    (log / FRAMES_FILE).write_bytes(header)
+    FrameLogWriter(log / FRAMES_FILE, nobody.dtype, header).close()
     with pytest.raises(FileFormatError, match="no frame was written"):
         live_results(log)

@@ -4,6 +4,7 @@ import threading
 import time
 import uuid
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,14 +13,14 @@ from mbkf.errors import InvalidInput
 from mbkf.io.records import MarkerTrajectories
 from mbkf.model.human import HumanModel
 from mbkf.stream.libraries import lsl
-from mbkf.stream.lsl.format import PlateLayout, plates_name, read_marker_info, read_plates_info
+from mbkf.stream.lsl.format import PlateLayout, plates_info, plates_name, read_marker_info, read_plates_info
 from mbkf.stream.lsl.player import LslPlayer
 from mbkf.stream.lsl.results import LslResults
 from mbkf.stream.lsl.source import GIVEN_UP, LslSource
 from mbkf.stream.played import played
 from mbkf.stream.replay import ReplaySettings, replay
 from mbkf.stream.results.values import ResultValues
-from mbkf.stream.source import StreamDescription
+from mbkf.stream.source import UNCOUNTED, StreamDescription
 from tests.captures import made_capture
 from tests.stream.results.test_websocket import shown_frame
 
@@ -142,6 +143,49 @@ def test_late_plates_are_waited_for_given_up_and_waited_for_again(name, monkeypa
     assert newest(6, 16, 66) == (-1, False)
     assert newest(7, 66, 76) == (65, False)
     assert newest(8, 76, 86) == (85, True)
+
+
+def test_plates_are_not_waited_for_where_a_count_has_jumped(name):
+    source, plates = scripted(name)
+    plates.there = plates.soon = 6
+    assert source._samples(0, time.perf_counter()).index[-1] == 5
+    plates.there = plates.soon = 16
+    begin = time.perf_counter()
+    for number in (1001, UNCOUNTED, -(10**6)):
+        source._samples(number, begin)
+    assert max(plates.waits[1:]) == 0.0
+    assert source._newest_sample == 15
+
+
+@pytest.mark.parametrize("counter", [np.nan, np.inf, -np.inf, 2.0**60, -(2.0**60)])
+def test_a_count_that_is_none_is_told_as_such(name, counter):
+    source, _ = scripted(name)
+    source._layout = SimpleNamespace(counter=3)
+    assert source._number(np.array([0.0, 0.0, 0.0, counter]), 0.0) == UNCOUNTED
+    assert source._number(np.array([0.0, 0.0, 0.0, 41.0]), 0.0) == 41
+    placed = source._placed(np.array([[0, 0, 0, 0, 0, 0, 7.0], [0, 0, 0, 0, 0, 0, counter]]), np.zeros(2))
+    assert placed.index.tolist() == [7, UNCOUNTED]
+    source._counted = False
+    assert source._number(np.zeros(4), np.nan) == UNCOUNTED
+
+
+@pytest.mark.slow
+def test_plates_that_return_as_others_are_refused(name):
+    made = played(CAPTURE)
+    player, source = LslPlayer(made, name), LslSource(name)
+    connected(source)
+    player._plates = None
+    other = replace(made.stream, plates=made.stream.plates[:1])
+    outlet = PYLSL.StreamOutlet(plates_info(PYLSL, other, name))
+    thread, news = play(player, made, 1.0), []
+    until = time.monotonic() + 10.0
+    while "plates refused" not in news and time.monotonic() < until:
+        source.read(0.05)
+        news += [kind for kind, _ in source.news()]
+    thread.join()
+    assert news == ["plates gone", "plates refused"]
+    source.close()
+    del outlet
 
 
 def test_points_without_names_arrive(name):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.sensors.contact.plates import plate_wrenches
-from mbkf.stream.receiving.alignment import BRIDGED_S, PLATES_OFF_FRAMES, FrameAlignment
+from mbkf.stream.receiving.alignment import BRIDGED_S, FrameAlignment
 from mbkf.stream.receiving.reader import Reader
 from mbkf.stream.receiving.ring_buffer import RingBuffer
 from mbkf.stream.source import PlateSamples
@@ -136,41 +136,3 @@ def test_a_reader_whose_frames_nobody_takes_keeps_the_latest(capture):
     assert buffer.left()[-1].number == 79
     assert reader.overwritten == 80 - len(buffer.left())
     assert set(notes) == {"overwritten"}
-
-
-def renumbered(frames, first, change):
-    """Frames whose plates count otherwise from one on."""
-    return [
-        f if f.number < first else replace(f, plates=PlateSamples(change(f.plates.index), f.plates.wrench))
-        for f in frames
-    ]
-
-
-@pytest.mark.parametrize("change", [lambda i: i - i[0], lambda i: i + 10**9], ids=["back", "ahead"])
-def test_plates_that_count_anew_are_taken_as_of_now(capture, change):
-    alignment, frames, notes = intake_of(capture)
-    ready = [one for frame in renumbered(frames, 30, change) for one in alignment.accept(frame)[0]]
-    assert "plates clock" in {kind for kind, *_ in notes}
-    read = np.isfinite([one.plates[:, 2] for one in ready]).all(axis=1)
-    assert read[:29].all() and not read[31:38].any()
-    late = PLATES_OFF_FRAMES + 35
-    assert read[late:].all() or change(np.array([5]))[0] == 0  # back: the count starts over in each frame
-
-
-def test_a_single_wild_sample_does_not_end_the_plates(capture):
-    alignment, frames, notes = intake_of(capture)
-    frames[20] = renumbered(frames, 20, lambda i: i + 2**60)[20]
-    ready = [one for frame in frames for one in alignment.accept(frame)[0]]
-    assert np.isfinite([one.plates for one in ready[22:]]).all()
-    assert {kind for kind, *_ in notes} == {"plates lost"}
-
-
-def test_another_rate_is_told_of_live_streams_only(capture):
-    stream, frames = frames_of(capture)
-    slow = [replace(f, arrival_s=frames[0].arrival_s + f.number / 15.0) for f in frames]
-    for live, expected in ((True, {"rate"}), (False, set())):
-        notes = []
-        alignment = FrameAlignment(stream, np.arange(5), lambda *note: notes.append(note), live=live)  # noqa: B023
-        for frame in slow:
-            alignment.accept(frame)
-        assert {kind for kind, *_ in notes} - {"plates"} == expected

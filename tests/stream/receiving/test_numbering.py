@@ -2,10 +2,12 @@
 
 from itertools import pairwise
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mbkf.stream.receiving.numbering import BACK_FRAMES, Numbering
+from mbkf.stream.receiving.numbering import BACK_FRAMES, LATE_S, Numbering
+from mbkf.stream.source import UNCOUNTED
 
 RATE_HZ = 100.0
 
@@ -61,12 +63,42 @@ def test_a_leap_that_time_does_not_explain_is_not_believed():
     assert not found[-2].backwards
 
 
+@pytest.mark.parametrize("strange", [0, 10**6])
+def test_a_single_wrong_count_leaves_the_others_as_they_are(strange):
+    found = placed(in_time([*range(60), strange, *range(61, 80)]))
+    assert [place.number for place in found] == list(range(80))
+    assert sum(place.lost for place in found) == 0
+
+
+def test_a_count_that_stands_still_is_replaced_by_time():
+    found = placed(in_time([*range(60), *(100 * [60])]))
+    kept = [place.number for place in found if place.number is not None]
+    assert kept[60] == 60
+    assert kept[61:] == list(range(kept[61], 160))
+    assert len(kept) == 160 - round(LATE_S * RATE_HZ)
+
+
 def test_a_leap_that_time_explains_is_a_loss():
     found = placed([*in_time(range(10)), (510, 5.1)])
     assert (found[-1].number, found[-1].lost, found[-1].reset) == (510, 500, False)
 
 
-@given(st.lists(st.tuples(st.integers(-(2**40), 2**40), st.floats(0.0, 0.5)), max_size=60))
+@pytest.mark.parametrize("strange", [2**60, -(2**60), UNCOUNTED])
+def test_a_count_that_cannot_be_one_is_passed_over(strange):
+    found = placed(in_time([*range(10), strange, *range(11, 20), strange]))
+    assert [place.number for place in found] == list(range(21))[: len(found)]
+    assert [place.reset for place in found] == [n in (10, 20) for n in range(len(found))]
+    assert not any(place.lost for place in found)
+
+
+def test_without_any_count_time_numbers_the_frames():
+    found = placed([(UNCOUNTED, 0.01 * k + 0.003 * (k % 2)) for k in range(100)])
+    assert [place.number for place in found] == list(range(100))
+    then = placed([(UNCOUNTED, 0.0), (500, 0.01), (501, 0.02)])
+    assert [place.number for place in then] == [0, 1, 2]
+
+
+@given(st.lists(st.tuples(st.integers(-(2**62), 2**62), st.floats(0.0, 0.5)), max_size=60))
 def test_numbers_always_rise(steps):
     arrival_s, pairs = 0.0, []
     for number, passed_s in steps:
@@ -77,23 +109,3 @@ def test_numbers_always_rise(steps):
     # Never faster than time allows, give or take the slack.
     if numbers:
         assert numbers[-1] - numbers[0] <= arrival_s * RATE_HZ + (len(numbers) + 1) * (RATE_HZ + 1)
-
-
-@given(st.dictionaries(st.integers(0, 59), st.sampled_from([2**60, -(2**60), 10**13, 10**300]), max_size=30))
-def test_impossible_counts_follow_the_frame_before(strange):
-    counts = [strange.get(n, n) for n in range(60)]
-    found = placed(in_time(counts))
-    first = next((n for n in range(60) if n not in strange), 60)
-    shift = 0 if first == 0 else None
-    numbers = [place.number for place in found]
-    assert all(b > a for a, b in pairwise(numbers))
-    assert [place.uncounted for place in found] == [n in strange for n in range(60)]
-    if shift == 0:
-        assert numbers == list(range(60))
-        assert not any(place.lost or place.reset for place in found)
-
-
-def test_after_a_pause_an_impossible_count_is_placed_by_the_time():
-    found = placed([(0, 0.0), (2**60, 0.01), (2**60, 3.01)])
-    assert [place.number for place in found] == [0, 1, 301]
-    assert found[2].lost == 299 and found[2].uncounted

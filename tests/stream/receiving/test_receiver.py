@@ -27,13 +27,7 @@ def test_all_frames_come_in_order():
     stream, frames = frames_of(made_capture(30))
     receiver, numbers, notes, samples = received(frames, stream)
     assert numbers == list(range(30))
-    assert receiver.counts() == {
-        "frames_in": 30,
-        "frames_late": 0,
-        "frames_lost": 0,
-        "frames_lost_on_the_way": 0,
-        "frames_overwritten": 0,
-    }
+    assert receiver.counts() == (30, 0, 0, 0, 0)
     assert (notes, receiver.empty, len(samples)) == ([], True, 30)
 
 
@@ -41,7 +35,7 @@ def test_frames_lost_on_the_way_are_counted_and_bridged():
     stream, frames = frames_of(made_capture(30))
     receiver, numbers, notes, _ = received(frames[:10] + frames[13:], stream)
     assert numbers == list(range(30))
-    assert receiver.lost == receiver.counts()["frames_lost_on_the_way"] == 3
+    assert receiver.lost == receiver.counts().lost_on_the_way == 3
     assert [kind for kind, *_ in notes] == ["lost", "plates lost"]
 
 
@@ -56,11 +50,9 @@ def test_frames_that_are_not_taken_in_time_are_overwritten():
     for thread in threading.enumerate():
         if thread.name == "mbkf-reader":
             thread.join(5.0)
-    counts, held = receiver.counts(), receiver.left
-    assert counts["frames_overwritten"] > 0
-    left = 0
-    while receiver.take(0.0) is not None:
-        left += 1
-    assert (counts["frames_in"], held) == (30, left)
-    assert counts["frames_overwritten"] + left == 30
+    counts = receiver.counts()
+    assert counts.overwritten > 0
+    assert (counts.received, counts.overwritten + counts.queued) == (30, 30)
+    beyond = receiver.counts(until=27)
+    assert (beyond.received, counts.queued - beyond.queued) == (28, 2)
     receiver.stop()

@@ -1,6 +1,7 @@
 """Results over WebSocket: names first, then the newest frame; strangers are refused."""
 
 import json
+import socket
 import time
 
 import numpy as np
@@ -120,8 +121,22 @@ def test_a_client_may_leave_and_come_back(served):
 def test_a_page_of_another_site_may_not_listen(served):
     with pytest.raises(InvalidStatus, match="403"):
         connect(served.url, origin="https://example.org")
+    with pytest.raises(InvalidStatus, match="403"):
+        connect(served.url, origin="null")
     with connect(served.url, origin="http://localhost:8000") as client:
         assert client.recv(timeout=5.0)
+
+
+def test_a_name_that_is_not_this_computers_is_refused(served):
+    """A page may have given its own name this computer's address; its browser then asks for that name."""
+    port = served.url.split(":")[2].strip("/")
+    for host in (f"evil.example:{port}", "[", ""):
+        with socket.create_connection(("127.0.0.1", int(port)), timeout=5.0) as one:
+            asked = f"GET / HTTP/1.1\r\nHost: {host}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+            one.sendall(
+                f"{asked}Sec-WebSocket-Key: {16 * 'A'}==\r\nSec-WebSocket-Version: 13\r\n\r\n".encode()
+            )
+            assert one.recv(100).startswith(b"HTTP/1.1 403")
 
 
 def test_another_address_needs_a_token():

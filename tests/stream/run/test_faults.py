@@ -4,7 +4,6 @@ import errno
 import json
 import subprocess
 import sys
-import threading
 import time
 from dataclasses import replace
 
@@ -13,20 +12,16 @@ import pytest
 
 from mbkf.cli.main import main
 from mbkf.io.c3d_write import write_c3d
-from mbkf.io.frame_log import FrameLogWriter, read_frame_log
+from mbkf.io.frame_log import read_frame_log
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.subject import write_subject
 from mbkf.pipelines.live.log import FRAMES_FILE, LiveLog, LiveStream, blank
-from mbkf.stream.receiving.alignment import FrameAlignment
 from mbkf.stream.run import log_writer
 from mbkf.stream.run.folder import LOG_FOLDER
 from mbkf.stream.run.log_writer import LogWriter
-from mbkf.stream.run.session import LiveSession
 from mbkf.stream.source import FARTHEST_M, PlateSamples
 from tests.stream.scripted import (
-    SETTINGS,
     Collected,
-    ScriptedSource,
     assert_same,
     follow,
     frames_of,
@@ -202,13 +197,13 @@ def rows_of(log):
 
 @pytest.fixture
 def log(tmp_path):
-    dtype = np.dtype([("number", "<i8"), ("footing", "<i8", (2,)), ("q", "<f8", (5,)), ("latency_s", "<f8")])
+    dtype = np.dtype([("number", "<i8"), ("latency_s", "<f8"), ("footing", "<i8", (2,)), ("q", "<f8", (5,))])
     return LiveLog(tmp_path / "log", LiveStream("x", 100.0, 0.0, ()), dtype, {}, [])
 
 
 def row(log, number):
     made = blank(log.frames.dtype, 1)
-    made["number"], made["latency_s"] = number, 0.01
+    made["number"], made["latency_s"] = number, 0.001
     return made
 
 
@@ -225,14 +220,13 @@ def test_a_disk_that_was_full_gets_the_rows_later(log, monkeypatch):
         write(data)
 
     monkeypatch.setattr(log.frames, "_write", full)
-    writer = LogWriter(log, failures.append, lambda: None, failures.append)
-    writer.start()
+    writer = LogWriter(log, failures.append)
     for number in range(20):
         writer.put_row(row(log, number))
     until = time.monotonic() + 5.0
     while len(failures) < 3 and time.monotonic() < until:
         time.sleep(0.01)
-    assert writer.close() == 0
+    assert writer.close() == (20, 0)
     assert len(failures) == 3
     assert rows_of(log) == list(range(20))
 
@@ -246,11 +240,10 @@ def test_rows_written_before_the_disk_is_full_stay(log, monkeypatch):
         raise OSError(errno.ENOSPC, "no space left on device")
 
     monkeypatch.setattr(log.frames, "_write", full)
-    writer = LogWriter(log, failures.append, lambda: None, failures.append)
-    writer.start()
+    writer = LogWriter(log, failures.append)
     for number in range(5, 12):
         writer.put_row(row(log, number))
-    assert writer.close() == 7
+    assert writer.close() == (0, 7)
     assert failures
     assert rows_of(log) == list(range(5))
 
@@ -273,124 +266,17 @@ def test_a_full_disk_ends_in_one_line_and_the_log_is_recovered(tmp_path, capture
     )
     assert done.returncode == 2
     assert done.stderr.splitlines()[-1].startswith("mbkf: error: the results could not be written")
-    assert "--recover" in done.stderr.splitlines()[-1]
     report = json.loads((out / "live.json").read_text())
+    logged, unlogged = report["frames_written"], report["frames_not_written"]
+    assert logged + unlogged == report["frames_in"] == 80
+    assert f"{unlogged} frames were never logged and cannot be recovered" in done.stderr.splitlines()[-1]
+    assert f"{logged} frames are in its log, of which 'mbkf live --recover" in done.stderr.splitlines()[-1]
     assert report["state"] == "results missing"
     assert report["frames_processed"] == 80
     assert "disk" in {event["kind"] for event in report["events"]}
     written = len(read_frame_log(out / LOG_FOLDER / FRAMES_FILE)[1])
-    assert 0 < written == 80 - report["frames_not_written"]
+    assert 0 < written == logged
     assert main(["live", "--recover", str(out)]) == 0
     found, expected = read_reconstruction(out), offline(capture, subject)
     assert found.frames == written
     np.testing.assert_allclose(found.q, expected.q[:written], atol=1e-6)
-
-
-def placed(report):
-    """Where the frames of a run went, which is as many as came."""
-    names = ("written", "not_written", "overwritten", "late", "unanswered")
-    assert report["frames_in"] == sum(report[f"frames_{name}"] for name in names)
-    return {name: report[f"frames_{name}"] for name in names if report[f"frames_{name}"]}
-
-
-def test_counts_that_cannot_be_are_told_and_nothing_is_lost(tmp_path, capture, subject):
-    stream, frames = frames_of(capture)
-    for k in (20, 21, 50):
-        frames[k] = replace(frames[k], number=2**60 + k)
-    outcome = follow(tmp_path, stream, frames, subject)
-    assert kinds(outcome) == {"count"} and not outcome.failed
-    assert placed(outcome.report) == {"written": 80}
-    assert_same(tmp_path, offline(capture, subject))
-
-
-def test_late_frames_are_counted(tmp_path, capture, subject):
-    stream, frames = frames_of(capture)
-    outcome = follow(tmp_path, stream, [*frames[:40], frames[38], frames[39], *frames[40:]], subject)
-    assert placed(outcome.report) == {"written": 80, "late": 2}
-
-
-def test_frames_that_wait_when_it_is_stopped_are_counted(tmp_path, capture, subject):
-    stream, frames = frames_of(capture)
-    stop = threading.Event()
-
-    class Stopping(Collected):
-        def take(self, frame):
-            super().take(frame)
-            if len(self.frames) == 30:
-                stop.set()
-
-    session = LiveSession(ScriptedSource(stream, frames), subject, SETTINGS, tmp_path, "script")
-    session.connect(stop, 1.0)
-    report = session.run(stop, [Stopping([])]).report
-    assert report["ended_by"] == "it was stopped"
-    found = placed(report)
-    assert found["written"] == read_reconstruction(tmp_path).frames < 80
-
-
-@pytest.mark.parametrize("thread", ["reader", "log"])
-def test_a_dead_thread_ends_the_run_with_what_was_found(tmp_path, capture, subject, monkeypatch, thread):
-    stream, frames = frames_of(capture)
-    room, name = {"reader": (FrameAlignment, "_check_plates"), "log": (LogWriter, "_flush")}[thread]
-    original, calls = getattr(room, name), [0]
-
-    def dies(self, *given):
-        calls[0] += 1
-        if calls[0] > (50 if thread == "reader" else 2):
-            raise ZeroDivisionError("no such luck")
-        return original(self, *given)
-
-    monkeypatch.setattr(room, name, dies)
-    if thread == "log":
-        monkeypatch.setattr(log_writer, "EVERY_S", 0.01)
-        frames = [*frames, *([None] * 5)]
-    outcome = follow(tmp_path, stream, frames, subject)
-    assert outcome.failed and "ZeroDivisionError: no such luck" in outcome.report["ended_by"]
-    assert "failed" in kinds(outcome)
-    placed(outcome.report)
-    if thread == "reader":
-        assert outcome.report["frames_in"] == 51 and outcome.report["frames_unanswered"] == 1
-        assert read_reconstruction(tmp_path).frames == 50
-
-
-def test_a_tail_of_zeros_costs_only_itself(tmp_path, capture, subject, capsys):
-    follow(tmp_path, *frames_of(capture), subject, keep_log=True)
-    log = tmp_path / LOG_FOLDER / FRAMES_FILE
-    whole = read_frame_log(log)
-    log.write_bytes(log.read_bytes()[:-1000] + bytes(50_000))
-    left = len(read_frame_log(log).rows)
-    assert 0 < left < len(whole.rows)
-    assert main(["live", "--recover", str(tmp_path)]) == 0
-    told = capsys.readouterr().out
-    assert f"{left} frames recovered" in told and "rows of the log are damaged" in told
-    assert read_reconstruction(tmp_path).frames == left
-
-
-@pytest.mark.parametrize("number", [2**60, 10**9, -5, 3])
-def test_a_last_frame_whose_number_leaps_costs_only_itself(tmp_path, capture, subject, number):
-    follow(tmp_path, *frames_of(capture), subject, keep_log=True)
-    log = tmp_path / LOG_FOLDER / FRAMES_FILE
-    header, rows, _ = read_frame_log(log)
-    changed = np.array(rows)
-    changed["number"][-1] = number
-    with FrameLogWriter(log, rows.dtype, header) as writer:
-        writer.append(changed)
-    assert main(["live", "--recover", str(tmp_path)]) == 0
-    assert read_reconstruction(tmp_path).frames == len(rows) - 1
-
-
-def test_a_source_that_cannot_be_closed_leaves_the_results(tmp_path, capture, subject, monkeypatch):
-    def fails(self):
-        raise OSError(errno.EIO, "no")
-
-    monkeypatch.setattr(ScriptedSource, "close", fails)
-    outcome = follow(tmp_path, *frames_of(capture), subject)
-    assert not outcome.failed and kinds(outcome) == {"source"}
-    assert read_reconstruction(tmp_path).frames == 80
-
-
-@pytest.mark.parametrize("count", [1, 2, 3])
-def test_a_few_frames_give_results_or_a_reason(tmp_path, capture, subject, count):
-    stream, frames = frames_of(capture)
-    outcome = follow(tmp_path, stream, frames[:count], subject)
-    assert placed(outcome.report) == {"written": count} and not outcome.failed
-    assert (outcome.problem is None) == (tmp_path / "motion.h5").exists()

@@ -1,8 +1,11 @@
 """The folder of a run keeps every log until its results are written."""
 
+import numpy as np
 import pytest
 
+from mbkf.io.frame_log import read_frame_log
 from mbkf.io.results_folder import read_reconstruction
+from mbkf.pipelines.live.log import FRAMES_FILE, PLATES_FILE
 from mbkf.stream.run.folder import LOG_FOLDER, drop_log, write_results
 from tests.stream.scripted import follow, frames_of
 
@@ -20,12 +23,59 @@ def test_a_log_that_was_left_behind_is_set_aside(tmp_path, capture, subject):
     ]
     drop_log(tmp_path)
     (tmp_path / f"{LOG_FOLDER}-1").rename(tmp_path / LOG_FOLDER)
-    summary, problem = write_results(tmp_path, ("recovered",))
-    assert (summary["frames"], problem) == (40, None)
+    written = write_results(tmp_path, ("recovered",))
+    assert (written.summary["frames"], written.problem, written.left_out) == (40, None, ())
     assert read_reconstruction(tmp_path).frames == 40
 
 
 def test_without_a_log_it_says_why_there_are_no_results(tmp_path):
-    summary, problem = write_results(tmp_path, ())
-    assert summary is None
-    assert "no such file" in problem
+    written = write_results(tmp_path, ())
+    assert written.summary is None
+    assert "no such file" in written.problem
+
+
+@pytest.mark.parametrize("kept", [1, 2, 3, 20, 39])
+def test_a_power_cut_costs_the_rows_from_there_on(tmp_path, capture, subject, kept):
+    """The end of both files is zero, as a file system leaves what never reached the disk."""
+    stream, frames = frames_of(capture)
+    follow(tmp_path, stream, frames[:40], subject, keep_log=True)
+    whole = read_reconstruction(tmp_path)
+    for name, at in ((FRAMES_FILE, kept), (PLATES_FILE, 10 * kept)):
+        cut_off(tmp_path / LOG_FOLDER / name, at)
+    written = write_results(tmp_path, ())
+    assert written.problem is None
+    assert [sentence.split()[0] for sentence in written.left_out] == [str(40 - kept), str(396 - 10 * kept)]
+    found = read_reconstruction(tmp_path)
+    assert found.frames == kept
+    np.testing.assert_array_equal(found.q, whole.q[:kept])
+    assert any("left out" in warning for warning in found.warnings)
+
+
+def test_without_readable_plates_the_motion_is_recovered(tmp_path, capture, subject):
+    stream, frames = frames_of(capture)
+    follow(tmp_path, stream, frames[:40], subject, keep_log=True)
+    whole = read_reconstruction(tmp_path)
+    (tmp_path / LOG_FOLDER / PLATES_FILE).write_bytes(bytes(1000))
+    written = write_results(tmp_path, ())
+    assert written.problem is None
+    assert "plates.log" in written.left_out[0]
+    np.testing.assert_array_equal(read_reconstruction(tmp_path).q, whole.q)
+
+
+def test_an_unforeseen_error_leaves_the_log_and_is_told(tmp_path, capture, subject, monkeypatch):
+    stream, frames = frames_of(capture)
+
+    def fail(*_):
+        raise ZeroDivisionError("by nought")
+
+    monkeypatch.setattr("mbkf.stream.run.folder.summarise", fail)
+    outcome = follow(tmp_path, stream, frames[:40], subject)
+    assert outcome.problem == "an unforeseen ZeroDivisionError: by nought"
+    assert (tmp_path / LOG_FOLDER / FRAMES_FILE).is_file()
+
+
+def cut_off(path, rows):
+    """Nought in place of all that follows so many rows."""
+    log, content = read_frame_log(path), path.read_bytes()
+    tail = (len(log.rows) - rows) * (log.rows.dtype.itemsize + 4)
+    path.write_bytes(content[: len(content) - tail] + bytes(tail))

@@ -7,6 +7,7 @@ import numpy as np
 
 from mbkf.stream.receiving.receiver import Receiver
 from mbkf.stream.run.events import EventLog
+from mbkf.stream.run.failure import Failure
 from mbkf.stream.run.loop import FilterLoop
 from mbkf.stream.run.output import RunOutput
 from mbkf.stream.run.setup import prepare
@@ -32,14 +33,14 @@ def test_every_frame_is_answered_once(subject):
     receiver = Receiver(source, stream, setup.columns, lambda _: None, events.note)
     kept, failing = Collected([]), Failing([])
     output = RunOutput(setup, [kept, failing], rows.append, statistics, events.note)
-    loop = FilterLoop(setup, receiver, output, statistics, events.note)
+    loop = FilterLoop(setup, receiver, output, statistics, events.note, Failure())
     receiver.start()
     assert loop.run(threading.Event(), None) == "the source ended"
     receiver.stop()
     output.close()
     assert [int(row["number"][0]) for row in rows] == list(range(40))
     assert [frame.number for frame in kept.frames] == list(range(40))
-    assert (len(failing.frames), kept.closed, failing.closed) == (1, True, False)
+    assert (len(failing.frames), kept.closed, failing.closed) == (1, True, True)
     assert (statistics.processed, statistics.starts) == (38, 1)
     assert {event["kind"] for event in events.plain()} == {"lost", "plates lost", "viewer"}
 
@@ -55,7 +56,9 @@ def test_latency_counts_from_the_arrival_of_the_last_frame_that_an_answer_knows(
     kept = Collected([])
     output = RunOutput(setup, [kept], rows.append, statistics, events.note)
     receiver.start()
-    assert FilterLoop(setup, receiver, output, statistics, events.note).run(threading.Event(), None)
+    assert FilterLoop(setup, receiver, output, statistics, events.note, Failure()).run(
+        threading.Event(), None
+    )
     receiver.stop()
     output.close()
     assert [frame.number for frame in kept.frames] == list(range(50))
