@@ -23,7 +23,7 @@ from mbkf.errors import FileFormatError
 from mbkf.io.axes import finite, rotation_to_world, up_axis
 from mbkf.io.force_names import ForceSet, force_sets
 from mbkf.io.records import PlateReadings
-from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare, require_finite
+from mbkf.io.wrench import LARGEST, centre_of_pressure, find_tare, remove_tare, require_finite
 
 _LEAST_OFFSET_N = 2.0
 _UP = np.array([0.0, 0.0, 1.0])
@@ -155,7 +155,9 @@ def reaction_sign(forces: Sequence[Array], notes: list[str]) -> float:
 
 def _mean_force(forces: Sequence[Array]) -> Array:
     """(3,) sum over the sets of their mean force in N."""
-    return np.asarray(np.sum([np.nan_to_num(force).mean(axis=0) for force in forces], axis=0))
+    return np.asarray(
+        np.sum([np.clip(np.nan_to_num(force), -LARGEST, LARGEST).mean(axis=0) for force in forces], axis=0)
+    )
 
 
 def into_axes(

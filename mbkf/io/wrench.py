@@ -15,6 +15,9 @@ from mbkf.io.records import PlateReadings
 DEFAULT_COP_THRESHOLD_N = 20.0
 """Vertical force below which a centre of pressure is mostly noise, in N."""
 
+LARGEST = 1e12
+"""No plate reads so much, in whatever unit: sums of squares of such numbers overflow before they are judged."""
+
 UNLOADED_RANGE_N = (-200.0, 50.0)
 """Vertical force a plate without load may show; a plate cannot pull, so the range is wider below zero."""
 
@@ -68,7 +71,7 @@ def centre_of_pressure(
 
 
 def require_finite(force_n: Array, moment_nm: Array, rate_hz: float, start_time_s: float, where: str) -> None:
-    """Refuse readings that are not numbers.
+    """Refuse readings that are not numbers, or none that any plate gives in any unit.
 
     Args:
         force_n: (S, 3) forces.
@@ -78,13 +81,17 @@ def require_finite(force_n: Array, moment_nm: Array, rate_hz: float, start_time_
         where: The file and plate, for the message.
 
     Raises:
-        InvalidInput: A force or moment is NaN or infinite; says where first and how many.
+        InvalidInput: A force or moment is NaN, infinite or beyond :data:`LARGEST`; says where first and how many.
     """
     bad = ~(finite(force_n) & finite(moment_nm))
+    what = "are not numbers"
+    if not bad.any():
+        bad = (np.abs(np.hstack([force_n, moment_nm])) > LARGEST).any(axis=1)
+        what = f"are larger than {LARGEST:g}"
     if bad.any():
         first = start_time_s + np.argmax(bad) / rate_hz
         raise InvalidInput(
-            f"{where}: {bad.sum()} of {len(bad)} samples of force or moment are not numbers, the first at "
+            f"{where}: {bad.sum()} of {len(bad)} samples of force or moment {what}, the first at "
             f"{first:.3f} s; cut these samples or leave the plate out"
         )
 
