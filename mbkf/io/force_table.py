@@ -155,9 +155,8 @@ def reaction_sign(forces: Sequence[Array], notes: list[str]) -> float:
 
 def _mean_force(forces: Sequence[Array]) -> Array:
     """(3,) sum over the sets of their mean force in N."""
-    return np.asarray(
-        np.sum([np.clip(np.nan_to_num(force), -LARGEST, LARGEST).mean(axis=0) for force in forces], axis=0)
-    )
+    plain = [np.clip(np.nan_to_num(force), -LARGEST, LARGEST) for force in forces]
+    return np.asarray(np.sum([force.mean(axis=0) for force in plain], axis=0))
 
 
 def into_axes(

@@ -86,7 +86,7 @@ def require_finite(force_n: Array, moment_nm: Array, rate_hz: float, start_time_
     bad = ~(finite(force_n) & finite(moment_nm))
     what = "are not numbers"
     if not bad.any():
-        bad = (np.abs(np.hstack([force_n, moment_nm])) > LARGEST).any(axis=1)
+        bad = np.asarray((np.abs(np.hstack([force_n, moment_nm])) > LARGEST).any(axis=1))
         what = f"are larger than {LARGEST:g}"
     if bad.any():
         first = start_time_s + np.argmax(bad) / rate_hz
