@@ -13,8 +13,8 @@ from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.atomic import replacing
 from mbkf.io.plain_data import read_toml
 
-FARTHEST_M = 3.0
-"""No sensor sits further from the origin of its segment."""
+FARTHEST_M, LONGEST = 3.0, 1e6
+"""No sensor sits further from the origin of its segment, and no quaternion is so far from length one."""
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,9 @@ class ImuMount:
     def __post_init__(self) -> None:
         object.__setattr__(self, "position_m", read_only(self.position_m))
         rotation = np.asarray(self.rotation, dtype=float)
-        size = float(np.sqrt((rotation * rotation).sum()))
-        if self.position_m.shape != (3,) or rotation.shape != (4,) or not size > 0.5:
+        far = rotation.shape != (4,) or not (np.abs(rotation) <= LONGEST).all()
+        size = 0.0 if far else float(np.sqrt((rotation * rotation).sum()))
+        if self.position_m.shape != (3,) or not size > 0.5:
             raise InvalidInput(
                 f"sensor {self.name}: a position of three and a quaternion of four numbers are needed"
             )
