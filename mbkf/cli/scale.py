@@ -107,6 +107,7 @@ def run(args: argparse.Namespace) -> int:
     if args.inertia:
         subject = with_inertia(subject, [*([] if static is None else [static]), *trials])
     write_subject(subject, out)
+    warn_of_fit(subject)
     _print(subject.report, subject.protocol, str(out))
     warn_of_markers(subject)
     return 0
@@ -124,6 +125,15 @@ def mass_option(text: str) -> float | str:
         return float(text)
     except ValueError:
         raise argparse.ArgumentTypeError(f"invalid float value: '{text}'") from None
+
+
+def warn_of_fit(subject: Subject) -> None:
+    """Tells what speaks against the fitted body."""
+    from mbkf.scaling.verdict import DOUBTS_KEY
+
+    found = subject.report.get(DOUBTS_KEY)
+    for doubt in found if isinstance(found, list) else ():
+        print(f"warning: this body may not be the person's: {doubt}", file=sys.stderr)
 
 
 def warn_of_markers(subject: Subject) -> None:
@@ -184,8 +194,6 @@ def _print(report: dict[str, Any], protocol: str, out: str) -> None:
         _print_inertia(console, report["inertia"])
     for told in report.get("axes", ()):
         console.print(f"note: {told['capture']}: {told['note']}", soft_wrap=True)
-    if not report["converged"]:
-        console.print("the fit did not settle; look at the markers above")
     console.print(
         f"{out}: protocol {protocol}, {report['frames']} frames, markers fit to "
         f"{report['marker_rms_mm']:.1f} mm RMS",

@@ -40,6 +40,7 @@ from mbkf.pipelines.trial.markers_alone import Motion, markers_alone
 from mbkf.pipelines.trial.other_contacts import with_other_contacts
 from mbkf.scaling.correction import correct_markers
 from mbkf.scaling.frames import MIN_MARKERS
+from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.sensors.block import AnyBlock
 from mbkf.sensors.gap_filling import filled
 from mbkf.sensors.marker_sensor import MarkerSensor
@@ -302,8 +303,14 @@ def _predicted(sensor: MarkerSensor, result: Track, measured: MarkerTrajectories
 
 def _remarks(checks: Sequence[Finding], subject: Subject, found: Reconstruction) -> tuple[str, ...]:
     """All that is to be told: of checks first, then of innovations, then of the trial."""
-    first = (*told(tuple(checks)), *innovations.told(found), *inferred_set(subject))
+    first = (*told(tuple(checks)), *innovations.told(found), *inferred_set(subject), *_doubts(subject))
     return (*first, *found.warnings, *supports_told(found.contacts))
+
+
+def _doubts(subject: Subject) -> tuple[str, ...]:
+    """What speaks against the scaled body."""
+    found = subject.report.get(DOUBTS_KEY)
+    return tuple(f"the subject file: {doubt}" for doubt in found) if isinstance(found, list) else ()
 
 
 def inferred_set(subject: Subject) -> tuple[str, ...]:

@@ -28,6 +28,7 @@ from mbkf.scaling.problem import (
     ScalingSettings,
     ScalingState,
 )
+from mbkf.scaling.verdict import DOUBTS_KEY, doubts, refusal
 from mbkf.sensors.pose_fit import segment_by_segment
 
 MAX_ITERATIONS = 60
@@ -65,7 +66,7 @@ def scale_subject(
     Raises:
         InvalidInput: Mass or height is not positive, no trial is given, or the static trial shows no upright person.
         NotObservable: Too few markers of the protocol.
-        NotConverged: The fit is so poor that the markers cannot be this protocol on a person.
+        NotConverged: The fit is so poor, or the body so made, that the markers cannot be this protocol on a person.
     """
     settings = settings or ScalingSettings()
     if not (np.isfinite(mass_kg) and mass_kg > 0):
@@ -98,11 +99,36 @@ def scale_subject(
         )
     standing = solution.state.poses[frames.trial < len(static)]
     _require_upright(standing)
+    noise = float(np.sqrt((problem.noise_m**2).mean()))
+    refused = refusal(solution.state.factors, settings.proportion_sd, rms / noise, solution.converged)
+    if refused:
+        raise NotConverged(refused)
     subject = _subject(problem, solution, frames, dropped, protocol, mass_kg, height_m, settings)
+    doubtful = _doubts(subject, rms / noise, float(dropped.sum() / problem.seen.sum()), settings)
+    if doubtful:
+        subject.report[DOUBTS_KEY] = list(doubtful)
     if len(standing):
         model = problem.posture.model
         subject.report[STANDING_KEY] = [round(float(x), 7) for x in _middle(model, standing)]
     return subject
+
+
+def _doubts(
+    subject: Subject, rms_per_noise: float, share_left_out: float, settings: ScalingSettings
+) -> tuple[str, ...]:
+    """What speaks against the fit, in words.
+
+    Args:
+        subject: The fitted person.
+        rms_per_noise: RMS distance of the markers over their noise per coordinate.
+        share_left_out: Share of the samples that were left out.
+        settings: Weights of the priors.
+    """
+    low, high = FACTOR_BOUNDS
+    factors = subject.scale_factors
+    at_bound = tuple(name for name, k in factors.items() if k <= low + 1e-9 or k >= high - 1e-9)
+    settled = bool(subject.report["converged"])
+    return doubts(factors, at_bound, settings.proportion_sd, rms_per_noise, share_left_out, settled)
 
 
 def _middle(model: Body, poses: Array) -> Array:

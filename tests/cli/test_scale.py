@@ -95,6 +95,33 @@ def test_ignored_markers_are_shown_and_few_known_ones_inferred(tmp_path, capsys)
     assert "warning: protocol reference36 knows 12 of 36" in capsys.readouterr().err
 
 
+def renamed(path, *names):
+    """The made standing trial with each marker under the next one's name, as a file."""
+    whole = made_capture(30, 0.0)
+    columns = [whole.markers.names.index(name) for name in names]
+    positions = whole.markers.positions_m.copy()
+    positions[:, columns] = whole.markers.positions_m[:, np.roll(columns, 1)]
+    write_c3d(replace(whole, markers=replace(whole.markers, positions_m=positions)), path)
+    return path
+
+
+def test_a_doubtful_body_is_told_first_and_kept_and_an_impossible_one_leaves_no_file(tmp_path, capsys):
+    out = tmp_path / "s.toml"
+    doubtful = renamed(tmp_path / "doubtful.c3d", "RKNE", "RANK")
+    assert scale(doubtful, "--protocol", "reference36", "--out", out) == 0
+    told = capsys.readouterr().err.splitlines()
+    assert told[0].startswith("warning: this body may not be the person's: proportions are unusual")
+    assert read_subject(out).report["doubts"] == [
+        told[0].removeprefix("warning: this body may not be the person's: ")
+    ]
+    out.unlink()
+    around = ("RKNE", "RANK", "LELB", "C7", "RHEE", "LKNE", "LANK", "RELB")
+    impossible = renamed(tmp_path / "impossible.c3d", *around)
+    assert scale(impossible, "--protocol", "reference36", "--out", out) == 2
+    assert "no person is made so" in capsys.readouterr().err
+    assert not out.exists()
+
+
 def test_the_mass_is_a_number_or_what_plates_tell(person, tmp_path, capsys):
     assert (mass_option("71.5"), mass_option(AUTO)) == (71.5, "auto")
     with pytest.raises(ArgumentTypeError, match="heavy"):

@@ -9,8 +9,10 @@ from mbkf.errors import InvalidInput, NotConverged, NotObservable
 from mbkf.io.records import MarkerTrajectories
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
+from mbkf.scaling import fit
 from mbkf.scaling.fit import factor_covariance, scale_subject
 from mbkf.scaling.problem import ScalingSettings
+from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.motions import marker_positions, moderate_pose, reference_model
 
@@ -298,3 +300,34 @@ def test_keypoints_are_scaled_from_standing_and_carry_their_noise():
     )
     assert {(m.noise_m, m.correlated_m, m.correlation_s) for m in found.markers} == {(0.02, 0.01, 0.3)}
     assert {m.session_sd_m for m in found.markers} == {0.005}, "nobody sticks them on anew"
+
+
+def exchanged(trial, *names):
+    """The trial with each marker under the next one's name."""
+    columns = [NAMES.index(name) for name in names]
+    positions = trial.positions_m.copy()
+    positions[:, columns] = trial.positions_m[:, np.roll(columns, 1)]
+    return replace(trial, positions_m=positions)
+
+
+def test_a_person_raises_no_doubt(subject):
+    assert DOUBTS_KEY not in subject.report
+
+
+def test_one_exchanged_pair_of_a_standing_trial_is_doubted(person):
+    one = exchanged(person.standing(), "RKNE", "RANK")
+    (doubt,) = scale_subject([one], [], PROTOCOL, mass_kg=72.0).report[DOUBTS_KEY]
+    assert doubt.startswith("proportions are unusual")
+
+
+def test_a_standing_trial_whose_names_go_round_is_no_person_though_it_fits(person):
+    one = exchanged(person.standing(), "RKNE", "RANK", "LELB", "C7", "RHEE", "LKNE", "LANK", "RELB")
+    with pytest.raises(NotConverged, match="no person is made so"):
+        scale_subject([one], [], PROTOCOL, mass_kg=72.0)
+
+
+def test_a_fit_that_is_cut_short_is_told(person, monkeypatch):
+    monkeypatch.setattr(fit, "MAX_ITERATIONS", 1)
+    found = scale_subject([person.standing()], [person.moving()], PROTOCOL, mass_kg=72.0)
+    assert not found.report["converged"]
+    assert found.report[DOUBTS_KEY][0] == "the fit did not settle"
