@@ -17,6 +17,7 @@ from mbkf.errors import FileFormatError
 from mbkf.io.axes import rotation_to_world, up_axis
 from mbkf.io.c3d_plates import plate_axes
 from mbkf.io.force_table import into_axes, reaction_sign
+from mbkf.io.plausible import FARTHEST_M
 from mbkf.io.records import PlateReadings
 from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare, require_finite
 
@@ -106,13 +107,14 @@ def faced_axis(table: PlateTable) -> str:
 
 
 def check_corners(table: PlateTable) -> None:
-    """Refuses a plate whose corners enclose no area.
+    """Refuses a plate whose corners enclose no area, or lie where no laboratory reaches.
 
     Raises:
         FileFormatError: They do not.
     """
     sides = np.diff(table.corners_m[[0, 1, 2, 3, 0]], axis=0)
-    area = float(np.linalg.norm(np.cross(sides[0], sides[1]))) if np.isfinite(sides).all() else 0.0
+    near = bool((np.abs(table.corners_m) <= FARTHEST_M).all())
+    area = float(np.linalg.norm(np.cross(sides[0], sides[1]))) if near else 0.0
     if area < _LEAST_SIDE_M**2:
         raise FileFormatError(table.path, f"plate '{table.name}' has no usable corners; export them too")
 
@@ -162,7 +164,7 @@ def _read(table: PlateTable, local: bool, about_centre: bool, factor: float, thr
         moment = moment - np.cross(centre, force)
     pressed = np.abs(force @ normal) >= threshold_n
     if table.pressure_m is not None:
-        pressed &= np.isfinite(table.pressure_m).all(axis=1) & table.pressure_m.any(
+        pressed &= (np.abs(table.pressure_m) <= FARTHEST_M).all(axis=1) & table.pressure_m.any(
             axis=1
         )  # exact 0: none stated
     if not pressed.any():

@@ -37,7 +37,7 @@ def plausible(capture: Capture, forces: Path | None = None) -> Capture:
         forces: The file that its plates come from, where they have one of their own.
 
     Raises:
-        InvalidInput: A frame rate, force or moment is impossible.
+        InvalidInput: A frame rate, a force, a moment or the place of a plate is impossible.
     """
     markers, rates = capture.markers, {"the markers": capture.markers.rate_hz}
     rates |= {f"force plate {plate.name}": plate.rate_hz for plate in capture.plates}
@@ -56,6 +56,12 @@ def plausible(capture: Capture, forces: Path | None = None) -> Capture:
                     f"{forces or capture.path}: force plate {plate.name} reads a {what} of {largest:.2g} {unit}; "
                     "check its scale and offset (ANALOG:SCALE, OFFSET), or give the ground reactions with --forces"
                 )
+        places = plate.origin_m if plate.corners_m is None else np.vstack([plate.origin_m, plate.corners_m])
+        if not (np.abs(places) <= FARTHEST_M).all():
+            raise InvalidInput(
+                f"{forces or capture.path}: force plate {plate.name} lies more than {FARTHEST_M:g} m away; check "
+                "its corners and points, or their unit"
+            )
     far = np.abs(markers.positions_m).max(axis=2, initial=0.0) > FARTHEST_M
     if not far.any():
         return capture

@@ -88,6 +88,10 @@ CASES = {
     "channels of other plates": made(plate={"CHANNEL": (2, (6, 1), integers(np.arange(2000, 2006), INTEL))}),
     "corners in a point": made(plate={"CORNERS": (4, (3, 4, 1), floats(np.zeros(12), INTEL))}),
     "corners not numbers": made(plate={"CORNERS": (4, (3, 4, 1), floats(np.full(12, np.nan), INTEL))}),
+    "corners 1e9 m away": made(
+        plate={"CORNERS": (4, (3, 4, 1), floats(CORNERS[[1, 0, 3, 2]] + 1e12, INTEL))}
+    ),
+    "corners 2 km away": made(plate={"CORNERS": (4, (3, 4, 1), floats(CORNERS[[1, 0, 3, 2]] + 2e6, INTEL))}),
     "corners as texts": made(plate={"CORNERS": (-1, (12,), b"x" * 12)}),
 }
 

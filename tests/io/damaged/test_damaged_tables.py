@@ -119,6 +119,7 @@ CASES = [
     ("c.forces", "2 0 700", "2 0 inf", ""),
     ("c.forces", "2 0 700", "2 1e308 1e308", "larger than 1e+12"),
     ("c.forces", "0 700 0 10 0 10 0\n2 0 700", "inf inf inf 10 0 10 0\n2 inf inf", "not numbers"),
+    ("plain.csv", "0.01,0,0,700,0.1", "0.01,0,0,700,1e308", ""),
     ("grf.mot", "0.01\t0\t700", "0.01\t0\t1e308", "larger than 1e+12"),
     ("plain.csv", "0.01,0,0,700", "0.01,0,0,1e308", "larger than 1e+12"),
     ("c.forces", "SampleRate=500", "SampleRate=1e-300", ""),
