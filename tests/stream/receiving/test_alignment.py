@@ -1,15 +1,19 @@
 """Frames come out of the alignment in order, filled, cleaned, and with their plates."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from mbkf.sensors.contact.plates import plate_wrenches
 from mbkf.stream.receiving.alignment import BRIDGED_S, FrameAlignment
 from mbkf.stream.receiving.reader import Reader
 from mbkf.stream.receiving.ring_buffer import RingBuffer
-from mbkf.stream.source import PlateSamples
+from mbkf.stream.source import UNCOUNTED, PlateSamples, SourceFrame
+from tests.captures import made_capture
 from tests.stream.scripted import ScriptedSource, frames_of
 
 
@@ -136,3 +140,33 @@ def test_a_reader_whose_frames_nobody_takes_keeps_the_latest(capture):
     assert buffer.left()[-1].number == 79
     assert reader.overwritten == 80 - len(buffer.left())
     assert set(notes) == {"overwritten"}
+
+
+COUNTS = st.one_of(st.integers(0, 120), st.integers(-(2**63), 2**63 - 1), st.just(UNCOUNTED))
+VALUES = st.sampled_from([0.0, 1.0, 500.0, np.nan, np.inf, -np.inf, 1e30])
+
+
+@given(
+    st.lists(
+        st.tuples(COUNTS, st.floats(0.0, 3.0), st.lists(COUNTS, max_size=12), VALUES, VALUES),
+        min_size=1,
+        max_size=25,
+    )
+)
+def test_nothing_that_a_source_says_ends_the_reading(script):
+    """Whatever counts, readings and pauses: numbers rise, shapes hold, and each frame is placed or counted as late."""
+    stream, frames = frames_of(made_capture(2))
+    alignment = FrameAlignment(stream, np.arange(5), lambda *_: None, 75.0, live=True)
+    arrival_s, ready, taken = 0.0, [], []
+    for number, passed_s, index, coordinate, load in script:
+        arrival_s += passed_s
+        samples = PlateSamples(np.array(index, dtype=np.int64), np.full((len(index), 2, 6), load))
+        markers = np.full_like(frames[0].markers_m, coordinate)
+        more, plates = alignment.accept(SourceFrame(number, arrival_s, markers, np.zeros((0, 3)), samples))
+        ready += more
+        taken += plates.index.tolist()
+        assert plates.wrench.shape == (len(plates.index), 2, 6)
+    assert all(b.number > a.number for a, b in pairwise(ready))
+    assert all(b > a for a, b in pairwise(taken))
+    assert sum(not one.lost for one in ready) + alignment.late == len(script)
+    assert all(one.plates.shape == (2, 6) for one in ready)
