@@ -81,8 +81,9 @@ class SampleNumbering:
         gap = int(index[0]) + self.shift - self._newest - 1
         if not 0 <= gap <= passed + self._slack or self._ahead(int(index[-1]), wanted):
             return False
-        steps = np.diff(index)
-        return not len(steps) or bool(steps.min() >= 1 and steps.max() <= self._slack)
+        steps = index[1:] - index[:-1]
+        whole = int(index[-1]) - int(index[0]) == len(steps)  # with steps of at least 1 each, all are 1
+        return not len(steps) or bool(steps.min() >= 1 and (whole or steps.max() <= self._slack))
 
     def _ahead(self, last: int, wanted: int) -> bool:
         """Whether a sample is farther ahead of its frame than the first ones were."""
