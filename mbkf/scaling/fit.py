@@ -28,7 +28,7 @@ from mbkf.scaling.problem import (
     ScalingSettings,
     ScalingState,
 )
-from mbkf.scaling.verdict import DOUBTS_KEY, doubts, refusal
+from mbkf.scaling.verdict import DOUBTS_KEY, as_each_other, doubts, refusal
 from mbkf.sensors.pose_fit import segment_by_segment
 
 MAX_ITERATIONS = 60
@@ -105,6 +105,7 @@ def scale_subject(
         raise NotConverged(refused)
     subject = _subject(problem, solution, frames, dropped, protocol, mass_kg, height_m, settings)
     doubtful = _doubts(subject, rms / noise, float(dropped.sum() / problem.seen.sum()), settings)
+    doubtful += _names_doubted(problem, solution.state)
     if doubtful:
         subject.report[DOUBTS_KEY] = list(doubtful)
     if len(standing):
@@ -129,6 +130,15 @@ def _doubts(
     at_bound = tuple(name for name, k in factors.items() if k <= low + 1e-9 or k >= high - 1e-9)
     settled = bool(subject.report["converged"])
     return doubts(factors, at_bound, settings.proportion_sd, rms_per_noise, share_left_out, settled)
+
+
+def _names_doubted(problem: ScalingProblem, state: ScalingState) -> tuple[str, ...]:
+    """Markers that sit where another one of their segment should, in words."""
+    names, segments = zip(*((m.name, m.segment) for m in problem.markers), strict=True)
+    found = problem.local_m(state.factors, state.offsets_m)
+    places = problem.local_m(state.factors, np.zeros_like(state.offsets_m))
+    pairs = [f"{names[i]} and {names[j]}" for i, j in as_each_other(segments, places, found)]
+    return (f"{', '.join(pairs)} sit where the other should: are their names exchanged?",) if pairs else ()
 
 
 def _middle(model: Body, poses: Array) -> Array:

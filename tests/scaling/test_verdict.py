@@ -7,6 +7,8 @@ from mbkf.scaling.verdict import (
     DOUBTFUL_SPREADS,
     IMPOSSIBLE_NOISE,
     IMPOSSIBLE_SPREADS,
+    MOVED_M,
+    as_each_other,
     doubts,
     proportion_spreads,
     refusal,
@@ -63,3 +65,25 @@ def test_every_doubt_is_told(changes, told):
     )
     assert len(found) == len(told)
     assert all(line.startswith(start) for line, start in zip(found, told, strict=True))
+
+
+PLACES_M = np.array([[0.03, 0.0, -0.24], [-0.03, 0.0, -0.24], [0.0, 0.05, -0.1], [0.03, 0.0, -0.24]])
+SEGMENTS = ("forearm", "forearm", "forearm", "shank")
+
+
+def test_two_markers_that_sit_where_the_other_should_are_told():
+    found = PLACES_M + np.random.default_rng(0).uniform(-0.008, 0.008, PLACES_M.shape)
+    assert as_each_other(SEGMENTS, PLACES_M, found) == []
+    exchanged = found[[1, 0, 2, 3]]
+    assert as_each_other(SEGMENTS, PLACES_M, exchanged) == [(0, 1)]
+    assert as_each_other(("forearm", "shank", "forearm", "shank"), PLACES_M, exchanged) == []
+    assert (
+        as_each_other(
+            SEGMENTS, 0.6 * MOVED_M / 0.06 * PLACES_M, 0.6 * MOVED_M / 0.06 * PLACES_M[[1, 0, 2, 3]]
+        )
+        == []
+    )
+
+
+def test_a_segment_whose_markers_were_all_moved_aside_is_not_told():
+    assert as_each_other(SEGMENTS, PLACES_M, PLACES_M + np.array([0.06, 0.06, 0.0])) == []

@@ -11,6 +11,7 @@ from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct, subject
 from mbkf.pipelines.results.summary import summarise
 from mbkf.pipelines.scale import EXCHANGED_KEY, scale
 from mbkf.pipelines.trial.exchanged import exchange_notes, names_put_right, trials_put_right
+from mbkf.scaling.verdict import DOUBTS_KEY
 from tests.walker import walker
 
 pytestmark = pytest.mark.slow
@@ -82,3 +83,17 @@ def test_clean_captures_stay_as_they_are(trial, static, mass_kg, real_data):
     subject = scale(read_capture(real_data / static), mass_kg=mass_kg)
     markers = subject_markers(read_capture(real_data / trial).markers, subject)
     assert names_put_right(markers, subject) == (markers, ())
+
+
+def test_names_that_are_exchanged_in_standing_and_moving_trials_alike_are_doubted(real_data):
+    """Distances cannot tell the inner from the outer marker of a wrist; where scaling had to move them does."""
+    folder = real_data / "gait2354_walk"
+    static, trial = (read_capture(folder / f"subject01_{name}.trc") for name in ("static", "walk1"))
+    wrist = ("R.Wrist.Lat", "R.Wrist.Med")
+    (doubt,) = scale(static, [trial], mass_kg=72.6).report[DOUBTS_KEY]
+    assert doubt == f"{wrist[0]} and {wrist[1]} sit where the other should: are their names exchanged?"
+    right = [static, trial]
+    for side in "RL":
+        pair = (f"{side}.Wrist.Lat", f"{side}.Wrist.Med")
+        right = [exchanged(capture, *pair, slice(0, None)) for capture in right]
+    assert DOUBTS_KEY not in scale(right[0], right[1:], mass_kg=72.6).report
