@@ -28,6 +28,10 @@ SETTLING_S = 0.5
 LEAST_S = 0.25
 """Shortest part that a likelihood is taken of."""
 
+MOST_LOST = 0.1
+"""Frames that are followed under the defaults and are not with other settings tell nothing, so no more than this share
+may be lost: else settings that lose the body would be the likeliest."""
+
 
 class TrialPart:
     """A trial, or a part of it, with its likelihood under the defaults as the reference.
@@ -69,7 +73,7 @@ class TrialPart:
         self.readings = int(readings[self._counted].sum())
 
     def value(self, values: Mapping[str, float]) -> float:
-        """Log-likelihood with other settings, nats; −inf where the filter diverges.
+        """Log-likelihood with other settings, nats; −inf where the filter diverges or loses the body for long.
 
         Frames whose foot contacts differ from those under the defaults have other readings; their loads count as
         unchanged.
@@ -79,6 +83,9 @@ class TrialPart:
             with np.errstate(all="ignore"):
                 found = self._run(replace(self._inputs, **changes))
         except (np.linalg.LinAlgError, ValueError):
+            return -math.inf
+        lost = (found.marker_readings == 0) & (self._reference.marker_readings > 0) & self._counted
+        if lost.sum() > MOST_LOST * self._counted.sum():
             return -math.inf
         same = found.load_readings == self._reference.load_readings
         total = found.markers + np.where(same, found.loads, self._reference.loads)
