@@ -29,8 +29,8 @@ LEAST_S = 0.25
 """Shortest part that a likelihood is taken of."""
 
 MOST_LOST = 0.1
-"""Frames that are followed under the defaults and are not with other settings tell nothing, so no more than this share
-may be lost: else settings that lose the body would be the likeliest."""
+"""Where a larger share of the frames that are followed under the defaults is not with other settings, the filter
+diverges."""
 
 
 class TrialPart:
@@ -73,7 +73,7 @@ class TrialPart:
         self.readings = int(readings[self._counted].sum())
 
     def value(self, values: Mapping[str, float]) -> float:
-        """Log-likelihood with other settings, nats; −inf where the filter diverges or loses the body for long.
+        """Log-likelihood with other settings, nats; −inf where the filter diverges.
 
         Frames whose foot contacts differ from those under the defaults have other readings; their loads count as
         unchanged.
@@ -84,7 +84,7 @@ class TrialPart:
                 found = self._run(replace(self._inputs, **changes))
         except (np.linalg.LinAlgError, ValueError):
             return -math.inf
-        lost = (found.marker_readings == 0) & (self._reference.marker_readings > 0) & self._counted
+        lost = self._reference.followed & ~found.followed & self._counted
         if lost.sum() > MOST_LOST * self._counted.sum():
             return -math.inf
         same = found.load_readings == self._reference.load_readings
