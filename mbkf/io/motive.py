@@ -114,7 +114,7 @@ def _markers(file: TextFile, take: _Take, notes: list[str]) -> tuple[list[list[i
     axes = take.titles[-1]
     rows = [row + [""] * (len(axes) - len(row)) for row in take.titles[:-1]]
     kinds = next((row for row in rows if {"marker", "rigid body", "bone"} & {c.lower() for c in row}), None)
-    if kinds is None or len(rows) < 2:
+    if kinds is None or rows.index(kinds) + 1 == len(rows):
         raise FileFormatError(file.path, "no row tells which columns are markers; export it with its header")
     labels = rows[rows.index(kinds) + 1]
     what = rows[-1]

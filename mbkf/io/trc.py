@@ -131,7 +131,8 @@ def _with_gaps(path: Path, times_s: Array, values: Array, rate_hz: float, notes:
     Raises:
         FileFormatError: Times go back, or jump further than the trial is long.
     """
-    steps = np.diff(times_s) * rate_hz
+    with np.errstate(over="ignore"):  # times without end are refused as any other jump
+        steps = np.diff(times_s) * rate_hz
     back = np.flatnonzero(steps < -_UNEVEN)
     if len(back):
         raise FileFormatError(path, f"in row {back[0] + 2}, the time goes back; export the file again")
