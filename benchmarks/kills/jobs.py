@@ -11,7 +11,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -49,6 +49,8 @@ class Job:
         arguments: What it is called with in the folder that holds what it writes.
         start: A folder with the old result; each kill begins with a copy.
         state: "old" or "new", told of the folder and of the clock's time when the command ended, or what is wrong.
+        again: Whether it is run once more after a kill, and then must leave the new result and nothing else; one that
+            lasts as long as its source is killed at times only.
         steps: Steps with files that it takes; 0 where they are not counted.
         span_s: Between which times it is killed.
     """
@@ -57,6 +59,7 @@ class Job:
     arguments: Callable[[Path], list[str]]
     start: Path
     state: Callable[[Path, float], str]
+    again: bool = True
     steps: int = 0
     span_s: tuple[float, float] = (0.0, 0.0)
 
@@ -96,7 +99,7 @@ def outcome(kill: Kill, place: Path) -> str:
     except subprocess.TimeoutExpired:
         _kill(process)
     found = _state(kill.job, place, time.time())
-    again = "" if kill.job.name == "live" else _again(kill.job, place)
+    again = _again(kill.job, place) if kill.job.again else ""
     if found in {"old", "new"} and not again:
         shutil.rmtree(place)
         _told(place).unlink()
@@ -179,8 +182,7 @@ def _measured(job: Job, place: Path) -> Job:
         shutil.rmtree(place)
     steps = int(told.rstrip().rsplit(" ", 1)[1])
     earliest = job.span_s[0]
-    counted = 0 if job.name == "live" else steps
-    return Job(job.name, job.arguments, job.start, job.state, counted, (earliest, max(seconds, earliest)))
+    return replace(job, steps=steps if job.again else 0, span_s=(earliest, max(seconds, earliest)))
 
 
 def _prepared(folder: Path, name: str, arguments: list[str]) -> Path:
@@ -314,4 +316,4 @@ def _live(folder: Path, long: Path) -> Job:
 
     start = folder / "start-live"
     (start / RESULT).mkdir(parents=True)
-    return Job("live", arguments, start, state, span_s=(0.5, 0.0))
+    return Job("live", arguments, start, state, again=False, span_s=(0.5, 0.0))

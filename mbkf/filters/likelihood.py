@@ -35,7 +35,6 @@ class TrialLikelihood:
         loads: (T,) of plates and Newton's law given the markers.
         marker_readings, load_readings: (T,) numbers read; of loads, those the filter made use of.
         followed: (T,) whether the filter told of a frame.
-        first: Frame in which the filter started, T where it never did.
     """
 
     markers: Array
@@ -43,7 +42,11 @@ class TrialLikelihood:
     marker_readings: Array
     load_readings: Array
     followed: BoolArray
-    first: int
+
+    @property
+    def first(self) -> int:
+        """Frame in which the filter started, T where it never did."""
+        return int(np.argmax(self.followed)) if self.followed.any() else len(self.followed)
 
 
 def trial_likelihood(
@@ -65,16 +68,15 @@ def trial_likelihood(
     markers, loads = OUTLIER * 3.0 * seen.sum(axis=1), np.zeros(frames)
     load_readings = np.zeros(frames, dtype=int)
     told = np.zeros(frames, dtype=bool)
-    first = frames
     for t, estimate, _ in followed(filter, recording):
-        first, told[t] = min(first, t), True
+        told[t] = True
         if not estimate.started:
             found, load_readings[t] = frame_likelihood(filter, estimate)
             outliers = 3.0 * np.count_nonzero(estimate.refused)
             markers[t], loads[t] = found.readings + OUTLIER * outliers, found.rows
         if progress is not None and (t % 20 == 0 or t == frames - 1):
             progress(t + 1, frames)
-    return TrialLikelihood(markers, loads, 3 * seen.sum(axis=1), load_readings, told, first)
+    return TrialLikelihood(markers, loads, 3 * seen.sum(axis=1), load_readings, told)
 
 
 def frame_likelihood(filter: TrackingFilter, estimate: Posterior) -> tuple[LogLikelihood, int]:

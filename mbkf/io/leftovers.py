@@ -48,7 +48,7 @@ def unfinished(target: Path, within: Path | None = None, *, folder: bool = False
             try:
                 yield path
             finally:
-                remove(path)
+                _remove(path)
             return
 
 
@@ -67,7 +67,7 @@ def sweep(target: Path, within: Path | None = None) -> None:
                 _remove_if_left(path)
 
 
-def remove(path: Path) -> None:
+def _remove(path: Path) -> None:
     """Removes a file or folder, if it is there."""
     if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path, ignore_errors=True)
@@ -78,7 +78,7 @@ def remove(path: Path) -> None:
 def _remove_if_left(path: Path) -> None:
     with suppress(OSError), _lock(path, wait=False) as ours:
         if ours or (ours is None and time.time() - path.stat().st_mtime > OLDEST_S):
-            remove(path)
+            _remove(path)
 
 
 @contextmanager

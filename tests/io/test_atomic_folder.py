@@ -96,16 +96,15 @@ def test_whoever_reads_meanwhile_sees_one_run(tmp_path):
 
     def look():
         while not done.is_set():
-            opened = os.open(target, os.O_RDONLY)
+            files = [os.open(target, os.O_RDONLY)]
             try:
-                files = [os.open(name, os.O_RDONLY, dir_fd=opened) for name in NAMES]
-                seen.append({os.read(file, 10) for file in files})
-                for file in files:
-                    os.close(file)
+                files += [os.open(name, os.O_RDONLY, dir_fd=files[0]) for name in NAMES]
+                seen.append({os.read(file, 10) for file in files[1:]})
             except FileNotFoundError:
                 pass  # that one was replaced meanwhile, and is removed
             finally:
-                os.close(opened)
+                for file in files:
+                    os.close(file)
 
     reader = threading.Thread(target=look)
     reader.start()
