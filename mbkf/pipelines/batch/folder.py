@@ -5,25 +5,24 @@
 
 Standing trials are known by their names; where none is, by standing still. Ground reactions lie beside their trial,
 under its name with ``grf`` or ``forces``. ``session.toml`` in a session's folder, or above it, states mass, height and
-protocol.
+protocol; in the session's own folder also which trials stand still and which are left out (:mod:`mbkf.io.session`).
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
 from mbkf.io.capture import CAPTURES, FORCES
-from mbkf.io.plain_data import read_toml
+from mbkf.io.session import HEIGHT_M, MASS_KG, SESSION_FILE, SessionNotes, TrialKind, read_session
 from mbkf.pipelines.batch.plan import MOST_LOOKED_AT, MOST_MOVING, Files, Person, Plan, Trial, planned
 
 CAPTURE_SUFFIXES = (".c3d", ".trc")
 """Captures of a folder, the more telling first; other formats are named in a list."""
 
-SESSION_FILE = "session.toml"
 SUBJECT_FILE = "subject.toml"
 """A person scaled before, in the session's folder."""
 
@@ -35,15 +34,6 @@ STATIC = re.compile(
 
 STATED = ("mass_kg", "height_m", "protocol")
 """What a session file states of the person."""
-
-
-@dataclass(frozen=True)
-class _Stated:
-    """What session files state."""
-
-    mass_kg: float | None = None
-    height_m: float | None = None
-    protocol: str | None = None
 
 
 def plan_of_folder(folder: Path) -> Plan:
@@ -60,8 +50,16 @@ def plan_of_folder(folder: Path) -> Plan:
     return planned(trials, str(folder))
 
 
-def is_static(path: Path) -> bool:
-    """Whether a capture's name is that of a standing trial."""
+def is_static(path: Path, notes: SessionNotes | None = None) -> bool:
+    """Whether a capture is a standing trial: by what is stated of it, else by its name.
+
+    Args:
+        path: The capture.
+        notes: What is stated of its session.
+    """
+    stated = None if notes is None else notes.trial(path.stem).kind
+    if stated is not None:
+        return stated == TrialKind.STATIC
     return STATIC.search(path.stem.lower()) is not None
 
 
@@ -118,43 +116,45 @@ def _found(root: Path, suffix: str) -> Iterator[Path]:
 def _trials(root: Path, place: Path, captures: Sequence[Path]) -> list[Trial]:
     """The trials of one session."""
     parts = place.relative_to(root).parts
-    stated, files = _stated(root, place), sorted(place.iterdir())
-    statics = tuple(path for path in captures if is_static(path))
-    moving = [Files(path, forces_beside(path, files)) for path in captures if path not in statics]
+    notes, files = _stated(root, place), sorted(place.iterdir())
+    kept = [path for path in captures if not notes.trial(path.stem).excluded]
+    statics = tuple(path for path in kept if is_static(path, notes))
+    moving = [Files(path, forces_beside(path, files)) for path in kept if path not in statics]
     subject = place / SUBJECT_FILE
     person = Person(
         parts[0] if parts else root.name,
         "-".join(parts[1:]),
         statics,
         tuple(moving[: MOST_MOVING if statics else MOST_LOOKED_AT]),
-        stated.mass_kg,
-        stated.height_m,
-        stated.protocol,
+        notes.mass_kg,
+        notes.height_m,
+        notes.protocol,
         subject if subject.is_file() else None,
     )
     return [Trial(person, one.path, one.forces, one.path.stem) for one in moving]
 
 
-def _stated(root: Path, place: Path) -> _Stated:
-    """What session files say, the nearest last.
+def _stated(root: Path, place: Path) -> SessionNotes:
+    """What session files say, the nearest first; of trials only the session's own.
 
     Raises:
-        FileFormatError: One is damaged, or says something else.
+        FileFormatError: One is damaged, or says something impossible.
     """
-    found: dict[str, float | str] = {}
+    found = SessionNotes()
     for folder in reversed([place, *(p for p in place.parents if p == root or root in p.parents)]):
         file = folder / SESSION_FILE
         if file.is_file():
-            found |= _read(file)
-    return _Stated(**found)  # type: ignore[arg-type]
-
-
-def _read(file: Path) -> Mapping[str, float | str]:
-    try:
-        stated = read_toml(file)
-    except (OSError, ValueError) as error:
-        raise FileFormatError(file, f"is no session file ({error})") from error
-    return {key: checked_entry(key, stated[key], file) for key in STATED if key in stated}
+            nearer = read_session(file)
+            found = replace(
+                nearer,
+                mass_kg=found.mass_kg if nearer.mass_kg is None else nearer.mass_kg,
+                height_m=found.height_m if nearer.height_m is None else nearer.height_m,
+                protocol=nearer.protocol or found.protocol,
+                trials=nearer.trials if folder == place else {},
+            )
+        elif folder == place:
+            found = replace(found, trials={})
+    return found
 
 
 def checked_entry(key: str, value: object, file: Path, line: int | None = None) -> float | str:
@@ -173,7 +173,7 @@ def checked_entry(key: str, value: object, file: Path, line: int | None = None) 
         if isinstance(value, str) and value:
             return value
         raise FileFormatError(file, "protocol must be a name or a file", line)
-    low, high = {"mass_kg": (0.5, 500.0), "height_m": (0.3, 2.8)}[key]
+    low, high = {"mass_kg": MASS_KG, "height_m": HEIGHT_M}[key]
     if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
         raise FileFormatError(file, f"{key} must be a number between {low:g} and {high:g}, got {value}", line)
     return float(value)

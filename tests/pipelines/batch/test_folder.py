@@ -90,6 +90,20 @@ def test_session_files_state_what_holds_below_them_the_nearest_first(tmp_path):
     assert (tuesday.mass_kg, tuesday.height_m) == (71.5, 1.8)
 
 
+def test_trials_are_left_out_and_told_apart_by_the_session_file(tmp_path):
+    made(tmp_path, "P1/static.c3d", "P1/walk1.c3d", "P1/walk2.c3d", "P1/deep/walk1.c3d")
+    (tmp_path / "P1" / "session.toml").write_text(
+        'mass_kg = 70\n[trial.static]\nkind = "walk"\n[trial.walk1]\nkind = "static"\n'
+        '[trial.walk2]\nexcluded = "stumbled"\n',
+        encoding="utf-8",
+    )
+    plan = plan_of_folder(tmp_path)
+    assert told(plan) == [("P1", "", "static.c3d"), ("P1", "deep", "walk1.c3d")]
+    person, deep = plan.persons
+    assert [path.name for path in person.statics] == ["walk1.c3d"]
+    assert (deep.mass_kg, deep.statics) == (70.0, ())
+
+
 @pytest.mark.parametrize(
     "text",
     [

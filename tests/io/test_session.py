@@ -1,0 +1,102 @@
+"""Session files: what is written comes back, and what is not possible is refused."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mbkf.errors import FileFormatError
+from mbkf.io.session import (
+    SESSION_FILE,
+    SEXES,
+    SIDES,
+    EventKind,
+    FootEvent,
+    SessionNotes,
+    TrialKind,
+    TrialNotes,
+    read_session,
+    write_session,
+)
+
+TEXTS = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=12)
+EVENTS = st.builds(
+    FootEvent,
+    st.sampled_from(SIDES),
+    st.sampled_from(EventKind),
+    st.floats(allow_nan=False, allow_infinity=False),
+)
+TRIALS = st.builds(
+    TrialNotes,
+    st.none() | st.sampled_from(TrialKind),
+    TEXTS,
+    st.none() | st.lists(EVENTS, max_size=4).map(lambda found: tuple(sorted(found, key=lambda e: e.time_s))),
+).filter(lambda trial: trial != TrialNotes())
+SESSIONS = st.builds(
+    SessionNotes,
+    TEXTS,
+    st.none() | st.floats(0.5, 500.0),
+    st.none() | st.floats(0.3, 2.8),
+    st.none() | st.floats(0.0, 130.0),
+    st.sampled_from(("", *SEXES)),
+    st.none() | TEXTS.filter(bool),
+    st.dictionaries(TEXTS, TRIALS, max_size=3),
+)
+
+
+@given(notes=SESSIONS)
+def test_what_is_written_comes_back(tmp_path_factory, notes):
+    path = tmp_path_factory.mktemp("session") / SESSION_FILE
+    write_session(notes, path)
+    assert read_session(path) == notes
+
+
+def test_the_example_of_the_docs_is_read(tmp_path):
+    path = tmp_path / SESSION_FILE
+    path.write_text(
+        'name = "P01"\nmass_kg = 71.2\nage = 34\n[trial.walk3]\nexcluded = "stumbled"\n'
+        '[[trial.walk4.event]]\nside = "right"\nkind = "off"\ntime_s = 1\n'
+        '[[trial.walk4.event]]\nside = "left"\nkind = "strike"\ntime_s = 0.5\n'
+    )
+    notes = read_session(path)
+    assert (notes.name, notes.mass_kg, notes.age, notes.height_m) == ("P01", 71.2, 34.0, None)
+    assert notes.trial("walk3").excluded == "stumbled" and notes.trial("walk9") == TrialNotes()
+    assert [event.side for event in notes.trial("walk4").events] == ["left", "right"]
+
+
+@pytest.mark.parametrize(
+    ("text", "fragment"),
+    [
+        ("mass_kg = 0.1", "mass_kg must be a number between 0.5 and 500"),
+        ("mass_kg = true", "mass_kg must be"),
+        ("mass_kg = nan", "mass_kg must be"),
+        ("mass_kg = 1" + "0" * 400, "mass_kg must be"),
+        ("height_m = 178", "height_m must be a number between 0.3 and 2.8"),
+        ("age = -1", "age must be"),
+        ('sex = "f"', "sex must be one of female, male, other"),
+        ("sex = [1]", "sex must be one of"),
+        ("name = 3", "name must be a text"),
+        ("trial = 3", "trial must hold tables"),
+        ("trial.a = 3", "trial must hold tables"),
+        ('trial.a.kind = "stroll"', "trial a: kind must be one of static, walk"),
+        ("trial.a.event = 1", "trial a: event must be a list of tables"),
+        ("trial.a.event = [1]", "trial a: event must be a list of tables"),
+        ('trial.a.event = [{side = "right", kind = "off"}]', "an event needs side, kind and time_s"),
+        ('trial.a.event = [{side = "right", kind = "off", time_s = inf}]', "time_s must be a number"),
+        ("name = ", "is no session file"),
+        ("a = " + "[" * 5000, "is no session file"),
+    ],
+)
+def test_what_is_not_possible_is_refused(tmp_path, text, fragment):
+    path = tmp_path / SESSION_FILE
+    path.write_text(text)
+    with pytest.raises(FileFormatError) as told:
+        read_session(path)
+    assert fragment in str(told.value) and len(str(told.value)) < 400
+
+
+def test_a_missing_file_and_bytes_are_refused(tmp_path):
+    with pytest.raises(FileFormatError, match="is no session file"):
+        read_session(tmp_path / SESSION_FILE)
+    (tmp_path / SESSION_FILE).write_bytes(b"\xff\xfe\0")
+    with pytest.raises(FileFormatError, match="is no session file"):
+        read_session(tmp_path / SESSION_FILE)
