@@ -108,13 +108,18 @@ def scale_nominally(capture: Capture, protocol: Protocol, progress: StageCallbac
     )
 
 
-def stands_still(markers: MarkerTrajectories) -> bool:
-    """Whether the person of a capture stands still."""
+def stands_still(markers: MarkerTrajectories, share: float = 0.5) -> bool:
+    """Whether the person of a capture stands still.
+
+    Args:
+        markers: The capture's markers.
+        share: So many of them must stay, 0 to 1.
+    """
     seen = markers.positions_m[:, markers.present.any(axis=0)]
     if not seen.size:
         return False
     away = np.linalg.norm(seen - np.nanmean(seen, axis=0), axis=2)
-    return bool(np.median(np.nanmax(away, axis=0)) < STILL_M)
+    return bool(np.quantile(np.nanmax(away, axis=0), share) < STILL_M)
 
 
 def in_reference(standing: Standing, segment: str, point_m: Array) -> Array:
