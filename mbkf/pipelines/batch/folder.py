@@ -96,13 +96,20 @@ def _is_other(file: Path) -> bool:
     return file.suffix.lower() in {".mot", ".sto"} and not re.search(r"grf|force", file.stem.lower())
 
 
+def captures_in(folder: Path) -> list[Path]:
+    """The captures that lie in a folder itself, one for each name, the more telling format first."""
+    by_stem: dict[str, Path] = {}
+    for suffix in reversed(CAPTURE_SUFFIXES):
+        for path in sorted(folder.iterdir()):
+            if path.suffix.lower() == suffix and path.is_file() and not path.name.startswith("."):
+                by_stem[path.stem.lower()] = path
+    return [by_stem[stem] for stem in sorted(by_stem)]
+
+
 def _sessions(root: Path) -> Iterator[tuple[Path, list[Path]]]:
     """Folders with captures, and these."""
     for place in sorted({path.parent for suffix in CAPTURE_SUFFIXES for path in _found(root, suffix)}):
-        by_stem: dict[str, Path] = {}
-        for suffix in reversed(CAPTURE_SUFFIXES):
-            by_stem.update({path.stem.lower(): path for path in _found(root, suffix) if path.parent == place})
-        yield place, [by_stem[stem] for stem in sorted(by_stem)]
+        yield place, captures_in(place)
 
 
 def _found(root: Path, suffix: str) -> Iterator[Path]:

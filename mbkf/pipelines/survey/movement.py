@@ -33,6 +33,9 @@ LIFTED_M, FLIGHT_S, JUMP_S = 0.04, 0.05, 0.12
 """A foot is off the floor when its lowest marker is so much above its lowest height; shorter flights are noise, longer
 ones that are no run's a jump's."""
 
+STEP_M = 0.015
+"""In gait the lowest marker of either foot rises by this."""
+
 FALLING = 0.5
 """In flight the pelvis falls with this share of gravity at least; on a step it does not."""
 
@@ -42,7 +45,7 @@ PASSING_M = 0.2
 RUN_SHARE = 0.05
 """Share of the frames in flight from which gait is a run."""
 
-RISEN_M, SUNK_M, STAYED_M = 0.08, 0.12, 0.15
+RISEN_M, SUNK_M, STAYED_M = 0.08, 0.08, 0.15
 """By how much a pelvis rises in a jump and sinks in a squat, and how far feet that stay may move."""
 
 
@@ -79,7 +82,7 @@ def kind_of_movement(body: FeetAndPelvis, rate_hz: float) -> TrialKind:
         rate_hz: Frame rate, Hz.
     """
     flights = flights_of(body, rate_hz)
-    if passes(body) >= 2 and (np.nanmax(body.lifts_m, axis=0) > LIFTED_M).all():
+    if passes(body) >= 2 and (np.nanmax(body.lifts_m, axis=0) > STEP_M).all():
         in_flight = sum(len(run) for run in flights)
         return TrialKind.RUN if in_flight > RUN_SHARE * len(body.lifts_m) else TrialKind.WALK
     height = body.pelvis_m[:, 2]
@@ -139,11 +142,18 @@ def feet_and_pelvis(markers: MarkerTrajectories) -> FeetAndPelvis | None:
     middle = positions[:, (share > MIDDLE[0]) & (share < MIDDLE[1])]
     if feet is None or not middle.size:
         return None
-    pelvis = middle[:, _groups(middle)[0]]
+    pelvis = _steadiest([middle[:, group] for group in _groups(middle)], _centre(positions))
     lows = np.stack([_lowest(foot) for foot in feet], axis=1)
     return FeetAndPelvis(
         np.stack([_centre(foot) for foot in feet], axis=1), lows - np.nanmin(lows, axis=0), _centre(pelvis)
     )
+
+
+def _steadiest(groups: list[Array], body: Array) -> Array:
+    """The group that stays nearest to its place in the body: of what moves half-way up the pelvis, and not a hand."""
+    several = [group for group in groups if group.shape[1] > 1] or groups
+    spreads = [np.nanstd(_centre(group) - body, axis=0).sum() for group in several]
+    return several[int(np.argmin(spreads))]
 
 
 def _two_groups(positions: Array) -> list[Array] | None:

@@ -1,0 +1,83 @@
+"""A session's folder looked at: its captures, and what they say of the person together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from mbkf.io.session import SESSION_FILE, SessionNotes, TrialKind, read_session
+from mbkf.pipelines.batch.folder import captures_in, forces_beside, is_static
+from mbkf.pipelines.survey.trial import Problem, SurveyedTrial, survey_trial
+
+MASS_SHARE = 0.05
+"""A stated mass that differs from what the plates bear by more is told."""
+
+Survey = Callable[[Path, Path | None], SurveyedTrial]
+"""Looks at a capture and the ground reactions beside it."""
+
+
+@dataclass(frozen=True)
+class SurveyedSession:
+    """A session, looked at.
+
+    Attributes:
+        folder: Its folder.
+        notes: What is stated of it.
+        trials: Its captures, in the order of their names.
+        standing_kg: Mass by the plates under the person standing; None where they do not tell.
+        problems: What is the matter with the session as a whole.
+    """
+
+    folder: Path
+    notes: SessionNotes
+    trials: tuple[SurveyedTrial, ...]
+    standing_kg: float | None
+    problems: tuple[Problem, ...]
+
+    def kind(self, trial: SurveyedTrial) -> TrialKind:
+        """What a trial is: as stated, else a standing one by its name, else as its markers show."""
+        stated = self.notes.trial(trial.name).kind
+        if stated is not None:
+            return stated
+        return TrialKind.STATIC if is_static(trial.path) else trial.kind
+
+
+def survey_session(folder: Path, survey: Survey = survey_trial) -> SurveyedSession:
+    """Looks at the captures of a folder, those of folders in it left out.
+
+    Args:
+        folder: The session's folder.
+        survey: Looks at a capture; a page that shows a session again and again remembers what it saw.
+
+    Raises:
+        FileFormatError: The session file is damaged.
+        OSError: The folder cannot be read.
+    """
+    file = folder / SESSION_FILE
+    notes = read_session(file) if file.is_file() else SessionNotes()
+    captures, files = captures_in(folder), sorted(folder.iterdir())
+    trials = tuple(survey(path, forces_beside(path, files)) for path in captures)
+    masses = [trial.standing_kg for trial in trials if trial.standing_kg is not None]
+    standing = sorted(masses)[len(masses) // 2] if masses else None
+    session = SurveyedSession(folder, notes, trials, standing, ())
+    return SurveyedSession(folder, notes, trials, standing, _problems(session))
+
+
+def _problems(session: SurveyedSession) -> tuple[Problem, ...]:
+    """What is the matter with the session as a whole."""
+    found = []
+    stated, standing = session.notes.mass_kg, session.standing_kg
+    if stated is None:
+        stated = next((one.stated_kg for one in session.trials if one.stated_kg is not None), None)
+    if stated is not None and standing is not None and abs(stated / standing - 1.0) > MASS_SHARE:
+        told = f"the mass is stated as {stated:.1f} kg, the plates bear {standing:.1f} kg"
+        found.append(Problem(told, "take what the plates bear, or check the plates"))
+    kept = [one for one in session.trials if one.usable and not session.notes.trial(one.name).excluded]
+    if not kept:
+        found.append(Problem("no trial can be used", "add captures with markers", grave=True))
+    elif not any(session.kind(one) == TrialKind.STATIC for one in kept):
+        found.append(
+            Problem("no standing trial", "the body is scaled from the moving ones, and less certain")
+        )
+    return tuple(found)
