@@ -27,6 +27,7 @@ LAYERS = (
     {"pipelines"},
     {"stream"},
     {"viz"},
+    {"app"},
     {"cli"},
 )
 """Rooms from left to right: a file imports from its own room and from rooms further left, nothing else."""

@@ -133,7 +133,20 @@ def read_session(path: str | Path) -> SessionNotes:
         table = read_toml(file)
     except (OSError, ValueError) as error:
         raise FileFormatError(file, f"is no session file ({error})") from error
-    read = _Entries(file, table, "")
+    return session_of(table, file)
+
+
+def session_of(table: Mapping[str, object], file: str | Path = SESSION_FILE) -> SessionNotes:
+    """What plain data state of a session.
+
+    Args:
+        table: The entries of a session file.
+        file: Where they are from, for messages.
+
+    Raises:
+        FileFormatError: An entry is not possible.
+    """
+    read = _Entries(Path(file), table, "")
     trials = read.tables("trial")
     return SessionNotes(
         name=read.text("name") or "",
@@ -144,6 +157,19 @@ def read_session(path: str | Path) -> SessionNotes:
         protocol=read.text("protocol"),
         trials={name: _trial(entries) for name, entries in trials.items()},
     )
+
+
+def plain_session(notes: SessionNotes) -> dict[str, object]:
+    """What is stated of a session as plain data, as :func:`session_of` takes it; what says nothing is left out."""
+    person = {
+        "name": notes.name, "sex": notes.sex, "protocol": notes.protocol, "mass_kg": notes.mass_kg,
+        "height_m": notes.height_m, "age": notes.age,
+    }  # fmt: skip
+    trials = {name: _plain_trial(trial) for name, trial in notes.trials.items() if trial != TrialNotes()}
+    found: dict[str, object] = {key: value for key, value in person.items() if value not in (None, "")}
+    if trials:
+        found["trial"] = trials
+    return found
 
 
 def write_session(notes: SessionNotes, path: str | Path) -> None:
@@ -168,6 +194,19 @@ def write_session(notes: SessionNotes, path: str | Path) -> None:
             lines += _trial_lines(f"trial.{toml_text(name)}", trial)
     with replacing(path) as partial:
         partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _plain_trial(trial: TrialNotes) -> dict[str, object]:
+    found: dict[str, object] = {}
+    if trial.kind is not None:
+        found["kind"] = trial.kind.value
+    if trial.excluded:
+        found["excluded"] = trial.excluded
+    if trial.events is not None:
+        found["event"] = [
+            {"side": event.side, "kind": event.kind.value, "time_s": event.time_s} for event in trial.events
+        ]
+    return found
 
 
 def _trial(read: _Entries) -> TrialNotes:

@@ -1,5 +1,7 @@
 """Session files: what is written comes back, and what is not possible is refused."""
 
+import json
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -14,7 +16,9 @@ from mbkf.io.session import (
     SessionNotes,
     TrialKind,
     TrialNotes,
+    plain_session,
     read_session,
+    session_of,
     write_session,
 )
 
@@ -48,6 +52,7 @@ def test_what_is_written_comes_back(tmp_path_factory, notes):
     path = tmp_path_factory.mktemp("session") / SESSION_FILE
     write_session(notes, path)
     assert read_session(path) == notes
+    assert session_of(json.loads(json.dumps(plain_session(notes)))) == notes
 
 
 def test_the_example_of_the_docs_is_read(tmp_path):

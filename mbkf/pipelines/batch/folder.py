@@ -17,6 +17,7 @@ from pathlib import Path
 
 from mbkf.errors import FileFormatError
 from mbkf.io.capture import CAPTURES, FORCES
+from mbkf.io.results_folder import MOTION_FILE
 from mbkf.io.session import HEIGHT_M, MASS_KG, SESSION_FILE, SessionNotes, TrialKind, read_session
 from mbkf.pipelines.batch.plan import MOST_LOOKED_AT, MOST_MOVING, Files, Person, Plan, Trial, planned
 
@@ -106,17 +107,25 @@ def captures_in(folder: Path) -> list[Path]:
     return [by_stem[stem] for stem in sorted(by_stem)]
 
 
+def session_folders(root: Path) -> list[Path]:
+    """The folders with captures in a folder, itself included."""
+    found = {path.parent for suffix in CAPTURE_SUFFIXES for path in _found(root, suffix)}
+    return sorted(found)
+
+
 def _sessions(root: Path) -> Iterator[tuple[Path, list[Path]]]:
     """Folders with captures, and these."""
-    for place in sorted({path.parent for suffix in CAPTURE_SUFFIXES for path in _found(root, suffix)}):
+    for place in session_folders(root):
         yield place, captures_in(place)
 
 
 def _found(root: Path, suffix: str) -> Iterator[Path]:
-    """Files with a suffix, hidden ones left out."""
+    """Files with a suffix; hidden ones, and those among results, left out."""
     for path in sorted(root.rglob("*")):
         hidden = any(part.startswith(".") for part in path.relative_to(root).parts)
-        if path.suffix.lower() == suffix and path.is_file() and not hidden:
+        if path.suffix.lower() != suffix or hidden or not path.is_file():
+            continue
+        if not (path.parent / MOTION_FILE).is_file():
             yield path
 
 

@@ -1,0 +1,45 @@
+"""The pages that the server gives out, each self-contained."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from mbkf.io.results_folder import read_reconstruction, read_summary
+from mbkf.viz.page import asset
+from mbkf.viz.report.document import report_page
+from mbkf.viz.scene.playback import playback_page
+
+SCRIPTS = ("element.js", "app_words.js", "app_session.js", "app.js")
+"""The page's own scripts, in the order they are needed."""
+
+
+def start_page() -> str:
+    """The page of the sessions."""
+    text = asset("app.html")
+    parts = {"style": asset("app.css"), "scripts": "\n".join(asset(name) for name in SCRIPTS)}
+    for name, part in parts.items():
+        text = text.replace("{{" + name + "}}", part, 1)
+    return text
+
+
+def look(folder: Path) -> str:
+    """The 3-D playback of a trial's result.
+
+    Raises:
+        FileFormatError: The result is damaged.
+    """
+    return playback_page(read_reconstruction(folder))
+
+
+def report(folder: Path) -> str:
+    """The report on a trial's result.
+
+    Raises:
+        FileFormatError: The result is damaged.
+    """
+    return report_page(read_reconstruction(folder), read_summary(folder))
+
+
+LOOKS: Mapping[str, Callable[[Path], str]] = {"look": look, "report": report}
+"""Pages about a trial, by the last part of their path."""

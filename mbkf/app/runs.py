@@ -1,0 +1,221 @@
+"""Runs of sessions, one after the other in a thread: what is done, what failed and why, and how long it will take.
+
+What became of each trial stands in a file beside the results, so that a page, or a server that was killed, takes up
+where the last one stopped: trials that are done from the same files are not done again.
+"""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, dataclass, field
+from os import cpu_count
+from pathlib import Path
+
+from mbkf.app.workspace import Workspace
+from mbkf.errors import MbkfError
+from mbkf.io.atomic import replacing
+from mbkf.pipelines.batch.outcome import Outcome, ReconstructTrial, Status, Task
+from mbkf.pipelines.batch.plan import Plan
+from mbkf.pipelines.batch.run import outcomes_of
+from mbkf.pipelines.batch.workers import Executor, LocalWorkers
+from mbkf.pipelines.reconstruct_settings import ReconstructSettings
+
+RUNS_FILE = "runs.json"
+"""File in the folder of the results with the state of each session's run."""
+
+WAITING, RUNNING, FINISHED, CANCELLED, FAILED = "waiting", "running", "finished", "cancelled", "failed"
+
+
+@dataclass
+class RunState:
+    """How far the run of a session is.
+
+    Attributes:
+        state: "waiting", "running", "finished", "cancelled" or "failed".
+        stage: What is being done.
+        done, total: Trials.
+        seconds: How long it has run.
+        reason: Why it failed as a whole; empty where it did not.
+        trials: What became of trials, by name: "done", "unchanged" or "failed", and why.
+    """
+
+    state: str = WAITING
+    stage: str = ""
+    done: int = 0
+    total: int = 0
+    seconds: float = 0.0
+    reason: str = ""
+    trials: dict[str, tuple[str, str]] = field(default_factory=dict)
+
+    @property
+    def remaining_s(self) -> float | None:
+        """How long it will take; None before the first trial is done."""
+        if self.state != RUNNING or not self.done:
+            return None
+        return self.seconds / self.done * (self.total - self.done)
+
+
+class Runs:
+    """Runs sessions; one at a time, the others wait."""
+
+    def __init__(self, workspace: Workspace, workers: int | None = None) -> None:
+        """Takes up what was not finished.
+
+        Args:
+            workspace: The sessions.
+            workers: Processes; by default as many as this computer has processors.
+        """
+        self._workspace, self._workers = workspace, workers or cpu_count() or 1
+        self._states = _read(workspace.out / RUNS_FILE)
+        self._changed = threading.Condition()
+        self._cancelled: set[str] = set()
+        self._closing = False
+        for state in self._states.values():
+            if state.state == RUNNING:
+                state.state = WAITING
+        self._thread = threading.Thread(target=self._run, name="mbkf-runs", daemon=True)
+        self._thread.start()
+
+    def start(self, session: str) -> None:
+        """Puts a session into the queue; one that waits or runs stays where it is."""
+        with self._changed:
+            known = self._states.get(session)
+            if known is None or known.state not in {WAITING, RUNNING}:
+                self._states[session] = RunState(trials={} if known is None else known.trials)
+            self._cancelled.discard(session)
+            self._write()
+            self._changed.notify_all()
+
+    def cancel(self, session: str) -> None:
+        """Ends the run of a session after the trials that are being done."""
+        with self._changed:
+            state = self._states.get(session)
+            if state is not None and state.state in {WAITING, RUNNING}:
+                self._cancelled.add(session)
+                if state.state == WAITING:
+                    state.state = CANCELLED
+                self._write()
+
+    def state(self, session: str) -> RunState | None:
+        """How far a session is; None for one that never ran."""
+        with self._changed:
+            return self._states.get(session)
+
+    def close(self) -> None:
+        """Ends the thread after the trials that are being done; the next one takes up the rest."""
+        with self._changed:
+            self._closing = True
+            self._changed.notify_all()
+        self._thread.join(timeout=60.0)
+
+    def _run(self) -> None:
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._closing or self._next() is not None)
+                session = self._next()
+                if self._closing or session is None:
+                    return
+                state = self._states[session]
+                state.state, state.done, state.reason = RUNNING, 0, ""
+                self._write()
+            self._run_one(session, state)
+
+    def _next(self) -> str | None:
+        return next((name for name, state in self._states.items() if state.state == WAITING), None)
+
+    def _run_one(self, session: str, state: RunState) -> None:
+        begin = time.monotonic()
+        try:
+            plan = self._workspace.plan(session)
+            state.total = len(plan.trials)
+            workers = LocalWorkers(min(self._workers, state.total))
+            watched = _Watched(workers, lambda task, found: self._told(session, begin, task, found))
+            try:
+                found = outcomes_of(plan, self._workspace.out, ReconstructSettings(), watched)
+            finally:
+                workers.close()
+            self._finish(session, FINISHED, plan, found)
+        except _Stopped:
+            ended = CANCELLED if session in self._cancelled else RUNNING  # closed: the next server goes on
+            self._finish(session, ended)
+        except (MbkfError, OSError) as error:
+            state.reason = " ".join(str(error).split())
+            self._finish(session, FAILED)
+
+    def _told(self, session: str, begin: float, task: Task, found: Outcome) -> None:
+        """Notes what became of a task.
+
+        Raises:
+            _Stopped: The run was cancelled, or the page's server ends.
+        """
+        with self._changed:
+            state = self._states[session]
+            state.seconds = time.monotonic() - begin
+            if isinstance(task, ReconstructTrial):
+                state.stage, state.done = "trials", state.done + 1
+                state.trials[task.trial.name] = (found.status.value, found.reason)
+            else:
+                state.stage = "scaled"
+            self._write()
+            if self._closing or session in self._cancelled:
+                raise _Stopped
+
+    def _finish(
+        self, session: str, ended: str, plan: Plan | None = None, found: Iterable[Outcome] = ()
+    ) -> None:
+        with self._changed:
+            state = self._states[session]
+            state.state = ended
+            for trial, outcome in zip(() if plan is None else plan.trials, found, strict=True):
+                state.trials[trial.name] = (outcome.status.value, outcome.reason)
+            state.done = sum(status != Status.FAILED for status, _ in state.trials.values())
+            self._write()
+
+    def _write(self) -> None:
+        """Writes all states; the caller holds the lock."""
+        plain = {name: asdict(state) for name, state in self._states.items()}
+        with replacing(self._workspace.out / RUNS_FILE) as partial:
+            partial.write_text(json.dumps(plain, indent=1), encoding="utf-8")
+
+
+class _Stopped(Exception):
+    """A run was to end."""
+
+
+class _Watched:
+    """An executor that tells of each task's outcome as it comes."""
+
+    def __init__(self, executor: Executor, told) -> None:  # type: ignore[no-untyped-def]
+        self._executor, self._tell = executor, told
+
+    def run(self, tasks: Iterable[Task]) -> Iterator[tuple[int, Outcome]]:
+        """Outcomes as they come."""
+        given: list[Task] = []
+
+        def noted() -> Iterator[Task]:
+            for task in tasks:
+                given.append(task)
+                yield task
+
+        for number, outcome in self._executor.run(noted()):
+            self._tell(given[number], outcome)
+            yield number, outcome
+
+    def close(self) -> None:
+        """Lets go of the workers."""
+        self._executor.close()
+
+
+def _read(file: Path) -> dict[str, RunState]:
+    """The states that a file holds; none where it is missing or damaged."""
+    try:
+        plain = json.loads(file.read_text(encoding="utf-8"))
+        found = {str(name): RunState(**one) for name, one in plain.items()}
+        for state in found.values():
+            state.trials = {str(k): (str(a), str(b)) for k, (a, b) in state.trials.items()}
+        return found
+    except (OSError, ValueError, TypeError, AttributeError):
+        return {}

@@ -1,0 +1,150 @@
+"""The folder that a page works in: its sessions, what they hold, and where their results lie.
+
+A folder with captures is a session. A session goes by its path in the folder, "." for the folder itself. Results lie in
+``results`` beside the sessions, as ``mbkf batch`` puts them there.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import BinaryIO
+
+from mbkf.errors import InvalidInput
+from mbkf.io.atomic import replacing
+from mbkf.io.session import SESSION_FILE, SessionNotes, write_session
+from mbkf.pipelines.batch.folder import plan_of_folder, session_folders
+from mbkf.pipelines.batch.plan import FORBIDDEN, Plan
+from mbkf.pipelines.survey.session import SurveyedSession, survey_session
+from mbkf.pipelines.survey.trial import SurveyedTrial, survey_trial
+
+RESULTS = "results"
+"""Folder of the results in the page's folder."""
+
+MOST_DEEP = 4
+"""Folders in folders that may be made for what is dropped on the page."""
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """A capture as it was when it was looked at: sizes and times of its files."""
+
+    stamp: tuple[tuple[int, int], ...]
+    trial: SurveyedTrial
+
+
+class Workspace:
+    """Sessions of a folder; what was looked at once is remembered until the files change.
+
+    Attributes:
+        root: The folder.
+        out: Where results are put.
+    """
+
+    def __init__(self, root: Path) -> None:
+        """Args: the folder; made where missing."""
+        self.root = root.absolute()
+        self.root.mkdir(parents=True, exist_ok=True)
+        self.out = self.root / RESULTS
+        self._seen: dict[Path, _Seen] = {}
+        self._looking = threading.Lock()
+
+    def sessions(self) -> tuple[str, ...]:
+        """The names of its sessions."""
+        return tuple(folder.relative_to(self.root).as_posix() for folder in session_folders(self.root))
+
+    def folder(self, session: str) -> Path:
+        """The folder of a session.
+
+        Raises:
+            InvalidInput: There is no such session.
+        """
+        if session not in self.sessions():
+            raise InvalidInput(f"there is no session '{session}'")
+        return self.root / session
+
+    def look(self, session: str) -> SurveyedSession:
+        """A session, looked at.
+
+        Raises:
+            InvalidInput: There is no such session.
+            FileFormatError: Its session file is damaged.
+        """
+        folder = self.folder(session)
+        with self._looking:
+            return survey_session(folder, self._surveyed)
+
+    def plan(self, session: str) -> Plan:
+        """What is to be done for a session, as ``mbkf batch`` would do it.
+
+        Raises:
+            InvalidInput: There is no such session, or no trial to be done.
+        """
+        folder = self.folder(session)
+        trials = tuple(one for one in plan_of_folder(self.root).trials if one.path.parent == folder)
+        if not trials:
+            raise InvalidInput("there is no moving trial to be done")
+        return Plan(trials)
+
+    def note(self, session: str, notes: SessionNotes) -> None:
+        """Writes what is stated of a session.
+
+        Raises:
+            InvalidInput: There is no such session.
+            OSError: It cannot be written.
+        """
+        write_session(notes, self.folder(session) / SESSION_FILE)
+
+    @contextmanager
+    def putting(self, name: str) -> Iterator[BinaryIO]:
+        """Takes a file that is dropped on the page; it is there when the block ends without an error.
+
+        Args:
+            name: Its path in the folder, with slashes; missing folders are made.
+
+        Yields:
+            Where to write what it holds.
+
+        Raises:
+            InvalidInput: The path leads out of the folder, or cannot be one.
+            OSError: It cannot be written.
+        """
+        parts = PurePosixPath(name).parts
+        if not 1 <= len(parts) <= MOST_DEEP + 1 or any(_is_bad(part) for part in parts):
+            raise InvalidInput(f"'{name[:80]}' cannot be a file here")
+        target = self.root.joinpath(*parts)
+        if not target.parent.resolve().is_relative_to(self.root.resolve()):
+            raise InvalidInput(f"'{name[:80]}' leads out of the folder")
+        with replacing(target) as partial, partial.open("wb") as file:
+            yield file
+
+    def result(self, session: str, trial: str) -> Path:
+        """The folder of a trial's results.
+
+        Raises:
+            InvalidInput: There are none.
+        """
+        for one in self.plan(session).trials:
+            place = self.out / one.place
+            if one.name == trial and (place / "summary.json").is_file():
+                return place
+        raise InvalidInput(f"there is no result of '{trial}' yet")
+
+    def _surveyed(self, path: Path, forces: Path | None) -> SurveyedTrial:
+        stamp = tuple((s.st_size, s.st_mtime_ns) for s in (file.stat() for file in (path, forces) if file))
+        seen = self._seen.get(path)
+        if seen is None or seen.stamp != stamp:
+            seen = self._seen[path] = _Seen(stamp, survey_trial(path, forces))
+        return seen.trial
+
+
+def _is_bad(part: str) -> bool:
+    return (
+        part in {".", "..", ""}
+        or part.startswith(".")
+        or FORBIDDEN.search(part) is not None
+        or len(part) > 200
+    )

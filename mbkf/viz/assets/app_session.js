@@ -1,0 +1,99 @@
+// One session on the page: the person, the trials, the run.
+"use strict";
+
+const KIND_WORDS = { static: "static", walk: "walk", run: "run_kind", squat: "squat", jump: "jump", unknown: "unknown" };
+
+function sessionView(data, act) {
+  return [element("h2", {}, data.id === "." ? data.notes.name || "·" : data.id), person(data, act), problemsOf(data), run(data, act), trials(data, act)];
+}
+
+function field(label, input) {
+  return element("label", {}, label, input);
+}
+
+function person(data, act) {
+  const notes = data.notes;
+  const form = element("form", { className: "person", noValidate: true });
+  const number = (name, step) => element("input", { name, type: "number", step, value: notes[name] ?? "" });
+  const sex = element("select", { name: "sex" }, ...["", "female", "male", "other"].map((one) =>
+    element("option", { value: one, selected: (notes.sex || "") === one }, word(one || "unknown_sex"))));
+  form.append(
+    field(word("name"), element("input", { name: "name", type: "text", value: notes.name || "" })),
+    field(word("mass"), number("mass_kg", "0.1")), field(word("height"), number("height_m", "0.01")),
+    field(word("sex"), sex), field(word("age"), number("age", "1")));
+  if (data.standing_kg) {
+    const kg = data.standing_kg.toFixed(1);
+    const take = element("button", { type: "button", onclick: () => act.person({ mass_kg: Number(kg) }) }, word("take"));
+    form.append(element("span", { className: "offer" }, word("bear", kg) + " ", take));
+  }
+  form.onchange = (event) => {
+    const { name, value, type } = event.target;
+    act.person({ [name]: value === "" ? undefined : type === "number" ? Number(value) : value });
+  };
+  form.onsubmit = (event) => event.preventDefault();
+  return element("section", {}, element("h3", {}, word("person")), form);
+}
+
+function problemList(problems) {
+  return element("ul", { className: "problems" }, ...problems.map((one) =>
+    element("li", { className: one.grave ? "grave" : "" }, element("b", {}, one.what), ": " + one.todo)));
+}
+
+function problemsOf(data) {
+  return data.problems.length ? element("section", {}, problemList(data.problems)) : "";
+}
+
+function run(data, act) {
+  const state = data.run, busy = state && (state.state === "running" || state.state === "waiting");
+  const row = element("div", { className: "run" });
+  row.append(element("button", { className: "main", type: "button", disabled: Boolean(busy), onclick: () => act.run("start") }, word(state && !busy ? "again" : "run")));
+  if (!state) return element("section", {}, row);
+  if (busy) {
+    const total = Math.max(state.total, 1);
+    const bar = element("progress", { max: total, value: state.done });
+    bar.setAttribute("aria-label", word("trials"));
+    const left = state.remaining_s === null ? "" : " · " + word("remaining", duration(state.remaining_s));
+    const said = state.state === "waiting" ? word("waiting") : state.done || state.stage ? word("of", state.done, state.total) + left : word("scaling");
+    row.append(bar, element("span", {}, said), element("button", { type: "button", onclick: () => act.run("cancel") }, word("cancel")));
+  } else {
+    const said = { finished: () => word("finished", duration(state.seconds)), cancelled: () => word("cancelled"), failed: () => word("failed_run", state.reason) };
+    row.append(element("span", {}, said[state.state]()));
+  }
+  return element("section", {}, row);
+}
+
+function trials(data, act) {
+  const heads = [["trial"], ["kind"], ["length", "number"], ["markers", "number"], ["plates", "number"], ["use"], ["problems"], ["result"]];
+  const head = element("tr", {}, ...heads.map(([name, kind]) => element("th", { className: kind || "", scope: "col" }, word(name))));
+  const body = data.trials.map((one) => trialRow(data, one, act));
+  return element("section", {}, element("h3", {}, word("trials")),
+    element("div", { className: "table" }, element("table", {}, element("thead", {}, head), element("tbody", {}, ...body))));
+}
+
+function trialRow(data, one, act) {
+  const kind = element("select", { onchange: () => act.trial(one.name, { kind: kind.value }) }, ...data.kinds.map((name) =>
+    element("option", { value: name, selected: name === one.kind }, word(KIND_WORDS[name]))));
+  kind.setAttribute("aria-label", `${word("kind")}: ${one.name}`);
+  const use = element("input", { type: "checkbox", checked: !one.excluded, onchange: () => act.trial(one.name, { excluded: use.checked ? undefined : "–" }) });
+  use.setAttribute("aria-label", `${word("use")}: ${one.name}`);
+  const out = element("td", {}, use);
+  if (one.excluded) {
+    const why = element("input", { type: "text", value: one.excluded === "–" ? "" : one.excluded, placeholder: word("why"), onchange: () => act.trial(one.name, { excluded: why.value || "–" }) });
+    why.setAttribute("aria-label", `${word("why")}: ${one.name}`);
+    out.append(" ", why);
+  }
+  const result = element("td", {});
+  if (one.status) result.append(element("span", { className: `status ${one.status}` }, word(one.status)));
+  if (one.status === "failed") result.append(" " + one.reason);
+  if (one.status === "done" || one.status === "unchanged") {
+    const show = (look) => element("button", { type: "button", onclick: () => act.show(look, one.name) }, word(look));
+    result.append(element("div", { className: "buttons" }, show("look"), show("report")));
+  }
+  const seen = one.usable || one.seconds;
+  return element("tr", { className: one.excluded ? "out" : "" },
+    element("td", {}, one.file), element("td", {}, kind),
+    element("td", { className: "number" }, seen ? word("seconds", one.seconds.toFixed(1)) : "–"),
+    element("td", { className: "number" }, seen ? String(one.markers || one.unnamed) : "–"),
+    element("td", { className: "number" }, seen ? String(one.plates) : "–"), out,
+    element("td", {}, one.problems.length ? problemList(one.problems) : ""), result);
+}
