@@ -121,7 +121,10 @@ def application(workspace: Workspace, runs: Runs, token: str, cookie: str) -> St
     async def one_session(request: Request) -> Response:
         name = request.query_params.get("session", "")
         if request.method == "POST":
-            said = await request.json()
+            try:
+                said = await request.json()
+            except (ValueError, RecursionError):
+                return JSONResponse({"trouble": "the page said something that is no JSON"}, status_code=400)
 
             def state() -> object:
                 answers.stated(workspace, name, said)
@@ -153,7 +156,9 @@ def application(workspace: Workspace, runs: Runs, token: str, cookie: str) -> St
     async def shown(request: Request) -> Response:
         """A page about a trial: its playback or its report."""
         session, trial = (request.query_params.get(key, "") for key in ("session", "trial"))
-        make = pages.LOOKS[request.path_params["look"]]
+        make = pages.LOOKS.get(request.path_params["look"])
+        if make is None:
+            return PlainTextResponse("Nothing is here.\n", status_code=404)
         try:
             text = await run_in_threadpool(lambda: make(workspace.result(session, trial)))
         except MbkfError as error:

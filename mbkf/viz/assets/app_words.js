@@ -12,7 +12,7 @@ const WORDS = {
     of: "{0} of {1} trials", scaling: "The body is scaled", waiting: "Waiting for another session", finished: "Done in {0}",
     cancelled: "Cancelled; what is done is kept", failed_run: "It could not be run: {0}", uploaded: "{0} files taken", uploading: "{0} of {1} files",
     static: "standing", walk: "walk", run_kind: "run", squat: "squat", jump: "jump", unknown: "unknown", done: "done", unchanged: "done",
-    failed: "failed", seconds: "{0} s", minutes: "{0} min", good: "Nothing is the matter.", lost: "The page's server does not answer; start mbkf app again.",
+    failed: "failed", seconds: "{0} s", minutes: "{0} min", lost: "The page's server does not answer; start mbkf app again.",
   },
   es: {
     language: "Idioma", drop: "Suelte aquí la carpeta de una sesión o sus archivos", choose_folder: "Elegir carpeta", choose_files: "Elegir archivos",
@@ -24,7 +24,7 @@ const WORDS = {
     of: "{0} de {1} ensayos", scaling: "Se escala el cuerpo", waiting: "En espera de otra sesión", finished: "Listo en {0}",
     cancelled: "Cancelado; lo calculado se conserva", failed_run: "No se pudo calcular: {0}", uploaded: "{0} archivos recibidos", uploading: "{0} de {1} archivos",
     static: "de pie", walk: "marcha", run_kind: "carrera", squat: "sentadilla", jump: "salto", unknown: "desconocido", done: "listo", unchanged: "listo",
-    failed: "fallido", seconds: "{0} s", minutes: "{0} min", good: "No hay nada que señalar.", lost: "El servidor de la página no responde; inicie de nuevo mbkf app.",
+    failed: "fallido", seconds: "{0} s", minutes: "{0} min", lost: "El servidor de la página no responde; inicie de nuevo mbkf app.",
   },
 };
 

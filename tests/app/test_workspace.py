@@ -1,0 +1,86 @@
+"""A folder's sessions are found, looked at once, and nothing can be put outside of it."""
+
+import pytest
+
+from mbkf.app import workspace as module
+from mbkf.app.workspace import RESULTS, Workspace
+from mbkf.errors import InvalidInput
+from mbkf.io.session import SessionNotes, read_session
+from mbkf.pipelines.batch.folder import plan_of_folder
+from mbkf.pipelines.batch.run import batch
+from mbkf.pipelines.reconstruct_settings import ReconstructSettings
+from tests.studies import study
+
+
+@pytest.fixture
+def workspace(tmp_path):
+    study(tmp_path / "lab", persons=2, trials=2)
+    return Workspace(tmp_path / "lab")
+
+
+def test_folders_with_captures_are_sessions(workspace, tmp_path):
+    assert workspace.sessions() == ("P1", "P2")
+    assert Workspace(tmp_path / "lab" / "P1").sessions() == (".",)
+    assert Workspace(tmp_path / "new" / "folder").sessions() == ()
+    for name in ("P3", "", "..", "../lab/P1", "P1/.."):
+        with pytest.raises(InvalidInput, match="no session"):
+            workspace.folder(name)
+
+
+def test_captures_are_looked_at_once_until_they_change(workspace, monkeypatch):
+    looked, original = [], module.survey_trial
+    monkeypatch.setattr(module, "survey_trial", lambda *files: looked.append(files) or original(*files))
+    first = workspace.look("P1")
+    assert [trial.name for trial in first.trials] == ["static", "walk1", "walk2"]
+    assert workspace.look("P1") == first and len(looked) == 3
+    file = workspace.root / "P1" / "walk1.c3d"
+    file.write_bytes(file.read_bytes()[:5000])
+    assert not workspace.look("P1").trials[1].usable and len(looked) == 4
+
+
+def test_what_is_stated_is_written_and_read_back(workspace):
+    notes = SessionNotes(name="somebody", mass_kg=70.0)
+    workspace.note("P1", notes)
+    assert workspace.look("P1").notes == notes == read_session(workspace.root / "P1" / "session.toml")
+
+
+def test_its_plan_is_that_of_a_batch_and_results_are_no_captures(workspace):
+    plan = workspace.plan("P2")
+    assert [trial.place.as_posix() for trial in plan.trials] == ["P2/walk1", "P2/walk2"]
+    assert set(plan.trials) < set(plan_of_folder(workspace.root).trials)
+    with pytest.raises(InvalidInput, match="no result of 'walk1' yet"):
+        workspace.result("P2", "walk1")
+    settings = ReconstructSettings(filter="kinematic", smooth=False)
+    batch(workspace.root, workspace.root / RESULTS, workers=1, settings=settings)
+    assert workspace.result("P2", "walk1") == workspace.root / RESULTS / "P2" / "walk1"
+    assert workspace.sessions() == ("P1", "P2")
+    with pytest.raises(InvalidInput, match="no result of 'other' yet"):
+        workspace.result("P2", "other")
+
+
+def test_a_session_of_standing_trials_only_has_no_plan(workspace):
+    for name in ("walk1", "walk2"):
+        (workspace.root / "P1" / f"{name}.c3d").unlink()
+    with pytest.raises(InvalidInput, match="no moving trial"):
+        workspace.plan("P1")
+
+
+def test_files_are_put_into_the_folder_only(workspace, tmp_path):
+    with workspace.putting("P3/monday/walk.c3d") as file:
+        file.write((workspace.root / "P1" / "walk1.c3d").read_bytes())
+    assert "P3/monday" in workspace.sessions()
+    (workspace.root / "out").symlink_to(tmp_path)
+    for name in (
+        "", "/etc/passwd", "../x.c3d", "a/../../x", "a/./../x", ".hidden", "a/.b/c", "a\\b", "C:x", "x\0y", "n" * 300,
+        "a/b/c/d/e/f.c3d", "out/x.c3d", "~/x\n",
+    ):  # fmt: skip
+        with pytest.raises(InvalidInput), workspace.putting(name) as file:
+            file.write(b"x")
+    assert not (tmp_path / "x.c3d").exists()
+
+
+def test_what_breaks_off_is_not_there(workspace):
+    with pytest.raises(ConnectionError), workspace.putting("P3/walk.c3d") as file:
+        file.write(b"half")
+        raise ConnectionError
+    assert list((workspace.root / "P3").iterdir()) == []
