@@ -8,12 +8,12 @@ from mbkf.conventions import Array
 from mbkf.io.contacts import Source, bearing
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
+from mbkf.model.segment_poses import segment_poses
 from mbkf.pipelines.results.supports import Supports, pressed_points
 from mbkf.sensors.contact.plates import pressure_and_free_moment
 from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.viz.scene.channels import Layout, marker_states
-from mbkf.viz.scene.description import segment_poses
 
 MOST_UNLABELLED = 60
 """Points without a name that are drawn at most."""

@@ -10,12 +10,13 @@ from mbkf.conventions import Array
 from mbkf.io.atomic import replacing
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import Protocol
+from mbkf.model.segment_poses import segment_poses
 from mbkf.pipelines.protocol.editing import SURE
 from mbkf.pipelines.protocol.standing import Standing, faced_forward, in_world, neutral_on_floor
 from mbkf.viz.page import asset, embedded, viewer_script
 from mbkf.viz.protocol.colours import segment_colours
 from mbkf.viz.scene.channels import Layout
-from mbkf.viz.scene.description import scene_description, segment_poses
+from mbkf.viz.scene.description import scene_description
 
 SCRIPTS = ("element.js", "colours.js", "scene.js", "marker_labels.js", "marker_set.js")
 EDIT_SCRIPTS = (*SCRIPTS, "marker_edit.js")

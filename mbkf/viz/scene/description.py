@@ -1,14 +1,13 @@
-"""The scene's static description (person, markers, plates), and the poses of a frame's segments."""
+"""The scene's static description: person, markers, plates."""
 
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.model.body import Body
-from mbkf.viz.scene.body_shapes import as_plain as plain_shapes
-from mbkf.viz.scene.body_shapes import segment_shapes
+from mbkf.model.body_shapes import as_plain as plain_shapes
+from mbkf.model.body_shapes import segment_shapes
 from mbkf.viz.scene.channels import STATUS, Layout, quantities
 from mbkf.viz.scene.channels import as_plain as plain_quantities
 from mbkf.viz.wording import part_wording
@@ -49,24 +48,3 @@ def scene_description(
             quantities(layout, coordinate_names, model.description.clinical_joints, streamed)
         ),
     }
-
-
-def segment_poses(model: Body, q: Array) -> Array:
-    """(T, S, 7) world position m and quaternion (x, y, z, w) of every segment; NaN where q (T, nq) is NaN.
-
-    Successive quaternions of a segment lie in one hemisphere, so that they can be interpolated and pack well.
-    """
-    ids = [joint.joint_id for joint in model.joints.values()]
-    poses = np.full((len(q), len(ids), 7), np.nan)
-    known = np.flatnonzero(~np.isnan(q).any(axis=1))
-    if not len(known):
-        return poses
-    rotations = np.empty((len(known), len(ids), 3, 3))
-    for row, t in enumerate(known):
-        R, origins = model.placements(q[t])
-        rotations[row], poses[t, :, :3] = R[ids], origins[ids]
-    quaternions = Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_quat().reshape(len(known), len(ids), 4)
-    turned = (quaternions[1:] * quaternions[:-1]).sum(axis=2) < 0
-    quaternions[1:][np.cumsum(turned, axis=0) % 2 == 1] *= -1.0
-    poses[known, :, 3:] = quaternions
-    return poses

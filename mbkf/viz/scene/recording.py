@@ -12,8 +12,9 @@ from mbkf.errors import InvalidInput
 from mbkf.io.contacts import bearing
 from mbkf.io.results import Reconstruction
 from mbkf.model.human import HumanModel
+from mbkf.model.segment_poses import segment_poses
 from mbkf.viz.scene.channels import Layout, marker_states
-from mbkf.viz.scene.description import scene_description, segment_poses
+from mbkf.viz.scene.description import scene_description
 
 MOST_HZ = 100.0
 """Faster recordings are shown with every second, third … frame."""

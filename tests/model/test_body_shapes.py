@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from mbkf.model.body_file import parse_body
+from mbkf.model.body_shapes import as_plain, segment_shapes
 from mbkf.model.human import HumanModel
-from mbkf.viz.scene.body_shapes import as_plain, segment_shapes
 from tests.motions import assert_near
 
-LEGS = Path(__file__).resolve().parents[3] / "docs/examples/bodies/legs.toml"
+LEGS = Path(__file__).resolve().parents[2] / "docs/examples/bodies/legs.toml"
 
 
 @pytest.fixture(scope="module")
