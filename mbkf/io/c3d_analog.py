@@ -199,7 +199,7 @@ def _doubts(name: str, wrench: Array, pressure: Array, corners: Array, threshold
 def events(content: C3dContent) -> tuple[CaptureEvent, ...]:
     """Labelled instants in order of time, from EVENT:TIMES (minutes and seconds), else from the header."""
     parameters = content.parameters
-    times = parameters.numbers("EVENT", "TIMES")
+    times = _event_times(parameters)
     labels, contexts = parameters.texts("EVENT", "LABELS"), parameters.texts("EVENT", "CONTEXTS")
     found = []
     if times.size and times.shape[0] == 2:
@@ -211,3 +211,14 @@ def events(content: C3dContent) -> tuple[CaptureEvent, ...]:
     else:
         found = [CaptureEvent(label, "", round(time_s, 6)) for label, time_s in content.events]
     return tuple(sorted(found, key=lambda event: event.time_s))
+
+
+def _event_times(parameters: C3dParameters) -> Array:
+    """(2, n) minutes and seconds of EVENT:TIMES and of its continuations; as the file has them if of another shape."""
+    times, number = parameters.numbers("EVENT", "TIMES"), 2
+    while times.ndim == 2 and len(times) == 2:
+        more = parameters.numbers("EVENT", f"TIMES{number}")
+        if more.ndim != 2 or len(more) != 2:
+            break
+        times, number = np.hstack([times, more]), number + 1
+    return times

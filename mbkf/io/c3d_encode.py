@@ -16,8 +16,8 @@ from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.c3d_layout import BLOCK_BYTES, LAST_FRAME_OF_HEADER
 
-Value = Sequence[str] | float | int | Array | NDArray[np.int16]
-"""A parameter: texts, or numbers, which are stored as floats but for integers."""
+Value = Sequence[str] | float | int | Array | NDArray[np.int16] | NDArray[np.str_]
+"""A parameter: texts (a table of them as an array), or numbers, which are stored as floats but for integers."""
 
 INTEL, KEY = 84, 0x50
 PARAMETER_BLOCK = 2
@@ -174,6 +174,9 @@ def _bodies(name: str, value: Value) -> Iterator[tuple[str, bytes]]:
             )
         return
     numbers = np.asarray(value)
+    if numbers.dtype.kind == "U":
+        yield name, _table(numbers)
+        return
     if max((*numbers.shape, 0)) > MOST_ENTRIES or 4 * numbers.size > MOST_BYTES:
         raise InvalidInput(
             f"{name} has {numbers.size} numbers; a C3D file holds {MOST_ENTRIES}: leave some away"
@@ -184,3 +187,11 @@ def _bodies(name: str, value: Value) -> Iterator[tuple[str, bytes]]:
         kind, flat = 4, numbers.astype("<f4")
     shape = struct.pack(f"bB{numbers.ndim}B", kind, numbers.ndim, *numbers.shape)
     yield name, shape + flat.tobytes(order="F")
+
+
+def _table(words: NDArray[np.str_]) -> bytes:
+    """Body of a parameter of texts in rows and columns; in the file, the columns count first."""
+    letters = np.char.encode(words, "ascii")
+    length = max(letters.dtype.itemsize, 1)
+    shape = struct.pack("bBB", -1, words.ndim + 1, length) + bytes(reversed(words.shape))
+    return shape + b"".join(word.ljust(length) for word in letters.ravel().tolist())

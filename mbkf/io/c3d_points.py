@@ -38,6 +38,8 @@ def read_points(
     present = finite(points) & (content.residuals >= 0.0)
     labels = point_labels(parameters, points.shape[1], notes)
     kinds = classify(labels, _listed(parameters))
+    told = parameters.texts("POINT", "DESCRIPTIONS")
+    told += [""] * (len(labels) - len(told))
     measured = [i for i, label in enumerate(labels) if label not in kinds]
     positions = positions_to_world(points[:, measured], present[:, measured], up, unit)
     markers = MarkerTrajectories(tuple(labels[i] for i in measured), positions, rate_hz, start_time_s)
@@ -47,6 +49,7 @@ def read_points(
             kind=kinds[label],
             values=np.where(present[:, i, None], points[:, i], np.nan),
             unit=parameters.text("POINT", UNIT_PARAMETERS[kinds[label]]),
+            description=told[i],
         )
         for i, label in enumerate(labels)
         if label in kinds

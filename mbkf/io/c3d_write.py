@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TypeAlias
 
@@ -11,9 +12,9 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput
 from mbkf.io.atomic import replacing
 from mbkf.io.axes import METRES_PER_UNIT, finite, length_unit, rotation_to_world
-from mbkf.io.c3d_encode import Value, encoded
+from mbkf.io.c3d_encode import MOST_ENTRIES, Value, encoded
 from mbkf.io.c3d_plates import plate_axes
-from mbkf.io.derived import GROUP_KINDS, UNIT_PARAMETERS
+from mbkf.io.derived import COMPUTED_PLACES, GROUP_KINDS, TYPE_WORDS, UNIT_PARAMETERS
 from mbkf.io.records import Capture, DerivedPoint, PlateReadings
 
 Parameters: TypeAlias = dict[str, Value]
@@ -25,6 +26,9 @@ _DEFAULT_HALF_SIDES_M = np.array([[0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2], [0.3, -
 
 MOST_CHANNELS = 255
 """The format counts them in one byte."""
+
+EVENT_ICONS = {"Foot Strike": 1, "Foot Off": 2}
+"""Pictures that Vicon's programs show for events."""
 
 _CHANNELS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 
@@ -69,17 +73,32 @@ def _points(capture: Capture) -> tuple[Array, BoolArray, Parameters]:
     missing = ~finite(points)
     group: Parameters = {
         "LABELS": [*markers.names, *(point.name for point in derived)],
-        "DESCRIPTIONS": [""] * points.shape[1],
+        "DESCRIPTIONS": [""] * len(markers.names) + [_ascii(point.description) for point in derived],
         "UNITS": ["mm"],
         "X_SCREEN": ["+X"],
         "Y_SCREEN": ["+Z"],
+        **_lists(derived),
     }
-    for name, kind in GROUP_KINDS.items():
+    return np.where(missing[:, :, None], 0.0, points), missing, group
+
+
+def _lists(derived: Sequence[DerivedPoint]) -> Parameters:
+    """Which points were computed, by kind, with the units of kinds that are no places."""
+    group: Parameters = {}
+    for name, kind in {**GROUP_KINDS, COMPUTED_PLACES: "point"}.items():
         listed = [point for point in derived if point.kind == kind]
         if listed:
             group[name] = [point.name for point in listed]
-            group[UNIT_PARAMETERS[kind]] = [listed[0].unit]
-    return np.where(missing[:, :, None], 0.0, points), missing, group
+            if kind != "point":
+                group[UNIT_PARAMETERS[kind]] = [listed[0].unit]
+    if group:
+        group["TYPE_GROUPS"] = np.array([(name, word) for name, word in TYPE_WORDS.items() if name in group])
+    return group
+
+
+def _ascii(text: str) -> str:
+    """A text that every reader's letters can show."""
+    return text.encode("ascii", "replace").decode("ascii")
 
 
 def _in_file_axes(point: DerivedPoint, capture: Capture) -> Array:
@@ -168,14 +187,21 @@ def _plate_channels(plate: PlateReadings, corners: Array) -> Array:
 
 
 def _events(capture: Capture) -> dict[str, Parameters]:
-    if not capture.events:
+    events = capture.events
+    if not events:
         return {}
-    minutes, seconds = np.divmod([event.time_s for event in capture.events], 60.0)
-    return {
-        "EVENT": {
-            "USED": len(capture.events),
-            "CONTEXTS": [event.context for event in capture.events],
-            "LABELS": [event.label for event in capture.events],
-            "TIMES": np.vstack([minutes, seconds]),
-        }
+    times = np.vstack(np.divmod([event.time_s for event in events], 60.0))
+    icons = np.array([EVENT_ICONS.get(event.label, 0) for event in events])
+    group: Parameters = {
+        "USED": len(events),
+        "CONTEXTS": [event.context for event in events],
+        "LABELS": [event.label for event in events],
+        "DESCRIPTIONS": [""] * len(events),
+        "SUBJECTS": [""] * len(events),
     }
+    for number, first in enumerate(range(0, len(events), MOST_ENTRIES), start=1):
+        some, suffix = slice(first, first + MOST_ENTRIES), str(number) if number > 1 else ""
+        group[f"TIMES{suffix}"] = times[:, some]
+        group[f"ICON_IDS{suffix}"] = icons[some].astype(np.int16)
+        group[f"GENERIC_FLAGS{suffix}"] = np.zeros(len(icons[some]), dtype=np.int16)
+    return {"EVENT": group}

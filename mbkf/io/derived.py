@@ -29,6 +29,12 @@ UNIT_PARAMETERS = {
 }
 """Parameter of the group POINT that states the unit of each kind."""
 
+COMPUTED_PLACES = "MODELED_MARKERS"
+"""Parameter of the group POINT that lists joint centres and other computed places, as Vicon's pipelines write it."""
+
+TYPE_WORDS = {**{name: kind.upper() for name, kind in GROUP_KINDS.items()}, COMPUTED_PLACES: "MODELED_MARKER"}
+"""What POINT:TYPE_GROUPS calls the kind of each list."""
+
 _SIDE = r"[LR]"
 
 NAMED_KINDS = (

@@ -136,12 +136,14 @@ class DerivedPoint:
         kind: "angle", "moment", "force", "power", "scalar" or "point" (joint centres, axes …).
         values: (T, 3) in the file's own units and axes; NaN where missing.
         unit: The file's unit for that kind, "" where it states none.
+        description: What the file says of it.
     """
 
     name: str
     kind: str
     values: Array
     unit: str
+    description: str = ""
 
 
 @dataclass(frozen=True)

@@ -91,3 +91,14 @@ def test_what_does_not_fit_is_refused(tmp_path):
         written(tmp_path / "x.c3d", MORE={"TEXT": ["x" * 300]})
     with pytest.raises(InvalidInput, match="holds 130 560"):
         written(tmp_path / "x.c3d", MORE={f"T{k}": ["x" * 120] * 200 for k in range(9)})
+
+
+def test_tables_of_texts_are_read_alike_here_and_elsewhere(tmp_path):
+    pairs = np.array([("ANGLES", "ANGLE"), ("POWERS", "P")])
+    written(tmp_path / "x.c3d", OWN={"PAIRS": pairs})
+    flat = ["ANGLES", "ANGLE", "POWERS", "P"]
+    assert (
+        decode(tmp_path / "x.c3d", check_layout(tmp_path / "x.c3d")).parameters.texts("OWN", "PAIRS") == flat
+    )
+    found = ezc3d.c3d(str(tmp_path / "x.c3d"))["parameters"]["OWN"]["PAIRS"]
+    assert found["value"] == flat

@@ -138,3 +138,24 @@ def test_more_plates_than_the_format_counts_are_refused_and_as_many_as_it_counts
         write_c3d(Capture("", markers_of(positions), (plate,) * 43), tmp_path / "a.c3d")
     write_c3d(Capture("", markers_of(positions), (plate,) * 42), tmp_path / "b.c3d")
     assert len(read_c3d(tmp_path / "b.c3d").plates) == 42
+
+
+def test_computed_places_with_names_of_their_own_do_not_come_back_as_markers(tmp_path):
+    positions = standing_points(5) / 1e3
+    place = DerivedPoint("Anything", "point", np.tile([1.0, 2.0, 3.0], (5, 1)), "m", "what it is, x ° y")
+    write_c3d(Capture("", markers_of(positions), derived=(place,)), tmp_path / "a.c3d")
+    back = read_c3d(tmp_path / "a.c3d")
+    assert "Anything" not in back.markers.names
+    (found,) = back.derived
+    assert (found.name, found.kind, found.unit, found.description) == (
+        "Anything", "point", "mm", "what it is, x ? y",
+    )  # fmt: skip
+    np.testing.assert_allclose(found.values, 1e3 * place.values, rtol=1e-6)
+
+
+@pytest.mark.parametrize("count", [255, 256, 700])
+def test_more_events_than_a_list_holds_come_back(tmp_path, count):
+    labels = ("Foot Strike", "Foot Off", "General")
+    events = tuple(CaptureEvent(labels[k % 3], ("Left", "Right")[k % 2], 0.25 * k) for k in range(count))
+    write_c3d(Capture("", markers_of(standing_points(5) / 1e3), events=events), tmp_path / "a.c3d")
+    assert read_c3d(tmp_path / "a.c3d").events == events
