@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from mbkf.model.protocol import load_protocol
     from mbkf.numerics.kalman import Information
     from mbkf.pipelines.batch.run import batch
+    from mbkf.pipelines.export import export_result
     from mbkf.pipelines.imu.orient import orient
     from mbkf.pipelines.inertia.estimate import InertiaEstimate, estimate_inertia
     from mbkf.pipelines.label import label
@@ -51,6 +52,7 @@ _HOMES = {
     "Tracker": "mbkf.pipelines.tracker",
     "batch": "mbkf.pipelines.batch.run",
     "estimate_inertia": "mbkf.pipelines.inertia.estimate",
+    "export_result": "mbkf.pipelines.export",
     "label": "mbkf.pipelines.label",
     "load_body": "mbkf.model.body_file",
     "load_protocol": "mbkf.model.protocol",
@@ -88,6 +90,7 @@ __all__ = [
     "__version__",
     "batch",
     "estimate_inertia",
+    "export_result",
     "label",
     "load_body",
     "load_protocol",

@@ -1,11 +1,16 @@
 """`mbkf export` on the command line."""
 
+import shutil
+
 import numpy as np
 import pytest
 
 from mbkf.cli.export import add_parser
-from mbkf.cli.main import OneLineParser
+from mbkf.cli.main import OneLineParser, main
+from mbkf.io.results_folder import MOTION_FILE, write_reconstruction
 from mbkf.io.subject import Subject, SubjectMarker, write_subject
+from mbkf.pipelines.export import FORMATS, RESULT_FORMATS
+from tests.recordings import walk
 
 
 def command(*words):
@@ -27,7 +32,54 @@ def test_help_has_an_example_and_formats_are_checked(capsys):
     with pytest.raises(SystemExit) as end:
         command("--help")
     assert end.value.code == 0
-    assert "mbkf export subject.toml --to urdf --out subject.urdf" in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert "mbkf export subject.toml --to urdf --out subject.urdf" in told
+    assert all(f"--to {kind}" in told for kind in (*FORMATS, *RESULT_FORMATS))
     with pytest.raises(SystemExit) as end:
         command("s.toml", "--to", "fbx", "--out", "x")
     assert end.value.code == 2
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory):
+    return write_reconstruction(walk(), {}, tmp_path_factory.mktemp("result") / "walk")
+
+
+@pytest.mark.parametrize(("kind", "begins"), [("c3d", b"\x02\x50"), ("bvh", b"HIERARCHY"), ("glb", b"glTF")])
+def test_a_result_becomes_a_file_from_its_folder_and_from_its_motion(result, tmp_path, capsys, kind, begins):
+    moved = shutil.copy(result / MOTION_FILE, tmp_path / "another name.H5")
+    written = []
+    for n, source in enumerate((result, result / MOTION_FILE, moved)):
+        out = tmp_path / f"{n}.{kind}"
+        assert main(["export", str(source), "--to", kind, "--out", str(out)]) == 0
+        assert capsys.readouterr().out.strip() == str(out)
+        written.append(out.read_bytes())
+    assert written[0].startswith(begins) and written[0] == written[1] == written[2]
+
+
+@pytest.mark.parametrize("kind", ["urdf", "mjcf", "c3d", "bvh", "glb"])
+def test_formats_of_the_other_kind_are_refused_with_what_is_needed(result, tmp_path, capsys, kind):
+    write_subject(Subject("human18", 70.0, {}, (), "reference36"), tmp_path / "s.toml")
+    of_result = kind in RESULT_FORMATS
+    source = tmp_path / "s.toml" if of_result else result
+    assert main(["export", str(source), "--to", kind, "--out", str(tmp_path / "x")]) == 2
+    told = capsys.readouterr().err
+    assert str(source) in told and f"{kind} is a format for" in told
+    assert ("'mbkf reconstruct'" in told) == of_result and ("'mbkf scale'" in told) != of_result
+    assert f"--to {' or '.join(FORMATS if of_result else RESULT_FORMATS)}" in told
+    assert not (tmp_path / "x").exists()
+
+
+def test_what_cannot_be_read_or_written_is_told(result, tmp_path, capsys):
+    (tmp_path / "empty").mkdir()
+    for source, kind, out, said in (
+        (tmp_path / "empty", "bvh", "x.bvh", "holds no motion.h5"),
+        (tmp_path / "none.h5", "bvh", "x.bvh", "none.h5"),
+        (tmp_path / "none", "urdf", "x.urdf", "none"),
+        (result, "c3d", "x.txt", "named .c3d"),
+        (result, "glb", "empty", "is a folder"),
+        (result, "bvh", "empty", "is a folder"),
+    ):
+        assert main(["export", str(source), "--to", kind, "--out", str(tmp_path / out)]) == 2
+        assert said in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["empty"]

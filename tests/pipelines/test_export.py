@@ -1,13 +1,15 @@
-"""Exporting a subject: the file appears whole, with the subject's markers, or an error says why not."""
+"""Exporting a subject or a result: the file appears whole, or an error says why not."""
 
 from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
 
+import mbkf
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.subject import Subject, SubjectMarker
-from mbkf.pipelines.export import FORMATS, export_subject
+from mbkf.pipelines.export import FORMATS, RESULT_FORMATS, export_result, export_subject
+from tests.recordings import walk
 
 SUBJECT = Subject(
     "human18",
@@ -34,3 +36,19 @@ def test_wrong_formats_and_places_are_refused(tmp_path):
         export_subject(SUBJECT, "urfd", tmp_path / "x")
     with pytest.raises(FileFormatError, match="folder"):
         export_subject(SUBJECT, "urdf", tmp_path)
+
+
+@pytest.mark.parametrize("kind", ["c3d", "bvh", "glb"])
+def test_a_result_is_written_whole(tmp_path, kind):
+    path = tmp_path / "deeper" / f"walk.{kind}"
+    mbkf.export_result(walk(), kind, path)
+    assert path.stat().st_size > 10_000
+    assert [p.name for p in path.parent.iterdir()] == [path.name]
+
+
+def test_wrong_formats_and_places_of_results_are_refused(tmp_path):
+    assert set(RESULT_FORMATS) == {"c3d", "bvh", "glb"}
+    with pytest.raises(UnknownName, match="bvh"):
+        export_result(walk(), "bhv", tmp_path / "x")
+    with pytest.raises(FileFormatError, match="folder"):
+        export_result(walk(), "glb", tmp_path)

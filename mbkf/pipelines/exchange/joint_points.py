@@ -16,6 +16,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.io.records import DerivedPoint
 from mbkf.io.results import Reconstruction
+from mbkf.model.body import Body
 from mbkf.model.clinical_table import Angle, ClinicalJoint
 
 STEMS = {"lumbar": "Spine", "neck": "LowerNeck", "head": "UpperNeck", "mtp": "Toe"}
@@ -55,11 +56,13 @@ class JointPoint:
         stem: Its name there, e.g. "RHip".
         components: x, y and z; None where the joint has no such coordinate.
         root: Whether it is the root, whose moments are residuals.
+        distal: The segment that it moves.
     """
 
     stem: str
     components: tuple[Component | None, Component | None, Component | None]
     root: bool
+    distal: str
 
     @property
     def signs(self) -> str:
@@ -76,11 +79,6 @@ class JointPoint:
                 column = getattr(r, array)[:, r.coordinate_names.index(c.coordinate)]
                 columns[:, k] = c.sign * column if signed else column
         return columns
-
-    def power(self, r: Reconstruction) -> Array:
-        """(T, 3) the joint's power in z, W."""
-        powers = [r.power(c.coordinate) for c in self.components if c is not None]
-        return np.column_stack([np.zeros((r.frames, 2)), np.sum(powers, axis=0)])
 
 
 def joint_point_names(joint: ClinicalJoint) -> tuple[str, ...]:
@@ -99,13 +97,12 @@ def side_of(name: str) -> tuple[str, str]:
 
 def joint_points(joints: tuple[ClinicalJoint, ...]) -> tuple[JointPoint, ...]:
     """The points of a body's joints."""
-    return tuple(
-        JointPoint(
-            stem, _components(joint, stem[0] if joint.proximal == "world" else ""), joint.proximal == "world"
-        )
-        for joint in joints
-        for stem in joint_point_names(joint)
-    )
+    found = []
+    for joint in joints:
+        root = joint.proximal == "world"
+        for stem in joint_point_names(joint):
+            found.append(JointPoint(stem, _components(joint, stem[0] if root else ""), root, joint.distal))
+    return tuple(found)
 
 
 def _components(
@@ -131,29 +128,30 @@ def _components(
     return places[0], places[1], places[2]
 
 
-def derived_from_joints(r: Reconstruction, joints: tuple[ClinicalJoint, ...]) -> Iterator[DerivedPoint]:
-    """Angles, moments and powers with standard deviations where these are known; NaN where the body is not followed.
+def derived_from_joints(r: Reconstruction, model: Body) -> Iterator[DerivedPoint]:
+    """Angles, moments and powers with standard deviations where these are known.
 
     Args:
         r: The result.
-        joints: The clinical joints of its body.
+        model: Its body.
 
     Yields:
-        Points of the kinds "angle" (deg), "moment" (Nm) and "power" (W).
+        Points of the kinds "angle" (deg), "moment" (Nm) and "power" (W). A joint's power is that of its torque about
+        all axes, whatever axes the angles are read in.
     """
-    frame = f" in the {r.direction} frame"
-    for joint in joint_points(joints):
-        told = f"{joint.signs}{frame if joint.root else ''}"
+    read = "" if r.angles_read == "model" else f", in {r.angles_read} axes"
+    for joint in joint_points(model.description.clinical_joints):
+        told = f"{joint.signs}{f', {r.direction} frame' if joint.root else ''}{read}"
         degrees = np.rad2deg(joint.values(r, "angles"))
         yield DerivedPoint(f"{joint.stem}Angles", "angle", degrees, "deg", told)
         sd = np.rad2deg(joint.values(r, "angles_sd"))
         yield DerivedPoint(f"{joint.stem}AnglesSD", "angle", sd, "deg", "standard deviations")
         if joint.root:
             continue
-        told = f"internal: {joint.signs}"
-        yield DerivedPoint(f"{joint.stem}Moment", "moment", joint.values(r, "moments"), "Nm", told)
-        sd = joint.values(r, "moments_sd")
+        moment, sd = joint.values(r, "moments"), joint.values(r, "moments_sd")
+        yield DerivedPoint(f"{joint.stem}Moment", "moment", moment, "Nm", f"internal: {joint.signs}")
         yield DerivedPoint(f"{joint.stem}MomentSD", "moment", sd, "Nm", "standard deviations")
-        yield DerivedPoint(
-            f"{joint.stem}Power", "power", joint.power(r), "W", "Z+ generated, all axes together"
-        )
+        dofs = model.joints[joint.distal].v
+        power = (r.tau[:, dofs] * r.v[:, dofs]).sum(axis=1)
+        in_z = np.column_stack([np.zeros((r.frames, 2)), power])
+        yield DerivedPoint(f"{joint.stem}Power", "power", in_z, "W", "Z+ generated, all axes together")

@@ -56,7 +56,7 @@ def result_capture(r: Reconstruction) -> Capture:
     markers = MarkerTrajectories(r.marker_names, at_rows(r.measured_m, rows), r.rate_hz, start_s)
     points = [
         *_fitted(r),
-        *derived_from_joints(r, model.description.clinical_joints),
+        *derived_from_joints(r, model),
         *_loads(r),
         *_places(r, model),
     ]

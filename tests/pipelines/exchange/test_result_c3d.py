@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mbkf.io.c3d import read_c3d
+from mbkf.model.clinical import ClinicalAngles
 from mbkf.pipelines.exchange.result_c3d import result_capture, write_result_c3d
 from mbkf.pipelines.gait.events import foot_events
 from tests.recordings import LOST, broken_walk, leaning_walk, walker
@@ -30,8 +31,9 @@ SEGMENTS = {
 
 @cache
 def result():
-    r = broken_walk()
-    rates = np.random.default_rng(3).normal(size=r.angles.shape)
+    """The broken walk with rates of its angles that belong to its velocities."""
+    r, clinical = broken_walk(), ClinicalAngles(walker()[1])
+    rates = np.einsum("tai,ti->ta", clinical.rate_matrices(r.q, r.angles), r.v)
     return replace(r, angle_rates=rates, times_s=r.times_s + 0.4)
 
 
@@ -151,13 +153,12 @@ def test_kinds_units_and_signs_are_stated(theirs, points):
         "X+ heel to the buttock (flexion), Y+ shank towards the midline (varus)"
     )
     assert said["RHipMoment"].startswith("internal: X+ thigh forward")
-    assert "forward lean" in said["RPelvisAngles"] and r_direction() in said["RPelvisAngles"]
+    assert said["LPelvisAngles"].startswith(
+        "X+ forward lean (anterior tilt), Y+ left side up, Z+ turned to the right"
+    )
+    assert said["RPelvisAngles"].endswith(f", {result().direction} frame")
     assert all(said[name] for name in points if name not in result().marker_names)
     assert max(map(len, said.values())) <= 117  # so that the list is cut where the labels are
-
-
-def r_direction():
-    return f"{result().direction} frame"
 
 
 def test_strikes_and_offs_are_events(theirs, path):
@@ -221,3 +222,25 @@ def test_loads_on_other_parts_stand_beside_those_of_the_feet():
     np.testing.assert_array_equal(found["RightHandContactForce"].values, r.support_wrench[:, k, :3])
     assert found["RightHandContactForce"].kind == "force"
     assert "LeftHandContactForce" not in found
+
+
+def test_the_axes_that_angles_are_read_in_are_told_and_powers_do_not_depend_on_them():
+    r = replace(result(), angles_read="pig", angle_rates=np.full(result().angles.shape, 7.0))
+    found = {point.name: point for point in result_capture(r).derived}
+    assert found["RKneeAngles"].description.endswith(", in pig axes")
+    own = {point.name: point for point in result_capture(result()).derived}
+    np.testing.assert_array_equal(found["RKneePower"].values, own["RKneePower"].values)
+
+
+def test_points_that_are_never_known_are_left_out():
+    r = result()
+    unknown = np.full(r.moments.shape, np.nan)
+    found = {point.name for point in result_capture(replace(r, moments_sd=unknown)).derived}
+    assert "RKneeMoment" in found and "RKneeMomentSD" not in found
+
+
+def test_a_result_that_follows_nothing_holds_the_measured_markers_alone():
+    r = replace(result(), tracked=np.zeros(result().frames, bool))
+    capture = result_capture(r)
+    assert capture.derived == () and capture.events == ()
+    np.testing.assert_array_equal(capture.markers.positions_m, r.measured_m)
