@@ -62,7 +62,7 @@ def bvh_text(joints: Sequence[BvhJoint], root_m: Array, rotations: Array, rate_h
     _check_tree(joints)
     lines = ["HIERARCHY", *_tree(joints, 0, 0), "MOTION", f"Frames: {len(rotations)}"]
     lines.append(f"Frame Time: {1.0 / rate_hz:.9g}")
-    numbers = np.hstack([_CM * root_m, _angles_deg(rotations)])
+    numbers = np.round(np.hstack([_CM * root_m, _angles_deg(rotations)]), 6) + 0.0  # no "-0.000000"
     lines += [" ".join(f"{number:.6f}" for number in row) for row in numbers.tolist()]
     return "\n".join(lines) + "\n"
 

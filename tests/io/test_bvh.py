@@ -43,6 +43,12 @@ def test_angles_turn_on_without_jumps_through_the_middle_angle_s_singularity():
     assert np.abs(np.diff(rows[:, 3:], axis=0)).max() < 3.0
 
 
+def test_zeros_have_no_sign():
+    small = Rotation.from_euler("ZXY", [[-1e-9, 1e-9, -1e-9]]).as_matrix()[:, None]
+    text = bvh_text(CHAIN[:1], np.full((1, 3), -1e-10), small, 50.0)
+    assert text.splitlines()[-1] == " ".join(["0.000000"] * 6)
+
+
 def test_what_is_no_tree_is_refused():
     still = np.tile(np.eye(3), (2, 4, 1, 1))
     with pytest.raises(ShapeError, match="rotations"):

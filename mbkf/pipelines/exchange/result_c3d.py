@@ -23,6 +23,9 @@ FITTED = "_model"
 CENTRES = {"hip": "HJC", "knee": "KJC", "ankle": "AJC", "shoulder": "SJC", "elbow": "EJC", "wrist": "WJC"}
 """Plug-in Gait's names of joint centres, after the side; others are named after their joint."""
 
+MOST_FRAMES = 2**31
+"""Numbers of frames fit in two words of 16 bits; some readers take them with a sign."""
+
 SIDE_WORDS = (("R", "Right"), ("L", "Left"))
 
 
@@ -52,7 +55,7 @@ def result_capture(r: Reconstruction) -> Capture:
     """
     model = HumanModel.of(r.subject)
     rows = even_rows(r.times_s, r.rate_hz)
-    start_s = float(r.times_s[0]) if r.frames else 0.0
+    start_s = _start_s(r)
     markers = MarkerTrajectories(r.marker_names, at_rows(r.measured_m, rows), r.rate_hz, start_s)
     points = [
         *_fitted(r),
@@ -66,7 +69,7 @@ def result_capture(r: Reconstruction) -> Capture:
         path="",
         markers=markers,
         derived=tuple(replace(p, values=at_rows(p.values, rows)) for p in known),
-        events=_events(r),
+        events=_events(r, start_s),
         subject_mass_kg=r.subject.mass_kg,
     )
 
@@ -108,10 +111,19 @@ def _places(r: Reconstruction, model: HumanModel) -> Iterator[DerivedPoint]:
     yield DerivedPoint("CentreOfMass", "point", mass_centre, "m", "of the whole body")
 
 
-def _events(r: Reconstruction) -> tuple[CaptureEvent, ...]:
-    """Strikes and offs of both feet, in order of time."""
+def _start_s(r: Reconstruction) -> float:
+    """Time of the first frame as a C3D file can tell it, by that frame's number; 0 where it is none of a trial's."""
+    if not r.frames:
+        return 0.0
+    number = round(float(r.times_s[0]) * r.rate_hz)
+    return number / r.rate_hz if 0 <= number < MOST_FRAMES else 0.0
+
+
+def _events(r: Reconstruction, start_s: float) -> tuple[CaptureEvent, ...]:
+    """Strikes and offs of both feet, in order of time, where the first frame is at another time."""
+    later_s = start_s - float(r.times_s[0]) if r.frames else 0.0
     found = [
-        CaptureEvent(label, side, float(time_s))
+        CaptureEvent(label, side, float(time_s) + later_s)
         for (_, side), foot in zip(SIDE_WORDS, foot_events(r), strict=True)
         for label, times_s in (("Foot Strike", foot.strikes_s), ("Foot Off", foot.offs_s))
         for time_s in times_s

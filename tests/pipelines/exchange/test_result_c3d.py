@@ -244,3 +244,15 @@ def test_a_result_that_follows_nothing_holds_the_measured_markers_alone():
     capture = result_capture(r)
     assert capture.derived == () and capture.events == ()
     np.testing.assert_array_equal(capture.markers.positions_m, r.measured_m)
+
+
+@pytest.mark.parametrize("start_s", [0.0, 1e6, -3.0, 1.7e9, 0.4037])
+def test_events_keep_their_place_among_the_frames_whenever_the_trial_began(tmp_path, start_s):
+    r = result()
+    moved = replace(r, times_s=r.times_s - r.times_s[0] + start_s)
+    write_result_c3d(moved, tmp_path / "x.c3d")
+    back = read_c3d(tmp_path / "x.c3d")
+    assert abs(back.markers.start_time_s - start_s) < 0.51 / r.rate_hz or back.markers.start_time_s == 0.0
+    expected = [event.time_s - r.times_s[0] for event in result_capture(r).events]
+    found = [event.time_s - back.markers.start_time_s for event in back.events]
+    np.testing.assert_allclose(found, expected, atol=2e-5)
