@@ -22,6 +22,11 @@ def sessions(workspace: Workspace, runs: Runs) -> Plain:
 def session(workspace: Workspace, runs: Runs, name: str) -> Plain:
     """One session: its person, its trials, what is the matter, and how far it is.
 
+    Args:
+        workspace: The sessions.
+        runs: Their runs.
+        name: Which session.
+
     Raises:
         InvalidInput: There is no such session.
         FileFormatError: Its session file is damaged.

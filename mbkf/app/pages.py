@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from mbkf.io.results_folder import read_reconstruction, read_summary
-from mbkf.viz.page import asset
+from mbkf.viz.language import languages, words
+from mbkf.viz.page import asset, embedded
 from mbkf.viz.report.document import report_page
 from mbkf.viz.scene.playback import playback_page
 
@@ -17,7 +18,14 @@ SCRIPTS = ("element.js", "app_words.js", "app_session.js", "app.js")
 def start_page() -> str:
     """The page of the sessions."""
     text = asset("app.html")
-    parts = {"style": asset("app.css"), "scripts": "\n".join(asset(name) for name in SCRIPTS)}
+    known: dict[str, object] = {
+        code: {"name": name, "words": dict(words(code, "app"))} for code, name in languages().items()
+    }
+    parts = {
+        "style": asset("app.css"),
+        "words": embedded("words", known),
+        "scripts": "\n".join(asset(name) for name in SCRIPTS),
+    }
     for name, part in parts.items():
         text = text.replace("{{" + name + "}}", part, 1)
     return text

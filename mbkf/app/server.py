@@ -1,8 +1,4 @@
-"""The page's server, on this computer's own address alone: pages, plain data, files that are dropped.
-
-Every request must name this computer as it names itself, must not come from another web page, and must carry the token,
-which the address that is opened first brings and a cookie keeps.
-"""
+"""The page's server, on this computer's own address alone: pages, plain data, files that are dropped."""
 
 from __future__ import annotations
 
@@ -11,30 +7,24 @@ import secrets
 import socket
 import threading
 import time
-from collections.abc import Awaitable, Callable
 from pathlib import Path
 
 import uvicorn
 from starlette.applications import Starlette
-from starlette.concurrency import run_in_threadpool
 from starlette.middleware import Middleware
-from starlette.middleware.base import BaseHTTPMiddleware
-from starlette.requests import Request
-from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, RedirectResponse, Response
-from starlette.routing import Route
 
-from mbkf.app import answers, pages
+from mbkf.app.guard import Guard
 from mbkf.app.runs import Runs
+from mbkf.app.session_routes import session_routes
+from mbkf.app.trial_routes import trial_routes
 from mbkf.app.workspace import Workspace
-from mbkf.errors import InvalidInput, MbkfError
-from mbkf.stream.loopback import LOOPBACK, is_page_of, is_token, names_this_computer
+from mbkf.errors import InvalidInput
+from mbkf.stream.loopback import LOOPBACK
 
 COOKIE = "mbkf-app-{port}"
 """Cookies of one computer are the same for all ports."""
 
 START_S = 10.0
-
-Next = Callable[[Request], Awaitable[Response]]
 
 
 class AppServer:
@@ -105,106 +95,10 @@ def application(workspace: Workspace, runs: Runs, token: str, cookie: str) -> St
         token: What every request must carry.
         cookie: Name of the cookie that carries it.
     """
-
-    async def told(answer: Callable[[], object]) -> Response:
-        """An answer as JSON; a foreseen failure as one sentence."""
-        try:
-            return JSONResponse(await run_in_threadpool(answer))
-        except MbkfError as error:
-            return JSONResponse({"trouble": " ".join(str(error).split())}, status_code=400)
-        except OSError as error:
-            return JSONResponse({"trouble": error.strerror or str(error)}, status_code=500)
-
-    async def all_sessions(_request: Request) -> Response:
-        return await told(lambda: answers.sessions(workspace, runs))
-
-    async def one_session(request: Request) -> Response:
-        name = request.query_params.get("session", "")
-        if request.method == "POST":
-            try:
-                said = await request.json()
-            except (ValueError, RecursionError):
-                return JSONResponse({"trouble": "the page said something that is no JSON"}, status_code=400)
-
-            def state() -> object:
-                answers.stated(workspace, name, said)
-                return answers.session(workspace, runs, name)
-
-            return await told(state)
-        return await told(lambda: answers.session(workspace, runs, name))
-
-    async def run(request: Request) -> Response:
-        name, what = request.query_params.get("session", ""), request.query_params.get("do", "start")
-
-        def do() -> object:
-            workspace.folder(name)
-            (runs.start if what == "start" else runs.cancel)(name)
-            return {"run": answers.run_state(runs.state(name))}
-
-        return await told(do)
-
-    async def put(request: Request) -> Response:
-        name = request.query_params.get("file", "")
-        try:
-            with workspace.putting(name) as file:
-                async for chunk in request.stream():
-                    file.write(chunk)
-        except MbkfError as error:
-            return JSONResponse({"trouble": str(error)}, status_code=400)
-        return JSONResponse({"put": name})
-
-    async def shown(request: Request) -> Response:
-        """A page about a trial: its playback or its report."""
-        session, trial = (request.query_params.get(key, "") for key in ("session", "trial"))
-        make = pages.LOOKS.get(request.path_params["look"])
-        if make is None:
-            return PlainTextResponse("Nothing is here.\n", status_code=404)
-        try:
-            text = await run_in_threadpool(lambda: make(workspace.result(session, trial)))
-        except MbkfError as error:
-            return PlainTextResponse(str(error), status_code=404)
-        return HTMLResponse(text)
-
-    async def start(_request: Request) -> Response:
-        return HTMLResponse(pages.start_page())
-
     return Starlette(
-        routes=[
-            Route("/", start),
-            Route("/sessions", all_sessions),
-            Route("/session", one_session, methods=["GET", "POST"]),
-            Route("/run", run, methods=["POST"]),
-            Route("/put", put, methods=["POST"]),
-            Route("/trial/{look}", shown),
-        ],
-        middleware=[Middleware(_Guard, token=token, cookie=cookie)],
+        routes=[*session_routes(workspace, runs), *trial_routes(workspace)],
+        middleware=[Middleware(Guard, token=token, cookie=cookie)],
     )
-
-
-class _Guard(BaseHTTPMiddleware):
-    """Refuses what other names, other web pages or strangers ask for."""
-
-    def __init__(self, app: object, token: str, cookie: str) -> None:
-        super().__init__(app)  # type: ignore[arg-type]
-        self._token, self._cookie = token, cookie
-
-    async def dispatch(self, request: Request, call_next: Next) -> Response:
-        """The answer, or a refusal."""
-        host, origin = request.headers.get("host", ""), request.headers.get("origin")
-        if not names_this_computer(host) or not is_page_of(origin, host):
-            return PlainTextResponse("Refused.\n", status_code=403)
-        if request.url.path == "/" and is_token(request.query_params.get("token", ""), self._token):
-            opened = RedirectResponse("/", status_code=303)
-            opened.set_cookie(self._cookie, self._token, httponly=True, samesite="strict")
-            return opened
-        if not is_token(request.cookies.get(self._cookie, ""), self._token):
-            return PlainTextResponse("Open the address that mbkf app printed.\n", status_code=403)
-        answer = await call_next(request)
-        answer.headers["Cache-Control"] = "no-store"
-        answer.headers["X-Content-Type-Options"] = "nosniff"
-        answer.headers["Referrer-Policy"] = "no-referrer"
-        answer.headers["X-Frame-Options"] = "SAMEORIGIN"
-        return answer
 
 
 def _listening(port: int) -> socket.socket:

@@ -126,7 +126,7 @@ async function take(files) {
 
 function chooseLanguage() {
   const select = element("select", { onchange: () => { language = select.value; localStorage.setItem("mbkf language", language); start(); } },
-    ...Object.keys(WORDS).map((name) => element("option", { value: name, selected: name === language }, name)));
+    ...Object.keys(WORDS).map((name) => element("option", { value: name, selected: name === language }, WORDS[name].name)));
   place("language").replaceChildren(word("language") + " ", select);
 }
 

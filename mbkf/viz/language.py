@@ -1,0 +1,52 @@
+"""The words of pages and reports in each language, from the files of ``mbkf/viz/languages``.
+
+A language is a TOML file named after its code, with the language's own name and a section of words for each kind of
+page. A new language needs such a file only; tests hold every file complete.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+
+from mbkf.errors import InvalidInput
+
+FOLDER = Path(__file__).resolve().parent / "languages"
+
+ENGLISH = "en"
+"""The language of texts that have no other."""
+
+
+@cache
+def languages() -> Mapping[str, str]:
+    """The languages by code, e.g. "es": "Español"."""
+    return {path.stem: _read(path.stem)["name"] for path in sorted(FOLDER.glob("*.toml"))}
+
+
+def words(language: str, section: str) -> Mapping[str, str]:
+    """The words of a kind of page.
+
+    Args:
+        language: Code, e.g. "es".
+        section: E.g. "app".
+
+    Raises:
+        InvalidInput: There is no such language.
+    """
+    if language not in languages():
+        raise InvalidInput(f"there is no language '{language}'; choose {', '.join(languages())}")
+    return _read(language)[section]
+
+
+def filled(text: str, *values: object) -> str:
+    """A text in which the values stand for {0}, {1} and so on."""
+    for k, value in enumerate(values):
+        text = text.replace(f"{{{k}}}", str(value))
+    return text
+
+
+@cache
+def _read(language: str) -> dict:
+    return tomllib.loads((FOLDER / f"{language}.toml").read_text(encoding="utf-8"))

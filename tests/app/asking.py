@@ -1,0 +1,17 @@
+"""Asking a page's server as a browser does."""
+
+import http.client
+import json
+from contextlib import closing
+
+
+def asked(server, path, method="GET", body=None, **headers):
+    with closing(http.client.HTTPConnection("127.0.0.1", server.port, timeout=30.0)) as connection:
+        connection.request(method, path, body, headers)
+        answer = connection.getresponse()
+        return answer, answer.read()
+
+
+def plain(server, cookie, path, method="GET", body=None):
+    answer, text = asked(server, path, method, body, Cookie=cookie)
+    return answer.status, json.loads(text)

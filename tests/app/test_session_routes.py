@@ -1,0 +1,57 @@
+"""Sessions are told, stated and run; every failure is a sentence."""
+
+import json
+from urllib.parse import quote
+
+import pytest
+
+from tests.app.asking import asked, plain
+from tests.studies import walk_folder
+
+
+def test_the_page_loads_nothing_from_elsewhere(server, cookie):
+    answer, text = asked(server, "/", Cookie=cookie)
+    page = text.decode()
+    assert answer.status == 200 and "default-src 'none'" in page
+    assert "{{" not in page and "src=" not in page and "http" not in page.replace("http-equiv", "")
+
+
+def test_sessions_are_told_stated_and_run(server, cookie):
+    status, told = plain(server, cookie, "/sessions")
+    assert status == 200 and [one["id"] for one in told["sessions"]][:1] == ["P1"]
+    status, told = plain(server, cookie, "/session?session=P1", "POST", json.dumps({"mass_kg": 85.7}))
+    assert status == 200 and told["notes"] == {"mass_kg": 85.7}
+    assert plain(server, cookie, "/run?session=P1&do=start", "POST")[1]["run"]["state"] in {
+        "waiting",
+        "running",
+    }
+    while plain(server, cookie, "/session?session=P1")[1]["run"]["state"] in {"waiting", "running"}:
+        pass
+    told = plain(server, cookie, "/session?session=P1")[1]
+    assert told["run"]["state"] == "finished" and told["trials"][1]["status"] == "done"
+
+
+@pytest.mark.parametrize(
+    ("path", "method", "body", "told"),
+    [
+        ("/session?session=P9", "GET", None, "no session 'P9'"),
+        ("/run?session=P9", "POST", None, "no session 'P9'"),
+        ("/session?session=P1", "POST", '{"mass_kg": 0}', "mass_kg must be"),
+        ("/session?session=P1", "POST", "no json", "no JSON"),
+        ("/session?session=P1", "POST", b"\xff\xfe", "no JSON"),
+        ("/put?file=..%2Fx.c3d", "POST", b"x", "cannot be a file here"),
+        ("/put", "POST", b"x", "cannot be a file here"),
+    ],
+)
+def test_failures_are_sentences(server, cookie, path, method, body, told):
+    status, said = plain(server, cookie, path, method, body)
+    assert status == 400 and told in said["trouble"]
+
+
+def test_dropped_files_are_put_beside_the_others(server, cookie):
+    content = (walk_folder() / "trial.c3d").read_bytes()
+    name = quote("P7/walk ä.c3d")
+    assert plain(server, cookie, f"/put?file={name}", "POST", content) == (200, {"put": "P7/walk ä.c3d"})
+    assert (server.workspace.root / "P7" / "walk ä.c3d").read_bytes() == content
+    told = plain(server, cookie, "/session?session=P7")[1]
+    assert told["trials"][0]["file"] == "walk ä.c3d" and told["trials"][0]["kind"] == "walk"
