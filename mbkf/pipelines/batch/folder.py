@@ -10,6 +10,7 @@ protocol; in the session's own folder also which trials stand still and which ar
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -108,8 +109,18 @@ def captures_in(folder: Path) -> list[Path]:
 
 
 def session_folders(root: Path) -> list[Path]:
-    """The folders with captures in a folder, itself included."""
-    found = {path.parent for suffix in CAPTURE_SUFFIXES for path in _found(root, suffix)}
+    """The folders with captures in a folder, itself included; hidden ones and folders of results are left out.
+
+    Folders that vanish meanwhile, as unfinished results do, hold none.
+    """
+    found = []
+    for place, folders, files in os.walk(root):
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        seen = [
+            name for name in files if not name.startswith(".") and name.lower().endswith(CAPTURE_SUFFIXES)
+        ]
+        if seen and MOTION_FILE not in files and any((Path(place) / name).is_file() for name in seen):
+            found.append(Path(place))
     return sorted(found)
 
 
@@ -117,16 +128,6 @@ def _sessions(root: Path) -> Iterator[tuple[Path, list[Path]]]:
     """Folders with captures, and these."""
     for place in session_folders(root):
         yield place, captures_in(place)
-
-
-def _found(root: Path, suffix: str) -> Iterator[Path]:
-    """Files with a suffix; hidden ones, and those among results, left out."""
-    for path in sorted(root.rglob("*")):
-        hidden = any(part.startswith(".") for part in path.relative_to(root).parts)
-        if path.suffix.lower() != suffix or hidden or not path.is_file():
-            continue
-        if not (path.parent / MOTION_FILE).is_file():
-            yield path
 
 
 def _trials(root: Path, place: Path, captures: Sequence[Path]) -> list[Trial]:
