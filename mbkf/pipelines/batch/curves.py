@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
 from mbkf.io.atomic import replacing
 from mbkf.io.results import Reconstruction
-from mbkf.io.results_opensim import TRANSLATIONS
+from mbkf.pipelines.gait.curves import SideCurve, side_curves
 from mbkf.pipelines.gait.cycles import POINTS, Cycle, find_gait, over_cycle
 
-SIDES, ENDINGS = ("right", "left"), ("_r", "_l")
-AXES, ROOT = "xyz", "pelvis_"
+SIDES, AXES = ("right", "left"), "xyz"
 
 _WORD = pa.dictionary(pa.int32(), pa.string())
 SCHEMA = pa.schema(
@@ -42,16 +39,6 @@ SCHEMA = pa.schema(
 toe_off_percent: of the cycle. measured, valid: whether every load in it was measured, and every torque known
 (:attr:`Reconstruction.measured`, ``valid``). quantity: angle, torque, power or reaction. name: the coordinate, without
 its side, or the axis of the force. percent: 0 to 100 of the cycle. value, sd: in ``unit``."""
-
-
-class Curve(NamedTuple):
-    """A quantity over a trial, and its standard deviation, (T,) each."""
-
-    quantity: str
-    name: str
-    unit: str
-    value: Array
-    sd: Array
 
 
 def read_curves(path: Path) -> pa.Table:
@@ -99,28 +86,16 @@ def curves_of(r: Reconstruction) -> pa.Table:
     return pa.concat_tables(tables).unify_dictionaries() if tables else SCHEMA.empty_table()
 
 
-def _curves(r: Reconstruction, side: int) -> Iterator[Curve]:
-    """What is told of cycles of a side."""
-    own, other = ENDINGS[side], ENDINGS[1 - side]
-    for name in r.coordinate_names:
-        if name.endswith(other):
-            continue
-        told = name.removesuffix(own)
-        if name in TRANSLATIONS:
-            yield Curve("angle", told, "m", r.angle(name), r.angle_sd(name))
-            continue
-        yield Curve("angle", told, "deg", np.rad2deg(r.angle(name)), np.rad2deg(r.angle_sd(name)))
-        if name.startswith(ROOT):  # what stands there is a residual
-            continue
-        yield Curve("torque", told, "N m", r.moment(name), r.moment_sd(name))
-        yield Curve("power", told, "W", r.power(name), r.power_sd(name))
+def _curves(r: Reconstruction, side: int) -> Iterator[SideCurve]:
+    """What is told of cycles of a side: reactions in the laboratory's axes."""
+    yield from side_curves(r, side)
     unknown = np.full(len(r.times_s), np.nan)
     for k, axis in enumerate(AXES):
         sd = unknown if r.foot_wrench_sd is None else r.foot_wrench_sd[:, side, k]
-        yield Curve("reaction", f"force_{axis}", "N", r.foot_wrench[:, side, k], sd)
+        yield SideCurve("reaction", f"force_{axis}", "N", r.foot_wrench[:, side, k], sd, unknown)
 
 
-def _table(r: Reconstruction, cycle: Cycle, number: int, curves: list[Curve]) -> pa.Table:
+def _table(r: Reconstruction, cycle: Cycle, number: int, curves: list[SideCurve]) -> pa.Table:
     """One cycle's rows."""
     n = len(curves)
     inside = (r.times_s >= cycle.start_s) & (r.times_s <= cycle.end_s)

@@ -13,7 +13,7 @@ from mbkf.io.results import Reconstruction
 from mbkf.model.description import BodyDescription
 from mbkf.model.human import reference_body
 from mbkf.pipelines.gait.cycles import POINTS, Gait, over_cycle
-from mbkf.pipelines.gait.events import feet_in_motion
+from mbkf.pipelines.gait.facing import facing
 from mbkf.viz.markup import folded, grid, key, paragraph, section, table
 from mbkf.viz.report.spreads import Curve, band_key, cycle_sd, offsets_told, spread_note
 from mbkf.viz.svg import WIDTH, Line, Mark, chart, number
@@ -24,9 +24,6 @@ MOST_SINGLE = 8
 
 LONG_S, BROAD = 15.0, 1110.0
 """Curves over a longer time are drawn so broad."""
-
-FACING_S = 0.5
-"""Standard deviation of the window over which the direction a person faces is averaged."""
 
 
 @dataclass(frozen=True)
@@ -185,23 +182,6 @@ def force_cells(
             curves[side] = Curve(factor * along, *shown)
         cells.append(Cell(f"{part}, {title.lower()}" if part else title, unit, positive, curves))
     return cells
-
-
-def facing(r: Reconstruction) -> Array:
-    """(T, 3, 3) rows: horizontally forward as the pelvis faces on average over a second or so, left, up."""
-    from scipy.ndimage import gaussian_filter1d
-
-    forward = feet_in_motion(r).forward
-    known = np.flatnonzero(~np.isnan(forward).any(axis=1))
-    frames = np.arange(r.frames)
-    filled = np.column_stack([np.interp(frames, known, forward[known, axis]) for axis in range(2)])
-    x, y = gaussian_filter1d(filled, FACING_S * r.rate_hz, axis=0, mode="nearest").T
-    n = np.maximum(np.hypot(x, y), 1e-9)
-    axes = np.zeros((r.frames, 3, 3))
-    axes[:, 0, 0], axes[:, 0, 1] = x / n, y / n
-    axes[:, 1, 0], axes[:, 1, 1] = -y / n, x / n
-    axes[:, 2, 2] = 1.0
-    return axes
 
 
 def _cells(

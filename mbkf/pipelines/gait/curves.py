@@ -1,0 +1,57 @@
+"""What a trial tells of one side of the body: angles, torques and powers over time, with their standard deviations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.io.results import Reconstruction
+from mbkf.io.results_opensim import TRANSLATIONS
+
+ENDINGS, ROOT = ("_r", "_l"), "pelvis_"
+
+
+class SideCurve(NamedTuple):
+    """A quantity over a trial.
+
+    Attributes:
+        quantity: "angle", "torque", "power" or "reaction".
+        name: The coordinate without its side, or the axis of a force.
+        unit: Of the values: deg, m, N m, W or N.
+        value, sd, offset_sd: (T,) values, standard deviations, and the part of these that repeats whenever the posture
+            is the same; NaN where not known.
+    """
+
+    quantity: str
+    name: str
+    unit: str
+    value: Array
+    sd: Array
+    offset_sd: Array
+
+
+def side_curves(r: Reconstruction, side: int) -> Iterator[SideCurve]:
+    """Angles of a side and of the midline, and torques and powers of the joints among them.
+
+    Args:
+        r: The results.
+        side: 0 right, 1 left.
+    """
+    own, other = ENDINGS[side], ENDINGS[1 - side]
+    for name in r.coordinate_names:
+        if name.endswith(other):
+            continue
+        told = name.removesuffix(own)
+        angle = (r.angle(name), r.angle_sd(name), r.angle_sd(name, "offset"))
+        if name in TRANSLATIONS:
+            yield SideCurve("angle", told, "m", *angle)
+            continue
+        yield SideCurve("angle", told, "deg", *(np.rad2deg(one) for one in angle))
+        if name.startswith(ROOT):  # what stands there is a residual
+            continue
+        moment = (r.moment(name), r.moment_sd(name), r.moment_sd(name, "offset"))
+        yield SideCurve("torque", told, "N m", *moment)
+        yield SideCurve("power", told, "W", r.power(name), r.power_sd(name), r.power_sd(name, "offset"))

@@ -1,0 +1,145 @@
+"""Means of cycles with their uncertainty, and the difference of two means with its 95 % interval.
+
+Cycles of one trial are more alike than those of different trials, so the variance of a mean is that of a one-way random
+effects model (S. R. Searle, G. Casella and C. E. McCulloch, Variance Components, 1992, section 3.6): with n_i cycles in
+trial i, N in all, k trials, mean squares between (MSB) and within trials (MSW),
+
+    sigma_b^2 = max(0, (MSB - MSW) / n_0),   n_0 = (N - sum n_i^2 / N) / (k - 1),
+    var(mean) = sigma_b^2 sum (n_i / N)^2 + MSW / N.
+
+What the body, which is not known exactly, shifts in every cycle alike does not fall with the number of cycles; its
+variance is added. Degrees of freedom are Welch and Satterthwaite's (B. L. Welch, Biometrika 34, 1947, 28-35).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import stdtrit
+
+from mbkf.conventions import Array
+
+CONFIDENCE = 0.95
+"""Of intervals."""
+
+
+@dataclass(frozen=True)
+class Mean:
+    """The mean of cycles at P points.
+
+    Attributes:
+        mean: (P,) mean.
+        sd: (P,) standard deviation between cycles; NaN for a single one.
+        variance: (P,) of the mean, by how cycles and trials differ.
+        freedom: (P,) degrees of freedom of that variance.
+        shift_variance: (P,) of what shifts all cycles alike.
+        count: How many cycles.
+    """
+
+    mean: Array
+    sd: Array
+    variance: Array
+    freedom: Array
+    shift_variance: Array
+    count: int
+
+
+@dataclass(frozen=True)
+class Difference:
+    """One mean less another at P points.
+
+    Attributes:
+        difference: (P,) the difference.
+        half_width: (P,) of its 95 % interval.
+    """
+
+    difference: Array
+    half_width: Array
+
+    @property
+    def low(self) -> Array:
+        """(P,) lower end of the interval."""
+        return self.difference - self.half_width
+
+    @property
+    def high(self) -> Array:
+        """(P,) upper end of the interval."""
+        return self.difference + self.half_width
+
+
+def mean_of(values: Array, trials: Sequence[str], shift_sd: Array, own_sd: Array) -> Mean:
+    """The mean of cycles.
+
+    Args:
+        values: (C, P) cycles, C at least 1.
+        trials: (C,) the trial that each is from.
+        shift_sd: (C, P) standard deviations of what shifts all cycles alike; NaN counts as 0.
+        own_sd: (C, P) stated standard deviations of a cycle by itself, which stand in for the spread between cycles
+            where there is one only.
+    """
+    count = len(values)
+    mean = values.mean(axis=0)
+    shift = np.nan_to_num(shift_sd).mean(axis=0) ** 2
+    if count == 1:
+        alone = np.nan_to_num(own_sd[0]) ** 2
+        return Mean(mean, np.full_like(mean, np.nan), alone, np.full_like(mean, np.inf), shift, 1)
+    variance, freedom = _variance_of_mean(values, trials)
+    return Mean(mean, values.std(axis=0, ddof=1), variance, freedom, shift, count)
+
+
+def difference_of(after: Mean, before: Mean, same_body: bool) -> Difference:
+    """After less before, with its interval.
+
+    Args:
+        after: One mean.
+        before: The other.
+        same_body: Whether both were reconstructed with the same scaled person, so that shifts cancel.
+    """
+    parts = [(after.variance, after.freedom), (before.variance, before.freedom)]
+    if not same_body:
+        infinite = np.full_like(after.mean, np.inf)
+        parts += [(after.shift_variance, infinite), (before.shift_variance, infinite)]
+    variance = np.sum([part for part, _ in parts], axis=0)
+    return Difference(after.mean - before.mean, _quantile(_freedom(parts)) * np.sqrt(variance))
+
+
+def half_width_of(mean: Mean) -> Array:
+    """(P,) half of the 95 % interval of a mean."""
+    parts = [(mean.variance, mean.freedom), (mean.shift_variance, np.full_like(mean.mean, np.inf))]
+    return _quantile(_freedom(parts)) * np.sqrt(mean.variance + mean.shift_variance)
+
+
+def _variance_of_mean(values: Array, trials: Sequence[str]) -> tuple[Array, Array]:
+    """(P,) variance of the mean of several cycles, and its degrees of freedom."""
+    _, member, sizes = np.unique(trials, return_inverse=True, return_counts=True)
+    N, k = len(values), len(sizes)
+    if k == 1:
+        return values.var(axis=0, ddof=1) / N, np.full(values.shape[1], float(N - 1))
+    means = np.array([values[member == i].mean(axis=0) for i in range(k)])
+    msb = (sizes[:, None] * (means - values.mean(axis=0)) ** 2).sum(axis=0) / (k - 1)
+    if k == N:  # one cycle of each trial
+        return msb / N, np.full(values.shape[1], float(k - 1))
+    msw = ((values - means[member]) ** 2).sum(axis=0) / (N - k)
+    n_0 = (N - (sizes**2).sum() / N) / (k - 1)
+    weight = (sizes**2).sum() / N**2 / n_0
+    apart = msb > msw
+    between, within = weight * msb, (1.0 / N - weight) * msw
+    pooled = ((k - 1) * msb + (N - k) * msw) / (N - 1)
+    variance = np.where(apart, between + within, pooled / N)
+    freedom = (between + within) ** 2 / np.maximum(between**2 / (k - 1) + within**2 / (N - k), 1e-300)
+    return variance, np.where(apart, freedom, float(N - 1))
+
+
+def _freedom(parts: list[tuple[Array, Array]]) -> Array:
+    """(P,) degrees of freedom of a sum of variances, each with its own."""
+    total = np.sum([part for part, _ in parts], axis=0)
+    uncertain = np.sum([part**2 / freedom for part, freedom in parts], axis=0)
+    return total**2 / np.maximum(uncertain, 1e-300)
+
+
+def _quantile(freedom: Array) -> Array:
+    """(P,) how many standard deviations half an interval is wide (Student's t)."""
+    bounded = np.clip(freedom, 1.0, 1e6)
+    return np.asarray(stdtrit(bounded, 0.5 + 0.5 * CONFIDENCE))
