@@ -11,7 +11,7 @@ from mbkf.viz.page import asset, embedded
 from mbkf.viz.report.document import report_page
 from mbkf.viz.scene.playback import playback_page
 
-SCRIPTS = ("element.js", "app_words.js", "app_session.js", "app.js")
+SCRIPTS = ("element.js", "app_words.js", "app_report.js", "app_session.js", "app.js")
 """The page's own scripts, in the order they are needed."""
 
 

@@ -15,7 +15,7 @@ from typing import BinaryIO
 
 from mbkf.errors import InvalidInput
 from mbkf.io.atomic import replacing
-from mbkf.io.session import SESSION_FILE, SessionNotes, write_session
+from mbkf.io.session import SESSION_FILE, SessionNotes, read_session, write_session
 from mbkf.pipelines.batch.folder import plan_of_folder, session_folders
 from mbkf.pipelines.batch.plan import FORBIDDEN, Plan
 from mbkf.pipelines.survey.session import SurveyedSession, survey_session
@@ -132,6 +132,28 @@ class Workspace:
             if one.name == trial and (place / "summary.json").is_file():
                 return place
         raise InvalidInput(f"there is no result of '{trial}' yet")
+
+    def results(self, session: str) -> list[Path]:
+        """The folders of a session's results, one for each trial that is done and not left out.
+
+        Raises:
+            InvalidInput: There is no such session, or no result.
+        """
+        places = [self.out / one.place for one in self.plan(session).trials]
+        done = [place for place in places if (place / "summary.json").is_file()]
+        if not done:
+            raise InvalidInput(f"nothing of '{session}' is done yet; run it first")
+        return done
+
+    def notes(self, session: str) -> SessionNotes:
+        """What is stated of a session.
+
+        Raises:
+            InvalidInput: There is no such session.
+            FileFormatError: Its session file is damaged.
+        """
+        file = self.folder(session) / SESSION_FILE
+        return read_session(file) if file.is_file() else SessionNotes()
 
     def _surveyed(self, path: Path, forces: Path | None) -> SurveyedTrial:
         stamp = tuple((s.st_size, s.st_mtime_ns) for s in (file.stat() for file in (path, forces) if file))

@@ -1,18 +1,26 @@
-"""`mbkf report`: one page about a result, quality first."""
+"""`mbkf report`: one page about a result, or about all trials of a session together."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mbkf.pipelines.session.records import Session
 
 _EPILOG = """\
 examples:
-  mbkf report result                         writes result/report.html
-  mbkf report result --out walk7.html
+  mbkf report result                         one trial: writes result/report.html
   mbkf report result --labels labelled.json  adds what 'mbkf label' wrote beside the labelled capture
+  mbkf report results/P1/monday              a session of 'mbkf batch': writes report.html there
+  mbkf report friday --against monday --norms norms.toml --language es
+  mbkf report results/P1 --curves curves.csv
 
-The page holds everything and loads nothing: markers, residuals, gaps and remarks first, then gait, angles, torques,
-reactions and settings. Over 0-100 % cycles where the trial shows gait.
+The page holds everything and loads nothing. Of one trial: markers, residuals, gaps and remarks first, then gait, angles,
+torques, reactions and settings. Of a session (a folder with several results, or several folders): every gait cycle with
+means, powers, jumps and squats, the laboratory's norms ('mbkf norms build'), and what changed against an earlier session,
+with 95 % intervals.
 """
 
 
@@ -20,17 +28,28 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
     parser = subparsers.add_parser(
         "report",
-        help="one page about a result: quality, gait, angles, torques, reactions",
-        description="Write one self-contained HTML page about a result.",
+        help="one page about a result or a session: quality, gait, angles, torques, reactions",
+        description="Write one self-contained HTML page about a result, or about a session of several.",
         epilog=_EPILOG,
     )
-    parser.add_argument("folder", metavar="DIR", help="written by 'mbkf reconstruct' or 'mbkf live'")
-    parser.add_argument("--out", metavar="FILE.html", help="file to write (DIR/report.html)")
+    parser.add_argument(
+        "folders",
+        metavar="DIR",
+        nargs="+",
+        help="written by 'mbkf reconstruct', 'mbkf live' or 'mbkf batch'; several are one session",
+    )
+    parser.add_argument("--out", metavar="FILE.html", help="file to write (report.html in the first DIR)")
     parser.add_argument(
         "--labels",
         metavar="FILE.json",
-        help="written by 'mbkf label' (TRIAL.json in DIR or beside it, where there is one)",
+        help="of one trial: written by 'mbkf label' (TRIAL.json in DIR or beside it, where there is one)",
     )
+    session = parser.add_argument_group("of a session")
+    session.add_argument("--against", metavar="DIR", nargs="+", help="an earlier session to compare with")
+    session.add_argument("--norms", metavar="FILE.toml", help="reference bands, by 'mbkf norms build'")
+    session.add_argument("--language", metavar="CODE", help="language of the page: en, es (en)")
+    session.add_argument("--curves", metavar="FILE", help="write every curve, too: .csv or .parquet")
+    session.add_argument("--name", metavar="TEXT", help="heading of the page (the folder's name)")
     parser.set_defaults(run=run)
 
 
@@ -38,16 +57,55 @@ def run(args: argparse.Namespace) -> int:
     """Writes the report.
 
     Raises:
-        MbkfError: There is no result, or the labels are something else.
+        MbkfError: There is no result, or an option does not fit what is there.
         OSError: The page cannot be written.
     """
+    from mbkf.errors import InvalidInput
+    from mbkf.io.results_folder import MOTION_FILE
+
+    folders = [Path(folder) for folder in args.folders]
+    of_session = [args.against, args.norms, args.language, args.curves, args.name]
+    one = len(folders) == 1 and ((folders[0] / MOTION_FILE).is_file() or not folders[0].is_dir())
+    if one and not any(option is not None for option in of_session):
+        return _trial(args, folders[0])
+    if args.labels is not None:
+        raise InvalidInput("--labels is for the report of one trial; give its folder alone")
+    return _session(args, folders)
+
+
+def _trial(args: argparse.Namespace, folder: Path) -> int:
     from mbkf.io.results_folder import read_reconstruction, read_summary
     from mbkf.viz.report.document import labels_of, read_labels, write_report
 
-    folder = Path(args.folder)
     result = read_reconstruction(folder)
     labels = labels_of(folder, result.trial) if args.labels is None else read_labels(args.labels)
     out = Path(args.out) if args.out else folder / "report.html"
     write_report(result, read_summary(folder), out, labels)
     print(out)
+    return 0
+
+
+def _session(args: argparse.Namespace, folders: list[Path]) -> int:
+    from mbkf.io.norms import read_norms
+    from mbkf.pipelines.session.gather import results_in, session_from
+    from mbkf.pipelines.session.tables import check_curves_file, write_session_curves
+    from mbkf.viz.language import ENGLISH
+    from mbkf.viz.session.document import session_page, write_session_report
+
+    norms = None if args.norms is None else read_norms(args.norms)
+    if args.curves is not None:
+        check_curves_file(Path(args.curves))
+    out = Path(args.out) if args.out else folders[0] / "report.html"
+
+    def read(places: list[Path], name: str | None) -> Session:
+        results = [result for place in places for result in results_in(place)]
+        return session_from(results, name or places[0].absolute().name)
+
+    before = None if args.against is None else read([Path(place) for place in args.against], None)
+    session = read(folders, args.name)
+    write_session_report(session_page(session, before, norms, args.language or ENGLISH), out)
+    print(out)
+    if args.curves is not None:
+        write_session_curves(session, args.curves)
+        print(args.curves)
     return 0

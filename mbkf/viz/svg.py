@@ -29,6 +29,8 @@ class Line:
         inner_sd: (N,) part of them for a darker band inside, or None.
         side: "r", "l" or "" for its colour.
         thin: Drawn lightly, as one of several.
+        dashed: Drawn with dashes.
+        scales: Whether the axis makes room for it; what does not fit is drawn on the frame's edge.
     """
 
     x: Array
@@ -37,6 +39,8 @@ class Line:
     side: str = ""
     thin: bool = False
     inner_sd: Array | None = None
+    dashed: bool = False
+    scales: bool = True
 
 
 @dataclass(frozen=True)
@@ -74,7 +78,7 @@ def chart(
         width: In the drawing's own units, which the page scales.
         height: Likewise.
     """
-    low, high = _y_range(lines, level)
+    low, high = _y_range([line for line in lines if line.scales], level)
     box = _Box(width, height, x_range, (low, high))
     parts = [_grid(box, x_unit)]
     if level is not None:
@@ -253,7 +257,10 @@ def _path(box: _Box, line: Line) -> str:
     known = np.isfinite(line.y)
     d = "".join(box.path(*_thinned(line.x[run], line.y[run], box.width)) for run in _runs(known))
     return (
-        f'<path {_TENTHS} class="{"thin" if line.thin else "line"} {_side(line.side)}" d="{d}"/>' if d else ""
+        f'<path {_TENTHS} class="{"thin" if line.thin else "line"} {_side(line.side)}'
+        f'{" dashed" if line.dashed else ""}" d="{d}"/>'
+        if d
+        else ""
     )
 
 

@@ -42,11 +42,11 @@ def chosen_curves(side: SideCycles, key: Key) -> Chosen:
         key: The quantity, one of ``side.curves``.
     """
     curves = side.curves[key]
-    finite: BoolArray = np.isfinite(curves.values).all(axis=1)
+    finite = np.asarray(np.isfinite(curves.values).all(axis=1))
     measured = np.array([cycle.measured for cycle in side.cycles], dtype=bool)
     valid = np.array([cycle.valid for cycle in side.cycles], dtype=bool)
-    counts = finite & measured & valid if key.is_load else finite
-    others = finite & valid & ~measured if key.is_load else ~finite & False
+    counts = finite & (measured & valid | (not key.is_load))
+    others = finite & valid & ~measured & key.is_load
     estimated = not counts.any() and bool(others.any())
     if estimated:
         counts, others = others, counts

@@ -12,14 +12,14 @@ from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.io.results import Reconstruction
 from mbkf.model.description import BodyDescription
 from mbkf.model.human import reference_body
-from mbkf.pipelines.gait.curves import SideCurve, side_curves
+from mbkf.pipelines.gait.curves import ENDINGS, SideCurve, side_curves
 from mbkf.pipelines.gait.cycles import POINTS, Cycle, Gait, over_cycle
 from mbkf.pipelines.gait.facing import facing
 
 FORCES = ("forward", "medial", "upward")
 """Components of a reaction: in the direction the person faces, towards the other foot, up."""
 
-ANGLE, REACTION = "angle", "reaction"
+ANGLE, TORQUE, POWER, REACTION = "angle", "torque", "power", "reaction"
 
 
 class Key(NamedTuple):
@@ -104,13 +104,35 @@ def cycles_of_trial(r: Reconstruction, gait: Gait | None, side: int) -> SideCycl
     curves = {}
     for curve in [*side_curves(r, side), *_reactions(r, side)]:
         factor, unit = _shown(curve, r.subject.mass_kg)
-        sign = -1.0 if curve.name in mirrored and curve.quantity != "power" else 1.0
+        sign = -1.0 if curve.name in mirrored and curve.quantity != POWER else 1.0
         value, sd, shift = (
             np.array([over_cycle(r.times_s, k * each, c) for c in kept])
             for k, each in ((sign * factor, curve.value), (factor, curve.sd), (factor, curve.offset_sd))
         )
         curves[Key(curve.quantity, curve.name)] = Curves(unit, value, sd, shift)
+    curves |= _whole_joints(curves, reference_body(r.subject), side)
     return SideCycles(side, cycles, curves)
+
+
+def _whole_joints(curves: Mapping[Key, Curves], body: BodyDescription, side: int) -> dict[Key, Curves]:
+    """The power of each joint as a whole, under the joint's name: the sum over its coordinates."""
+    found = {}
+    for joint in body.clinical_joints:
+        if joint.name.endswith(ENDINGS[1 - side]):
+            continue
+        parts = [
+            curves[key]
+            for a in joint.angles
+            if (key := Key(POWER, a.name.removesuffix(ENDINGS[side]))) in curves
+        ]
+        if parts:
+            found[Key(POWER, joint.name.removesuffix(ENDINGS[side]))] = Curves(
+                parts[0].unit,
+                np.sum([one.values for one in parts], axis=0),
+                np.sqrt(np.sum([one.sd**2 for one in parts], axis=0)),
+                np.sqrt(np.sum([one.shift_sd**2 for one in parts], axis=0)),
+            )
+    return found
 
 
 def together(parts: list[SideCycles], side: int) -> SideCycles:

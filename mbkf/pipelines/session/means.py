@@ -105,6 +105,34 @@ def difference_of(after: Mean, before: Mean, same_body: bool) -> Difference:
     return Difference(after.mean - before.mean, _quantile(_freedom(parts)) * np.sqrt(variance))
 
 
+def paired_difference(
+    values: Array, trials: Sequence[str], other_values: Array, other_trials: Sequence[str]
+) -> Difference | None:
+    """The mean over trials of one quantity less another, with its interval: what a trial does to both cancels.
+
+    Args:
+        values: (N,) of the first quantity, e.g. of right steps; NaN where not known.
+        trials: (N,) the trial of each.
+        other_values: (M,) of the second.
+        other_trials: (M,) the trial of each.
+
+    Returns:
+        The difference; None where fewer than two trials know both.
+    """
+    first, second = _by_trial(values, trials), _by_trial(other_values, other_trials)
+    apart = np.array([first[name] - second[name] for name in first if name in second])
+    if len(apart) < 2:
+        return None
+    half = _quantile(np.array([len(apart) - 1.0])) * apart.std(ddof=1) / np.sqrt(len(apart))
+    return Difference(apart.mean(keepdims=True), half)
+
+
+def _by_trial(values: Array, trials: Sequence[str]) -> dict[str, float]:
+    """The mean of each trial that has one."""
+    names, known = np.asarray(trials), np.isfinite(values)
+    return {str(name): float(values[known & (names == name)].mean()) for name in np.unique(names[known])}
+
+
 def half_width_of(mean: Mean) -> Array:
     """(P,) half of the 95 % interval of a mean."""
     parts = [(mean.variance, mean.freedom), (mean.shift_variance, np.full_like(mean.mean, np.inf))]

@@ -47,13 +47,17 @@ const act = {
     await refresh();
   },
   show(look, trial) {
-    const frame = element("iframe", { src: `trial/${look}?` + query({ session: chosen, trial }), title: `${trial}: ${word(look)}` });
-    const dialog = element("dialog", { onclose: () => dialog.remove() });
+    act.dialog(trial, element("iframe", { src: `trial/${look}?` + query({ session: chosen, trial }), title: `${trial}: ${word(look)}` }));
+  },
+  dialog(title, content, tools = []) {
+    const dialog = element("dialog", { onclose: () => { dialog.remove(); refresh(); } });
+    dialog.setAttribute("aria-label", title);
     const close = element("button", { type: "button", onclick: () => dialog.close() }, word("close"));
-    dialog.append(element("div", { className: "bar" }, element("b", {}, trial), close), frame);
+    dialog.append(element("div", { className: "bar" }, element("b", {}, title), ...tools, close), content);
     document.body.append(dialog);
     dialog.showModal();
   },
+  report: () => sessionReport(chosen, act),
 };
 
 function draw(data) {

@@ -47,6 +47,9 @@ function run(data, act) {
   const state = data.run, busy = state && (state.state === "running" || state.state === "waiting");
   const row = element("div", { className: "run" });
   row.append(element("button", { className: "main", type: "button", disabled: Boolean(busy), onclick: () => act.run("start") }, word(state && !busy ? "again" : "run")));
+  if (data.trials.some((one) => one.status === "done" || one.status === "unchanged")) {
+    row.append(element("button", { id: "session-report", className: "main", type: "button", onclick: act.report }, word("session_report")));
+  }
   if (!state) return element("section", {}, row);
   if (busy) {
     const total = Math.max(state.total, 1);

@@ -1,0 +1,38 @@
+"""The words of a session's report in one language."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mbkf.viz.language import filled, words
+
+
+@dataclass(frozen=True)
+class Terms:
+    """A report's words.
+
+    Attributes:
+        language: Its code, e.g. "es".
+    """
+
+    language: str
+
+    def say(self, name: str, *values: object) -> str:
+        """A text of the section ``session_report``, filled with values."""
+        return filled(words(self.language, "session_report")[name], *values)
+
+    def measure(self, name: str) -> str:
+        """The name of a measure, e.g. "Step length"."""
+        return words(self.language, "measures").get(name, name)
+
+    def joint(self, name: str) -> str:
+        """The name of a joint, e.g. "knee"; a body's own ones keep theirs."""
+        return words(self.language, "joints").get(name, name.replace("_", " ").capitalize())
+
+    def coordinate(self, name: str, otherwise: str) -> str:
+        """The title of a coordinate without its side, or the body's own one."""
+        return words(self.language, "coordinates").get(name, otherwise)
+
+    def positive(self, name: str, otherwise: str) -> str:
+        """What is positive, as the side sees it, or the body's own words."""
+        return words(self.language, "positive").get(name, otherwise)
