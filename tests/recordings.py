@@ -26,17 +26,27 @@ PLATE = np.array([[0.6, 0.4, 0.0], [0.0, 0.4, 0.0], [0.0, -0.4, 0.0], [0.6, -0.4
 
 
 @cache
+def performer(name, seconds, seed):
+    """A person, the body, and a true motion."""
+    person = synthesise_subject(seed)
+    model = body_of(person)
+    return person, model, synthesise_motion(model, name, seconds, seed=seed)
+
+
 def walker():
     """The person, the body, and two and a half seconds of true walking."""
-    person = synthesise_subject(5)
-    model = body_of(person)
-    return person, model, synthesise_motion(model, "walk", 2.5, seed=5)
+    return performer("walk", 2.5, 5)
+
+
+def walk():
+    """The walk as a dynamic filter would tell it."""
+    return recorded("walk", 2.5, 5)
 
 
 @cache
-def walk():
-    """The walk as a dynamic filter would tell it, with standard deviations of 0.02 rad, 3 N m and 5 N."""
-    person, model, motion = walker()
+def recorded(name, seconds, seed):
+    """A motion as a dynamic filter would tell it, with standard deviations of 0.02 rad, 3 N m and 5 N."""
+    person, model, motion = performer(name, seconds, seed)
     T, M, nv = len(motion.times_s), len(person.markers), model.nv
     clinical = ClinicalAngles(model)
     angles = clinical.angles(motion.q)
@@ -47,7 +57,7 @@ def walk():
     per_dof, per_angle = np.ones((T, nv)), np.ones((T, len(clinical.names)))
     force = motion.foot_wrench
     return Reconstruction(
-        trial="walk <1>", protocol=person.protocol, filter="dynamic", smoothed=False, version="0", subject=person,
+        trial=f"{name} <1>", protocol=person.protocol, filter="dynamic", smoothed=False, version="0", subject=person,
         rate_hz=motion.rate_hz, times_s=motion.times_s, dof_names=dof_names(model), q=motion.q, v=motion.v,
         a=motion.a, tau=motion.tau, sd_q=0.02 * per_dof, sd_v=0.1 * per_dof, sd_tau=3.0 * per_dof,
         coordinate_names=clinical.names, angles=angles, angle_rates=0.0 * per_angle,

@@ -19,8 +19,8 @@ from mbkf.errors import MbkfError
 from mbkf.version import __version__
 
 COMMANDS = (
-    "demo", "synth", "info", "scale", "label", "reconstruct", "batch", "replay", "live", "view", "report", "norms", "app",
-    "tune", "observability", "protocol", "imu", "export",
+    "demo", "synth", "info", "scale", "label", "reconstruct", "batch", "replay", "live", "view", "report", "norms",
+    "app", "tune", "observability", "protocol", "imu", "export",
 )  # fmt: skip
 """Names of the subcommands, in the order of the help; each is the module ``mbkf.cli.<name>``."""
 

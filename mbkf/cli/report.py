@@ -17,10 +17,10 @@ examples:
   mbkf report friday --against monday --norms norms.toml --language es
   mbkf report results/P1 --curves curves.csv
 
-The page holds everything and loads nothing. Of one trial: markers, residuals, gaps and remarks first, then gait, angles,
-torques, reactions and settings. Of a session (a folder with several results, or several folders): every gait cycle with
-means, powers, jumps and squats, the laboratory's norms ('mbkf norms build'), and what changed against an earlier session,
-with 95 % intervals.
+The page holds everything and loads nothing. Of one trial: markers, residuals, gaps and remarks first, then gait,
+angles, torques, reactions and settings. Of a session (a folder with several results, or several folders): every gait
+cycle with means, powers, jumps and squats, the laboratory's norms ('mbkf norms build'), and what changed against an
+earlier session, with 95 % intervals.
 """
 
 

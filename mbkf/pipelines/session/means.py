@@ -157,7 +157,7 @@ def _variance_of_mean(values: Array, trials: Sequence[str]) -> tuple[Array, Arra
     pooled = ((k - 1) * msb + (N - k) * msw) / (N - 1)
     variance = np.where(apart, between + within, pooled / N)
     freedom = (between + within) ** 2 / np.maximum(between**2 / (k - 1) + within**2 / (N - k), 1e-300)
-    return variance, np.where(apart, freedom, float(N - 1))
+    return variance, np.where(apart, np.maximum(freedom, 1.0), float(N - 1))
 
 
 def _freedom(parts: list[tuple[Array, Array]]) -> Array:

@@ -23,24 +23,24 @@ SCHEMA = pa.schema(
         ("kind", pa.string()),
         ("trial", pa.string()),
         ("side", pa.string()),
-        ("start_s", pa.float64()),
-        ("duration_s", pa.float64()),
-        ("toe_off_percent", pa.float64()),
+        ("start_s", pa.float32()),
+        ("duration_s", pa.float32()),
+        ("toe_off_percent", pa.float32()),
         ("measured", pa.bool_()),
         ("valid", pa.bool_()),
         ("quantity", pa.string()),
         ("name", pa.string()),
         ("unit", pa.string()),
         ("percent", pa.int8()),
-        ("value", pa.float64()),
-        ("sd", pa.float64()),
-        ("sd_shift", pa.float64()),
+        ("value", pa.float32()),
+        ("sd", pa.float32()),
+        ("sd_shift", pa.float32()),
     ]
 )
-"""Columns. kind: of the movement. side: whose cycle. start_s, duration_s, toe_off_percent: of the cycle. measured, valid:
-whether every load in it was measured, and every torque known. quantity: angle, torque, power or reaction. name: the
-coordinate without its side, the joint of a whole power, or the direction of a force. value, sd, sd_shift: in ``unit``;
-sd_shift is the part of sd that shifts all cycles alike. Angles of the midline are as that side sees them."""
+"""Columns. kind: of the movement. side: whose cycle. start_s, duration_s, toe_off_percent: of the cycle. measured,
+valid: whether every load in it was measured, and every torque known. quantity: angle, torque, power or reaction. name:
+the coordinate without its side, the joint of a whole power, or the direction of a force. value, sd, sd_shift: in
+``unit``; sd_shift is the part of sd that shifts all cycles alike. Angles of the midline are as that side sees them."""
 
 SUFFIXES = (".csv", ".parquet")
 
@@ -106,8 +106,8 @@ def _table(session: Session, gait: MovementGroup, side: SideCycles, key: Key) ->
         "name": same(key.name),
         "unit": same(curves.unit),
         "percent": np.tile(np.arange(POINTS, dtype=np.int8), count),
-        "value": curves.values.ravel(),
-        "sd": curves.sd.ravel(),
-        "sd_shift": curves.shift_sd.ravel(),
+        "value": curves.values.astype(np.float32).ravel(),
+        "sd": curves.sd.astype(np.float32).ravel(),
+        "sd_shift": curves.shift_sd.astype(np.float32).ravel(),
     }
     return pa.table(columns, schema=SCHEMA)

@@ -1,0 +1,52 @@
+"""Measured and estimated cycles are never averaged together."""
+
+import numpy as np
+
+from mbkf.pipelines.session.chosen import chosen_curves
+from mbkf.pipelines.session.cycles import Key
+from mbkf.pipelines.session.gather import session_of
+from tests.pipelines.session.sessions import estimated, session, walks
+
+TORQUE, ANGLE = Key("torque", "knee_angle"), Key("angle", "knee_angle")
+
+
+def side_of(results):
+    return session_of(results, "x").gaits[0].sides[0]
+
+
+def test_all_angles_count():
+    side = side_of([walks()[0], estimated(walks()[1])])
+    found = chosen_curves(side, ANGLE)
+    assert found.told.count == len(side.cycles) and not found.estimated and len(found.others) == 0
+    np.testing.assert_allclose(found.told.mean, side.curves[ANGLE].values.mean(axis=0))
+
+
+def test_measured_loads_count_and_estimated_ones_stand_beside():
+    side = side_of([walks()[0], estimated(walks()[1])])
+    measured = np.array([one.measured for one in side.cycles])
+    found = chosen_curves(side, TORQUE)
+    assert measured.any() and not measured.all() and not found.estimated
+    np.testing.assert_array_equal(found.counted, side.curves[TORQUE].values[measured])
+    np.testing.assert_array_equal(found.others, side.curves[TORQUE].values[~measured])
+    np.testing.assert_allclose(found.told.mean, found.counted.mean(axis=0))
+
+
+def test_estimated_loads_stand_in_where_nothing_is_measured():
+    side = side_of([estimated(r) for r in walks()])
+    found = chosen_curves(side, TORQUE)
+    assert found.estimated and found.told.count == len(side.cycles) and len(found.others) == 0
+
+
+def test_loads_that_are_not_known_count_nowhere():
+    from dataclasses import replace
+
+    side = side_of([replace(r, valid=np.zeros(r.frames, bool)) for r in walks()])
+    found = chosen_curves(side, TORQUE)
+    assert found.told is None and not found.estimated and np.isnan(found.off_percent)
+    assert chosen_curves(side, ANGLE).told is not None
+
+
+def test_toe_off_is_that_of_the_cycles_that_count():
+    side = session().gaits[0].sides[1]
+    found = chosen_curves(side, TORQUE)
+    np.testing.assert_allclose(found.off_percent, np.mean([one.cycle.off_percent for one in side.cycles]))
