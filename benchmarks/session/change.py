@@ -40,7 +40,13 @@ MOTIONS = ("walk", "bent walk")
 
 @register_motion("bent walk", seconds=5.0, trial=False)
 def bent_walk_plan(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
-    """The walk of the same random numbers with knees that stay bent."""
+    """The walk of the same random numbers with knees that stay bent.
+
+    Args:
+        model: The body that walks.
+        seconds: Duration of the recorded window, s.
+        rng: Source of the differences between persons.
+    """
     plan = walk_plan(model, seconds, rng)
     return replace(plan, straightest_rad=plan.straightest_rad + BENT_RAD)
 

@@ -12,6 +12,7 @@ from mbkf.conventions import Array, TomlTable, read_only
 from mbkf.errors import FileFormatError
 from mbkf.io.atomic import replacing
 from mbkf.io.plain_data import read_toml
+from mbkf.io.text import toml_text
 
 FORMAT, FORMAT_VERSION = "mbkf norms", 1
 
@@ -66,13 +67,13 @@ def write_norms(norms: Norms, path: str | Path) -> None:
     Raises:
         OSError: The file cannot be written.
     """
-    lines = [f'format = "{FORMAT}"', f"format_version = {FORMAT_VERSION}", f"name = {_text(norms.name)}"]
+    lines = [f'format = "{FORMAT}"', f"format_version = {FORMAT_VERSION}", f"name = {toml_text(norms.name)}"]
     for (kind, quantity, name), band in norms.curves.items():
         lines += ["", "[[curve]]", *_words(kind=kind, quantity=quantity, name=name), *_numbers(band)]
     for (kind, name), band in norms.measures.items():
         lines += ["", "[[measure]]", *_words(kind=kind, name=name), *_numbers(band)]
     with replacing(path) as partial:
-        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        partial.writetoml_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def read_norms(path: str | Path) -> Norms:
@@ -82,7 +83,10 @@ def read_norms(path: str | Path) -> Norms:
         FileFormatError: The file is missing or damaged, or holds something else.
     """
     file = Path(path)
-    table = read_toml(file)
+    try:
+        table = read_toml(file)
+    except (OSError, ValueError) as error:
+        raise FileFormatError(file, f"is no file of norms ({error})") from error
     if table.get("format") != FORMAT or table.get("format_version") != FORMAT_VERSION:
         raise FileFormatError(file, "is no file of norms; make one with 'mbkf norms build'")
     name = table.get("name")
@@ -102,19 +106,13 @@ def read_norms(path: str | Path) -> Norms:
 
 
 def _words(**words: str) -> list[str]:
-    return [f"{key} = {_text(word)}" for key, word in words.items()]
-
-
-def _text(text: str) -> str:
-    """A text as TOML writes it on one line."""
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return '"' + "".join(c if c.isprintable() else f"\\u{ord(c):04x}" for c in escaped) + '"'
+    return [f"{key} = {toml_text(word)}" for key, word in words.items()]
 
 
 def _numbers(band: Band) -> list[str]:
     mean, sd = (", ".join(f"{value:.6g}" for value in values) for values in (band.mean, band.sd))
     return [
-        f"unit = {_text(band.unit)}",
+        f"unit = {toml_text(band.unit)}",
         f"persons = {band.persons}",
         f"mean = [{_float(mean)}]",
         f"sd = [{_float(sd)}]",

@@ -7,6 +7,7 @@ import pytest
 from mbkf.cli.main import main
 from mbkf.io.results_folder import write_reconstruction
 from mbkf.pipelines.results.summary import summarise
+from tests.pipelines.session.sessions import walks
 from tests.recordings import walk
 
 
@@ -39,4 +40,44 @@ def test_labels_may_be_named(result, tmp_path):
 )
 def test_bad_input_is_one_line(words, message, result, tmp_path, refused):
     places = {"none": tmp_path / "none", "result": result}
+    refused(["report", *(word.format(**places) for word in words)], message)
+
+
+@pytest.fixture(scope="module")
+def sessions(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sessions")
+    for name, count in (("before", 1), ("after", 2)):
+        for k, r in enumerate(walks(count)):
+            write_reconstruction(r, summarise(r), folder / name / f"walk{k}")
+    return folder
+
+
+def test_a_session_is_one_page(sessions, tmp_path, capsys):
+    after, before, curves = sessions / "after", sessions / "before", tmp_path / "c.parquet"
+    assert main(["report", str(after)]) == 0
+    assert capsys.readouterr().out.strip() == str(after / "report.html")
+    page = (after / "report.html").read_text()
+    assert 'id="gait-walk"' in page and 'id="change"' not in page
+    words = ["--against", str(before), "--language", "es", "--curves", str(curves), "--name", "Ana"]
+    assert main(["report", str(after), *words, "--out", str(tmp_path / "r.html")]) == 0
+    page = (tmp_path / "r.html").read_text()
+    assert 'id="change"' in page and "<h1>Ana</h1>" in page and "Antes" in page and curves.is_file()
+    single = str(after / "walk0")
+    assert main(["report", single, "--language", "en", "--out", str(tmp_path / "s.html")]) == 0
+    assert 'id="gait-walk"' in (tmp_path / "s.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["{after}", "--labels", "x.json"], "report of one trial"),
+        (["{after}", "--norms", "{none}"], "none"),
+        (["{after}", "--language", "xx"], "choose en, es"),
+        (["{after}", "--curves", "c.xlsx"], "written as .csv or .parquet"),
+        (["{empty}"], "no results are here"),
+        (["{after}", "--against", "{empty}"], "no results are here"),
+    ],
+)
+def test_bad_input_of_a_session_is_one_line(words, message, sessions, tmp_path, refused):
+    places = {"after": sessions / "after", "none": tmp_path / "none", "empty": tmp_path}
     refused(["report", *(word.format(**places) for word in words)], message)

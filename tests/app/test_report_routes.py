@@ -1,0 +1,36 @@
+"""The report's page and files over the page's server."""
+
+import io
+
+import pyarrow.parquet as pq
+import pytest
+
+from mbkf.io.results_folder import write_reconstruction
+from mbkf.pipelines.results.summary import summarise
+from tests.app.asking import asked, plain
+from tests.pipelines.session.sessions import walks
+
+
+@pytest.fixture(scope="module")
+def done(server):
+    r = walks()[0]
+    write_reconstruction(r, summarise(r), server.workspace.out / "P1" / "walk1")
+    return server
+
+
+def test_a_report_and_its_curves(done, cookie):
+    answer, text = asked(done, "/report?session=P1&language=es", Cookie=cookie)
+    assert answer.status == 200 and b'id="gait-walk"' in text and b'lang="es"' in text
+    for kind in ("csv", "parquet"):
+        answer, content = asked(done, f"/report/curves?session=P1&as={kind}", Cookie=cookie)
+        assert answer.status == 200 and f'filename="curves.{kind}"' in answer.headers["Content-Disposition"]
+    assert pq.read_table(io.BytesIO(content)).num_rows > 1000
+
+
+def test_what_is_missing_is_told(done, cookie):
+    assert plain(done, cookie, "/report/choices?session=P1") == (200, {"sessions": [], "norms": []})
+    assert asked(done, "/report?session=P9", Cookie=cookie)[0].status == 404
+    assert asked(done, "/report?session=P1&language=xx", Cookie=cookie)[0].status == 404
+    assert asked(done, "/report/curves?session=P9", Cookie=cookie)[0].status == 404
+    status, said = plain(done, cookie, "/norms", "POST")
+    assert status == 400 and "2 persons or more" in said["trouble"]

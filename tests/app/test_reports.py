@@ -1,0 +1,55 @@
+"""Reports in the page's folder: of what is done and not left out, compared, with norms of all sessions."""
+
+import pytest
+
+from mbkf.app import reports
+from mbkf.app.workspace import Workspace
+from mbkf.errors import InvalidInput
+from mbkf.io.norms import read_norms
+from mbkf.io.results_folder import write_reconstruction
+from mbkf.io.session import SessionNotes, TrialNotes
+from mbkf.pipelines.results.summary import summarise
+from tests.pipelines.session.sessions import walks
+from tests.studies import study
+
+
+@pytest.fixture
+def workspace(tmp_path):
+    """Two persons with two walks each, as if they had been run."""
+    study(tmp_path / "lab", persons=2, trials=2)
+    made = Workspace(tmp_path / "lab")
+    for person, first in (("P1", 5), ("P2", 6)):
+        for k, r in enumerate(walks(2, first), start=1):
+            write_reconstruction(r, summarise(r), made.out / person / f"walk{k}")
+    return made
+
+
+def test_a_report_alone_compared_and_with_norms(workspace):
+    assert reports.choices(workspace, "P1") == {"sessions": ["P2"], "norms": []}
+    assert reports.build(workspace) == {"norms": "norms.toml", "persons": 2}
+    assert reports.choices(workspace, "P2") == {"sessions": ["P1"], "norms": ["norms.toml"]}
+    assert read_norms(workspace.root / "norms.toml").name == "lab"
+    page = reports.report_of(workspace, "P1", "P2", "norms.toml", "es")
+    assert 'id="change"' in page and 'class="band n"' in page and '<html lang="es">' in page
+    assert 'id="change"' not in reports.report_of(workspace, "P1", "", "", "en")
+
+
+def test_trials_that_are_left_out_do_not_count(workspace):
+    assert len(reports.read_whole(workspace, "P1").trials) == 2
+    workspace.note(
+        "P1", SessionNotes(name="Ana", sex="female", trials={"walk2": TrialNotes(excluded="fell")})
+    )
+    left = reports.read_whole(workspace, "P1")
+    assert len(left.trials) == 1 and left.name == "Ana, P1" and left.sex == "female"
+
+
+def test_what_is_not_there_is_told(workspace, tmp_path):
+    with pytest.raises(InvalidInput, match="no norms 'x'"):
+        reports.report_of(workspace, "P1", "", "x", "en")
+    with pytest.raises(InvalidInput, match="no session 'P9'"):
+        reports.report_of(workspace, "P9", "", "", "en")
+    with pytest.raises(InvalidInput, match=r"no session '\.\./P1'"):
+        reports.report_of(workspace, "P1", "../P1", "", "en")
+    study(tmp_path / "new", persons=1)
+    with pytest.raises(InvalidInput, match="nothing of 'P1' is done yet"):
+        reports.report_of(Workspace(tmp_path / "new"), "P1", "", "", "en")

@@ -1,0 +1,58 @@
+"""The session's page: whole, self-contained, in every language, with nothing active."""
+
+import re
+from dataclasses import replace
+
+import pytest
+
+from mbkf.errors import InvalidInput
+from mbkf.pipelines.session.gather import session_of
+from mbkf.pipelines.session.norms import norms_of
+from mbkf.viz.language import languages
+from mbkf.viz.session.document import session_page, write_session_report
+from tests.pipelines.session.sessions import estimated, session, walks
+from tests.recordings import recorded
+
+
+def everything(language):
+    whole = session_of([*walks(), recorded("jump", 3.0, 2), recorded("squat", 4.0, 2)], "Ana")
+    norms = norms_of([session(), session(1, 6)], "ours")
+    return session_page(whole, whole, norms, language)
+
+
+@pytest.mark.parametrize("language", sorted(languages()))
+def test_the_page_has_every_section_in_every_language(language):
+    page = everything(language)
+    sections = re.findall(r'<section id="([\w-]+)"', page)
+    assert sections == ["trials", "gait-walk", "jumps", "squats", "change", "numbers"]
+    assert f'<html lang="{language}">' in page and re.findall(r'href="#([\w-]+)"', page) == sections
+    assert "{0}" not in page and "default-src 'none'" in page and "<script" not in page
+    assert "http" not in page.replace("http-equiv", "")
+
+
+def test_languages_differ():
+    assert "Joint powers" in everything("en") and "Potencias articulares" in everything("es")
+    with pytest.raises(InvalidInput, match="no language"):
+        session_page(session(), language="xx")
+
+
+def test_names_are_text():
+    evil = '"><img src=x onerror=alert(1)>'
+    found = session_of([replace(walks()[0], trial=evil)], evil)
+    page = session_page(found, replace(found, name="<script>"), None)
+    assert "<img" not in page and "<script" not in page and "&lt;img" in page
+
+
+def test_what_is_not_known_is_said():
+    standing = recorded("squat", 4.0, 2)
+    page = session_page(replace(session_of([standing], "x"), squats=()))
+    assert "No gait cycle was found" in page
+    mixed = session_page(session_of([walks()[0], estimated(walks()[1])], "x"))
+    assert "not in the mean" in mixed and "not in the mean" not in session_page(session())
+    alone = session_page(session_of([estimated(r) for r in walks()], "x"))
+    assert "only estimated cycles" in alone
+
+
+def test_written_whole(tmp_path):
+    write_session_report("text", tmp_path / "r.html")
+    assert (tmp_path / "r.html").read_text() == "text"
