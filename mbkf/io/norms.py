@@ -73,7 +73,7 @@ def write_norms(norms: Norms, path: str | Path) -> None:
     for (kind, name), band in norms.measures.items():
         lines += ["", "[[measure]]", *_words(kind=kind, name=name), *_numbers(band)]
     with replacing(path) as partial:
-        partial.writetoml_text("\n".join(lines) + "\n", encoding="utf-8")
+        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def read_norms(path: str | Path) -> Norms:

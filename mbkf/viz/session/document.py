@@ -14,7 +14,7 @@ from mbkf.pipelines.session.cycles import Key
 from mbkf.pipelines.session.records import MovementGroup, Session
 from mbkf.version import __version__
 from mbkf.viz.language import ENGLISH
-from mbkf.viz.markup import folded, grid, key, paragraph, section
+from mbkf.viz.markup import folded, grid, key, paragraph, section, table
 from mbkf.viz.page import asset
 from mbkf.viz.report.motion import JointNames, joint_names
 from mbkf.viz.session.charts import (
@@ -211,12 +211,13 @@ def _key(gait: MovementGroup, norms: Norms | None, terms: Terms) -> str:
 
 
 def _numbers(session: Session, terms: Terms) -> str:
+    body, names = reference_body(session.subject), joint_names(reference_body(session.subject))
+    shown = [one for row in joint_rows(body, (*names.legs, *names.upper), "angle", terms) for one in row]
+    signs = table((terms.say("angles"), "+"), [(one.title, one.positive) for one in shown], "small")
     filters = "; ".join(dict.fromkeys(trial.filter for trial in session.trials))
-    return "".join(
-        paragraph(text)
-        for text in (
-            terms.say("cycles_text"),
-            terms.say("interval_text"),
-            terms.say("made_with", __version__, filters),
-        )
+    told = (
+        terms.say("cycles_text"),
+        terms.say("interval_text"),
+        terms.say("made_with", __version__, filters),
     )
+    return "".join(paragraph(text) for text in told) + folded(terms.say("signs"), signs)
