@@ -13,6 +13,7 @@ from mbkf.io.capture import read_capture
 from mbkf.io.frame_log import read_frame_log
 from mbkf.io.imu_files import read_imu
 from mbkf.io.imu_mount import read_mounts
+from mbkf.io.norms import read_norms
 from mbkf.io.plausible import MASSES_KG, RATES_HZ
 from mbkf.io.preset import read_preset
 from mbkf.io.records import Capture
@@ -101,6 +102,7 @@ def _settings(folder: Path) -> dict[str, Format]:
         "list": Format(folder / "list.toml", _read(plan_of), True),
         "list.csv": Format(folder / "list.csv", _read(plan_of), True),
         "session": Format(folder / "study" / "P01" / "session.toml", _session, True),
+        "norms": Format(folder / "norms.toml", _read(read_norms), True),
         "record": Format(folder / "batch.json", _read(lambda path: is_made_from(path, {})), True),
         "labels": Format(folder / "labels.json", _read(read_labels), True),
         "mounts": Format(folder / "mounts.toml", _read(read_mounts), True),

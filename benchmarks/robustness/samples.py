@@ -25,6 +25,7 @@ from mbkf.io.frame_log import FrameLogWriter
 from mbkf.io.imu import ImuReadings
 from mbkf.io.imu_mount import ImuMount, write_mounts
 from mbkf.io.imu_write import write_imu_csv
+from mbkf.io.norms import Band, Norms, write_norms
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.results_folder import write_reconstruction
 from mbkf.pipelines.batch.curves import SCHEMA, write_curves_table
@@ -111,6 +112,11 @@ def _settings(folder: Path) -> None:
     (session / "session.toml").write_text(
         'mass_kg = 71.5\nheight_m = 1.78\nprotocol = "reference36"\nnote = "x"\n'
     )
+    curve, number = Band("deg", 3, np.linspace(0.0, 60.0, 101), np.full(101, 4.0)), np.array([1.2])
+    bands = Norms(
+        "ours", {("walk", "angle", "knee_angle"): curve}, {("walk", "Speed"): Band("m/s", 3, number, number)}
+    )
+    write_norms(bands, folder / "norms.toml")
     write_record(folder / "batch.json", {"files": {"a.c3d": "0f"}, "settings": {"a": [1]}, "version": "1"})
     (folder / "labels.json").write_text(json.dumps({"ghosts_dropped": 0, "labels": {"a": [1.0, None]}}))
 
