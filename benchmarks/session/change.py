@@ -2,7 +2,8 @@
 
 The knees' straightest moment is 10° less straight. They are then bent by 5° more on the mean of the cycle and by 8° in
 mid-stance, where their torques are larger by 0.26 N m/kg; how much at each point is known from the motions. Between the
-sessions the markers are put on anew, and each session has its own standing trial and its own scaled body, as in a laboratory.
+sessions the markers are put on anew, and each session has its own standing trial and its own scaled body, as in a
+laboratory.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Which cycles a mean is of: measured loads and estimated ones are never averaged together.
 
-Angles are means of all cycles. Loads are means of the cycles in which every contact was measured; where there is none,
-of those whose loads are estimated well enough, and told so.
+Angles are means of all cycles. Loads of a leg are means of the cycles in which a plate of its own measured the foot,
+those of the trunk of the cycles in which every contact was measured; where there is none, of those whose loads are
+estimated well enough, and told so.
 """
 
 from __future__ import annotations
@@ -43,8 +44,10 @@ def chosen_curves(side: SideCycles, key: Key) -> Chosen:
     """
     curves = side.curves[key]
     finite = np.asarray(np.isfinite(curves.values).all(axis=1))
-    measured = np.array([cycle.measured for cycle in side.cycles], dtype=bool)
-    valid = np.array([cycle.valid for cycle in side.cycles], dtype=bool)
+    flags = [
+        (c.body_measured, c.body_valid) if curves.midline else (c.measured, c.valid) for c in side.cycles
+    ]
+    measured, valid = np.array(flags, dtype=bool).reshape(-1, 2).T
     counts = finite & (measured & valid | (not key.is_load))
     others = finite & valid & ~measured & key.is_load
     estimated = not counts.any() and bool(others.any())

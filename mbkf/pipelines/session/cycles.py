@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
+from mbkf.io.contacts import Source
 from mbkf.io.results import Reconstruction
 from mbkf.model.description import BodyDescription
 from mbkf.model.human import reference_body
@@ -43,12 +44,14 @@ class Curves:
         values: (C, 101) over each cycle.
         sd: (C, 101) standard deviations.
         shift_sd: (C, 101) the part of these that shifts all cycles alike.
+        midline: Whether it belongs to the trunk, whose loads depend on both feet.
     """
 
     unit: str
     values: Array
     sd: Array
     shift_sd: Array
+    midline: bool = False
 
 
 @dataclass(frozen=True)
@@ -58,14 +61,18 @@ class SessionCycle:
     Attributes:
         trial: Its trial.
         cycle: When it was.
-        measured: Whether every load in it was measured.
-        valid: Whether every torque in it is known.
+        measured: Whether a plate of its own measured the foot's load throughout: then the leg's torques are measured,
+            whatever the other foot stands on.
+        valid: Whether the leg's torques are known: measured, or every load estimated well enough.
+        body_measured, body_valid: The same of every load on the body, for the trunk's torques.
     """
 
     trial: str
     cycle: Cycle
     measured: bool
     valid: bool
+    body_measured: bool
+    body_valid: bool
 
 
 @dataclass(frozen=True)
@@ -94,13 +101,11 @@ def cycles_of_trial(r: Reconstruction, gait: Gait | None, side: int) -> SideCycl
         side: 0 right, 1 left.
     """
     kept = [] if gait is None else [c for c in gait.of(side) if _within(r, c, r.tracked).all()]
-    cycles = tuple(
-        SessionCycle(r.trial, c, bool(_within(r, c, r.measured).all()), bool(_within(r, c, r.valid).all()))
-        for c in kept
-    )
+    cycles = tuple(_told(r, c) for c in kept)
     if not kept:
         return SideCycles(side, (), {})
     mirrored = mirrored_midline(reference_body(r.subject)) if side else frozenset()
+    whole = frozenset(r.coordinate_names)
     curves = {}
     for curve in [*side_curves(r, side), *_reactions(r, side)]:
         factor, unit = _shown(curve, r.subject.mass_kg)
@@ -109,7 +114,7 @@ def cycles_of_trial(r: Reconstruction, gait: Gait | None, side: int) -> SideCycl
             np.array([over_cycle(r.times_s, k * each, c) for c in kept])
             for k, each in ((sign * factor, curve.value), (factor, curve.sd), (factor, curve.offset_sd))
         )
-        curves[Key(curve.quantity, curve.name)] = Curves(unit, value, sd, shift)
+        curves[Key(curve.quantity, curve.name)] = Curves(unit, value, sd, shift, curve.name in whole)
     curves |= _whole_joints(curves, reference_body(r.subject), side)
     return SideCycles(side, cycles, curves)
 
@@ -131,6 +136,7 @@ def _whole_joints(curves: Mapping[Key, Curves], body: BodyDescription, side: int
                 np.sum([one.values for one in parts], axis=0),
                 np.sqrt(np.sum([one.sd**2 for one in parts], axis=0)),
                 np.sqrt(np.sum([one.shift_sd**2 for one in parts], axis=0)),
+                parts[0].midline,
             )
     return found
 
@@ -154,6 +160,7 @@ def together(parts: list[SideCycles], side: int) -> SideCycles:
             np.concatenate([one.values for one in each]),
             np.concatenate([one.sd for one in each]),
             np.concatenate([one.shift_sd for one in each]),
+            each[0].midline,
         )
 
     cycles = tuple(cycle for part in filled for cycle in part.cycles)
@@ -169,6 +176,15 @@ def mirrored_midline(body: BodyDescription) -> frozenset[str]:
         found |= {angle.name for angle in joint.angles if angle.axis != "y"}
         found |= {place.name for place in joint.translations if place.axis == "y"}
     return frozenset(found)
+
+
+def _told(r: Reconstruction, cycle: Cycle) -> SessionCycle:
+    """How the loads of a cycle are known."""
+    own = np.isin(r.foot_source[:, cycle.side], (Source.NONE, Source.MEASURED))
+    measured, body_measured, valid = (
+        bool(_within(r, cycle, one).all()) for one in (own, r.measured, r.valid)
+    )
+    return SessionCycle(r.trial, cycle, measured, measured or valid, body_measured, valid)
 
 
 def _within(r: Reconstruction, cycle: Cycle, flags: BoolArray) -> BoolArray:

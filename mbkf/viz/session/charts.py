@@ -21,8 +21,6 @@ from mbkf.viz.wording import wordings
 MOST_SINGLE = 12
 """Of more cycles than this, so many are drawn one by one, evenly chosen; the mean is that of all."""
 
-UNITS = {"deg": "°"}
-
 CHANGE_HEIGHT = 110.0
 
 
@@ -83,13 +81,14 @@ def reaction_rows(terms: Terms) -> list[list[Shown]]:
     return [[Shown(Key(REACTION, name), terms.say(name).capitalize(), "") for name in reversed(FORCES)]]
 
 
-def session_chart(sides: tuple[SideCycles, SideCycles], shown: Shown, norm: Band | None) -> str:
+def session_chart(sides: tuple[SideCycles, SideCycles], shown: Shown, norm: Band | None, terms: Terms) -> str:
     """A quantity over both sides' cycles; an empty text where neither knows it.
 
     Args:
         sides: Cycles of right and left.
         shown: The quantity.
         norm: The laboratory's reference; None without.
+        terms: The report's words.
     """
     thin, bold, marks, unit, estimated = [], [], [], "", False
     for side in sides:
@@ -109,7 +108,7 @@ def session_chart(sides: tuple[SideCycles, SideCycles], shown: Shown, norm: Band
     behind = [] if norm is None or norm.unit != unit else [_norm_line(norm)]
     note = f"+ {shown.positive}" if shown.positive else ""
     return chart(
-        shown.title, UNITS.get(unit, unit), [*behind, *thin, *bold], (0.0, 100.0), "%", marks=marks, note=note
+        shown.title, terms.unit(unit), [*behind, *thin, *bold], (0.0, 100.0), "%", marks=marks, note=note
     )
 
 
@@ -145,7 +144,7 @@ def pair_charts(pairs: Mapping[tuple[Key, int], CurvePair], shown: Shown, terms:
         for side, pair in known.items()
     ]
     title = f"{shown.title}: {terms.say('change')}"
-    charts.append(chart(title, UNITS.get(unit, unit), lines, (0.0, 100.0), "%", level=0.0))
+    charts.append(chart(title, terms.unit(unit), lines, (0.0, 100.0), "%", level=0.0))
     return charts
 
 
@@ -157,7 +156,7 @@ def _pair_chart(pair: CurvePair, shown: Shown, terms: Terms) -> str:
         lines.append(Line(PERCENT, chosen.told.mean, band, style, dashed=chosen.estimated))
         marks.append(Mark(chosen.off_percent, style))
     title = f"{shown.title}, {terms.say('left' if pair.side else 'right')}"
-    return chart(title, UNITS.get(pair.unit, pair.unit), lines, (0.0, 100.0), "%", marks=marks)
+    return chart(title, terms.unit(pair.unit), lines, (0.0, 100.0), "%", marks=marks)
 
 
 def _single(chosen: Chosen, letter: str) -> list[Line]:

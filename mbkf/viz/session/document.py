@@ -103,7 +103,7 @@ def _gait(session: Session, gait: MovementGroup, names: JointNames, norms: Norms
 
     def draw(rows: list[list[Shown]]) -> str:
         return _charts(
-            rows, lambda one: session_chart(gait.sides, one, norm_of(norms, gait.kind, one.key)), terms
+            rows, lambda one: session_chart(gait.sides, one, norm_of(norms, gait.kind, one.key), terms), terms
         )
 
     def legs(quantity: str, joints: Sequence[str]) -> str:

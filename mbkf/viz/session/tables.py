@@ -28,7 +28,6 @@ DIGITS = {
     "deg": 1,
     "N m/kg": 2,
 }
-UNITS = {"deg": "°"}
 
 
 def trials_table(session: Session, terms: Terms) -> str:
@@ -97,7 +96,7 @@ def measures_table(
     rows = []
     for one in measures:
         digits = DIGITS.get(one.unit, 2)
-        row = [f"{terms.measure(one.name)}, {UNITS.get(one.unit, one.unit)}"]
+        row = [f"{terms.measure(one.name)}, {terms.unit(one.unit)}"]
         if "r" in one.values or "l" in one.values:
             right, left = measure_mean(one, "r"), measure_mean(one, "l")
             row += [_told(right, digits), _told(left, digits), *_apart(one, right, left, digits)]
@@ -133,7 +132,7 @@ def changes_table(pairs: Sequence[MeasurePair], terms: Terms) -> str:
         if np.isfinite(half) and abs(apart) > half:
             told = f"<b>{told}</b>"
         cells = (
-            escape(f"{terms.measure(one.name)}{side}, {UNITS.get(one.unit, one.unit)}"),
+            escape(f"{terms.measure(one.name)}{side}, {terms.unit(one.unit)}"),
             _told(one.before, digits),
             _told(one.after, digits),
             told,

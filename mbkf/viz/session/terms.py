@@ -25,6 +25,10 @@ class Terms:
         """The name of a measure, e.g. "Step length"."""
         return words(self.language, "measures").get(name, name)
 
+    def unit(self, name: str) -> str:
+        """A unit as it is shown, e.g. "°" for "deg"."""
+        return words(self.language, "units").get(name, name)
+
     def joint(self, name: str) -> str:
         """The name of a joint, e.g. "knee"; a body's own ones keep theirs."""
         return words(self.language, "joints").get(name, name.replace("_", " ").capitalize())

@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 
+from mbkf.io.contacts import Source
 from mbkf.pipelines.session.gather import session_of
 from tests.recordings import recorded
 
@@ -33,7 +34,8 @@ def session(count=2, first=5):
 
 
 def estimated(r, frames=slice(None)):
-    """A trial whose loads were not measured in some frames."""
-    measured = r.measured.copy()
+    """A trial whose loads were not measured but estimated in some frames."""
+    measured, source = r.measured.copy(), r.foot_source.copy()
     measured[frames] = False
-    return replace(r, measured=measured)
+    source[frames] = np.where(source[frames] != Source.NONE, Source.ESTIMATED, Source.NONE)
+    return replace(r, measured=measured, foot_source=source)

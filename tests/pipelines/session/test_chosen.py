@@ -1,7 +1,10 @@
 """Measured and estimated cycles are never averaged together."""
 
+from dataclasses import replace
+
 import numpy as np
 
+from mbkf.io.contacts import Source
 from mbkf.pipelines.session.chosen import chosen_curves
 from mbkf.pipelines.session.cycles import Key
 from mbkf.pipelines.session.gather import session_of
@@ -38,12 +41,21 @@ def test_estimated_loads_stand_in_where_nothing_is_measured():
 
 
 def test_loads_that_are_not_known_count_nowhere():
-    from dataclasses import replace
-
-    side = side_of([replace(r, valid=np.zeros(r.frames, bool)) for r in walks()])
+    side = side_of([replace(estimated(r), valid=np.zeros(r.frames, bool)) for r in walks()])
     found = chosen_curves(side, TORQUE)
     assert found.told is None and not found.estimated and np.isnan(found.off_percent)
     assert chosen_curves(side, ANGLE).told is not None
+
+
+def test_a_leg_counts_by_its_own_foot_and_the_trunk_by_both():
+    r = walks()[0]
+    source = r.foot_source.copy()
+    source[:, 1] = np.where(source[:, 1] != Source.NONE, Source.SHARED, Source.NONE)
+    one = replace(r, foot_source=source, measured=np.zeros(r.frames, bool))
+    right, left = session_of([one], "x").gaits[0].sides
+    trunk = Key("torque", "lumbar_extension")
+    assert not chosen_curves(right, TORQUE).estimated and chosen_curves(left, TORQUE).estimated
+    assert right.curves[trunk].midline and chosen_curves(right, trunk).estimated
 
 
 def test_toe_off_is_that_of_the_cycles_that_count():

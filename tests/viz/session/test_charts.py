@@ -25,7 +25,7 @@ def ticks(svg):
 
 
 def test_cycles_are_thin_and_means_bold():
-    svg = session_chart(session().gaits[0].sides, KNEE, None)
+    svg = session_chart(session().gaits[0].sides, KNEE, None, ENGLISH)
     cycles = sum(len(side.cycles) for side in session().gaits[0].sides)
     assert svg.count('class="thin') == cycles and svg.count('class="line') == 2
     assert svg.count('class="band') == 2 and svg.count('class="mark') == 2
@@ -36,8 +36,8 @@ def test_estimated_cycles_do_not_scale_the_axis():
     """One estimated cycle ten times as large leaves the axis as it is; it is drawn with dashes."""
     one, other = walks()
     wild = replace(estimated(other), moments=10.0 * other.moments)
-    svg = session_chart(session_of([one, wild], "x").gaits[0].sides, KNEE, None)
-    alone = session_chart(session_of([one], "x").gaits[0].sides, KNEE, None)
+    svg = session_chart(session_of([one, wild], "x").gaits[0].sides, KNEE, None, ENGLISH)
+    alone = session_chart(session_of([one], "x").gaits[0].sides, KNEE, None, ENGLISH)
     assert ticks(svg) == ticks(alone) and 'class="thin r dashed"' in svg
     for side in "rl":
         means = [re.search(rf'class="line {side}" d="([^"]*)"', text)[1] for text in (svg, alone)]
@@ -45,7 +45,7 @@ def test_estimated_cycles_do_not_scale_the_axis():
 
 
 def test_only_estimated_cycles_are_dashed():
-    svg = session_chart(session_of([estimated(r) for r in walks()], "x").gaits[0].sides, KNEE, None)
+    svg = session_chart(session_of([estimated(r) for r in walks()], "x").gaits[0].sides, KNEE, None, ENGLISH)
     assert 'class="line r dashed"' in svg
 
 
@@ -53,14 +53,14 @@ def test_norms_stand_behind_where_units_agree():
     norms = norms_of([session(), session(1, 6)], "ours")
     band = norm_of(norms, TrialKind.WALK, KNEE.key)
     assert norm_of(None, TrialKind.WALK, KNEE.key) is None is norm_of(norms, TrialKind.RUN, KNEE.key)
-    assert 'class="band n"' in session_chart(session().gaits[0].sides, KNEE, band)
+    assert 'class="band n"' in session_chart(session().gaits[0].sides, KNEE, band, ENGLISH)
     other = Band("N m", 2, band.mean, band.sd)
-    assert 'class="band n"' not in session_chart(session().gaits[0].sides, KNEE, other)
+    assert 'class="band n"' not in session_chart(session().gaits[0].sides, KNEE, other, ENGLISH)
 
 
 def test_what_nobody_knows_is_no_chart():
     unknown = Shown(Key("torque", "none"), "x", "")
-    assert session_chart(session().gaits[0].sides, unknown, None) == ""
+    assert session_chart(session().gaits[0].sides, unknown, None, ENGLISH) == ""
     assert pair_charts({}, KNEE, ENGLISH) == []
 
 

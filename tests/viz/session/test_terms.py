@@ -8,7 +8,7 @@ from mbkf.viz.wording import wordings
 def test_words_of_a_language():
     spanish = Terms("es")
     assert (
-        spanish.say("counts", 3, 4, 5) == "3 ensayos, ciclos completos: 4 de la derecha, 5 de la izquierda."
+        spanish.say("counts", 3, 4, 5) == "Ensayos: 3. Ciclos completos: 4 de la derecha, 5 de la izquierda."
     )
     assert spanish.measure("Step length") == "Longitud de paso" and spanish.measure("other") == "other"
     assert spanish.joint("knee") == "Rodilla" and spanish.joint("own_joint") == "Own joint"
