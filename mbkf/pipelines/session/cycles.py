@@ -20,6 +20,10 @@ from mbkf.pipelines.gait.facing import facing
 FORCES = ("forward", "medial", "upward")
 """Components of a reaction: in the direction the person faces, towards the other foot, up."""
 
+EDGE = 0.025
+"""Share of a cycle at both ends in which it does not matter how the foot's load is known: a foot that lands at a plate's
+edge is read a frame or two late."""
+
 ANGLE, TORQUE, POWER, REACTION = "angle", "torque", "power", "reaction"
 
 
@@ -180,7 +184,8 @@ def mirrored_midline(body: BodyDescription) -> frozenset[str]:
 
 def _told(r: Reconstruction, cycle: Cycle) -> SessionCycle:
     """How the loads of a cycle are known."""
-    own = np.isin(r.foot_source[:, cycle.side], (Source.NONE, Source.MEASURED))
+    edge = np.minimum(r.times_s - cycle.start_s, cycle.end_s - r.times_s) < EDGE * cycle.seconds
+    own = edge | np.isin(r.foot_source[:, cycle.side], (Source.NONE, Source.MEASURED))
     measured, body_measured, valid = (
         bool(_within(r, cycle, one).all()) for one in (own, r.measured, r.valid)
     )

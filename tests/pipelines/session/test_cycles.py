@@ -95,6 +95,14 @@ def test_measured_cycles_are_told_from_estimated_ones():
     assert first.measured and not any(one.measured for one in others) and all(one.valid for one in others)
 
 
+def test_a_frame_or_two_at_a_cycles_ends_do_not_matter():
+    cycle = GAIT.of(0)[0]
+    near = TRIAL.times_s - cycle.start_s
+    for late_s, measured in ((0.02 * cycle.seconds, True), (0.06 * cycle.seconds, False)):
+        some = estimated(TRIAL, np.flatnonzero((near >= 0.0) & (near < late_s)))
+        assert cycles_of_trial(some, GAIT, 0).cycles[0].measured == measured
+
+
 def test_trials_are_put_together_by_what_all_know():
     one, two = (cycles_of_trial(r, find_gait(r), 0) for r in walks())
     both = together([one, two], 0)
