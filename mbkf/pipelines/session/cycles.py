@@ -21,8 +21,8 @@ FORCES = ("forward", "medial", "upward")
 """Components of a reaction: in the direction the person faces, towards the other foot, up."""
 
 EDGE = 0.025
-"""Share of a cycle at both ends in which it does not matter how the foot's load is known: a foot that lands at a plate's
-edge is read a frame or two late."""
+"""Share of a cycle at both ends in which it does not matter how the foot's load is known: a foot that lands at a
+plate's edge is read a frame or two late."""
 
 ANGLE, TORQUE, POWER, REACTION = "angle", "torque", "power", "reaction"
 
