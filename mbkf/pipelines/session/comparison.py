@@ -133,8 +133,7 @@ def measure_mean(measure: Measure, side: str) -> Mean | None:
         return None
     names = [name for name, good in zip(measure.trials[side], known, strict=True) if good]
     column: Array = values[known][:, None]
-    nothing = np.zeros_like(column)
-    return mean_of(column, names, nothing, nothing)
+    return mean_of(column, names, np.zeros_like(column), np.full_like(column, np.nan))
 
 
 def by_curve(comparison: Comparison) -> Mapping[tuple[Key, int], CurvePair]:

@@ -77,14 +77,13 @@ def mean_of(values: Array, trials: Sequence[str], shift_sd: Array, own_sd: Array
         trials: (C,) the trial that each is from.
         shift_sd: (C, P) standard deviations of what shifts all cycles alike; NaN counts as 0.
         own_sd: (C, P) stated standard deviations of a cycle by itself, which stand in for the spread between cycles
-            where there is one only.
+            where there is one only; NaN where that is not known, and then no interval is.
     """
     count = len(values)
     mean = values.mean(axis=0)
     shift = np.nan_to_num(shift_sd).mean(axis=0) ** 2
     if count == 1:
-        alone = np.nan_to_num(own_sd[0]) ** 2
-        return Mean(mean, np.full_like(mean, np.nan), alone, np.full_like(mean, np.inf), shift, 1)
+        return Mean(mean, np.full_like(mean, np.nan), own_sd[0] ** 2, np.full_like(mean, np.inf), shift, 1)
     variance, freedom = _variance_of_mean(values, trials)
     return Mean(mean, values.std(axis=0, ddof=1), variance, freedom, shift, count)
 

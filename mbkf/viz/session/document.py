@@ -124,7 +124,7 @@ def _gait(session: Session, gait: MovementGroup, names: JointNames, norms: Norms
             f"<h3>{escape(terms.say('parameters'))}</h3>",
             measures_table(gait.measures, terms, norms, gait.kind),
             paragraph(terms.say("table_note")),
-            f"<h3>{escape(terms.say('angles'))}</h3>",
+            f'<h3 class="sheet">{escape(terms.say("angles"))}</h3>',
             _key(gait, norms, terms),
             paragraph(terms.say("midline_note")),
             legs("angle", names.legs),
@@ -137,7 +137,7 @@ def _gait(session: Session, gait: MovementGroup, names: JointNames, norms: Norms
             f"<h3>{escape(terms.say('reactions'))}</h3>",
             paragraph(terms.say("reaction_note")),
             draw(reaction_rows(terms)),
-            *upper,
+            f'<div class="sheet">{"".join(upper)}</div>' if upper else "",
         )
     )
 
@@ -179,7 +179,8 @@ def _change(comparison: Comparison, after: Session, names: JointNames, terms: Te
     ):
         charts = [drawn for row in rows for one in row for drawn in pair_charts(pairs, one, terms)]
         if charts:
-            parts += [f'<h3 class="sheet">{escape(terms.say(title))}</h3>', grid(charts)]
+            sheet = ' class="sheet"' if title in {"angles", "torques", "powers"} else ""
+            parts += [f"<h3{sheet}>{escape(terms.say(title))}</h3>", grid(charts)]
     return "".join(parts)
 
 

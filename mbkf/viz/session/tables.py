@@ -67,7 +67,7 @@ def trials_table(session: Session, terms: Terms) -> str:
         for trial in session.trials
         if trial.remarks
     ]
-    told = folded(terms.say("remarks"), *remarks) if remarks else ""
+    told = f'<div class="on-screen">{folded(terms.say("remarks"), *remarks)}</div>' if remarks else ""
     return table(heads, rows, "trials") + told
 
 
@@ -159,5 +159,5 @@ def _apart(measure: Measure, right: Mean | None, left: Mean | None, digits: int)
     apart = paired_difference(*sides[0], *sides[1]) or difference_of(right, left, same_body=True)
     value, half = float(apart.difference[0]), float(apart.half_width[0])
     middle = 0.5 * float(right.mean[0] + left.mean[0])
-    told = f"{number(value, digits)} ± {number(half, digits)}" if half > 0.0 else number(value, digits)
+    told = f"{number(value, digits)} ± {number(half, digits)}" if np.isfinite(half) else number(value, digits)
     return told, f"{number(100.0 * value / middle, 1)} %" if middle else "–"

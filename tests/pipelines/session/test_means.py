@@ -57,6 +57,13 @@ def test_a_single_cycle_stands_by_its_own_spread():
     np.testing.assert_allclose(half_width_of(found), stats.norm.ppf(0.975) * 5.0, rtol=1e-4)
 
 
+def test_a_single_number_without_a_spread_has_no_interval():
+    unknown = np.full((1, P), np.nan)
+    alone = mean_of(np.ones((1, P)), ["a"], np.zeros((1, P)), unknown)
+    assert np.isnan(half_width_of(alone)).all()
+    assert np.isnan(difference_of(alone, alone, same_body=True).half_width).all()
+
+
 def test_shifts_do_not_fall_with_the_number_of_cycles_and_cancel_for_the_same_body():
     rng = np.random.default_rng(3)
     shift = np.full((400, P), 2.0)

@@ -50,6 +50,11 @@ def test_the_norm_is_shown_where_there_is_one():
     assert "norm" not in measures_table(measures, ENGLISH, norms, TrialKind.RUN)
 
 
+def test_single_values_have_no_interval():
+    text = changes_table(measure_pairs((measure([1.0], [1.0]),), (measure([2.0], [1.0]),)), ENGLISH)
+    assert "<b>" not in text and ">1.00<" in text and "±" not in text
+
+
 def test_changes_that_are_sure_are_bold():
     sure = measure_pairs((measure([1.0, 1.01], [1.0, 1.01]),), (measure([2.0, 2.01], [1.0, 1.01]),))
     text = changes_table(sure, ENGLISH)
