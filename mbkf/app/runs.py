@@ -156,7 +156,7 @@ class Runs:
             state.seconds = time.monotonic() - begin
             if isinstance(task, ReconstructTrial):
                 state.stage, state.done = "trials", state.done + 1
-                state.trials[task.trial.name] = (found.status.value, found.reason)
+                state.trials[task.trial.path.stem] = (found.status.value, found.reason)
             else:
                 state.stage = "scaled"
             self._write()
@@ -170,7 +170,7 @@ class Runs:
             state = self._states[session]
             state.state = ended
             for trial, outcome in zip(() if plan is None else plan.trials, found, strict=True):
-                state.trials[trial.name] = (outcome.status.value, outcome.reason)
+                state.trials[trial.path.stem] = (outcome.status.value, outcome.reason)
             state.done = sum(status != Status.FAILED for status, _ in state.trials.values())
             self._write()
 

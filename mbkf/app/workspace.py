@@ -129,7 +129,7 @@ class Workspace:
         """
         for one in self.plan(session).trials:
             place = self.out / one.place
-            if one.name == trial and (place / "summary.json").is_file():
+            if one.path.stem == trial and (place / "summary.json").is_file():
                 return place
         raise InvalidInput(f"there is no result of '{trial}' yet")
 

@@ -20,7 +20,16 @@ from mbkf.errors import FileFormatError
 from mbkf.io.capture import CAPTURES, FORCES
 from mbkf.io.results_folder import MOTION_FILE
 from mbkf.io.session import HEIGHT_M, MASS_KG, SESSION_FILE, SessionNotes, TrialKind, read_session
-from mbkf.pipelines.batch.plan import MOST_LOOKED_AT, MOST_MOVING, Files, Person, Plan, Trial, planned
+from mbkf.pipelines.batch.plan import (
+    MOST_LOOKED_AT,
+    MOST_MOVING,
+    Files,
+    Person,
+    Plan,
+    Trial,
+    folder_name,
+    planned,
+)
 
 CAPTURE_SUFFIXES = (".c3d", ".trc")
 """Captures of a folder, the more telling first; other formats are named in a list."""
@@ -139,8 +148,8 @@ def _trials(root: Path, place: Path, captures: Sequence[Path]) -> list[Trial]:
     moving = [Files(path, forces_beside(path, files)) for path in kept if path not in statics]
     subject = place / SUBJECT_FILE
     person = Person(
-        parts[0] if parts else root.name,
-        "-".join(parts[1:]),
+        folder_name(parts[0] if parts else root.name),
+        folder_name("-".join(parts[1:])) if parts[1:] else "",
         statics,
         tuple(moving[: MOST_MOVING if statics else MOST_LOOKED_AT]),
         notes.mass_kg,
@@ -148,7 +157,7 @@ def _trials(root: Path, place: Path, captures: Sequence[Path]) -> list[Trial]:
         notes.protocol,
         subject if subject.is_file() else None,
     )
-    return [Trial(person, one.path, one.forces, one.path.stem) for one in moving]
+    return [Trial(person, one.path, one.forces, folder_name(one.path.stem)) for one in moving]
 
 
 def _stated(root: Path, place: Path) -> SessionNotes:

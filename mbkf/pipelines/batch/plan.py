@@ -103,6 +103,12 @@ class Plan:
         return Plan(self.trials[number - 1 :: count])
 
 
+def folder_name(name: str) -> str:
+    """A name as a folder may have it: what cannot stand in one becomes a low line."""
+    found = FORBIDDEN.sub("_", name)
+    return f"_{found}" if found in {"", ".", ".."} else found
+
+
 def planned(trials: Sequence[Trial], where: str) -> Plan:
     """The plan of trials, each in a place of its own.
 

@@ -118,12 +118,18 @@ async function filesOf(entry, above) {
 async function take(files) {
   const kept = files.filter(([path]) => !path.split("/").some((part) => part.startsWith(".")));
   const alone = kept.every(([path]) => !path.includes("/"));
+  const refused = [];
   const into = alone ? `${shown && chosen !== "." ? chosen : "session"}/` : "";
   for (const [k, [path, file]] of kept.entries()) {
     tell(word("uploading", k + 1, kept.length));
-    await ask("put?" + query({ file: into + path }), { method: "POST", body: file });
+    try {
+      await ask("put?" + query({ file: into + path }), { method: "POST", body: file });
+    } catch (error) {
+      refused.push(error.message);
+    }
   }
-  tell(word("uploaded", kept.length));
+  if (refused.length) tell(word("not_taken", refused.length, refused[0]), true);
+  else tell(word("uploaded", kept.length));
   if (kept.length) chosen = (into + kept[0][0]).split("/").slice(0, -1).join("/");
   await refresh();
 }

@@ -133,3 +133,9 @@ def test_a_folder_without_trials_is_refused(tmp_path):
     made(tmp_path, "P1/static.c3d", "notes.txt")
     with pytest.raises(InvalidInput, match="no trial"):
         plan_of_folder(tmp_path)
+
+
+def test_files_whose_names_no_folder_can_have_get_one_that_it_can(tmp_path):
+    made(tmp_path, "P<1>/mon:day/walk?.c3d")
+    (trial,) = plan_of_folder(tmp_path).trials
+    assert trial.path.name == "walk?.c3d" and trial.place.as_posix() == "P_1_/mon_day/walk_"

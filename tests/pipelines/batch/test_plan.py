@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbkf.errors import InvalidInput
-from mbkf.pipelines.batch.plan import Person, Plan, Trial, planned
+from mbkf.pipelines.batch.plan import Person, Plan, Trial, folder_name, planned
 
 
 def trials(count, persons=3):
@@ -67,3 +67,20 @@ def test_names_that_no_folder_can_have_are_refused(name):
 def test_a_plan_of_nothing_is_refused():
     with pytest.raises(InvalidInput, match="no trial was found"):
         planned([], "study")
+
+
+@pytest.mark.parametrize(
+    ("name", "folder"),
+    [
+        ("walk 1", "walk 1"),
+        ("a<b>:c", "a_b__c"),
+        ("..", "_.."),
+        ("", "_"),
+        ("ünïcode", "ünïcode"),
+        ("a/b", "a_b"),
+    ],
+)
+def test_names_of_files_become_names_of_folders(name, folder):
+    assert (
+        folder_name(name) == folder and planned([Trial(Person("P"), Path("a.c3d"), name=folder)], "x").trials
+    )

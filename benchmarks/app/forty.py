@@ -1,0 +1,111 @@
+"""A session of forty trials: memory and times of the page; a reload and a killed server in the middle of its run."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+from benchmarks.app.path import same
+from benchmarks.app.sessions import FORTY, forty
+from benchmarks.app.visit import Server, Visit, until, visit
+from benchmarks.checks import Check, information
+
+MEMORY_MB, LIST_S, PAINT_S = 300.0, 1.0, 2.0
+
+NOTED = "Forty trials"
+
+
+def forty_rows(made: Any, out: Path) -> list[Check]:
+    """Rows of the large session.
+
+    Args:
+        made: The browser.
+        out: An empty folder.
+    """
+    session = forty(out / "lab")
+    server = Server(out / "lab")
+    user = visit(made, server.url)
+    cold = _listed(user)
+    warm = _listed(user)
+    user.page.locator("input[name=name]").fill(NOTED)
+    user.page.locator("input[name=name]").press("Tab")
+    user.page.wait_for_timeout(500)
+    user.click("button.main")
+    until(lambda: _done(user) >= 4)
+    before = _done(user)
+    user.page.reload()
+    user.wait("progress")
+    until(lambda: _done(user) > before)
+    server.kill()
+    server = Server(out / "lab")
+    user = visit(made, server.url)
+    user.wait("text=Done in")
+    results = sorted((out / "lab" / "results").rglob("summary.json"))
+    first = [path.parent for path in results[:2]]
+    unlike = sum(not same(path.parent, first[k % 2]) for k, path in enumerate(results) if path.parent.name)
+    paint = _painted(user)
+    memory = _renderer_mb()
+    stated = NOTED in (session / "session.toml").read_text(encoding="utf-8")
+    server.stop()
+    return [
+        information("forty trials: list, the files never seen before", cold, "s"),
+        Check("forty trials: list", warm, LIST_S, "<=", "s"),
+        Check("forty trials: first paint of the 3-D view", paint, PAINT_S, "<=", "s"),
+        Check("forty trials: memory of the page", memory, MEMORY_MB, "<=", "MB"),
+        Check("reloaded, server killed in the run: results", len(results), float(FORTY), ">="),
+        Check("reloaded, server killed in the run: results that differ", unlike, 0.0, "<="),
+        Check("reloaded, server killed in the run: what was stated is there", float(stated), 1.0, ">="),
+    ]
+
+
+def _listed(user: Visit) -> float:
+    """How long the list takes to be there after the page was asked for anew, s."""
+    begin = perf_counter()
+    user.page.reload()
+    until(lambda: user.page.locator("tbody tr").count() >= FORTY)
+    return perf_counter() - begin
+
+
+def _done(user: Visit) -> int:
+    """How many trials the page says are done."""
+    found = re.match(r"(\d+) of \d+", user.page.locator(".run span").first.inner_text())
+    return int(found[1]) if found else 0
+
+
+def _painted(user: Visit) -> float:
+    """From the click to the first picture of the body, s."""
+    begin = perf_counter()
+    user.page.locator("td .buttons button").first.click()
+    frame = user.page.locator("dialog iframe")
+    frame.wait_for()
+    until(lambda: _is_drawn(frame))
+    return perf_counter() - begin
+
+
+def _is_drawn(frame: Any) -> bool:
+    """Whether the middle of the view shows more than a plain ground."""
+    import io
+
+    import numpy as np
+    from PIL import Image
+
+    image = np.asarray(Image.open(io.BytesIO(frame.screenshot())).convert("L"), dtype=float)
+    h, w = image.shape
+    middle = image[h // 4 : 3 * h // 4, w // 6 : w // 2]
+    return bool(middle.std() > 8.0)
+
+
+def _renderer_mb() -> float:
+    """Memory of the largest page process of the browser (proportional set size), MB."""
+    largest = 0.0
+    for process in Path("/proc").glob("[0-9]*"):
+        try:
+            if b"--type=renderer" not in (process / "cmdline").read_bytes():
+                continue
+            told = re.search(r"^Pss:\s+(\d+) kB", (process / "smaps_rollup").read_text(), re.M)
+        except OSError:
+            continue
+        largest = max(largest, int(told[1]) / 1024.0 if told else 0.0)
+    return largest

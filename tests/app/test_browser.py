@@ -1,0 +1,81 @@
+"""The laboratory's page in a real browser: from the dropped folder to the report, whatever the files are called."""
+
+import pytest
+
+from mbkf.app.server import AppServer
+from mbkf.io.session import read_session
+from tests.studies import study, walk_folder
+
+NAME = "<img src=x onerror=window.hit=1>'{{words}}"
+
+
+@pytest.fixture
+def lab(tmp_path):
+    server = AppServer(tmp_path / "lab", workers=1)
+    yield server
+    server.close()
+
+
+@pytest.fixture
+def page(browser, lab):
+    found = browser.new_context(viewport={"width": 1280, "height": 720}, locale="en").new_page()
+    troubles = []
+    found.on("pageerror", lambda error: troubles.append(str(error)))
+    found.goto(lab.url)
+    yield found
+    assert troubles == []
+
+
+def test_a_dropped_folder_becomes_a_report(page, lab, tmp_path):
+    source = study(tmp_path / "disk", trials=1) / "P1"
+    (source / "session.toml").write_text("mass_kg = 120\n")
+    page.locator("input[type=file]").first.set_input_files(source)
+    page.wait_for_selector("tbody tr")
+    assert page.locator(".problems", has_text="120.0 kg").count() == 1
+    page.locator(".offer button").click()
+    page.wait_for_selector(".problems", state="detached")
+    assert read_session(lab.workspace.root / "P1" / "session.toml").mass_kg == pytest.approx(85.7, abs=0.5)
+    page.locator("button.main").first.click()
+    page.wait_for_selector("text=Done in", timeout=60_000)
+    page.locator("#session-report").click()
+    report = page.frame_locator("dialog iframe")
+    report.locator("#gait-walk svg").first.wait_for()
+    page.keyboard.press("Escape")
+    page.locator("dialog").wait_for(state="detached")
+    page.locator("#language select").select_option("es")
+    page.wait_for_selector("text=Ensayos")
+    page.locator("#session-report").click()
+    report.locator("text=Potencias articulares").wait_for()
+
+
+def test_a_run_goes_on_while_the_page_is_loaded_again(page, lab):
+    study(lab.workspace.root, trials=3)
+    page.reload()
+    page.wait_for_selector("tbody tr")
+    page.locator("button.main").first.click()
+    page.wait_for_selector("progress")
+    page.reload()
+    page.wait_for_selector("text=Done in", timeout=60_000)
+    assert page.locator(".status.done").count() >= 3
+
+
+def test_names_are_text(page, lab):
+    session = lab.workspace.root / NAME
+    session.mkdir()
+    (session / f"{NAME}.c3d").write_bytes((walk_folder() / "trial.c3d").read_bytes())
+    page.reload()
+    page.wait_for_selector("tbody tr")
+    assert page.locator("tbody tr td").first.inner_text() == f"{NAME}.c3d"
+    page.wait_for_timeout(200)
+    assert page.evaluate("window.hit") is None and page.locator("img").count() == 0
+
+
+def test_a_file_that_cannot_be_kept_is_told_and_the_others_are_taken(page, lab, tmp_path):
+    folder = tmp_path / "P2"
+    folder.mkdir()
+    for name in ("walk.c3d", "walk?.c3d"):
+        (folder / name).write_bytes((walk_folder() / "trial.c3d").read_bytes())
+    page.locator("input[type=file]").first.set_input_files(folder)
+    page.wait_for_selector("tbody tr")
+    assert "1 files were not taken" in page.locator("#told").inner_text()
+    assert [path.name for path in (lab.workspace.root / "P2").iterdir()] == ["walk.c3d"]
