@@ -13,6 +13,7 @@ import uvicorn
 from starlette.applications import Starlette
 from starlette.middleware import Middleware
 
+from mbkf.app.export_routes import export_routes
 from mbkf.app.guard import Guard
 from mbkf.app.live_routes import live_routes
 from mbkf.app.live_run import LiveRun
@@ -101,7 +102,12 @@ def application(workspace: Workspace, runs: Runs, live: LiveRun, token: str, coo
         cookie: Name of the cookie that carries it.
     """
     return Starlette(
-        routes=[*session_routes(workspace, runs), *live_routes(workspace, live), *trial_routes(workspace)],
+        routes=[
+            *session_routes(workspace, runs),
+            *live_routes(workspace, live),
+            *export_routes(workspace),
+            *trial_routes(workspace),
+        ],
         middleware=[Middleware(Guard, token=token, cookie=cookie)],
     )
 
