@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import shutil
 import tempfile
 import threading
 from pathlib import Path
+from urllib.parse import quote
 
-from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
-from starlette.responses import FileResponse, JSONResponse, Response
+from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
 from mbkf.app.replies import asked
@@ -33,15 +32,18 @@ def export_routes(workspace: Workspace) -> list[Route]:
 
     async def export(request: Request) -> Response:
         session, trial, to = (asked(request, name) for name in ("session", "trial", "to"))
-        folder = Path(tempfile.mkdtemp(prefix="mbkf-export-"))
+
+        def made() -> bytes:
+            with tempfile.TemporaryDirectory(prefix="mbkf-export-") as folder:
+                return exported(workspace.result(session, trial), to, Path(folder)).read_bytes()
+
         try:
-            file = await run_in_threadpool(lambda: exported(workspace.result(session, trial), to, folder))
+            content = await run_in_threadpool(made)
         except (MbkfError, OSError) as error:
-            shutil.rmtree(folder, ignore_errors=True)
             status = 400 if isinstance(error, MbkfError) else 500
             return JSONResponse({"trouble": " ".join(str(error).split())}, status_code=status)
-        swept = BackgroundTask(shutil.rmtree, folder, ignore_errors=True)
-        return FileResponse(file, filename=f"{trial}.{to}", background=swept)
+        named = {"Content-Disposition": f"attachment; filename*=utf-8''{quote(f'{trial}.{to}', safe='')}"}
+        return Response(content, media_type="application/octet-stream", headers=named)
 
     return [Route("/trial/export", export)]
 
