@@ -11,7 +11,7 @@ from tests.viz.browsing import until
 
 pytestmark = pytest.mark.slow
 
-HOSTILE = "<img src=x onerror=\"document.title='harmed'\">"
+HOSTILE = "<img src=x onerror=\"document.title='harmed'\"> $& {1}"
 
 FRAMED = "#scene canvas"
 
@@ -99,3 +99,16 @@ def test_the_dialog_speaks_spanish(opened, lab):
         page.wait_for_selector("select[name=source]")
         assert page.text_content("dialog button.main") == "Iniciar"
         assert "undefined" not in page.text_content("dialog")
+
+
+def test_an_export_that_fails_is_told_and_can_be_asked_for_again(opened, lab):
+    folder = record(lab.workspace, "live-1")
+    with opened(lab.url) as page:
+        choice = page.get_by_label("Export live-1 as")
+        choice.wait_for()
+        (folder / "motion.h5").write_bytes(b"damaged")
+        choice.select_option("glb")
+        until(page, "document.getElementById('told').className === 'bad'")
+        assert "motion.h5" in page.text_content("#told")
+        assert choice.is_enabled() and choice.input_value() == ""
+    opened.errors[:] = [one for one in opened.errors if "400 (Bad Request)" not in one]  # the refusal itself

@@ -4,20 +4,21 @@
 const EXPORTS = ["c3d", "bvh", "glb", "mp4", "gif"];
 
 function exportSelect(data, one) {
-  const select = element("select", { className: "export" }, element("option", { value: "" }, word("export")), ...EXPORTS.map((name) => element("option", { value: name }, word(name))));
+  const idle = element("option", { value: "" }, word("export"));
+  const select = element("select", { className: "export" }, idle, ...EXPORTS.map((name) => element("option", { value: name }, word(name))));
   select.setAttribute("aria-label", word("export_as", one.name));
-  select.onchange = () => {
-    const to = select.value;
-    select.value = "";
-    exportTrial(data.id, one.name, to);
+  select.onchange = async () => {
+    const to = select.value, file = `${one.name}.${to}`;
+    [select.value, select.disabled, idle.textContent] = ["", true, `${to} …`]; // a film takes its time
+    tell(word("exporting", file));
+    await download("trial/export?" + query({ session: data.id, trial: one.name, to }), file);
+    [select.disabled, idle.textContent] = [false, word("export")];
   };
   return select;
 }
 
-async function exportTrial(session, trial, to) {
-  const file = `${trial}.${to}`;
-  tell(word("exporting", file));
-  const answer = await fetch("trial/export?" + query({ session, trial, to })).catch(() => null);
+async function download(path, file) {
+  const answer = await fetch(path).catch(() => null);
   if (answer === null || !answer.ok) {
     tell(answer === null ? word("lost") : (await answer.json()).trouble, true);
     return;
