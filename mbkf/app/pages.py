@@ -14,7 +14,6 @@ from mbkf.viz.scene.playback import playback_page
 SCRIPTS = ("element.js", "app_words.js", "app_live.js", "app_export.js", "app_session.js", "app.js")
 """The page's own scripts, in the order they are needed."""
 
-
 SECTIONS = ("app", "live", "export")
 """Sections of the language files with the page's words; no two have a word of one name."""
 

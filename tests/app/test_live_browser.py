@@ -58,7 +58,7 @@ def test_a_capture_is_replayed_stopped_and_joins_the_session(opened, lab):
         page.keyboard.press("Escape")
         until(page, "document.querySelector('dialog') === null")
         for name in (first, second):
-            assert page.get_by_role("row", name=name).get_by_text("recorded live").is_visible()
+            page.get_by_role("row", name=name).get_by_text("recorded live").wait_for()
         page.get_by_role("row", name=second).get_by_role("button", name="3-D").click()
         page.frame_locator("dialog iframe").locator(FRAMED).wait_for()
     opened.errors[:] = [

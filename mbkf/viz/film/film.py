@@ -38,7 +38,7 @@ def write_film(
         UnknownName: The format is unknown.
         FileFormatError: A folder stands where the file is needed.
         MissingDependency: playwright or PyAV is not installed.
-        InvalidInput: The result holds no frames, or no browser draws it.
+        InvalidInput: The body is followed in no frame of the result, or no browser draws it.
         OSError: The file cannot be written.
     """
     if kind not in FILMS:

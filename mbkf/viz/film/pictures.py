@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, StageCallback
+from mbkf.errors import InvalidInput
 from mbkf.io.results import Reconstruction
 from mbkf.viz.film.browser import shown_page
 from mbkf.viz.page import asset, page
@@ -48,8 +49,10 @@ def film_pictures(
 
     Raises:
         MissingDependency: playwright is not installed.
-        InvalidInput: The result holds no frames, or no browser draws it.
+        InvalidInput: The body is followed in no frame of the result, or no browser draws it.
     """
+    if not r.tracked.any():
+        raise InvalidInput(f"the body is followed in no frame of '{r.trial}', so there is no motion to film")
     played = recording(r)
     scene = cast(dict[str, Any], played["scene"])
     times = r.times_s[:: round(r.rate_hz / scene["rate_hz"])]

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from mbkf.cli.main import main
-from mbkf.errors import FileFormatError, UnknownName
+from mbkf.errors import FileFormatError, InvalidInput, UnknownName
 from mbkf.io.results_folder import write_reconstruction
 from mbkf.viz.film import film as module
 from mbkf.viz.film.film import FILMS, write_film
@@ -87,6 +87,13 @@ def test_without_a_browser_the_command_says_what_to_install(tmp_path, capsys, mo
     told = capsys.readouterr().err
     assert told.count("\n") == 1 and "install one" in told
     assert [path.name for path in tmp_path.iterdir()] == ["result"]
+
+
+def test_a_body_that_is_never_followed_has_no_film(tmp_path):
+    lost = replace(walk(), tracked=np.zeros(walk().frames, dtype=bool))
+    with pytest.raises(InvalidInput, match="no motion to film"):
+        write_film(lost, "gif", tmp_path / "x.gif")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_formats_and_places_are_checked_before_anything_is_drawn(tmp_path, monkeypatch):
