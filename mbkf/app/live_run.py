@@ -20,7 +20,9 @@ from pathlib import Path
 from typing import IO
 
 from mbkf.errors import InvalidInput
+from mbkf.io.results_folder import SUMMARY_FILE
 from mbkf.stream.loopback import LOOPBACK
+from mbkf.stream.run.folder import LOG_FOLDER
 
 STARTING, RUNNING, ENDING, ENDED, FAILED = "starting", "running", "ending", "ended", "failed"
 
@@ -119,7 +121,7 @@ class LiveRun:
             self._begin_s = time.monotonic()
             self._state = LiveState(STARTING, session, folder.name)
             self._reader = threading.Thread(
-                target=self._follow, args=(self._process,), name="mbkf-live", daemon=True
+                target=self._follow, args=(self._process, folder), name="mbkf-live", daemon=True
             )
             self._reader.start()
 
@@ -141,8 +143,8 @@ class LiveRun:
             self._process.kill()
             self._reader.join()
 
-    def _follow(self, process: subprocess.Popen[str]) -> None:
-        """Listens to what the run says until it ends, then notes how."""
+    def _follow(self, process: subprocess.Popen[str], folder: Path) -> None:
+        """Listens to what the run says until it ends, then notes how; what a crash left in its log becomes results."""
         assert process.stderr is not None
         last = ""
         while line := process.stderr.readline(LONGEST_LINE):
@@ -151,14 +153,31 @@ class LiveRun:
         code = process.wait()
         _close(process.stdin)
         _close(process.stderr)
+        why = "" if code == 0 else last.removeprefix(ERROR) or f"it ended with status {code} and said nothing"
+        if why and self._recovered(folder):
+            why += "; what it had recorded until then is kept"
         with self._lock:
             assert self._state is not None
-            ended = replace(self._state, seconds=time.monotonic() - self._begin_s)
-            if code == 0:
-                self._state = replace(ended, state=ENDED)
-            else:
-                why = last.removeprefix(ERROR) or f"it ended with status {code} and said nothing"
-                self._state = replace(ended, state=FAILED, reason=why)
+            seconds = time.monotonic() - self._begin_s
+            self._state = replace(self._state, state=FAILED if why else ENDED, reason=why, seconds=seconds)
+
+    def _recovered(self, folder: Path) -> bool:
+        """Whether results could be made of the log that a run left without any."""
+        if not (folder / LOG_FOLDER).is_dir() or (folder / SUMMARY_FILE).is_file():
+            return False
+        words = [*self._program, "live", f"--recover={folder}"]
+        try:
+            done = subprocess.run(
+                words,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                timeout=END_S,
+                check=False,
+            )
+        except (OSError, subprocess.TimeoutExpired):
+            return False
+        return done.returncode == 0
 
     def _heard(self, line: str) -> None:
         page = PAGE.search(line)

@@ -37,7 +37,7 @@ def _row(folder: Path) -> Plain:
     }  # fmt: skip
     try:
         seen = _seen(folder, (folder / SUMMARY_FILE).stat().st_mtime_ns)
-    except (MbkfError, OSError, ValueError, KeyError) as error:
+    except (MbkfError, OSError, ValueError) as error:
         return {**found, "status": "failed", "reason": " ".join(str(error).split())}
     return {**found, **seen}
 
@@ -51,7 +51,7 @@ def _seen(folder: Path, _stamp: int) -> Plain:
     """
     summary = read_summary(folder)
     report = json.loads((folder / LIVE_FILE).read_text(encoding="utf-8"))
-    lost, came = int(report["frames_lost"]), int(report["frames_in"])
+    lost, came = int(report.get("frames_lost", 0)), int(report.get("frames_in", 0))
     told = {
         "what": f"{lost} of {lost + came} frames were lost",
         "todo": "see live.json for when",

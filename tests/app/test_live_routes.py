@@ -73,6 +73,24 @@ def test_a_run_is_framed_at_its_own_address_alone_and_stopped(server, cookie, re
     )
 
 
+@pytest.mark.slow
+def test_a_run_that_is_killed_says_so_and_its_frames_are_kept(server, cookie, recorded):
+    begun = plain(server, cookie, START, "POST", WALK)[1]["run"]
+    log = server.workspace.place("P1") / begun["name"] / LOG_FOLDER / FRAMES_FILE
+    once(server, cookie, lambda run: log.is_file() and log.stat().st_size > SOME_FRAMES)
+    server.live._process.kill()
+    failed = once(server, cookie, lambda run: not run["goes_on"])
+    assert failed["state"] == "failed"
+    assert failed["reason"].endswith("Hz; what it had recorded until then is kept")
+    assert asked(server, f"/trial/look?session=P1&trial={begun['name']}", Cookie=cookie)[0].status == 200
+    (row,) = [
+        trial
+        for trial in plain(server, cookie, "/session?session=P1")[1]["trials"]
+        if trial["name"] == begun["name"]
+    ]
+    assert row["status"] == "done" and row["seconds"] > 0.0
+
+
 def test_the_frame_may_hold_the_live_page_and_nothing_else():
     text = frame_page(51234)
     assert "default-src 'none'" in text and 'frame-src http://127.0.0.1:51234"' in text

@@ -10,6 +10,7 @@ import pytest
 from mbkf.app import live_run as module
 from mbkf.app.live_run import LiveRun
 from mbkf.errors import InvalidInput
+from mbkf.stream.run.folder import LOG_FOLDER
 
 PATIENCE_S = 20.0
 
@@ -98,6 +99,16 @@ def test_a_crash_without_a_word_is_told_with_its_status(tmp_path):
     run.stop()
     run.start("P1", [], tmp_path / "live-1")
     assert once(run, "failed").reason == "it ended with status 7 and said nothing"
+
+
+@pytest.mark.parametrize("status", [0, 2])
+def test_what_a_crash_left_in_its_log_is_recovered_if_it_can_be(begun, tmp_path, status):
+    (tmp_path / "live-1" / LOG_FOLDER).mkdir(parents=True)
+    end = f"sys.exit({status} if any(word.startswith('--recover') for word in sys.argv) else 1)"
+    failed = once(begun(end), "failed")
+    kept = "; what it had recorded until then is kept"
+    assert failed.reason == "following walk: 36 markers at 100 Hz" + ("" if status else kept)
+    assert json.loads((tmp_path / "words.json").read_text()) == ["live", f"--recover={tmp_path / 'live-1'}"]
 
 
 def test_it_ends_with_the_server(begun):
