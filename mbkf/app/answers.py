@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mbkf.app.recordings import recording_rows
 from mbkf.app.runs import Runs, RunState
 from mbkf.app.workspace import Workspace
 from mbkf.io.session import SessionNotes, TrialKind, plain_session, session_of
@@ -38,7 +39,7 @@ def session(workspace: Workspace, runs: Runs, name: str) -> Plain:
         "notes": plain_session(looked.notes),
         "standing_kg": looked.standing_kg,
         "problems": [_problem(one) for one in looked.problems],
-        "trials": [_trial(looked, one, state) for one in looked.trials],
+        "trials": [*(_trial(looked, one, state) for one in looked.trials), *recording_rows(workspace, name)],
         "kinds": [kind.value for kind in TrialKind],
         "run": run_state(state),
     }

@@ -11,15 +11,20 @@ from mbkf.viz.page import asset, embedded
 from mbkf.viz.report.document import report_page
 from mbkf.viz.scene.playback import playback_page
 
-SCRIPTS = ("element.js", "app_words.js", "app_report.js", "app_session.js", "app.js")
+SCRIPTS = (
+    "element.js", "app_words.js", "app_live.js", "app_export.js", "app_report.js", "app_session.js", "app.js",
+)  # fmt: skip
 """The page's own scripts, in the order they are needed."""
+
+SECTIONS = ("app", "live", "export")
+"""Sections of the language files with the page's words; no two have a word of one name."""
 
 
 def start_page() -> str:
     """The page of the sessions."""
     text = asset("app.html")
     known: dict[str, object] = {
-        code: {"name": name, "words": dict(words(code, "app"))} for code, name in languages().items()
+        code: {"name": name, "words": page_words(code)} for code, name in languages().items()
     }
     parts = {
         "style": asset("app.css"),
@@ -29,6 +34,15 @@ def start_page() -> str:
     for name, part in parts.items():
         text = text.replace("{{" + name + "}}", part, 1)
     return text
+
+
+def page_words(language: str) -> dict[str, str]:
+    """The words of the page of the sessions, of all its sections.
+
+    Args:
+        language: Code, e.g. "es".
+    """
+    return {name: text for section in SECTIONS for name, text in words(language, section).items()}
 
 
 def look(folder: Path) -> str:

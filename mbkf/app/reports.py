@@ -64,7 +64,7 @@ def read_whole(workspace: Workspace, session: str) -> Session:
         InvalidInput: There is no such session, or no result.
         FileFormatError: A file is damaged.
     """
-    notes = workspace.notes(session)
+    notes = workspace.stated(session)
     folder = workspace.root.name if session == "." else session
     return session_from(workspace.results(session), _heading(notes.name, folder), notes)
 

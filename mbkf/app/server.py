@@ -13,7 +13,10 @@ import uvicorn
 from starlette.applications import Starlette
 from starlette.middleware import Middleware
 
+from mbkf.app.export_routes import export_routes
 from mbkf.app.guard import Guard
+from mbkf.app.live_routes import live_routes
+from mbkf.app.live_run import LiveRun
 from mbkf.app.report_routes import report_routes
 from mbkf.app.runs import Runs
 from mbkf.app.session_routes import session_routes
@@ -53,8 +56,9 @@ class AppServer:
         self._socket = _listening(port)
         self.port = int(self._socket.getsockname()[1])
         self.runs = Runs(self.workspace, workers)
+        self.live = LiveRun()
         config = uvicorn.Config(
-            application(self.workspace, self.runs, self._token, COOKIE.format(port=self.port)),
+            application(self.workspace, self.runs, self.live, self._token, COOKIE.format(port=self.port)),
             log_level="critical",
             http="h11",
             ws="none",
@@ -79,25 +83,33 @@ class AppServer:
             self._thread.join(0.2)
 
     def close(self) -> None:
-        """Ends server and runs; the next one takes up what was not finished."""
+        """Ends server, live run and runs; the next one takes up what was not finished."""
         self._server.should_exit = True
+        self.live.close()
         self.runs.close()
         self._thread.join(timeout=10.0)
         with contextlib.suppress(OSError):
             self._socket.close()
 
 
-def application(workspace: Workspace, runs: Runs, token: str, cookie: str) -> Starlette:
+def application(workspace: Workspace, runs: Runs, live: LiveRun, token: str, cookie: str) -> Starlette:
     """The pages and what they ask for.
 
     Args:
         workspace: The sessions.
         runs: Their runs.
+        live: The live run.
         token: What every request must carry.
         cookie: Name of the cookie that carries it.
     """
     return Starlette(
-        routes=[*session_routes(workspace, runs), *trial_routes(workspace), *report_routes(workspace)],
+        routes=[
+            *session_routes(workspace, runs),
+            *live_routes(workspace, live),
+            *export_routes(workspace),
+            *trial_routes(workspace),
+            *report_routes(workspace),
+        ],
         middleware=[Middleware(Guard, token=token, cookie=cookie)],
     )
 

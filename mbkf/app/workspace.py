@@ -15,11 +15,19 @@ from typing import BinaryIO
 
 from mbkf.errors import InvalidInput
 from mbkf.io.atomic import replacing
-from mbkf.io.session import SESSION_FILE, SessionNotes, read_session, write_session
-from mbkf.pipelines.batch.folder import plan_of_folder, session_folders
-from mbkf.pipelines.batch.plan import FORBIDDEN, Plan
+from mbkf.io.results_folder import SUMMARY_FILE
+from mbkf.io.session import SESSION_FILE, SessionNotes, write_session
+from mbkf.pipelines.batch.folder import (
+    SUBJECT_FILE,
+    person_and_session,
+    plan_of_folder,
+    session_folders,
+    stated_of,
+)
+from mbkf.pipelines.batch.plan import FORBIDDEN, Person, Plan, Trial
 from mbkf.pipelines.survey.session import SurveyedSession, survey_session
 from mbkf.pipelines.survey.trial import SurveyedTrial, survey_trial
+from mbkf.stream.run.report import LIVE_FILE
 
 RESULTS = "results"
 """Folder of the results in the page's folder."""
@@ -83,11 +91,52 @@ class Workspace:
         Raises:
             InvalidInput: There is no such session, or no trial to be done.
         """
-        folder = self.folder(session)
-        trials = tuple(one for one in plan_of_folder(self.root).trials if one.path.parent == folder)
+        trials = self._trials(self.folder(session))
         if not trials:
             raise InvalidInput("there is no moving trial to be done")
         return Plan(trials)
+
+    def place(self, session: str) -> Path:
+        """The folder of a session's results, as ``mbkf batch`` has it.
+
+        Raises:
+            InvalidInput: There is no such session.
+        """
+        return self.out / Person(*person_and_session(self.root, self.folder(session))).place
+
+    def stated(self, session: str) -> SessionNotes:
+        """What session files state of a session, those above it included.
+
+        Raises:
+            InvalidInput: There is no such session.
+            FileFormatError: One is damaged.
+        """
+        return stated_of(self.root, self.folder(session))
+
+    def subject(self, session: str) -> Path | None:
+        """The file of the session's scaled person: the session's own, that of a run, or of the newest live run.
+
+        None before there is one.
+
+        Raises:
+            InvalidInput: There is no such session.
+        """
+        place = self.place(session)
+        folders = (
+            self.folder(session),
+            place,
+            *(place / name for name in reversed(self.recordings(session))),
+        )
+        return next((file for folder in folders if (file := folder / SUBJECT_FILE).is_file()), None)
+
+    def recordings(self, session: str) -> tuple[str, ...]:
+        """The names of a session's recorded live runs, in their order.
+
+        Raises:
+            InvalidInput: There is no such session.
+        """
+        reports = self.place(session).glob(f"*/{LIVE_FILE}")
+        return tuple(sorted(one.parent.name for one in reports if (one.parent / SUMMARY_FILE).is_file()))
 
     def note(self, session: str, notes: SessionNotes) -> None:
         """Writes what is stated of a session.
@@ -127,33 +176,34 @@ class Workspace:
         Raises:
             InvalidInput: There are none.
         """
+        if trial in self.recordings(session):
+            return self.place(session) / trial
         for one in self.plan(session).trials:
             place = self.out / one.place
-            if one.path.stem == trial and (place / "summary.json").is_file():
+            if one.path.stem == trial and (place / SUMMARY_FILE).is_file():
                 return place
         raise InvalidInput(f"there is no result of '{trial}' yet")
 
     def results(self, session: str) -> list[Path]:
-        """The folders of a session's results, one for each trial that is done and not left out.
+        """The folders of a session's results: of each trial that is done and not left out, and of live runs.
 
         Raises:
             InvalidInput: There is no such session, or no result.
         """
-        places = [self.out / one.place for one in self.plan(session).trials]
-        done = [place for place in places if (place / "summary.json").is_file()]
+        folder, place = self.folder(session), self.place(session)
+        places = [self.out / one.place for one in self._trials(folder)]
+        places += [place / name for name in self.recordings(session)]
+        done = [place for place in places if (place / SUMMARY_FILE).is_file()]
         if not done:
             raise InvalidInput(f"nothing of '{session}' is done yet; run it first")
         return done
 
-    def notes(self, session: str) -> SessionNotes:
-        """What is stated of a session.
-
-        Raises:
-            InvalidInput: There is no such session.
-            FileFormatError: Its session file is damaged.
-        """
-        file = self.folder(session) / SESSION_FILE
-        return read_session(file) if file.is_file() else SessionNotes()
+    def _trials(self, folder: Path) -> tuple[Trial, ...]:
+        """The moving trials of a session's folder that are not left out."""
+        try:
+            return tuple(one for one in plan_of_folder(self.root).trials if one.path.parent == folder)
+        except InvalidInput:  # there are standing ones only
+            return ()
 
     def _surveyed(self, path: Path, forces: Path | None) -> SurveyedTrial:
         stamp = tuple((s.st_size, s.st_mtime_ns) for s in (file.stat() for file in (path, forces) if file))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from mbkf.errors import InvalidInput
 
-_OF_SUBJECT, _OF_RESULT = ("urdf", "mjcf"), ("c3d", "bvh", "glb")
+_OF_SUBJECT, _OF_RESULT, _FILMS = ("urdf", "mjcf"), ("c3d", "bvh", "glb", "mp4", "gif"), ("mp4", "gif")
 
 _EPILOG = """\
 A subject:
@@ -21,6 +21,7 @@ A result (a folder of 'mbkf reconstruct' or 'mbkf live', or its motion.h5):
         the centre of mass, foot strikes and offs; for Mokka, Visual3D, Nexus.
   bvh   the segments' rotations, cm, y up, z forward; for animation programs.
   glb   the body as 'mbkf view' draws it, moving; m, y up; for animation programs and browsers.
+  mp4, gif  a film of the 3-D view, 25 pictures a second. Needs Chromium, Chrome or Edge, and pip install 'mbkf[film]'.
 
 examples:
   mbkf export subject.toml --to urdf --out subject.urdf
@@ -28,6 +29,8 @@ examples:
   mbkf export result --to c3d --out walk_model.c3d
   mbkf export result --to bvh --out walk.bvh
   mbkf export result --to glb --out walk.glb
+  mbkf export result --to mp4 --out walk.mp4
+  mbkf export result --to gif --out walk.gif
 """
 
 
@@ -35,7 +38,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
     parser = subparsers.add_parser(
         "export",
-        help="write a subject as URDF or MJCF, a result as C3D, BVH or GLB",
+        help="write a subject as URDF or MJCF, a result as C3D, BVH, GLB or film",
         description="Write a scaled subject or a result as a file of other programs.",
         epilog=_EPILOG,
     )
@@ -52,16 +55,15 @@ def run(args: argparse.Namespace) -> int:
 
     Raises:
         FileFormatError: Subject or result cannot be read, or a folder stands where the file is needed.
-        InvalidInput: A result is asked for a format of subjects, or the other way round; or it holds no motion.
+        InvalidInput: A result is asked for a format of subjects, or the other way round; it holds no motion; or no
+            browser draws its film.
+        MissingDependency: A library that films need is not installed.
         UnknownName: The subject's body or a marker's segment is unknown.
     """
     source = Path(args.source)
     if _is_result(source):
         _require(args, _OF_RESULT, "a result", "a subject", "the subject file that 'mbkf scale' wrote")
-        from mbkf.io.results_folder import read_reconstruction
-        from mbkf.pipelines.export import export_result
-
-        export_result(read_reconstruction(source), args.to, args.out)
+        _export_result(source, args.to, args.out)
     else:
         _require(
             args, _OF_SUBJECT, "a file of a subject", "a result", "the folder that 'mbkf reconstruct' wrote"
@@ -72,6 +74,22 @@ def run(args: argparse.Namespace) -> int:
         export_subject(read_subject(source), args.to, args.out)
     print(args.out)
     return 0
+
+
+def _export_result(source: Path, kind: str, out: str) -> None:
+    from mbkf.io.results_folder import read_reconstruction
+
+    result = read_reconstruction(source)
+    if kind in _FILMS:
+        from mbkf.cli.progress import stages
+        from mbkf.viz.film.film import write_film
+
+        with stages() as report:
+            write_film(result, kind, out, progress=report)
+        return
+    from mbkf.pipelines.export import export_result
+
+    export_result(result, kind, out)
 
 
 def _is_result(source: Path) -> bool:

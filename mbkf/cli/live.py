@@ -114,6 +114,11 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     out.add_argument("--view-port", type=int, default=0, metavar="N", help="port of the page (default: any)")
     out.add_argument("--token", metavar="TEXT", help="what page and WebSocket ask for on another address")
+    out.add_argument(
+        "--end-with-input",
+        action="store_true",
+        help="end when the standard input closes, for programs that start it",
+    )
     out.add_argument("--keep-log", action="store_true", help="keep the log beside the results")
     parser.set_defaults(run=run)
 
@@ -125,7 +130,7 @@ def run(args: argparse.Namespace) -> int:
         MbkfError: An input is unusable.
     """
     from mbkf.cli.options import asked_spreads, lag_seconds
-    from mbkf.cli.stopping import stopped_by_signal
+    from mbkf.cli.stopping import stop_with_input, stopped_by_signal
     from mbkf.errors import InvalidInput
     from mbkf.io.atomic import check_folder
     from mbkf.io.subject import Subject
@@ -152,6 +157,8 @@ def run(args: argparse.Namespace) -> int:
         settings = with_preset(settings, args.preset, args.filter)
     source, name = _source(args), args.source.partition(":")[0]
     with stopped_by_signal() as stop, _waiting_page(args) as waiting:
+        if args.end_with_input:
+            stop_with_input(stop)
         _say(f"waiting for {args.source} …")
         patience = None if args.seconds is None else max(args.seconds, LEAST_PATIENCE_S)
         try:

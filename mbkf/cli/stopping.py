@@ -1,8 +1,10 @@
-"""Ctrl-C, or a request to terminate, as an orderly end; a second one breaks off at once."""
+"""Ctrl-C, a request to terminate, or the end of the input as an orderly end; a second Ctrl-C breaks off at once."""
 
 from __future__ import annotations
 
+import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -28,3 +30,15 @@ def stopped_by_signal() -> Iterator[threading.Event]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def stop_with_input(stop: threading.Event) -> None:
+    """Sets an event when the standard input closes, in a thread: when the program that holds its other end ends."""
+
+    def watch(number: int) -> None:
+        # Not by sys.stdin, whose lock a thread that waits would hold when Python ends.
+        while os.read(number, 4096):
+            pass
+        stop.set()
+
+    threading.Thread(target=watch, args=(sys.stdin.fileno(),), name="mbkf input", daemon=True).start()

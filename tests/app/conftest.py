@@ -7,6 +7,7 @@ import pytest
 from mbkf.app.server import AppServer
 from tests.app.asking import asked
 from tests.studies import study
+from tests.viz.conftest import browser, opened  # noqa: F401 — for this folder's tests, too
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,7 @@
 
 import re
 
-from mbkf.app.pages import LOOKS, SCRIPTS, start_page
+from mbkf.app.pages import LOOKS, SCRIPTS, SECTIONS, page_words, start_page
 from mbkf.viz.language import words
 from mbkf.viz.page import asset
 from tests.io.reconstructions import made_up
@@ -18,11 +18,15 @@ def test_the_page_is_one_text():
 
 
 def test_every_word_is_used_and_every_used_one_known():
-    known = set(words("en", "app"))
+    known = set(page_words("en"))
     text = "\n".join(asset(name) for name in SCRIPTS)
     asked = set(re.findall(r"word\(\s*\"(\w+)\"", text))
     assert asked <= known
     assert known <= set(re.findall(r"\"(\w+)\"", text)) | SAID_BY_THE_SERVER
+
+
+def test_no_two_sections_have_a_word_of_one_name():
+    assert len(page_words("en")) == sum(len(words("en", section)) for section in SECTIONS)
 
 
 def test_pages_of_a_trial_are_known():

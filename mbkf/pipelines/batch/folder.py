@@ -141,15 +141,13 @@ def _sessions(root: Path) -> Iterator[tuple[Path, list[Path]]]:
 
 def _trials(root: Path, place: Path, captures: Sequence[Path]) -> list[Trial]:
     """The trials of one session."""
-    parts = place.relative_to(root).parts
-    notes, files = _stated(root, place), sorted(place.iterdir())
+    notes, files = stated_of(root, place), sorted(place.iterdir())
     kept = [path for path in captures if not notes.trial(path.stem).excluded]
     statics = tuple(path for path in kept if is_static(path, notes))
     moving = [Files(path, forces_beside(path, files)) for path in kept if path not in statics]
     subject = place / SUBJECT_FILE
     person = Person(
-        folder_name(parts[0] if parts else root.name),
-        folder_name("-".join(parts[1:])) if parts[1:] else "",
+        *person_and_session(root, place),
         statics,
         tuple(moving[: MOST_MOVING if statics else MOST_LOOKED_AT]),
         notes.mass_kg,
@@ -160,8 +158,24 @@ def _trials(root: Path, place: Path, captures: Sequence[Path]) -> list[Trial]:
     return [Trial(person, one.path, one.forces, folder_name(one.path.stem)) for one in moving]
 
 
-def _stated(root: Path, place: Path) -> SessionNotes:
+def person_and_session(root: Path, place: Path) -> tuple[str, str]:
+    """The names of the person and of the session that a folder with captures is.
+
+    Args:
+        root: The study's folder.
+        place: The session's folder, in it.
+    """
+    parts = place.relative_to(root).parts
+    session = folder_name("-".join(parts[1:])) if parts[1:] else ""
+    return folder_name(parts[0] if parts else root.name), session
+
+
+def stated_of(root: Path, place: Path) -> SessionNotes:
     """What session files say, the nearest first; of trials only the session's own.
+
+    Args:
+        root: The study's folder.
+        place: The session's folder, in it.
 
     Raises:
         FileFormatError: One is damaged, or says something impossible.

@@ -12,6 +12,7 @@ from mbkf.conventions import Array
 from mbkf.errors import InvalidInput, MbkfError
 from mbkf.io.resample import WHOLE
 from mbkf.stream.libraries import lsl
+from mbkf.stream.lsl.discovery import streams_of
 from mbkf.stream.lsl.format import (
     MARKER_TYPES,
     MarkerLayout,
@@ -128,8 +129,8 @@ class LslSource:
         if name is not None:
             found = self._lsl.resolve_byprop("name", name, 1, timeout_s)
             return found[0] if found else None
-        found = [s for s in self._lsl.resolve_streams(timeout_s) if s.type().lower() in types]
-        return sorted(found, key=lambda stream: stream.name())[0] if found else None
+        found = streams_of(self._lsl, types, timeout_s)
+        return found[0] if found else None
 
     def _inlet(self, info: Any, counted: bool) -> Any:
         """An open inlet, or None where the stream does not answer; stamps are corrected where they are what counts."""

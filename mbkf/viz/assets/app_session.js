@@ -4,7 +4,7 @@
 const KIND_WORDS = { static: "static", walk: "walk", run: "run_kind", squat: "squat", jump: "jump", unknown: "unknown" };
 
 function sessionView(data, act) {
-  return [element("h2", {}, data.id === "." ? data.notes.name || "·" : data.id), person(data, act), problemsOf(data), run(data, act), trials(data, act)];
+  return [element("h2", {}, data.id === "." ? data.notes.name || "·" : data.id), person(data, act), problemsOf(data), run(data, act), liveSection(data, act), trials(data, act)];
 }
 
 function field(label, input) {
@@ -90,13 +90,14 @@ function trialRow(data, one, act) {
   if (one.status === "failed") result.append(" " + one.reason);
   if (one.status === "done" || one.status === "unchanged") {
     const show = (look) => element("button", { type: "button", onclick: () => act.show(look, one.name) }, word(look));
-    result.append(element("div", { className: "buttons" }, show("look"), show("report")));
+    result.append(element("div", { className: "buttons" }, show("look"), show("report"), exportSelect(data, one)));
   }
+  if (one.live) out.replaceChildren("–");
   const seen = one.usable || one.seconds;
   return element("tr", { className: one.excluded ? "out" : "" },
-    element("td", {}, one.file), element("td", {}, kind),
+    element("td", {}, one.file), element("td", {}, one.live ? word("live_recording") : kind),
     element("td", { className: "number" }, seen ? word("seconds", one.seconds.toFixed(1)) : "–"),
     element("td", { className: "number" }, seen ? String(one.markers || one.unnamed) : "–"),
-    element("td", { className: "number" }, seen ? String(one.plates) : "–"), out,
+    element("td", { className: "number" }, seen ? String(one.plates ?? "–") : "–"), out,
     element("td", {}, one.problems.length ? problemList(one.problems) : ""), result);
 }

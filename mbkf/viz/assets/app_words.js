@@ -7,8 +7,7 @@ const known = (name) => (name in WORDS ? name : null);
 let language = known(localStorage.getItem("mbkf language")) || known(navigator.language.slice(0, 2)) || "en";
 
 function word(name, ...values) {
-  const text = WORDS[language].words[name];
-  return values.reduce((said, value, k) => said.replace(`{${k}}`, value), text);
+  return WORDS[language].words[name].replace(/\{(\d)\}/g, (_, k) => values[k]); // whatever signs the values hold
 }
 
 function duration(seconds) {

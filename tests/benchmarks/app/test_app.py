@@ -68,7 +68,10 @@ def test_sessions_are_as_told(tmp_path):
 
 def test_names_are_attempts(tmp_path):
     session = evil_session(tmp_path)
-    assert len(list(session.glob("*.c3d"))) == len(EVIL) + 1 and read_session(session / "session.toml").name == EVIL[1]
+    assert (
+        len(list(session.glob("*.c3d"))) == len(EVIL) + 1
+        and read_session(session / "session.toml").name == EVIL[1]
+    )
     found = read_capture(next(session.glob("1 *.c3d")))
     assert EVIL[1] in found.markers.names and EVIL[1] in [event.label for event in found.events]
 

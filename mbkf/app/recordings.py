@@ -1,0 +1,66 @@
+"""Recorded live runs of a session, as rows of its table."""
+
+from __future__ import annotations
+
+import json
+from functools import lru_cache
+from pathlib import Path
+
+from mbkf.app.workspace import Workspace
+from mbkf.errors import MbkfError
+from mbkf.io.results_folder import SUMMARY_FILE, read_summary
+from mbkf.io.session import TrialKind
+from mbkf.stream.run.report import LIVE_FILE
+
+Plain = dict[str, object]
+
+
+def recording_rows(workspace: Workspace, session: str) -> list[Plain]:
+    """A session's recorded live runs as plain data, with the entries of a trial and "live".
+
+    Args:
+        workspace: The sessions.
+        session: Which one.
+
+    Raises:
+        InvalidInput: There is no such session.
+    """
+    place = workspace.place(session)
+    return [_row(place / name) for name in workspace.recordings(session)]
+
+
+def _row(folder: Path) -> Plain:
+    found: Plain = {
+        "name": folder.name, "file": folder.name, "kind": TrialKind.UNKNOWN.value, "live": True, "excluded": "",
+        "shown": TrialKind.UNKNOWN.value, "seconds": 0.0, "rate_hz": 0.0, "markers": 0, "unnamed": 0,
+        "protocol": "", "plates": None, "events": 0, "usable": True, "problems": [], "status": "done", "reason": "",
+    }  # fmt: skip
+    try:
+        seen = _seen(folder, (folder / SUMMARY_FILE).stat().st_mtime_ns)
+    except (MbkfError, OSError, ValueError) as error:
+        return {**found, "status": "failed", "reason": " ".join(str(error).split())}
+    return {**found, **seen}
+
+
+@lru_cache(maxsize=256)
+def _seen(folder: Path, _stamp: int) -> Plain:
+    """What a recording's files tell; remembered until they change.
+
+    Raises:
+        FileFormatError: They are damaged.
+    """
+    summary = read_summary(folder)
+    report = json.loads((folder / LIVE_FILE).read_text(encoding="utf-8"))
+    lost, came = int(report.get("frames_lost", 0)), int(report.get("frames_in", 0))
+    told = {
+        "what": f"{lost} of {lost + came} frames were lost",
+        "todo": "see live.json for when",
+        "grave": False,
+    }
+    return {
+        "seconds": summary["duration_s"],
+        "rate_hz": summary["rate_hz"],
+        "markers": summary["markers_used"],
+        "protocol": summary["protocol"],
+        "problems": [told] if lost else [],
+    }

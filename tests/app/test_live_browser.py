@@ -1,0 +1,114 @@
+"""A live run from the page in a real browser: replayed, seen, stopped, and then in the table with its 3-D view."""
+
+import pytest
+
+from mbkf.app import live_routes as module
+from mbkf.app.server import AppServer
+from mbkf.stream.lsl.discovery import FoundStream
+from tests.app.test_recordings import record
+from tests.studies import study
+from tests.viz.browsing import until
+
+pytestmark = pytest.mark.slow
+
+HOSTILE = "<img src=x onerror=\"document.title='harmed'\"> $& {1}"
+
+FRAMED = "#scene canvas"
+
+
+@pytest.fixture
+def lab(tmp_path):
+    made = AppServer(study(tmp_path / "lab"), workers=1)
+    yield made
+    made.close()
+
+
+def text_of(page, selector):
+    return f"(document.querySelector('{selector}')?.textContent || '')"
+
+
+def replay(page, trial, body):
+    page.select_option("select[name=source]", "file")
+    page.select_option("select[name=trial]", trial)
+    page.select_option("select[name=body]", body)
+    page.click("dialog button.main")
+
+
+def test_a_capture_is_replayed_stopped_and_joins_the_session(opened, lab):
+    with opened(lab.url) as page:
+        page.set_viewport_size({"width": 1280, "height": 800})
+        page.click("button.live")
+        assert page.evaluate("document.querySelector('dialog').contains(document.activeElement)")
+        replay(page, "static", "standing")
+        until(page, f"{text_of(page, 'dialog .told')}.startsWith('Recorded as live-')")
+        first = page.text_content("dialog .told").removeprefix("Recorded as ")
+        page.click("dialog p.again button")
+        page.wait_for_selector("select[name=source]")
+        assert page.input_value("select[name=body]") == "subject", "who stood still is known now"
+        replay(page, "walk1", "subject")
+        live = page.frame_locator("dialog iframe").frame_locator("iframe")
+        live.locator(FRAMED).wait_for()
+        inner = page.frames[-1]
+        until(inner, "document.getElementById('state').textContent === 'live'")
+        until(inner, "Number(document.getElementById('time').textContent.split(' ')[0]) > 0.5")
+        page.click("dialog .stop")
+        until(page, f"/Recorded as live-/.test({text_of(page, 'dialog .told')})")
+        second = page.text_content("dialog .told").removeprefix("Recorded as ")
+        assert second != first
+        page.keyboard.press("Escape")
+        until(page, "document.querySelector('dialog') === null")
+        for name in (first, second):
+            page.get_by_role("row", name=name).get_by_text("recorded live").wait_for()
+        page.get_by_role("row", name=second).get_by_role("button", name="3-D").click()
+        page.frame_locator("dialog iframe").locator(FRAMED).wait_for()
+    opened.errors[:] = [
+        one for one in opened.errors if "ERR_CONNECTION_REFUSED" not in one
+    ]  # a live page that ended
+
+
+def test_a_download_is_named_after_its_trial(opened, lab):
+    record(lab.workspace, "live-1")
+    with opened(lab.url) as page:
+        with page.expect_download() as waited:
+            page.get_by_label("Export live-1 as").select_option("bvh")
+        assert waited.value.suggested_filename == "live-1.bvh"
+        assert waited.value.path().read_bytes().startswith(b"HIERARCHY")
+        until(page, f"{text_of(page, '#told')} === 'live-1.bvh is saved'")
+
+
+def test_names_of_streams_are_text_and_failures_are_told(opened, lab, monkeypatch):
+    monkeypatch.setattr(module, "marker_streams", lambda: (FoundStream(HOSTILE, "lab", 120.0),))
+    with opened(lab.url) as page:
+        page.click("button.live")
+        until(page, "document.querySelectorAll('select[name=stream] option').length === 1")
+        assert page.text_content("select[name=stream]") == f"{HOSTILE} (on lab, 120 Hz)"
+        assert page.title() == "mbkf" and page.locator("dialog img").count() == 0
+        page.select_option("select[name=source]", "natnet")
+        page.fill("input[name=local]", "nowhere.invalid")
+        page.click("dialog button.main")
+        until(page, f"{text_of(page, 'dialog .told')}.startsWith('The live run failed: ')")
+        assert "\n" not in page.text_content("dialog .told")
+        assert page.locator("dialog .told.bad").is_visible()
+        page.keyboard.press("Escape")
+
+
+def test_the_dialog_speaks_spanish(opened, lab):
+    with opened(lab.url) as page:
+        page.select_option("#language select", "es")
+        page.click("button.live")
+        page.wait_for_selector("select[name=source]")
+        assert page.text_content("dialog button.main") == "Iniciar"
+        assert "undefined" not in page.text_content("dialog")
+
+
+def test_an_export_that_fails_is_told_and_can_be_asked_for_again(opened, lab):
+    folder = record(lab.workspace, "live-1")
+    with opened(lab.url) as page:
+        choice = page.get_by_label("Export live-1 as")
+        choice.wait_for()
+        (folder / "motion.h5").write_bytes(b"damaged")
+        choice.select_option("glb")
+        until(page, "document.getElementById('told').className === 'bad'")
+        assert "motion.h5" in page.text_content("#told")
+        assert choice.is_enabled() and choice.input_value() == ""
+    opened.errors[:] = [one for one in opened.errors if "400 (Bad Request)" not in one]  # the refusal itself

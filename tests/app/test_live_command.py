@@ -1,0 +1,104 @@
+"""What the page asks of a live run becomes options of `mbkf live`, and nothing that it says becomes another one."""
+
+import pytest
+
+from mbkf.app.live_command import live_offer, live_options, recording_folder
+from mbkf.app.workspace import Workspace
+from mbkf.cli.live import add_parser
+from mbkf.cli.main import OneLineParser
+from mbkf.errors import InvalidInput
+from tests.studies import study
+
+LSL = {"source": "lsl", "stream": "QTM", "body": "standing"}
+
+
+@pytest.fixture(scope="module")
+def lab(tmp_path_factory):
+    return study(tmp_path_factory.mktemp("lab") / "lab", persons=2)
+
+
+@pytest.fixture
+def workspace(lab):
+    return Workspace(lab)
+
+
+def parsed(words):
+    """As `mbkf live` takes them."""
+    parser = OneLineParser(prog="mbkf")
+    add_parser(parser.add_subparsers())
+    return parser.parse_args(["live", *words, "--out=x"])
+
+
+def test_a_stream_of_any_name_is_one_word(workspace):
+    for name in ("QTM", "--out=/etc", "-h", "a b", "$(reboot)", "é 1"):
+        args = parsed(live_options(workspace, "P1", {**LSL, "stream": name}))
+        assert (args.source, args.stream, args.out, args.subject) == ("lsl", name, "x", None)
+
+
+def test_motive_is_asked_at_its_address(workspace):
+    said = {"source": "natnet", "server": " 192.168.1.10", "local": "--out=y", "body": "standing"}
+    args = parsed(live_options(workspace, "P1", said))
+    assert (args.source, args.server, args.local, args.out) == ("natnet", "192.168.1.10", "--out=y", "x")
+
+
+def test_a_capture_of_the_session_is_played(workspace, lab):
+    args = parsed(live_options(workspace, "P1", {"source": "file", "trial": "walk1", "body": "standing"}))
+    assert args.source == f"file:{lab / 'P1' / 'walk1.c3d'}" and args.forces is None
+
+
+def test_what_is_stated_of_the_person_is_taken(workspace, lab):
+    assert live_offer(workspace, "P2") == {"captures": ["static", "walk1"], "subject": False, "mass_kg": None}
+    file = lab / "P2" / "session.toml"
+    file.write_text('mass_kg = 71.5\nprotocol = "reference36"\n')
+    args = parsed(live_options(workspace, "P2", LSL))
+    assert (args.mass, args.protocol) == (71.5, "reference36")
+    assert live_offer(workspace, "P2")["mass_kg"] == 71.5
+    file.unlink()
+    assert parsed(live_options(workspace, "P2", LSL)).mass is None
+
+
+def test_the_scaled_body_is_taken_where_there_is_one(workspace, lab):
+    with pytest.raises(InvalidInput, match="no body of this session is scaled"):
+        live_options(workspace, "P1", {**LSL, "body": "subject"})
+    scaled = workspace.place("P1") / "subject.toml"
+    scaled.parent.mkdir(parents=True)
+    scaled.write_text("")
+    args = parsed(live_options(workspace, "P1", {**LSL, "body": "subject"}))
+    assert (args.subject, args.mass) == (str(scaled), None)
+    assert live_offer(workspace, "P1")["subject"] is True
+    scaled.unlink()
+
+
+@pytest.mark.parametrize(
+    ("said", "why"),
+    [
+        ([], "with its source and body"),
+        ({}, "choose a stream, Motive or a capture"),
+        ({"source": "file:/etc/passwd", "body": "standing"}, "choose a stream, Motive or a capture"),
+        ({"source": "lsl", "body": "standing"}, "choose a stream"),
+        ({"source": "natnet", "server": "1.2.3.4", "body": "standing"}, "the local address is missing"),
+        ({"source": "file", "trial": "../P2/walk1", "body": "standing"}, "no capture"),
+        ({"source": "file", "trial": 3, "body": "standing"}, "short text"),
+        ({"source": "lsl", "stream": "x" * 501, "body": "standing"}, "short text"),
+        ({"source": "lsl", "stream": "a\0b", "body": "standing"}, "short text"),
+        ({"source": "lsl", "stream": "QTM", "body": "mine"}, "choose the scaled body"),
+    ],
+)
+def test_what_is_not_possible_is_refused(workspace, said, why):
+    with pytest.raises(InvalidInput, match=why):
+        live_options(workspace, "P1", said)
+
+
+def test_an_unknown_session_is_refused(workspace):
+    for ask in (live_offer, lambda *two: live_options(*two, LSL), lambda *two: recording_folder(*two, "now")):
+        with pytest.raises(InvalidInput, match="no session"):
+            ask(workspace, "../P1")
+
+
+def test_a_recording_has_a_folder_of_its_own(workspace, lab):
+    assert recording_folder(workspace, "P1", "now") == workspace.place("P1") / "live-now"
+    capture = lab / "P1" / "live-now.c3d"
+    capture.write_bytes((lab / "P1" / "walk1.c3d").read_bytes())
+    (workspace.place("P1") / "live-now-2").mkdir(parents=True)
+    assert recording_folder(workspace, "P1", "now").name == "live-now-3", "neither a capture's nor a result's"
+    capture.unlink()
