@@ -10,6 +10,7 @@ protocol; in the session's own folder also which trials stand still and which ar
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -121,12 +122,18 @@ def _sessions(root: Path) -> Iterator[tuple[Path, list[Path]]]:
 
 def _found(root: Path, suffix: str) -> Iterator[Path]:
     """Files with a suffix; hidden ones, and those among results, left out."""
-    for path in sorted(root.rglob("*")):
-        hidden = any(part.startswith(".") for part in path.relative_to(root).parts)
-        if path.suffix.lower() != suffix or hidden or not path.is_file():
-            continue
-        if not (path.parent / MOTION_FILE).is_file():
+    for path in sorted(_visible(root)):
+        if path.suffix.lower() == suffix and path.is_file() and not (path.parent / MOTION_FILE).is_file():
             yield path
+
+
+def _visible(root: Path) -> Iterator[Path]:
+    """Files in a folder and in those below it, hidden ones left out."""
+    for place, folders, files in os.walk(
+        root
+    ):  # lets folders vanish meanwhile, as those of unfinished results do
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        yield from (Path(place, name) for name in files if not name.startswith("."))
 
 
 def _trials(root: Path, place: Path, captures: Sequence[Path]) -> list[Trial]:
