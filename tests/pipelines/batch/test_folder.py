@@ -1,11 +1,13 @@
 """Folders understood: persons, sessions, standing trials, ground reactions, stated masses."""
 
+import os
+import shutil
 from pathlib import Path
 
 import pytest
 
 from mbkf.errors import FileFormatError, InvalidInput
-from mbkf.pipelines.batch.folder import forces_beside, is_static, plan_of_folder
+from mbkf.pipelines.batch.folder import forces_beside, is_static, plan_of_folder, session_folders
 
 
 def made(folder, *names, **texts):
@@ -139,3 +141,21 @@ def test_files_whose_names_no_folder_can_have_get_one_that_it_can(tmp_path):
     made(tmp_path, "P<1>/mon:day/walk?.c3d")
     (trial,) = plan_of_folder(tmp_path).trials
     assert trial.path.name == "walk?.c3d" and trial.place.as_posix() == "P_1_/mon_day/walk_"
+
+
+def test_hidden_folders_and_those_that_vanish_meanwhile_are_left_out(tmp_path, monkeypatch):
+    """As those of results that are being written do while a page looks at the folder."""
+    for place in ("P1", "P2", ".hidden", "P1/.partial"):
+        (tmp_path / place).mkdir()
+        (tmp_path / place / "walk.c3d").touch()
+    (tmp_path / "P1" / ".walk.c3d").touch()
+    assert session_folders(tmp_path) == [tmp_path / "P1", tmp_path / "P2"]
+    walked = os.walk
+
+    def vanishing(root):
+        for step in walked(root):
+            shutil.rmtree(tmp_path / "P2", ignore_errors=True)
+            yield step
+
+    monkeypatch.setattr(os, "walk", vanishing)
+    assert session_folders(tmp_path) == [tmp_path / "P1"]
