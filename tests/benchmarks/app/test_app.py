@@ -25,6 +25,7 @@ def test_planted_elements_are_seen(browser):
     page.set_content(f"<p>{EVIL[0]}</p>")
     page.wait_for_timeout(300)
     assert active(page.main_frame) >= 3.0, "a script that ran, an attribute, an image"
+    page = browser.new_page()
     page.set_content(f'<a href="{EVIL[3]}">x</a>')
     assert active(page.main_frame) == 1.0
 
