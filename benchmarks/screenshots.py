@@ -62,7 +62,7 @@ def _live(browser: Any, r: Reconstruction, target: Path) -> None:
     high.fill("60")
     high.blur()
     page.wait_for_timeout(1e3 * LIVE_S)
-    _keep(page.screenshot(), target)
+    keep(page.screenshot(), target)
     page.close()
     done.set()
     thread.join()
@@ -90,10 +90,10 @@ def _top_of_cycles(page: Any) -> float:
 def _report(page: Any, section: str, top: float, height: float, target: Path) -> None:
     box = page.locator(f"#{section}").bounding_box()
     clip = {"x": box["x"] - 10, "y": box["y"] + top, "width": box["width"] + 20, "height": height}
-    _keep(page.screenshot(full_page=True, clip=clip), target)
+    keep(page.screenshot(full_page=True, clip=clip), target)
 
 
-def _keep(png: bytes, target: Path) -> None:
+def keep(png: bytes, target: Path) -> None:
     """Writes a picture as small as it goes without loss."""
     from PIL import Image
 

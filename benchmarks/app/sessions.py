@@ -31,7 +31,7 @@ def new_user(folder: Path, seed: int = 0) -> Path:
         write_c3d(_nameless_mass(made.trial), session / f"walk{k + 1}.c3d")
         if k < 2:
             write_c3d(_nameless_mass(made.static), session / f"static{k + 1}.c3d")
-    write_c3d(_without_markers(made.trial), session / BAD)
+    write_c3d(without_markers(made.trial), session / BAD)
     (session / "session.toml").write_text(f"mass_kg = {WRONG_KG}\n", encoding="utf-8")
     return session
 
@@ -57,7 +57,8 @@ def _nameless_mass(capture: Capture) -> Capture:
     return replace(capture, subject_mass_kg=None)
 
 
-def _without_markers(capture: Capture) -> Capture:
+def without_markers(capture: Capture) -> Capture:
+    """The capture as a file of an instrument alone: no marker, no plate."""
     frames = len(capture.markers.positions_m)
     return replace(
         capture, markers=MarkerTrajectories((), np.zeros((frames, 0, 3)), capture.markers.rate_hz), plates=()

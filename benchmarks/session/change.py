@@ -64,9 +64,7 @@ def recorded(seed: int) -> tuple[Recorded, Recorded]:
     """Both sessions of a person."""
     with single_threaded():
         person = synthesise_subject(seed)
-        return _session(person, MOTIONS[0], seed, 0), _session(
-            _marked_anew(person, seed), MOTIONS[1], seed, 1
-        )
+        return _session(person, MOTIONS[0], seed, 0), _session(marked_anew(person, seed), MOTIONS[1], seed, 1)
 
 
 def _session(person: Subject, motion: str, seed: int, number: int) -> Recorded:
@@ -95,8 +93,8 @@ def _true(r: Reconstruction, truth: Truth, person: Subject) -> Reconstruction:
     )
 
 
-def _marked_anew(person: Subject, seed: int) -> Subject:
-    """The same person with the markers put on again."""
+def marked_anew(person: Subject, seed: int) -> Subject:
+    """The same person with the markers put on again, as the seed says."""
     rng = np.random.default_rng([seed, 77])
     model, description = HumanModel.of(person), load_body(person.body)
     protocol = {marker.name: marker for marker in load_protocol(person.protocol).markers}

@@ -101,4 +101,9 @@ def _trial(looked: SurveyedSession, trial: SurveyedTrial, state: RunState | None
 
 
 def _problem(problem: Problem) -> Plain:
-    return {"what": problem.what, "todo": problem.todo, "grave": problem.grave}
+    return {
+        "what": problem.what,
+        "todo": problem.todo,
+        "grave": problem.grave,
+        "marker_set": problem.marker_set,
+    }

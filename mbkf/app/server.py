@@ -17,6 +17,7 @@ from mbkf.app.export_routes import export_routes
 from mbkf.app.guard import Guard
 from mbkf.app.live_routes import live_routes
 from mbkf.app.live_run import LiveRun
+from mbkf.app.marker_set_routes import marker_set_routes
 from mbkf.app.report_routes import report_routes
 from mbkf.app.runs import Runs
 from mbkf.app.session_routes import session_routes
@@ -109,6 +110,7 @@ def application(workspace: Workspace, runs: Runs, live: LiveRun, token: str, coo
             *export_routes(workspace),
             *trial_routes(workspace),
             *report_routes(workspace),
+            *marker_set_routes(workspace),
         ],
         middleware=[Middleware(Guard, token=token, cookie=cookie)],
     )

@@ -184,7 +184,7 @@ def stated_of(root: Path, place: Path) -> SessionNotes:
     for folder in reversed([place, *(p for p in place.parents if p == root or root in p.parents)]):
         file = folder / SESSION_FILE
         if file.is_file():
-            nearer = read_session(file)
+            nearer = _found_set(read_session(file), folder)
             found = replace(
                 nearer,
                 mass_kg=found.mass_kg if nearer.mass_kg is None else nearer.mass_kg,
@@ -195,6 +195,13 @@ def stated_of(root: Path, place: Path) -> SessionNotes:
         elif folder == place:
             found = replace(found, trials={})
     return found
+
+
+def _found_set(notes: SessionNotes, folder: Path) -> SessionNotes:
+    """The notes with a marker set's file where it lies: beside the session file."""
+    if notes.protocol and notes.protocol.lower().endswith(".toml"):
+        return replace(notes, protocol=str(folder / notes.protocol))
+    return notes
 
 
 def checked_entry(key: str, value: object, file: Path, line: int | None = None) -> float | str:

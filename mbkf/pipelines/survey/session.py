@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mbkf.io.session import SESSION_FILE, SessionNotes, TrialKind, read_session
@@ -57,11 +57,18 @@ def survey_session(folder: Path, survey: Survey = survey_trial) -> SurveyedSessi
     file = folder / SESSION_FILE
     notes = read_session(file) if file.is_file() else SessionNotes()
     captures, files = captures_in(folder), sorted(folder.iterdir())
-    trials = tuple(survey(path, forces_beside(path, files)) for path in captures)
+    trials = tuple(_with_set(survey(path, forces_beside(path, files)), notes) for path in captures)
     masses = [trial.standing_kg for trial in trials if trial.standing_kg is not None]
     standing = sorted(masses)[len(masses) // 2] if masses else None
     session = SurveyedSession(folder, notes, trials, standing, ())
     return SurveyedSession(folder, notes, trials, standing, _problems(session))
+
+
+def _with_set(trial: SurveyedTrial, notes: SessionNotes) -> SurveyedTrial:
+    """The trial without doubts about its marker set where the session states one."""
+    if not notes.protocol:
+        return trial
+    return replace(trial, problems=tuple(one for one in trial.problems if not one.marker_set))
 
 
 def _problems(session: SurveyedSession) -> tuple[Problem, ...]:

@@ -35,11 +35,13 @@ class Problem:
         what: What is the matter.
         todo: What to do about it.
         grave: Whether the capture cannot be used as it is.
+        marker_set: Whether it is about the marker set, which the marker editor puts right.
     """
 
     what: str
     todo: str
     grave: bool = False
+    marker_set: bool = False
 
 
 @dataclass(frozen=True)
@@ -138,7 +140,7 @@ def _of_markers(capture: Capture, unnamed: int) -> tuple[Problem, ...]:
         return (Problem("no marker is seen in it", "leave it out, or export its markers", grave=True),)
     found = []
     if unnamed == len(capture.markers.names):
-        found.append(Problem("its points have no names", "they are named by the scaled body", grave=True))
+        found.append(Problem("its points have no names", "the run names them by the scaled body"))
     missing = 1.0 - float(present.mean())
     if missing > MISSING_SHARE:
         found.append(
@@ -149,18 +151,22 @@ def _of_markers(capture: Capture, unnamed: int) -> tuple[Problem, ...]:
 
 def _protocol(capture: Capture) -> tuple[str, tuple[Problem, ...]]:
     """The shipped protocol that explains a capture's markers, and what is doubtful about set and axes."""
-    if not capture.markers.present.any():
+    if not capture.markers.present.any() or all(name.startswith("*") for name in capture.markers.names):
         return "", ()
     try:
         protocol = detect_protocol(capture.markers.names)
         use = use_by_protocol([capture.markers], protocol)
     except UnknownName:
         return "", (
-            Problem("its marker set is not known", "it is inferred; look at it in the marker editor"),
+            Problem(
+                "its marker set is not known",
+                "it is inferred; look at it in the marker editor",
+                marker_set=True,
+            ),
         )
     if not use.accepted:
         told = f"protocol {protocol.name} knows only {100 * use.share:.0f} % of its markers"
-        return "", (Problem(told, "the set is inferred; look at it in the marker editor"),)
+        return "", (Problem(told, "the set is inferred; look at it in the marker editor", marker_set=True),)
     axes = find_axes_by_names(capture)
     doubts = [Problem(axes.note, "look at the trial in 3-D")] if axes.note else []
     return protocol.name, tuple(doubts)

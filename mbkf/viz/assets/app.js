@@ -58,6 +58,9 @@ const act = {
     dialog.showModal();
   },
   report: () => sessionReport(chosen, act),
+  markerSet() {
+    act.dialog(word("marker_set"), element("iframe", { src: "marker_set?" + query({ session: chosen }), title: word("marker_set") }));
+  },
 };
 
 function draw(data) {
@@ -145,5 +148,9 @@ function start() {
   chooseLanguage();
   refresh();
 }
+
+addEventListener("message", (event) => {
+  if (event.origin === location.origin && event.data === "marker set done") document.querySelector("dialog[open]")?.close();
+});
 
 start();

@@ -4,7 +4,7 @@
 const KIND_WORDS = { static: "static", walk: "walk", run: "run_kind", squat: "squat", jump: "jump", unknown: "unknown" };
 
 function sessionView(data, act) {
-  return [element("h2", {}, data.id === "." ? data.notes.name || "·" : data.id), person(data, act), problemsOf(data), run(data, act), liveSection(data, act), trials(data, act)];
+  return [element("h2", {}, data.id === "." ? data.notes.name || "·" : data.id), person(data, act), problemsOf(data, act), run(data, act), liveSection(data, act), trials(data, act)];
 }
 
 function field(label, input) {
@@ -34,13 +34,17 @@ function person(data, act) {
   return element("section", {}, element("h3", {}, word("person")), form);
 }
 
-function problemList(problems) {
+function problemList(problems, act) {
   return element("ul", { className: "problems" }, ...problems.map((one) =>
-    element("li", { className: one.grave ? "grave" : "" }, element("b", {}, one.what), ": " + one.todo)));
+    element("li", { className: one.grave ? "grave" : "" }, element("b", {}, one.what), ": " + one.todo, ...(one.marker_set ? [" ", markerSetButton(act)] : []))));
 }
 
-function problemsOf(data) {
-  return data.problems.length ? element("section", {}, problemList(data.problems)) : "";
+function markerSetButton(act) {
+  return element("button", { type: "button", className: "marker-set", onclick: () => act.markerSet() }, word("marker_set"));
+}
+
+function problemsOf(data, act) {
+  return data.problems.length ? element("section", {}, problemList(data.problems, act)) : "";
 }
 
 function run(data, act) {
@@ -69,7 +73,7 @@ function trials(data, act) {
   const heads = [["trial"], ["kind"], ["length", "number"], ["markers", "number"], ["plates", "number"], ["use"], ["problems"], ["result"]];
   const head = element("tr", {}, ...heads.map(([name, kind]) => element("th", { className: kind || "", scope: "col" }, word(name))));
   const body = data.trials.map((one) => trialRow(data, one, act));
-  return element("section", {}, element("h3", {}, word("trials")),
+  return element("section", {}, element("div", { className: "head" }, element("h3", {}, word("trials")), markerSetButton(act)),
     element("div", { className: "table" }, element("table", {}, element("thead", {}, head), element("tbody", {}, ...body))));
 }
 
@@ -99,5 +103,5 @@ function trialRow(data, one, act) {
     element("td", { className: "number" }, seen ? word("seconds", one.seconds.toFixed(1)) : "–"),
     element("td", { className: "number" }, seen ? String(one.markers || one.unnamed) : "–"),
     element("td", { className: "number" }, seen ? String(one.plates ?? "–") : "–"), out,
-    element("td", {}, one.problems.length ? problemList(one.problems) : ""), result);
+    element("td", {}, one.problems.length ? problemList(one.problems, act) : ""), result);
 }

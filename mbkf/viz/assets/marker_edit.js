@@ -29,6 +29,7 @@ class MarkerEdit extends MarkerSet {
   }
 
   connect() {
+    if (this.data.say) return;
     this.socket = new WebSocket(`ws://${location.host}/frames${location.search}`);
     this.socket.onmessage = ({ data }) => { if (data) this.take(JSON.parse(data)); };
     this.socket.onclose = () => {
@@ -38,10 +39,18 @@ class MarkerEdit extends MarkerSet {
   }
 
   send(word) {
+    if (this.data.say) {
+      fetch(this.data.say, { method: "POST", body: JSON.stringify(word) }).then((answer) => answer.json()).then((said) => this.take(said), () => this.say("not connected: is mbkf still running?", "bad"));
+      return;
+    }
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(word));
   }
 
-  take({ trouble, saved, markers }) {
+  take({ trouble, saved, markers, done }) {
+    if (done && this.data.say) {
+      this.say("done; this page can be closed", "good");
+      window.parent.postMessage("marker set done", location.origin);
+    }
     if (trouble) {
       this.tell(trouble);
       this.say("not saved", "bad");

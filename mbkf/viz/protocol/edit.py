@@ -17,43 +17,40 @@ from mbkf.viz.protocol.page import EDIT_SCRIPTS, page_text, set_data
 from mbkf.viz.server import PageServer
 
 
-class EditPage:
-    """Serves a marker set to be changed until its page says that it is done.
-
-    The page says what a person chose, by marker; what a choice means is worked out here. It is served to this computer
-    alone, and only to who has the token, since it writes a file.
+class MarkerSetEdit:
+    """A marker set that a page changes: the page says what a person chose, by marker; what that means is worked out here.
 
     Args:
         protocol: The set to begin with.
         standing: The capture, with the body beside it.
         out: The file that saving writes.
-        port: 0 for any that is free.
 
     Attributes:
-        url: What to open in a browser, token included.
         done: Set once the page says so.
         saved: The set as it was saved last; None before.
 
     Raises:
-        InvalidInput: The port cannot be listened on, or the file's name is not a marker set's.
+        InvalidInput: The file's name is not a marker set's.
     """
 
-    def __init__(self, protocol: Protocol, standing: Standing, out: str | Path, *, port: int = 0) -> None:
+    def __init__(self, protocol: Protocol, standing: Standing, out: str | Path) -> None:
         self._protocol, self._standing, self._out = protocol, standing, checked_name(out)
         self.done = threading.Event()
         self.saved: Protocol | None = None
-        data = {**set_data(protocol, standing), "out": self._out.name, "trouble": standing.trouble}
-        self._server = PageServer(
-            page_text(data, EDIT_SCRIPTS, "'self'"),
-            hear=self.hear,
-            port=port,
-            token=secrets.token_urlsafe(16),
-        )
-        self.url = self._server.url
 
-    def close(self) -> None:
-        """Ends the server."""
-        self._server.close()
+    def text(self, say: str = "") -> str:
+        """The page.
+
+        Args:
+            say: Address that the page says its words to; a WebSocket of its own server's where it is empty.
+        """
+        data = {
+            **set_data(self._protocol, self._standing),
+            "out": self._out.name,
+            "trouble": self._standing.trouble,
+            "say": say,
+        }
+        return page_text(data, EDIT_SCRIPTS, "'self'")
 
     def hear(self, word: str) -> str:
         """Does what the page asks for, in JSON, and returns the answer, in JSON.
@@ -83,6 +80,34 @@ class EditPage:
         write_protocol(made, self._out)
         self.saved = made
         return {"saved": self._out.name, "markers": len(made.markers), "ignored": len(made.ignored)}
+
+
+class EditPage(MarkerSetEdit):
+    """Serves a marker set to be changed until its page says that it is done.
+
+    It is served to this computer alone, and only to who has the token, since it writes a file.
+
+    Args:
+        protocol: The set to begin with.
+        standing: The capture, with the body beside it.
+        out: The file that saving writes.
+        port: 0 for any that is free.
+
+    Attributes:
+        url: What to open in a browser, token included.
+
+    Raises:
+        InvalidInput: The port cannot be listened on, or the file's name is not a marker set's.
+    """
+
+    def __init__(self, protocol: Protocol, standing: Standing, out: str | Path, *, port: int = 0) -> None:
+        super().__init__(protocol, standing, out)
+        self._server = PageServer(self.text(), hear=self.hear, port=port, token=secrets.token_urlsafe(16))
+        self.url = self._server.url
+
+    def close(self) -> None:
+        """Ends the server."""
+        self._server.close()
 
 
 def _choice(said: object) -> Choice:
