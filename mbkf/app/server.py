@@ -14,6 +14,7 @@ from starlette.applications import Starlette
 from starlette.middleware import Middleware
 
 from mbkf.app.guard import Guard
+from mbkf.app.look_routes import look_routes
 from mbkf.app.runs import Runs
 from mbkf.app.session_routes import session_routes
 from mbkf.app.trial_routes import trial_routes
@@ -96,7 +97,7 @@ def application(workspace: Workspace, runs: Runs, token: str, cookie: str) -> St
         cookie: Name of the cookie that carries it.
     """
     return Starlette(
-        routes=[*session_routes(workspace, runs), *trial_routes(workspace)],
+        routes=[*session_routes(workspace, runs), *look_routes(workspace, runs), *trial_routes(workspace)],
         middleware=[Middleware(Guard, token=token, cookie=cookie)],
     )
 

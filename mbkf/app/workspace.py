@@ -9,15 +9,15 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import BinaryIO
 
 from mbkf.errors import InvalidInput
 from mbkf.io.atomic import replacing
-from mbkf.io.session import SESSION_FILE, SessionNotes, write_session
+from mbkf.io.session import SESSION_FILE, FootEvent, SessionNotes, read_session, write_session
 from mbkf.pipelines.batch.folder import plan_of_folder, session_folders
-from mbkf.pipelines.batch.plan import FORBIDDEN, Plan
+from mbkf.pipelines.batch.plan import FORBIDDEN, Plan, Trial
 from mbkf.pipelines.survey.session import SurveyedSession, survey_session
 from mbkf.pipelines.survey.trial import SurveyedTrial, survey_trial
 
@@ -50,7 +50,7 @@ class Workspace:
         self.root.mkdir(parents=True, exist_ok=True)
         self.out = self.root / RESULTS
         self._seen: dict[Path, _Seen] = {}
-        self._looking = threading.Lock()
+        self._looking, self._noting = threading.Lock(), threading.Lock()
 
     def sessions(self) -> tuple[str, ...]:
         """The names of its sessions."""
@@ -90,13 +90,39 @@ class Workspace:
         return Plan(trials)
 
     def note(self, session: str, notes: SessionNotes) -> None:
-        """Writes what is stated of a session.
+        """Writes what is stated of a session; events of trials stay as they are (:meth:`note_events`).
 
         Raises:
             InvalidInput: There is no such session.
+            FileFormatError: Its session file is damaged.
             OSError: It cannot be written.
         """
-        write_session(notes, self.folder(session) / SESSION_FILE)
+        with self._noting:
+            kept = {name: one.events for name, one in self._notes(session).trials.items()}
+            names = dict.fromkeys([*notes.trials, *kept])
+            trials = {name: replace(notes.trial(name), events=kept.get(name)) for name in names}
+            stated = {
+                name: one for name, one in trials.items() if name in notes.trials or one.events is not None
+            }
+            write_session(replace(notes, trials=stated), self.folder(session) / SESSION_FILE)
+
+    def note_events(self, session: str, trial: str, events: tuple[FootEvent, ...] | None) -> None:
+        """Writes the events by hand of a trial; all else that is stated stays.
+
+        Args:
+            session: Which session.
+            trial: Which of its trials.
+            events: They; None for those that are found.
+
+        Raises:
+            InvalidInput: There is no such session.
+            FileFormatError: Its session file is damaged.
+            OSError: It cannot be written.
+        """
+        with self._noting:
+            notes = self._notes(session)
+            trials = {**notes.trials, trial: replace(notes.trial(trial), events=events)}
+            write_session(replace(notes, trials=trials), self.folder(session) / SESSION_FILE)
 
     @contextmanager
     def putting(self, name: str) -> Iterator[BinaryIO]:
@@ -127,11 +153,34 @@ class Workspace:
         Raises:
             InvalidInput: There are none.
         """
-        for one in self.plan(session).trials:
-            place = self.out / one.place
-            if one.name == trial and (place / "summary.json").is_file():
-                return place
+        return self.out / self.trial(session, trial).place
+
+    def trial(self, session: str, trial: str) -> Trial:
+        """A trial that has results, as ``mbkf batch`` would do it now.
+
+        Raises:
+            InvalidInput: It has none.
+        """
+        for one in self._with_results(session):
+            if one.name == trial:
+                return one
         raise InvalidInput(f"there is no result of '{trial}' yet")
+
+    def with_results(self, session: str) -> tuple[str, ...]:
+        """Names of the trials of a session that have results.
+
+        Raises:
+            InvalidInput: There is no such session, or no trial to be done.
+        """
+        return tuple(one.name for one in self._with_results(session))
+
+    def _with_results(self, session: str) -> list[Trial]:
+        return [one for one in self.plan(session).trials if (self.out / one.place / "summary.json").is_file()]
+
+    def _notes(self, session: str) -> SessionNotes:
+        """What the session's own file states."""
+        file = self.folder(session) / SESSION_FILE
+        return read_session(file) if file.is_file() else SessionNotes()
 
     def _surveyed(self, path: Path, forces: Path | None) -> SurveyedTrial:
         stamp = tuple((s.st_size, s.st_mtime_ns) for s in (file.stat() for file in (path, forces) if file))
