@@ -24,7 +24,8 @@ class Ghost {
     this.quantities = new Map(data.scene.quantities.map((q) => [q.id, q]));
     this.cache = new Map();
     const T = view.THREE, skin = new T.MeshStandardMaterial({
-      color: COLOURS.other, roughness: 0.8, transparent: true, opacity: GHOST_OPACITY, depthWrite: false });
+      color: COLOURS.other, roughness: 0.8, transparent: true, opacity: GHOST_OPACITY, depthWrite: false,
+      polygonOffset: true, polygonOffsetFactor: 4, polygonOffsetUnits: 100 });
     this.body = new T.Group();
     this.segments = data.scene.segments.map(({ shapes }) => {
       const group = new T.Group();

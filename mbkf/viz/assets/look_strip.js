@@ -63,16 +63,11 @@ class Strip {
     this.undo = button("undo", () => this.events.undo());
     this.redo = button("redo", () => this.events.redo());
     this.forget = button("forget", () => this.events.forget());
-    this.said = element("span", { className: "said", role: "status" });
     const sign = (text, name) => element("span", {}, element("i", {}, text), " " + word(name));
     const bar = (kind) => element("span", {}, element("span", { className: `contact bar ${kind}` }), " " + word(`contact_${kind}`));
     const key = element("span", { className: "key" }, sign("▼▲", "by_hand"), sign("▽△", "found"), bar("measured"), bar("estimated"));
-    this.place.append(element("div", { className: "tools" }, this.delete, this.undo, this.redo, this.forget, key, this.said), element("p", { className: "hint" }, word("hint")));
-  }
-
-  say(text, bad = false) {
-    this.said.textContent = text;
-    this.said.className = bad ? "said bad" : "said";
+    const keys = element("details", {}, element("summary", {}, word("keys")), element("p", { className: "hint" }, word("hint")));
+    this.place.append(element("div", { className: "tools" }, this.delete, this.undo, this.redo, this.forget, key, keys));
   }
 
   add(side, kind, time) {
