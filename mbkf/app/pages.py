@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from mbkf.io.results_folder import read_reconstruction, read_summary
+from mbkf.io.session import FootEvent
 from mbkf.viz.language import languages, words
 from mbkf.viz.page import asset, embedded
 from mbkf.viz.report.document import report_page
-from mbkf.viz.scene.playback import playback_page
 
 SCRIPTS = (
     "element.js", "app_words.js", "app_live.js", "app_export.js", "app_report.js", "app_session.js", "app.js",
@@ -45,23 +45,18 @@ def page_words(language: str) -> dict[str, str]:
     return {name: text for section in SECTIONS for name, text in words(language, section).items()}
 
 
-def look(folder: Path) -> str:
-    """The 3-D playback of a trial's result.
-
-    Raises:
-        FileFormatError: The result is damaged.
-    """
-    return playback_page(read_reconstruction(folder))
-
-
-def report(folder: Path) -> str:
+def report(folder: Path, events: tuple[FootEvent, ...] | None = None) -> str:
     """The report on a trial's result.
 
+    Args:
+        folder: The result.
+        events: Strikes and toe-offs that a person set; None for those that are found.
+
     Raises:
         FileFormatError: The result is damaged.
     """
-    return report_page(read_reconstruction(folder), read_summary(folder))
+    return report_page(read_reconstruction(folder), read_summary(folder), by_hand=events)
 
 
-LOOKS: Mapping[str, Callable[[Path], str]] = {"look": look, "report": report}
-"""Pages about a trial, by the last part of their path."""
+LOOKS: Mapping[str, Callable[[Path, tuple[FootEvent, ...] | None], str]] = {"report": report}
+"""Pages about a trial, by the last part of their path, that its result and its events by hand make."""

@@ -17,6 +17,7 @@ from mbkf.app.export_routes import export_routes
 from mbkf.app.guard import Guard
 from mbkf.app.live_routes import live_routes
 from mbkf.app.live_run import LiveRun
+from mbkf.app.look_routes import look_routes
 from mbkf.app.marker_set_routes import marker_set_routes
 from mbkf.app.report_routes import report_routes
 from mbkf.app.runs import Runs
@@ -108,6 +109,7 @@ def application(workspace: Workspace, runs: Runs, live: LiveRun, token: str, coo
             *session_routes(workspace, runs),
             *live_routes(workspace, live),
             *export_routes(workspace),
+            *look_routes(workspace, runs),
             *trial_routes(workspace),
             *report_routes(workspace),
             *marker_set_routes(workspace),

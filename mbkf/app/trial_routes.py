@@ -1,4 +1,4 @@
-"""Requests about a trial that was run: its 3-D playback and its report."""
+"""Requests about a trial that was run: its report."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ def trial_routes(workspace: Workspace) -> list[Route]:
         make = pages.LOOKS.get(request.path_params["look"])
         if make is None:
             return PlainTextResponse("Nothing is here.\n", status_code=404)
-        return await page(lambda: make(workspace.result(asked(request, "session"), asked(request, "trial"))))
+        session, trial = asked(request, "session"), asked(request, "trial")
+        return await page(lambda: make(workspace.result(session, trial), workspace.events(session, trial)))
 
     return [Route("/trial/{look}", shown)]

@@ -9,14 +9,14 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import BinaryIO
 
 from mbkf.errors import InvalidInput
 from mbkf.io.atomic import replacing
 from mbkf.io.results_folder import SUMMARY_FILE
-from mbkf.io.session import SESSION_FILE, SessionNotes, write_session
+from mbkf.io.session import SESSION_FILE, FootEvent, SessionNotes, read_session, write_session
 from mbkf.pipelines.batch.folder import (
     SUBJECT_FILE,
     person_and_session,
@@ -58,7 +58,7 @@ class Workspace:
         self.root.mkdir(parents=True, exist_ok=True)
         self.out = self.root / RESULTS
         self._seen: dict[Path, _Seen] = {}
-        self._looking = threading.Lock()
+        self._looking, self._noting = threading.Lock(), threading.Lock()
 
     def sessions(self) -> tuple[str, ...]:
         """The names of its sessions."""
@@ -139,13 +139,39 @@ class Workspace:
         return tuple(sorted(one.parent.name for one in reports if (one.parent / SUMMARY_FILE).is_file()))
 
     def note(self, session: str, notes: SessionNotes) -> None:
-        """Writes what is stated of a session.
+        """Writes what is stated of a session; events of trials stay as they are (:meth:`note_events`).
 
         Raises:
             InvalidInput: There is no such session.
+            FileFormatError: Its session file is damaged.
             OSError: It cannot be written.
         """
-        write_session(notes, self.folder(session) / SESSION_FILE)
+        with self._noting:
+            kept = {name: one.events for name, one in self._notes(session).trials.items()}
+            names = dict.fromkeys([*notes.trials, *kept])
+            trials = {name: replace(notes.trial(name), events=kept.get(name)) for name in names}
+            stated = {
+                name: one for name, one in trials.items() if name in notes.trials or one.events is not None
+            }
+            write_session(replace(notes, trials=stated), self.folder(session) / SESSION_FILE)
+
+    def note_events(self, session: str, trial: str, events: tuple[FootEvent, ...] | None) -> None:
+        """Writes the events by hand of a trial; all else that is stated stays.
+
+        Args:
+            session: Which session.
+            trial: Which of its trials.
+            events: They; None for those that are found.
+
+        Raises:
+            InvalidInput: There is no such session.
+            FileFormatError: Its session file is damaged.
+            OSError: It cannot be written.
+        """
+        with self._noting:
+            notes = self._notes(session)
+            trials = {**notes.trials, trial: replace(notes.trial(trial), events=events)}
+            write_session(replace(notes, trials=trials), self.folder(session) / SESSION_FILE)
 
     @contextmanager
     def putting(self, name: str) -> Iterator[BinaryIO]:
@@ -178,11 +204,44 @@ class Workspace:
         """
         if trial in self.recordings(session):
             return self.place(session) / trial
-        for one in self.plan(session).trials:
-            place = self.out / one.place
-            if one.path.stem == trial and (place / SUMMARY_FILE).is_file():
-                return place
+        return self.out / self.trial(session, trial).place
+
+    def trial(self, session: str, trial: str) -> Trial:
+        """A trial that has results, as ``mbkf batch`` would do it now.
+
+        Raises:
+            InvalidInput: It has none.
+        """
+        for one in self._with_results(session):
+            if one.path.stem == trial:
+                return one
         raise InvalidInput(f"there is no result of '{trial}' yet")
+
+    def with_results(self, session: str) -> tuple[str, ...]:
+        """Names of the trials of a session that have results.
+
+        Raises:
+            InvalidInput: There is no such session.
+        """
+        return tuple(one.path.stem for one in self._with_results(session))
+
+    def _with_results(self, session: str) -> list[Trial]:
+        trials = self._trials(self.folder(session))
+        return [one for one in trials if (self.out / one.place / SUMMARY_FILE).is_file()]
+
+    def events(self, session: str, trial: str) -> tuple[FootEvent, ...] | None:
+        """The events by hand of a trial or recording; None for those that are found.
+
+        Raises:
+            InvalidInput: There is no such session.
+            FileFormatError: Its session file is damaged.
+        """
+        return self._notes(session).trial(trial).events
+
+    def _notes(self, session: str) -> SessionNotes:
+        """What the session's own file states."""
+        file = self.folder(session) / SESSION_FILE
+        return read_session(file) if file.is_file() else SessionNotes()
 
     def results(self, session: str) -> list[Path]:
         """The folders of a session's results: of each trial that is done and not left out, and of live runs.
@@ -190,10 +249,9 @@ class Workspace:
         Raises:
             InvalidInput: There is no such session, or no result.
         """
-        folder, place = self.folder(session), self.place(session)
-        places = [self.out / one.place for one in self._trials(folder)]
-        places += [place / name for name in self.recordings(session)]
-        done = [place for place in places if (place / SUMMARY_FILE).is_file()]
+        place = self.place(session)
+        done = [self.out / one.place for one in self._with_results(session)]
+        done += [place / name for name in self.recordings(session)]
         if not done:
             raise InvalidInput(f"nothing of '{session}' is done yet; run it first")
         return done

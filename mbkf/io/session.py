@@ -23,7 +23,7 @@ kept; where a trial has any, they stand instead of the found ones.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
@@ -172,6 +172,11 @@ def plain_session(notes: SessionNotes) -> dict[str, object]:
     return found
 
 
+def plain_events(events: Iterable[FootEvent]) -> list[dict[str, object]]:
+    """Events as plain data, as a session file holds them."""
+    return [{"side": event.side, "kind": event.kind.value, "time_s": event.time_s} for event in events]
+
+
 def write_session(notes: SessionNotes, path: str | Path) -> None:
     """Writes a session file, whole or not at all; entries that say nothing are left out.
 
@@ -203,9 +208,7 @@ def _plain_trial(trial: TrialNotes) -> dict[str, object]:
     if trial.excluded:
         found["excluded"] = trial.excluded
     if trial.events is not None:
-        found["event"] = [
-            {"side": event.side, "kind": event.kind.value, "time_s": event.time_s} for event in trial.events
-        ]
+        found["event"] = plain_events(trial.events)
     return found
 
 

@@ -30,4 +30,4 @@ def test_no_two_sections_have_a_word_of_one_name():
 
 
 def test_pages_of_a_trial_are_known():
-    assert set(LOOKS) == {"look", "report"} and made_up().frames
+    assert set(LOOKS) == {"report"} and made_up().frames

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,7 @@ import pyarrow.parquet as pq
 from mbkf.errors import FileFormatError
 from mbkf.io.atomic import replacing
 from mbkf.io.results import Reconstruction
+from mbkf.io.session import FootEvent
 from mbkf.pipelines.gait.curves import SideCurve, side_curves
 from mbkf.pipelines.gait.cycles import POINTS, Cycle, find_gait, over_cycle
 
@@ -56,13 +57,18 @@ def read_curves(path: Path) -> pa.Table:
         raise FileFormatError(path, reason) from error
 
 
-def write_curves(r: Reconstruction, path: Path) -> None:
+def write_curves(r: Reconstruction, path: Path, by_hand: Iterable[FootEvent] | None = None) -> None:
     """Writes the curves of a reconstruction's gait cycles as Parquet; without gait a table without rows.
+
+    Args:
+        r: The reconstruction.
+        path: The file.
+        by_hand: Strikes and toe-offs that a person set; None for those that are found.
 
     Raises:
         OSError: It cannot be written.
     """
-    write_curves_table(curves_of(r), path)
+    write_curves_table(curves_of(r, by_hand), path)
 
 
 def write_curves_table(curves: pa.Table, path: Path) -> None:
@@ -75,9 +81,14 @@ def write_curves_table(curves: pa.Table, path: Path) -> None:
         pq.write_table(curves, partial, compression="zstd", write_page_checksum=True)
 
 
-def curves_of(r: Reconstruction) -> pa.Table:
-    """The curves of a reconstruction's gait cycles (:data:`SCHEMA`): those of the cycle's side, and of the trunk."""
-    gait = find_gait(r)
+def curves_of(r: Reconstruction, by_hand: Iterable[FootEvent] | None = None) -> pa.Table:
+    """The curves of a reconstruction's gait cycles (:data:`SCHEMA`): those of the cycle's side, and of the trunk.
+
+    Args:
+        r: The reconstruction.
+        by_hand: Strikes and toe-offs that a person set; None for those that are found.
+    """
+    gait = find_gait(r, by_hand)
     tables = []
     for side in range(2):
         cycles = () if gait is None else gait.of(side)

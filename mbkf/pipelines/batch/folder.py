@@ -5,7 +5,8 @@
 
 Standing trials are known by their names; where none is, by standing still. Ground reactions lie beside their trial,
 under its name with ``grf`` or ``forces``. ``session.toml`` in a session's folder, or above it, states mass, height and
-protocol; in the session's own folder also which trials stand still and which are left out (:mod:`mbkf.io.session`).
+protocol; in the session's own folder also which trials stand still, which are left out, and strikes and toe-offs that a
+person set (:mod:`mbkf.io.session`).
 """
 
 from __future__ import annotations
@@ -155,7 +156,10 @@ def _trials(root: Path, place: Path, captures: Sequence[Path]) -> list[Trial]:
         notes.protocol,
         subject if subject.is_file() else None,
     )
-    return [Trial(person, one.path, one.forces, folder_name(one.path.stem)) for one in moving]
+    return [
+        Trial(person, path, forces, folder_name(path.stem), notes.trial(path.stem).events)
+        for path, forces in moving
+    ]
 
 
 def person_and_session(root: Path, place: Path) -> tuple[str, str]:

@@ -7,6 +7,7 @@ import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from mbkf.errors import FileFormatError
 from mbkf.io.atomic import replacing
 from mbkf.io.plain_data import parse_json
 from mbkf.version import __version__
@@ -39,6 +40,18 @@ def is_made_from(record: Path, made_from: Mapping[str, object]) -> bool:
         return _contents(found) == _contents(made_from)
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return False
+
+
+def read_record(record: Path) -> dict[str, object]:
+    """What a result was made from, and under "events" the strikes and toe-offs by hand, where there are any.
+
+    Raises:
+        FileFormatError: It is missing or damaged.
+    """
+    try:
+        return dict(parse_json(record.read_text(encoding="utf-8")))
+    except (OSError, ValueError, TypeError) as error:
+        raise FileFormatError(record, f"cannot be read ({error}); run the batch again") from error
 
 
 def write_record(record: Path, made_from: Mapping[str, object]) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from mbkf.errors import InvalidInput
+from mbkf.io.session import FootEvent
 
 FORBIDDEN = re.compile(r'[/\\:*?"<>|\x00-\x1f]')
 """What no system allows in a folder's name."""
@@ -68,12 +69,14 @@ class Trial:
         path: The capture.
         forces: Ground reactions beside it; None for those of the capture itself.
         name: Its folder's name among the person's trials.
+        events: Strikes and toe-offs that a person set; None for those that are found.
     """
 
     person: Person
     path: Path
     forces: Path | None = None
     name: str = ""
+    events: tuple[FootEvent, ...] | None = None
 
     @property
     def place(self) -> Path:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import replace
 from pathlib import Path
 
 from mbkf.io.atomic_folder import replacing_folder
 from mbkf.io.capture import read_capture
-from mbkf.io.results_folder import write_result_files
+from mbkf.io.results_folder import read_reconstruction, write_result_files
+from mbkf.io.session import plain_events
 from mbkf.io.subject import read_subject
 from mbkf.pipelines.batch.curves import write_curves
-from mbkf.pipelines.batch.inputs import RECORD, fingerprint, is_made_from, write_record
-from mbkf.pipelines.batch.plan import Trial
+from mbkf.pipelines.batch.inputs import RECORD, fingerprint, is_made_from, read_record, write_record
+from mbkf.pipelines.batch.naming import named
+from mbkf.pipelines.batch.plan import Trial, folder_name
 from mbkf.pipelines.reconstruct import reconstruct
 from mbkf.pipelines.reconstruct_settings import ReconstructSettings, recorded
 from mbkf.pipelines.results.summary import summarise
@@ -19,7 +23,9 @@ CURVES_FILE = "curves.parquet"
 
 
 def trial_done(trial: Trial, subject: Path, out: Path, settings: ReconstructSettings) -> bool:
-    """Reconstructs a trial, unless its folder was made from the same inputs before; returns whether it did.
+    """Reconstructs a trial, unless its folder was made from the same inputs before; returns whether anything was done.
+
+    Where only the events by hand are others than before, only the curves are made again.
 
     Args:
         trial: The trial.
@@ -36,12 +42,43 @@ def trial_done(trial: Trial, subject: Path, out: Path, settings: ReconstructSett
     told = recorded(settings)
     del told["kernel"]  # both find the same
     made_from = fingerprint(files, told)
+    if trial.events is not None:
+        made_from["events"] = plain_events(trial.events)
     if is_made_from(target / RECORD, made_from):
-        return False
-    capture = read_capture(trial.path, forces=trial.forces)
-    result = reconstruct(capture, read_subject(subject), settings=settings)
+        return curves_anew(trial, out)
+    person = read_subject(subject)
+    given = named(read_capture(trial.path, forces=trial.forces), person)
+    result = reconstruct(given.capture, person, settings=settings)
+    result = replace(result, warnings=(*result.warnings, *given.warnings))
     with replacing_folder(target, last=RECORD) as partial:
         write_result_files(result, summarise(result), partial)
-        write_curves(result, partial / CURVES_FILE)
+        write_curves(result, partial / CURVES_FILE, trial.events)
+        if given.summary is not None:
+            told_labels = json.dumps(given.summary, indent=2) + "\n"
+            (partial / f"{folder_name(result.trial)}.json").write_text(told_labels, encoding="utf-8")
         write_record(partial / RECORD, made_from)
+    return True
+
+
+def curves_anew(trial: Trial, out: Path) -> bool:
+    """Makes the curves of a trial that was done again, unless its events are those of before; returns whether it did.
+
+    The record is written last: a kill in between leaves one that tells of the events before, and the curves are made
+    once more.
+
+    Args:
+        trial: The trial.
+        out: The batch's folder.
+
+    Raises:
+        FileFormatError: Its result or record is missing or damaged.
+        OSError: A file cannot be read or written.
+    """
+    target = out / trial.place
+    told = None if trial.events is None else plain_events(trial.events)
+    made_from = read_record(target / RECORD)
+    if made_from.get("events") == told:
+        return False
+    write_curves(read_reconstruction(target), target / CURVES_FILE, trial.events)
+    write_record(target / RECORD, {**made_from, "events": told})
     return True

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.io.results import Reconstruction
-from mbkf.pipelines.gait.events import HEEL, FeetInMotion, FootEvents, feet_in_motion, foot_events
+from mbkf.io.session import FootEvent
+from mbkf.pipelines.gait.events import (
+    HEEL,
+    FeetInMotion,
+    FootEvents,
+    events_by_hand,
+    feet_in_motion,
+    foot_events,
+)
 
 POINTS = 101
 """Curves over a cycle have values at 0, 1, … 100 %."""
@@ -85,10 +94,15 @@ class Gait:
         return tuple(cycle for cycle in self.cycles if cycle.side == side)
 
 
-def find_gait(r: Reconstruction) -> Gait | None:
-    """The gait of a reconstruction, or None where no foot makes a whole cycle."""
+def find_gait(r: Reconstruction, by_hand: Iterable[FootEvent] | None = None) -> Gait | None:
+    """The gait of a reconstruction, or None where no foot makes a whole cycle.
+
+    Args:
+        r: The reconstruction.
+        by_hand: All strikes and toe-offs, as a person set them; None for those that are found.
+    """
     feet = feet_in_motion(r)
-    events = foot_events(r, feet)
+    events = foot_events(r, feet) if by_hand is None else events_by_hand(by_hand, r.times_s)
     cycles = tuple(cycle for side in range(2) for cycle in cycles_of(events, side))
     if not cycles:
         return None
@@ -180,7 +194,8 @@ def _parameters(feet: FeetInMotion, cycles: tuple[Cycle, ...], belt: Array) -> t
         for (name, _), value in zip(_PARAMETERS, values, strict=True):
             table[name][side].append(value)
     found = [GaitParameter(n, u, (np.array(table[n][0]), np.array(table[n][1]))) for n, u in _PARAMETERS]
-    if np.nanmean(np.concatenate(found[-1].values)) < 0:
+    support = np.concatenate(found[-1].values)
+    if support[~np.isnan(support)].sum() < 0:
         right, left = found[-1].values
         found[-1] = GaitParameter("Flight", "%", (-right, -left))
     return tuple(found)

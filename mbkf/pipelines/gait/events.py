@@ -2,17 +2,19 @@
 
 From loads: a foot stands while its vertical force exceeds a threshold. From motion (Zeni, Richards & Higginson, Gait
 Posture 27, 2008, 710-714; on floors and treadmills alike): it strikes when its heel is furthest in front of the pelvis
-and leaves when its toes are furthest behind.
+and leaves when its toes are furthest behind. Events that a person set stand instead of both.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.io.results import Reconstruction
+from mbkf.io.session import SIDES, EventKind, FootEvent
 from mbkf.model.human import HumanModel
 from mbkf.sensors.contact.soles import sole_points
 
@@ -87,6 +89,37 @@ def foot_events(r: Reconstruction, feet: FeetInMotion | None = None) -> tuple[Fo
             )
         found.append(by_load)
     return found[0], found[1]
+
+
+def events_by_hand(events: Iterable[FootEvent], times_s: Array) -> tuple[FootEvents, FootEvents]:
+    """Events of the right and the left foot that a person set: in order, each once, those outside the trial left out.
+
+    Args:
+        events: Of both feet, in any order.
+        times_s: (T,) times of the frames, s.
+    """
+    within = [event for event in events if times_s[0] <= event.time_s <= times_s[-1]]
+
+    def times(side: str, kind: EventKind) -> Array:
+        return np.unique([event.time_s for event in within if (event.side, event.kind) == (side, kind)])
+
+    right, left = (FootEvents(times(side, EventKind.STRIKE), times(side, EventKind.OFF)) for side in SIDES)
+    return right, left
+
+
+def plain_found(events: tuple[FootEvents, FootEvents]) -> tuple[FootEvent, ...]:
+    """The same events one after another, by time, as a person's are told.
+
+    Args:
+        events: Of the right and the left foot.
+    """
+    told = [
+        FootEvent(side, kind, float(time_s))
+        for side, foot in zip(SIDES, events, strict=True)
+        for kind, times in ((EventKind.STRIKE, foot.strikes_s), (EventKind.OFF, foot.offs_s))
+        for time_s in times
+    ]
+    return tuple(sorted(told, key=lambda event: event.time_s))
 
 
 def events_of_load(times_s: Array, vertical_n: Array, threshold_n: float = LOADED_N) -> FootEvents:

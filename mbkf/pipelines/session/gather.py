@@ -13,8 +13,10 @@ from mbkf.errors import InvalidInput
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.results import Reconstruction
 from mbkf.io.results_folder import MOTION_FILE, read_reconstruction
-from mbkf.io.session import SessionNotes, TrialKind
+from mbkf.io.session import SessionNotes, TrialKind, TrialNotes
+from mbkf.io.session import session_of as session_of_entries
 from mbkf.io.subject import Subject
+from mbkf.pipelines.batch.inputs import RECORD, read_record
 from mbkf.pipelines.gait.cycles import Gait, find_gait
 from mbkf.pipelines.session.cycles import SideCycles, cycles_of_trial, together
 from mbkf.pipelines.session.jumps import jump_measures
@@ -76,8 +78,9 @@ def session_from(folders: Sequence[Path], name: str, notes: SessionNotes | None 
         InvalidInput: No trial is left.
     """
     stated = notes or SessionNotes()
-    read = (read_reconstruction(folder) for folder in folders)
-    return session_of((r for r in read if not stated.trial(r.trial).excluded), name, stated)
+    read = ((read_reconstruction(folder), folder) for folder in folders)
+    pairs = ((r, _with_events(stated.trial(r.trial), folder)) for r, folder in read)
+    return _session(((r, told) for r, told in pairs if not told.excluded), name, stated)
 
 
 def session_of(results: Iterable[Reconstruction], name: str, notes: SessionNotes | None = None) -> Session:
@@ -91,11 +94,22 @@ def session_of(results: Iterable[Reconstruction], name: str, notes: SessionNotes
     Raises:
         InvalidInput: There is no trial.
     """
-    stated, seen = notes or SessionNotes(), Counter[str]()
-    parts = []
-    for r in results:
+    stated = notes or SessionNotes()
+    return _session(((r, stated.trial(r.trial)) for r in results), name, stated)
+
+
+def _session(
+    results: Iterable[tuple[Reconstruction, TrialNotes]], name: str, stated: SessionNotes
+) -> Session:
+    """The session of trials, each with what is stated of it.
+
+    Raises:
+        InvalidInput: There is no trial.
+    """
+    parts, seen = [], Counter[str]()
+    for r, notes in results:
         seen[r.trial] += 1
-        parts.append(_part(r if seen[r.trial] == 1 else _again(r, seen[r.trial]), stated.trial(r.trial).kind))
+        parts.append(_part(r if seen[r.trial] == 1 else _again(r, seen[r.trial]), notes))
     if not parts:
         raise InvalidInput(f"{name}: there is no trial to report on")
     kinds = [kind for kind in GAIT_KINDS if any(_gait_of(part, kind) for part in parts)]
@@ -134,9 +148,26 @@ def told_of(r: Reconstruction, kind: TrialKind | None = None) -> SessionTrial:
     )
 
 
-def _part(r: Reconstruction, stated: TrialKind | None) -> _Part:
-    told = told_of(r, stated)
-    gait = find_gait(r) if told.kind in GAIT_KINDS and r.tracked.any() else None
+def _with_events(stated: TrialNotes, folder: Path) -> TrialNotes:
+    """What is stated of a trial, with the events by hand that its batch knew where none are stated.
+
+    Raises:
+        FileFormatError: The batch's record is damaged.
+    """
+    record = folder / RECORD
+    if stated.events is not None or not record.is_file():
+        return stated
+    known = read_record(record).get("events")
+    if known is None:
+        return stated
+    return replace(
+        stated, events=session_of_entries({"trial": {"x": {"event": known}}}, record).trial("x").events
+    )
+
+
+def _part(r: Reconstruction, stated: TrialNotes) -> _Part:
+    told = told_of(r, stated.kind)
+    gait = find_gait(r, stated.events) if told.kind in GAIT_KINDS and r.tracked.any() else None
     sides = (cycles_of_trial(r, gait, 0), cycles_of_trial(r, gait, 1))
     return _Part(
         told,

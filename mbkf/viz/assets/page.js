@@ -64,4 +64,5 @@ function trouble(error) {
 }
 
 addEventListener("error", trouble);
-start().catch(trouble);
+const started = start();
+started.catch(trouble);

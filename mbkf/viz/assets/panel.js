@@ -23,6 +23,8 @@ class Panel {
     this.quantities = new Map(quantities.map((q) => [q.id, q]));
     this.onSeek = onSeek;
     this.cards = [];
+    this.other = null; // gives a quantity's times and values in another trial, drawn dashed
+    this.marks = []; // instants to mark: time, colour, dashed
     this.list = column.appendChild(element("div", { className: "plots" }));
     const add = element("button", { className: "add", textContent: "+ Add a plot" });
     add.onclick = () => this.add({ id: quantities[0].id });
@@ -42,7 +44,7 @@ class Panel {
     }
     card.value = element("output", { className: "value", title: "± two standard deviations" });
     card.verdict = element("span", { className: "verdict" });
-    card.canvas = element("canvas");
+    card.canvas = element("canvas", { role: "img" });
     card.curve = new Curve(card.canvas);
     const bound = (name, label) => {
       const input = element("input", { type: "number", step: "any", value: card[name], placeholder: "–", ariaLabel: `Target ${label}` });
@@ -75,6 +77,7 @@ class Panel {
     for (const card of this.cards) {
       const q = this.quantities.get(card.id);
       card.unit.textContent = q.unit;
+      card.canvas.setAttribute("aria-label", q.title);
       card.positive.textContent = q.positive ? `positive: ${q.positive}` : "";
     }
     if (this.onChange) this.onChange();
@@ -90,7 +93,8 @@ class Panel {
   draw(history, row, window, playhead) {
     for (const card of this.cards) {
       const q = this.quantities.get(card.id), target = this.target(card), { times, values, sds } = history.series(q);
-      card.curve.draw(times, values, sds, window, { colour: COLOURS[q.side], target, playhead, gap: history.gap });
+      card.curve.draw(times, values, sds, window, {
+        colour: COLOURS[q.side], target, playhead, gap: history.gap, marks: this.marks, other: this.other && this.other(q) });
       this.tell(card, q, row, target);
     }
   }

@@ -46,6 +46,7 @@ class Player {
   constructor(page, scene, recording) {
     [this.recording, this.rate, this.playing, this.speed] = [recording, scene.rate_hz, false, 1];
     this.first = this.frame = this.position = scene.first_tracked;
+    this.onDraw = null;
     this.view = new BodyScene(page.pane, scene);
     page.legend(this.view);
     this.panel = new Panel(page.column, scene.quantities, (time) => this.seek(time));
@@ -76,7 +77,8 @@ class Player {
     this.play(false);
     addEventListener("keydown", (event) => {
       if (/INPUT|SELECT|TEXTAREA/.test(event.target.tagName) && event.target.type !== "range") return;
-      if (event.key === " ") { event.preventDefault(); this.play(!this.playing); }
+      const button = event.target.closest && event.target.closest("button");
+      if (event.key === " " && (!button || button === this.button)) { event.preventDefault(); this.play(!this.playing); }
       if (event.key === "ArrowRight" && event.target !== this.slider) this.go(this.frame + 1);
       if (event.key === "ArrowLeft" && event.target !== this.slider) this.go(this.frame - 1);
     });
@@ -127,5 +129,6 @@ class Player {
     this.panel.draw(recording, row, this.window(times[frame], times[0], end), times[frame]);
     this.slider.value = frame;
     this.clock.textContent = `${times[frame].toFixed(2)} s of ${end.toFixed(2)} s`;
+    if (this.onDraw) this.onDraw(row, times[frame]);
   }
 }

@@ -22,7 +22,8 @@ class Curve {
   }
 
   // times, values, sds: arrays of one length (NaN where unknown; sds may be null); window: [t0, t1] shown;
-  // options: colour, target [low, high] or null, playhead (a time or null), gap: seconds that break the line.
+  // options: colour, target [low, high] or null, playhead (a time or null), gap: seconds that break the line,
+  // other: times and values of a second, dashed curve, marks: instants with time, colour and dashed.
   draw(times, values, sds, window, options) {
     const ratio = Math.min(2, devicePixelRatio || 1), c = this.canvas, g = this.context;
     const width = c.clientWidth, height = c.clientHeight;
@@ -33,7 +34,7 @@ class Curve {
     }
     g.setTransform(ratio, 0, 0, ratio, 0, 0);
     g.clearRect(0, 0, width, height);
-    const m = this.margin, [low, high] = this.range(times, values, sds, window, options.target);
+    const m = this.margin, [low, high] = this.range(times, values, sds, window, options.target, options.other);
     const x = (t) => m.left + ((t - window[0]) / (window[1] - window[0])) * (width - m.left - m.right);
     const y = (v) => height - m.bottom - ((v - low) / (high - low)) * (height - m.top - m.bottom);
     this.x = x;
@@ -44,18 +45,22 @@ class Curve {
     g.rect(m.left, m.top, width - m.left - m.right, height - m.top - m.bottom);
     g.clip();
     if (options.target) this.target(g, width, y, options.target);
+    this.marks(g, x, height, options.marks || []);
+    if (options.other) this.other(g, options.other, x, y, window, options);
     if (sds) this.band(g, times, values, sds, x, y, window, options);
     this.line(g, times, values, x, y, window, options);
     if (options.playhead != null) this.playhead(g, x(options.playhead), height);
     g.restore();
   }
 
-  range(times, values, sds, window, target) {
+  range(times, values, sds, window, target, other) {
     let low = Infinity, high = -Infinity;
-    for (let i = 0; i < times.length; i++) {
-      if (times[i] < window[0] || times[i] > window[1] || Number.isNaN(values[i])) continue;
-      low = Math.min(low, values[i]);
-      high = Math.max(high, values[i]);
+    for (const curve of [{ times, values }, ...(other ? [other] : [])]) {
+      for (let i = 0; i < curve.times.length; i++) {
+        if (curve.times[i] < window[0] || curve.times[i] > window[1] || Number.isNaN(curve.values[i])) continue;
+        low = Math.min(low, curve.values[i]);
+        high = Math.max(high, curve.values[i]);
+      }
     }
     if (target) [low, high] = [Math.min(low, target[0]), Math.max(high, target[1])];
     if (low > high) return [-1, 1];
@@ -150,6 +155,28 @@ class Curve {
       for (const i of run) g.lineTo(x(times[i]), y(values[i]));
       g.stroke();
     }
+  }
+
+  // The same quantity in another trial.
+  other(g, { times, values }, x, y, window, options) {
+    g.save();
+    g.setLineDash([5, 4]);
+    this.line(g, times, values, x, y, window, { colour: COLOURS.other, gap: options.gap });
+    g.restore();
+  }
+
+  marks(g, x, height, marks) {
+    g.save();
+    g.lineWidth = 1;
+    for (const { time, colour, dashed } of marks) {
+      g.strokeStyle = colour + "99";
+      g.setLineDash(dashed ? [2, 3] : []);
+      g.beginPath();
+      g.moveTo(x(time), this.margin.top);
+      g.lineTo(x(time), height - this.margin.bottom);
+      g.stroke();
+    }
+    g.restore();
   }
 
   playhead(g, at, height) {

@@ -18,7 +18,7 @@ from mbkf.viz.server import PageServer
 
 
 class MarkerSetEdit:
-    """A marker set that a page changes: the page says what a person chose, by marker; what that means is worked out here.
+    """A marker set that a page changes: the page says what a person chose, by marker; what it means is worked out here.
 
     Args:
         protocol: The set to begin with.

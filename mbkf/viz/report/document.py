@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,7 @@ from mbkf.errors import FileFormatError
 from mbkf.io.atomic import replacing
 from mbkf.io.plain_data import parse_json
 from mbkf.io.results import Reconstruction
+from mbkf.io.session import FootEvent
 from mbkf.pipelines.gait.cycles import find_gait
 from mbkf.pipelines.results.progression import LABORATORY
 from mbkf.pipelines.results.summary import progression_summary
@@ -34,7 +35,10 @@ NAVIGATION = (
 
 
 def report_page(
-    reconstruction: Reconstruction, summary: Mapping[str, object], labels: Mapping[str, object] | None = None
+    reconstruction: Reconstruction,
+    summary: Mapping[str, object],
+    labels: Mapping[str, object] | None = None,
+    by_hand: Iterable[FootEvent] | None = None,
 ) -> str:
     """The report.
 
@@ -42,9 +46,10 @@ def report_page(
         reconstruction: The results.
         summary: Its summary.json.
         labels: The JSON that ``mbkf label`` wrote beside the labelled capture, or None.
+        by_hand: Strikes and toe-offs that a person set; None for those that are found.
     """
     r = reconstruction
-    gait = find_gait(r) if r.tracked.any() else None
+    gait = find_gait(r, by_hand) if r.tracked.any() else None
     sections = [quality_section(r, summary, labels)]
     if r.tracked.any():
         sections += [gait_section(gait, r.times_s), motion_section(r, gait)]

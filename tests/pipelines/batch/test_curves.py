@@ -1,5 +1,6 @@
 """Curves over cycles: the reconstruction's own numbers at 0 to 100 %, tidy, each with its standard deviation."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -11,6 +12,7 @@ from mbkf.io.capture import read_capture
 from mbkf.io.subject import read_subject
 from mbkf.pipelines.batch.curves import SCHEMA, curves_of, read_curves, write_curves, write_curves_table
 from mbkf.pipelines.gait.cycles import POINTS, find_gait, over_cycle
+from mbkf.pipelines.gait.events import plain_found
 from mbkf.pipelines.reconstruct import reconstruct
 from mbkf.pipelines.reconstruct_settings import ReconstructSettings
 from tests.studies import walk_folder
@@ -114,3 +116,18 @@ def test_what_is_written_is_read_and_damage_is_told(tmp_path):
         path.write_bytes(damaged)
         with pytest.raises(FileFormatError, match="delete its folder and run the batch again"):
             read_curves(path)
+
+
+def test_curves_are_cut_at_events_by_hand():
+    told = plain_found(find_gait(walked()).events)
+    assert curves_of(walked(), told).equals(curves_of(walked()))
+    moved = [replace(event, time_s=event.time_s + 0.02) for event in told]
+    gait, table = find_gait(walked(), moved), curves_of(walked(), moved).to_pydict()
+    assert list(dict.fromkeys(table["start_s"])) == [
+        cycle.start_s for side in range(2) for cycle in gait.of(side)
+    ]
+    knee = np.rad2deg(over_cycle(walked().times_s, walked().angle("knee_angle_r"), gait.of(0)[0]))
+    asked = zip(*(table[name] for name in ("side", "cycle", "quantity", "name", "value")), strict=True)
+    own = [value for *key, value in asked if key == ["right", 1, "angle", "knee_angle"]]
+    np.testing.assert_allclose(own, knee, rtol=1e-6)
+    assert curves_of(walked(), ()).num_rows == 0

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.io.session import EventKind, FootEvent
 from mbkf.pipelines.batch.folder import forces_beside, is_static, plan_of_folder, session_folders
 
 
@@ -104,6 +105,16 @@ def test_trials_are_left_out_and_told_apart_by_the_session_file(tmp_path):
     person, deep = plan.persons
     assert [path.name for path in person.statics] == ["walk1.c3d"]
     assert (deep.mass_kg, deep.statics) == (70.0, ())
+
+
+def test_events_by_hand_belong_to_their_trial(tmp_path):
+    made(tmp_path, "P1/static.c3d", "P1/walk1.c3d", "P1/walk2.c3d", "P1/walk3.c3d")
+    (tmp_path / "P1" / "session.toml").write_text(
+        '[[trial.walk1.event]]\nside = "left"\nkind = "off"\ntime_s = 1.5\n[trial.walk2]\nevent = []\n',
+        encoding="utf-8",
+    )
+    found = {trial.name: trial.events for trial in plan_of_folder(tmp_path).trials}
+    assert found == {"walk1": (FootEvent("left", EventKind.OFF, 1.5),), "walk2": (), "walk3": None}
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,8 @@
 
 import pytest
 
-from mbkf.pipelines.batch.inputs import fingerprint, is_made_from, write_record
+from mbkf.errors import FileFormatError
+from mbkf.pipelines.batch.inputs import fingerprint, is_made_from, read_record, write_record
 
 
 @pytest.fixture
@@ -40,3 +41,15 @@ def test_a_damaged_record_says_nothing(files, tmp_path, text):
 def test_a_missing_input_is_told(tmp_path):
     with pytest.raises(FileNotFoundError):
         fingerprint([tmp_path / "missing"], {})
+
+
+def test_a_record_is_told_or_said_to_be_damaged(files, tmp_path):
+    made_from = {**fingerprint(files, {}), "events": [{"side": "right", "kind": "off", "time_s": 0.1}]}
+    write_record(tmp_path / "record.json", made_from)
+    assert read_record(tmp_path / "record.json") == made_from
+    assert is_made_from(tmp_path / "record.json", fingerprint(files, {})), (
+        "events are not what a result is made from"
+    )
+    (tmp_path / "record.json").write_text("{")
+    with pytest.raises(FileFormatError, match="run the batch again"):
+        read_record(tmp_path / "record.json")

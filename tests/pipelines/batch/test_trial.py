@@ -2,14 +2,18 @@
 
 import errno
 import os
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.pipelines.batch import trial as module
+from mbkf.pipelines.batch.curves import read_curves
 from mbkf.pipelines.batch.inputs import RECORD
 from mbkf.pipelines.batch.plan import Person, Trial
-from mbkf.pipelines.batch.trial import CURVES_FILE, trial_done
+from mbkf.pipelines.batch.trial import CURVES_FILE, curves_anew, trial_done
+from mbkf.pipelines.gait.events import foot_events, plain_found
 from mbkf.pipelines.reconstruct_settings import ReconstructSettings
 from tests.captures import snapshot
 from tests.studies import walk_folder
@@ -53,3 +57,31 @@ def test_a_full_disk_leaves_nothing_half_written(task, tmp_path, monkeypatch, fa
     with pytest.raises(OSError, match="No space left"):
         trial_done(*task, ReconstructSettings(filter="kinematic", smooth=False, correct_markers=False))
     assert snapshot(tmp_path / "P") == before
+
+
+def assert_same(table, other):
+    """Tables with the same numbers, NaN in the same places."""
+    for name in other.column_names:
+        np.testing.assert_array_equal(table[name].to_numpy(), other[name].to_numpy())
+
+
+def test_events_by_hand_are_noticed_and_only_the_curves_are_made_again(task, tmp_path):
+    trial, subject, out = task
+    folder = tmp_path / "P" / "walk"
+    assert trial_done(*task, SETTINGS)
+    before, found = snapshot(folder), read_curves(folder / CURVES_FILE)
+    told = plain_found(foot_events(read_reconstruction(folder)))
+    moved = tuple(replace(event, time_s=event.time_s + 0.02) for event in told)
+    stated = replace(trial, events=moved)
+    assert trial_done(stated, subject, out, SETTINGS) and not trial_done(stated, subject, out, SETTINGS)
+    after = snapshot(folder)
+    assert {name for name in after if after[name] != before[name]} == {CURVES_FILE, RECORD}
+    cut = read_curves(folder / CURVES_FILE)
+    assert trial_done(stated, subject, tmp_path / "new", SETTINGS)
+    anew = read_curves(tmp_path / "new" / "P" / "walk" / CURVES_FILE)
+    assert_same(anew, cut)  # a run from the start does so too
+    assert trial_done(replace(trial, events=()), subject, out, SETTINGS)
+    assert read_curves(folder / CURVES_FILE).num_rows == 0
+    assert curves_anew(trial, out)
+    assert_same(read_curves(folder / CURVES_FILE), found)
+    assert not trial_done(*task, SETTINGS)

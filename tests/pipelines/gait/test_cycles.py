@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbkf.pipelines.gait.cycles import Cycle, belt_velocity, cycles_of, find_gait, over_cycle
-from mbkf.pipelines.gait.events import FeetInMotion, FootEvents
+from mbkf.pipelines.gait.events import FeetInMotion, FootEvents, plain_found
 from tests.dynamics import trial
 from tests.motions import assert_near
 from tests.recordings import walk, walker
@@ -121,3 +121,32 @@ def test_a_squat_is_no_gait():
     }
     r = replace(walk(), **{**cut, "q": squat.q, "foot_wrench": squat.foot_wrench})
     assert find_gait(r) is None
+
+
+def test_events_by_hand_stand_instead_of_the_found_ones():
+    found = find_gait(walk())
+    told = plain_found(found.events)
+    again = find_gait(walk(), reversed(told))
+    assert again.cycles == found.cycles
+    first = found.of(0)[0]
+    later = [
+        replace(event, time_s=event.time_s + 0.03)
+        if (event.side, event.kind) == ("right", "strike")
+        else event
+        for event in told
+    ]
+    moved = find_gait(walk(), later).of(0)[0]
+    assert moved.start_s == pytest.approx(first.start_s + 0.03, abs=1e-12) and moved.off_s == first.off_s
+    assert moved.off_percent < first.off_percent, "stance begins later and ends as before"
+    assert find_gait(walk(), ()) is None, "all were deleted"
+
+
+def test_support_that_nobody_knows_is_told_as_such():
+    told = [
+        event
+        for event in plain_found(find_gait(walk()).events)
+        if (event.side, event.kind) != ("left", "off")
+    ]
+    gait = find_gait(walk(), told)
+    assert gait.of(0) and not gait.of(1), "without toe-offs the left foot has no cycle"
+    assert np.isnan(named(gait)["Double support"][0]).all()

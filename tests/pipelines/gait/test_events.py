@@ -6,14 +6,17 @@ import numpy as np
 import pytest
 
 from mbkf.io.capture import read_capture
+from mbkf.io.session import EventKind, FootEvent
 from mbkf.pipelines.gait.events import (
     LOADED_N,
     SAME_S,
     FeetInMotion,
+    events_by_hand,
     events_of_load,
     events_of_motion,
     feet_in_motion,
     foot_events,
+    plain_found,
 )
 from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
 from mbkf.pipelines.scale import scale
@@ -105,3 +108,17 @@ def test_events_are_those_the_laboratory_stored(real_data):
             for t in theirs:
                 if first < t < last:
                     assert np.abs(ours - t).min() < 0.06, (context, label, t)
+
+
+def test_events_by_hand_are_sorted_each_once_and_within_the_trial():
+    times = np.linspace(1.0, 2.0, 101)
+    said = [
+        FootEvent("right", EventKind.STRIKE, 1.5), FootEvent("right", EventKind.STRIKE, 1.2),
+        FootEvent("right", EventKind.STRIKE, 1.5), FootEvent("left", EventKind.OFF, 2.0),
+        FootEvent("left", EventKind.OFF, 2.01), FootEvent("left", EventKind.STRIKE, 0.99),
+    ]  # fmt: skip
+    right, left = events_by_hand(said, times)
+    assert right.strikes_s.tolist() == [1.2, 1.5] and right.offs_s.tolist() == []
+    assert left.strikes_s.tolist() == [] and left.offs_s.tolist() == [2.0]
+    told = plain_found((right, left))
+    assert [event.time_s for event in told] == [1.2, 1.5, 2.0] and set(told) <= set(said)

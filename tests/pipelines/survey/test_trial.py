@@ -19,9 +19,9 @@ def test_a_walk_and_its_standing_trial():
     assert walk.usable and walk.plates == 6 and walk.problems == ()
 
 
-def test_points_without_names_and_files_that_cannot_be_read_are_grave(tmp_path):
+def test_points_without_names_are_told_and_files_that_cannot_be_read_are_grave(tmp_path):
     raw = survey_trial(walk_folder() / "raw.c3d")
-    assert not raw.usable and raw.markers == 0 and "no names" in raw.problems[0].what
+    assert raw.usable and raw.markers == 0 and "no names" in raw.problems[0].what
     (tmp_path / "bad.c3d").write_bytes(b"nothing")
     (tmp_path / "folder.c3d").mkdir()
     for name in ("bad.c3d", "folder.c3d", "missing.c3d"):

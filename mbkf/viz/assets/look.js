@@ -1,0 +1,98 @@
+// A trial looked at: the player with its curves, the strip of events, where loads press, and another trial beside it.
+"use strict";
+
+class Look {
+  constructor(player, page, told) {
+    Object.assign(this, { player, told, ghost: null, asked: 0 });
+    const { scene, found, events, frame_s, span_s } = page;
+    document.documentElement.lang = language;
+    this.said = player.clock.parentElement.appendChild(element("span", { className: "said", role: "status" }));
+    this.events = new FootEvents(found, events, span_s);
+    this.pressure = new PressureMarks(player.view, scene.loads);
+    this.pressure.legend(document.getElementById("legend"));
+    const contacts = FEET.map((_, load) => this.inTime(contactsOf(player.recording, scene.parts, load)));
+    this.strip = new Strip(document.getElementById("strip"), player.slider, this.events, contacts, frame_s,
+      () => player.recording.times[player.frame], (time) => player.seek(time));
+    const address = "events?" + new URLSearchParams({ session: told.session, trial: told.trial });
+    this.saving = new Saving(address, (text, bad) => this.say(text, bad));
+    this.events.onChange = () => this.changed();
+    this.others();
+    player.panel.other = (q) => (this.ghost ? this.ghost.series(q) : null);
+    player.onDraw = (row, time) => this.show(row, time);
+    this.marks();
+    player.draw();
+  }
+
+  // Frames as times.
+  inTime(contacts) {
+    const { times } = this.player.recording;
+    return contacts.map(({ from, to, measured }) => ({ from: times[from], to: times[to], measured }));
+  }
+
+  say(text, bad = false) {
+    this.said.textContent = this.said.title = text;
+    this.said.className = bad ? "said bad" : "said";
+  }
+
+  show(row, time) {
+    this.pressure.show(row);
+    this.strip.cursor(time);
+    if (this.ghost) this.ghost.show(time);
+  }
+
+  changed() {
+    this.strip.draw();
+    this.marks();
+    this.align();
+    this.player.draw();
+    this.saving.soon(() => JSON.stringify({ events: this.events.plain() }));
+  }
+
+  marks() {
+    const colours = { right: COLOURS.r, left: COLOURS.l };
+    this.player.panel.marks = this.events.shown.map(({ side, kind, time_s }) => ({ time: time_s, colour: colours[side], dashed: kind === "off" }));
+  }
+
+  others() {
+    const { others } = this.told;
+    this.chosen = element("select", { id: "ghost", onchange: () => this.lay() }, element("option", { value: "", textContent: word(others.length ? "no_ghost" : "no_others") }),
+      ...others.map((name) => element("option", { value: name, textContent: name })));
+    this.chosen.disabled = !others.length;
+    this.mode = element("select", { id: "alignment", disabled: true, onchange: () => { this.align(); this.player.draw(); } },
+      ...["cycle", "time"].map((mode) => element("option", { value: mode, textContent: word(`by_${mode}`) })));
+    this.mode.setAttribute("aria-label", word("alignment"));
+    const sign = element("i", { textContent: "┅" });
+    sign.style.color = COLOURS.other;
+    this.player.clock.parentElement.append(element("span", { id: "other" }, sign, element("label", { htmlFor: "ghost" }, word("ghost")), this.chosen, this.mode));
+  }
+
+  // Fetches the chosen trial and draws it; the last one chosen wins.
+  async lay() {
+    const name = this.chosen.value, asked = ++this.asked;
+    if (this.ghost) this.ghost.remove();
+    this.ghost = null;
+    this.mode.disabled = !name;
+    if (name) {
+      try {
+        const answer = await fetch("recording?" + new URLSearchParams({ session: this.told.session, trial: name })), said = await answer.json();
+        if (!answer.ok) throw new Error(said.trouble);
+        const ghost = await Ghost.of(this.player.view, this.player.recording, said);
+        if (asked !== this.asked) return ghost.remove();
+        this.ghost = ghost;
+        this.align();
+      } catch (error) {
+        this.say(error instanceof TypeError ? word("lost") : error.message, true);
+      }
+    }
+    this.player.draw();
+  }
+
+  align() {
+    if (this.ghost && !this.ghost.align(this.mode.value, this.events.shown)) this.say(word("no_cycles"), true);
+  }
+}
+
+started.then(() => {
+  const read = (id) => JSON.parse(document.getElementById(id).textContent);
+  window.look = new Look(window.mbkf, read("recording"), read("look"));
+}).catch(trouble);

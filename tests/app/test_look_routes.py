@@ -1,0 +1,139 @@
+"""Events by hand go into the session's file and into the curves; what cannot be is told and changes nothing."""
+
+import json
+import time
+
+import numpy as np
+import pytest
+
+from mbkf.app.look_routes import MOST_EVENTS, cycles_in, events_said
+from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.io.results_folder import read_reconstruction
+from mbkf.io.session import EventKind, FootEvent, SessionNotes, TrialKind, TrialNotes, read_session
+from mbkf.pipelines.batch.curves import curves_of, read_curves
+from mbkf.pipelines.batch.run import batch
+from mbkf.pipelines.batch.trial import CURVES_FILE
+from tests.app.asking import asked, plain
+
+EVENTS = "/trial/events?session=P1&trial=walk1"
+
+
+@pytest.fixture(scope="module")
+def run(server, cookie):
+    """The folder of the trial's results, and what a page draws of them."""
+    plain(server, cookie, "/run?session=P1&do=start", "POST")
+    while plain(server, cookie, "/session?session=P1")[1]["run"]["state"] in {"waiting", "running"}:
+        time.sleep(0.05)
+    status, told = plain(server, cookie, "/trial/recording?session=P1&trial=walk1")
+    assert status == 200
+    return server.workspace.result("P1", "walk1"), told
+
+
+def said(server, cookie, events, address=EVENTS):
+    return plain(server, cookie, address, "POST", json.dumps({"events": events}))
+
+
+def starts(folder):
+    return sorted(set(read_curves(folder / CURVES_FILE)["start_s"].to_pylist()))
+
+
+def test_the_page_and_the_frames_are_given_out(server, cookie, run):
+    _, told = run
+    assert {"scene", "rows", "found", "events", "frame_s", "span_s"} == set(told) and told["events"] is None
+    kinds = {(one["side"], one["kind"]) for one in told["found"]}
+    assert kinds == {(side, kind) for side in ("right", "left") for kind in ("strike", "off")}
+    answer, text = asked(server, "/trial/look?session=P1&trial=walk1", Cookie=cookie)
+    assert answer.status == 200 and b'id="recording"' in text and b"default-src 'none'" in text
+    for path in ("/trial/look", "/trial/recording"):
+        answer, text = asked(server, f"{path}?session=P1&trial=other", Cookie=cookie)
+        assert answer.status in {400, 404} and b"no result of 'other' yet" in text
+
+
+def test_events_by_hand_cut_the_curves_and_a_batch_keeps_them(server, cookie, run):
+    folder, told = run
+    before = starts(folder)
+    moved = [{**one, "time_s": one["time_s"] + 0.04} for one in told["found"] if one["time_s"] < 2.4]
+    status, answer = said(server, cookie, moved)
+    assert status == 200 and answer["events"] == moved and answer["curves"] is True
+    assert answer["cycles"] == cycles_in(folder / CURVES_FILE) != [0, 0]
+    np.testing.assert_allclose(starts(folder), np.array(before) + 0.04, atol=1e-12)
+    file = server.workspace.root / "P1" / "session.toml"
+    assert [one.time_s for one in read_session(file).trial("walk1").events] == [
+        one["time_s"] for one in moved
+    ]
+    cut = read_curves(folder / CURVES_FILE)
+    table = batch(server.workspace.root, server.workspace.out, workers=1).to_pylist()
+    assert {row["trial"]: row["status"] for row in table}["walk1"] == "unchanged"
+    by_hand = read_session(file).trial("walk1").events
+    assert read_curves(folder / CURVES_FILE).equals(cut)
+    assert curves_of(read_reconstruction(folder), by_hand)["start_s"].equals(cut["start_s"])
+    assert said(server, cookie, None)[1]["events"] is None
+    assert starts(folder) == before and "event" not in file.read_text(encoding="utf-8")
+
+
+def test_the_report_is_cut_at_events_by_hand(server, cookie, run):
+    address = "/trial/report?session=P1&trial=walk1"
+    found = asked(server, address, Cookie=cookie)[1]
+    assert said(server, cookie, [])[1]["cycles"] == [0, 0]
+    without = asked(server, address, Cookie=cookie)[1]
+    assert b"over the gait cycle" in found and b"over the gait cycle" not in without
+    said(server, cookie, None)
+    assert asked(server, address, Cookie=cookie)[1] == found
+
+
+def test_events_and_other_notes_leave_each_other_alone(server, cookie, run):
+    workspace, event = server.workspace, FootEvent("left", EventKind.OFF, 1.25)
+    workspace.note_events("P1", "walk1", (event,))
+    workspace.note("P1", SessionNotes(name="A", trials={"static": TrialNotes(TrialKind.STATIC)}))
+    workspace.note_events("P1", "other", ())
+    notes = workspace.look("P1").notes
+    assert notes.name == "A" and notes.trial("walk1").events == (event,) and notes.trial("other").events == ()
+    workspace.note("P1", SessionNotes(trials={"walk1": TrialNotes(TrialKind.WALK, events=())}))
+    kept = workspace.look("P1").notes.trial("walk1")
+    assert kept == TrialNotes(TrialKind.WALK, events=(event,)), "a page that knows older events loses none"
+    for trial in ("walk1", "other"):
+        workspace.note_events("P1", trial, None)
+
+
+def test_while_a_session_runs_its_curves_are_left_to_the_run(server, cookie, run, monkeypatch):
+    folder, _ = run
+    before = starts(folder)
+    state = server.runs.state("P1")
+    monkeypatch.setattr(state, "state", "running")
+    answer = said(server, cookie, [])[1]
+    assert (answer["curves"], answer["cycles"]) == (False, None) and starts(folder) == before
+    monkeypatch.undo()
+    said(server, cookie, None)
+
+
+@pytest.mark.parametrize(
+    ("address", "body", "told"),
+    [
+        (EVENTS, "no json", "no JSON"),
+        (EVENTS, "[]", "nothing of events"),
+        (EVENTS, "{}", "nothing of events"),
+        (EVENTS, '{"events": 3}', "event must be a list"),
+        (EVENTS, '{"events": [{"side": "right", "kind": "strike"}]}', "needs side, kind and time_s"),
+        (EVENTS, '{"events": [{"side": "middle", "kind": "off", "time_s": 1}]}', "side must be"),
+        (EVENTS, '{"events": [{"side": "left", "kind": "off", "time_s": NaN}]}', "time_s must be"),
+        ("/trial/events?session=P9&trial=walk1", '{"events": []}', "no session 'P9'"),
+        ("/trial/events?session=P1&trial=walk9", '{"events": []}', "no result of 'walk9'"),
+        ("/trial/events?session=P1&trial=static", '{"events": []}', "no result of 'static'"),
+    ],
+)
+def test_what_cannot_be_is_told_and_changes_nothing(server, cookie, run, address, body, told):
+    file = server.workspace.root / "P1" / "session.toml"
+    before = file.read_bytes() if file.exists() else None
+    status, answer = plain(server, cookie, address, "POST", body)
+    assert status == 400 and told in answer["trouble"]
+    assert (file.read_bytes() if file.exists() else None) == before
+
+
+def test_events_said_are_events():
+    one = {"side": "left", "kind": "off", "time_s": 1.5}
+    assert events_said({"events": [one]}) == (FootEvent("left", EventKind.OFF, 1.5),)
+    assert events_said({"events": None}) is None and events_said({"events": []}) == ()
+    with pytest.raises(InvalidInput, match="more than"):
+        events_said({"events": [one] * (MOST_EVENTS + 1)})
+    with pytest.raises(FileFormatError):
+        events_said({"events": [{**one, "kind": "hop"}]})

@@ -1,0 +1,64 @@
+"""A session's marker set: changed on its standing trial, written beside its captures, stated and then used."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from mbkf.app.marker_sets import SET_FILE, MarkerSets, capture_to_show
+from mbkf.app.workspace import Workspace
+from mbkf.errors import InvalidInput
+from mbkf.io.c3d_write import write_c3d
+from mbkf.io.capture import read_capture
+from mbkf.model.protocol import load_protocol
+from tests.studies import study, walk_folder
+
+
+@pytest.fixture
+def workspace(tmp_path):
+    return Workspace(study(tmp_path / "lab", trials=1))
+
+
+def test_what_is_saved_is_the_sessions(workspace):
+    sets = MarkerSets(workspace)
+    page = sets.open("P1")
+    assert '"say":"marker_set/say?session=P1"' in page and "RASI" in page
+    answer = json.loads(sets.say("P1", json.dumps({"do": "save", "choices": {"RASI": {"ignored": "loose"}}})))
+    assert answer["saved"] == SET_FILE and answer["ignored"] == 1
+    assert workspace.look("P1").notes.protocol == SET_FILE
+    (person,) = workspace.plan("P1").persons
+    assert dict(load_protocol(person.protocol).ignored) == {"RASI": "loose"}
+    again = sets.open("P1")
+    assert "loose" in again, "the page begins with the set that is stated"
+    assert json.loads(sets.say("P1", '{"do": "done"}')) == {"done": True}
+
+
+def test_an_unknown_set_is_told_until_one_is_stated(workspace):
+    folder = workspace.root / "P1"
+    for path in folder.glob("*.c3d"):
+        capture = read_capture(path)
+        odd = replace(capture.markers, names=tuple(f"Q{k}" for k in range(len(capture.markers.names))))
+        write_c3d(replace(capture, markers=odd), path)
+
+    def doubts():
+        return [one for trial in workspace.look("P1").trials for one in trial.problems if one.marker_set]
+
+    assert len(doubts()) == 2
+    sets = MarkerSets(workspace)
+    sets.open("P1")
+    sets.say("P1", '{"do": "save", "choices": {}}')
+    assert doubts() == []
+
+
+def test_the_standing_trial_is_shown(workspace):
+    assert capture_to_show(workspace.look("P1")).name == "static.c3d"
+    (workspace.root / "P1" / "static.c3d").unlink()
+    assert capture_to_show(workspace.look("P1")).name == "walk1.c3d"
+    write_c3d(read_capture(walk_folder() / "raw.c3d"), workspace.root / "P1" / "walk1.c3d")
+    with pytest.raises(InvalidInput, match="named markers"):
+        capture_to_show(workspace.look("P1"))
+
+
+def test_nothing_is_said_before_a_page_is_open(workspace):
+    with pytest.raises(InvalidInput, match="open its page again"):
+        MarkerSets(workspace).say("P1", '{"do": "done"}')

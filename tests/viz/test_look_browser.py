@@ -1,0 +1,159 @@
+"""A trial's page in a real browser: events are moved, added, deleted and undone, another trial lies beside."""
+
+import time
+
+import numpy as np
+import pytest
+
+from mbkf.app.server import AppServer
+from mbkf.io.session import SESSION_FILE, read_session
+from mbkf.pipelines.batch.curves import read_curves
+from mbkf.pipelines.batch.trial import CURVES_FILE
+from tests.studies import study
+from tests.viz.browsing import PATIENCE_S, until
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    folder = study(tmp_path_factory.mktemp("look") / "lab", trials=2)
+    made = AppServer(folder, workers=1)
+    made.runs.start("P1")
+    ends = time.monotonic() + 4 * PATIENCE_S
+    while made.runs.state("P1").state != "finished":
+        assert time.monotonic() < ends, made.runs.state("P1")
+        time.sleep(0.05)
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def page(opened, server):
+    with opened(server.url) as page:
+        page.set_viewport_size({"width": 1280, "height": 720})
+        page.goto(f"http://127.0.0.1:{server.port}/trial/look?session=P1&trial=walk1")
+        until(page, "Boolean(window.look && mbkf.view.seenPelvis)")
+        yield page
+        server.workspace.note_events("P1", "walk1", None)
+
+
+def by_hand(server):
+    file = server.workspace.root / "P1" / SESSION_FILE
+    return read_session(file).trial("walk1").events if file.is_file() else None
+
+
+def starts(server):
+    table = read_curves(server.workspace.result("P1", "walk1") / CURVES_FILE)
+    return sorted(set(zip(table["side"].to_pylist(), table["start_s"].to_pylist(), strict=True)))
+
+
+def saved(page):
+    until(page, "look.said.textContent.startsWith('Saved')")
+
+
+def chosen(page, side, kind):
+    """Focuses the first event of its kind; returns its time."""
+    event = page.locator(f".{side} .event.{kind}").first
+    event.focus()
+    return float(event.get_attribute("aria-valuenow"))
+
+
+def test_an_event_moved_with_the_keyboard_changes_the_session_file_and_the_curves(page, server):
+    before = dict(starts(server))
+    at = chosen(page, "right", "strike")
+    assert at == before["right"] and by_hand(server) is None
+    frame = page.evaluate("look.strip.frame")
+    assert (
+        page.evaluate(
+            "Math.abs(mbkf.recording.times[mbkf.frame] - look.events.get(look.strip.chosen).time_s)"
+        )
+        < 0.01
+    )
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("Shift+ArrowRight")
+    page.keyboard.press("ArrowLeft")
+    saved(page)
+    (moved,) = [one.time_s for one in by_hand(server) if abs(one.time_s - at) < 0.3 and one.side == "right"]
+    assert moved == pytest.approx(at + 11 * frame, abs=1e-9)
+    assert dict(starts(server))["right"] == moved and dict(starts(server))["left"] == before["left"]
+    assert page.locator(".event.found").count() == 0 and page.locator(".was").count() > 0
+    page.keyboard.press("Control+z")
+    saved(page)
+    assert page.locator(".event.hand").count() == 0, "moves that follow each other are undone at once"
+    until(page, "!look.saving.waiting && !look.saving.busy")
+    assert by_hand(server) is None and dict(starts(server)) == before
+
+
+def test_events_are_deleted_added_and_taken_back(page, server):
+    count = page.locator(".event").count()
+    chosen(page, "left", "strike")
+    page.keyboard.press("ArrowDown")
+    assert page.evaluate("look.events.get(look.strip.chosen).kind") == "off", "the next one of that foot"
+    page.keyboard.press("Delete")
+    assert page.locator(".event").count() == count - 1
+    assert page.evaluate("document.activeElement.classList.contains('event')"), "the focus is not lost"
+    page.locator("#scrub").fill("120")
+    page.get_by_role("button", name="Add: Right toe-off").press("Enter")
+    assert page.locator(".event").count() == count
+    saved(page)
+    until(page, "!look.saving.waiting && !look.saving.busy")
+    (added,) = [one for one in by_hand(server) if abs(one.time_s - 1.2) < 1e-6]
+    assert (added.side, added.kind.value) == ("right", "off")
+    page.get_by_role("button", name="Undo").click()
+    page.get_by_role("button", name="Undo").click()
+    assert page.locator(".event.found").count() == count
+    page.get_by_role("button", name="Redo").click()
+    assert page.locator(".event").count() == count - 1
+    page.get_by_role("button", name="Back to the found ones").click()
+    assert page.locator(".event.found").count() == count
+
+
+def test_an_event_is_dragged_and_one_comes_with_a_double_click(page, server):
+    at = chosen(page, "right", "strike")
+    box = page.locator(".right .event.strike").first.bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 20, y, steps=4)
+    page.mouse.move(x + 40, y, steps=4)
+    page.mouse.up()
+    width = page.locator(".right .inner").bounding_box()["width"]
+    span = np.ptp(page.evaluate("look.events.span"))
+    now = float(page.locator(".right .event.strike").first.get_attribute("aria-valuenow"))
+    assert now == pytest.approx(at + 40 * span / width, abs=page.evaluate("look.strip.frame"))
+    count = page.locator(".left .event.off").count()
+    lane = page.locator("#strip .track.left").bounding_box()
+    page.mouse.dblclick(lane["x"] + 0.68 * lane["width"], lane["y"] + 0.8 * lane["height"])
+    assert page.locator(".left .event.off").count() == count + 1
+    saved(page)
+
+
+def test_another_trial_lies_beside_and_its_curves_are_drawn(page):
+    assert page.evaluate("look.ghost") is None
+    page.get_by_label("Beside it").select_option("walk2")
+    until(page, "Boolean(look.ghost && look.ghost.body.visible)")
+    page.locator("#scrub").fill("150")
+    same = "[0, 1, 2].every((k) => Math.abs(look.ghost.body.localToWorld(look.ghost.segments[0].position.clone())"
+    same += ".getComponent(k) - mbkf.view.viewer.scene.localToWorld(mbkf.view.segments[0].position.clone())"
+    same += ".getComponent(k)) < 0.05)"
+    page.wait_for_timeout(200)
+    assert page.evaluate(same), "the same walk, laid over itself, is where it is"
+    knee = "mbkf.panel.other(mbkf.panel.quantities.get('angle:knee_angle_r'))"
+    own = "mbkf.recording.series(mbkf.panel.quantities.get('angle:knee_angle_r'))"
+    assert page.evaluate(f"Math.abs({knee}.values[60] - {own}.values[60]) < 1")
+    page.get_by_label("How the trials are laid over each other").select_option("time")
+    assert page.evaluate("look.ghost.strikes") is None
+    page.get_by_label("Beside it").select_option("")
+    until(page, "look.ghost === null")
+
+
+def test_measured_and_estimated_loads_look_different(page):
+    page.locator("#scrub").fill("80")
+    seen = "look.pressure.marks.map(({ measured, estimated }) => [measured.visible, estimated.visible])"
+    right = page.evaluate(seen)[0]
+    assert right == [True, False]
+    page.get_by_label("Pressure, measured").uncheck()
+    assert page.evaluate(seen)[0] == [False, False]
+    assert page.locator(".contact.measured").count() > 2
