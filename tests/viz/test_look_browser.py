@@ -49,7 +49,7 @@ def starts(server):
 
 
 def saved(page):
-    until(page, "look.said.textContent.startsWith('Saved')")
+    until(page, "look.strip.said.textContent.startsWith('Saved')")
 
 
 def chosen(page, side, kind):
