@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 
 from starlette.requests import Request
@@ -12,7 +13,7 @@ from mbkf.app.look_page import look_data, look_page
 from mbkf.app.replies import asked, page, said, told
 from mbkf.app.runs import RUNNING, Runs
 from mbkf.app.workspace import Workspace
-from mbkf.errors import InvalidInput, MbkfError
+from mbkf.errors import FileFormatError, InvalidInput, MbkfError
 from mbkf.io.session import FootEvent, plain_events, session_of
 from mbkf.pipelines.batch.curves import SIDES, read_curves
 from mbkf.pipelines.batch.trial import CURVES_FILE, curves_anew
@@ -89,26 +90,23 @@ def state_events(
         events: By hand; None for those that are found.
 
     Returns:
-        ``events`` as they stand in the file now; ``curves``: whether they are made, or left to the run that is under
-        way (a live recording has none); ``cycles``: how many the right and the left foot have, None where the curves are not made.
+        ``events`` as they stand in the file now; ``cycles``: how many the right and the left foot have in the new
+        curves; None where these are left to the next run, since one is under way or the result is of an older kind, and for a live recording.
 
     Raises:
         InvalidInput: There is no such session, or no result of the trial.
-        FileFormatError: The session file or the result is damaged.
+        FileFormatError: The session file is damaged.
         OSError: A file cannot be written.
     """
     folder = workspace.result(session, trial)
     workspace.note_events(session, trial, events)
     state = runs.state(session)
-    under_way = state is not None and state.state == RUNNING
-    recorded = trial in workspace.recordings(session)
-    if not (under_way or recorded):
-        curves_anew(workspace.trial(session, trial), workspace.out)
-    return {
-        "events": None if events is None else plain_events(events),
-        "curves": not (under_way or recorded),
-        "cycles": None if under_way or recorded else cycles_in(folder / CURVES_FILE),
-    }
+    cycles = None
+    if (state is None or state.state != RUNNING) and trial not in workspace.recordings(session):
+        with contextlib.suppress(FileFormatError):  # the next run sees the damage, and mends it
+            curves_anew(workspace.trial(session, trial), workspace.out)
+            cycles = cycles_in(folder / CURVES_FILE)
+    return {"events": None if events is None else plain_events(events), "cycles": cycles}
 
 
 def cycles_in(curves: Path) -> list[int]:

@@ -49,8 +49,27 @@ def test_texts_become_no_markup():
 
 
 def test_every_word_is_used_and_every_used_one_known():
-    known, asked = set(words("en", "look")), set(re.findall(r"(?:word|button)\(\s*\"(\w+)\"", OWN))
+    text = "\n".join(asset(name) for name in SCRIPTS if name != "app_words.js")
+    known, asked = set(words("en", "look")), set(re.findall(r"(?:word|phrase|button)\(\s*\"(\w+)\"", text))
     made = {f"{side}_{kind}" for side in ("right", "left") for kind in ("strike", "off")}
     made |= {f"{what}_{how}" for what in ("contact", "pressure") for how in ("measured", "estimated")}
-    assert asked <= known
-    assert known <= set(re.findall(r"\"(\w+)\"", OWN)) | made | {"by_cycle", "by_time"}
+    made |= {f"from_{view}" for view in ("oblique", "front", "right", "left", "back", "top")} | {
+        "side_r",
+        "side_l",
+    }
+    page = asset("page.js")
+    made |= {f"legend_{what}" for what in re.findall(r"\[\"(\w+)\", \"[A-Z]", page)} | {"by_cycle", "by_time"}
+    assert asked <= known and made <= known
+    assert known <= set(re.findall(r"\b(\w+)\b", OWN + asset("panel.js"))) | made | asked
+
+
+def test_the_player_s_own_english_is_that_of_the_language_file():
+    """The words of pages that carry no language files, e.g. of a playback that was written to a file."""
+    text, english = (
+        "\n".join(asset(name) for name in ("page.js", "panel.js", "player.js")),
+        words("en", "look"),
+    )
+    told = re.findall(r"phrase\(\"(\w+)\", \"([^\"]+)\"", text)
+    assert len(told) > 15 and [(name, english[name]) for name, _ in told] == told
+    for what, label in re.findall(r"\[\"(\w+)\", \"([A-Z][^\"]+)\"", asset("page.js")):
+        assert english[f"legend_{what}"] == label

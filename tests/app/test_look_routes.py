@@ -11,6 +11,7 @@ from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.session import EventKind, FootEvent, SessionNotes, TrialKind, TrialNotes, read_session
 from mbkf.pipelines.batch.curves import curves_of, read_curves
+from mbkf.pipelines.batch.inputs import RECORD
 from mbkf.pipelines.batch.run import batch
 from mbkf.pipelines.batch.trial import CURVES_FILE
 from tests.app.asking import asked, plain
@@ -54,7 +55,7 @@ def test_events_by_hand_cut_the_curves_and_a_batch_keeps_them(server, cookie, ru
     before = starts(folder)
     moved = [{**one, "time_s": one["time_s"] + 0.04} for one in told["found"] if one["time_s"] < 2.4]
     status, answer = said(server, cookie, moved)
-    assert status == 200 and answer["events"] == moved and answer["curves"] is True
+    assert status == 200 and answer["events"] == moved
     assert answer["cycles"] == cycles_in(folder / CURVES_FILE) != [0, 0]
     np.testing.assert_allclose(starts(folder), np.array(before) + 0.04, atol=1e-12)
     file = server.workspace.root / "P1" / "session.toml"
@@ -101,9 +102,20 @@ def test_while_a_session_runs_its_curves_are_left_to_the_run(server, cookie, run
     state = server.runs.state("P1")
     monkeypatch.setattr(state, "state", "running")
     answer = said(server, cookie, [])[1]
-    assert (answer["curves"], answer["cycles"]) == (False, None) and starts(folder) == before
+    assert answer == {"events": [], "cycles": None} and starts(folder) == before
     monkeypatch.undo()
     said(server, cookie, None)
+
+
+def test_curves_that_cannot_be_made_are_left_to_the_next_run(server, cookie, run):
+    folder, _ = run
+    record = (folder / RECORD).read_bytes()
+    (folder / RECORD).write_text("{")
+    status, answer = said(server, cookie, [])
+    assert status == 200 and answer == {"events": [], "cycles": None}
+    assert read_session(server.workspace.root / "P1" / "session.toml").trial("walk1").events == ()
+    (folder / RECORD).write_bytes(record)
+    assert said(server, cookie, None)[1]["cycles"] == cycles_in(folder / CURVES_FILE)
 
 
 @pytest.mark.parametrize(

@@ -1,14 +1,18 @@
 """A trial's page in a real browser: events are moved, added, deleted and undone, another trial lies beside."""
 
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from mbkf.app.server import AppServer
+from mbkf.io.results_folder import write_result_files
 from mbkf.io.session import SESSION_FILE, read_session
 from mbkf.pipelines.batch.curves import read_curves
 from mbkf.pipelines.batch.trial import CURVES_FILE
+from mbkf.pipelines.results.summary import summarise
+from tests.recordings import walk
 from tests.studies import study
 from tests.viz.browsing import PATIENCE_S, until
 
@@ -17,7 +21,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory):
-    folder = study(tmp_path_factory.mktemp("look") / "lab", trials=2)
+    folder = study(tmp_path_factory.mktemp("look") / "lab", persons=2, trials=2)
     made = AppServer(folder, workers=1)
     made.runs.start("P1")
     ends = time.monotonic() + 4 * PATIENCE_S
@@ -49,7 +53,7 @@ def starts(server):
 
 
 def saved(page):
-    until(page, "look.said.textContent.startsWith('Saved')")
+    until(page, "look.strip.said.textContent.startsWith('Saved')")
 
 
 def chosen(page, side, kind):
@@ -147,6 +151,40 @@ def test_another_trial_lies_beside_and_its_curves_are_drawn(page):
     assert page.evaluate("look.ghost.strikes") is None
     page.get_by_label("Beside it").select_option("")
     until(page, "look.ghost === null")
+
+
+def turned(r, turn, shift):
+    """A reconstruction in which the same is done elsewhere in the room, in another direction."""
+    q, (c, s) = r.q.copy(), (np.cos(turn), np.sin(turn))
+    q[:, :2] = r.q[:, :2] @ np.array([[c, s], [-s, c]]) + shift
+    x, y, z, w = r.q[:, 3:7].T
+    c, s = np.cos(turn / 2), np.sin(turn / 2)
+    q[:, 3:7] = np.column_stack([c * x - s * y, c * y + s * x, c * z + s * w, c * w - s * z])
+    return replace(r, q=q)
+
+
+def test_a_walk_in_another_direction_is_laid_over_by_its_cycles(opened, server):
+    for name, r in (("walk1", walk()), ("walk2", turned(walk(), 2.5, [1.0, -2.0]))):
+        place = server.workspace.out / "P2" / name
+        place.mkdir(parents=True)
+        write_result_files(r, summarise(r), place)
+    at = "mbkf.view.viewer.scene.worldToLocal(look.ghost.body.localToWorld(look.ghost.segments[S].position.clone()))"
+    fresh = "look.ghost.body.updateWorldMatrix(true, true)"
+    with opened(server.url) as page:
+        page.goto(f"http://127.0.0.1:{server.port}/trial/look?session=P2&trial=walk1")
+        until(page, "Boolean(window.look && mbkf.view.seenPelvis)")
+        page.get_by_label("Beside it").select_option("walk2")
+        until(page, "Boolean(look.ghost && look.ghost.body.visible)")
+        page.locator("#scrub").fill("60")
+        page.evaluate(fresh)
+        for segment in range(page.evaluate("mbkf.view.segments.length")):
+            there = page.evaluate(at.replace("S]", f"{segment}]") + ".toArray()")
+            here = page.evaluate(f"mbkf.view.segments[{segment}].position.toArray()")
+            np.testing.assert_allclose(there, here, atol=0.02)
+        page.get_by_label("How the trials are laid over each other").select_option("time")
+        page.evaluate(fresh)
+        there = page.evaluate(at.replace("S]", "0]") + ".toArray()")
+        np.testing.assert_allclose(there, turned(walk(), 2.5, [1.0, -2.0]).q[60, :3], atol=0.02)
 
 
 def test_measured_and_estimated_loads_look_different(page):

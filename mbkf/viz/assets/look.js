@@ -6,7 +6,6 @@ class Look {
     Object.assign(this, { player, told, ghost: null, asked: 0 });
     const { scene, found, events, frame_s, span_s } = page;
     document.documentElement.lang = language;
-    this.said = player.clock.parentElement.appendChild(element("span", { className: "said", role: "status" }));
     this.events = new FootEvents(found, events, span_s);
     this.pressure = new PressureMarks(player.view, scene.loads);
     this.pressure.legend(document.getElementById("legend"));
@@ -14,7 +13,7 @@ class Look {
     this.strip = new Strip(document.getElementById("strip"), player.slider, this.events, contacts, frame_s,
       () => player.recording.times[player.frame], (time) => player.seek(time));
     const address = "events?" + new URLSearchParams({ session: told.session, trial: told.trial });
-    this.saving = new Saving(address, (text, bad) => this.say(text, bad));
+    this.saving = new Saving(address, (text, bad) => this.strip.say(text, bad));
     this.events.onChange = () => this.changed();
     this.others();
     player.panel.other = (q) => (this.ghost ? this.ghost.series(q) : null);
@@ -27,11 +26,6 @@ class Look {
   inTime(contacts) {
     const { times } = this.player.recording;
     return contacts.map(({ from, to, measured }) => ({ from: times[from], to: times[to], measured }));
-  }
-
-  say(text, bad = false) {
-    this.said.textContent = this.said.title = text;
-    this.said.className = bad ? "said bad" : "said";
   }
 
   show(row, time) {
@@ -81,14 +75,14 @@ class Look {
         this.ghost = ghost;
         this.align();
       } catch (error) {
-        this.say(error instanceof TypeError ? word("lost") : error.message, true);
+        this.strip.say(error instanceof TypeError ? word("lost") : error.message, true);
       }
     }
     this.player.draw();
   }
 
   align() {
-    if (this.ghost && !this.ghost.align(this.mode.value, this.events.shown)) this.say(word("no_cycles"), true);
+    if (this.ghost && !this.ghost.align(this.mode.value, this.events.shown)) this.strip.say(word("no_cycles"), true);
   }
 }
 

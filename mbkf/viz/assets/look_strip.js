@@ -10,7 +10,8 @@ class Strip {
   constructor(place, slider, events, contacts, frame, time, seek) {
     Object.assign(this, { place, events, frame, time, seek, chosen: null, buttons: new Map(), tracks: {}, cursors: [] });
     place.setAttribute("aria-label", word("strip"));
-    place.append(element("span", {}), slider);
+    this.said = element("span", { className: "said", role: "status" });
+    place.append(this.said, slider);
     FEET.forEach((side, load) => this.lane(side, contacts[load]));
     this.tools();
     addEventListener("keydown", (event) => {
@@ -19,6 +20,11 @@ class Strip {
       event.shiftKey ? events.redo() : events.undo();
     });
     this.draw();
+  }
+
+  say(text, bad = false) {
+    this.said.textContent = this.said.title = text;
+    this.said.className = bad ? "said bad" : "said";
   }
 
   at(time) {

@@ -27,24 +27,24 @@ class Page {
       box.onchange = () => view.toggle(what, box.checked);
       const mark = element("i", { textContent: sign });
       mark.style.color = colour;
-      legend.append(element("label", {}, box, mark, label));
+      legend.append(element("label", {}, box, mark, phrase(`legend_${what}`, label)));
     }
     const sides = element("span", { className: "sides" });
     for (const [side, name] of [["r", "right"], ["l", "left"]]) {
       const mark = element("i", { textContent: "■" });
       mark.style.color = COLOURS[side];
-      sides.append(mark, `${name} `);
+      sides.append(mark, `${phrase(`side_${side}`, name)} `);
     }
     legend.append(sides);
     const views = document.getElementById("views");
     for (const from of ["oblique", "front", "right", "left", "back", "top"]) {
-      const button = element("button", { textContent: from });
+      const button = element("button", { textContent: phrase(`from_${from}`, from) });
       button.onclick = () => view.look(from);
       views.append(button);
     }
     const follow = element("input", { type: "checkbox", checked: true });
     follow.onchange = () => { view.follow = follow.checked; };
-    views.append(element("label", {}, follow, "follow"));
+    views.append(element("label", {}, follow, phrase("follow", "follow")));
   }
 }
 
