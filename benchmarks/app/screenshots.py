@@ -14,7 +14,7 @@ from typing import Any
 from benchmarks.app.sessions import BAD, without_markers
 from benchmarks.app.visit import Visit, browser, served, visit
 from benchmarks.screenshots import keep
-from benchmarks.session.change import MOTIONS, marked_anew
+from benchmarks.session.change import MOTIONS, marked_anew, register_bent_walk
 from mbkf.io.c3d_write import write_c3d
 from mbkf.pipelines.synth import synthesise
 from mbkf.synthesis.person import synthesise_subject
@@ -43,6 +43,16 @@ def take(made: Any, lab: Path, target: Path) -> None:
             user.wait("text=Done in")
         user.page.set_viewport_size({"width": 1280, "height": 900})
         keep(user.page.screenshot(), target / "screenshot_app.png")
+        user.click("button.marker-set")
+        editor = user.page.frame_locator("dialog iframe")
+        editor.locator(".item", has_text="RKNE").first.click()
+        user.page.wait_for_timeout(1500)
+        keep(user.page.locator("dialog").screenshot(), target / "screenshot_app_markers.png")
+        user.click("dialog .bar button >> text=Close")
+        user.page.get_by_role("row", name="walk1").get_by_role("button", name="3-D").click()
+        user.page.wait_for_timeout(6000)
+        keep(user.page.locator("dialog").screenshot(), target / "screenshot_app_look.png")
+        user.click("dialog .bar button >> text=Close")
         user.click("#session-report")
         user.page.locator("dialog select").first.select_option(SESSIONS[0])
         user.page.wait_for_timeout(3000)
@@ -52,6 +62,7 @@ def take(made: Any, lab: Path, target: Path) -> None:
 
 def _sessions(lab: Path) -> None:
     """Before and after a change of the knees, and a file without markers."""
+    register_bent_walk()
     person = synthesise_subject(SEED)
     for number, (name, motion) in enumerate(zip(SESSIONS, MOTIONS, strict=True)):
         folder = lab / name

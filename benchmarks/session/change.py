@@ -26,7 +26,7 @@ from mbkf.pipelines.reconstruct import reconstruct
 from mbkf.pipelines.reconstruct_settings import ReconstructSettings
 from mbkf.pipelines.scale import scale
 from mbkf.pipelines.synth import synthesise
-from mbkf.synthesis.motions import register_motion
+from mbkf.synthesis.motions import motion_names, register_motion
 from mbkf.synthesis.person import PLACEMENT_SD_M, body_of, synthesise_subject
 from mbkf.synthesis.plan import MotionPlan
 from mbkf.synthesis.walk import walk_plan
@@ -39,7 +39,6 @@ TRIALS, SECONDS = 3, 3.5
 MOTIONS = ("walk", "bent walk")
 
 
-@register_motion("bent walk", seconds=5.0, trial=False)
 def bent_walk_plan(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
     """The walk of the same random numbers with knees that stay bent.
 
@@ -52,6 +51,12 @@ def bent_walk_plan(model: Body, seconds: float, rng: np.random.Generator) -> Mot
     return replace(plan, straightest_rad=plan.straightest_rad + BENT_RAD)
 
 
+def register_bent_walk() -> None:
+    """Makes the bent walk a motion that can be synthesised."""
+    if MOTIONS[1] not in motion_names(static=True):
+        register_motion(MOTIONS[1], seconds=5.0, trial=False)(bent_walk_plan)
+
+
 @dataclass(frozen=True)
 class Recorded:
     """The trials of a session as they are estimated, and the same with true angles and torques."""
@@ -62,6 +67,7 @@ class Recorded:
 
 def recorded(seed: int) -> tuple[Recorded, Recorded]:
     """Both sessions of a person."""
+    register_bent_walk()
     with single_threaded():
         person = synthesise_subject(seed)
         return _session(person, MOTIONS[0], seed, 0), _session(marked_anew(person, seed), MOTIONS[1], seed, 1)

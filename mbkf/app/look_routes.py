@@ -91,7 +91,8 @@ def state_events(
 
     Returns:
         ``events`` as they stand in the file now; ``cycles``: how many the right and the left foot have in the new
-        curves; None where these are left to the next run, since one is under way or the result is of an older kind, and for a live recording.
+        curves; None where these are left to the next run, since one is under way or the result is of an older kind,
+        and for a live recording.
 
     Raises:
         InvalidInput: There is no such session, or no result of the trial.

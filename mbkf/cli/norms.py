@@ -20,6 +20,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "norms",
         help="the laboratory's own reference bands for reports",
         description="Reference bands of gait: mean and spread between persons.",
+        epilog=_EPILOG,
     )
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     build = actions.add_parser(

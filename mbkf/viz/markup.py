@@ -36,7 +36,7 @@ def table(headings: Sequence[str], rows: Iterable[Sequence[str]], kind: str = ""
         rows: Cells of each row, HTML.
         kind: CSS class of the table.
     """
-    head = "".join(f"<th>{escape(text)}</th>" if text else "<td></td>" for text in headings)
+    head = "".join(f"<th>{escape(text)}</th>" for text in headings)
     body = "".join(
         "<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in rows if row
     )
