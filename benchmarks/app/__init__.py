@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from benchmarks.app.accessible import accessible_rows
+from benchmarks.app.accessible import accessible_rows, start_row
 from benchmarks.app.forty import forty_rows
 from benchmarks.app.names import evil_session, injection_rows
 from benchmarks.app.path import path_rows
@@ -17,6 +17,10 @@ def run(context: Context) -> list[Check]:
     """All rows; without the forty trials when quick."""
     with browser() as made:
         rows = path_rows(made, _fresh(context.out / "path"))
+        with served(_fresh(context.out / "empty")) as server:
+            first = visit(made, server.url)
+            first.wait(".drop")
+            rows.append(start_row(first))
         evil = _fresh(context.out / "evil")
         evil_session(evil / "lab")
         with served(evil / "lab") as server:

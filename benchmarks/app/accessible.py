@@ -26,6 +26,17 @@ def accessible_rows(user: Visit) -> list[Check]:
     ]
 
 
+def start_row(user: Visit) -> Check:
+    """The row of the page before anything was dropped.
+
+    Args:
+        user: A visit that shows it.
+    """
+    return Check(
+        "axe-core, nothing dropped yet: serious findings", len(findings(user.page.main_frame)), 0.0, "<="
+    )
+
+
 def findings(frame: Any) -> list[str]:
     """What axe-core finds serious or critical in a frame: the rule and the first place.
 

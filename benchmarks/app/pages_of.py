@@ -21,11 +21,12 @@ def every_page(user: Visit) -> Iterator[tuple[str, list[Any]]]:
         user.page.locator("dialog[open]").wait_for()
         user.page.wait_for_timeout(1500)
         yield name, list(user.page.frames)
-        user.page.keyboard.press("Escape")
+        user.page.locator("dialog .bar button", has_text="Close").last.click()
         user.page.locator("dialog").wait_for(state="detached")
 
 
 def _dialogs(user: Visit) -> list[Any]:
-    """Buttons of the first trial that was run, and of the session, which open something."""
-    first = user.page.locator("td .buttons").first.locator("button").all()
-    return [user.page.locator("#session-report"), *first]
+    """Buttons of the session, and of the first trial that was run, which open something."""
+    of_session = ("#session-report", "button.live", "button.marker-set")
+    of_trial = user.page.locator("td .buttons").first.locator("button").all()
+    return [*(user.page.locator(one).first for one in of_session), *of_trial]
