@@ -6,8 +6,9 @@ from mbkf.app.recordings import recording_rows
 from mbkf.app.runs import Runs, RunState
 from mbkf.app.workspace import Workspace
 from mbkf.io.session import SessionNotes, TrialKind, plain_session, session_of
+from mbkf.pipelines.survey.problems import plain_problem
 from mbkf.pipelines.survey.session import SurveyedSession
-from mbkf.pipelines.survey.trial import Problem, SurveyedTrial
+from mbkf.pipelines.survey.trial import SurveyedTrial
 
 Plain = dict[str, object]
 
@@ -38,7 +39,7 @@ def session(workspace: Workspace, runs: Runs, name: str) -> Plain:
         "id": name,
         "notes": plain_session(looked.notes),
         "standing_kg": looked.standing_kg,
-        "problems": [_problem(one) for one in looked.problems],
+        "problems": [plain_problem(one) for one in looked.problems],
         "trials": [*(_trial(looked, one, state) for one in looked.trials), *recording_rows(workspace, name)],
         "kinds": [kind.value for kind in TrialKind],
         "run": run_state(state),
@@ -94,16 +95,7 @@ def _trial(looked: SurveyedSession, trial: SurveyedTrial, state: RunState | None
         "plates": trial.plates,
         "events": trial.events,
         "usable": trial.usable,
-        "problems": [_problem(one) for one in trial.problems],
+        "problems": [plain_problem(one) for one in trial.problems],
         "status": status,
         "reason": reason,
-    }
-
-
-def _problem(problem: Problem) -> Plain:
-    return {
-        "what": problem.what,
-        "todo": problem.todo,
-        "grave": problem.grave,
-        "marker_set": problem.marker_set,
     }

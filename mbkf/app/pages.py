@@ -16,7 +16,7 @@ SCRIPTS = (
 )  # fmt: skip
 """The page's own scripts, in the order they are needed."""
 
-SECTIONS = ("app", "live", "export")
+SECTIONS = ("app", "live", "export", "problems")
 """Sections of the language files with the page's words; no two have a word of one name."""
 
 

@@ -10,6 +10,7 @@ from mbkf.app.workspace import Workspace
 from mbkf.errors import MbkfError
 from mbkf.io.results_folder import SUMMARY_FILE, read_summary
 from mbkf.io.session import TrialKind
+from mbkf.pipelines.survey.problems import Problem, plain_problem
 from mbkf.stream.run.report import LIVE_FILE
 
 Plain = dict[str, object]
@@ -52,15 +53,11 @@ def _seen(folder: Path, _stamp: int) -> Plain:
     summary = read_summary(folder)
     report = json.loads((folder / LIVE_FILE).read_text(encoding="utf-8"))
     lost, came = int(report.get("frames_lost", 0)), int(report.get("frames_in", 0))
-    told = {
-        "what": f"{lost} of {lost + came} frames were lost",
-        "todo": "see live.json for when",
-        "grave": False,
-    }
+    told = Problem("frames_lost", (str(lost), str(lost + came)))
     return {
         "seconds": summary["duration_s"],
         "rate_hz": summary["rate_hz"],
         "markers": summary["markers_used"],
         "protocol": summary["protocol"],
-        "problems": [told] if lost else [],
+        "problems": [plain_problem(told)] if lost else [],
     }

@@ -3,11 +3,15 @@
 import re
 
 from mbkf.app.pages import LOOKS, SCRIPTS, SECTIONS, page_words, start_page
+from mbkf.pipelines.survey.problems import TEXTS
 from mbkf.viz.language import words
 from mbkf.viz.page import asset
 from tests.io.reconstructions import made_up
 
-SAID_BY_THE_SERVER = {"done", "unchanged", "failed", "static", "walk", "squat", "jump", "unknown"}
+SAID_BY_THE_SERVER = {
+    *("done", "unchanged", "failed", "static", "walk", "squat", "jump", "unknown"),
+    *(f"{say}_{key}" for say in ("problem", "todo") for key in TEXTS),
+}
 """Words that the server's answers choose."""
 
 

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from mbkf.io.session import SESSION_FILE, SessionNotes, TrialKind, read_session
 from mbkf.pipelines.batch.folder import captures_in, forces_beside, is_static
-from mbkf.pipelines.survey.trial import Problem, SurveyedTrial, survey_trial
+from mbkf.pipelines.survey.problems import Problem
+from mbkf.pipelines.survey.trial import SurveyedTrial, survey_trial
 
 MASS_SHARE = 0.05
 """A stated mass that differs from what the plates bear by more is told."""
@@ -78,13 +79,10 @@ def _problems(session: SurveyedSession) -> tuple[Problem, ...]:
     if stated is None:
         stated = next((one.stated_kg for one in session.trials if one.stated_kg is not None), None)
     if stated is not None and standing is not None and abs(stated / standing - 1.0) > MASS_SHARE:
-        told = f"the mass is stated as {stated:.1f} kg, the plates bear {standing:.1f} kg"
-        found.append(Problem(told, "take what the plates bear, or check the plates"))
+        found.append(Problem("mass", (f"{stated:.1f}", f"{standing:.1f}")))
     kept = [one for one in session.trials if one.usable and not session.notes.trial(one.name).excluded]
     if not kept:
-        found.append(Problem("no trial can be used", "add captures with markers", grave=True))
+        found.append(Problem("no_trial"))
     elif not any(session.kind(one) == TrialKind.STATIC for one in kept):
-        found.append(
-            Problem("no standing trial", "the body is scaled from the moving ones, and less certain")
-        )
+        found.append(Problem("no_static"))
     return tuple(found)

@@ -16,6 +16,7 @@ from mbkf.model.protocol import detect_protocol
 from mbkf.pipelines.axes.captures import find_axes_by_names
 from mbkf.pipelines.coverage import use_by_protocol
 from mbkf.pipelines.survey.movement import kind_of_markers
+from mbkf.pipelines.survey.problems import Problem
 
 MISSING_SHARE = 0.2
 """Captures in which more of the samples are missing are told."""
@@ -25,23 +26,6 @@ LEAST_STANDING_KG = 2.0
 
 STEADY = 0.03
 """A standing person's weight varies by less than this share of it."""
-
-
-@dataclass(frozen=True)
-class Problem:
-    """Something about a capture that a person should know.
-
-    Attributes:
-        what: What is the matter.
-        todo: What to do about it.
-        grave: Whether the capture cannot be used as it is.
-        marker_set: Whether it is about the marker set, which the marker editor puts right.
-    """
-
-    what: str
-    todo: str
-    grave: bool = False
-    marker_set: bool = False
 
 
 @dataclass(frozen=True)
@@ -97,7 +81,7 @@ def survey_trial(path: Path, forces: Path | None = None) -> SurveyedTrial:
         capture = read_capture(path, forces=forces)
     except (MbkfError, OSError) as error:
         why = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        unreadable = Problem(f"cannot be read: {why}", "export it again, or leave it out", grave=True)
+        unreadable = Problem("unreadable", (why,))
         return SurveyedTrial(path, forces, problems=(unreadable,))
     markers = capture.markers
     unnamed = sum(name.startswith("*") for name in markers.names)
@@ -137,15 +121,13 @@ def standing_mass(capture: Capture) -> float | None:
 def _of_markers(capture: Capture, unnamed: int) -> tuple[Problem, ...]:
     present = capture.markers.present
     if not present.any():
-        return (Problem("no marker is seen in it", "leave it out, or export its markers", grave=True),)
+        return (Problem("no_marker"),)
     found = []
     if unnamed == len(capture.markers.names):
-        found.append(Problem("its points have no names", "the run names them by the scaled body"))
+        found.append(Problem("no_names"))
     missing = 1.0 - float(present.mean())
     if missing > MISSING_SHARE:
-        found.append(
-            Problem(f"{100 * missing:.0f} % of the marker samples are missing", "intervals are wider there")
-        )
+        found.append(Problem("gaps", (f"{100 * missing:.0f}",)))
     return tuple(found)
 
 
@@ -157,22 +139,15 @@ def _protocol(capture: Capture) -> tuple[str, tuple[Problem, ...]]:
         protocol = detect_protocol(capture.markers.names)
         use = use_by_protocol([capture.markers], protocol)
     except UnknownName:
-        return "", (
-            Problem(
-                "its marker set is not known",
-                "it is inferred; look at it in the marker editor",
-                marker_set=True,
-            ),
-        )
+        return "", (Problem("unknown_set"),)
     if not use.accepted:
-        told = f"protocol {protocol.name} knows only {100 * use.share:.0f} % of its markers"
-        return "", (Problem(told, "the set is inferred; look at it in the marker editor", marker_set=True),)
+        return "", (Problem("partly_known_set", (protocol.name, f"{100 * use.share:.0f}")),)
     axes = find_axes_by_names(capture)
-    doubts = [Problem(axes.note, "look at the trial in 3-D")] if axes.note else []
+    doubts = [Problem("axes", (axes.note,))] if axes.note else []
     return protocol.name, tuple(doubts)
 
 
 def _of_plates(capture: Capture) -> tuple[Problem, ...]:
     if capture.plates:
         return ()
-    return (Problem("no force plate", "torques are estimated, with wide intervals"),)
+    return (Problem("no_plate"),)

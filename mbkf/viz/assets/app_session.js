@@ -36,7 +36,7 @@ function person(data, act) {
 
 function problemList(problems, act) {
   return element("ul", { className: "problems" }, ...problems.map((one) =>
-    element("li", { className: one.grave ? "grave" : "" }, element("b", {}, one.what), ": " + one.todo, ...(one.marker_set ? [" ", markerSetButton(act)] : []))));
+    element("li", { className: one.grave ? "grave" : "" }, element("b", {}, word(`problem_${one.key}`, ...one.values)), ": " + word(`todo_${one.key}`), ...(one.marker_set ? [" ", markerSetButton(act)] : []))));
 }
 
 function markerSetButton(act) {

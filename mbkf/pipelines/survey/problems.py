@@ -1,0 +1,82 @@
+"""What can be the matter with a session or a capture, and what to do about it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+TEXTS: Mapping[str, tuple[str, str]] = {
+    "unreadable": ("cannot be read: {0}", "export it again, or leave it out"),
+    "no_marker": ("no marker is seen in it", "leave it out, or export its markers"),
+    "no_names": ("its points have no names", "the run names them by the scaled body"),
+    "gaps": ("{0} % of the marker samples are missing", "intervals are wider there"),
+    "unknown_set": ("its marker set is not known", "it is inferred; look at it in the marker editor"),
+    "partly_known_set": (
+        "protocol {0} knows only {1} % of its markers",
+        "the set is inferred; look at it in the marker editor",
+    ),
+    "axes": ("{0}", "look at the trial in 3-D"),
+    "no_plate": ("no force plate", "torques are estimated, with wide intervals"),
+    "mass": (
+        "the mass is stated as {0} kg, the plates bear {1} kg",
+        "take what the plates bear, or check the plates",
+    ),
+    "no_trial": ("no trial can be used", "add captures with markers"),
+    "no_static": ("no standing trial", "the body is scaled from the moving ones, and less certain"),
+    "frames_lost": ("{0} of {1} frames were lost", "see live.json for when"),
+}
+"""What is the matter, and what to do, by key; {0} and {1} stand for values."""
+
+GRAVE = frozenset({"unreadable", "no_marker", "no_trial"})
+"""With these a capture, or the session, cannot be used as it is."""
+
+OF_MARKER_SET = frozenset({"unknown_set", "partly_known_set"})
+"""These the marker editor puts right."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Something about a capture or a session that a person should know.
+
+    Attributes:
+        key: One of :data:`TEXTS`; pages say it in their language.
+        values: What is filled in.
+    """
+
+    key: str
+    values: tuple[str, ...] = ()
+
+    @property
+    def what(self) -> str:
+        """What is the matter, in English."""
+        text = TEXTS[self.key][0]
+        for k, value in enumerate(self.values):
+            text = text.replace(f"{{{k}}}", value)
+        return text
+
+    @property
+    def todo(self) -> str:
+        """What to do about it, in English."""
+        return TEXTS[self.key][1]
+
+    @property
+    def grave(self) -> bool:
+        """Whether it cannot be used as it is."""
+        return self.key in GRAVE
+
+    @property
+    def marker_set(self) -> bool:
+        """Whether it is about the marker set, which the marker editor puts right."""
+        return self.key in OF_MARKER_SET
+
+
+def plain_problem(problem: Problem) -> dict[str, object]:
+    """What is the matter, and what to do, as plain data."""
+    return {
+        "key": problem.key,
+        "values": list(problem.values),
+        "what": problem.what,
+        "todo": problem.todo,
+        "grave": problem.grave,
+        "marker_set": problem.marker_set,
+    }
