@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from benchmarks.app.accessible import accessible_rows
+from benchmarks.app.accessible import accessible_rows, start_rows
 from benchmarks.app.forty import forty_rows
 from benchmarks.app.names import evil_session, injection_rows
 from benchmarks.app.path import path_rows
@@ -16,9 +16,13 @@ from benchmarks.checks import Check, Context
 def run(context: Context) -> list[Check]:
     """All rows; without the forty trials when quick."""
     with browser() as made:
-        rows = path_rows(made, _fresh(context.out / "path"))
+        rows = path_rows(made, _fresh(context.out / "path"), context.seed)
+        with served(_fresh(context.out / "empty")) as server:
+            user = visit(made, server.url)
+            user.wait("input[type=file] >> nth=0")
+            rows += start_rows(user)
         evil = _fresh(context.out / "evil")
-        evil_session(evil / "lab")
+        evil_session(evil / "lab", context.seed)
         with served(evil / "lab") as server:
             user = visit(made, server.url)
             user.wait("table")
@@ -26,7 +30,7 @@ def run(context: Context) -> list[Check]:
             rows += accessible_rows(user)
             rows += injection_rows(user)
         if not context.quick:
-            rows += forty_rows(made, _fresh(context.out / "forty"))
+            rows += forty_rows(made, _fresh(context.out / "forty"), context.seed)
     return rows
 
 

@@ -26,6 +26,16 @@ def accessible_rows(user: Visit) -> list[Check]:
     ]
 
 
+def start_rows(user: Visit) -> list[Check]:
+    """The row of the page before any session is there.
+
+    Args:
+        user: A visit to an empty folder.
+    """
+    found = len(findings(user.page.main_frame))
+    return [Check("axe-core, start: serious findings", float(found), 0.0, "<=")]
+
+
 def findings(frame: Any) -> list[str]:
     """What axe-core finds serious or critical in a frame: the rule and the first place.
 
