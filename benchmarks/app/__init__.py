@@ -19,7 +19,7 @@ def run(context: Context) -> list[Check]:
         rows = path_rows(made, _fresh(context.out / "path"), context.seed)
         with served(_fresh(context.out / "empty")) as server:
             user = visit(made, server.url)
-            user.wait("input[type=file] >> nth=0")
+            user.page.locator("input[type=file]").first.wait_for(state="attached")
             rows += start_rows(user)
         evil = _fresh(context.out / "evil")
         evil_session(evil / "lab", context.seed)
