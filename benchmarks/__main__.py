@@ -92,6 +92,9 @@ def _parser() -> argparse.ArgumentParser:
         help="robustness: a live run of so many minutes in place of its rows",
     )
     parser.add_argument(
+        "--seed", type=int, default=0, metavar="N", help="app: another person, other walks (%(default)s)"
+    )
+    parser.add_argument(
         "--gate",
         action="store_true",
         help="instead of benchmarks: quick metrics from end to end against the committed baseline",
@@ -163,7 +166,7 @@ def _console() -> Console:
 
 def context_of(args: argparse.Namespace, out: Path) -> Context:
     """A benchmark's input from the command line, with its folder."""
-    return Context(args.data, out.resolve(), args.quick, args.old, args.minutes)
+    return Context(args.data, out.resolve(), args.quick, args.old, args.minutes, args.seed)
 
 
 def _table(name: str, checks: Sequence[Check], seconds: float) -> Table:

@@ -55,6 +55,7 @@ class Context:
         quick: Whether to do a shorter run, for a first look.
         old: Folder of another source tree that this one is compared with, or None when there is none.
         minutes: How long a benchmark that can run for long is to run in place of its rows; None for its rows.
+        seed: Of what is made at random, in benchmarks that take one.
     """
 
     data: Path | None
@@ -62,6 +63,7 @@ class Context:
     quick: bool = False
     old: Path | None = None
     minutes: float | None = None
+    seed: int = 0
 
     def require_data(self) -> Path:
         """The folder of reference captures.

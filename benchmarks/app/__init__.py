@@ -16,13 +16,13 @@ from benchmarks.checks import Check, Context
 def run(context: Context) -> list[Check]:
     """All rows; without the forty trials when quick."""
     with browser() as made:
-        rows = path_rows(made, _fresh(context.out / "path"))
+        rows = path_rows(made, _fresh(context.out / "path"), context.seed)
         with served(_fresh(context.out / "empty")) as server:
             first = visit(made, server.url)
             first.wait(".drop")
             rows.append(start_row(first))
         evil = _fresh(context.out / "evil")
-        evil_session(evil / "lab")
+        evil_session(evil / "lab", context.seed)
         with served(evil / "lab") as server:
             user = visit(made, server.url)
             user.wait("table")
@@ -30,7 +30,7 @@ def run(context: Context) -> list[Check]:
             rows += accessible_rows(user)
             rows += injection_rows(user)
         if not context.quick:
-            rows += forty_rows(made, _fresh(context.out / "forty"))
+            rows += forty_rows(made, _fresh(context.out / "forty"), context.seed)
     return rows
 
 

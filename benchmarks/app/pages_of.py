@@ -8,14 +8,15 @@ from typing import Any
 from benchmarks.app.visit import Visit
 
 
-def every_page(user: Visit) -> Iterator[tuple[str, list[Any]]]:
+def every_page(user: Visit, every_trial: bool = False) -> Iterator[tuple[str, list[Any]]]:
     """Opens each page of a session that was run; yields its name and its frames, the outer one first.
 
     Args:
         user: A visit that shows a session with results.
+        every_trial: Whether to open the pages of all trials that were run, not of the first alone.
     """
     yield "session", [user.page.main_frame]
-    for button in _dialogs(user):
+    for button in _dialogs(user, every_trial):
         name = button.inner_text()
         button.click()
         user.page.locator("dialog[open]").wait_for()
@@ -25,8 +26,9 @@ def every_page(user: Visit) -> Iterator[tuple[str, list[Any]]]:
         user.page.locator("dialog").wait_for(state="detached")
 
 
-def _dialogs(user: Visit) -> list[Any]:
-    """Buttons of the session, and of the first trial that was run, which open something."""
+def _dialogs(user: Visit, every_trial: bool) -> list[Any]:
+    """Buttons of the session, and of its trials that were run, which open something."""
     of_session = ("#session-report", "button.live", "button.marker-set")
-    of_trial = user.page.locator("td .buttons").first.locator("button").all()
-    return [*(user.page.locator(one).first for one in of_session), *of_trial]
+    trials = user.page.locator("td .buttons")
+    of_trials = (trials if every_trial else trials.first).locator("button").all()
+    return [*(user.page.locator(one).first for one in of_session), *of_trials]

@@ -23,14 +23,15 @@ OF_A_RUN = ("run_id", "trial", "step_seconds_median", "step_seconds_p99", "realt
 """What differs from run to run, or between copies of a capture, in summary.json."""
 
 
-def path_rows(made: Any, out: Path) -> list[Check]:
+def path_rows(made: Any, out: Path, seed: int = 0) -> list[Check]:
     """Rows of the way and of its results.
 
     Args:
         made: The browser.
         out: An empty folder.
+        seed: Of the person and the walks.
     """
-    source, lab = new_user(out / "disk"), out / "lab"
+    source, lab = new_user(out / "disk", seed), out / "lab"
     lab.mkdir()
     begin = perf_counter()
     with served(lab) as server:

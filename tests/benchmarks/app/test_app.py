@@ -30,6 +30,14 @@ def test_planted_elements_are_seen(browser):
     assert active(page.main_frame) == 1.0
 
 
+@pytest.mark.parametrize("planted", ["<script>window.hit=1</script>", '<iframe src="about:blank"></iframe>'])
+def test_planted_elements_that_do_not_run_are_seen(browser, planted):
+    page = browser.new_page()
+    page.set_content("<p></p>")
+    page.evaluate("(text) => { document.querySelector('p').innerHTML = text; }", planted)
+    assert page.evaluate("window.hit") is None and active(page.main_frame) == 1.0
+
+
 def test_planted_barriers_are_found(browser):
     page = browser.new_page()
     good = '<html lang="en"><title>t</title><main><h1>t</h1><label>x <input></label></main></html>'
@@ -70,11 +78,15 @@ def test_sessions_are_as_told(tmp_path):
 def test_names_are_attempts(tmp_path):
     session = evil_session(tmp_path)
     assert (
-        len(list(session.glob("*.c3d"))) == len(EVIL) + 1
+        len(list(session.glob("*.c3d"))) == 2 * len(EVIL) + 1
         and read_session(session / "session.toml").name == EVIL[1]
     )
     found = read_capture(next(session.glob("1 *.c3d")))
     assert EVIL[1] in found.markers.names and EVIL[1] in [event.label for event in found.events]
+    assert EVIL[1] in [channel.name for channel in found.analog]
+    assert set(EVIL) <= set(read_capture(next(session.glob("*.trc"))).markers.names)
+    stated = read_session(session / "session.toml").trials
+    assert sorted(one.excluded for one in stated.values()) == sorted(EVIL)
 
 
 def test_waiting_ends():
