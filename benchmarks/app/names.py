@@ -71,7 +71,7 @@ def injection_rows(user: Visit) -> list[Check]:
     for _, frames in every_page(user, every_trial=True):
         opened += 1
         found += sum(active(frame) for frame in frames)
-    least = 3.0 + 2.0 * len(EVIL)
+    least = 4.0 + 2.0 * len(EVIL)
     return [
         Check("names that are scripts: pages looked at", float(opened), least, ">="),
         Check("names that are scripts: active elements in all pages", found, 0.0, "<="),
