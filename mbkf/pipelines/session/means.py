@@ -132,12 +132,6 @@ def _by_trial(values: Array, trials: Sequence[str]) -> dict[str, float]:
     return {str(name): float(values[known & (names == name)].mean()) for name in np.unique(names[known])}
 
 
-def half_width_of(mean: Mean) -> Array:
-    """(P,) half of the 95 % interval of a mean."""
-    parts = [(mean.variance, mean.freedom), (mean.shift_variance, np.full_like(mean.mean, np.inf))]
-    return _quantile(_freedom(parts)) * np.sqrt(mean.variance + mean.shift_variance)
-
-
 def _variance_of_mean(values: Array, trials: Sequence[str]) -> tuple[Array, Array]:
     """(P,) variance of the mean of several cycles, and its degrees of freedom."""
     _, member, sizes = np.unique(trials, return_inverse=True, return_counts=True)

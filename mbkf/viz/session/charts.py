@@ -21,8 +21,6 @@ from mbkf.viz.wording import wordings
 MOST_SINGLE = 12
 """Of more cycles than this, so many are drawn one by one, evenly chosen; the mean is that of all."""
 
-CHANGE_HEIGHT = 110.0
-
 
 @dataclass(frozen=True)
 class Shown:

@@ -8,7 +8,8 @@ import pytest
 from mbkf.errors import InvalidInput
 from mbkf.io.findings import Finding
 from mbkf.io.results_folder import write_reconstruction
-from mbkf.io.session import SessionNotes, TrialKind, TrialNotes
+from mbkf.io.session import EventKind, FootEvent, SessionNotes, TrialKind, TrialNotes, plain_events
+from mbkf.pipelines.batch.inputs import RECORD, write_record
 from mbkf.pipelines.gait.cycles import find_gait
 from mbkf.pipelines.results.summary import summarise
 from mbkf.pipelines.session.gather import results_in, session_from, session_of, told_of
@@ -42,6 +43,29 @@ def test_what_is_stated_counts():
     found = session_of(walks(), "x", notes)
     assert [one.kind for one in found.gaits] == [TrialKind.WALK, TrialKind.RUN]
     assert (found.sex, found.age) == ("female", 30.0)
+
+
+def test_events_by_hand_cut_the_cycles(tmp_path):
+    """Those that the session states, else those that the batch knew; here one cycle of each foot."""
+    feet = {
+        "right": ((0.2, "strike"), (0.8, "off"), (1.2, "strike")),
+        "left": ((0.3, "off"), (0.7, "strike")),
+    }
+    events = tuple(
+        FootEvent(side, EventKind(kind), time_s) for side, listed in feet.items() for time_s, kind in listed
+    )
+    stated = SessionNotes(trials={"walk 0": TrialNotes(events=events)})
+    (gait,) = session_of(walks()[:1], "x", stated).gaits
+    cycle = gait.sides[0].cycles[0].cycle
+    assert len(gait.sides[0].cycles) == 1 and gait.sides[1].cycles == ()
+    assert (cycle.start_s, cycle.off_s, cycle.end_s) == (0.2, 0.8, 1.2)
+    folder = tmp_path / "walk0"
+    write_reconstruction(walks()[0], summarise(walks()[0]), folder)
+    found = len(session_from([folder], "x").gaits[0].sides[0].cycles)
+    write_record(folder / RECORD, {"events": plain_events(events)})
+    assert len(session_from([folder], "x").gaits[0].sides[0].cycles) == 1 < found
+    write_record(folder / RECORD, {"events": None})
+    assert len(session_from([folder], "x").gaits[0].sides[0].cycles) == found
 
 
 def test_names_that_are_there_twice_stay_apart():

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from mbkf.pipelines.session.means import difference_of, half_width_of, mean_of, paired_difference
+from mbkf.pipelines.session.means import Mean, difference_of, mean_of, paired_difference
 
 P = 5
 
@@ -14,6 +14,13 @@ P = 5
 def plain(values, trials):
     nothing = np.zeros_like(values)
     return mean_of(values, trials, nothing, nothing)
+
+
+def half_width_of(mean):
+    """Half of the interval of a mean: that of its difference to an exact nought."""
+    nothing = np.zeros_like(mean.mean)
+    exact = Mean(nothing, nothing, nothing, nothing + np.inf, nothing, 1)
+    return difference_of(mean, exact, same_body=False).half_width
 
 
 def test_cycles_of_one_trial_are_one_sample():
