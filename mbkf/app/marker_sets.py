@@ -10,14 +10,14 @@ from urllib.parse import urlencode
 from mbkf.app.workspace import Workspace
 from mbkf.errors import InvalidInput
 from mbkf.io.capture import read_capture
-from mbkf.io.session import TrialKind
+from mbkf.io.session import SessionNotes, TrialKind
 from mbkf.pipelines.protocol.editing import starting_set
 from mbkf.pipelines.protocol.standing import stand_beside
 from mbkf.pipelines.survey.session import SurveyedSession
 from mbkf.viz.protocol.edit import MarkerSetEdit
 
 SET_FILE = "marker_set.toml"
-"""File of a session's own marker set, beside its captures."""
+"""File of a session's own marker set, beside its captures, where the session file names no other."""
 
 
 class MarkerSets:
@@ -42,7 +42,7 @@ class MarkerSets:
         looked, folder = self._workspace.look(session), self._workspace.folder(session)
         stated = self._workspace.stated(session).protocol
         protocol, capture = starting_set(read_capture(capture_to_show(looked)), stated)
-        edit = MarkerSetEdit(protocol, stand_beside(capture, protocol), folder / SET_FILE)
+        edit = MarkerSetEdit(protocol, stand_beside(capture, protocol), folder / file_of_set(looked.notes))
         with self._lock:
             self._edits[session] = edit
         return edit.text("marker_set/say?" + urlencode({"session": session}))
@@ -69,8 +69,15 @@ class MarkerSets:
             answer = edit.hear(word)
             if edit.saved is not before:
                 notes = self._workspace.look(session).notes
-                self._workspace.note(session, replace(notes, protocol=SET_FILE))
+                self._workspace.note(session, replace(notes, protocol=file_of_set(notes)))
             return answer
+
+
+def file_of_set(notes: SessionNotes) -> str:
+    """The file in a session's folder that holds its marker set; a file elsewhere belongs to other sessions, too."""
+    named = notes.protocol or ""
+    own = named.lower().endswith(".toml") and Path(named).name == named
+    return named if own else SET_FILE
 
 
 def capture_to_show(looked: SurveyedSession) -> Path:

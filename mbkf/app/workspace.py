@@ -83,7 +83,7 @@ class Workspace:
         """
         folder = self.folder(session)
         with self._looking:
-            return survey_session(folder, self._surveyed)
+            return survey_session(folder, self._surveyed, self.root)
 
     def plan(self, session: str) -> Plan:
         """What is to be done for a session, as ``mbkf batch`` would do it.

@@ -2,6 +2,10 @@
 
 import json
 
+import pytest
+
+from mbkf.app.marker_sets import SET_FILE, file_of_set
+from mbkf.io.session import SessionNotes
 from tests.app.asking import asked, plain
 from tests.studies import study
 
@@ -34,3 +38,11 @@ def test_a_set_is_changed_and_saved_by_clicks(server, browser):
     folder = server.workspace.root / "more" / "P1"
     assert "RASI" in (folder / "marker_set.toml").read_text().partition("ignored")[2]
     assert 'protocol = "marker_set.toml"' in (folder / "session.toml").read_text()
+
+
+@pytest.mark.parametrize(
+    ("stated", "file"),
+    [("worn.toml", "worn.toml"), ("../lab.toml", SET_FILE), ("plug_in_gait", SET_FILE), (None, SET_FILE)],
+)
+def test_a_set_is_saved_where_the_session_names_its_own(stated, file):
+    assert file_of_set(SessionNotes(protocol=stated)) == file

@@ -1,4 +1,4 @@
-"""Captures whose points have no names, named by the scaled person before they are reconstructed."""
+"""Captures whose points have no names: the person found from them, and names before they are reconstructed."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
 from mbkf.pipelines.axes.captures import turned_like_subject
 from mbkf.pipelines.label import LabelSummary, label, label_summary, labelled_capture
+from mbkf.pipelines.label_nameless import label_nameless
+from mbkf.pipelines.label_unscaled import label_unscaled
 
 NAMED_SHARE = 0.5
 """A capture that names a smaller share of the person's markers, and has points without names, is labelled."""
@@ -26,6 +28,29 @@ class Named:
     capture: Capture
     summary: LabelSummary | None = None
     warnings: tuple[str, ...] = ()
+
+
+def is_nameless(capture: Capture) -> bool:
+    """Whether not one point of a capture has a name."""
+    return all(name.startswith("*") for name in capture.markers.names)
+
+
+def body_of_points(capture: Capture, mass_kg: float, height_m: float | None, protocol: str | None) -> Subject:
+    """The person that the points of a capture without names show.
+
+    Args:
+        capture: The capture.
+        mass_kg: Body mass, kg.
+        height_m: Body height, m, if known.
+        protocol: The markers that were worn; None for a set inferred from the points.
+
+    Raises:
+        NotObservable: Too few points, or no person is found among them.
+        NotConverged: The points do not fit a person.
+    """
+    if protocol is None:
+        return label_nameless(capture, mass_kg=mass_kg, height_m=height_m)[1]
+    return label_unscaled(capture, protocol, mass_kg=mass_kg, height_m=height_m)[1]
 
 
 def needs_names(capture: Capture, subject: Subject) -> bool:

@@ -12,6 +12,7 @@ from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject, write_subject
 from mbkf.pipelines.batch.inputs import fingerprint, is_made_from, write_record
+from mbkf.pipelines.batch.naming import body_of_points, is_nameless, named
 from mbkf.pipelines.batch.plan import MOST_MOVING, Files, Person
 from mbkf.pipelines.protocol.standing import stands_still
 from mbkf.pipelines.scale import scale
@@ -53,30 +54,36 @@ def subject_of(person: Person, out: Path) -> Path:
 def scaled(person: Person) -> Subject:
     """The person's body: by the first standing trial, by its name or else by standing still, else by the moving ones.
 
+    Captures whose points have no names tell nothing beside one that has names; where none has, the body is found
+    with the names of the first moving one.
+
     Raises:
         MbkfError: No trial can be read, or they do not tell body or mass.
         OSError: A file cannot be read.
     """
     static = read_capture(person.statics[0]) if person.statics else None
-    trials = [] if static is not None else _readable(person.moving)
+    if static is not None and is_nameless(static):
+        static = None
+    found = [] if static is not None else _readable(person.moving)
+    trials = [one for one in found if not is_nameless(one)]
+    nameless = static is None and not trials
     if static is None and (still := next((one for one in trials if stands_still(one.markers)), None)):
         static, trials = still, []
-    trials = trials[:MOST_MOVING]
+    trials = (found if nameless else trials)[:MOST_MOVING]
     captures = [*([] if static is None else [static]), *trials]
-    stated = person.mass_kg is not None or any(one.subject_mass_kg is not None for one in captures)
-    subject = scale(
-        static,
-        trials,
-        mass_kg=person.mass_kg if stated else PROVISIONAL_KG,
-        height_m=person.height_m,
-        protocol=person.protocol,
-    )
-    if stated:
+    told = (one.subject_mass_kg for one in captures if one.subject_mass_kg is not None)
+    stated_kg = next(told, None) if person.mass_kg is None else person.mass_kg
+    mass_kg = PROVISIONAL_KG if stated_kg is None else stated_kg
+    if nameless and trials:
+        subject = body_of_points(trials[0], mass_kg, person.height_m, person.protocol)
+    else:
+        subject = scale(static, trials, mass_kg=mass_kg, height_m=person.height_m, protocol=person.protocol)
+    if stated_kg is not None:
         return subject
     if not any(capture.plates for capture in captures):
         captures = _readable(person.moving[:MOST_MOVING])
     try:
-        return weighed(subject, captures)
+        return weighed(subject, [named(one, subject).capture for one in captures])
     except InvalidInput as error:
         raise InvalidInput(
             f"no capture tells the body mass; state mass_kg in session.toml or in the list ({error})"

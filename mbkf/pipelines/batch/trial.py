@@ -8,18 +8,19 @@ from pathlib import Path
 
 from mbkf.io.atomic_folder import replacing_folder
 from mbkf.io.capture import read_capture
-from mbkf.io.results_folder import read_reconstruction, write_result_files
+from mbkf.io.results_folder import LABELS_FILE, read_reconstruction, write_result_files
 from mbkf.io.session import plain_events
 from mbkf.io.subject import read_subject
 from mbkf.pipelines.batch.curves import write_curves
 from mbkf.pipelines.batch.inputs import RECORD, fingerprint, is_made_from, read_record, write_record
 from mbkf.pipelines.batch.naming import named
-from mbkf.pipelines.batch.plan import Trial, folder_name
+from mbkf.pipelines.batch.plan import Trial
 from mbkf.pipelines.reconstruct import reconstruct
 from mbkf.pipelines.reconstruct_settings import ReconstructSettings, recorded
 from mbkf.pipelines.results.summary import summarise
 
 CURVES_FILE = "curves.parquet"
+"""File of a trial's cycles in its result folder."""
 
 
 def trial_done(trial: Trial, subject: Path, out: Path, settings: ReconstructSettings) -> bool:
@@ -55,7 +56,7 @@ def trial_done(trial: Trial, subject: Path, out: Path, settings: ReconstructSett
         write_curves(result, partial / CURVES_FILE, trial.events)
         if given.summary is not None:
             told_labels = json.dumps(given.summary, indent=2) + "\n"
-            (partial / f"{folder_name(result.trial)}.json").write_text(told_labels, encoding="utf-8")
+            (partial / LABELS_FILE).write_text(told_labels, encoding="utf-8")
         write_record(partial / RECORD, made_from)
     return True
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mbkf.io.session import SESSION_FILE, SessionNotes, TrialKind, read_session
-from mbkf.pipelines.batch.folder import captures_in, forces_beside, is_static
+from mbkf.pipelines.batch.folder import captures_in, forces_beside, is_static, stated_of
 from mbkf.pipelines.survey.problems import Problem
 from mbkf.pipelines.survey.trial import SurveyedTrial, survey_trial
 
@@ -44,12 +44,13 @@ class SurveyedSession:
         return TrialKind.STATIC if is_static(trial.path) else trial.kind
 
 
-def survey_session(folder: Path, survey: Survey = survey_trial) -> SurveyedSession:
+def survey_session(folder: Path, survey: Survey = survey_trial, root: Path | None = None) -> SurveyedSession:
     """Looks at the captures of a folder, those of folders in it left out.
 
     Args:
         folder: The session's folder.
         survey: Looks at a capture; a page that shows a session again and again remembers what it saw.
+        root: The study's folder, where it is one of more; session files above the session count down from there.
 
     Raises:
         FileFormatError: The session file is damaged.
@@ -58,24 +59,24 @@ def survey_session(folder: Path, survey: Survey = survey_trial) -> SurveyedSessi
     file = folder / SESSION_FILE
     notes = read_session(file) if file.is_file() else SessionNotes()
     captures, files = captures_in(folder), sorted(folder.iterdir())
-    trials = tuple(_with_set(survey(path, forces_beside(path, files)), notes) for path in captures)
+    stated = stated_of(root or folder, folder)
+    trials = tuple(_with_set(survey(path, forces_beside(path, files)), stated) for path in captures)
     masses = [trial.standing_kg for trial in trials if trial.standing_kg is not None]
     standing = sorted(masses)[len(masses) // 2] if masses else None
     session = SurveyedSession(folder, notes, trials, standing, ())
-    return SurveyedSession(folder, notes, trials, standing, _problems(session))
+    return replace(session, problems=_problems(session, stated.mass_kg))
 
 
-def _with_set(trial: SurveyedTrial, notes: SessionNotes) -> SurveyedTrial:
-    """The trial without doubts about its marker set where the session states one."""
-    if not notes.protocol:
+def _with_set(trial: SurveyedTrial, stated: SessionNotes) -> SurveyedTrial:
+    """The trial without doubts about its marker set where session files state one."""
+    if not stated.protocol:
         return trial
     return replace(trial, problems=tuple(one for one in trial.problems if not one.marker_set))
 
 
-def _problems(session: SurveyedSession) -> tuple[Problem, ...]:
-    """What is the matter with the session as a whole."""
-    found = []
-    stated, standing = session.notes.mass_kg, session.standing_kg
+def _problems(session: SurveyedSession, stated: float | None) -> tuple[Problem, ...]:
+    """What is the matter with the session as a whole, its person's mass stated in kg or not."""
+    found, standing = [], session.standing_kg
     if stated is None:
         stated = next((one.stated_kg for one in session.trials if one.stated_kg is not None), None)
     if stated is not None and standing is not None and abs(stated / standing - 1.0) > MASS_SHARE:

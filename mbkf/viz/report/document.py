@@ -11,6 +11,7 @@ from mbkf.errors import FileFormatError
 from mbkf.io.atomic import replacing
 from mbkf.io.plain_data import parse_json
 from mbkf.io.results import Reconstruction
+from mbkf.io.results_folder import LABELS_FILE
 from mbkf.io.session import FootEvent
 from mbkf.pipelines.gait.cycles import find_gait
 from mbkf.pipelines.results.progression import LABORATORY
@@ -106,9 +107,9 @@ def read_labels(path: str | Path) -> dict[str, object]:
 
 
 def labels_of(folder: str | Path, trial: str) -> dict[str, object] | None:
-    """The JSON that ``mbkf label`` wrote for a trial: TRIAL.json in a result's folder or beside it, or None."""
+    """How a trial was labelled, or None: a batch's labels.json, or the TRIAL.json of ``mbkf label`` there or beside."""
     place = Path(folder)
-    for path in (place / f"{trial}.json", place.absolute().parent / f"{trial}.json"):
+    for path in (place / LABELS_FILE, place / f"{trial}.json", place.absolute().parent / f"{trial}.json"):
         if path.is_file():
             try:
                 return read_labels(path)

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from mbkf.io.session import SESSION_FILE, SessionNotes, TrialKind, TrialNotes, write_session
+from mbkf.pipelines.survey.problems import Problem
 from mbkf.pipelines.survey.session import survey_session
 from mbkf.pipelines.survey.trial import survey_trial
 from tests.studies import study, walk_folder
@@ -40,6 +41,22 @@ def test_what_is_stated_counts(folder):
     assert session.kind(session.trials[2]) == TrialKind.RUN
     told = [problem.what for problem in session.problems]
     assert told == ["the mass is stated as 50.0 kg, the plates bear 70.0 kg", "no standing trial"]
+
+
+def test_what_is_stated_above_a_session_counts(folder):
+    doubtful = Problem("unknown_set")
+
+    def survey(path, forces):
+        return replace(survey_trial(path, forces), problems=(doubtful,), standing_kg=70.0)
+
+    assert doubtful in survey_session(folder, survey, folder.parent).trials[1].problems
+    write_session(SessionNotes(protocol="plug_in_gait", mass_kg=50.0), folder.parent / SESSION_FILE)
+    session = survey_session(folder, survey, folder.parent)
+    assert doubtful not in session.trials[1].problems
+    assert [problem.key for problem in session.problems] == ["mass"]
+    assert doubtful in survey_session(folder, survey).trials[1].problems, (
+        "a session by itself knows of nothing above"
+    )
 
 
 def test_a_session_without_a_trial_is_told(tmp_path):
