@@ -126,6 +126,9 @@ class Scene:
             "velocity_sd": 0.1 * movement,
             "acceleration_sd": 10.0 * movement,
             "residual_sd": np.repeat([10.0, 5.0], 3),
+            "bias_rad_s": np.zeros((len(self.order[2]), 3)),
+            "bias_sd_rad_s": np.full((len(self.order[2]), 3), 0.01),
+            "turn_sd_rad": np.full((len(self.order[2]), 3), 0.1),
         }
 
     def arguments(self, kind):

@@ -27,6 +27,9 @@ from tests.motions import worst
 BLOCKS = block_classes()
 each_block = pytest.mark.parametrize("name", BLOCKS)
 
+PER_INSTRUMENT = {"WornSensors": "tests/sensors/test_worn_sensors.py"}
+"""Blocks with states for each instrument, in the instruments' order, and where that order is tested."""
+
 
 def cases(name):
     """What the block has been shown wherever it speaks."""
@@ -65,7 +68,7 @@ def test_a_frame_without_readings_says_nothing_of_readings(name):
         found.block.remember(found.state, at, found.decision, found.memory)
 
 
-@each_block
+@pytest.mark.parametrize("name", [name for name in BLOCKS if name not in PER_INSTRUMENT])
 def test_the_order_of_instruments_changes_nothing(name):
     for situation in SITUATIONS:
         one, other = (shown(BLOCKS[name], situation, seed) for seed in (None, 1))

@@ -1,4 +1,4 @@
-"""`mbkf imu`: orientation, tuning, joint angles, virtual sensors and stride length from inertial sensors."""
+"""`mbkf imu`: orientation, tuning, joint angles, motion, virtual sensors and strides from inertial sensors."""
 
 from __future__ import annotations
 
@@ -8,9 +8,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from mbkf.conventions import Array
     from mbkf.io.imu import ImuReadings
+    from mbkf.model.human import HumanModel
 
-SUBCOMMANDS = ("orient", "tune", "synth", "angles", "stride")
+SUBCOMMANDS = ("orient", "tune", "synth", "angles", "motion", "stride")
 """Each is the module ``mbkf.cli.imu_<name>``."""
 
 _EPILOG = """\
@@ -27,7 +29,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the group to the command line."""
     parser = subparsers.add_parser(
         "imu",
-        help="inertial sensors: orientation, tuning, joint angles, virtual sensors, stride length",
+        help="inertial sensors: orientation, tuning, joint angles, motion, virtual sensors, stride length",
         description="Work with inertial sensors.",
         epilog=_EPILOG,
     )
@@ -52,6 +54,48 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--rate", type=float, metavar="HZ", help="sample rate of a file that does not state it"
     )
+
+
+def add_standing_options(parser: argparse.ArgumentParser) -> None:
+    """Options of commands that calibrate sensors on a person who stands."""
+    parser.add_argument(
+        "--standing", metavar="T0:T1|FILE", help="when the person stands, s, or a recording of it"
+    )
+    parser.add_argument(
+        "--posture", metavar="MOTION.h5", help="the posture while standing (default: the neutral one)"
+    )
+
+
+def standing_told(args: argparse.Namespace) -> tuple[float, float] | tuple[ImuReadings, ...] | None:
+    """A time window, a recording, or nothing."""
+    from pathlib import Path
+
+    from mbkf.errors import InvalidInput
+
+    if args.standing is None:
+        return None
+    if Path(args.standing).exists():
+        return read([args.standing], args)
+    first, _, last = args.standing.partition(":")
+    try:
+        window = float(first), float(last)
+    except ValueError:
+        window = (1.0, 0.0)
+    if not window[0] < window[1]:
+        raise InvalidInput(f"--standing '{args.standing}': write START:END in s, or name a recording")
+    return window
+
+
+def posture_told(path: str, model: HumanModel) -> Array:
+    """(nq,) configuration in the middle of a standing motion."""
+    from mbkf.errors import InvalidInput
+    from mbkf.pipelines.imu.synth import read_motion
+
+    motion = read_motion(path)
+    if motion.model.nq != model.nq:
+        raise InvalidInput(f"{path}: another body; reconstruct the posture with this subject")
+    middle: Array = motion.q[len(motion.q) // 2]
+    return middle
 
 
 def read(paths: Sequence[str], args: argparse.Namespace) -> tuple[ImuReadings, ...]:

@@ -8,9 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from mbkf.conventions import Array
-    from mbkf.io.imu import ImuReadings
-    from mbkf.model.human import HumanModel
     from mbkf.pipelines.imu.angles import ImuAngles
 
 _EPILOG = """\
@@ -30,7 +27,7 @@ Writes angles.mot (degrees), mounts.toml (how each sensor sits on its segment) a
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
-    from mbkf.cli.imu import add_reading_options
+    from mbkf.cli.imu import add_reading_options, add_standing_options
 
     parser = subparsers.add_parser(
         "angles",
@@ -40,12 +37,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("files", metavar="FILE", nargs="+", help="inertial readings of the trial")
     add_reading_options(parser)
-    parser.add_argument(
-        "--standing", metavar="T0:T1|FILE", help="when the person stands, s, or a recording of it"
-    )
-    parser.add_argument(
-        "--posture", metavar="MOTION.h5", help="the posture while standing (default: the neutral one)"
-    )
+    add_standing_options(parser)
     parser.add_argument(
         "--subject", metavar="SUBJECT.toml", help="the scaled person (default: the reference body)"
     )
@@ -71,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         MbkfError: An input is unusable.
     """
-    from mbkf.cli.imu import read
+    from mbkf.cli.imu import posture_told, read, standing_told
     from mbkf.cli.progress import stages
     from mbkf.errors import UnknownName
     from mbkf.imu.orientation import OrientSettings
@@ -96,7 +88,8 @@ def run(args: argparse.Namespace) -> int:
         args.from_file,
         not args.free_headings,
     )
-    standing, posture = _standing(args), None if args.posture is None else _posture(args.posture, model)
+    standing = standing_told(args)
+    posture = None if args.posture is None else posture_told(args.posture, model)
     with stages() as report:
         found = imu_angles(
             chosen, model, standing=standing, posture=posture, settings=settings, progress=report
@@ -105,39 +98,6 @@ def run(args: argparse.Namespace) -> int:
     _print(found)
     print(folder)
     return 0
-
-
-def _standing(args: argparse.Namespace) -> tuple[float, float] | tuple[ImuReadings, ...] | None:
-    """A time window, a recording, or nothing."""
-    from pathlib import Path
-
-    from mbkf.cli.imu import read
-    from mbkf.errors import InvalidInput
-
-    if args.standing is None:
-        return None
-    if Path(args.standing).exists():
-        return read([args.standing], args)
-    first, _, last = args.standing.partition(":")
-    try:
-        window = float(first), float(last)
-    except ValueError:
-        window = (1.0, 0.0)
-    if not window[0] < window[1]:
-        raise InvalidInput(f"--standing '{args.standing}': write START:END in s, or name a recording")
-    return window
-
-
-def _posture(path: str, model: HumanModel) -> Array:
-    """(nq,) configuration in the middle of a standing motion."""
-    from mbkf.errors import InvalidInput
-    from mbkf.pipelines.imu.synth import read_motion
-
-    motion = read_motion(path)
-    if motion.model.nq != model.nq:
-        raise InvalidInput(f"{path}: another body; reconstruct the posture with this subject")
-    middle: Array = motion.q[len(motion.q) // 2]
-    return middle
 
 
 def _write(found: ImuAngles, folder: Path, args: argparse.Namespace) -> None:

@@ -195,11 +195,23 @@ class BodyErrors:
         acceleration += (turned @ velocity - velocity) / TURN_S
         loads = np.nan_to_num(wrenches).ravel()
         balance = self._balance.torques(q, v, a, loads)
-        by_factor = np.array([one.tau(q, v, a, loads) - balance.tau for one in self._varied]).T / FACTOR_STEP
         torque = balance.by_q @ here + balance.by_v @ velocity + balance.by_a @ acceleration
-        torque += by_factor @ self._factors
+        torque += self._own_torques(q, v, a, loads, balance)
         wrench = self._unread(balance, torque[:ROOT], loads, contact)
         return BodyErrorRoots(here, velocity, torque + balance.by_wrench @ wrench, wrench)
+
+    def _own_torques(self, q: Array, v: Array, a: Array, loads: Array, balance: JointTorques) -> Array:
+        """(nv, r) of the generalised forces by the factors themselves, at a motion that is known.
+
+        Args:
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+            a: (nv,) acceleration.
+            loads: (12,) the feet's wrenches.
+            balance: The equations at them.
+        """
+        by_factor = np.array([one.tau(q, v, a, loads) - balance.tau for one in self._varied]).T / FACTOR_STEP
+        return np.asarray(by_factor @ self._factors)
 
     def _unread(
         self, balance: JointTorques, residual: Array, loads: Array, contact: tuple[int, int] | None

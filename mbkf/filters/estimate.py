@@ -93,6 +93,7 @@ class Posterior(NamedTuple):
             (:mod:`mbkf.filters.person`).
         plate_noise: What is known of the noise of the plates' forces, N; None where the filter does not ask, or at a
             start.
+        placed: Whether instruments show at once where the body is; without cameras later frames may move it far.
     """
 
     q: Array
@@ -111,6 +112,7 @@ class Posterior(NamedTuple):
     plate_noise: WhiteNoise | None = None
     lost: bool = False
     uncorrected: bool = False
+    placed: bool = True
 
 
 class Prediction(NamedTuple):

@@ -48,7 +48,7 @@ def departed(causal: Posterior, corrected: Posterior, model: Body) -> bool:
         corrected: The same in the light of later frames.
         model: The body.
     """
-    if not causal.tracked or causal.started:
+    if not (causal.tracked and causal.placed) or causal.started:
         return False
     places = (model.placements(one.q)[1] for one in (causal, corrected))
     moved = np.linalg.norm(np.subtract(*places), axis=1)

@@ -245,6 +245,7 @@ def assemble(
     bears = bearing(supports.wrench)
     known = torques_known(model, clinical.names, clinical.moments_sd, ground.foot_source, bears)
     known &= torques_possible(tau, ROOT_DOFS, model.mass_kg)
+    told_of_track = _warnings(result, names, unobservable, "marker" if measured.names else "sensor")
     return Reconstruction(
         trial=Path(capture.path).stem or "capture", protocol=subject.protocol, filter=settings.filter,
         smoothed=result.smoothed, uncorrected=int(result.uncorrected.sum()),
@@ -277,7 +278,7 @@ def assemble(
         marker_nis=result.marker_nis, marker_spread_m=result.marker_spread_m,
         covariance=result.covariance,
         unobserved_dofs=tuple(name for name, without in zip(names, unobservable, strict=True) if without),
-        warnings=(*capture.notes, *inputs.remarks, *ground.warnings, *_warnings(result, names, unobservable)),
+        warnings=(*capture.notes, *inputs.remarks, *ground.warnings, *told_of_track),
         settings=recorded(settings), file_axes=capture.axes, file_axes_source=capture.axes_source.value,
     )  # fmt: skip
 
@@ -319,12 +320,20 @@ def inferred_set(subject: Subject) -> tuple[str, ...]:
     return (str(inferred["told"]),) if isinstance(inferred, dict) else ()
 
 
-def _warnings(result: Track, names: tuple[str, ...], unobservable: BoolArray) -> list[str]:
+def _warnings(result: Track, names: tuple[str, ...], unobservable: BoolArray, instrument: str) -> list[str]:
+    """Remarks on a trial.
+
+    Args:
+        result: The track.
+        names: (nv,) of the dofs.
+        unobservable: (nv,) those that no instrument tells of.
+        instrument: What tells of the others.
+    """
     warnings = []
     if unobservable.any():
         listed = ", ".join(name for name, without in zip(names, unobservable, strict=True) if without)
         warnings.append(
-            f"{int(unobservable.sum())} dofs move no marker and keep the neutral posture: {listed}"
+            f"{int(unobservable.sum())} dofs move no {instrument} and keep the neutral posture: {listed}"
         )
     lost = int((~result.tracked).sum())
     if lost:

@@ -15,19 +15,18 @@ from mbkf.imu.heading import HeadingSettings, held_headings, turned
 from mbkf.imu.orientation import OrientSettings, orientations
 from mbkf.imu.orientation_ekf import OrientationSettings
 from mbkf.imu.placement import EIGHT, typical_mounts, usual_place
+from mbkf.imu.segment_course import configurations
 from mbkf.imu.segments import segment_of
 from mbkf.imu.sensor_to_segment import alignments, facing, mean_orientation
 from mbkf.io.imu import ImuReadings
 from mbkf.io.imu_mount import ImuMount
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
-from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.imu.orient import prepared
+from mbkf.pipelines.imu.standing import root_first, standing_window
 
 _DOUBT_RAD, _DOUBT_SHARE, _DOUBT_EVERY = np.radians(15.0), 0.02, 5
-STILL_RAD_S, STILL_S = 0.15, 1.0
-"""Standing: no sensor turns faster (root mean square) for so long."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +98,7 @@ def imu_angles(
     if not chosen.from_file:
         sensors, warnings = prepared(readings)
     names = [segment_of(one.name, body.joints) for one in sensors]
-    order = _order(names, body.roles.root)
+    order = root_first(names, body.roles.root)
     sensors, segments = tuple(sensors[k] for k in order), [names[k] for k in order]
     clinical = ClinicalAngles(body)
     with single_threaded():
@@ -109,7 +108,7 @@ def imu_angles(
             sensors = tuple(_unbiased(one, rest) for one, rest in zip(sensors, still, strict=True))
         time_s = sensors[0].time_s
         q, common = _orientations(sensors, chosen, time_s, progress)
-        window = None if still is not None else _window(sensors, time_s, standing)
+        window = None if still is not None else standing_window(sensors, time_s, standing)
         upright = mean_orientation(q[window]) if window is not None else _attitudes(still or ())
         rest = _posture(body, posture, segments)
         headings = _headings(body, segments, q, time_s, upright, rest, common)
@@ -119,7 +118,7 @@ def imu_angles(
         if chosen.hold_headings and len(segments) > 1:
             dt = 1.0 / sensors[0].rate_hz
             course = turned(course, held_headings(segments, course, dt, clinical.joints, chosen.heading))
-        motion = _configurations(body, segments, course)
+        motion = configurations(body, segments, course)
     values = clinical.angles(motion)
     wanted = [k for k, name in enumerate(clinical.names) if _determined(clinical, name, segments)]
     mounts = tuple(
@@ -129,20 +128,6 @@ def imu_angles(
     found = tuple(clinical.names[k] for k in wanted)
     remarks = (*warnings, *_doubts(body, segments, motion, common))
     return ImuAngles(time_s, motion, found, values[:, wanted], mounts, remarks)
-
-
-def _order(names: Sequence[str], root: str) -> list[int]:
-    """The root segment, usually the pelvis, first.
-
-    Raises:
-        InvalidInput: There is none, or a segment has two sensors.
-    """
-    if root not in names:
-        raise InvalidInput(f"joint angles need a sensor on the {root}; there are {', '.join(names)}")
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise InvalidInput(f"two sensors sit on {twice[0]}; keep one of them with --sensor")
-    return sorted(range(len(names)), key=lambda k: names[k] != root)
 
 
 def _standing_sensors(standing: Sequence[object], names: Sequence[str]) -> list[ImuReadings]:
@@ -198,29 +183,6 @@ def _at(times: Array, course: Array | None, wanted: Array) -> Array:
     return between(np.clip(wanted, times[there][0], times[there][-1])).as_quat()
 
 
-def _window(sensors: Sequence[ImuReadings], time_s: Array, standing: object) -> slice:
-    """Samples of standing."""
-    if isinstance(standing, tuple):
-        first, last = (float(one) for one in standing)
-        chosen = np.flatnonzero((time_s >= first) & (time_s <= last))
-        if not len(chosen):
-            raise InvalidInput(f"there are no readings from {first:g} to {last:g} s; correct --standing")
-        return slice(int(chosen[0]), int(chosen[-1]) + 1)
-    width = max(2, round(STILL_S * sensors[0].rate_hz))
-    worst = np.zeros(len(time_s))
-    for one in sensors:
-        rates = np.sqrt((np.nan_to_num(one.angular_velocity_rad_s) ** 2).sum(axis=1))
-        worst = np.maximum(worst, np.interp(time_s, one.time_s, rates))
-    if len(worst) >= width:
-        mean = np.convolve(worst**2, np.ones(width) / width, mode="valid")
-        calm = np.flatnonzero(mean < STILL_RAD_S**2)
-        if len(calm):
-            return slice(int(calm[0]), int(calm[0]) + width)
-    raise InvalidInput(
-        "the person never stands still for a second; stand at the start, or give the time with --standing T0:T1"
-    )
-
-
 def _posture(body: HumanModel, posture: Array | None, segments: Sequence[str]) -> Array:
     """(S, 4) segment → world while standing, the pelvis facing x."""
     q = body.neutral() if posture is None else posture
@@ -268,27 +230,6 @@ def _by_custom(body: HumanModel, segments: Sequence[str], upright: Array, rest: 
             off = multiply(upright[k], conjugate(multiply(rest[k], mounts[name])))
             found[k] = 2.0 * np.arctan2(off[2], off[3])
     return found
-
-
-def _configurations(body: HumanModel, segments: Sequence[str], course: Array) -> Array:
-    """(T, nq) from orientations of segments (T, S, 4); a joint turns as the nearest sensors above and below it."""
-    motion = np.tile(body.neutral(), (len(course), 1))
-    parents = {segment.name: segment.parent for segment in body.description.segments}
-    for k, name in enumerate(segments):
-        joint = body.joint(name)
-        above = parents[name]
-        while above != "world" and above not in segments:
-            above = parents[above]
-        turn = course[:, k]
-        if above != "world":
-            turn = multiply(conjugate(course[:, segments.index(above)]), turn)
-        turn = np.where(turn[:, 3:] < 0.0, -turn, turn)
-        if joint.kind in ("free", "spherical"):
-            motion[:, joint.q.stop - 4 : joint.q.stop] = turn
-        elif joint.kind == "hinge":
-            R = quaternion_matrices(turn)
-            motion[:, joint.q.start] = np.arctan2(R[:, 0, 2], R[:, 0, 0])
-    return motion
 
 
 def _doubts(body: HumanModel, segments: Sequence[str], motion: Array, common: bool) -> list[str]:

@@ -1,0 +1,337 @@
+"""The body's motion, contacts and torques from inertial sensors alone: no cameras, plates or magnetometers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from functools import partial
+
+import numpy as np
+
+from mbkf.conventions import Array, StageCallback
+from mbkf.errors import InvalidInput
+from mbkf.filters.dynamic.worn_tracking import FirstPosture, WornTracking
+from mbkf.filters.estimate import Recording
+from mbkf.filters.fixed_lag import SmoothingSettings
+from mbkf.filters.mount_errors import MountErrors
+from mbkf.filters.tracking import Track, track
+from mbkf.imu.frames import conjugate, multiply, rotate
+from mbkf.imu.heading import HeadingSettings, held_headings, turned
+from mbkf.imu.orientation import OrientSettings, orientations
+from mbkf.imu.segment_course import configurations
+from mbkf.imu.segments import segment_of
+from mbkf.imu.worn_mounts import MountSettings, Worn, worn_mounts
+from mbkf.io.imu import ImuReadings
+from mbkf.io.imu_mount import ImuMount
+from mbkf.io.records import Capture, MarkerTrajectories
+from mbkf.io.results import Reconstruction
+from mbkf.io.subject import Subject
+from mbkf.model.clinical import ClinicalAngles
+from mbkf.model.human import HumanModel
+from mbkf.numerics.cardan import quaternion_matrices
+from mbkf.numerics.threads import single_threaded
+from mbkf.pipelines.imu.exchanged import Exchange, exchanged
+from mbkf.pipelines.imu.fields import StrangeField, strange_fields
+from mbkf.pipelines.imu.motion_inputs import (
+    MotionSettings,
+    frame_times,
+    motion_inputs,
+    motion_recording,
+    worn_filter,
+)
+from mbkf.pipelines.imu.motion_start import StartSettings, first_posture
+from mbkf.pipelines.imu.orient import prepared
+from mbkf.pipelines.imu.standing import root_first, standing_window
+from mbkf.pipelines.reconstruct import assemble
+from mbkf.pipelines.reconstruct_settings import ReconstructSettings
+
+GUESS_S = 20.0
+"""A start in motion is guessed from orientations over so long."""
+
+FIELDS_EVERY = 5
+"""Every so many frames magnetic fields are compared."""
+
+ANY_HEADING = HeadingSettings(start_sd_rad=3.0)
+"""Without magnetometers each sensor's heading is arbitrary."""
+
+
+@dataclass(frozen=True)
+class InertialMotionSettings:
+    """How a motion is found from inertial sensors alone.
+
+    Attributes:
+        filter: Noise of the sensors, how still feet stand, how exactly Newton's law holds.
+        mounts: How well mounts are known from standing and swinging.
+        start: How well the first posture is known.
+        orient: Filter of the orientations that a start in motion is guessed from; magnetometers are left out.
+        smooth: Whether later frames correct earlier ones.
+        smoothing: How far they do. Between two steps nothing stands still: it looks further than with markers.
+    """
+
+    filter: MotionSettings = field(default_factory=MotionSettings)
+    mounts: MountSettings = field(default_factory=MountSettings)
+    start: StartSettings = field(default_factory=StartSettings)
+    orient: OrientSettings = field(default_factory=lambda: OrientSettings("smooth", magnetometer=False))
+    smooth: bool = True
+    smoothing: SmoothingSettings = field(default_factory=lambda: SmoothingSettings(2.0, 1.0))
+
+
+@dataclass(frozen=True)
+class InertialMotion:
+    """What inertial sensors tell of a body.
+
+    Attributes:
+        result: Motion, torques and reactions, with their standard deviations.
+        mounts: How each sensor sits on its segment, as calibrated.
+        gyro_bias_rad_s: (S, 3) gyroscopes' readings at rest.
+        sensors: Names of the sensors.
+        exchange: Two sensors that seem to be exchanged, or None.
+        strange_fields: Magnetometers that do not see what the others see.
+    """
+
+    result: Reconstruction
+    mounts: tuple[ImuMount, ...]
+    gyro_bias_rad_s: Array
+    sensors: tuple[str, ...]
+    exchange: Exchange | None
+    strange_fields: tuple[StrangeField, ...]
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """Sensors in order, with their segments, what they read at rest, and the frames.
+
+    Attributes:
+        model: The body.
+        sensors, segments: The sensors, the root's first, and the segments that carry them.
+        still: Their readings while the person stands.
+        posture, posture_known: (nq,) posture then, and whether it was measured.
+        from_standing: Whether the frames begin there.
+        times_s: (T,) the frames.
+        settings: Of the whole.
+    """
+
+    model: HumanModel
+    sensors: tuple[ImuReadings, ...]
+    segments: tuple[str, ...]
+    still: tuple[ImuReadings, ...]
+    posture: Array
+    posture_known: bool
+    from_standing: bool
+    times_s: Array
+    settings: InertialMotionSettings
+
+
+def inertial_motion(
+    readings: Sequence[ImuReadings],
+    subject: Subject,
+    *,
+    standing: tuple[float, float] | Sequence[ImuReadings] | None = None,
+    posture: Array | None = None,
+    trial: str = "motion",
+    settings: InertialMotionSettings | None = None,
+    progress: StageCallback | None = None,
+) -> InertialMotion:
+    """Motion, reactions and torques of a body from inertial sensors alone.
+
+    The heading in which the person stands, or begins, is the laboratory's x axis.
+
+    Args:
+        readings: Sensors named after their segments; a pelvis sensor is needed. Magnetometers are not used.
+        subject: The scaled person.
+        standing: Times of standing still in the recording, s, or a recording of it; by default the first second in
+            which no sensor turns. The motion begins there, unless it is a recording of its own.
+        posture: (nq,) the posture while standing; None for the neutral one.
+        trial: Name of the result.
+        settings: Noise and priors.
+        progress: Called with the stage, frames done and frames in all.
+
+    Raises:
+        InvalidInput: Readings are not plausible, there is no pelvis sensor, or the person never stands still.
+        UnknownName: A sensor's segment is not known.
+        NotObservable: The sensors' readings are no person's.
+    """
+    chosen, model = settings or InertialMotionSettings(), HumanModel.of(subject)
+    report = progress or (lambda *_: None)
+    sensors, warnings = prepared(readings)
+    names = [segment_of(one.name, model.joints) for one in sensors]
+    order = root_first(names, model.roles.root)
+    sensors, segments = tuple(sensors[k] for k in order), tuple(names[k] for k in order)
+    with single_threaded():
+        plan = _planned(model, sensors, segments, standing, posture, chosen)
+        found = exchanged(model, segments, lambda names: _filter(_renamed(plan, names)))
+        worn = _worn(plan)
+        filter, recording = _filter(plan, worn)
+        tracked = track(
+            filter,
+            recording,
+            smoothing=chosen.smoothing if chosen.smooth else None,
+            body=MountErrors(model, segments, worn.turn_sd_rad),
+            progress=partial(report, "Filtering"),
+        )
+        notes = (*warnings, *worn.remarks, *([] if found is None else [found.told]))
+        strange = strange_fields(*_magnetometers(plan, worn, tracked))
+        result = _assembled(plan, subject, trial, (*notes, *(one.told for one in strange)), tracked)
+    return InertialMotion(
+        result, worn.mounts, worn.bias_rad_s, tuple(one.name for one in sensors), found, strange
+    )
+
+
+def _renamed(plan: _Plan, names: Mapping[str, str]) -> _Plan:
+    """The plan with sensors on other segments."""
+    return replace(plan, segments=tuple(names.get(name, name) for name in plan.segments))
+
+
+def _worn(plan: _Plan) -> Worn:
+    """How the sensors sit."""
+    known = plan.model, plan.segments, plan.still, plan.sensors, plan.posture, plan.posture_known
+    return worn_mounts(*known, plan.settings.mounts)
+
+
+def _filter(plan: _Plan, worn: Worn | None = None) -> tuple[WornTracking, Recording]:
+    """The filter and its readings.
+
+    Args:
+        plan: Sensors and frames.
+        worn: How the sensors sit; None where it is to be found.
+    """
+    sensors, s = worn or _worn(plan), plan.settings
+    inputs = motion_inputs(plan.model, _dt(plan), plan.segments)
+    bias_sd = np.full(sensors.bias_rad_s.shape, s.filter.bias_sd_rad_s)
+    standing_q = plan.posture if plan.posture_known else None
+    filter = worn_filter(inputs, sensors, bias_sd, _first(plan, sensors), s.filter, standing_q)
+    return filter, motion_recording(plan.sensors, plan.segments, plan.model, plan.times_s, s.filter)
+
+
+def _magnetometers(plan: _Plan, worn: Worn, tracked: Track) -> tuple[list[ImuReadings], list[Array]]:
+    """Sensors with their fields at the frames, and how each is turned then.
+
+    Args:
+        plan: Sensors and frames.
+        worn: How the sensors sit.
+        tracked: The motion.
+    """
+    thinned = slice(None, None, FIELDS_EVERY)
+    times, rotations = (
+        plan.times_s[thinned],
+        np.array([plan.model.placements(q)[0] for q in tracked.q[thinned]]),
+    )
+    readings, turns = [], []
+    for one, mount in zip(plan.sensors, worn.mounts, strict=True):
+        if one.magnetic_field is None:
+            continue
+        field = np.column_stack(
+            [np.interp(times, one.time_s, axis) for axis in np.transpose(one.magnetic_field)]
+        )
+        force, rate = np.zeros((2, len(times), 3))
+        readings.append(ImuReadings(one.name, times, force, rate, field, one.rate_hz))
+        joint = plan.model.joint(mount.segment).joint_id
+        turns.append(rotations[:, joint] @ quaternion_matrices(mount.rotation))
+    return readings, turns
+
+
+def _planned(
+    model: HumanModel,
+    sensors: tuple[ImuReadings, ...],
+    segments: tuple[str, ...],
+    standing: tuple[float, float] | Sequence[ImuReadings] | None,
+    posture: Array | None,
+    settings: InertialMotionSettings,
+) -> _Plan:
+    """Where the person stands, and the frames from there on.
+
+    Args:
+        model: The body.
+        sensors: The sensors.
+        segments: Segments that carry them.
+        standing: As for :func:`inertial_motion`.
+        posture: (nq,) or None.
+        settings: Of the whole.
+    """
+    at_rest, known = (model.neutral(), False) if posture is None else (posture, True)
+    times = frame_times(sensors[0])
+    if isinstance(standing, Sequence) and standing and isinstance(standing[0], ImuReadings):
+        by_name = {one.name: one for one in standing if isinstance(one, ImuReadings)}
+        missing = [one.name for one in sensors if one.name not in by_name]
+        if missing:
+            raise InvalidInput(f"the standing recording lacks sensor {missing[0]}")
+        still = tuple(by_name[one.name] for one in sensors)
+        return _Plan(model, sensors, segments, still, at_rest, known, False, times, settings)
+    window = standing_window(sensors, sensors[0].time_s, standing)
+    first, last = (float(sensors[0].time_s[k]) for k in (window.start, window.stop - 1))
+    still = tuple(_between(one, first, last) for one in sensors)
+    return _Plan(model, sensors, segments, still, at_rest, known, True, times[times >= first], settings)
+
+
+def _between(one: ImuReadings, first_s: float, last_s: float) -> ImuReadings:
+    """A sensor's readings between two times."""
+    kept = (one.time_s >= first_s - 1e-9) & (one.time_s <= last_s + 1e-9)
+    return ImuReadings(
+        one.name,
+        one.time_s[kept],
+        one.specific_force_mps2[kept],
+        one.angular_velocity_rad_s[kept],
+        None if one.magnetic_field is None else one.magnetic_field[kept],
+        one.rate_hz,
+        one.frame,
+    )
+
+
+def _dt(plan: _Plan) -> float:
+    return float(plan.times_s[1] - plan.times_s[0])
+
+
+def _first(plan: _Plan, worn: Worn) -> FirstPosture:
+    """The first posture: that of standing, or what the sensors' orientations tell of a start in motion."""
+    dt, s = _dt(plan), plan.settings
+    if plan.from_standing:
+        return first_posture(plan.model, plan.segments, np.tile(plan.posture, (2, 1)), dt, True, s.start)
+    begin = float(plan.times_s[0])
+    early = [
+        replace(part, angular_velocity_rad_s=part.angular_velocity_rad_s - bias)
+        for part, bias in (
+            (_between(one, begin, begin + GUESS_S), bias)
+            for one, bias in zip(plan.sensors, worn.bias_rad_s, strict=True)
+        )
+    ]
+    found = orientations(early, frame="NWU", settings=s.orient)
+    steps = [int(np.searchsorted(early[0].time_s, begin + k * dt - 1e-9)) for k in (0, 1)]
+    q = np.stack([one.quaternion for one in found], axis=1)
+    course = multiply(q, conjugate(np.array([mount.rotation for mount in worn.mounts])))
+    held = held_headings(
+        plan.segments, course, 1.0 / early[0].rate_hz, ClinicalAngles(plan.model).joints, ANY_HEADING
+    )
+    side = rotate(course[0, 0], np.array([0.0, 1.0, 0.0]))
+    forward = float(np.arctan2(-side[0], side[1]))
+    course = turned(course, held - forward)
+    guess = configurations(plan.model, plan.segments, course[steps])
+    return first_posture(plan.model, plan.segments, guess, dt, False, s.start)
+
+
+def _assembled(
+    plan: _Plan, subject: Subject, trial: str, notes: Sequence[str], tracked: Track
+) -> Reconstruction:
+    """The result as that of any trial, without markers and plates.
+
+    Args:
+        plan: Sensors and frames.
+        subject: The person.
+        trial: Name of the result.
+        notes: What is to be told.
+        tracked: The motion.
+    """
+    frames, dt = len(plan.times_s), _dt(plan)
+    none = MarkerTrajectories((), np.zeros((frames, 0, 3)), 1.0 / dt, float(plan.times_s[0]))
+    settings = ReconstructSettings(smooth=plan.settings.smooth, checks=False)
+    inputs = motion_inputs(plan.model, dt, plan.segments)
+    found = assemble(
+        Capture(trial, none, notes=tuple(notes)),
+        subject,
+        settings,
+        none,
+        np.zeros((frames, 0), bool),
+        inputs,
+        tracked,
+    )
+    told = {**found.settings, "inertial": asdict(plan.settings)}
+    return replace(found, protocol="inertial sensors", settings=told)

@@ -1,0 +1,60 @@
+"""When a person with sensors stands still, and which sensor comes first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.errors import InvalidInput
+from mbkf.io.imu import ImuReadings
+
+STILL_RAD_S, STILL_S = 0.15, 1.0
+"""Standing: no sensor turns faster (root mean square) for so long."""
+
+
+def root_first(names: Sequence[str], root: str) -> list[int]:
+    """The root segment, usually the pelvis, first.
+
+    Raises:
+        InvalidInput: There is none, or a segment has two sensors.
+    """
+    if root not in names:
+        raise InvalidInput(f"joint angles need a sensor on the {root}; there are {', '.join(names)}")
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise InvalidInput(f"two sensors sit on {twice[0]}; keep one of them with --sensor")
+    return sorted(range(len(names)), key=lambda k: names[k] != root)
+
+
+def standing_window(sensors: Sequence[ImuReadings], time_s: Array, standing: object = None) -> slice:
+    """Samples of standing.
+
+    Args:
+        sensors: The sensors' readings.
+        time_s: (T,) the samples, s.
+        standing: Its first and last time, s; None for the first second in which no sensor turns.
+
+    Raises:
+        InvalidInput: There are no readings then, or the person never stands still.
+    """
+    if isinstance(standing, tuple):
+        first, last = (float(one) for one in standing)
+        chosen = np.flatnonzero((time_s >= first) & (time_s <= last))
+        if not len(chosen):
+            raise InvalidInput(f"there are no readings from {first:g} to {last:g} s; correct --standing")
+        return slice(int(chosen[0]), int(chosen[-1]) + 1)
+    width = max(2, round(STILL_S * sensors[0].rate_hz))
+    worst = np.zeros(len(time_s))
+    for one in sensors:
+        rates = np.sqrt((np.nan_to_num(one.angular_velocity_rad_s) ** 2).sum(axis=1))
+        worst = np.maximum(worst, np.interp(time_s, one.time_s, rates))
+    if len(worst) >= width:
+        mean = np.convolve(worst**2, np.ones(width) / width, mode="valid")
+        calm = np.flatnonzero(mean < STILL_RAD_S**2)
+        if len(calm):
+            return slice(int(calm[0]), int(calm[0]) + width)
+    raise InvalidInput(
+        "the person never stands still for a second; stand at the start, or give the time with --standing T0:T1"
+    )

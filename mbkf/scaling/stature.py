@@ -1,0 +1,33 @@
+"""A person of whom only mass and height are known: the reference body, larger or smaller as a whole."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.errors import InvalidInput
+from mbkf.io.subject import Subject
+from mbkf.model.body_file import load_body
+
+HEIGHT_M, MASS_KG = (0.5, 2.5), (5.0, 400.0)
+"""No one is shorter or taller, lighter or heavier."""
+
+
+def person_of_stature(mass_kg: float, height_m: float, body: str = "human18") -> Subject:
+    """A person without markers, whose segments are those of the reference body, scaled by the height.
+
+    Args:
+        mass_kg: Body mass.
+        height_m: Body height.
+        body: Name of the reference body.
+
+    Raises:
+        InvalidInput: Mass or height is no person's.
+        UnknownName: There is no such body.
+    """
+    for name, value, (low, high) in (("mass", mass_kg, MASS_KG), ("height", height_m, HEIGHT_M)):
+        if not (np.isfinite(value) and low <= value <= high):
+            raise InvalidInput(f"--{name} {value:g}: a person's is between {low:g} and {high:g}")
+    description = load_body(body)
+    share = height_m / description.reference_height_m
+    factors = dict.fromkeys(description.scale_factors, float(share))
+    return Subject(body, float(mass_kg), factors, (), "", float(height_m), {"stature": True})

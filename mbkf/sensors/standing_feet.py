@@ -1,0 +1,139 @@
+"""Feet that stand, as a block, for a body that no camera sees: they do not move, and their soles lie on the floor.
+
+A foot whose own sensor is at rest lies flat on the floor: neither its sole's middle nor the foot itself moves,
+
+    0 = u + r_u,  0 = ω + r_ω,  0 = z_heel + r_z,  0 = z_ball + r_z
+
+A foot that carries weight otherwise rolls over the lower end of its sole, which hardly moves: 0 = u + ρ_u, 0 = z + ρ_z.
+u and ω are told in the foot's axes, with their derivatives by the whole posture. The floor is level, at height 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import pinocchio as pin
+
+from mbkf.conventions import Array
+from mbkf.model.body import Body
+from mbkf.numerics.rotations import skew
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
+from mbkf.sensors.contact.feet import FeetOnBody
+from mbkf.sensors.contact.records import Contact
+from mbkf.sensors.contact.thresholds import SOLE_ENDS
+
+FOOT_REST = "feet at rest"
+"""Name of the readings (2,) of a frame: 1 where right or left foot's own sensor is at rest, else 0."""
+
+
+@dataclass(frozen=True)
+class StandingSettings:
+    """How still feet stand, per frame. What makes them move lasts for many frames, so that each counts for little.
+
+    Attributes:
+        standing_speed_m_s, standing_turn_rad_s: Spread of the velocity of a foot at rest, per frame.
+        standing_height_m: Spread of its heel's and ball's height.
+        rolling_speed_m_s, rolling_height_m: The same of the lower end of a sole that rolls.
+    """
+
+    standing_speed_m_s: float = 0.1
+    standing_turn_rad_s: float = 0.5
+    standing_height_m: float = 0.05
+    rolling_speed_m_s: float = 1.0
+    rolling_height_m: float = 0.1
+
+
+class StandingDecision(NamedTuple):
+    """Which feet are at rest, and which roll: 0 right, 1 left."""
+
+    at_rest: tuple[int, ...] = ()
+    rolling: tuple[int, ...] = ()
+
+
+class StandingFeet(Block[State, None, StandingDecision, None]):
+    """Feet that stand, on a state that begins with (q, v)."""
+
+    prior = True
+
+    def __init__(
+        self, model: Body, settings: StandingSettings = StandingSettings(), standing_q: Array | None = None
+    ) -> None:
+        """Makes the block.
+
+        Args:
+            model: The body.
+            settings: How still its feet stand.
+            standing_q: (nq,) a posture in which it stood, whose heels and balls touched the floor; None for soles that
+                are level as the body has them.
+        """
+        self._model, self.settings = model, settings
+        self._feet, self._still = FeetOnBody(model), np.zeros(model.nv)
+        self._data = model.pin_model.createData()
+        self._on_floor_m = np.zeros((2, SOLE_ENDS))
+        if standing_q is not None:
+            ends = np.array(self._feet.at(standing_q, self._still).soles)[:, :SOLE_ENDS, 2]
+            self._on_floor_m = ends - ends.min(axis=1, keepdims=True)
+
+    def decide(
+        self, at: OperatingPoint[State, None], frame: Frame, memory: None, notes: Notes
+    ) -> StandingDecision:
+        """By the feet's own sensors, else by what carries weight."""
+        rest = frame.readings.get(FOOT_REST)
+        at_rest = tuple(f for f in (0, 1) if rest is not None and rest[f] > 0.5)
+        contact = notes.contact
+        if contact is None:
+            return StandingDecision(at_rest)
+        loaded = [f for f in (0, 1) if contact.contacts[f] != Contact.AIR]
+        return StandingDecision(at_rest, tuple(f for f in loaded if f not in at_rest))
+
+    def linearise(self, at: OperatingPoint[State, None], decision: StandingDecision) -> list[Rows]:
+        """Rows on positions and velocities."""
+        at_rest, rolling = decision
+        if not (at_rest or rolling):
+            return []
+        s, q, v = self.settings, at.state.q, at.state.v
+        pin.computeForwardKinematicsDerivatives(self._model.pin_model, self._data, q, v, self._still)
+        soles = self._feet.at(q, self._still).soles
+        found = []
+        for foot in at_rest:
+            ends = np.array(soles[foot][:SOLE_ENDS])
+            sds = np.repeat([s.standing_speed_m_s, s.standing_turn_rad_s], 3)
+            found.append(self._still_rows(foot, ends.mean(axis=0), sds))
+            for end, height in zip(ends, self._on_floor_m[foot], strict=True):
+                found.append(self._floor_rows(q, foot, end, height, s.standing_height_m))
+        for foot in rolling:
+            ends = np.array(soles[foot][:SOLE_ENDS])
+            k = int(np.argmin(ends[:, 2] - self._on_floor_m[foot]))
+            found.append(self._still_rows(foot, ends[k], np.full(3, s.rolling_speed_m_s)))
+            found.append(self._floor_rows(q, foot, ends[k], self._on_floor_m[foot, k], s.rolling_height_m))
+        return found
+
+    def _still_rows(self, foot: int, point_m: Array, sds: Array) -> Rows:
+        """Rows of a world point of a foot that does not move, and of the foot that does not turn where six are asked.
+
+        Args:
+            foot: 0 right, 1 left.
+            point_m: (3,) the point.
+            sds: (3,) or (6,) spreads, m/s and rad/s.
+        """
+        joint = self._model.joint(self._model.roles.feet[foot]).joint_id
+        by_q, by_v = pin.getJointVelocityDerivatives(self._model.pin_model, self._data, joint, pin.LOCAL)
+        to_point = np.eye(6)
+        to_point[:3, 3:] = -skew(self._data.oMi[joint].actInv(point_m))
+        to_point = to_point[: len(sds)] / sds[:, None]
+        return Rows(np.hstack([to_point @ by_q, to_point @ by_v]), -to_point @ self._data.v[joint].vector)
+
+    def _floor_rows(self, q: Array, foot: int, point_m: Array, height_m: float, sd_m: float) -> Rows:
+        """A row of a world point of a foot that lies on the floor.
+
+        Args:
+            q: (nq,) configuration.
+            foot: 0 right, 1 left.
+            point_m: (3,) the point.
+            height_m: How high it is on the body when it touches the floor.
+            sd_m: Spread of that.
+        """
+        jacobian = self._model.segment_jacobian(q, self._model.roles.feet[foot], point_m)
+        return Rows(jacobian[2:3] / sd_m, np.array([(height_m - point_m[2]) / sd_m]))

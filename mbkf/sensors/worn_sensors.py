@@ -1,0 +1,160 @@
+"""Inertial sensors that nothing else checks, as a block: their biases and how they sit on their segments are states.
+
+    z = C(θ) (ω, f)(q, v, a) + (b, 0) + r,  r ~ N(0, diag(σ_ω² I₃, σ_f² I₃)) per sensor
+    C(θ) = R₀ᵀ Exp(−θ) R₀
+
+R₀ (sensor → segment) is the mounting as it was calibrated, θ (segment axes) how far it is turned from there, b the
+gyroscope's bias. Both are slow random walks. The joints' centres, which neighbouring sensors share, and feet that stand
+make them observable; no magnetometer is needed (M. Kok, J. D. Hol and T. B. Schön, IFAC Proceedings 47 (2014) 79–84).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from mbkf.conventions import Array
+from mbkf.numerics.cardan import quaternion_matrices
+from mbkf.numerics.rotations import skew
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+from mbkf.sensors.inertial import observed_dofs
+from mbkf.sensors.inertial_sensor import InertialSensor
+from mbkf.sensors.layout import ExtraState, Layout
+from mbkf.sensors.states import LoadedState
+
+BIASES, TURNS = "gyroscope biases", "turns of the mounts"
+"""Names of the states that the block adds, three per sensor each."""
+
+
+@dataclass(frozen=True)
+class WornSettings:
+    """Noise of sensors on skin, and how biases and mounts change.
+
+    Attributes:
+        worn_rate_sd_rad_s: How far an angular velocity is from its segment's, per component and reading. It is
+            integrated: a larger value lets the filter lag behind fast turns.
+        worn_force_sd_m_s2: The same of a specific force. Skin, impacts and the sensor's place make it err for some
+            time, not anew with each reading.
+        bias_walk: Random walk of a bias, rad/s/√s.
+        turn_walk: Random walk of a mount's turn, rad/√s: a strap that slips.
+    """
+
+    worn_rate_sd_rad_s: float = 0.01
+    worn_force_sd_m_s2: float = 5.0
+    bias_walk: float = 5e-5
+    turn_walk: float = 0.002
+
+
+class WornSensors(Block[LoadedState, None, Array | None, None]):
+    """Inertial sensors with their biases and mounts' turns, on a state that begins with (q, v, a).
+
+    Attributes:
+        sensor: The sensors on the body, as calibrated.
+        settings: Their noise.
+    """
+
+    quantities = 2
+
+    def __init__(
+        self,
+        sensor: InertialSensor,
+        bias_rad_s: Array,
+        bias_sd_rad_s: Array,
+        turn_sd_rad: Array,
+        settings: WornSettings = WornSettings(),
+    ) -> None:
+        """Makes the block.
+
+        Args:
+            sensor: The sensors on the body, as calibrated.
+            bias_rad_s: (S, 3) gyroscopes' biases at the start.
+            bias_sd_rad_s: (S, 3) how well they are known.
+            turn_sd_rad: (S, 3) how far each mount may be turned from the calibrated one, about its segment's axes.
+            settings: Noise.
+        """
+        s, count = settings, 3 * len(sensor.mounts)
+        self.sensor, self.settings = sensor, settings
+        self._states = (
+            ExtraState(BIASES, bias_rad_s.ravel(), bias_sd_rad_s.ravel(), np.full(count, s.bias_walk)),
+            ExtraState(TURNS, np.zeros(count), turn_sd_rad.ravel(), np.full(count, s.turn_walk)),
+        )
+        self._mounted = quaternion_matrices(np.array([mount.rotation for mount in sensor.mounts]))
+        deviations = np.repeat([s.worn_rate_sd_rad_s, s.worn_force_sd_m_s2], 3)
+        self._weight = np.tile(1.0 / deviations, len(sensor.mounts))
+        self._observed = observed_dofs(sensor.model, [mount.segment for mount in sensor.mounts])
+
+    def states(self) -> Sequence[ExtraState]:
+        """Biases and turns."""
+        return self._states
+
+    def bind(self, layout: Layout) -> None:
+        """Where they stand in the state."""
+        self._layout = layout
+
+    def decide(
+        self, at: OperatingPoint[LoadedState, None], frame: Frame, memory: None, notes: Notes
+    ) -> Array | None:
+        """The frame's readings (S, 6), None where none was read; joints they observe are noted."""
+        if frame.imus is None or not np.isfinite(frame.imus).any():
+            return None
+        notes.imus, notes.observed = frame.imus, True
+        notes.unobserved = notes.unmarked[~self._observed[notes.unmarked]]
+        return frame.imus
+
+    def linearise(self, at: OperatingPoint[LoadedState, None], decision: Array | None) -> Rows | None:
+        """Rows on the whole state; missing readings are left out, component by component."""
+        if decision is None:
+            return None
+        state, layout, count = at.state, self._layout, len(self.sensor.mounts)
+        nv = len(state.v)
+        bias, turn = (state.extra[layout.extra_index(name)].reshape(-1, 3) for name in (BIASES, TURNS))
+        reading = self.sensor.reading(state.q, state.v, state.a)
+        turned = self._mounted.transpose(0, 2, 1) @ _exponential(-turn) @ self._mounted
+        values = (turned[:, None] @ reading.values.reshape(count, 2, 3, 1))[..., 0]
+        motion = np.concatenate([reading.by_q, reading.by_v, reading.by_a], axis=2)
+        jacobian = np.zeros((count, 2, 3, layout.size))
+        jacobian[..., : 3 * nv] = turned[:, None] @ motion.reshape(count, 2, 3, -1)
+        by_turn = _by_turn(self._mounted, turn, values)
+        for k in range(count):
+            first = 3 * k
+            jacobian[k, 0, :, layout[BIASES].start + first : layout[BIASES].start + first + 3] = np.eye(3)
+            jacobian[k, :, :, layout[TURNS].start + first : layout[TURNS].start + first + 3] = by_turn[k]
+        values[:, 0] += bias
+        short = decision.reshape(-1) - values.reshape(-1)
+        there = np.flatnonzero(np.isfinite(short))
+        weight = self._weight[there]
+        rows = jacobian.reshape(len(short), -1)[there] * weight[:, None]
+        return Rows(rows, short[there] * weight, readings=len(there))
+
+
+def _exponential(vectors: Array) -> Array:
+    """(S, 3, 3) rotations of rotation vectors (S, 3)."""
+    return np.asarray(Rotation.from_rotvec(vectors).as_matrix())
+
+
+def _by_turn(mounted: Array, turn: Array, values: Array) -> Array:
+    """(S, 2, 3, 3) derivatives of turned readings by the turns.
+
+    With R = Exp(θ) R₀, ∂(Rᵀ x)/∂θ = Rᵀ [x]ₓ J(θ), J the left Jacobian of the exponential.
+
+    Args:
+        mounted: (S, 3, 3) R₀.
+        turn: (S, 3) θ.
+        values: (S, 2, 3) the readings Rᵀ x.
+    """
+    R = _exponential(turn) @ mounted
+    in_segment = (R[:, None] @ values[..., None])[..., 0]
+    return np.asarray(R.transpose(0, 2, 1)[:, None] @ skew(in_segment) @ _left_jacobian(turn)[:, None])
+
+
+def _left_jacobian(vectors: Array) -> Array:
+    """(S, 3, 3) left Jacobians of the exponential at rotation vectors (S, 3): Σ [θ]ₓⁿ / (n + 1)!, to rounding."""
+    crossed = skew(vectors)
+    total, term = np.tile(np.eye(3), (len(vectors), 1, 1)), np.tile(np.eye(3), (len(vectors), 1, 1))
+    for n in range(2, 20):
+        term = term @ crossed / n
+        total = total + term
+    return total

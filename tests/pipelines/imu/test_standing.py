@@ -1,0 +1,34 @@
+"""When a person stands still, and which sensor comes first."""
+
+import numpy as np
+import pytest
+
+from mbkf.errors import InvalidInput
+from mbkf.io.imu import ImuReadings
+from mbkf.pipelines.imu.standing import root_first, standing_window
+
+TIMES = np.arange(500) / 100.0
+
+
+def sensor(moving_until_s):
+    rates = np.where(TIMES[:, None] < moving_until_s, 1.0, 0.01) * np.ones(3)
+    return ImuReadings("one", TIMES, np.ones((500, 3)), rates, None, 100.0)
+
+
+def test_the_first_second_in_which_no_sensor_turns():
+    window = standing_window([sensor(0.5), sensor(2.0)], TIMES)
+    assert TIMES[window.start] == pytest.approx(2.0, abs=0.05) and window.stop - window.start == 100
+
+
+def test_stated_times_count_and_have_to_be_there():
+    assert standing_window([sensor(9.0)], TIMES, (1.0, 2.0)) == slice(100, 201)
+    with pytest.raises(InvalidInput, match="correct --standing"):
+        standing_window([sensor(0.0)], TIMES, (7.0, 8.0))
+    with pytest.raises(InvalidInput, match="never stands still"):
+        standing_window([sensor(9.0)], TIMES)
+
+
+def test_the_root_comes_first_and_no_segment_twice():
+    assert root_first(["torso", "pelvis", "right_foot"], "pelvis")[0] == 1
+    with pytest.raises(InvalidInput, match="two sensors"):
+        root_first(["pelvis", "torso", "torso"], "pelvis")

@@ -1,0 +1,73 @@
+"""Feet that stand: derivatives by the whole posture, which feet count, and soles as they lay on the floor."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
+from mbkf.sensors.block import Frame, Notes, OperatingPoint
+from mbkf.sensors.contact.feet import FeetOnBody
+from mbkf.sensors.contact.records import Contact
+from mbkf.sensors.standing_feet import FOOT_REST, StandingDecision, StandingFeet
+from tests.motions import moderate_pose, reference_model
+
+MODEL = reference_model()
+PLANT = SingerPlant(MODEL, 0.01, np.zeros(MODEL.nv, bool))
+RNG = np.random.default_rng(5)
+Q, V = moderate_pose(MODEL, RNG), RNG.normal(size=MODEL.nv)
+N = PLANT.layout.size
+
+
+def at(q, v):
+    state = DynamicState(q, v, np.zeros(MODEL.nv), np.zeros(12), np.eye(N))
+    return OperatingPoint(state, None)
+
+
+def stacked(rows):
+    whole = np.zeros((sum(len(one.innovation) for one in rows), N))
+    first = 0
+    for one in rows:
+        last = first + len(one.innovation)
+        whole[first:last, : one.jacobian.shape[1]] = one.jacobian
+        first = last
+    return whole, np.concatenate([one.innovation for one in rows])
+
+
+@pytest.mark.parametrize(
+    "decision", [StandingDecision((0,), (1,)), StandingDecision((0, 1)), StandingDecision((), (0,))]
+)
+def test_rows_are_the_derivatives_of_their_innovations(decision):
+    block, h = StandingFeet(MODEL), 1e-6
+    rows, _ = stacked(block.linearise(at(Q, V), decision))
+    start, numeric = at(Q, V).state, np.empty_like(rows)
+    for k, one in enumerate(np.eye(N)):
+        moved = [PLANT.retract(start, sign * h * one, start.P) for sign in (1.0, -1.0)]
+        ahead, back = (stacked(block.linearise(OperatingPoint(s, None), decision))[1] for s in moved)
+        numeric[:, k] = -(ahead - back) / (2 * h)
+    # The point of the foot that is looked at is the same before and after a step.
+    np.testing.assert_allclose(rows, numeric, atol=2e-6 * np.abs(numeric).max())
+
+
+def test_a_body_at_rest_on_the_floor_it_stood_on_has_nothing_to_correct():
+    q = Q.copy()
+    lowest = np.array(FeetOnBody(MODEL).at(q, V).soles)[0, :2, 2].min()
+    q[2] -= lowest
+    block = StandingFeet(MODEL, standing_q=q)
+    _, innovation = stacked(block.linearise(at(q, np.zeros(MODEL.nv)), StandingDecision((0,))))
+    np.testing.assert_allclose(innovation, 0.0, atol=1e-9)
+
+
+def decided(rest, contacts):
+    block, notes = StandingFeet(MODEL), Notes()
+    notes.contact = None if contacts is None else SimpleNamespace(contacts=contacts)
+    readings = {} if rest is None else {FOOT_REST: np.array(rest, dtype=float)}
+    return block.decide(at(Q, V), Frame(np.zeros((0, 3)), np.zeros((0, 6)), None, readings), None, notes)
+
+
+def test_a_foot_at_rest_stands_and_one_that_carries_weight_rolls():
+    both = (Contact.UNMEASURED, Contact.UNMEASURED)
+    assert decided((1, 0), both) == StandingDecision((0,), (1,))
+    assert decided((np.nan, 1), (Contact.AIR, Contact.UNMEASURED)) == StandingDecision((1,), ())
+    assert decided(None, (Contact.AIR, Contact.AIR)) == StandingDecision()
+    assert decided((0, 1), None) == StandingDecision((1,), ())
