@@ -7,8 +7,8 @@ mostly about its side-to-side axis: legs that walk, sit down or swing.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -74,6 +74,7 @@ def worn_mounts(
     posture: Array,
     posture_known: bool,
     settings: MountSettings = MountSettings(),
+    turned: Collection[str] = (),
 ) -> Worn:
     """Mounts and biases from standing still and from the movement.
 
@@ -85,6 +86,7 @@ def worn_mounts(
         posture: (nq,) posture while standing.
         posture_known: Whether it was measured; otherwise it is usual.
         settings: How well this is known.
+        turned: Segments whose sensors are strapped on the other way round than usual.
     """
     s, rotations = settings, model.placements(posture)[0]
     custom = {m.segment: m for m in typical_mounts(model, tuple(n for n in segments if n in EIGHT))}
@@ -103,7 +105,7 @@ def worn_mounts(
                 f"sensor {one.name} sits {abs(np.degrees(turn)):.0f} deg about the {segment}'s length from where it is "
                 "usually strapped on, as the segment's swinging shows; check which sensor is which"
             )
-        R = Rotation.from_rotvec(turn * up).as_matrix() @ R
+        R = Rotation.from_rotvec((turn + np.pi * (segment in turned)) * up).as_matrix() @ R
         mounts.append(ImuMount(one.name, segment, usual_place(model, segment), matrix_quaternion(R)))
         spreads.append(np.sqrt((up * turn_sd) ** 2 + (1.0 - up**2) * tilt_sd**2))
         biases.append(bias)
@@ -173,12 +175,3 @@ def _across(axis: Array) -> Array:
     other = np.eye(3)[np.argmin(np.abs(axis))]
     found = np.cross(axis, other)
     return np.asarray(found / np.linalg.norm(found))
-
-
-def with_turns(worn: Worn, turns: Array) -> tuple[ImuMount, ...]:
-    """The mounts turned by (S, 3) rotation vectors, rad, in their segments' axes."""
-    turned = Rotation.from_rotvec(turns).as_matrix()
-    return tuple(
-        replace(mount, rotation=matrix_quaternion(R @ quaternion_matrices(mount.rotation)))
-        for mount, R in zip(worn.mounts, turned, strict=True)
-    )

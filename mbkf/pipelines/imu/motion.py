@@ -20,6 +20,7 @@ from mbkf.imu.heading import HeadingSettings, held_headings, turned
 from mbkf.imu.orientation import OrientSettings, orientations
 from mbkf.imu.segment_course import configurations
 from mbkf.imu.segments import segment_of
+from mbkf.imu.turning import with_turning
 from mbkf.imu.worn_mounts import MountSettings, Worn, worn_mounts
 from mbkf.io.imu import ImuReadings
 from mbkf.io.imu_mount import ImuMount
@@ -30,8 +31,8 @@ from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.imu.exchanged import Exchange, exchanged
 from mbkf.pipelines.imu.fields import StrangeField, strange_fields
+from mbkf.pipelines.imu.misfit import misfit
 from mbkf.pipelines.imu.motion_inputs import (
     MotionSettings,
     frame_times,
@@ -42,6 +43,7 @@ from mbkf.pipelines.imu.motion_inputs import (
 from mbkf.pipelines.imu.motion_start import StartSettings, first_posture
 from mbkf.pipelines.imu.orient import prepared
 from mbkf.pipelines.imu.standing import root_first, standing_window
+from mbkf.pipelines.imu.worn_otherwise import WornOtherwise, worn_otherwise
 from mbkf.pipelines.reconstruct import assemble
 from mbkf.pipelines.reconstruct_settings import ReconstructSettings
 
@@ -85,7 +87,7 @@ class InertialMotion:
         mounts: How each sensor sits on its segment, as calibrated.
         gyro_bias_rad_s: (S, 3) gyroscopes' readings at rest.
         sensors: Names of the sensors.
-        exchange: Two sensors that seem to be exchanged, or None.
+        worn: Sensors that are worn otherwise than named or usual.
         strange_fields: Magnetometers that do not see what the others see.
     """
 
@@ -93,7 +95,7 @@ class InertialMotion:
     mounts: tuple[ImuMount, ...]
     gyro_bias_rad_s: Array
     sensors: tuple[str, ...]
-    exchange: Exchange | None
+    worn: WornOtherwise
     strange_fields: tuple[StrangeField, ...]
 
 
@@ -109,6 +111,7 @@ class _Plan:
         from_standing: Whether the frames begin there.
         times_s: (T,) the frames.
         settings: Of the whole.
+        turned: Segments whose sensors are strapped on the other way round than usual.
     """
 
     model: HumanModel
@@ -120,6 +123,7 @@ class _Plan:
     from_standing: bool
     times_s: Array
     settings: InertialMotionSettings
+    turned: frozenset[str] = frozenset()
 
 
 def inertial_motion(
@@ -153,13 +157,16 @@ def inertial_motion(
     """
     chosen, model = settings or InertialMotionSettings(), HumanModel.of(subject)
     report = progress or (lambda *_: None)
-    sensors, warnings = prepared(readings)
+    sensors, warnings = prepared([with_turning(one) for one in readings])
     names = [segment_of(one.name, model.joints) for one in sensors]
     order = root_first(names, model.roles.root)
     sensors, segments = tuple(sensors[k] for k in order), tuple(names[k] for k in order)
     with single_threaded():
         plan = _planned(model, sensors, segments, standing, posture, chosen)
-        found = exchanged(model, segments, lambda names: _filter(_renamed(plan, names)))
+        found = worn_otherwise(
+            model, segments, lambda turned, names: misfit(*_filter(_renamed(plan, turned, names)))
+        )
+        plan = replace(plan, turned=found.turned)
         worn = _worn(plan)
         filter, recording = _filter(plan, worn)
         tracked = track(
@@ -169,7 +176,7 @@ def inertial_motion(
             body=MountErrors(model, segments, worn.turn_sd_rad),
             progress=partial(report, "Filtering"),
         )
-        notes = (*warnings, *worn.remarks, *([] if found is None else [found.told]))
+        notes = (*warnings, *worn.remarks, *found.told)
         strange = strange_fields(*_magnetometers(plan, worn, tracked))
         result = _assembled(plan, subject, trial, (*notes, *(one.told for one in strange)), tracked)
     return InertialMotion(
@@ -177,15 +184,21 @@ def inertial_motion(
     )
 
 
-def _renamed(plan: _Plan, names: Mapping[str, str]) -> _Plan:
-    """The plan with sensors on other segments."""
-    return replace(plan, segments=tuple(names.get(name, name) for name in plan.segments))
+def _renamed(plan: _Plan, turned: frozenset[str], names: Mapping[str, str]) -> _Plan:
+    """The plan with sensors strapped on otherwise, or on other segments.
+
+    Args:
+        plan: Sensors as named.
+        turned: Segments whose sensors are the other way round.
+        names: Other segment by segment.
+    """
+    return replace(plan, turned=turned, segments=tuple(names.get(name, name) for name in plan.segments))
 
 
 def _worn(plan: _Plan) -> Worn:
     """How the sensors sit."""
     known = plan.model, plan.segments, plan.still, plan.sensors, plan.posture, plan.posture_known
-    return worn_mounts(*known, plan.settings.mounts)
+    return worn_mounts(*known, plan.settings.mounts, plan.turned)
 
 
 def _filter(plan: _Plan, worn: Worn | None = None) -> tuple[WornTracking, Recording]:

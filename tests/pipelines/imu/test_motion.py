@@ -8,6 +8,7 @@ import pytest
 from mbkf.errors import InvalidInput
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.pipelines.imu.motion import InertialMotionSettings, inertial_motion
+from mbkf.pipelines.imu.worn_otherwise import WornOtherwise
 from tests.worn import exchanged, worn
 
 FLEXION = [f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle", "ankle_angle") for side in "rl"]
@@ -54,7 +55,7 @@ def test_the_ground_bears_the_body(walk, found):
 
 
 def test_magnetometers_change_nothing_and_a_bad_one_is_named(walk, found):
-    assert found.strange_fields == () and found.exchange is None
+    assert found.strange_fields == () and found.worn == WornOtherwise()
     bad = list(walk.moving)
     bad[3] = replace(bad[3], magnetic_field=0.3 * bad[3].magnetic_field)
     settings = InertialMotionSettings(smooth=False)
@@ -71,7 +72,7 @@ def test_exchanged_sides_are_told(walk):
     moving, standing = (exchanged(one, *pair) for one in (walk.moving, walk.standing))
     settings = InertialMotionSettings(smooth=False)
     found = inertial_motion(moving, walk.subject, standing=standing, posture=walk.posture, settings=settings)
-    assert found.exchange is not None and set(found.exchange.segments) == set(pair)
+    assert found.worn.exchange is not None and set(found.worn.exchange.segments) == set(pair)
     assert any("exchanged" in text for text in found.result.warnings)
 
 

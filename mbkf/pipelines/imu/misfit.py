@@ -1,0 +1,72 @@
+"""How badly a body explains what its sensors read: what decides between ways in which they may be worn.
+
+A body whose sensors are exchanged, or strapped on the other way round than it takes them to be, cannot stand on feet
+that rest while its sensors turn as they do. What is left of the gyroscopes' innovations, times what is left of feet
+that should rest, is least for what is true.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import cast
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.filters.dynamic.tracking import DynamicStep
+from mbkf.filters.dynamic.worn_tracking import WornTracking
+from mbkf.filters.estimate import Recording
+from mbkf.filters.tracking_loop import followed
+from mbkf.sensors.block import AnyBlock, Rows
+from mbkf.sensors.standing_feet import StandingFeet
+from mbkf.sensors.worn_sensors import WornSensors
+
+MOVING_RAD_S = 1.0
+"""A sensor that turns faster shows that the person moves."""
+
+LOOKED_AT_S = 5.0
+"""So much of a movement is looked at."""
+
+SETTLED_S = 0.3
+"""The first frames still find out how fast the body moves."""
+
+
+def misfit(filter: WornTracking, recording: Recording) -> float:
+    """Gyroscopes' innovations (root mean square, whitened) times those of feet that stand; inf for no person.
+
+    Args:
+        filter: The filter.
+        recording: Its readings; their beginning is looked at.
+    """
+    first, last = round(SETTLED_S / recording.dt_s), looked_at(recording)
+    rates, feet = [], []
+    for t, posterior, _ in followed(filter, recording):
+        if t >= last:
+            break
+        if t >= first:
+            parts = cast(DynamicStep, posterior.inner).readings.parts
+            rates.append(_of(filter, parts, WornSensors).reshape(-1, 2, 3)[:, 0].ravel())
+            feet.append(_of(filter, parts, StandingFeet))
+    if not rates:
+        return np.inf
+    return _rms(np.concatenate(rates)) * (_rms(np.concatenate(feet)) or 1.0)
+
+
+def looked_at(recording: Recording) -> int:
+    """Number of frames to look at: standing before a movement does not count."""
+    assert recording.imus is not None
+    turning = np.linalg.norm(np.nan_to_num(recording.imus[:, :, :3]), axis=2).max(axis=1) > MOVING_RAD_S
+    begin = int(np.argmax(turning)) if turning.any() else 0
+    return min(len(recording), begin + max(2, round(LOOKED_AT_S / recording.dt_s)))
+
+
+def _of(filter: WornTracking, parts: Sequence[Sequence[Rows]], kind: type[AnyBlock]) -> Array:
+    """(k,) whitened innovations of a filter's first block of a kind."""
+    for block, own in zip(filter.kalman.blocks, parts, strict=True):
+        if isinstance(block, kind):
+            return np.concatenate([np.zeros(0), *(one.innovation for one in own)])
+    return np.zeros(0)
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2))) if len(values) else 0.0

@@ -1,0 +1,130 @@
+"""Sensors that are worn otherwise than named or usual, found by how well the body explains what they read.
+
+Two kinds are looked for: groups of sensors strapped on the other way round (pelvis, trunk, legs, feet), which are put
+right, and two sensors under each other's name, which are told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from mbkf.model.human import HumanModel
+
+CLEARLY = 0.6
+"""An exchange is told where it leaves a smaller share of the misfit than the names as given."""
+
+LIKELIER = 0.97
+"""Sensors are taken to be strapped on the other way round where that leaves a smaller share of the misfit."""
+
+Judge = Callable[[frozenset[str], Mapping[str, str]], float]
+"""Misfit with sensors on some segments the other way round, and some segments named anew."""
+
+
+@dataclass(frozen=True)
+class Exchange:
+    """Two segments whose sensors are exchanged.
+
+    Attributes:
+        segments: They.
+        share: What is left of the misfit with them exchanged, 0 to 1.
+    """
+
+    segments: tuple[str, str]
+    share: float
+
+    @property
+    def told(self) -> str:
+        """What is the matter, and what to do."""
+        one, other = self.segments
+        return (
+            f"the sensors of {one} and {other} seem to be exchanged: the body explains the readings with "
+            f"{100 * self.share:.0f} % of the misfit if they are; rename them and run again"
+        )
+
+
+@dataclass(frozen=True)
+class WornOtherwise:
+    """What was found.
+
+    Attributes:
+        turned: Segments whose sensors are strapped on the other way round than usual.
+        exchange: Two sensors under each other's name, or None.
+    """
+
+    turned: frozenset[str] = frozenset()
+    exchange: Exchange | None = None
+
+    @property
+    def names(self) -> dict[str, str]:
+        """The segments of exchanged sensors by those they are named after."""
+        return {} if self.exchange is None else both_ways(self.exchange.segments)
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """Remarks."""
+        found = [] if self.exchange is None else [self.exchange.told]
+        if self.turned:
+            listed = ", ".join(sorted(self.turned))
+            found.append(
+                f"the sensors of {listed} are strapped on the other way round than usual (turned by 180 deg about the "
+                "vertical): the body explains the readings better so; it was taken into account"
+            )
+        return tuple(found)
+
+
+def worn_otherwise(model: HumanModel, segments: Sequence[str], judge: Judge) -> WornOtherwise:
+    """How the sensors are worn: whatever lessens the misfit most comes first, as long as anything does.
+
+    Args:
+        model: The body.
+        segments: Segments that carry sensors.
+        judge: Misfit of a way in which they may be worn.
+    """
+    found, least = WornOtherwise(), judge(frozenset(), {})
+    if not np.isfinite(least):
+        return found
+    open_groups = list(groups(model, segments))
+    while True:
+        turns = [(judge(found.turned | one, found.names), one) for one in open_groups]
+        turn, group = min(turns, key=lambda one: one[0], default=(np.inf, frozenset()))
+        swaps = (
+            []
+            if found.exchange
+            else [(judge(found.turned, both_ways(p)), p) for p in likely(model, segments)]
+        )
+        swap, pair = min(swaps, default=(np.inf, ("", "")))
+        if swap < min(CLEARLY * least, turn):
+            found, least = WornOtherwise(found.turned, Exchange(pair, swap / least)), swap
+        elif turn < LIKELIER * least:
+            found, least = WornOtherwise(found.turned | group, found.exchange), turn
+            open_groups.remove(group)
+        else:
+            return found
+
+
+def both_ways(pair: tuple[str, str]) -> dict[str, str]:
+    """Each of two names by the other."""
+    one, other = pair
+    return {one: other, other: one}
+
+
+def groups(model: HumanModel, segments: Sequence[str]) -> Iterator[frozenset[str]]:
+    """Sensors that people strap on alike: on both legs, on both feet, on the pelvis, on the trunk."""
+    legs = frozenset(name for pair in model.roles.knees for name in pair)
+    feet, root = frozenset(model.roles.feet), frozenset({model.roles.root})
+    for group in (legs, feet, root, frozenset(segments) - legs - feet - root):
+        if worn := group & frozenset(segments):
+            yield worn
+
+
+def likely(model: HumanModel, segments: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Pairs of segments that are easily mistaken: the same of both legs, and neighbours on a leg."""
+    legs = [[*knee, foot] for knee, foot in zip(model.roles.knees, model.roles.feet, strict=True)]
+    pairs = [*zip(*legs, strict=True), *(pair for leg in legs for pair in pairwise(leg))]
+    for one, other in pairs:
+        if one in segments and other in segments:
+            yield one, other
