@@ -1,4 +1,4 @@
-"""Inertial sensors: orientation against optical truth, the source's comparison, joint angles, markers, strides.
+"""Inertial sensors: orientation, beside VQF, too, the source's comparison, angles, motion, strides.
 
 The rows stand in modules of their own, one per question.
 """
@@ -6,7 +6,7 @@ The rows stand in modules of their own, one per question.
 from __future__ import annotations
 
 from benchmarks.checks import Check, Context
-from benchmarks.inertial import body, orientation, stride
+from benchmarks.inertial import against_vqf, body, motion, orientation, stride
 from mbkf.numerics.threads import single_threaded
 
 
@@ -17,6 +17,8 @@ def run(context: Context) -> list[Check]:
             *orientation.broad_rows(context),
             *orientation.source_rows(context),
             *orientation.fault_rows(context),
+            *against_vqf.rows(context),
+            *motion.rows(context),
             *body.angle_rows(context),
             *body.marker_rows(context),
             *stride.rows(context),

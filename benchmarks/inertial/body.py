@@ -106,7 +106,7 @@ def rajagopal_walk(context: Context) -> Worn:
 
 def _angle_rows(one: Worn, long: bool) -> Iterator[Check]:
     smooth = AnglesSettings()
-    live = AnglesSettings(OrientSettings("ekf", ekf=OrientationSettings(rest_bias=True, integrating=False)))
+    live = AnglesSettings(OrientSettings("ekf", ekf=OrientationSettings(integrating=False)))
     for name, error in _errors(one, smooth, one.posture).items():
         yield Check(f"{one.name}, {name}", _rms(error), 4.0, "<=", "deg")
         if long:

@@ -67,7 +67,6 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.cli.progress import stages
     from mbkf.errors import UnknownName
     from mbkf.imu.orientation import OrientSettings
-    from mbkf.imu.orientation_ekf import OrientationSettings
     from mbkf.io.atomic import check_folder
     from mbkf.io.subject import read_subject
     from mbkf.model.human import HumanModel
@@ -84,7 +83,7 @@ def run(args: argparse.Namespace) -> int:
             raise UnknownName("sensor", name, [one.name for one in sensors])
     chosen = [one for one in sensors if not args.sensor or one.name in args.sensor]
     settings = AnglesSettings(
-        OrientSettings(args.filter, not args.no_mag, ekf=OrientationSettings(rest_bias=True)),
+        OrientSettings(args.filter, not args.no_mag),
         args.from_file,
         not args.free_headings,
     )

@@ -54,8 +54,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("--no-mag", action="store_true", help="leave magnetometers out")
     parser.add_argument(
         "--rest-bias",
-        action="store_true",
-        help="take a sensor that lies still not to turn at all (ekf, smooth)",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="take a sensor that lies still not to turn at all (ekf, smooth; default: yes)",
     )
     parser.add_argument("--out", required=True, metavar="DIR", help="folder to write")
     parser.set_defaults(run=run)
@@ -119,6 +120,9 @@ def _print(summary: dict[str, Any]) -> None:
         if one["error_deg"] is not None:
             e = one["error_deg"]
             line += f"; error {e['total']:.2f} deg (inclination {e['inclination']:.2f}, heading {e['heading']:.2f})"
+        if one["error_moving_deg"] is not None:
+            e = one["error_moving_deg"]
+            line += f", in movement {e['total']:.2f} ({e['inclination']:.2f}, {e['heading']:.2f})"
         if "difference_rms_deg" in one:
             line += f"; {summary['compared_with']} differs by {one['difference_rms_deg']['total']:.2f} deg"
         print(line)

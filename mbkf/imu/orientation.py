@@ -10,7 +10,7 @@ import numpy as np
 
 from mbkf.conventions import Array, StageCallback, read_only
 from mbkf.errors import InvalidInput, UnknownName
-from mbkf.imu.frames import FRAMES, change_frame
+from mbkf.imu.frames import FRAMES, change_frame, exponential, multiply, rotate
 from mbkf.imu.madgwick import MadgwickFilter, MadgwickSettings, MadgwickState
 from mbkf.imu.orientation_ekf import OrientationFilter, OrientationSettings
 from mbkf.imu.orientation_smoothing import smoothed
@@ -20,8 +20,11 @@ from mbkf.numerics.cardan import cardan_angles, quaternion_matrices
 METHODS = ("madgwick", "ekf", "smooth")
 """Madgwick's filter, the error-state Kalman filter, and its offline version."""
 
+START_S = 2.0
+"""The first state is that of the mean reading over this time, turned back by the gyroscope."""
+
 REST_S = 0.25
-"""The first state is that of the mean reading over this time."""
+"""A sensor that hardly turns over this time starts at rest."""
 
 GIVEN_SD_RAD = 0.03
 """How far a start that is given is off."""
@@ -137,13 +140,27 @@ def euler_angles(quaternion: Array) -> Array:
     return angles
 
 
-def resting_readings(one: ImuReadings, seconds: float = REST_S) -> tuple[Array, Array | None]:
-    """Mean specific force (3,) and field (3,) or None over the first part of a recording."""
+def first_readings(one: ImuReadings, seconds: float = START_S) -> tuple[Array, Array | None]:
+    """Mean specific force (3,) and field (3,) or None over the first part of a recording, in the first sample's axes.
+
+    Readings are turned back by the gyroscope, so that a sensor in motion shows the vertical, too: what accelerates it
+    one way soon accelerates it back.
+
+    Args:
+        one: The readings.
+        seconds: Length of that part.
+    """
     count = max(1, round(seconds * one.rate_hz))
-    force = np.nanmean(one.specific_force_mps2[:count], axis=0)
+    rates = np.nan_to_num(one.angular_velocity_rad_s[:count])
+    turns = exponential(0.5 * (rates[1:] + rates[:-1]) / one.rate_hz)
+    course = [np.array([0.0, 0.0, 0.0, 1.0])]
+    for turn in turns:
+        course.append(multiply(course[-1], turn))
+    since = np.array(course)
+    force = np.nanmean(rotate(since, one.specific_force_mps2[:count]), axis=0)
     if one.magnetic_field is None or not np.isfinite(one.magnetic_field[:count]).all(axis=1).any():
         return force, None
-    return force, np.nanmean(one.magnetic_field[:count], axis=0)
+    return force, np.nanmean(rotate(since, one.magnetic_field[:count]), axis=0)
 
 
 def _resting_rate(one: ImuReadings) -> Array:
@@ -167,7 +184,7 @@ def _together(readings: Sequence[ImuReadings], settings: OrientSettings) -> list
     """Indices of sensors with the same number of samples, rate and instruments."""
     groups: dict[tuple[int, float, bool], list[int]] = {}
     for k, one in enumerate(readings):
-        magnetic = settings.magnetometer and resting_readings(one)[1] is not None
+        magnetic = settings.magnetometer and first_readings(one)[1] is not None
         groups.setdefault((one.samples, one.rate_hz, magnetic), []).append(k)
     if settings.method != "smooth":
         return list(groups.values())
@@ -187,7 +204,7 @@ def _run(
     """Per sensor its quaternions (T, 4) in NWU, bias (T, 3) and standard deviations (T, 3) or None."""
     gyro = np.stack([one.angular_velocity_rad_s for one in group], axis=1)
     force = np.stack([one.specific_force_mps2 for one in group], axis=1)
-    rest = [resting_readings(one) for one in group]
+    rest = [first_readings(one) for one in group]
     first, magnetic = np.array([f for f, _ in rest]), settings.magnetometer and rest[0][1] is not None
     fields = [one.magnetic_field for one in group if one.magnetic_field is not None]
     field = np.stack(fields, axis=1) if magnetic else None
@@ -221,6 +238,8 @@ def _run(
         bias = np.array([state.gyro_bias for state in states])
         variance = np.array([np.diagonal(state.P, axis1=1, axis2=2) for state in states])
     sd = np.sqrt(np.maximum(variance[:, :, :3], 0.0))
+    if magnetic:
+        sd[:, :, 2] = np.hypot(sd[:, :, 2], settings.ekf.field_direction_sd_rad)
     return [(q[:, n], bias[:, n], sd[:, n]) for n in range(len(group))]
 
 

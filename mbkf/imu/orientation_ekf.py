@@ -23,6 +23,9 @@ from mbkf.numerics.rotations import skew
 ERRORS = 9
 """Components of the error: rotation in the world (rad), gyroscope bias (rad/s), velocity (m/s)."""
 
+MOST_HEADING_SD_RAD = 1.8
+"""Spread of a heading of which nothing is known: even over all directions."""
+
 _NO_READING = 1e9
 """Variance of a reading that is not there."""
 
@@ -39,6 +42,7 @@ class OrientationSettings:
         start_tilt_sd_rad, start_heading_sd_rad, start_bias_sd_rad_s: Spread at the first sample.
         moving_start_s: Further tilt at the first sample per rad/s of turning.
         limb_m: Further speed at the first sample per rad/s of turning.
+        moving_start_m_s: Further speed at the first sample per g by which the specific force differs from gravity.
         velocity_sd_m_s: Usual speed of a moving body part; its readings are independent after ``velocity_memory_s``.
         velocity_memory_s: See above.
         still_velocity_sd_m_s: The same for a body part whose specific force is that of rest.
@@ -49,25 +53,28 @@ class OrientationSettings:
         field_tolerance: Relative change of the field's strength that counts as a disturbance of size 1.
         dip_tolerance_rad: Change of its dip that does.
         field_memory_s: Time in which a new field becomes the usual one.
+        field_direction_sd_rad: How far iron in a room bends the field's direction for good. No reading tells; it is
+            part of the stated spread of headings.
         integrating: Whether a reading is the mean since the one before, as digital sensors give it (on BROAD this
             halves the error that the other reading leaves), or the value at its time, as virtual sensors have it.
-        rest_bias: Whether a sensor that lies still is taken not to turn at all. Off by default: a slow steady turn
-            looks the same.
+        rest_bias: Whether a sensor that lies still is taken not to turn at all. A slow steady turn looks the same:
+            leave it out for a sensor on a turntable.
         rest_rate_rad_s, rest_force_mps2, rest_after_s: A sensor lies still when neither reading differs from its own
             running mean by more than these for that long.
     """
 
     gyro_noise: float = 2e-3
     gyro_scale_noise: float = 2e-3
-    bias_walk: float = 2e-5
+    bias_walk: float = 5e-5
     accelerometer_noise: float = 0.05
     start_tilt_sd_rad: float = 0.1
     start_heading_sd_rad: float = 0.2
     start_bias_sd_rad_s: float = 0.01
-    moving_start_s: float = 0.2
+    moving_start_s: float = 0.06
     limb_m: float = 0.8
-    velocity_sd_m_s: float = 1.0
-    velocity_memory_s: float = 0.3
+    moving_start_m_s: float = 2.0
+    velocity_sd_m_s: float = 0.6
+    velocity_memory_s: float = 0.2
     still_velocity_sd_m_s: float = 0.1
     acceleration_memory_s: float = 0.15
     turning_mps: float = 3.0
@@ -76,8 +83,9 @@ class OrientationSettings:
     field_tolerance: float = 0.1
     dip_tolerance_rad: float = 0.15
     field_memory_s: float = 20.0
+    field_direction_sd_rad: float = 0.035
     integrating: bool = True
-    rest_bias: bool = False
+    rest_bias: bool = True
     rest_rate_rad_s: float = 0.035
     rest_force_mps2: float = 0.5
     rest_after_s: float = 1.5
@@ -132,7 +140,6 @@ class OrientationFilter:
         self._gravity = np.array([0.0, 0.0, GRAVITY_M_S2])
         self._noise = np.repeat([0.0, s.bias_walk**2 * dt_s, s.accelerometer_noise**2 * dt_s], 3)
         self._moved = 1.0 - np.exp(-dt_s / s.acceleration_memory_s)
-        self._usual = 1.0 - np.exp(-dt_s / s.field_memory_s)
         self._calm = 1.0 - np.exp(-dt_s / (0.5 * s.rest_after_s))
 
     def begin(
@@ -156,11 +163,21 @@ class OrientationFilter:
         shaken = np.sqrt((specific_force**2).sum(axis=1)) / GRAVITY_M_S2 - 1.0
         doubt = np.abs(shaken) + s.moving_start_s * np.sqrt((rate**2).sum(axis=1))
         spread[:, :2] = np.minimum(np.hypot(spread[:, :2], doubt[:, None]), 1.0)
+        tilted = spread[:, 0] ** 2
         swing = s.limb_m * np.sqrt((rate**2).sum(axis=1))
-        spread[:, 6:] = np.hypot(spread[:, 6:], swing[:, None])
-        field = np.full((n, 2), np.nan)
+        spread[:, 6:] = np.hypot(
+            spread[:, 6:], (swing + s.moving_start_m_s * np.minimum(np.abs(shaken), 1.0))[:, None]
+        )
+        field = np.full((n, 3), np.nan)
         if magnetic_field is not None:
-            field = _strength_and_dip((quaternion_matrices(quaternion) @ magnetic_field[:, :, None])[:, :, 0])
+            field[:, :2] = _strength_and_dip(
+                (quaternion_matrices(quaternion) @ magnetic_field[:, :, None])[:, :, 0]
+            )
+            field[:, 2] = self.dt_s * self._upright(tilted)
+            # A wrong tilt turns the level part of the field.
+            spread[:, 2] = np.minimum(
+                np.sqrt(spread[:, 2] ** 2 + tilted * _steepness(field[:, 1])), MOST_HEADING_SD_RAD
+            )
         calm = np.hstack([nothing, specific_force, np.zeros((n, 1))])
         return OrientationState(
             quaternion,
@@ -286,14 +303,25 @@ class OrientationFilter:
         field = (R @ np.nan_to_num(magnetic_field)[:, :, None])[:, :, 0]
         found = _strength_and_dip(field)
         first = np.isnan(usual[:, 0]) & seen
-        known = np.where(first[:, None], found, usual)
+        known = np.where(first[:, None], found, usual[:, :2])
+        tilted = 0.5 * (P[:, 0, 0] + P[:, 1, 1])
         strength = (found[:, 0] / known[:, 0] - 1.0) / s.field_tolerance
-        dip = (found[:, 1] - known[:, 1]) / s.dip_tolerance_rad
-        disturbance = strength * strength + dip * dip
-        noise = np.where(seen, self._heading * (1.0 + disturbance) ** 2, _NO_READING)
-        learnt = known + (self._usual * seen)[:, None] * (found - known)
+        dip = (found[:, 1] - known[:, 1]) ** 2 / (s.dip_tolerance_rad**2 + tilted)
+        disturbance = strength * strength + dip
+        noise = self._heading * (1.0 + disturbance) ** 2
+        noise += s.heading_memory_s / self.dt_s * tilted * _steepness(known[:, 1])
+        noise = np.where(seen, noise, _NO_READING)
+        weight = seen * self.dt_s * self._upright(tilted)
+        lasted = np.minimum(np.where(first, 0.0, np.nan_to_num(usual[:, 2])) + weight, s.field_memory_s)
+        gain = weight / np.maximum(lasted, 1e-12)
+        learnt = np.column_stack([known + gain[:, None] * (found - known), lasted])
         innovation = np.where(seen, -np.arctan2(field[:, 1], field[:, 0]) - dx[:, 2], 0.0)
-        return *_read_one(P, dx, 2, _turned_back(innovation), noise), np.where(seen[:, None], learnt, known)
+        return *_read_one(P, dx, 2, _turned_back(innovation), noise), np.where(seen[:, None], learnt, usual)
+
+    def _upright(self, tilted: Array) -> Array:
+        """(N,) weight of a field's strength and dip while the tilt has a variance (N,), rad²."""
+        s = self.settings
+        return np.asarray(s.dip_tolerance_rad**2 / (s.dip_tolerance_rad**2 + tilted))
 
     def _rested(
         self, P: Array, dx: Array, state: OrientationState, gyro: Array, force: Array
@@ -324,6 +352,11 @@ def _strength_and_dip(field: Array) -> Array:
     """(N, 2) of fields in the world (N, 3)."""
     level = np.hypot(field[:, 0], field[:, 1])
     return np.stack([np.hypot(level, field[:, 2]), np.arctan2(field[:, 2], level)], axis=1)
+
+
+def _steepness(dip: Array) -> Array:
+    """(N,) squared change of a heading by tilt at a dip, rad: as at 60 deg or more, and less than at the poles."""
+    return np.tan(np.clip(np.abs(dip), 1.05, 1.4)) ** 2
 
 
 def _turned_back(angle: Array) -> Array:

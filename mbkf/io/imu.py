@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mbkf.conventions import GRAVITY_M_S2, Array, read_only
+from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray, read_only
 from mbkf.errors import FileFormatError, InvalidInput, ShapeError, UnknownName
 
 UNITS: dict[str, dict[str, float]] = {
@@ -61,6 +61,7 @@ class ImuReadings:
         frame: A note on the sensor's axes or the file's world frame, "" where nothing is known.
         orientation: (T, 4) sensor → world as unit quaternions (x, y, z, w) where the file brings one (an optical
             reference, or the maker's own filter), else None; ``frame`` names that world.
+        moving: (T,) samples that the file marks as those of a movement; None where it marks none.
 
     Missing samples are NaN.
     """
@@ -73,6 +74,7 @@ class ImuReadings:
     rate_hz: float
     frame: str = ""
     orientation: Array | None = None
+    moving: BoolArray | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "time_s", read_only(self.time_s))
@@ -92,6 +94,12 @@ class ImuReadings:
             if array.shape != (len(self.time_s), width):
                 raise ShapeError(name, f"({len(self.time_s)}, {width})", array.shape)
             object.__setattr__(self, name, array)
+        if self.moving is not None:
+            flags = np.array(self.moving, dtype=bool)
+            flags.flags.writeable = False
+            if flags.shape != self.time_s.shape:
+                raise ShapeError("moving", f"({len(self.time_s)},)", flags.shape)
+            object.__setattr__(self, "moving", flags)
         if not (np.isfinite(self.rate_hz) and self.rate_hz > 0.0):
             raise InvalidInput(f"sensor {self.name}: the rate must be positive, got {self.rate_hz} Hz")
 
@@ -182,7 +190,11 @@ def on_regular_grid(one: ImuReadings) -> ImuReadings:
     assert force is not None and rate is not None
     times = one.time_s[0] + np.arange(count) / one.rate_hz
     field, orientation = spread(one.magnetic_field), spread(one.orientation)
-    return ImuReadings(one.name, times, force, rate, field, one.rate_hz, one.frame, orientation)
+    moving = None
+    if one.moving is not None:
+        moving = np.zeros(count, dtype=bool)
+        moving[known] = one.moving[first]
+    return ImuReadings(one.name, times, force, rate, field, one.rate_hz, one.frame, orientation, moving)
 
 
 def unit_name(kind: str, text: str, where: str) -> str:

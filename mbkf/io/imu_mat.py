@@ -19,7 +19,8 @@ def read_imu_mat(path: str | Path) -> tuple[ImuReadings, ...]:
     """Read either set.
 
     BROAD (Laidig et al. 2021): ``imu_acc`` m/s², ``imu_gyr`` rad/s, ``imu_mag`` µT, ``opt_quat`` (w, x, y, z) sensor →
-    ENU. qmt: a struct of ``acc``, ``gyr``, ``quat`` per segment and times ``t``; no field, headings arbitrary.
+    ENU, ``movement`` the samples that count.
+    qmt: a struct of ``acc``, ``gyr``, ``quat`` per segment and times ``t``; no field, headings arbitrary.
 
     Raises:
         FileFormatError: The file is missing, no MATLAB file, or neither set.
@@ -49,6 +50,7 @@ def _sensors(path: Path, content: Mapping[str, Variable]) -> tuple[ImuReadings, 
                 rate,
                 "optical orientation in ENU",
                 None if truth is None else _xyzw(truth),
+                None if "movement" not in arrays else np.ravel(arrays["movement"]) != 0,
             ),
         )
     segments = {

@@ -6,6 +6,7 @@ A foot whose own sensor is at rest lies flat on the floor: neither its sole's mi
 
 A foot that carries weight otherwise rolls over the lower end of its sole, which hardly moves: 0 = u + ρ_u, 0 = z + ρ_z.
 u and ω are told in the foot's axes, with their derivatives by the whole posture. The floor is level, at height 0.
+A foot that has been at rest for longer than a step takes stays where it stands: 0 = (p − p₀)_xy + r_p, p₀ where it was.
 """
 
 from __future__ import annotations
@@ -36,34 +37,54 @@ class StandingSettings:
         standing_speed_m_s, standing_turn_rad_s: Spread of the velocity of a foot at rest, per frame.
         standing_height_m: Spread of its heel's and ball's height.
         rolling_speed_m_s, rolling_height_m: The same of the lower end of a sole that rolls.
+        stays_after_s, staying_m: A foot that has been at rest for so long stays where it is, with this spread.
     """
 
-    standing_speed_m_s: float = 0.1
-    standing_turn_rad_s: float = 0.5
-    standing_height_m: float = 0.05
-    rolling_speed_m_s: float = 1.0
-    rolling_height_m: float = 0.1
+    standing_speed_m_s: float = 0.02
+    standing_turn_rad_s: float = 0.1
+    standing_height_m: float = 0.015
+    rolling_speed_m_s: float = 0.6
+    rolling_height_m: float = 0.05
+    stays_after_s: float = 1.0
+    staying_m: float = 0.02
+
+
+Places = tuple[Array | None, Array | None]
+"""(2,) where right and left foot stay on the floor, m; None for one that does not."""
 
 
 class StandingDecision(NamedTuple):
-    """Which feet are at rest, and which roll: 0 right, 1 left."""
+    """Which feet are at rest, which roll, 0 right and 1 left, and where feet stay."""
 
     at_rest: tuple[int, ...] = ()
     rolling: tuple[int, ...] = ()
+    places: Places = (None, None)
 
 
-class StandingFeet(Block[State, None, StandingDecision, None]):
+class Rest(NamedTuple):
+    """For how many frames right and left foot have been at rest, and where they stay since."""
+
+    frames: tuple[int, int] = (0, 0)
+    places: Places = (None, None)
+
+
+class StandingFeet(Block[State, None, StandingDecision, Rest]):
     """Feet that stand, on a state that begins with (q, v)."""
 
     prior = True
 
     def __init__(
-        self, model: Body, settings: StandingSettings = StandingSettings(), standing_q: Array | None = None
+        self,
+        model: Body,
+        dt_s: float,
+        settings: StandingSettings = StandingSettings(),
+        standing_q: Array | None = None,
     ) -> None:
         """Makes the block.
 
         Args:
             model: The body.
+            dt_s: Time between frames.
             settings: How still its feet stand.
             standing_q: (nq,) a posture in which it stood, whose heels and balls touched the floor; None for soles that
                 are level as the body has them.
@@ -71,26 +92,53 @@ class StandingFeet(Block[State, None, StandingDecision, None]):
         self._model, self.settings = model, settings
         self._feet, self._still = FeetOnBody(model), np.zeros(model.nv)
         self._data = model.pin_model.createData()
+        self._stays_after = round(settings.stays_after_s / dt_s)
         self._on_floor_m = np.zeros((2, SOLE_ENDS))
         if standing_q is not None:
             ends = np.array(self._feet.at(standing_q, self._still).soles)[:, :SOLE_ENDS, 2]
             self._on_floor_m = ends - ends.min(axis=1, keepdims=True)
 
+    def begin(self) -> Rest:
+        """No foot was at rest yet."""
+        return Rest()
+
     def decide(
-        self, at: OperatingPoint[State, None], frame: Frame, memory: None, notes: Notes
+        self, at: OperatingPoint[State, None], frame: Frame, memory: Rest, notes: Notes
     ) -> StandingDecision:
         """By the feet's own sensors, else by what carries weight."""
         rest = frame.readings.get(FOOT_REST)
         at_rest = tuple(f for f in (0, 1) if rest is not None and rest[f] > 0.5)
         contact = notes.contact
+        right, left = (memory.places[f] if f in at_rest else None for f in (0, 1))
         if contact is None:
-            return StandingDecision(at_rest)
+            return StandingDecision(at_rest, (), (right, left))
         loaded = [f for f in (0, 1) if contact.contacts[f] != Contact.AIR]
-        return StandingDecision(at_rest, tuple(f for f in loaded if f not in at_rest))
+        return StandingDecision(at_rest, tuple(f for f in loaded if f not in at_rest), (right, left))
+
+    def remember(
+        self,
+        posterior: State,
+        at: OperatingPoint[State, None],
+        decision: StandingDecision,
+        memory: Rest,
+    ) -> Rest:
+        """For how long feet have been at rest, and where they then stay."""
+        right, left = (memory.frames[f] + 1 if f in decision.at_rest else 0 for f in (0, 1))
+        places: list[Array | None] = []
+        for foot, frames in enumerate((right, left)):
+            place = memory.places[foot] if frames else None
+            if frames >= self._stays_after and place is None:
+                place = self._middle(posterior.q, foot)[:2]
+            places.append(place)
+        return Rest((right, left), (places[0], places[1]))
+
+    def _middle(self, q: Array, foot: int) -> Array:
+        """(3,) middle of heel and ball."""
+        return np.asarray(np.mean(self._feet.at(q, self._still).soles[foot][:SOLE_ENDS], axis=0))
 
     def linearise(self, at: OperatingPoint[State, None], decision: StandingDecision) -> list[Rows]:
         """Rows on positions and velocities."""
-        at_rest, rolling = decision
+        at_rest, rolling, places = decision
         if not (at_rest or rolling):
             return []
         s, q, v = self.settings, at.state.q, at.state.v
@@ -103,6 +151,9 @@ class StandingFeet(Block[State, None, StandingDecision, None]):
             found.append(self._still_rows(foot, ends.mean(axis=0), sds))
             for end, height in zip(ends, self._on_floor_m[foot], strict=True):
                 found.append(self._floor_rows(q, foot, end, height, s.standing_height_m))
+            place = places[foot]
+            if place is not None:
+                found.append(self._place_rows(q, foot, ends.mean(axis=0), place))
         for foot in rolling:
             ends = np.array(soles[foot][:SOLE_ENDS])
             k = int(np.argmin(ends[:, 2] - self._on_floor_m[foot]))
@@ -124,6 +175,19 @@ class StandingFeet(Block[State, None, StandingDecision, None]):
         to_point[:3, 3:] = -skew(self._data.oMi[joint].actInv(point_m))
         to_point = to_point[: len(sds)] / sds[:, None]
         return Rows(np.hstack([to_point @ by_q, to_point @ by_v]), -to_point @ self._data.v[joint].vector)
+
+    def _place_rows(self, q: Array, foot: int, point_m: Array, place_m: Array) -> Rows:
+        """Rows of a world point of a foot that stays where it was.
+
+        Args:
+            q: (nq,) configuration.
+            foot: 0 right, 1 left.
+            point_m: (3,) the point.
+            place_m: (2,) where it was.
+        """
+        jacobian = self._model.segment_jacobian(q, self._model.roles.feet[foot], point_m)
+        sd = self.settings.staying_m
+        return Rows(jacobian[:2] / sd, (place_m - point_m[:2]) / sd)
 
     def _floor_rows(self, q: Array, foot: int, point_m: Array, height_m: float, sd_m: float) -> Rows:
         """A row of a world point of a foot that lies on the floor.

@@ -7,9 +7,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from mbkf.errors import InvalidInput, UnknownName
-from mbkf.imu.frames import change_frame
+from mbkf.imu.frames import change_frame, exponential
 from mbkf.imu.madgwick import MadgwickSettings
-from mbkf.imu.orientation import METHODS, OrientSettings, euler_angles, orientations
+from mbkf.imu.orientation import METHODS, OrientSettings, euler_angles, first_readings, orientations
+from mbkf.io.imu import ImuReadings
+from mbkf.numerics.cardan import quaternion_matrices
 from tests.imu.turning import apart_deg, turning
 
 MADE = turning(6.0)
@@ -122,3 +124,19 @@ def test_madgwick_on_the_public_benchmark(real_data):
     error = orientation_error(course.quaternion, one.orientation, judged)
     assert np.degrees(error.total) == pytest.approx(4.8, rel=0.1)
     assert np.degrees(error.inclination) == pytest.approx(2.7, rel=0.1)
+
+
+def test_the_first_readings_of_a_sensor_in_motion_show_the_vertical():
+    """A board swung to and fro by hand: turned back by the gyroscope, accelerations cancel."""
+    rate, t = 100.0, np.arange(300) / 100.0
+    turn = np.column_stack([0.0 * t, 0.8 * np.sin(5.0 * t), 0.0 * t])
+    rates = np.column_stack([0.0 * t, 4.0 * np.cos(5.0 * t), 0.0 * t])
+    R = quaternion_matrices(exponential(turn))
+    shaken = np.column_stack([15.0 * np.sin(6.0 * np.pi * t), 10.0 * np.cos(4.0 * np.pi * t), 0.0 * t])
+    world = shaken + np.array([0.0, 0.0, 9.80665])
+    local = np.einsum("tji,tj->ti", R, world)
+    force, field = first_readings(ImuReadings("board", t, local, rates, None, rate))
+    assert field is None
+    tilt = np.degrees(np.arccos(force[2] / np.linalg.norm(force)))
+    plain = local[:25].mean(axis=0)
+    assert tilt < 3.0 < np.degrees(np.arccos(plain[2] / np.linalg.norm(plain)))

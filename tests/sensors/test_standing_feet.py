@@ -9,7 +9,7 @@ from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
 from mbkf.sensors.block import Frame, Notes, OperatingPoint
 from mbkf.sensors.contact.feet import FeetOnBody
 from mbkf.sensors.contact.records import Contact
-from mbkf.sensors.standing_feet import FOOT_REST, StandingDecision, StandingFeet
+from mbkf.sensors.standing_feet import FOOT_REST, Rest, StandingDecision, StandingFeet
 from tests.motions import moderate_pose, reference_model
 
 MODEL = reference_model()
@@ -38,7 +38,7 @@ def stacked(rows):
     "decision", [StandingDecision((0,), (1,)), StandingDecision((0, 1)), StandingDecision((), (0,))]
 )
 def test_rows_are_the_derivatives_of_their_innovations(decision):
-    block, h = StandingFeet(MODEL), 1e-6
+    block, h = StandingFeet(MODEL, 0.01), 1e-6
     rows, _ = stacked(block.linearise(at(Q, V), decision))
     start, numeric = at(Q, V).state, np.empty_like(rows)
     for k, one in enumerate(np.eye(N)):
@@ -53,16 +53,16 @@ def test_a_body_at_rest_on_the_floor_it_stood_on_has_nothing_to_correct():
     q = Q.copy()
     lowest = np.array(FeetOnBody(MODEL).at(q, V).soles)[0, :2, 2].min()
     q[2] -= lowest
-    block = StandingFeet(MODEL, standing_q=q)
+    block = StandingFeet(MODEL, 0.01, standing_q=q)
     _, innovation = stacked(block.linearise(at(q, np.zeros(MODEL.nv)), StandingDecision((0,))))
     np.testing.assert_allclose(innovation, 0.0, atol=1e-9)
 
 
 def decided(rest, contacts):
-    block, notes = StandingFeet(MODEL), Notes()
+    block, notes = StandingFeet(MODEL, 0.01), Notes()
     notes.contact = None if contacts is None else SimpleNamespace(contacts=contacts)
     readings = {} if rest is None else {FOOT_REST: np.array(rest, dtype=float)}
-    return block.decide(at(Q, V), Frame(np.zeros((0, 3)), np.zeros((0, 6)), None, readings), None, notes)
+    return block.decide(at(Q, V), Frame(np.zeros((0, 3)), np.zeros((0, 6)), None, readings), Rest(), notes)
 
 
 def test_a_foot_at_rest_stands_and_one_that_carries_weight_rolls():
@@ -71,3 +71,14 @@ def test_a_foot_at_rest_stands_and_one_that_carries_weight_rolls():
     assert decided((np.nan, 1), (Contact.AIR, Contact.UNMEASURED)) == StandingDecision((1,), ())
     assert decided(None, (Contact.AIR, Contact.AIR)) == StandingDecision()
     assert decided((0, 1), None) == StandingDecision((1,), ())
+
+
+def test_a_foot_at_rest_for_longer_than_a_step_stays_where_it_is_until_it_moves():
+    block, here = StandingFeet(MODEL, 0.25), at(Q, V)
+    memory, kept = block.begin(), []
+    for rest in (True, True, True, True, True, False, True):
+        decision = StandingDecision((0,) if rest else ())
+        memory = block.remember(here.state, here, decision, memory)
+        kept.append(memory.places[0] is not None)
+    assert kept == [False, False, False, True, True, False, False]
+    assert memory.places[1] is None

@@ -13,7 +13,6 @@ from mbkf.errors import InvalidInput
 from mbkf.imu.frames import attitude, conjugate, matrix_quaternion, multiply
 from mbkf.imu.heading import HeadingSettings, held_headings, turned
 from mbkf.imu.orientation import OrientSettings, orientations
-from mbkf.imu.orientation_ekf import OrientationSettings
 from mbkf.imu.placement import EIGHT, typical_mounts, usual_place
 from mbkf.imu.segment_course import configurations
 from mbkf.imu.segments import segment_of
@@ -40,9 +39,7 @@ class AnglesSettings:
         heading: Settings of the headings held by joints.
     """
 
-    orient: OrientSettings = field(
-        default_factory=lambda: OrientSettings("smooth", ekf=OrientationSettings(rest_bias=True))
-    )
+    orient: OrientSettings = field(default_factory=lambda: OrientSettings("smooth"))
     from_file: bool = False
     hold_headings: bool = True
     heading: HeadingSettings = field(default_factory=HeadingSettings)

@@ -57,7 +57,7 @@ class MotionSettings:
     standing: StandingSettings = field(default_factory=StandingSettings)
     stillness: StillnessSettings = field(default_factory=StillnessSettings)
     residual_force_n: float = 60.0
-    residual_moment_nm: float = 100.0
+    residual_moment_nm: float = 200.0
     posture_scale: float = 30.0
     bias_sd_rad_s: float = 0.001
 
@@ -151,7 +151,7 @@ def worn_filter(
         Markers(inputs.sensor, inputs.noise_m, dt, unobservable, s.markers),
         *([NewtonEulerLaw(NewtonEuler(model), law)] if len(feet) == len(model.roles.feet) else []),
         FootContact(ContactDetector(model, (), dt), GRAVITY_M_S2 * model.mass_kg, dt, s.contact),
-        StandingFeet(model, settings.standing, standing_q),
+        StandingFeet(model, dt, settings.standing, standing_q),
         WornSensors(sensors, worn.bias_rad_s, bias_sd_rad_s, worn.turn_sd_rad, settings.worn),
         PosturePrior(posture, unobservable, replace(s.posture, posture_scale=settings.posture_scale)),
         JointLimits(posture, unobservable, s.limits),

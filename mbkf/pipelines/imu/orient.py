@@ -10,6 +10,7 @@ import numpy as np
 from mbkf.conventions import StageCallback
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.imu.checks import problems, refuse_fatal
+from mbkf.imu.field_disturbance import field_remarks
 from mbkf.imu.frames import FRAMES, change_frame
 from mbkf.imu.orientation import Orientation, OrientSettings, orientations
 from mbkf.imu.orientation_error import OrientationError, error_angles, orientation_error
@@ -25,12 +26,14 @@ class OrientResult:
         courses: One per sensor.
         compared: The same by the second filter, empty without one.
         errors: Per sensor that brings a reference with a known world, its name and error.
+        moving_errors: The same over the movement phases that its file marks.
         warnings: Problems of the readings, each with its likely remedy.
     """
 
     courses: tuple[Orientation, ...]
     compared: tuple[Orientation, ...]
     errors: tuple[tuple[str, OrientationError], ...]
+    moving_errors: tuple[tuple[str, OrientationError], ...]
     warnings: tuple[str, ...]
 
 
@@ -83,18 +86,26 @@ def orient(
         courses = orientations(sensors, frame=frame, settings=chosen, progress=progress)
         second = None if compare is None else replace(chosen, method=compare)
         compared = () if second is None else orientations(sensors, frame=frame, settings=second)
-    errors = []
+    errors, moving = [], []
     for one, course in zip(sensors, courses, strict=True):
         world = [name for name in FRAMES if name in one.frame]
         if one.orientation is not None and len(world) == 1:
             reference = change_frame(one.orientation, world[0], frame)
             errors.append((one.name, orientation_error(course.quaternion, reference)))
-    return OrientResult(courses, compared, tuple(errors), warnings)
+            if one.moving is not None:
+                moving.append((one.name, orientation_error(course.quaternion, reference, one.moving)))
+    told = [
+        remark
+        for one, course in zip(sensors, courses, strict=True)
+        if chosen.magnetometer
+        for remark in field_remarks(one, change_frame(course.quaternion, frame, "NWU"))
+    ]
+    return OrientResult(courses, compared, tuple(errors), tuple(moving), (*warnings, *told))
 
 
 def orientation_summary(result: OrientResult, settings: OrientSettings) -> dict[str, object]:
     """Plain data for ``orientation.json``; angles in degrees."""
-    errors = dict(result.errors)
+    errors, moving = dict(result.errors), dict(result.moving_errors)
     sensors = []
     for k, course in enumerate(result.courses):
         error = errors.get(course.name)
@@ -105,6 +116,7 @@ def orientation_summary(result: OrientResult, settings: OrientSettings) -> dict[
             "gyro_bias_deg_s": np.degrees(course.gyro_bias_rad_s[-1]).tolist(),
             "sd_deg": None if course.sd_rad is None else np.degrees(course.sd_rad.mean(axis=0)).tolist(),
             "error_deg": None if error is None else _degrees(error),
+            "error_moving_deg": _degrees(moving[course.name]) if course.name in moving else None,
         }
         if result.compared:
             total, heading, inclination = error_angles(result.compared[k].quaternion, course.quaternion)

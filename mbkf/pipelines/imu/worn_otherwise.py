@@ -17,8 +17,10 @@ from mbkf.model.human import HumanModel
 CLEARLY = 0.6
 """An exchange is told where it leaves a smaller share of the misfit than the names as given."""
 
-LIKELIER = 0.97
-"""Sensors are taken to be strapped on the other way round where that leaves a smaller share of the misfit."""
+TURNED, TURNED_TOO = 0.7, 0.99
+"""Sensors are taken to be strapped on the other way round where that leaves a smaller share of the misfit: clearly
+smaller for a person who else follows custom, smaller at all for one who does not. How pelvis and trunk are worn shows
+little in walking."""
 
 Judge = Callable[[frozenset[str], Mapping[str, str]], float]
 """Misfit with sensors on some segments the other way round, and some segments named anew."""
@@ -99,7 +101,7 @@ def worn_otherwise(model: HumanModel, segments: Sequence[str], judge: Judge) -> 
         swap, pair = min(swaps, default=(np.inf, ("", "")))
         if swap < min(CLEARLY * least, turn):
             found, least = WornOtherwise(found.turned, Exchange(pair, swap / least)), swap
-        elif turn < LIKELIER * least:
+        elif turn < (TURNED_TOO if found.turned else TURNED) * least:
             found, least = WornOtherwise(found.turned | group, found.exchange), turn
             open_groups.remove(group)
         else:

@@ -51,3 +51,15 @@ def test_sensors_are_chosen_by_name():
         prepared(both, ["c"])
     with pytest.raises(InvalidInput, match="same name"):
         prepared([ONE, ONE])
+
+
+def test_errors_over_movement_phases_are_told_where_the_file_marks_them(real_data):
+    from mbkf.io.imu_files import read_imu
+
+    (one,) = read_imu(real_data / "imu_broad" / "16_undisturbed_fast_translation_B.mat")
+    assert one.moving is not None and 0.3 < one.moving.mean() < 1.0
+    result = orient([one], frame="ENU", settings=OrientSettings("madgwick"))
+    ((name, whole),), ((same, moving),) = result.errors, result.moving_errors
+    assert name == same == one.name and moving.samples < whole.samples
+    summary = orientation_summary(result, OrientSettings("madgwick"))
+    assert summary["sensors"][0]["error_moving_deg"]["samples"] == moving.samples
