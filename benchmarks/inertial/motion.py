@@ -87,7 +87,13 @@ def rows(context: Context) -> Iterator[Check]:
 
 @cache
 def synthetic(plan: str, seconds: float, seed: int = 0) -> Case:
-    """A synthetic person's movement."""
+    """A synthetic person's movement.
+
+    Args:
+        plan: What the person does.
+        seconds: For how long.
+        seed: Chooses person, movement and sensors.
+    """
     subject = synthesise_subject(seed)
     model = body_of(subject)
     posture = synthesise_motion(model, "stand", 2.0, RATE_HZ, seed).q[0]
@@ -99,6 +105,15 @@ def synthetic(plan: str, seconds: float, seed: int = 0) -> Case:
 def _case(
     name: str, subject: Subject, course: tuple[Array, Array, Array, Array], posture: Array, seed: int
 ) -> Case:
+    """Sensors on a person who stands, then moves.
+
+    Args:
+        name: Of the motion.
+        subject: The person.
+        course: (T,) times, (T, nq) configurations, (T, nv) velocities and accelerations.
+        posture: (nq,) posture while standing.
+        seed: Chooses how sensors are put on, and their errors.
+    """
     model = HumanModel.of(subject)
     mounts = typical_mounts(model, seed=seed, turn_sd_rad=ASKEW_RAD)
     rest = np.zeros((round(STANDING_S * RATE_HZ), model.nv))

@@ -132,7 +132,7 @@ def test_the_first_readings_of_a_sensor_in_motion_show_the_vertical():
     turn = np.column_stack([0.0 * t, 0.8 * np.sin(5.0 * t), 0.0 * t])
     rates = np.column_stack([0.0 * t, 4.0 * np.cos(5.0 * t), 0.0 * t])
     R = quaternion_matrices(exponential(turn))
-    shaken = np.column_stack([15.0 * np.sin(6.0 * np.pi * t), 10.0 * np.cos(4.0 * np.pi * t), 0.0 * t])
+    shaken = np.column_stack([15.0 * np.sin(2.0 * np.pi * t), 10.0 * np.cos(2.0 * np.pi * t), 0.0 * t])
     world = shaken + np.array([0.0, 0.0, 9.80665])
     local = np.einsum("tji,tj->ti", R, world)
     force, field = first_readings(ImuReadings("board", t, local, rates, None, rate))
