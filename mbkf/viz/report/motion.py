@@ -287,7 +287,7 @@ def _unobserved(r: Reconstruction) -> str:
     if not r.unobserved_dofs:
         return ""
     segments = sorted({name.rpartition("_")[0].replace("_", " ") for name in r.unobserved_dofs})
-    return paragraph(f"Not shown, because no marker observes them: {', '.join(segments)}.")
+    return paragraph(f"Not shown, because no marker and no sensor observes them: {', '.join(segments)}.")
 
 
 def _ranges(r: Reconstruction) -> str:

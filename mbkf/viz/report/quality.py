@@ -79,10 +79,18 @@ def quality_section(r: Reconstruction, summary: JsonTable, labels: JsonTable | N
         '<div class="tiles">' + "".join(_tile(v) for v in verdicts(r, summary)) + "</div>",
         f'<div class="beside"><div>{_flags(r)}</div>{_truth(summary)}</div>',
         grid(_curves(r), 3),
-        "<h3>Markers</h3>",
-        _labelling(labels),
-        key(*legend),
-        marker_chart(r, None if ghosts is None or len(ghosts) != r.frames else np.array(ghosts, float)),
+        *(
+            (
+                "<h3>Markers</h3>",
+                _labelling(labels),
+                key(*legend),
+                marker_chart(
+                    r, None if ghosts is None or len(ghosts) != r.frames else np.array(ghosts, float)
+                ),
+            )
+            if r.marker_names
+            else ()
+        ),
     )
 
 
@@ -99,6 +107,8 @@ def verdicts(r: Reconstruction, summary: JsonTable) -> list[Verdict]:
     if any(one.kind == BAD for one in fit):
         others = [_doubted(one) for one in others]
         fit = [_doubted(one) for one in fit]
+    if not r.marker_names:
+        return [*fit[1:], *others]
     return [
         fit[0],
         *others,
@@ -257,15 +267,14 @@ def _curves(r: Reconstruction) -> list[str]:
     mean_square = np.where(counted, error**2, 0.0).sum(axis=1) / np.maximum(counted.sum(axis=1), 1)
     rms = np.where(counted.any(axis=1), np.sqrt(mean_square), np.nan)
     weight = r.subject.mass_kg * GRAVITY_M_S2
-    found = [
-        chart("Marker error, RMS over markers", "mm", [Line(t, rms)], span, "s"),
-        chart("Innovation squared per reading", "", [Line(t, per_reading)], span, "s", level=1.0),
-    ]
+    error_curve = chart("Marker error, RMS over markers", "mm", [Line(t, rms)], span, "s")
+    innovation = chart("Innovation squared per reading", "", [Line(t, per_reading)], span, "s", level=1.0)
+    found = [error_curve, innovation] if r.marker_names else [innovation]
     force = _norm_where(r.residual_force_n, r)
     if np.isfinite(force).any():
         share = f"body weight is {number(weight, 0)} N"
         found.insert(
-            1, chart(f"{_residual(r, 'force')}, at the pelvis", "N", [Line(t, force)], span, "s", note=share)
+            -1, chart(f"{_residual(r, 'force')}, at the pelvis", "N", [Line(t, force)], span, "s", note=share)
         )
     return found
 

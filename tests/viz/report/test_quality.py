@@ -116,3 +116,21 @@ def test_remarks_truth_and_labels():
         assert words in text
     assert "ghosts dropped" not in quality_section(r, summary, {**labels, "ghosts_per_frame": [1, 2]})
     assert "No remarks." in quality_section(replace(r, warnings=()), summary, None)
+
+
+def test_a_result_without_markers_shows_none_of_them():
+    """Motion from inertial sensors alone."""
+    r = walk()
+    none = replace(
+        r,
+        marker_names=(),
+        measured_m=r.measured_m[:, :0],
+        predicted_m=r.predicted_m[:, :0],
+        hidden=r.hidden[:, :0],
+        rejected=r.rejected[:, :0],
+        marker_nis=None,
+        marker_spread_m=None,
+    )
+    assert not any("Marker" in title for title in judged(none))
+    text = quality_section(none, summarise(none), None)
+    assert "Marker error" not in text and "<h3>Markers</h3>" not in text and "Innovation squared" in text
