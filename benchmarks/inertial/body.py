@@ -183,7 +183,7 @@ def marker_rows(context: Context) -> Iterator[Check]:
         "beside it: true legs and trunk, arms at their mean of 2 s before", floor_mm, math.inf, "<=", "mm"
     )
     for label, values in ratios.items():
-        bound = math.inf if "found" in label else 0.7
+        bound = 0.7 if label == "markers on segments with sensors" else math.inf
         yield Check(f"27 % hidden, markers + 8 sensors / markers alone, {label}", max(values), bound, "<=")
     for label, values in alone.items():
         yield Check(f"sensors alone for 2 s, {label}", max(values), 60.0, "<=", "mm")

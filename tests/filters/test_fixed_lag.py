@@ -35,7 +35,7 @@ class Told:
     """An estimate at rest that only knows its frame and whether it was a start."""
 
     q, v, a = reference_model().neutral(), np.zeros(1), np.zeros(1)
-    wrench, tracked = np.zeros((2, 6)), True
+    wrench, tracked, placed = np.zeros((2, 6)), True, True
 
     def __init__(self, t, started=False):
         self.t, self.started = t, started

@@ -56,6 +56,7 @@ def test_a_body_is_elsewhere_when_most_joints_are_though_markers_showed_it():
     assert departed(estimate, estimate._replace(q=away), model)
     assert not departed(estimate, estimate._replace(q=arm), model)
     assert not departed(estimate._replace(tracked=False), estimate._replace(q=away), model)
+    assert not departed(estimate._replace(placed=False), estimate._replace(q=away), model)
     away[1] -= 0.02
     assert not departed(estimate, estimate._replace(q=away), model)
 
