@@ -14,7 +14,7 @@ from mbkf.version import __version__
 
 if TYPE_CHECKING:
     from mbkf.io.capture import read_capture
-    from mbkf.io.imu_files import read_imu
+    from mbkf.io.imu.files import read_imu
     from mbkf.io.results_folder import read_reconstruction, write_reconstruction
     from mbkf.io.subject import read_subject, write_subject
     from mbkf.model.body_file import load_body
@@ -59,7 +59,7 @@ _HOMES = {
     "orient": "mbkf.pipelines.imu.orient",
     "plate_wrenches": "mbkf.sensors.contact.plates",
     "read_capture": "mbkf.io.capture",
-    "read_imu": "mbkf.io.imu_files",
+    "read_imu": "mbkf.io.imu.files",
     "read_reconstruction": "mbkf.io.results_folder",
     "read_subject": "mbkf.io.subject",
     "reconstruct": "mbkf.pipelines.reconstruct",

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mbkf.io.imu_mount import ImuMount
+from mbkf.io.imu.mount import ImuMount
 from mbkf.sensors.inertial import InertialSensors, InertialSettings
 from mbkf.sensors.inertial_sensor import InertialSensor
 from tests.derivatives import checks, named, slope

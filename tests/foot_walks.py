@@ -9,7 +9,7 @@ from numpy.polynomial import Polynomial
 from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 
 FIRST_REST_S, REST_S, SWING_S = 1.5, 0.4, 0.7
 LIFT_M, PITCH_RAD = 0.12, 0.9

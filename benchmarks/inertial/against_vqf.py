@@ -17,8 +17,8 @@ from mbkf.conventions import Array
 from mbkf.imu.frames import change_frame, conjugate, multiply
 from mbkf.imu.orientation import Orientation, OrientSettings, orientations
 from mbkf.imu.orientation_error import OrientationError, orientation_error
-from mbkf.io.imu import ImuReadings
-from mbkf.io.imu_files import read_imu
+from mbkf.io.imu.files import read_imu
+from mbkf.io.imu.readings import ImuReadings
 
 CHOSEN = ("05", "11", "21", "33")
 """Trials on which settings were chosen; the others show them."""

@@ -21,7 +21,7 @@ from mbkf.imu.orientation_ekf import OrientationSettings
 from mbkf.imu.placement import EIGHT, typical_mounts
 from mbkf.imu.virtual import virtual_imus
 from mbkf.io.capture import read_capture
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.subject import Subject
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel

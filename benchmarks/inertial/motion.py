@@ -22,8 +22,8 @@ from mbkf.imu.placement import typical_mounts
 from mbkf.imu.virtual import ImuErrors, virtual_imus
 from mbkf.io.capture import read_capture
 from mbkf.io.contacts import Source
-from mbkf.io.imu import ImuReadings
-from mbkf.io.imu_files import read_imu
+from mbkf.io.imu.files import read_imu
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.subject import Subject
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel

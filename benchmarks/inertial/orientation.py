@@ -25,8 +25,8 @@ from mbkf.imu.orientation_error import OrientationError, error_angles, orientati
 from mbkf.imu.placement import typical_mounts
 from mbkf.imu.tuning import searched_gains, static_gains, still_stretch
 from mbkf.imu.virtual import virtual_imus
-from mbkf.io.imu import ImuReadings
-from mbkf.io.imu_files import read_imu
+from mbkf.io.imu.files import read_imu
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
 

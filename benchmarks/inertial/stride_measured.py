@@ -13,7 +13,8 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.imu.key_points import NOISY_WEIGHTS, KeyPointSettings
 from mbkf.imu.zero_velocity import phases
-from mbkf.io.imu import ImuReadings, read_imu_csv
+from mbkf.io.imu.readings import ImuReadings
+from mbkf.io.imu.table import read_imu_csv
 from mbkf.pipelines.imu.stride import FootResult, StrideSettings, measure_strides
 
 FOLDER, RATE_HZ = "imu_gaitmap_foot", 204.8

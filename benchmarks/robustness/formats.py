@@ -11,8 +11,8 @@ import numpy as np
 from benchmarks.robustness.samples import LAST, make_samples
 from mbkf.io.capture import read_capture
 from mbkf.io.frame_log import read_frame_log
-from mbkf.io.imu_files import read_imu
-from mbkf.io.imu_mount import read_mounts
+from mbkf.io.imu.files import read_imu
+from mbkf.io.imu.mount import read_mounts
 from mbkf.io.norms import read_norms
 from mbkf.io.plausible import MASSES_KG, RATES_HZ
 from mbkf.io.preset import read_preset
@@ -119,6 +119,13 @@ def _sensors(folder: Path) -> dict[str, Format]:
         "mat.packed": Format(folder / "packed.mat", _imu, False),
         "mat.struct": Format(folder / "qmt.mat", _imu, False),
         "xsens": Format(export, _imu, True),
+        "dot": Format(folder / "makers" / "D422CD00_20260101.csv", _imu, True),
+        "shimmer": Format(folder / "makers" / "shimmer.csv", _imu, True),
+        "delsys": Format(folder / "makers" / "delsys.csv", _imu, True),
+        "mvnx": Format(folder / "makers" / "suit.mvnx", _imu, True),
+        "xdf": Format(folder / "makers" / "recording.xdf", _imu, False),
+        "c3d.imu": Format(folder / "makers" / "trial.c3d", _imu, False),
+        "phyphox": Format(folder / "makers" / "left_foot.zip", _imu, False),
         "xsens.mapping": Format(mapping, lambda path: _imu(path.parent), True, (export,)),
     }
 

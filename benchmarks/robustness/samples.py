@@ -19,12 +19,13 @@ from benchmarks.any_capture.dialects import (
     write_plate_tables,
     write_qualisys,
 )
+from benchmarks.inertial import makers, makers_binary
 from mbkf.conventions import data_folder
 from mbkf.io.capture import read_capture, write_capture
 from mbkf.io.frame_log import FrameLogWriter
-from mbkf.io.imu import ImuReadings
-from mbkf.io.imu_mount import ImuMount, write_mounts
-from mbkf.io.imu_write import write_imu_csv
+from mbkf.io.imu.mount import ImuMount, write_mounts
+from mbkf.io.imu.readings import ImuReadings
+from mbkf.io.imu.write import write_imu_csv
 from mbkf.io.norms import Band, Norms, write_norms
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.results_folder import write_reconstruction
@@ -168,5 +169,13 @@ def _sensors(folder: Path) -> None:
     text = "\n".join(["// Start Time: Unknown", "// Update Rate: 100.0Hz", titles, *lines])
     (place / "MT_00B421E6.txt").write_text(text + "\n")
     (place / "mapping.xml").write_text(MAPPING)
+    made, left = folder / "makers", makers.truth("left_foot", 1, samples=IMU_SAMPLES)
+    made.mkdir(exist_ok=True)
+    for write in (makers.movella_dot, makers.shimmer):
+        write(left, made)
+    makers.phyphox(left, made, form="zip")
+    makers.delsys((left,), made)
+    for write_all in (makers_binary.mvnx, makers_binary.xdf, makers_binary.c3d):
+        write_all((left,), made)
     mount = ImuMount("foot", "foot_r", np.array([0.1, 0.0, 0.0]), np.array([0.0, 0.0, 0.0, 1.0]))
     write_mounts([mount], folder / LAST)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from mbkf.conventions import Array
-    from mbkf.io.imu import ImuReadings
+    from mbkf.io.imu.readings import ImuReadings
     from mbkf.model.human import HumanModel
 
 SUBCOMMANDS = ("orient", "tune", "synth", "angles", "motion", "stride")
@@ -64,6 +64,11 @@ def add_standing_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--posture", metavar="MOTION.h5", help="the posture while standing (default: the neutral one)"
     )
+    parser.add_argument(
+        "--started-together",
+        action="store_true",
+        help="several files: they started at the same moment, whatever their clocks tell",
+    )
 
 
 def standing_told(args: argparse.Namespace) -> tuple[float, float] | tuple[ImuReadings, ...] | None:
@@ -75,7 +80,7 @@ def standing_told(args: argparse.Namespace) -> tuple[float, float] | tuple[ImuRe
     if args.standing is None:
         return None
     if Path(args.standing).exists():
-        return read([args.standing], args)
+        return read_session([args.standing], args)
     first, _, last = args.standing.partition(":")
     try:
         window = float(first), float(last)
@@ -99,7 +104,7 @@ def posture_told(path: str, model: HumanModel) -> Array:
 
 
 def read(paths: Sequence[str], args: argparse.Namespace) -> tuple[ImuReadings, ...]:
-    """The sensors of all files named on the command line.
+    """The sensors of all files named on the command line, each on its own clock.
 
     Raises:
         MbkfError: A file or a unit cannot be used.
@@ -107,14 +112,26 @@ def read(paths: Sequence[str], args: argparse.Namespace) -> tuple[ImuReadings, .
     from dataclasses import replace
     from pathlib import Path
 
-    from mbkf.io.imu_files import read_imu
+    from mbkf.io.imu.files import read_imu
 
     units = parse_units(args.units)
-    found = [one for path in paths for one in read_imu(path, units=units, rate_hz=args.rate)]
-    if len({one.name for one in found}) < len(found):
-        files = [(path, one) for path in paths for one in read_imu(path, units=units, rate_hz=args.rate)]
-        found = [replace(one, name=f"{Path(path).stem}_{one.name}") for path, one in files]
-    return tuple(found)
+    found = [(path, one) for path in paths for one in read_imu(path, units=units, rate_hz=args.rate)]
+    if len({one.name for _, one in found}) < len(found):
+        found = [(path, replace(one, name=f"{Path(path).stem}_{one.name}")) for path, one in found]
+    return tuple(one for _, one in found)
+
+
+def read_session(paths: Sequence[str], args: argparse.Namespace) -> tuple[ImuReadings, ...]:
+    """The sensors of all files named on the command line, on one clock.
+
+    Raises:
+        MbkfError: A file or a unit cannot be used, or the sensors have no time in common.
+    """
+    from mbkf.io.imu.files import read_imu_session
+
+    return read_imu_session(
+        paths, units=parse_units(args.units), rate_hz=args.rate, started_together=args.started_together
+    )
 
 
 def parse_units(text: str) -> dict[str, str]:

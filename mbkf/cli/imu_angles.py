@@ -63,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         MbkfError: An input is unusable.
     """
-    from mbkf.cli.imu import posture_told, read, standing_told
+    from mbkf.cli.imu import posture_told, read_session, standing_told
     from mbkf.cli.progress import stages
     from mbkf.errors import UnknownName
     from mbkf.imu.orientation import OrientSettings
@@ -77,7 +77,7 @@ def run(args: argparse.Namespace) -> int:
     if args.subject is not None:
         person = read_subject(args.subject)
         model = HumanModel.of(person)
-    sensors = read(args.files, args)
+    sensors = read_session(args.files, args)
     for name in args.sensor:
         if name not in [one.name for one in sensors]:
             raise UnknownName("sensor", name, [one.name for one in sensors])
@@ -103,7 +103,7 @@ def _write(found: ImuAngles, folder: Path, args: argparse.Namespace) -> None:
     import numpy as np
 
     from mbkf.io.atomic_folder import replacing_folder
-    from mbkf.io.imu_mount import write_mounts
+    from mbkf.io.imu.mount import write_mounts
     from mbkf.io.storage import Table, write_storage
 
     degrees = np.degrees(found.angles)

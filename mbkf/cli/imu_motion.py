@@ -55,18 +55,18 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         MbkfError: An input is unusable.
     """
-    from mbkf.cli.imu import posture_told, read, standing_told
+    from mbkf.cli.imu import posture_told, read_session, standing_told
     from mbkf.cli.progress import stages
     from mbkf.errors import UnknownName
     from mbkf.io.atomic import check_folder
-    from mbkf.io.imu_mount import write_mounts
+    from mbkf.io.imu.mount import write_mounts
     from mbkf.io.results_folder import RESULT_FILES, write_reconstruction
     from mbkf.model.human import HumanModel
     from mbkf.pipelines.imu.motion import InertialMotionSettings, inertial_motion
     from mbkf.pipelines.results.summary import summarise
 
     folder, person = check_folder(args.out, RESULT_FILES), _person(args)
-    sensors = read(args.files, args)
+    sensors = read_session(args.files, args)
     for name in args.sensor:
         if name not in [one.name for one in sensors]:
             raise UnknownName("sensor", name, [one.name for one in sensors])

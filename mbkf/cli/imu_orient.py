@@ -75,7 +75,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.imu.orientation_ekf import OrientationSettings
     from mbkf.io.atomic import check_folder
     from mbkf.io.atomic_folder import replacing_folder
-    from mbkf.io.imu_write import write_orientation_csv
+    from mbkf.io.imu.write import write_orientation_csv
     from mbkf.pipelines.imu.orient import orient, orientation_summary
 
     settings = OrientSettings(

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from mbkf.io.imu import ImuReadings
+    from mbkf.io.imu.readings import ImuReadings
     from mbkf.pipelines.imu.stride import StrideMeasurement, StrideSettings
 
 PICTURE_FILE = "feet.png"

@@ -58,8 +58,8 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.imu.placement import EIGHT
     from mbkf.imu.virtual import ImuErrors
     from mbkf.io.atomic import check_folder
-    from mbkf.io.imu_mount import read_mounts, write_mounts
-    from mbkf.io.imu_write import write_imu_csv
+    from mbkf.io.imu.mount import read_mounts, write_mounts
+    from mbkf.io.imu.write import write_imu_csv
     from mbkf.pipelines.imu.synth import read_motion, synthesise_imus
 
     out = Path(args.out)

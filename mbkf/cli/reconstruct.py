@@ -176,8 +176,8 @@ def run(args: argparse.Namespace) -> int:
 def _imus(args: argparse.Namespace) -> ImuOnBody | None:
     """The sensors that --imu names."""
     from mbkf.errors import InvalidInput
-    from mbkf.io.imu_files import read_imu
-    from mbkf.io.imu_mount import read_mounts
+    from mbkf.io.imu.files import read_imu
+    from mbkf.io.imu.mount import read_mounts
     from mbkf.pipelines.imu.on_body import ImuOnBody
 
     if not args.imu:

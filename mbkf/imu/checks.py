@@ -15,7 +15,7 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.errors import InvalidInput
 from mbkf.imu.frames import exponential, multiply, rotate
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 
 STUCK_S = 0.5
 """An axis that repeats one value for so long, while the sensor moves, is stuck."""

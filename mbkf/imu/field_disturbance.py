@@ -6,7 +6,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.imu.zero_velocity import phases
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.numerics.cardan import quaternion_matrices
 
 SIZE_SHARE, DIP_RAD = 0.2, 0.26

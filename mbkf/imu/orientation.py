@@ -14,7 +14,7 @@ from mbkf.imu.frames import FRAMES, change_frame, exponential, multiply, rotate
 from mbkf.imu.madgwick import MadgwickFilter, MadgwickSettings, MadgwickState
 from mbkf.imu.orientation_ekf import OrientationFilter, OrientationSettings
 from mbkf.imu.orientation_smoothing import smoothed
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.numerics.cardan import cardan_angles, quaternion_matrices
 
 METHODS = ("madgwick", "ekf", "smooth")

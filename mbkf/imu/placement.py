@@ -9,7 +9,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.imu.frames import exponential, matrix_quaternion, multiply
-from mbkf.io.imu_mount import ImuMount
+from mbkf.io.imu.mount import ImuMount
 from mbkf.model.body import Body
 
 

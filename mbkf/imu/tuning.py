@@ -17,7 +17,7 @@ from mbkf.imu.frames import FRAMES, change_frame
 from mbkf.imu.madgwick import MadgwickSettings
 from mbkf.imu.orientation import OrientSettings, orientations
 from mbkf.imu.orientation_error import OrientationError, orientation_error
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 
 BETA_RANGE = (1e-3, 1.0)
 ZETAS = (0.0, 3e-4, 1e-3, 3e-3, 1e-2)

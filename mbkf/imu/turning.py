@@ -8,7 +8,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.imu.frames import conjugate, multiply
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 
 
 def with_turning(one: ImuReadings) -> ImuReadings:

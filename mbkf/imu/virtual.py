@@ -10,8 +10,8 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.imu.frames import matrix_quaternion
-from mbkf.io.imu import ImuReadings
-from mbkf.io.imu_mount import ImuMount
+from mbkf.io.imu.mount import ImuMount
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.model.body import Body
 from mbkf.sensors.inertial_sensor import InertialSensor
 

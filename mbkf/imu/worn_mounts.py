@@ -16,8 +16,8 @@ from scipy.spatial.transform import Rotation
 from mbkf.conventions import Array
 from mbkf.imu.frames import matrix_quaternion
 from mbkf.imu.placement import EIGHT, typical_mounts, usual_place
-from mbkf.io.imu import ImuReadings
-from mbkf.io.imu_mount import ImuMount
+from mbkf.io.imu.mount import ImuMount
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.model.body import Body
 from mbkf.numerics.cardan import quaternion_matrices
 

@@ -1,7 +1,7 @@
 """Registry of file formats: which reader takes a file, by its suffix and, where a suffix is shared, by its content.
 
 Captures, ground reactions and inertial readings have a registry each, in :mod:`mbkf.io.capture` and
-:mod:`mbkf.io.imu_files`. The lists of suffixes in messages and on the command line come from there.
+:mod:`mbkf.io.imu.files`. The lists of suffixes in messages and on the command line come from there.
 """
 
 from __future__ import annotations

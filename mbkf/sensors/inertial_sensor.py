@@ -14,7 +14,7 @@ import numpy as np
 import pinocchio as pin
 
 from mbkf.conventions import GRAVITY_M_S2, Array
-from mbkf.io.imu_mount import ImuMount
+from mbkf.io.imu.mount import ImuMount
 from mbkf.model.body import Body
 from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.numerics.rotations import skew

@@ -8,9 +8,9 @@ import pytest
 from mbkf.cli import imu_angles, imu_orient, imu_synth, imu_tune
 from mbkf.cli.imu import SUBCOMMANDS, parse_units
 from mbkf.cli.main import main
-from mbkf.io.imu_files import read_imu
-from mbkf.io.imu_mount import read_mounts
-from mbkf.io.imu_write import write_imu_csv
+from mbkf.io.imu.files import read_imu
+from mbkf.io.imu.mount import read_mounts
+from mbkf.io.imu.write import write_imu_csv
 from mbkf.io.storage import read_storage
 from tests.imu.turning import turning
 from tests.pipelines.imu.test_angles import SAGITTAL, marching

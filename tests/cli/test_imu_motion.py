@@ -3,8 +3,8 @@
 import pytest
 
 from mbkf.cli.main import main
-from mbkf.io.imu_mount import read_mounts
-from mbkf.io.imu_write import write_imu_csv
+from mbkf.io.imu.mount import read_mounts
+from mbkf.io.imu.write import write_imu_csv
 from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.subject import write_subject
 from tests.worn import worn

@@ -8,7 +8,7 @@ import pytest
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.errors import InvalidInput
 from mbkf.imu.checks import problems, refuse_fatal
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 from tests.imu.turning import RATE_HZ, turning
 
 MADE = turning(12.0, rate_rad_s=2.0)
@@ -133,7 +133,7 @@ def test_short_readings_are_judged_as_far_as_they_go():
 
 @pytest.mark.slow
 def test_real_recordings_are_sound(real_data):
-    from mbkf.io.imu_files import read_imu
+    from mbkf.io.imu.files import read_imu
 
     body = read_imu(real_data / "imu_qmt_fullbody" / "full_body_example_data.mat")
     feet = read_imu(

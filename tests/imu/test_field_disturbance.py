@@ -4,7 +4,7 @@ import numpy as np
 
 from mbkf.imu.field_disturbance import field_remarks, size_and_dip
 from mbkf.imu.frames import exponential
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.numerics.cardan import quaternion_matrices
 
 FIELD = np.array([24.0, 0.0, -39.0])

@@ -10,7 +10,7 @@ from mbkf.errors import InvalidInput, UnknownName
 from mbkf.imu.frames import change_frame, exponential
 from mbkf.imu.madgwick import MadgwickSettings
 from mbkf.imu.orientation import METHODS, OrientSettings, euler_angles, first_readings, orientations
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.numerics.cardan import quaternion_matrices
 from tests.imu.turning import apart_deg, turning
 
@@ -115,7 +115,7 @@ def test_madgwick_on_the_public_benchmark(real_data):
     import scipy.io
 
     from mbkf.imu.orientation_error import orientation_error
-    from mbkf.io.imu_files import read_imu
+    from mbkf.io.imu.files import read_imu
 
     path = real_data / "imu_broad" / "16_undisturbed_fast_translation_B.mat"
     (one,) = read_imu(path)

@@ -5,7 +5,7 @@ import pytest
 
 from mbkf.errors import InvalidInput
 from mbkf.imu.tuning import reference_of, searched_gains, static_gains, still_stretch
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 from tests.imu.turning import RATE_HZ, turning
 
 

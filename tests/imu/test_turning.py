@@ -4,7 +4,7 @@ import numpy as np
 
 from mbkf.imu.frames import exponential, multiply
 from mbkf.imu.turning import turning, with_turning
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 
 DT = 0.01
 

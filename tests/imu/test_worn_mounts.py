@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from mbkf.imu.frames import matrix_quaternion
 from mbkf.imu.placement import typical_mounts
 from mbkf.imu.worn_mounts import MountSettings, upright, worn_mounts
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.model.human import HumanModel
 from mbkf.numerics.cardan import quaternion_matrices
 

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import GRAVITY_M_S2
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 
 RATE_HZ = 100.0
 FIELD_NWU = np.array([24.0, 0.0, -39.0])

@@ -10,8 +10,8 @@ import pytest
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io import capture as captures
 from mbkf.io.capture import CAPTURES, FORCES, read_capture, register_reader, writable_suffixes, write_capture
-from mbkf.io.imu import ImuReadings
-from mbkf.io.imu_files import IMUS, read_imu, register_imu_reader
+from mbkf.io.imu.files import IMUS, read_imu, register_imu_reader
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.readers import FOLDER, FileFormat, FormatRegistry, either
 from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
 from tests.io.c3d_builder import standing_points
@@ -110,6 +110,6 @@ def test_alternatives_in_words():
 
 
 def test_suffixes_are_known_without_heavy_libraries():
-    code = "import sys, mbkf.io.capture, mbkf.io.imu_files; print(*sys.modules)"
+    code = "import sys, mbkf.io.capture, mbkf.io.imu.files; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert not {"ezc3d", "scipy", "h5py", "pinocchio"} & set(loaded.split())

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mbkf.io.imu_mount import ImuMount
+from mbkf.io.imu.mount import ImuMount
 from mbkf.model.human import HumanModel
 from mbkf.sensors.block import Frame, OperatingPoint
 from mbkf.sensors.inertial import InertialSensors, InertialSettings, observed_dofs

@@ -5,7 +5,7 @@ import pytest
 
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.errors import UnknownName
-from mbkf.io.imu_mount import ImuMount
+from mbkf.io.imu.mount import ImuMount
 from mbkf.model.human import HumanModel
 from mbkf.sensors.inertial_sensor import InertialSensor
 

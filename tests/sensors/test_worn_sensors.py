@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
 from mbkf.imu.frames import matrix_quaternion
 from mbkf.imu.placement import typical_mounts
-from mbkf.io.imu_mount import ImuMount
+from mbkf.io.imu.mount import ImuMount
 from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.sensors.block import OperatingPoint
 from mbkf.sensors.inertial_sensor import InertialSensor

@@ -17,8 +17,8 @@ from mbkf.imu.placement import EIGHT, typical_mounts, usual_place
 from mbkf.imu.segment_course import configurations
 from mbkf.imu.segments import segment_of
 from mbkf.imu.sensor_to_segment import alignments, facing, mean_orientation
-from mbkf.io.imu import ImuReadings
-from mbkf.io.imu_mount import ImuMount
+from mbkf.io.imu.mount import ImuMount
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded

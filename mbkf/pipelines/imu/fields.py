@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 
 LEAST_SENSORS = 3
 """Fewer fields do not tell which of them is wrong."""

@@ -22,8 +22,8 @@ from mbkf.imu.segment_course import configurations
 from mbkf.imu.segments import segment_of
 from mbkf.imu.turning import with_turning
 from mbkf.imu.worn_mounts import MountSettings, Worn, worn_mounts
-from mbkf.io.imu import ImuReadings
-from mbkf.io.imu_mount import ImuMount
+from mbkf.io.imu.mount import ImuMount
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject

@@ -17,7 +17,7 @@ from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.imu.worn_mounts import Worn
 from mbkf.imu.zero_velocity import StillnessSettings, still_samples
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.pipelines.imu.on_body import frame_readings

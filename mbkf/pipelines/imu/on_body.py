@@ -21,8 +21,8 @@ from mbkf.imu.checks import problems, refuse_fatal
 from mbkf.imu.frames import matrix_quaternion
 from mbkf.imu.placement import usual_place
 from mbkf.imu.segments import segment_of
-from mbkf.io.imu import ImuReadings, on_regular_grid
-from mbkf.io.imu_mount import ImuMount
+from mbkf.io.imu.mount import ImuMount
+from mbkf.io.imu.readings import ImuReadings, on_regular_grid
 from mbkf.model.body import Body
 from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.pipelines.trial.filters import FilterInputs, tracking_filter

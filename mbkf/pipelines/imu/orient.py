@@ -14,7 +14,7 @@ from mbkf.imu.field_disturbance import field_remarks
 from mbkf.imu.frames import FRAMES, change_frame
 from mbkf.imu.orientation import Orientation, OrientSettings, orientations
 from mbkf.imu.orientation_error import OrientationError, error_angles, orientation_error
-from mbkf.io.imu import ImuReadings, on_regular_grid
+from mbkf.io.imu.readings import ImuReadings, on_regular_grid
 from mbkf.numerics.threads import single_threaded
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 
 STILL_RAD_S, STILL_S = 0.15, 1.0
 """Standing: no sensor turns faster (root mean square) for so long."""

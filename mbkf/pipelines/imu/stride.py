@@ -17,7 +17,7 @@ from mbkf.imu.foot_track import filtered_track, smoothed_track
 from mbkf.imu.key_points import KeyPointSettings, follow_key_points
 from mbkf.imu.strides import SHORTEST_M, Stride, find_strides
 from mbkf.imu.zero_velocity import StillnessSettings, phases, still_samples
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.version import __version__
 
 METHODS = {

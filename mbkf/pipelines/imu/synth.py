@@ -12,8 +12,8 @@ from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.imu.placement import EIGHT, typical_mounts
 from mbkf.imu.virtual import ImuErrors, virtual_imus
-from mbkf.io.imu import ImuReadings
-from mbkf.io.imu_mount import ImuMount
+from mbkf.io.imu.mount import ImuMount
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.results_h5 import read_h5
 from mbkf.io.subject import Subject, read_subject
 from mbkf.io.truth import read_truth

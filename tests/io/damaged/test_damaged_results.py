@@ -10,7 +10,7 @@ import scipy.io
 from mbkf.errors import FileFormatError
 from mbkf.io.frame_log import FORMAT, FORMAT_VERSION, FrameLogWriter, read_frame_log
 from mbkf.io.hdf5 import SEAL, USER_BLOCK
-from mbkf.io.imu_files import read_imu
+from mbkf.io.imu.files import read_imu
 from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.truth import read_truth
 from mbkf.pipelines.batch.curves import read_curves

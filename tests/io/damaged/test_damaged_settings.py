@@ -7,7 +7,7 @@ import pytest
 
 from mbkf.conventions import data_folder
 from mbkf.errors import MbkfError
-from mbkf.io.imu_mount import ImuMount, read_mounts, write_mounts
+from mbkf.io.imu.mount import ImuMount, read_mounts, write_mounts
 from mbkf.io.osim import read_osim
 from mbkf.io.preset import read_preset
 from mbkf.io.subject import Subject, SubjectMarker, read_subject, write_subject

@@ -149,7 +149,7 @@ def test_what_is_doubtful_is_told():
 
 
 def test_a_real_walk_with_the_makers_orientations_bends_knees_as_people_do(real_data):
-    from mbkf.io.imu_files import read_imu
+    from mbkf.io.imu.files import read_imu
 
     sensors = read_imu(real_data / "imu_opensense_walk")
     found = imu_angles(sensors, MODEL, standing=(0.0, 0.5), settings=AnglesSettings(from_file=True))

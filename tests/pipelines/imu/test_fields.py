@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.pipelines.imu.fields import most_central, strange_fields, world_field
 
 FIELD = np.array([24.0, 3.0, -39.0])

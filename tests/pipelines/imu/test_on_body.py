@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from mbkf.errors import InvalidInput
 from mbkf.imu.placement import typical_mounts
 from mbkf.imu.virtual import ImuErrors, virtual_imus
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.pipelines.imu.on_body import ImuOnBody, calibrated, frame_readings, with_imus
 from mbkf.sensors.inertial_sensor import InertialSensor
 from tests.dynamics import trial

@@ -54,7 +54,7 @@ def test_sensors_are_chosen_by_name():
 
 
 def test_errors_over_movement_phases_are_told_where_the_file_marks_them(real_data):
-    from mbkf.io.imu_files import read_imu
+    from mbkf.io.imu.files import read_imu
 
     (one,) = read_imu(real_data / "imu_broad" / "16_undisturbed_fast_translation_B.mat")
     assert one.moving is not None and 0.3 < one.moving.mean() < 1.0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.pipelines.imu.standing import root_first, standing_window
 
 TIMES = np.arange(500) / 100.0

@@ -11,7 +11,7 @@ from benchmarks.inertial.stride_measured import compare_one, reference_strides
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.imu.foot_filter import FootFilterSettings
 from mbkf.imu.key_points import KeyPointSettings
-from mbkf.io.imu import read_imu_csv
+from mbkf.io.imu.table import read_imu_csv
 from mbkf.pipelines.imu.stride import METHODS, StrideSettings, measure_strides, stride_summary
 from tests.foot_walks import foot_walk
 

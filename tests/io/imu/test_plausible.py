@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mbkf.errors import InvalidInput
-from mbkf.io.imu import ImuReadings
-from mbkf.io.plausible_imu import MOST_MPS2, MOST_RAD_S, MOST_UT, plausible_readings
+from mbkf.io.imu.plausible import MOST_MPS2, MOST_RAD_S, MOST_UT, plausible_readings
+from mbkf.io.imu.readings import ImuReadings
 
 TIMES = np.arange(5) / 100.0
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, ShapeError
-from mbkf.io.imu import ImuReadings, rate_of
+from mbkf.io.imu.readings import ImuReadings, rate_of
 from mbkf.io.mat5 import Variable, read_mat5
 
 _XYZW = [1, 2, 3, 0]

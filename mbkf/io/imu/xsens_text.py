@@ -1,4 +1,8 @@
-"""Xsens text exports: one sensor per file, samples counted by packets, of which some are lost."""
+"""Text exports of Xsens's MT Manager: one sensor per file, samples counted by packets, of which some are lost.
+
+Tabs, commas or semicolons stand between cells. Accelerations are m/s², angular velocities rad/s, fields in a unit of
+their own (about 1), quaternions scalar first and matrices sensor → a world with z up, ``SampleTimeFine`` counts 0.1 ms.
+"""
 
 from __future__ import annotations
 
@@ -11,9 +15,14 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError, InvalidInput
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.clocks import on_one_clock
+from mbkf.io.imu.readings import ImuReadings
+from mbkf.io.imu.signals import Signal, readings_of
 from mbkf.io.loose_xml import read_loose_xml
 from mbkf.io.text import number
+
+TEXTS = (".txt", ".csv")
+"""Endings of such files."""
 
 COUNTER = "PacketCounter"
 """The column that every such file has."""
@@ -21,7 +30,10 @@ COUNTER = "PacketCounter"
 _COUNTER_TURN = 65536
 _RATE = re.compile(r"update rate\s*:\s*([0-9.]+)\s*hz", re.IGNORECASE)
 _MATRIX = tuple(f"Mat[{i}][{j}]" for i in (1, 2, 3) for j in (1, 2, 3))
-_QUATERNION = ("Quat_q1", "Quat_q2", "Quat_q3", "Quat_q0")
+_QUATERNIONS = (("Quat_q1", "Quat_q2", "Quat_q3", "Quat_q0"), ("Quat_X", "Quat_Y", "Quat_Z", "Quat_W"))
+_FREE = ("FreeAcc_X", "FreeAcc_Y", "FreeAcc_Z"), ("FreeAcc_E", "FreeAcc_N", "FreeAcc_U")
+_TICKS = "SampleTimeFine"
+_TICK_S = 1e-4
 _MOST_IN_ROTATION = 1.1
 """No entry of a rotation is larger, however it was rounded."""
 
@@ -34,15 +46,18 @@ def is_xsens(path: Path) -> bool:
         return any(line.startswith(COUNTER) for line, _ in zip(file, range(30), strict=False))
 
 
+def _cells(line: str) -> list[str]:
+    """Cells of a line, cut by what its header is cut by."""
+    delimiter = max("\t;,", key=line.count)
+    return [cell.strip().strip('"') for cell in line.split(delimiter)]
+
+
 def read_xsens(path: str | Path, rate_hz: float | None = None) -> ImuReadings:
     """Read one sensor; lost packets become missing samples.
 
-    Accelerations are m/s², rates rad/s, fields in a unit of their own (about 1), orientations sensor → the world of
-    the maker's filter (z up).
-
     Args:
         path: The file.
-        rate_hz: Sample rate; by default the header's.
+        rate_hz: Sample rate; by default the header's, else that of ``SampleTimeFine``.
 
     Raises:
         FileFormatError: The file is missing or not such an export; names the line.
@@ -55,12 +70,13 @@ def read_xsens(path: str | Path, rate_hz: float | None = None) -> ImuReadings:
     head = next((k for k, line in enumerate(lines[:30]) if line.startswith(COUNTER)), None)
     if head is None:
         raise FileFormatError(path, f"not an Xsens text export (no column {COUNTER})")
+    names = _cells(lines[head])
+    delimiter = max("\t;,", key=lines[head].count)
+    table = _table(path, lines, head + 1, names, delimiter)
     stated = next((number(m[1]) for line in lines[:head] if (m := _RATE.search(line))), None)
-    rate = rate_hz or stated
+    rate = rate_hz or stated or _rate_of_ticks(names, table)
     if rate is None or not rate > 0.0:
         raise InvalidInput(f"{path}: the header states no update rate; give it with --rate")
-    names = [name.strip() for name in lines[head].split("\t")]
-    table = _table(path, lines, head + 1, names)
     told = table[:, names.index(COUNTER)]
     if not (np.abs(told) < _COUNTER_TURN + 1).all():
         raise FileFormatError(path, f"{COUNTER} is no counter; export the file again")
@@ -76,20 +92,32 @@ def read_xsens(path: str | Path, rate_hz: float | None = None) -> ImuReadings:
         found = whole[:, [names.index(name) for name in wanted]] if there else None
         return None if found is None or np.isnan(found).all() else found
 
-    force = columns(("Acc_X", "Acc_Y", "Acc_Z"))
-    if force is None:
+    found = {
+        "acc": columns(("Acc_X", "Acc_Y", "Acc_Z")),
+        "free": next(filter(_is_there, map(columns, _FREE)), None),
+        "gyr": columns(("Gyr_X", "Gyr_Y", "Gyr_Z")),
+        "mag": columns(("Mag_X", "Mag_Y", "Mag_Z")),
+        "quat": _orientation(columns(_MATRIX), next(filter(_is_there, map(columns, _QUATERNIONS)), None)),
+    }
+    if found["acc"] is None and (found["free"] is None or found["quat"] is None):
         raise FileFormatError(path, "no column Acc_X; export the calibrated accelerations too", head + 1)
-    rates = columns(("Gyr_X", "Gyr_Y", "Gyr_Z"))
-    return ImuReadings(
-        path.stem,
-        (count[0] + np.arange(len(whole))) / rate,
-        force,
-        np.full_like(force, np.nan) if rates is None else rates,
-        columns(("Mag_X", "Mag_Y", "Mag_Z")),
-        rate,
-        "Xsens; orientation in the world of the maker's filter, z up",
-        _orientation(columns(_MATRIX), columns(_QUATERNION)),
-    )
+    times = (count[0] + np.arange(len(whole))) / rate
+    signals = [Signal("", kind, times, values) for kind, values in found.items() if values is not None]
+    (one,) = readings_of(path, signals, rate, "Xsens; orientation in the world of the maker's filter, z up")
+    return one
+
+
+def _is_there(values: Array | None) -> bool:
+    return values is not None
+
+
+def _rate_of_ticks(names: Sequence[str], table: Array) -> float | None:
+    """Sample rate in Hz by the sensor's own clock, None where the file has no readings of it."""
+    if _TICKS not in names:
+        return None
+    steps = np.diff(table[:, names.index(_TICKS)])
+    steps = steps[np.isfinite(steps) & (steps > 0.0)]
+    return 1.0 / (_TICK_S * float(np.median(steps))) if len(steps) else None
 
 
 def read_xsens_folder(folder: str | Path, rate_hz: float | None = None) -> tuple[ImuReadings, ...]:
@@ -99,43 +127,23 @@ def read_xsens_folder(folder: str | Path, rate_hz: float | None = None) -> tuple
 
     Raises:
         FileFormatError: There is no export in the folder, or one is broken.
-        InvalidInput: The sensors have no packet in common or differ in rate.
+        InvalidInput: The sensors have no packet in common.
     """
     folder = Path(folder)
-    files = [path for path in sorted(folder.glob("*.txt")) if is_xsens(path)]
+    files = [
+        path
+        for path in sorted(folder.iterdir())
+        if path.is_file() and path.suffix.lower() in TEXTS and is_xsens(path)
+    ]
     if not files:
         raise FileFormatError(folder, "no Xsens text exports (*.txt) in this folder")
     sensors = [read_xsens(path, rate_hz) for path in files]
-    rates = {one.rate_hz for one in sensors}
-    if len(rates) > 1:
-        raise InvalidInput(
-            f"{folder}: sensors have different rates {sorted(rates)} Hz; export them at one rate"
-        )
-    rate = rates.pop()
-    first = max(round(one.time_s[0] * rate) for one in sensors)
-    last = min(round(one.time_s[-1] * rate) for one in sensors)
-    if last <= first:
-        raise InvalidInput(f"{folder}: the sensors have no packet in common; export one trial only")
-    names = _mapping(folder)
-    return tuple(
-        _named(_cut(one, first - round(one.time_s[0] * rate), last - first + 1), names) for one in sensors
-    )
+    names = _opensense_names(folder)
+    return on_one_clock([_named_by_ending(one, names) for one in sensors], from_zero=True)
 
 
-def _cut(one: ImuReadings, first: int, count: int) -> ImuReadings:
-    part = slice(first, first + count)
-    return replace(
-        one,
-        time_s=one.time_s[part] - one.time_s[first],
-        specific_force_mps2=one.specific_force_mps2[part],
-        angular_velocity_rad_s=one.angular_velocity_rad_s[part],
-        magnetic_field=None if one.magnetic_field is None else one.magnetic_field[part],
-        orientation=None if one.orientation is None else one.orientation[part],
-    )
-
-
-def _mapping(folder: Path) -> dict[str, str]:
-    """End of a file's name → name in an OpenSense mapping."""
+def _opensense_names(folder: Path) -> dict[str, str]:
+    """End of a file's name → the segment's name in an OpenSense mapping that lies in a folder."""
     found: dict[str, str] = {}
     for path in folder.glob("*.xml"):
         for sensor in read_loose_xml(path).every("ExperimentalSensor"):
@@ -145,17 +153,22 @@ def _mapping(folder: Path) -> dict[str, str]:
     return found
 
 
-def _named(one: ImuReadings, names: dict[str, str]) -> ImuReadings:
+def is_xsens_folder(folder: Path) -> bool:
+    """Whether a folder holds such exports."""
+    return any(path.suffix.lower() in TEXTS and is_xsens(path) for path in folder.iterdir() if path.is_file())
+
+
+def _named_by_ending(one: ImuReadings, names: dict[str, str]) -> ImuReadings:
     known = next((name for ending, name in names.items() if ending and one.name.endswith(ending)), one.name)
     return replace(one, name=known)
 
 
-def _table(path: Path, lines: Sequence[str], start: int, names: Sequence[str]) -> Array:
+def _table(path: Path, lines: Sequence[str], start: int, names: Sequence[str], delimiter: str) -> Array:
     rows = []
     for row, line in enumerate(lines[start:], start=start + 1):
         if not line.strip():
             continue
-        cells = line.split("\t")
+        cells = line.split(delimiter)
         if len(cells) < len(names):
             raise FileFormatError(path, f"{len(cells)} cells for {len(names)} columns; export it again", row)
         try:
@@ -168,10 +181,8 @@ def _table(path: Path, lines: Sequence[str], start: int, names: Sequence[str]) -
 
 
 def _orientation(matrix: Array | None, quaternion: Array | None) -> Array | None:
-    if quaternion is not None:
+    if quaternion is not None or matrix is None:
         return quaternion
-    if matrix is None:
-        return None
     from scipy.spatial.transform import Rotation
 
     found = np.full((len(matrix), 4), np.nan)

@@ -5,7 +5,9 @@ import pytest
 
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.errors import FileFormatError, InvalidInput, MbkfError, ShapeError
-from mbkf.io.imu import ImuReadings, on_regular_grid, rate_of, read_imu_csv, unit_name
+from mbkf.io.imu.readings import ImuReadings, on_regular_grid, rate_of
+from mbkf.io.imu.table import read_imu_csv
+from mbkf.io.imu.units import unit_name
 
 DEGREE = np.pi / 180.0
 

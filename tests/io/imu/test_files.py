@@ -5,11 +5,12 @@ import pytest
 import scipy.io
 
 from mbkf.errors import FileFormatError, InvalidInput
-from mbkf.io.imu import ImuReadings, read_imu_csv
-from mbkf.io.imu_files import read_imu
-from mbkf.io.imu_mat import read_imu_mat
-from mbkf.io.imu_mount import ImuMount, read_mounts, write_mounts
-from mbkf.io.imu_write import write_imu_csv, write_orientation_csv
+from mbkf.io.imu.files import read_imu
+from mbkf.io.imu.mat import read_imu_mat
+from mbkf.io.imu.mount import ImuMount, read_mounts, write_mounts
+from mbkf.io.imu.readings import ImuReadings
+from mbkf.io.imu.table import read_imu_csv
+from mbkf.io.imu.write import write_imu_csv, write_orientation_csv
 
 RNG = np.random.default_rng(0)
 

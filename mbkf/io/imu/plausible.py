@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from mbkf.errors import InvalidInput
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.plausible import RATES_HZ
 
 MOST_MPS2, MOST_RAD_S, MOST_UT = 1e4, 1e3, 1e6

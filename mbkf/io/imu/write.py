@@ -11,7 +11,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.atomic import replacing
-from mbkf.io.imu import ImuReadings
+from mbkf.io.imu.readings import ImuReadings
 
 _PARTS = (
     ("specific_force_mps2", "acc", "m/s^2"),
@@ -22,7 +22,7 @@ _DEGREES = 180.0 / np.pi
 
 
 def write_imu_csv(readings: Sequence[ImuReadings], path: str | Path) -> None:
-    """Writes sensors sampled together as :func:`mbkf.io.imu.read_imu_csv` reads them; missing samples are blank.
+    """Writes sensors sampled together as :func:`mbkf.io.imu.table.read_imu_csv` reads them; missing samples are blank.
 
     Raises:
         InvalidInput: The sensors were not sampled at the same times.

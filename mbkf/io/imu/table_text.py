@@ -1,0 +1,120 @@
+"""Text of a table: decoded, cut into cells by its own delimiter, with decimal points or commas."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from mbkf.errors import FileFormatError
+
+_COMMENT = ("#", "//", "%")
+_DELIMITERS = "\t;,"
+
+
+@dataclass(frozen=True)
+class TableText:
+    """Cells of a table.
+
+    Attributes:
+        path: The file.
+        rows: Line number and cells of every line that is neither blank nor a comment; cells have no space around.
+        comments: The comments.
+        decimal_comma: Whether numbers have a comma for a point.
+    """
+
+    path: Path
+    rows: list[tuple[int, list[str]]]
+    comments: list[str]
+    decimal_comma: bool = False
+
+    def number(self, cell: str) -> float:
+        """A cell as a number; a date with a time of day as seconds since 1970.
+
+        Raises:
+            ValueError: It is none.
+        """
+        try:
+            return float(cell.replace(",", ".") if self.decimal_comma else cell)
+        except ValueError:
+            if len(cell) < 10 or not cell[:4].isdigit():
+                raise
+            return datetime.fromisoformat(cell).timestamp()
+
+
+def read_table_text(path: Path) -> TableText:
+    """The cells of a file.
+
+    Raises:
+        FileFormatError: The file is missing, damaged or has no rows.
+    """
+    if not path.is_file():
+        raise FileFormatError(path, "no such file; name a CSV table of inertial readings")
+    return split_table(path, decoded(path.read_bytes()))
+
+
+def split_table(path: Path, text: str) -> TableText:
+    """The cells of a text.
+
+    Args:
+        path: Where it is from, for messages.
+        text: The text.
+
+    Raises:
+        FileFormatError: It is damaged or has no rows.
+    """
+    lines = text.splitlines()
+    delimiter = None
+    if lines and lines[0].strip().lower().replace('"', "").startswith("sep="):
+        delimiter = lines[0].replace('"', "")[4:5] or None
+        lines[0] = ""
+    comments = [line for line in lines if line.lstrip().startswith(_COMMENT)]
+    kept = [
+        (number, line)
+        for number, line in enumerate(lines, start=1)
+        if line.strip(" ,;\t") and not line.lstrip().startswith(_COMMENT)
+    ]
+    if len(kept) < 2:
+        raise FileFormatError(path, "cut short: no rows after the column names")
+    delimiter = delimiter or _delimiter([line for _, line in kept])
+    cells = csv.reader((line for _, line in kept), delimiter=delimiter)
+    try:
+        rows = [
+            (number, [cell.strip() for cell in row]) for (number, _), row in zip(kept, cells, strict=True)
+        ]
+    except (csv.Error, ValueError) as error:  # a quotation mark that does not end joins rows
+        raise FileFormatError(path, f"damaged ({error}); export it again") from error
+    return TableText(path, rows, comments, delimiter != "," and _decimal_commas(rows))
+
+
+def decoded(data: bytes) -> str:
+    """Text of bytes: by the mark at their beginning, as UTF-8, else as Windows writes."""
+    for mark, encoding in ((b"\xff\xfe", "utf-16-le"), (b"\xfe\xff", "utf-16-be")):
+        if data.startswith(mark):
+            return data[2:].decode(encoding, "replace")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("cp1252", "replace")
+
+
+def is_number(cell: str) -> bool:
+    """Whether a cell is a number, whatever its decimal mark, or a date."""
+    try:
+        float(cell.replace(",", "."))
+    except ValueError:
+        return len(cell) >= 10 and cell[:4].isdigit() and cell[4] == "-"
+    return bool(cell)
+
+
+def _delimiter(lines: list[str]) -> str:
+    """What cuts most lines; a comma only where nothing else does, since it may stand in numbers."""
+    sample = lines[-20:] + lines[:60]
+    return max(_DELIMITERS, key=lambda mark: sum(line.count(mark) > 0 for line in sample))
+
+
+def _decimal_commas(rows: list[tuple[int, list[str]]]) -> bool:
+    """Whether numbers of the last rows are written with commas."""
+    cells = [cell for _, row in rows[-20:] for cell in row if cell]
+    return sum("," in cell and is_number(cell) for cell in cells) > len(cells) // 4
