@@ -6,7 +6,7 @@ The rows stand in modules of their own, one per question.
 from __future__ import annotations
 
 from benchmarks.checks import Check, Context
-from benchmarks.inertial import against_vqf, body, files, motion, orientation, stride
+from benchmarks.inertial import against_vqf, body, files, motion, orientation, stride, stride_unrest
 from mbkf.numerics.threads import single_threaded
 
 
@@ -22,5 +22,6 @@ def run(context: Context) -> list[Check]:
             *body.angle_rows(context),
             *body.marker_rows(context),
             *stride.rows(context),
+            *stride_unrest.rows(context),
             *files.rows(context),
         ]

@@ -35,6 +35,7 @@ class Stride:
         lift_m: Greatest height above the straight line between its ends.
         swing_s: Time off the rests.
         turn_rad: Change of the foot's heading, positive to the left; NaN where unknown.
+        doubt: Why it can be no stride of a person, "" where it can.
     """
 
     first: int
@@ -47,6 +48,7 @@ class Stride:
     lift_m: float
     swing_s: float
     turn_rad: float
+    doubt: str = ""
 
     @property
     def duration_s(self) -> float:

@@ -6,12 +6,17 @@ an algorithm evaluation*, IEEE Trans. Biomed. Eng. 57 (2010), eq. 9.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.errors import InvalidInput
+
+_POSITIVE = (
+    "window_s", "acceleration_m_s2", "angular_rate_rad_s", "threshold", "longest_swing_s", "rolling_threshold",
+    "rolling_apart_s", "rolling_s",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -25,6 +30,10 @@ class StillnessSettings:
         threshold: The foot is still where the statistic is below.
         shortest_s: Shorter rests are none.
         bridge_s: Shorter movements within a rest are part of it.
+        longest_swing_s: In a longer movement the foot has stood in between without resting: it rolled, slid or shook.
+        rolling_threshold: Such a stance is where the statistic is least, if it is below.
+        rolling_apart_s: Least time between two of them, and from a rest.
+        rolling_s: Time for which one of them lasts.
     """
 
     window_s: float = 0.1
@@ -33,9 +42,13 @@ class StillnessSettings:
     threshold: float = 2.0
     shortest_s: float = 0.08
     bridge_s: float = 0.05
+    longest_swing_s: float = 1.0
+    rolling_threshold: float = 300.0
+    rolling_apart_s: float = 0.4
+    rolling_s: float = 0.04
 
     def __post_init__(self) -> None:
-        for name in ("window_s", "acceleration_m_s2", "angular_rate_rad_s", "threshold"):
+        for name in _POSITIVE:
             if not (np.isfinite(getattr(self, name)) and getattr(self, name) > 0.0):
                 raise InvalidInput(f"{name} must be positive, got {getattr(self, name)}")
         for name in ("shortest_s", "bridge_s"):
@@ -87,6 +100,41 @@ def still_samples(
     closed = binary_closing(padded, np.ones(gap + 1, dtype=bool))
     opened: BoolArray = binary_opening(closed, np.ones(rest, dtype=bool))
     return opened[margin:-margin]
+
+
+def rolling_samples(
+    specific_force_mps2: Array,
+    angular_velocity_rad_s: Array,
+    rate_hz: float,
+    still: BoolArray,
+    settings: StillnessSettings,
+) -> BoolArray:
+    """(T,) samples in which a foot that does not rest may stand: where it is stillest in long movements.
+
+    Some are no stances (a foot in swing may turn little); whether one can be, its velocity tells.
+
+    Args:
+        specific_force_mps2: (T, 3) sensor axes.
+        angular_velocity_rad_s: (T, 3) sensor axes.
+        rate_hz: Sample rate.
+        still: (T,) samples in which it rests.
+        settings: Limits.
+    """
+    from scipy.signal import find_peaks
+
+    short = replace(settings, window_s=settings.rolling_s)
+    unsteady = unrest(specific_force_mps2, angular_velocity_rad_s, rate_hz, short)
+    found, reach = np.zeros(len(still), dtype=bool), max(1, round(0.5 * settings.rolling_s * rate_hz))
+    apart = max(1, round(settings.rolling_apart_s * rate_hz))
+    for start, stop in phases(~still):
+        if stop - start < settings.longest_swing_s * rate_hz:
+            continue
+        calm = -np.log(unsteady[start:stop] + 1e-9)
+        least, _ = find_peaks(calm, height=-np.log(settings.rolling_threshold), distance=apart)
+        for k in least + start:
+            if (start == 0 or k - start >= apart) and (stop == len(still) or stop - k >= apart):
+                found[max(start, k - reach) : min(stop, k + reach + 1)] = True
+    return found
 
 
 def phases(mask: BoolArray) -> list[tuple[int, int]]:

@@ -3,7 +3,16 @@
 import numpy as np
 import pytest
 
-from mbkf.imu.foot_filter import READ, SIZE, FootFilterSettings, P, _plant_noise, follow_foot
+from mbkf.imu.foot_filter import (
+    READ,
+    SIZE,
+    FootFilterSettings,
+    P,
+    _add_noise,
+    _plant_noises,
+    _start,
+    follow_foot,
+)
 from mbkf.imu.foot_track import filtered_track, rest_middles, smoothed_track
 from mbkf.imu.strides import find_strides
 from mbkf.imu.zero_velocity import phases
@@ -70,7 +79,8 @@ def test_certainty_of_the_ways_is_that_of_the_joint_gaussian():
     """All states of a short run at once, conditioned on its readings by dense algebra."""
     walk = foot_walk((1.2, 1.1), rate_hz=25.0)
     run = run_of(walk)
-    steps, noise = run.steps, _plant_noise(SETTINGS, 1.0 / walk.readings.rate_hz)
+    steps, dt = run.steps, 1.0 / walk.readings.rate_hz
+    densities = _plant_noises(walk.readings.specific_force_mps2, SETTINGS, dt)
     N = len(steps)
     reach = np.zeros((N, SIZE, N, SIZE))  # state k = Σ_j reach[k, :, j] (what enters at step j)
     reach[0, :, 0] = np.eye(SIZE)
@@ -78,24 +88,34 @@ def test_certainty_of_the_ways_is_that_of_the_joint_gaussian():
         reach[k] = np.tensordot(steps[k].Phi, reach[k - 1], axes=(1, 0))
         reach[k, :, k] = np.eye(SIZE)
     entering = np.zeros((N, SIZE, N, SIZE))
-    first = np.linalg.inv(steps[0].P)
-    first[:READ, :READ] -= steps[0].reading.matrix
-    entering[0, :, 0] = np.linalg.inv(first)
+    start = slice(*phases(walk.still)[0])
+    f, w = walk.readings.specific_force_mps2, walk.readings.angular_velocity_rad_s
+    _, entering[0, :, 0] = _start(f[start], w[start], walk.readings.rate_hz, SETTINGS, True)
     for k in range(1, N):
+        noise = np.zeros((SIZE, SIZE))
+        _add_noise(noise, densities[run.first + k], SETTINGS, dt)
         entering[k, :, k] = noise
     G, Q = (x.reshape(N * SIZE, N * SIZE) for x in (reach, entering))
     joint = G @ Q @ G.T
     rests = [k for k in range(N) if steps[k].reading is not None]
     middles = rest_middles(run.still)
     for track, last in ((smoothed_track(run), N), (filtered_track(run), middles[1] + 1)):
-        rows = [k * SIZE + c for k in rests if k < last for c in range(3)]
-        S = joint[np.ix_(rows, rows)] + SETTINGS.standing_speed_m_s**2 * np.eye(len(rows))
-        posterior = joint - joint[:, rows] @ np.linalg.solve(S, joint[rows])
+        C = np.zeros((3 * N, N * SIZE))  # readings with errors of one
+        for k in (k for k in rests if k < last):
+            values, vectors = np.linalg.eigh(steps[k].reading.matrix)
+            C[3 * k : 3 * k + 3, k * SIZE : k * SIZE + READ] = (
+                np.sqrt(values[-3:])[:, None] * vectors[:, -3:].T
+            )
+        S = C @ joint @ C.T + np.eye(3 * N)
+        posterior = joint - joint @ C.T @ np.linalg.solve(S, C @ joint)
         difference = np.zeros((3, N * SIZE))
         difference[:, middles[1] * SIZE :][:, P] = np.eye(3)
         difference[:, middles[0] * SIZE :][:, P] -= np.eye(3)
         expected = difference @ posterior @ difference.T
-        assert track.displacement_covariances_m2[0] == pytest.approx(expected, rel=1e-3, abs=1e-9)
+        if last < N:  # the filter's place at the first rest knows the readings up to there only
+            here = slice(middles[0] * SIZE, (middles[0] + 1) * SIZE)
+            expected += (steps[middles[0]].P - posterior[here, here])[P, P]
+        assert track.displacement_covariances_m2[0] == pytest.approx(expected, rel=1e-7, abs=1e-12)
 
 
 def test_stated_deviations_are_the_errors_of_sensors_that_err_as_assumed():

@@ -66,3 +66,19 @@ def test_phases_are_the_runs_of_a_mask(bits):
 def test_bad_settings_are_refused(bad):
     with pytest.raises(InvalidInput, match=next(iter(bad))):
         StillnessSettings(**bad)
+
+
+def test_a_foot_that_never_rests_may_stand_where_it_is_stillest():
+    from benchmarks.inertial.stride_feet import simulated_foot
+    from mbkf.imu.zero_velocity import rolling_samples
+
+    foot = simulated_foot("running", 0, strides=8)
+    one = foot.readings
+    f, w, settings = one.specific_force_mps2, one.angular_velocity_rad_s, StillnessSettings()
+    still = still_samples(f, w, one.rate_hz, settings)
+    rolling = rolling_samples(f, w, one.rate_hz, still, settings)
+    assert not (rolling & still).any()
+    speed = np.linalg.norm(np.gradient(foot.position_m, 1.0 / one.rate_hz, axis=0), axis=1)
+    stances = phases(still | rolling)
+    assert sum(speed[a:b].min() < 0.3 for a, b in stances) >= 8
+    assert not rolling_samples(f, w, one.rate_hz, np.ones_like(still), settings).any()

@@ -15,8 +15,9 @@ from mbkf.imu.feet import placements
 from mbkf.imu.foot_filter import FootFilterSettings, follow_foot
 from mbkf.imu.foot_track import filtered_track, smoothed_track
 from mbkf.imu.key_points import KeyPointSettings, follow_key_points
+from mbkf.imu.stride_doubts import doubted, out_of_reach
 from mbkf.imu.strides import SHORTEST_M, Stride, find_strides
-from mbkf.imu.zero_velocity import StillnessSettings, phases, still_samples
+from mbkf.imu.zero_velocity import StillnessSettings, phases, rolling_samples, still_samples
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.version import __version__
 
@@ -29,6 +30,8 @@ METHODS = {
 STRAIGHT_DEG = 20.0
 """Strides that turn the foot by more are no part of means."""
 
+
+_MOST_TOLD = 3
 
 LEAST_S = 1.0
 """Shorter captures hold no stride."""
@@ -116,7 +119,14 @@ def measure_strides(
             raise InvalidInput(f"sensor {reading.name}: {error}") from error
     if progress is not None:
         progress("Following the feet", len(whole), len(whole))
-    return StrideMeasurement(_together(feet), chosen, notes)
+    together = _within_reach(_together(feet))
+    if any(foot.strides for foot in together) and not any(_accepted(foot.strides) for foot in together):
+        first = next(stride for foot in together for stride in foot.strides)
+        raise InvalidInput(
+            f"no stride can be, the first one because {first.doubt}; the sensor needs to sit on the foot, "
+            "and the foot to stand for a moment in every stride"
+        )
+    return StrideMeasurement(together, chosen, notes)
 
 
 def usable(reading: ImuReadings) -> ImuReadings:
@@ -158,7 +168,9 @@ def _follow(reading: ImuReadings, settings: StrideSettings) -> FootResult:
         return FootResult(
             reading.name, rate, path.time_s, path.position_m, path.velocity_m_s, None, path.still, strides
         )
-    run = follow_foot(f, w, rate, still_samples(f, w, rate, settings.stillness), settings.kalman)
+    still = still_samples(f, w, rate, settings.stillness)
+    rolling = rolling_samples(f, w, rate, still, settings.stillness)
+    run = follow_foot(f, w, rate, still, settings.kalman, rolling)
     track = smoothed_track(run) if settings.method == "smoother" else filtered_track(run)
     strides = find_strides(
         reading.time_s,
@@ -178,6 +190,24 @@ def _follow(reading: ImuReadings, settings: StrideSettings) -> FootResult:
         track.still,
         strides,
         run.refused,
+    )
+
+
+def _accepted(strides: Sequence[Stride]) -> list[Stride]:
+    return [stride for stride in strides if not stride.doubt]
+
+
+def _within_reach(feet: Sequence[FootResult]) -> tuple[FootResult, ...]:
+    """The feet with the strides that no person makes, alone or beside the other foot, told apart."""
+    own = [replace(foot, strides=doubted(foot.strides)) for foot in feet]
+    if len(own) != 2:
+        return tuple(own)
+    return tuple(
+        replace(
+            foot,
+            strides=out_of_reach(foot.strides, foot.time_s, foot.position_m, other.time_s, other.position_m),
+        )
+        for foot, other in (own, own[::-1])
     )
 
 
@@ -225,7 +255,8 @@ def _foot_numbers(foot: FootResult) -> dict[str, object]:
         "straight_strides": len(straight),
         "rests": len(phases(foot.still)),
         "rests_refused_samples": foot.refused,
-        "distance_m": sum(stride.length_m for stride in foot.strides),
+        "strides_refused": len(foot.strides) - len(_accepted(foot.strides)),
+        "distance_m": sum(stride.length_m for stride in _accepted(foot.strides)),
         "from_start_to_end_m": float(
             np.linalg.norm((foot.position_m[known[-1]] - foot.position_m[known[0]])[:2])
         ),
@@ -268,7 +299,7 @@ def _landing(foot: FootResult, stride: Stride) -> int:
 
 def _straight(strides: Sequence[Stride]) -> list[Stride]:
     bound = np.radians(STRAIGHT_DEG)
-    return [s for s in strides if np.isnan(s.turn_rad) or abs(s.turn_rad) <= bound]
+    return [s for s in _accepted(strides) if np.isnan(s.turn_rad) or abs(s.turn_rad) <= bound]
 
 
 def _warnings(foot: FootResult) -> list[str]:
@@ -279,10 +310,9 @@ def _warnings(foot: FootResult) -> list[str]:
         late = float(foot.time_s[int(foot.still.argmax())] - foot.time_s[0])
         if late > 1.0:
             found.append(f"{foot.name}: moves from the start; nothing is known of the first {late:.1f} s")
-    longest = max((s.swing_s for s in foot.strides), default=0.0)
-    usual = float(np.median([s.swing_s for s in foot.strides])) if foot.strides else 0.0
-    if longest > 2.0 * usual > 0.0:
-        found.append(
-            f"{foot.name}: one stride swings for {longest:.2f} s, usual is {usual:.2f} s; a rest may have been missed"
-        )
+    refused = [stride for stride in foot.strides if stride.doubt]
+    for stride in refused[:_MOST_TOLD]:
+        found.append(f"{foot.name}: the stride at {stride.start_s:.2f} s is refused: {stride.doubt}")
+    if len(refused) > _MOST_TOLD:
+        found.append(f"{foot.name}: {len(refused) - _MOST_TOLD} more strides are refused")
     return found

@@ -17,7 +17,7 @@ STRIDES_FILE, TRAJECTORY_FILE, SUMMARY_FILE = "strides.csv", "trajectory.csv", "
 
 STRIDE_COLUMNS = (
     "foot", "stride", "start_s", "end_s", "length_m", "length_sd_m", "duration_s", "speed_m_s", "rise_m", "lift_m",
-    "swing_s", "turn_deg",
+    "swing_s", "turn_deg", "refused",
 )  # fmt: skip
 
 TRAJECTORY_COLUMNS = (
@@ -46,8 +46,9 @@ def write_strides(measured: StrideMeasurement, folder: str | Path) -> Path:
 def _stride_rows(measured: StrideMeasurement) -> Iterable[list[str]]:
     for foot in measured.feet:
         for number, stride in enumerate(foot.strides, start=1):
-            values = [getattr(stride, name) for name in STRIDE_COLUMNS[2:-1]]
-            yield [foot.name, str(number), *map(_cell, values), _cell(math.degrees(stride.turn_rad))]
+            values = [getattr(stride, name) for name in STRIDE_COLUMNS[2:-2]]
+            turn = _cell(math.degrees(stride.turn_rad))
+            yield [foot.name, str(number), *map(_cell, values), turn, stride.doubt]
 
 
 def _trajectory_rows(measured: StrideMeasurement) -> Iterable[list[str]]:
