@@ -8,20 +8,26 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from time import process_time
 
 import numpy as np
 from vqf import VQF, offlineVQF
 
 from benchmarks.checks import Check, Context
+from benchmarks.kernel import using
 from mbkf.conventions import Array
 from mbkf.imu.frames import change_frame, conjugate, multiply
 from mbkf.imu.orientation import Orientation, OrientSettings, orientations
 from mbkf.imu.orientation_error import OrientationError, orientation_error
 from mbkf.io.imu.files import read_imu
 from mbkf.io.imu.readings import ImuReadings
+from mbkf.kernel.loading import COMPILED, REFERENCE, library
 
 CHOSEN = ("05", "11", "21", "33")
 """Trials on which settings were chosen; the others show them."""
+
+FASTER = 10.0
+"""Smoothing by the compiled kernel against numpy, both by processor time in one run."""
 
 CUT_S, CUTS, BIAS_RAD_S, TURNING_RAD_S = 60.0, 10, float(np.radians(0.5)), 1.0
 """Length and number of pieces that start in motion, the bias that is added, and what counts as motion."""
@@ -52,6 +58,27 @@ def rows(context: Context) -> Iterator[Check]:
                     yield Check(f"BROAD, {kind}: {part} / VQF's, trials {label}", share, np.inf, "<=")
         yield from _spreads(kind, own, sensors)
     yield from _starts(sensors)
+    yield from _speed(sensors[0])
+
+
+def _speed(one: ImuReadings) -> Iterator[Check]:
+    """Smoothing by the compiled kernel beside smoothing in numpy, on one trial, by processor time."""
+    if library() is None:
+        yield Check("smoothing, compiled: times faster than numpy", np.nan, FASTER, ">=")
+        return
+    spent, found = dict[str, float](), dict[str, Array]()
+    for kernel in (COMPILED, REFERENCE, COMPILED):  # the first one loads libraries
+        with using(kernel):
+            begun = process_time()
+            found[kernel] = _followed([one], "smooth")[0].quaternion
+            spent[kernel] = process_time() - begun
+    yield Check(
+        "smoothing, compiled: times faster than numpy", spent[REFERENCE] / spent[COMPILED], FASTER, ">="
+    )
+    share = len(one.time_s) / one.rate_hz / spent[COMPILED]
+    yield Check("smoothing, compiled: seconds of one sensor per second", share, -np.inf, ">=")
+    apart = float(np.nanmax(np.abs(found[COMPILED] - found[REFERENCE])))
+    yield Check("smoothing, compiled: largest difference of a quaternion from numpy's", apart, 1e-9, "<=")
 
 
 def _followed(sensors: Sequence[ImuReadings], method: str) -> list[Orientation]:

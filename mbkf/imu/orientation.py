@@ -12,8 +12,8 @@ from mbkf.conventions import Array, StageCallback, read_only
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.imu.frames import FRAMES, change_frame, exponential, multiply, rotate
 from mbkf.imu.madgwick import MadgwickFilter, MadgwickSettings, MadgwickState
+from mbkf.imu.orientation_course import orientation_course
 from mbkf.imu.orientation_ekf import OrientationFilter, OrientationSettings
-from mbkf.imu.orientation_smoothing import smoothed
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.numerics.cardan import cardan_angles, quaternion_matrices
 
@@ -228,15 +228,10 @@ def _run(
         P = begin.P.copy()
         P[:, [0, 1, 2], [0, 1, 2]] = GIVEN_SD_RAD**2
         begin = begin._replace(quaternion=start, P=P)
-    passages = _counted(kalman.run(gyro, force, field, begin), count_one)
-    if settings.method == "smooth":
-        course = smoothed(begin, passages)
-        q, bias, variance = course.quaternion, course.gyro_bias, course.variance
-    else:
-        states = [begin, *(passage.state for passage in passages)]
-        q = np.array([state.quaternion for state in states])
-        bias = np.array([state.gyro_bias for state in states])
-        variance = np.array([np.diagonal(state.P, axis1=1, axis2=2) for state in states])
+    smooth = settings.method == "smooth"
+    q, bias, variance = orientation_course(
+        kalman, begin, gyro, force, field, smooth=smooth, count_one=count_one
+    )
     sd = np.sqrt(np.maximum(variance[:, :, :3], 0.0))
     if magnetic:
         sd[:, :, 2] = np.hypot(sd[:, :, 2], settings.ekf.field_direction_sd_rad)

@@ -259,6 +259,7 @@ class OrientationFilter:
         phi[:, :3, 3:6] = -dt * R
         phi[:, 6:, :3] = -dt * skew(force)
         P = phi @ state.P @ phi.transpose(0, 2, 1)
+        P = 0.5 * (P + P.transpose(0, 2, 1))  # rounding that is not symmetric would grow
         diagonal = P.reshape(len(q), -1)[:, :: ERRORS + 1]
         diagonal += self._noise
         turned = (rate * rate).sum(axis=1) * s.gyro_scale_noise**2 + s.gyro_noise**2

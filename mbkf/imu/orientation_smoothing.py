@@ -55,6 +55,7 @@ def smoothed(start: OrientationState, passages: Iterable[Passage]) -> SmoothedOr
         C = gains[k]
         delta = (C @ (corrections[k] + delta)[:, :, None])[:, :, 0]
         P = states[k].P + C @ (P - priors[k]) @ C.transpose(0, 2, 1)
+        P = 0.5 * (P + P.transpose(0, 2, 1))
         deltas[k] = delta
         variance[k] = np.diagonal(P, axis1=1, axis2=2)
     turned = multiply(exponential(deltas[:, :, :3]), quaternion)

@@ -10,6 +10,7 @@ from typing import Protocol
 from mbkf.errors import InvalidInput
 from mbkf.kernel.contact_functions import ContactFunctions
 from mbkf.kernel.covariance_functions import CovarianceFunctions
+from mbkf.kernel.orientation_functions import OrientationFunctions
 from mbkf.kernel.readings_functions import ReadingFunctions
 from mbkf.kernel.tree_functions import TreeFunctions
 
@@ -19,7 +20,9 @@ SWITCH = "MBKF_KERNEL"
 COMPILED, REFERENCE = "compiled", "reference"
 
 
-class Library(CovarianceFunctions, TreeFunctions, ReadingFunctions, ContactFunctions, Protocol):
+class Library(
+    CovarianceFunctions, TreeFunctions, ReadingFunctions, ContactFunctions, OrientationFunctions, Protocol
+):
     """The functions of ``mbkf/kernel/module.c``."""
 
 

@@ -10,6 +10,7 @@
 #include "differences.h"
 #include "manifold.h"
 #include "markers_binding.h"
+#include "orientation_binding.h"
 #include "product.h"
 #include "contact_binding.h"
 #include "tree_binding.h"
@@ -335,8 +336,8 @@ static struct PyModuleDef definition = {
 PyMODINIT_FUNC PyInit__kernel(void)
 {
     PyObject *module = PyModule_Create(&definition);
-    PyMethodDef *const further[] = {tree_functions, marker_functions, contact_functions};
-    for (int k = 0; module && k < 3; k++)
+    PyMethodDef *const further[] = {tree_functions, marker_functions, contact_functions, orientation_functions};
+    for (int k = 0; module && k < 4; k++)
         if (PyModule_AddFunctions(module, further[k]) < 0)
             Py_CLEAR(module);
     return module;
