@@ -64,7 +64,7 @@ class OrientationSettings:
     """
 
     gyro_noise: float = 2e-3
-    gyro_scale_noise: float = 2e-3
+    gyro_scale_noise: float = 1.75e-3
     bias_walk: float = 5e-5
     accelerometer_noise: float = 0.05
     start_tilt_sd_rad: float = 0.1
