@@ -118,7 +118,8 @@ def _own(path: Path, data: Array, k: int, width: int) -> Array:
 
 def _turned_back(turn: Array, world: Array) -> Array:
     """(T, 3) vectors of the world in the sensor's axes."""
-    sizes = np.linalg.norm(turn, axis=1)
+    with np.errstate(over="ignore"):
+        sizes = np.linalg.norm(turn, axis=1)
     out = np.full_like(world, np.nan)
     there = np.isfinite(sizes) & (sizes > 0.5)
     out[there] = Rotation.from_quat(turn[there]).inv().apply(world[there])

@@ -121,4 +121,4 @@ def rate_of(time_s: Array, where: str) -> float:
     if usual <= 0.0:
         raise InvalidInput(f"{where}: the times do not increase; give the rate with --rate")
     regular = steps[np.abs(steps - usual) < 0.5 * usual]
-    return 1.0 / float(regular.mean())
+    return 1.0 / float(regular.mean() if len(regular) else usual)

@@ -140,6 +140,6 @@ def _with_gravity(free: Array, turn: Array | None) -> Array:
 
 def _unit(turn: Array) -> Array:
     """(T, 4) unit quaternions; what is none is missing."""
-    size = np.linalg.norm(turn, axis=1, keepdims=True)
-    with np.errstate(invalid="ignore", divide="ignore"):
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        size = np.linalg.norm(turn, axis=1, keepdims=True)
         return np.where((size > 0.5) & (size < 2.0), turn / size, np.nan)

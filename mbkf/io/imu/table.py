@@ -282,10 +282,9 @@ def _factors(
 
 def _likely(kind: str, values: Array) -> str:
     """The unit that the size of readings speaks for; for a question only."""
-    with np.errstate(invalid="ignore"):
-        size = np.abs(values)
-        middle = float(np.nanmedian(size.max(axis=1))) if np.isfinite(size).any() else 0.0
-        large = float(np.nanmax(size)) if np.isfinite(size).any() else 0.0
+    size = np.abs(values[np.isfinite(values).all(axis=1)])
+    middle = float(np.median(size.max(axis=1))) if len(size) else 0.0
+    large = float(size.max()) if len(size) else 0.0
     if kind == "acc":
         return "g" if middle < 4.0 else "m/s2" if middle < 100.0 else "mg"
     if kind == "gyr":

@@ -61,7 +61,7 @@ def _streams(path: Path) -> Sequence[dict[str, Any]]:
     content = path.read_bytes()
     if path.suffix.lower() == ".xdfz":
         content = gzip.decompress(content)
-    with _errors_of("pyxdf.pyxdf") as told:
+    with _errors_of("pyxdf.pyxdf") as told, np.errstate(all="ignore"):
         streams, _ = pyxdf.load_xdf(io.BytesIO(content))
     if told:
         raise FileFormatError(path, f"damaged or cut short ({told[0]}); record or copy it again")
