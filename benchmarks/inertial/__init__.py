@@ -6,7 +6,7 @@ The rows stand in modules of their own, one per question.
 from __future__ import annotations
 
 from benchmarks.checks import Check, Context
-from benchmarks.inertial import against_vqf, body, files, motion, orientation, stride, stride_unrest
+from benchmarks.inertial import against_vqf, body, files, live, motion, orientation, stride, stride_unrest
 from mbkf.numerics.threads import single_threaded
 
 
@@ -19,6 +19,7 @@ def run(context: Context) -> list[Check]:
             *orientation.fault_rows(context),
             *against_vqf.rows(context),
             *motion.rows(context),
+            *live.rows(context),
             *body.angle_rows(context),
             *body.marker_rows(context),
             *stride.rows(context),

@@ -1,4 +1,4 @@
-"""`mbkf imu`: orientation, tuning, joint angles, motion, virtual sensors and strides from inertial sensors."""
+"""`mbkf imu`: orientation, tuning, joint angles, motion (also live), virtual sensors and strides."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from mbkf.conventions import Array
     from mbkf.io.imu.readings import ImuReadings
+    from mbkf.io.subject import Subject
     from mbkf.model.human import HumanModel
 
-SUBCOMMANDS = ("orient", "tune", "synth", "angles", "motion", "stride")
+SUBCOMMANDS = ("orient", "tune", "synth", "angles", "motion", "live", "replay", "stride")
 """Each is the module ``mbkf.cli.imu_<name>``."""
 
 _EPILOG = """\
@@ -29,7 +30,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the group to the command line."""
     parser = subparsers.add_parser(
         "imu",
-        help="inertial sensors: orientation, tuning, joint angles, motion, virtual sensors, stride length",
+        help="inertial sensors: orientation, tuning, joint angles, motion (also live), virtual sensors, stride length",
         description="Work with inertial sensors.",
         epilog=_EPILOG,
     )
@@ -69,6 +70,34 @@ def add_standing_options(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="several files: they started at the same moment, whatever their clocks tell",
     )
+
+
+def add_person_options(parser: argparse.ArgumentParser) -> None:
+    """Options that tell who wears the sensors."""
+    parser.add_argument("--subject", metavar="SUBJECT.toml", help="the scaled person")
+    parser.add_argument("--mass", metavar="KG", type=float, help="body mass of a person who is not scaled")
+    parser.add_argument("--height", metavar="M", type=float, help="body height of a person who is not scaled")
+
+
+def person_told(args: argparse.Namespace) -> Subject:
+    """The person of a file, or of a mass and a height.
+
+    Raises:
+        MbkfError: The file cannot be read, or nobody is told.
+    """
+    from mbkf.errors import InvalidInput
+    from mbkf.io.subject import read_subject
+    from mbkf.scaling.stature import person_of_stature
+
+    if args.subject is not None:
+        if args.mass is not None or args.height is not None:
+            raise InvalidInput(
+                "--mass and --height are for a person who is not scaled; leave them out beside --subject"
+            )
+        return read_subject(args.subject)
+    if args.mass is None or args.height is None:
+        raise InvalidInput("who wears the sensors? give --subject SUBJECT.toml, or --mass KG and --height M")
+    return person_of_stature(args.mass, args.height)
 
 
 def standing_told(args: argparse.Namespace) -> tuple[float, float] | tuple[ImuReadings, ...] | None:

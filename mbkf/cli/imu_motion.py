@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from mbkf.io.subject import Subject
     from mbkf.pipelines.imu.motion import InertialMotion
 
 _EPILOG = """\
@@ -27,7 +26,7 @@ Writes the folder that `mbkf reconstruct` writes (summary.json, motion.h5, OpenS
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Adds the command to the command line."""
-    from mbkf.cli.imu import add_reading_options, add_standing_options
+    from mbkf.cli.imu import add_person_options, add_reading_options, add_standing_options
 
     parser = subparsers.add_parser(
         "motion",
@@ -38,9 +37,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("files", metavar="FILE", nargs="+", help="inertial readings of the trial")
     add_reading_options(parser)
     add_standing_options(parser)
-    parser.add_argument("--subject", metavar="SUBJECT.toml", help="the scaled person")
-    parser.add_argument("--mass", metavar="KG", type=float, help="body mass of a person who is not scaled")
-    parser.add_argument("--height", metavar="M", type=float, help="body height of a person who is not scaled")
+    add_person_options(parser)
     parser.add_argument("--sensor", metavar="NAME", action="append", default=[], help="only these sensors")
     parser.add_argument(
         "--causal", action="store_true", help="no later frame corrects an earlier one, as live"
@@ -55,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         MbkfError: An input is unusable.
     """
-    from mbkf.cli.imu import posture_told, read_session, standing_told
+    from mbkf.cli.imu import person_told, posture_told, read_session, standing_told
     from mbkf.cli.progress import stages
     from mbkf.errors import UnknownName
     from mbkf.io.atomic import check_folder
@@ -65,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.pipelines.imu.motion import InertialMotionSettings, inertial_motion
     from mbkf.pipelines.results.summary import summarise
 
-    folder, person = check_folder(args.out, RESULT_FILES), _person(args)
+    folder, person = check_folder(args.out, RESULT_FILES), person_told(args)
     sensors = read_session(args.files, args)
     for name in args.sensor:
         if name not in [one.name for one in sensors]:
@@ -86,23 +83,6 @@ def run(args: argparse.Namespace) -> int:
     _print(found)
     print(folder)
     return 0
-
-
-def _person(args: argparse.Namespace) -> Subject:
-    """The person of a file, or of a mass and a height."""
-    from mbkf.errors import InvalidInput
-    from mbkf.io.subject import read_subject
-    from mbkf.scaling.stature import person_of_stature
-
-    if args.subject is not None:
-        if args.mass is not None or args.height is not None:
-            raise InvalidInput(
-                "--mass and --height are for a person who is not scaled; leave them out beside --subject"
-            )
-        return read_subject(args.subject)
-    if args.mass is None or args.height is None:
-        raise InvalidInput("who wears the sensors? give --subject SUBJECT.toml, or --mass KG and --height M")
-    return person_of_stature(args.mass, args.height)
 
 
 def _print(found: InertialMotion) -> None:

@@ -7,12 +7,12 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from mbkf.cli.live_output import add_output_options, say, sinks, told
 
 if TYPE_CHECKING:
     from mbkf.io.subject import Subject
-    from mbkf.stream.results.frame import FrameSink
-    from mbkf.stream.run.session import LiveOutcome, LiveSession
     from mbkf.stream.run.standing import KnownPerson, ScaledPerson, StandingStart
     from mbkf.stream.source import FrameSource
     from mbkf.viz.live.standing_page import StandingPage
@@ -106,20 +106,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="X",
         help="file: times real time; 0 for as fast as it goes",
     )
-    out = parser.add_argument_group("results while it runs")
-    out.add_argument("--publish", metavar="NAME", help="send results as an LSL stream of this name")
-    out.add_argument("--websocket", metavar="[ADDRESS:]PORT", help="serve results as JSON over WebSocket")
-    out.add_argument(
-        "--view-address", default="127.0.0.1", metavar="ADDRESS", help="where the page is served"
-    )
-    out.add_argument("--view-port", type=int, default=0, metavar="N", help="port of the page (default: any)")
-    out.add_argument("--token", metavar="TEXT", help="what page and WebSocket ask for on another address")
-    out.add_argument(
-        "--end-with-input",
-        action="store_true",
-        help="end when the standard input closes, for programs that start it",
-    )
-    out.add_argument("--keep-log", action="store_true", help="keep the log beside the results")
+    add_output_options(parser)
     parser.set_defaults(run=run)
 
 
@@ -159,7 +146,7 @@ def run(args: argparse.Namespace) -> int:
     with stopped_by_signal() as stop, _waiting_page(args) as waiting:
         if args.end_with_input:
             stop_with_input(stop)
-        _say(f"waiting for {args.source} …")
+        say(f"waiting for {args.source} …")
         patience = None if args.seconds is None else max(args.seconds, LEAST_PATIENCE_S)
         try:
             if isinstance(person, Subject):
@@ -171,14 +158,14 @@ def run(args: argparse.Namespace) -> int:
                 session = LiveSession(found.source, found.subject, settings, folder, name, found.report)
             if not session.connect(stop, patience):
                 raise InvalidInput(NO_STREAM)
-            sinks = _sinks(args, session, waiting)
+            listeners = sinks(args, session, waiting)
         except BaseException:
             source.close()
             raise
         stream, markers = session.setup.stream, len(session.setup.names)
-        _say(f"following {stream.trial}: {markers} markers at {stream.rate_hz:g} Hz")
-        outcome = session.run(stop, sinks, args.seconds, keep_log=args.keep_log)
-    return _told(outcome, folder)
+        say(f"following {stream.trial}: {markers} markers at {stream.rate_hz:g} Hz")
+        outcome = session.run(stop, listeners, args.seconds, keep_log=args.keep_log)
+    return told(outcome, folder)
 
 
 def _check_numbers(args: argparse.Namespace) -> None:
@@ -230,7 +217,7 @@ def _say_on_both(waiting: StandingPage | None) -> Callable[[str], None]:
     """Says a sentence in the terminal, and on the page if there is one."""
 
     def show(text: str) -> None:
-        _say(text)
+        say(text)
         if waiting is not None:
             waiting.say(text)
 
@@ -250,7 +237,7 @@ def _standing(
     if not start.connect(stop, patience_s):
         raise InvalidInput(NO_STREAM)
     if waiting is not None:
-        _say(f"page: {waiting.open(start.stream.trial)}")
+        say(f"page: {waiting.open(start.stream.trial)}")
     found = start.find(stop, patience_s)
     if found is None:
         raise InvalidInput("stopped before a person was scaled; live.json lists what was seen")
@@ -282,94 +269,14 @@ def _source(args: argparse.Namespace) -> FrameSource:
     return FileSource(played(capture, args.unlabelled), args.speed)
 
 
-def _sinks(args: argparse.Namespace, session: LiveSession, waiting: StandingPage | None) -> list[FrameSink]:
-    sinks: list[FrameSink] = []
-    if args.publish is not None:
-        from mbkf.stream.lsl.results import LslResults
-
-        sinks.append(LslResults(session.setup.model, args.publish, session.setup.stream.rate_hz))
-    if args.websocket is not None:
-        from mbkf.stream.results.websocket import WebSocketResults, parse_address
-
-        address, port = parse_address(args.websocket)
-        served = WebSocketResults(session.setup.model, address, port, args.token)
-        _say(f"results: {served.url}")
-        sinks.append(served)
-    if args.view:
-        sinks.append(_live_page(args, session, waiting))
-    return sinks
-
-
-def _live_page(args: argparse.Namespace, session: LiveSession, waiting: StandingPage | None) -> FrameSink:
-    """The live page, where the waiting page was if there was one."""
-    from mbkf.viz.live.page import LivePage
-
-    port, token = (args.view_port, args.token) if waiting is None else waiting.hand_over()
-    page = LivePage(
-        session.setup.model,
-        session.setup.names,
-        session.setup.plate_corners_m,
-        title=session.setup.stream.trial,
-        address=args.view_address,
-        port=port,
-        token=token,
-    )
-    if waiting is None:
-        _say(f"page: {page.url}")
-    return page
-
-
 def _recover(folder: Path) -> int:
     from mbkf.errors import InvalidInput
     from mbkf.stream.run.folder import write_results
 
     written = write_results(folder, ("live: made from the log of a run that broke off",))
     for sentence in written.left_out:
-        _say(f"mbkf: {sentence}")
+        say(f"mbkf: {sentence}")
     if written.summary is None:
         raise InvalidInput(f"nothing can be recovered: {written.problem}")
     print(f"{folder}: {written.summary['frames']} frames recovered")
     return 0
-
-
-def _told(outcome: LiveOutcome, folder: Path) -> int:
-    """Prints how the run went; 1 where it failed and yet left results.
-
-    Raises:
-        InvalidInput: Its results could not be written.
-    """
-    from mbkf.cli.reconstruct import print_summary
-    from mbkf.errors import InvalidInput
-
-    if outcome.summary is not None:
-        print_summary(outcome.summary, folder)
-    report = outcome.report
-    lag = f" besides a lag of {_ms(report['lag_ms'])} ms" if report["lag_ms"] else ""
-    print(
-        f"{report['frames_in']} frames came, {report['frames_lost']} were lost; latency median "
-        f"{_ms(report['latency_ms_median'])}, 99 % {_ms(report['latency_ms_p99'])} ms{lag}; {report['ended_by']}"
-    )
-    failed = [] if outcome.failure is None else [f"it ended early: {outcome.failure}"]
-    logged, unlogged = report["frames_written"], report["frames_not_written"]
-    if unlogged:
-        failed.append(f"{unlogged} frames were never logged and cannot be recovered")
-    if outcome.problem is not None:
-        failed.insert(0, f"the results could not be written: {outcome.problem}")
-        if report["log"] and logged:
-            failed.append(
-                f"{logged} frames are in its log, of which 'mbkf live --recover {folder}' makes results"
-            )
-        raise InvalidInput("; ".join(failed))
-    if failed:
-        _say(f"mbkf: error: {'; '.join(failed)}; {folder} holds the results of {logged} frames")
-    return 1 if failed else 0
-
-
-def _ms(value: Any) -> str:
-    return "–" if value is None else f"{value:.1f}"
-
-
-def _say(text: str) -> None:
-    from rich.console import Console
-
-    Console(stderr=True, highlight=False, markup=False).print(text, soft_wrap=True)

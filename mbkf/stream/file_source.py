@@ -47,7 +47,7 @@ class FileSource:
         none = np.zeros((0, 3))
         named = bool(self._played.stream.marker_names)
         markers, points = (frame.markers_m, none) if named else (none, frame.markers_m)
-        return SourceFrame(frame.number, time.perf_counter(), markers, points, frame.plates)
+        return SourceFrame(frame.number, time.perf_counter(), markers, points, frame.plates, frame.imus)
 
     def news(self) -> list[tuple[str, str]]:
         """Nothing happens to a file."""

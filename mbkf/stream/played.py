@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,8 +10,11 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
+from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.records import Capture, PlateReadings
 from mbkf.io.resample import WHOLE
+from mbkf.pipelines.imu.motion_inputs import frame_times
+from mbkf.pipelines.imu.on_body import frame_readings
 from mbkf.stream.source import PlateSamples, StreamDescription, without_readings
 
 
@@ -23,11 +26,13 @@ class PlayedFrame:
         number: From 0.
         markers_m: (M, 3) named markers, NaN where missing; for points without names (C, 3), in any order.
         plates: The plates' samples until the end of the frame that were not sent before.
+        imus: (S, 6) readings of inertial sensors; None where there are none.
     """
 
     number: int
     markers_m: Array
     plates: PlateSamples
+    imus: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -38,11 +43,13 @@ class Played:
         stream: Its description.
         markers_m: (T, M, 3) markers or points.
         wrench: (S, K, 6) readings of all plates about their own origins.
+        imus: (T, S, 6) angular velocity rad/s and specific force m/s² of inertial sensors; None where there are none.
     """
 
     stream: StreamDescription
     markers_m: Array
     wrench: Array
+    imus: Array | None = None
 
     def __len__(self) -> int:
         return len(self.markers_m)
@@ -64,7 +71,8 @@ class Played:
             last = np.ceil(offset + (number + 0.5) * ratio - WHOLE)
             until = min(int(last) + 1, len(self.wrench))
             index = np.arange(sent, max(until, sent))
-            yield PlayedFrame(number, markers, PlateSamples(index, self.wrench[index]))
+            imus = None if self.imus is None else self.imus[number]
+            yield PlayedFrame(number, markers, PlateSamples(index, self.wrench[index]), imus)
             sent = max(until, sent)
 
 
@@ -100,6 +108,26 @@ def played(capture: Capture, unlabelled: bool = False, seed: int = 0) -> Played:
         tuple(without_readings(plate) for plate in plates),
     )
     return Played(stream, positions, wrench)
+
+
+def played_sensors(readings: Sequence[ImuReadings], trial: str) -> Played:
+    """Recorded inertial sensors as a stream, at the first one's times.
+
+    Args:
+        readings: The sensors, on one clock.
+        trial: Name of the recording.
+
+    Raises:
+        InvalidInput: There are no sensors, or fewer than two samples.
+    """
+    if not readings or readings[0].samples < 2:
+        raise InvalidInput(f"{trial} has no readings to play")
+    times_s = frame_times(readings[0])
+    rate_hz = readings[0].rate_hz / round(readings[0].samples / len(times_s))
+    names = tuple(one.name for one in readings)
+    stream = StreamDescription(trial, (), rate_hz, float(times_s[0]), sensors=names)
+    none = np.zeros((len(times_s), 0, 3))
+    return Played(stream, none, np.zeros((0, 0, 6)), frame_readings(readings, times_s))
 
 
 def _shuffled(points_m: Array, rng: np.random.Generator) -> Array:

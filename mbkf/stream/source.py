@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array
+from mbkf.io.imu.plausible import MOST_MPS2, MOST_RAD_S
 from mbkf.io.records import PlateReadings
 
 FARTHEST_M = 100.0
@@ -31,6 +32,7 @@ class StreamDescription:
         rate_hz: Frame rate.
         start_time_s: Time of frame 0 of the source's own counting.
         plates: Its plates without readings, all at one rate; ``start_time_s`` is the time of sample 0.
+        sensors: (S,) its inertial sensors.
     """
 
     trial: str
@@ -38,6 +40,7 @@ class StreamDescription:
     rate_hz: float
     start_time_s: float = 0.0
     plates: tuple[PlateReadings, ...] = ()
+    sensors: tuple[str, ...] = ()
 
     @property
     def plate_rate_hz(self) -> float:
@@ -74,6 +77,8 @@ class SourceFrame:
         markers_m: (M, 3) named markers, NaN where missing.
         unlabelled_m: (N, 3) points without names.
         plates: What the plates read since the frame before.
+        imus: (S, 6) angular velocity rad/s and specific force m/s² of inertial sensors in their own axes, NaN where
+            missing; None where there are none.
     """
 
     number: int
@@ -81,6 +86,7 @@ class SourceFrame:
     markers_m: Array
     unlabelled_m: Array
     plates: PlateSamples
+    imus: Array | None = None
 
 
 class FrameSource(Protocol):
@@ -132,6 +138,12 @@ def plausible(points_m: Array) -> tuple[Array, int]:
         wrong = ~missing & np.asarray(far.any(axis=1))
         return np.where((missing | wrong)[:, None], np.nan, points_m), int(wrong.sum())
     return (np.where(missing[:, None], np.nan, points_m) if missing.any() else points_m), 0
+
+
+def plausible_imus(imus: Array) -> tuple[Array, int]:
+    """Readings (S, 6) with impossible ones replaced by NaN, and the number of sensors that read such."""
+    wrong = np.abs(imus) > np.repeat([MOST_RAD_S, MOST_MPS2], 3)
+    return (np.where(wrong, np.nan, imus), int(wrong.any(axis=1).sum())) if wrong.any() else (imus, 0)
 
 
 def empty_plate(

@@ -24,7 +24,6 @@ from mbkf.imu.turning import with_turning
 from mbkf.imu.worn_mounts import MountSettings, Worn, worn_mounts
 from mbkf.io.imu.mount import ImuMount
 from mbkf.io.imu.readings import ImuReadings
-from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.model.clinical import ClinicalAngles
@@ -40,12 +39,11 @@ from mbkf.pipelines.imu.motion_inputs import (
     motion_recording,
     worn_filter,
 )
+from mbkf.pipelines.imu.motion_result import Timeline, motion_result
 from mbkf.pipelines.imu.motion_start import StartSettings, first_posture
 from mbkf.pipelines.imu.orient import prepared
 from mbkf.pipelines.imu.standing import root_first, standing_window
 from mbkf.pipelines.imu.worn_otherwise import WornOtherwise, worn_otherwise
-from mbkf.pipelines.reconstruct import assemble
-from mbkf.pipelines.reconstruct_settings import ReconstructSettings
 
 GUESS_S = 20.0
 """A start in motion is guessed from orientations over so long."""
@@ -178,7 +176,15 @@ def inertial_motion(
         )
         notes = (*warnings, *worn.remarks, *found.told)
         strange = strange_fields(*_magnetometers(plan, worn, tracked))
-        result = _assembled(plan, subject, trial, (*notes, *(one.told for one in strange)), tracked)
+        result = motion_result(
+            subject,
+            segments,
+            Timeline(trial, 1.0 / _dt(plan), float(plan.times_s[0])),
+            tracked,
+            notes=(*notes, *(one.told for one in strange)),
+            told={"inertial": asdict(chosen)},
+            smooth=chosen.smooth,
+        )
     return InertialMotion(
         result, worn.mounts, worn.bias_rad_s, tuple(one.name for one in sensors), found, strange
     )
@@ -213,7 +219,8 @@ def _filter(plan: _Plan, worn: Worn | None = None) -> tuple[WornTracking, Record
     bias_sd = np.full(sensors.bias_rad_s.shape, s.filter.bias_sd_rad_s)
     standing_q = plan.posture if plan.posture_known else None
     filter = worn_filter(inputs, sensors, bias_sd, _first(plan, sensors), s.filter, standing_q)
-    return filter, motion_recording(plan.sensors, plan.segments, plan.model, plan.times_s, s.filter)
+    known = plan.sensors, plan.segments, plan.model, plan.times_s, s.filter
+    return filter, motion_recording(*known, causal=not s.smooth)
 
 
 def _magnetometers(plan: _Plan, worn: Worn, tracked: Track) -> tuple[list[ImuReadings], list[Array]]:
@@ -319,32 +326,3 @@ def _first(plan: _Plan, worn: Worn) -> FirstPosture:
     course = turned(course, held - forward)
     guess = configurations(plan.model, plan.segments, course[steps])
     return first_posture(plan.model, plan.segments, guess, dt, False, s.start)
-
-
-def _assembled(
-    plan: _Plan, subject: Subject, trial: str, notes: Sequence[str], tracked: Track
-) -> Reconstruction:
-    """The result as that of any trial, without markers and plates.
-
-    Args:
-        plan: Sensors and frames.
-        subject: The person.
-        trial: Name of the result.
-        notes: What is to be told.
-        tracked: The motion.
-    """
-    frames, dt = len(plan.times_s), _dt(plan)
-    none = MarkerTrajectories((), np.zeros((frames, 0, 3)), 1.0 / dt, float(plan.times_s[0]))
-    settings = ReconstructSettings(smooth=plan.settings.smooth, checks=False)
-    inputs = motion_inputs(plan.model, dt, plan.segments)
-    found = assemble(
-        Capture(trial, none, notes=tuple(notes)),
-        subject,
-        settings,
-        none,
-        np.zeros((frames, 0), bool),
-        inputs,
-        tracked,
-    )
-    told = {**found.settings, "inertial": asdict(plan.settings)}
-    return replace(found, protocol="inertial sensors", settings=told)

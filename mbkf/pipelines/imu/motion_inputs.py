@@ -15,6 +15,7 @@ from mbkf.filters.estimate import Recording
 from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.torque.settings import TorqueSettings
+from mbkf.imu.rest_watch import FeetAtRest
 from mbkf.imu.worn_mounts import Worn
 from mbkf.imu.zero_velocity import StillnessSettings, still_samples
 from mbkf.io.imu.readings import ImuReadings
@@ -94,6 +95,7 @@ def motion_recording(
     model: HumanModel,
     times_s: Array,
     settings: MotionSettings,
+    causal: bool = False,
 ) -> Recording:
     """What the sensors read at the frames' times, and when each foot is at rest.
 
@@ -103,9 +105,36 @@ def motion_recording(
         model: The body.
         times_s: (T,) the frames, s.
         settings: When a foot is at rest.
+        causal: Whether that is told by the readings until then, as live.
     """
-    frames = len(times_s)
-    rest = np.zeros((frames, 2))
+    frames, dt_s = len(times_s), float(times_s[1] - times_s[0])
+    imus = frame_readings(readings, times_s)
+    if causal:
+        feet = FeetAtRest(model.roles.feet, segments, 1.0 / dt_s, settings.stillness)
+        rest = np.array([feet.push(one) for one in imus])
+    else:
+        rest = _rest(readings, segments, model, times_s, settings)
+    none = np.zeros((frames, 0, 3)), np.zeros((frames, 0, 6))
+    return Recording(*none, dt_s, imus, {FOOT_REST: rest})
+
+
+def _rest(
+    readings: Sequence[ImuReadings],
+    segments: Sequence[str],
+    model: HumanModel,
+    times_s: Array,
+    settings: MotionSettings,
+) -> Array:
+    """(T, 2) 1 where the right, the left foot rests, by the readings about that time.
+
+    Args:
+        readings: The sensors.
+        segments: Segments that carry them.
+        model: The body.
+        times_s: (T,) the frames, s.
+        settings: When a foot is at rest.
+    """
+    rest = np.zeros((len(times_s), 2))
     for foot, name in enumerate(model.roles.feet):
         if name not in segments:
             continue
@@ -113,13 +142,7 @@ def motion_recording(
         force, rate = (np.nan_to_num(x) for x in (one.specific_force_mps2, one.angular_velocity_rad_s))
         still = still_samples(force, rate, one.rate_hz, settings.stillness)
         rest[:, foot] = np.interp(times_s, one.time_s, still.astype(float)) > 0.5
-    return Recording(
-        np.zeros((frames, 0, 3)),
-        np.zeros((frames, 0, 6)),
-        float(times_s[1] - times_s[0]),
-        frame_readings(readings, times_s),
-        {FOOT_REST: rest},
-    )
+    return rest
 
 
 def worn_filter(

@@ -13,6 +13,10 @@ from mbkf.io.imu.readings import ImuReadings
 STILL_RAD_S, STILL_S = 0.15, 1.0
 """Standing: no sensor turns faster (root mean square) for so long."""
 
+CALIBRATED_S = 2.5
+"""So long a standing is used where it lasts: a person sways, and a second's sway of a degree is taken for a gyroscope's
+bias of 1°/s, two and a half seconds' for one of 0.4°/s."""
+
 
 def root_first(names: Sequence[str], root: str) -> list[int]:
     """The root segment, usually the pelvis, first.
@@ -34,7 +38,8 @@ def standing_window(sensors: Sequence[ImuReadings], time_s: Array, standing: obj
     Args:
         sensors: The sensors' readings.
         time_s: (T,) the samples, s.
-        standing: Its first and last time, s; None for the first second in which no sensor turns.
+        standing: Its first and last time, s; None for the first second in which no sensor turns, and what of the
+            seconds after it is as calm, up to :data:`CALIBRATED_S` in all.
 
     Raises:
         InvalidInput: There are no readings then, or the person never stands still.
@@ -52,9 +57,15 @@ def standing_window(sensors: Sequence[ImuReadings], time_s: Array, standing: obj
         worst = np.maximum(worst, np.interp(time_s, one.time_s, rates))
     if len(worst) >= width:
         mean = np.convolve(worst**2, np.ones(width) / width, mode="valid")
-        calm = np.flatnonzero(mean < STILL_RAD_S**2)
-        if len(calm):
-            return slice(int(calm[0]), int(calm[0]) + width)
+        calm = mean < STILL_RAD_S**2
+        if calm.any():
+            first = int(np.argmax(calm))
+            ended = np.flatnonzero(~calm[first:])
+            seconds = int(ended[0]) if len(ended) else len(calm) - first
+            # Before a movement, half a second is left out: it begins slowly.
+            longest = seconds - 1 + width - (width // 2 if len(ended) else 0)
+            most = round(CALIBRATED_S * sensors[0].rate_hz)
+            return slice(first, first + max(width, min(longest, most)))
     raise InvalidInput(
         "the person never stands still for a second; stand at the start, or give the time with --standing T0:T1"
     )

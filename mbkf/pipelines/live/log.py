@@ -36,12 +36,14 @@ class LiveStream:
         rate_hz: Frame rate.
         start_time_s: Time of frame 0.
         plates: Its plates, without readings; sample 0 at their ``start_time_s``.
+        sensors: (S,) inertial sensors that alone show the person; none where markers do.
     """
 
     trial: str
     rate_hz: float
     start_time_s: float
     plates: tuple[PlateReadings, ...]
+    sensors: tuple[str, ...] = ()
 
 
 def plates_dtype(plates: int) -> np.dtype:
@@ -81,6 +83,7 @@ class LiveLog:
             "plates": [_described(plate) for plate in stream.plates],
             "settings": settings,
             "markers": names,
+            "sensors": list(stream.sensors),
         }
         self.frames = FrameLogWriter(folder / FRAMES_FILE, frames, header)
         self.plates = FrameLogWriter(folder / PLATES_FILE, plates_dtype(len(stream.plates)), {})
@@ -132,7 +135,8 @@ def read_live_log(folder: Path) -> Logged:
         _with_readings(plate, samples["index"], samples["wrench"][:, k])
         for k, plate in enumerate(header["plates"])
     )
-    stream = LiveStream(header["trial"], header["rate_hz"], header["start_time_s"], plates)
+    sensors = tuple(header.get("sensors", ()))
+    stream = LiveStream(header["trial"], header["rate_hz"], header["start_time_s"], plates, sensors)
     frames_lost = _told(len(log.rows) - len(rows) + log.left_out, "frames", FRAMES_FILE)
     told = tuple(sentence for sentence in (frames_lost, samples_lost) if sentence)
     return Logged(stream, tuple(header["markers"]), header["settings"], first, whole, told)

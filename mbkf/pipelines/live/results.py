@@ -8,11 +8,14 @@ from pathlib import Path
 import numpy as np
 
 from mbkf.errors import NotObservable
-from mbkf.filters.tracking import track_of
+from mbkf.filters.tracking import Track, track_of
+from mbkf.imu.segments import segment_of
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject, read_subject
+from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
+from mbkf.pipelines.imu.motion_result import Timeline, motion_result
 from mbkf.pipelines.live.filter import live_inputs
 from mbkf.pipelines.live.log import SUBJECT_FILE, Logged, read_live_log
 from mbkf.pipelines.reconstruct import ReconstructSettings, assemble
@@ -47,6 +50,8 @@ def results_of(logged: Logged, subject: Subject, notes: tuple[str, ...] = ()) ->
     chosen = str(logged.settings["filter"])
     settings = ReconstructSettings(filter=chosen, smooth=False, correct_markers=False)
     result = track_of(logged.rows)
+    if logged.stream.sensors:
+        return _by_sensors(logged, subject, notes, result)
     if not result.starts:
         raise NotObservable(
             "in no frame of the stream did the markers fit the scaled body; is this the subject's protocol, "
@@ -62,6 +67,26 @@ def results_of(logged: Logged, subject: Subject, notes: tuple[str, ...] = ()) ->
     return replace(found, settings=logged.settings)
 
 
+def _by_sensors(logged: Logged, subject: Subject, notes: tuple[str, ...], tracked: Track) -> Reconstruction:
+    """The result where inertial sensors alone show the person.
+
+    Args:
+        logged: Contents of the log.
+        subject: The person.
+        notes: Remarks for the reader.
+        tracked: What the filter found.
+    """
+    stream, joints = logged.stream, HumanModel.of(subject).joints
+    segments = [segment_of(name, joints) for name in stream.sensors]
+    timeline = Timeline(stream.trial, stream.rate_hz, _start_s(logged))
+    with single_threaded(), np.errstate(invalid="ignore", divide="ignore"):
+        return motion_result(subject, segments, timeline, tracked, notes=notes, told=logged.settings)
+
+
+def _start_s(logged: Logged) -> float:
+    return logged.stream.start_time_s + logged.first / logged.stream.rate_hz
+
+
 def _measured(logged: Logged) -> MarkerTrajectories:
-    start = logged.stream.start_time_s + logged.first / logged.stream.rate_hz
+    start = _start_s(logged)
     return MarkerTrajectories(logged.names, logged.rows["measured_m"], logged.stream.rate_hz, start)

@@ -181,7 +181,7 @@ def read_marker_info(info: StreamInfo) -> tuple[StreamDescription, MarkerLayout,
     where = f"LSL stream '{info.name()}'"
     if not info.nominal_srate() > 0.0:
         raise InvalidInput(f"{where} states no rate; the filter needs a regular one")
-    channels = _channels(info)
+    channels = described_channels(info)
     names, named, nameless = [], [], []
     for k, triple in _groups(channels, _POSITION):
         if triple.get("marker"):
@@ -217,7 +217,7 @@ def read_plates_info(info: StreamInfo) -> tuple[tuple[PlateReadings, ...], Plate
         InvalidInput: It states no rate, or its plates and channels do not belong together.
     """
     where = f"LSL stream '{info.name()}'"
-    desc, channels = info.desc(), _channels(info)
+    desc, channels = info.desc(), described_channels(info)
     if not info.nominal_srate() > 0.0:
         raise InvalidInput(f"{where} states no rate; the filter needs a regular one")
     loads = [k for k, _ in _groups(channels, _LOAD)]
@@ -263,7 +263,8 @@ def _channel(channels: Any, **values: str) -> None:
         entry.append_child_value(key, value)
 
 
-def _channels(info: StreamInfo) -> list[dict[str, str]]:
+def described_channels(info: StreamInfo) -> list[dict[str, str]]:
+    """Label, marker, plate, type and unit of every channel, as far as the stream describes them."""
     found = []
     entry = info.desc().child("channels").child("channel")
     while not entry.empty():

@@ -14,7 +14,7 @@ from mbkf.stream.receiving.numbering import Numbered, Numbering, readable
 from mbkf.stream.receiving.plate_buffer import PlateBuffer
 from mbkf.stream.receiving.rate_watch import RateWatch
 from mbkf.stream.receiving.sample_numbering import SampleNumbering
-from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription, plausible
+from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription, plausible, plausible_imus
 
 BRIDGED_S = 1.0
 """A gap up to this long is filled with empty frames, which keep the filter's clock true; after a longer one it starts
@@ -37,6 +37,7 @@ class ReadyFrame(NamedTuple):
         unlabelled_m: (N, 3) points without names.
         plates: (K, 6) mean wrenches about the world's origin, NaN where not read.
         lost: Whether the frame never came.
+        imus: (S, 6) readings of inertial sensors, NaN where missing; None where there are none.
     """
 
     number: int
@@ -45,6 +46,7 @@ class ReadyFrame(NamedTuple):
     unlabelled_m: Array
     plates: Array
     lost: bool = False
+    imus: Array | None = None
 
 
 class FrameAlignment:
@@ -102,7 +104,14 @@ class FrameAlignment:
         self._check_plates(frame, place.number)
         return [
             *ready,
-            ReadyFrame(place.number, frame.arrival_s, markers, points, self._plates.mean(place.number)),
+            ReadyFrame(
+                place.number,
+                frame.arrival_s,
+                markers,
+                points,
+                self._plates.mean(place.number),
+                imus=self._imus(frame, place.number),
+            ),
         ], samples
 
     def _missing(self, place: Numbered, arrival_s: float) -> list[ReadyFrame]:
@@ -141,6 +150,14 @@ class FrameAlignment:
         if wrong:
             self._note("nonsense", "points too far away to be true were left out", number, wrong)
         return markers, points
+
+    def _imus(self, frame: SourceFrame, number: int) -> Array | None:
+        if frame.imus is None:
+            return None
+        imus, wrong = plausible_imus(frame.imus)
+        if wrong:
+            self._note("nonsense", "readings that no sensor can make were left out", number, wrong)
+        return imus
 
     def _watch_rate(self, arrival_s: float, number: int | None) -> None:
         """Tells once of frames that come at another rate than the stream states."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,7 +15,6 @@ from mbkf.io.results_folder import Summary, write_reconstruction
 from mbkf.io.subject import Subject, read_subject, write_subject
 from mbkf.pipelines.live.log import SUBJECT_FILE, LiveLog, LiveStream, read_live_log
 from mbkf.pipelines.live.results import results_of
-from mbkf.pipelines.reconstruct import ReconstructSettings, recorded
 from mbkf.pipelines.results.summary import summarise
 from mbkf.stream.source import StreamDescription
 
@@ -26,7 +26,7 @@ def open_log(
     folder: Path,
     stream: StreamDescription,
     rows: np.dtype,
-    settings: ReconstructSettings,
+    settings: Mapping[str, object],
     names: tuple[str, ...],
     subject: Subject,
 ) -> LiveLog:
@@ -36,7 +36,7 @@ def open_log(
         folder: The output folder.
         stream: The stream's description.
         rows: Type of a row.
-        settings: The filter and its settings.
+        settings: The filter and its settings, as plain data.
         names: (M,) markers tracked.
         subject: The person.
 
@@ -47,8 +47,8 @@ def open_log(
     if place.exists():
         earlier = (folder / f"{LOG_FOLDER}-{k}" for k in range(1, 1_000_000))
         place.rename(next(path for path in earlier if not path.exists()))
-    kept = LiveStream(stream.trial, stream.rate_hz, stream.start_time_s, stream.plates)
-    log = LiveLog(place, kept, rows, recorded(settings), list(names))
+    kept = LiveStream(stream.trial, stream.rate_hz, stream.start_time_s, stream.plates, stream.sensors)
+    log = LiveLog(place, kept, rows, dict(settings), list(names))
     with replacing(place / SUBJECT_FILE) as partial:
         write_subject(subject, partial)
     return log

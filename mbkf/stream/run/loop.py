@@ -10,7 +10,6 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.pipelines.live.filter import LiveStep
-from mbkf.sensors.block import Frame
 from mbkf.stream.receiving.alignment import BRIDGED_S, Note, ReadyFrame
 from mbkf.stream.receiving.reader import SILENT_S
 from mbkf.stream.receiving.receiver import START_SLACK_S, Receiver
@@ -154,7 +153,7 @@ class FilterLoop:
     def _feed(self, frame: ReadyFrame, markers_m: Array) -> None:
         named = frame if markers_m is frame.markers_m else frame._replace(markers_m=markers_m)
         self._waiting.append(named)
-        self._answer(self._setup.filter.push(frame.number, Frame(markers_m, frame.plates)))
+        self._answer(self._setup.filter.push(frame.number, self._setup.frame(frame, markers_m)))
 
     def _answer(self, steps: list[LiveStep]) -> None:
         """Gives answers to the output, each with its frame."""

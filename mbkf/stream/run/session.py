@@ -13,7 +13,8 @@ from mbkf.io.results_folder import Summary
 from mbkf.io.subject import Subject
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.live.filter import live_settings
-from mbkf.pipelines.reconstruct import ReconstructSettings
+from mbkf.pipelines.live.worn import LiveWorn
+from mbkf.pipelines.reconstruct import ReconstructSettings, recorded
 from mbkf.stream.receiving.receiver import FrameCounts, Receiver
 from mbkf.stream.results.frame import FrameSink
 from mbkf.stream.run.connecting import wait_for
@@ -25,7 +26,7 @@ from mbkf.stream.run.loop import FilterLoop
 from mbkf.stream.run.low_latency import low_latency
 from mbkf.stream.run.output import RunOutput
 from mbkf.stream.run.report import LIVE_FILE, ReportFile, frame_report
-from mbkf.stream.run.setup import LiveSetup, prepare
+from mbkf.stream.run.setup import LiveSetup, prepare, prepare_sensors
 from mbkf.stream.run.statistics import RunStatistics
 from mbkf.stream.source import FrameSource
 
@@ -61,6 +62,7 @@ class LiveSession:
         folder: Path,
         source_name: str,
         scaling: Mapping[str, object] | None = None,
+        sensors: LiveWorn | None = None,
     ) -> None:
         """A run that is not connected yet.
 
@@ -70,15 +72,17 @@ class LiveSession:
             settings: The filter and its settings; the answer is causal, or has their lag.
             folder: For the results.
             source_name: Name of the source, for messages and live.json.
-            scaling: How the person was scaled from the stream, for live.json.
+            scaling: How the person was scaled from the stream, or sensors were calibrated, for live.json.
+            sensors: The stream's inertial sensors, if these alone show the person.
 
         Raises:
             InvalidInput: Smoothing is asked for.
         """
         self._source, self._subject, self._settings = source, subject, live_settings(settings)
         self._folder, self._source_name = folder, source_name
-        self._scaling = {} if scaling is None else {"scaling": dict(scaling)}
-        self._events = EventLog()
+        begin = "scaling" if sensors is None else "calibration"
+        self._scaling = {} if scaling is None else {begin: dict(scaling)}
+        self._events, self._sensors = EventLog(), sensors
         self._setup: LiveSetup | None = None
 
     def connect(self, stop: threading.Event, patience_s: float | None) -> bool:
@@ -95,7 +99,11 @@ class LiveSession:
         found = wait_for(self._source, self._source_name, stop, patience_s)
         if found is None:
             return False
-        self._setup = prepare(found, self._subject, self._settings, self._source.patient, self._events.note)
+        if self._sensors is not None:
+            self._setup = prepare_sensors(self._sensors, self._settings, found)
+        else:
+            known = self._subject, self._settings
+            self._setup = prepare(found, *known, self._source.patient, self._events.note)
         return True
 
     @property
@@ -125,7 +133,12 @@ class LiveSession:
         setup, note, statistics = self.setup, self._events.note, RunStatistics()
         report, failure = ReportFile(self._folder / LIVE_FILE), Failure()
         log = open_log(
-            self._folder, setup.stream, setup.rows.dtype, self._settings, setup.names, self._subject
+            self._folder,
+            setup.stream,
+            setup.rows.dtype,
+            {**recorded(self._settings), **setup.told},
+            setup.names,
+            self._subject,
         )
 
         def report_running() -> None:

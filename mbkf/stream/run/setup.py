@@ -2,23 +2,48 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.filters.record import FrameRecorder
+from mbkf.imu.rest_watch import FeetAtRest
 from mbkf.io.subject import Subject
 from mbkf.model.body import Body
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.live.filter import LiveFilter, LiveInputs, live_inputs
 from mbkf.pipelines.live.labels import live_body
+from mbkf.pipelines.live.worn import LiveWorn
 from mbkf.pipelines.reconstruct import ReconstructSettings
 from mbkf.pipelines.trial.filters import tracking_filter
-from mbkf.stream.receiving.alignment import Note
+from mbkf.sensors.block import Frame
+from mbkf.sensors.standing_feet import FOOT_REST
+from mbkf.stream.receiving.alignment import Note, ReadyFrame
 from mbkf.stream.run.frame_maker import FrameMaker
 from mbkf.stream.run.point_names import PointNames
 from mbkf.stream.source import StreamDescription
+
+
+class SensorFrames:
+    """Readings of a stream's inertial sensors as the filter takes them, and which feet rest."""
+
+    def __init__(self, worn: LiveWorn, rate_hz: float) -> None:
+        """Args: the calibrated sensors, and the frame rate."""
+        stillness, roles = worn.settings.filter.stillness, worn.filter.model.roles
+        self._columns = list(worn.columns)
+        self._feet = FeetAtRest(roles.feet, worn.segments, rate_hz, stillness)
+
+    def frame(self, ready: ReadyFrame, markers_m: Array) -> Frame:
+        """The frame; to be called once for each, in order.
+
+        Args:
+            ready: The frame.
+            markers_m: (0, 3).
+        """
+        imus = None if ready.imus is None else ready.imus[self._columns]
+        return Frame(markers_m, ready.plates, imus, {FOOT_REST: self._feet.push(imus)})
 
 
 @dataclass(frozen=True)
@@ -32,6 +57,8 @@ class LiveSetup:
         maker: Makes the frames that listeners receive.
         rows: Makes the rows of the log.
         labels: Names the points of a stream without marker names; None where markers have names.
+        sensors: Inertial sensors, if these alone show the person.
+        told: What the log keeps beside the usual settings.
     """
 
     stream: StreamDescription
@@ -40,6 +67,19 @@ class LiveSetup:
     maker: FrameMaker
     rows: FrameRecorder
     labels: PointNames | None
+    sensors: SensorFrames | None = None
+    told: Mapping[str, object] = field(default_factory=dict)
+
+    def frame(self, ready: ReadyFrame, markers_m: Array) -> Frame:
+        """What the filter reads in a frame.
+
+        Args:
+            ready: The frame.
+            markers_m: (M, 3) its markers.
+        """
+        if self.sensors is None:
+            return Frame(markers_m, ready.plates)
+        return self.sensors.frame(ready, markers_m)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -54,7 +94,7 @@ class LiveSetup:
     @property
     def columns(self) -> Array | None:
         """(M,) columns of the markers in the stream; None where its points have no names."""
-        return self.live.columns if self.stream.marker_names else None
+        return self.live.columns if self.stream.marker_names or self.sensors is not None else None
 
     @property
     def plate_corners_m(self) -> Array:
@@ -91,4 +131,25 @@ def prepare(
         FrameMaker(live, stream.rate_hz),
         FrameRecorder(chosen, len(live.names), live.inputs.body, settings.spreads),
         None if stream.marker_names else PointNames(subject, live.names, 1.0 / stream.rate_hz, patient, note),
+    )
+
+
+def prepare_sensors(worn: LiveWorn, settings: ReconstructSettings, stream: StreamDescription) -> LiveSetup:
+    """A filter on calibrated inertial sensors, prepared for their stream.
+
+    Args:
+        worn: The sensors.
+        settings: The lag, and which standard deviations are told.
+        stream: The stream's description.
+    """
+    live = LiveInputs((), np.zeros(0, dtype=int), worn.inputs)
+    return LiveSetup(
+        stream,
+        live,
+        LiveFilter(worn.filter, settings.lag_s),
+        FrameMaker(live, stream.rate_hz),
+        FrameRecorder(worn.filter, 0, worn.body, settings.spreads),
+        None,
+        SensorFrames(worn, stream.rate_hz),
+        {"inertial": asdict(worn.settings)},
     )

@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.cli import live
+from mbkf.cli.live_output import told
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.stream.receiving.alignment import FrameAlignment
 from mbkf.stream.results.sending import SendingThread
 from mbkf.stream.run.failure import Failure
 from mbkf.stream.run.log_writer import LogWriter
-from mbkf.stream.run.session import LiveOutcome, LiveSession
+from mbkf.stream.run.session import LiveSession
 from mbkf.stream.source import UNCOUNTED, PlateSamples
 from tests.stream.scripted import SETTINGS, Collected, ScriptedSource, follow, frames_of, kinds
 
@@ -96,25 +96,7 @@ def test_a_filter_that_fails_is_told(tmp_path, capture, subject, monkeypatch):
     assert outcome.problem is None
     assert accounted(outcome.report)
     assert outcome.report["frames_written"] == read_reconstruction(tmp_path).frames == 59
-    assert live._told(outcome, tmp_path) == 1
-
-
-def test_a_failed_run_exits_with_1_and_says_why(tmp_path, capsys):
-    report = {
-        "frames_in": 9,
-        "frames_lost": 0,
-        "lag_ms": 0.0,
-        "latency_ms_median": 1.0,
-        "latency_ms_p99": 2.0,
-    }
-    report |= {"ended_by": "x", "frames_written": 9, "frames_not_written": 0, "log": None}
-    assert live._told(LiveOutcome(report, None, None), tmp_path) == 0
-    capsys.readouterr()
-    assert live._told(LiveOutcome(report, None, None, "reading the stream failed"), tmp_path) == 1
-    assert "ended early: reading the stream failed" in capsys.readouterr().err
-    lacking = report | {"frames_written": 4, "frames_not_written": 5}
-    assert live._told(LiveOutcome(lacking, None, None), tmp_path) == 1
-    assert "5 frames were never logged and cannot be recovered" in capsys.readouterr().err
+    assert told(outcome, tmp_path) == 1
 
 
 def test_a_source_that_fails_when_it_is_closed_leaves_the_results(tmp_path, capture, subject):
