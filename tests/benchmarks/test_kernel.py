@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from benchmarks import kernel
-from benchmarks.kernel import NEAR, differences, moved, using
+from benchmarks.equality.compare import BOUND
+from benchmarks.kernel import differences, moved, using
 from mbkf.kernel.loading import REFERENCE, SWITCH, library
 from tests.recordings import walk
 
@@ -49,4 +50,6 @@ def test_every_motion_is_followed_causally_and_smoothed(monkeypatch, tmp_path):
     rows = kernel.run(kernel.Context(None, tmp_path, quick=True))
     names = [row.name.partition(": ") for row in rows]
     assert [name for name, _, what in names if "last digit" in what] == ["squat, causal", "squat, smoothed"]
-    assert all(row.passed for row in rows if row.bound == NEAR)
+    shares = [row.value for row in rows if row.bound == BOUND]
+    # Rounding differs from processor to processor, and so does its ratio to two other roundings; its size hardly does.
+    assert len(shares) == 2 and 0.0 < max(shares) < 1e-5

@@ -18,6 +18,9 @@ from tests.viz.browsing import PATIENCE_S, until
 
 pytestmark = pytest.mark.slow
 
+LOADED = "Boolean(window.mbkf && mbkf.view.seenPelvis && look.strip)"
+"""True once the page can be used; before that ``look`` is the element of this id."""
+
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory):
@@ -37,7 +40,7 @@ def page(opened, server):
     with opened(server.url) as page:
         page.set_viewport_size({"width": 1280, "height": 720})
         page.goto(f"http://127.0.0.1:{server.port}/trial/look?session=P1&trial=walk1")
-        until(page, "Boolean(window.look && mbkf.view.seenPelvis)")
+        until(page, LOADED)
         yield page
         server.workspace.note_events("P1", "walk1", None)
 
@@ -172,7 +175,7 @@ def test_a_walk_in_another_direction_is_laid_over_by_its_cycles(opened, server):
     fresh = "look.ghost.body.updateWorldMatrix(true, true)"
     with opened(server.url) as page:
         page.goto(f"http://127.0.0.1:{server.port}/trial/look?session=P2&trial=walk1")
-        until(page, "Boolean(window.look && mbkf.view.seenPelvis)")
+        until(page, LOADED)
         page.get_by_label("Beside it").select_option("walk2")
         until(page, "Boolean(look.ghost && look.ghost.body.visible)")
         page.locator("#scrub").fill("60")
