@@ -14,10 +14,12 @@ examples:
   mbkf imu motion walk.csv --mass 72 --height 1.78 --out result
   mbkf imu motion walk.csv --standing stand.csv --subject subject.toml --out result
   mbkf imu motion walk.csv --standing 0:3 --posture static/motion.h5 --subject subject.toml --out result
+  mbkf imu motion leg.csv --sensor right_thigh --sensor right_shank --sensor right_foot --subject subject.toml --out leg
 
-Sensors are named after their segments (pelvis, torso, right_thigh, femur_r, left_foot ...): eight of them, or seven
-without the chest. No magnetometer, camera or force plate is needed. The person stands still for a second, in the trial
-or in a recording of its own; boxes are strapped on flat, z away from the body, x up the limb (on the feet forward).
+Sensors are named after their segments (pelvis, torso, right_thigh, femur_r, left_foot ...): eight of them, seven
+without the chest, or three on a leg, which tell its knee and ankle. No magnetometer, camera or force plate is needed.
+The person stands still for a second, in the trial or in a recording of its own; boxes are strapped on flat, z away
+from the body, x up the limb (on the feet forward).
 The floor is level. Reactions of the ground need sensors on both feet.
 
 Writes the folder that `mbkf reconstruct` writes (summary.json, motion.h5, OpenSim's files) and mounts.toml.

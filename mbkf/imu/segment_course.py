@@ -15,21 +15,24 @@ from mbkf.numerics.cardan import quaternion_matrices
 def configurations(body: HumanModel, segments: Sequence[str], course: Array) -> Array:
     """(T, nq) from orientations of segments; a joint turns as the nearest sensors above and below it.
 
+    The root turns with the first segment, as what lies between them does.
+
     Args:
         body: The body.
-        segments: S segments, each after those above it.
+        segments: S segments, each after those above it; the root, where it is among them, is the first.
         course: (T, S, 4) segment → world.
     """
     motion = np.tile(body.neutral(), (len(course), 1))
     parents = {segment.name: segment.parent for segment in body.description.segments}
-    for k, name in enumerate(segments):
+    root = body.root.q
+    motion[:, root.stop - 4 : root.stop] = np.where(course[:, 0, 3:] < 0.0, -course[:, 0], course[:, 0])
+    for k, name in enumerate(segments[1:], start=1):
         joint = body.joint(name)
         above = parents[name]
         while above != "world" and above not in segments:
             above = parents[above]
-        turn = course[:, k]
-        if above != "world":
-            turn = multiply(conjugate(course[:, segments.index(above)]), turn)
+        nearest = segments.index(above) if above in segments else 0
+        turn = multiply(conjugate(course[:, nearest]), course[:, k])
         turn = np.where(turn[:, 3:] < 0.0, -turn, turn)
         if joint.kind in ("free", "spherical"):
             motion[:, joint.q.stop - 4 : joint.q.stop] = turn

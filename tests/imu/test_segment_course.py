@@ -1,6 +1,7 @@
 """Configurations from orientations of segments: those of a known posture come back."""
 
 import numpy as np
+import pytest
 
 from mbkf.imu.frames import matrix_quaternion
 from mbkf.imu.segment_course import configurations
@@ -9,11 +10,16 @@ from mbkf.model.human import HumanModel
 MODEL = HumanModel.scaled()
 
 
-def test_a_posture_comes_back_from_the_turns_of_its_segments():
+LEG = ("right_thigh", "right_shank", "right_foot")
+
+
+@pytest.mark.parametrize(
+    "segments", [("pelvis", "torso", *LEG), LEG, (*LEG, "left_thigh"), ("torso", *LEG)], ids=" ".join
+)
+def test_a_posture_comes_back_from_the_turns_of_its_segments(segments):
     rng = np.random.default_rng(4)
-    segments = ("pelvis", "torso", "right_thigh", "right_shank", "right_foot")
     q = MODEL.neutral()
-    for name in segments[1:]:
+    for name in ("pelvis", *segments[1:]):
         joint = MODEL.joint(name)
         step = np.zeros(MODEL.nv)
         step[joint.v] = 0.4 * rng.normal(size=joint.v.stop - joint.v.start)

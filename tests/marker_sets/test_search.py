@@ -56,7 +56,9 @@ def test_who_searches_a_frame_again_gets_the_body_that_was_found(worn, found):
         assert not one.flags.writeable
     told = nothing.copy()
     told[0, np.array(PLACES.segments) == worn.segments[worn.markers.names[0]]] = 2.0
-    assert find_body(PLACES, worn.points_m, told).worth > found.worth + 0.01, "a name that tells the true segment"
+    assert find_body(PLACES, worn.points_m, told).worth > found.worth + 0.01, (
+        "a name that tells the true segment"
+    )
     assert find_body(PLACES, worn.points_m + 1e-6) is not found
 
 

@@ -34,6 +34,7 @@ from mbkf.pipelines.imu.fields import StrangeField, strange_fields
 from mbkf.pipelines.imu.misfit import misfit
 from mbkf.pipelines.imu.motion_inputs import (
     MotionSettings,
+    carrier,
     frame_times,
     motion_inputs,
     motion_recording,
@@ -42,7 +43,7 @@ from mbkf.pipelines.imu.motion_inputs import (
 from mbkf.pipelines.imu.motion_result import Timeline, motion_result
 from mbkf.pipelines.imu.motion_start import StartSettings, first_posture
 from mbkf.pipelines.imu.orient import prepared
-from mbkf.pipelines.imu.standing import root_first, standing_window
+from mbkf.pipelines.imu.standing import carrier_first, standing_window
 from mbkf.pipelines.imu.worn_otherwise import WornOtherwise, worn_otherwise
 
 GUESS_S = 20.0
@@ -103,7 +104,7 @@ class _Plan:
 
     Attributes:
         model: The body.
-        sensors, segments: The sensors, the root's first, and the segments that carry them.
+        sensors, segments: The sensors, that of :func:`carrier` first, and the segments that carry them.
         still: Their readings while the person stands.
         posture, posture_known: (nq,) posture then, and whether it was measured.
         from_standing: Whether the frames begin there.
@@ -139,7 +140,9 @@ def inertial_motion(
     The heading in which the person stands, or begins, is the laboratory's x axis.
 
     Args:
-        readings: Sensors named after their segments; a pelvis sensor is needed. Magnetometers are not used.
+        readings: Sensors named after their segments: on the whole body, on one leg, on any of them. Without one on
+            the pelvis it moves with the segment nearest to it, and the joint between them is not told. Reactions and
+            torques need sensors on both feet. Magnetometers are not used.
         subject: The scaled person.
         standing: Times of standing still in the recording, s, or a recording of it; by default the first second in
             which no sensor turns. The motion begins there, unless it is a recording of its own.
@@ -149,7 +152,7 @@ def inertial_motion(
         progress: Called with the stage, frames done and frames in all.
 
     Raises:
-        InvalidInput: Readings are not plausible, there is no pelvis sensor, or the person never stands still.
+        InvalidInput: Readings are not plausible, a segment has two sensors, or the person never stands still.
         UnknownName: A sensor's segment is not known.
         NotObservable: The sensors' readings are no person's.
     """
@@ -157,7 +160,7 @@ def inertial_motion(
     report = progress or (lambda *_: None)
     sensors, warnings = prepared([with_turning(one) for one in readings])
     names = [segment_of(one.name, model.joints) for one in sensors]
-    order = root_first(names, model.roles.root)
+    order = carrier_first(names, carrier(model, names))
     sensors, segments = tuple(sensors[k] for k in order), tuple(names[k] for k in order)
     with single_threaded():
         plan = _planned(model, sensors, segments, standing, posture, chosen)

@@ -19,18 +19,19 @@ from mbkf.imu.rest_watch import FeetAtRest
 from mbkf.imu.worn_mounts import Worn
 from mbkf.imu.zero_velocity import StillnessSettings, still_samples
 from mbkf.io.imu.readings import ImuReadings
+from mbkf.model.body import Body
 from mbkf.model.human import HumanModel
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.pipelines.imu.on_body import frame_readings
 from mbkf.pipelines.trial.filters import FilterInputs
 from mbkf.sensors.block import AnyBlock
 from mbkf.sensors.contact.causal import ContactDetector
-from mbkf.sensors.foot_contact import FootContact
+from mbkf.sensors.foot_contact import FootContact, FootContactSettings
 from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.joint_limits import JointLimits
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers
-from mbkf.sensors.newton_euler import NewtonEulerLaw
+from mbkf.sensors.newton_euler import NewtonEulerLaw, NewtonEulerSettings
 from mbkf.sensors.posture import PosturePrior
 from mbkf.sensors.posture_sensor import PostureSensor
 from mbkf.sensors.standing_feet import FOOT_REST, StandingFeet, StandingSettings
@@ -81,10 +82,29 @@ def motion_inputs(model: HumanModel, dt_s: float, segments: Sequence[str]) -> Fi
     return FilterInputs(none, np.zeros(0), (), dt_s, untold(model, segments), *settings)
 
 
+def carrier(model: HumanModel, segments: Sequence[str]) -> str:
+    """The segment whose sensor shows where the root is: the root's own, else the one nearest to it.
+
+    Args:
+        model: The body.
+        segments: Segments that carry sensors.
+    """
+    parents = {one.name: one.parent for one in model.description.segments}
+
+    def depth(name: str) -> int:
+        return 0 if name == model.roles.root else 1 + depth(parents[name])
+
+    return min(segments, key=depth)
+
+
 def untold(model: HumanModel, segments: Sequence[str]) -> BoolArray:
-    """(nv,) dofs that no sensor tells of; they keep the neutral posture."""
+    """(nv,) dofs that no sensor tells of; they keep the neutral posture.
+
+    A root without a sensor moves with the segment of :func:`carrier`: the joint between them is untold.
+    """
     found = np.ones(model.nv, dtype=bool)
-    for name in (model.roles.root, *segments):
+    first = carrier(model, segments)
+    for name in (model.roles.root, *(name for name in segments if name != first)):
         found[model.joint(name).v] = False
     return found
 
@@ -172,8 +192,7 @@ def worn_filter(
     feet = [mount.segment for mount in worn.mounts if mount.segment in model.roles.feet]
     blocks: list[AnyBlock] = [
         Markers(inputs.sensor, inputs.noise_m, dt, unobservable, s.markers),
-        *([NewtonEulerLaw(NewtonEuler(model), law)] if len(feet) == len(model.roles.feet) else []),
-        FootContact(ContactDetector(model, (), dt), GRAVITY_M_S2 * model.mass_kg, dt, s.contact),
+        *_ground(model, dt, law, s.contact, both=len(feet) == len(model.roles.feet)),
         StandingFeet(model, dt, settings.standing, standing_q),
         WornSensors(sensors, worn.bias_rad_s, bias_sd_rad_s, worn.turn_sd_rad, settings.worn),
         PosturePrior(posture, unobservable, replace(s.posture, posture_scale=settings.posture_scale)),
@@ -182,3 +201,24 @@ def worn_filter(
     known = inputs.sensor, inputs.noise_m, dt, unobservable
     kalman = DynamicFilter(*known, s, blocks)
     return WornTracking(kalman, KinematicFilter(*known, inputs.kinematic), first)
+
+
+def _ground(
+    model: Body, dt_s: float, law: NewtonEulerSettings, contact: FootContactSettings, *, both: bool
+) -> list[AnyBlock]:
+    """Newton's law and the feet's contact; neither where a foot has no sensor and may be anywhere.
+
+    Args:
+        model: The body.
+        dt_s: Time between frames.
+        law: How exactly the law holds.
+        contact: Noise of the reactions.
+        both: Whether both feet have a sensor.
+    """
+    if not both:
+        return []
+    feet = ContactDetector(model, (), dt_s)
+    return [
+        NewtonEulerLaw(NewtonEuler(model), law),
+        FootContact(feet, GRAVITY_M_S2 * model.mass_kg, dt_s, contact),
+    ]

@@ -37,7 +37,7 @@ class StartSettings:
 
 
 ROOT_HEADING_SD_RAD = 0.002
-"""The root's heading is known by definition."""
+"""The heading of the first segment, usually the root, is known by definition."""
 
 
 def first_posture(
@@ -90,7 +90,7 @@ def _posture_covariance(model: HumanModel, segments: Sequence[str], q: Array, s:
     _, spatial = model.frames_and_jacobian(q)
     for name in segments:
         turns = spatial[3:] * model.supports[model.joint(name).joint_id]
-        heading = ROOT_HEADING_SD_RAD if name == model.roles.root else s.heading_sd_rad
+        heading = ROOT_HEADING_SD_RAD if name == segments[0] else s.heading_sd_rad
         rows = turns / np.array([s.tilt_sd_rad, s.tilt_sd_rad, heading])[:, None]
         information += rows.T @ rows
     return np.asarray(np.linalg.inv(information))

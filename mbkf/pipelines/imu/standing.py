@@ -26,10 +26,23 @@ def root_first(names: Sequence[str], root: str) -> list[int]:
     """
     if root not in names:
         raise InvalidInput(f"joint angles need a sensor on the {root}; there are {', '.join(names)}")
+    return carrier_first(names, root)
+
+
+def carrier_first(names: Sequence[str], carrier: str) -> list[int]:
+    """One segment first, the others as they come.
+
+    Args:
+        names: Segments that carry sensors.
+        carrier: The first one.
+
+    Raises:
+        InvalidInput: A segment has two sensors.
+    """
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise InvalidInput(f"two sensors sit on {twice[0]}; keep one of them with --sensor")
-    return sorted(range(len(names)), key=lambda k: names[k] != root)
+    return sorted(range(len(names)), key=lambda k: names[k] != carrier)
 
 
 def standing_window(sensors: Sequence[ImuReadings], time_s: Array, standing: object = None) -> slice:

@@ -19,9 +19,9 @@ from mbkf.imu.segments import segment_of
 from mbkf.imu.worn_mounts import MountSettings, Worn, worn_mounts
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.model.human import HumanModel
-from mbkf.pipelines.imu.motion_inputs import MotionSettings, motion_inputs, worn_filter
+from mbkf.pipelines.imu.motion_inputs import MotionSettings, carrier, motion_inputs, worn_filter
 from mbkf.pipelines.imu.motion_start import StartSettings, first_posture
-from mbkf.pipelines.imu.standing import STILL_RAD_S, root_first
+from mbkf.pipelines.imu.standing import STILL_RAD_S, carrier_first
 from mbkf.pipelines.trial.filters import FilterInputs
 
 STAND_S = 2.0
@@ -135,11 +135,11 @@ def live_worn(
         settings: Noise and priors.
 
     Raises:
-        InvalidInput: The root has no sensor, or a segment has two.
+        InvalidInput: A segment has two sensors.
         UnknownName: A sensor's segment is not known.
     """
     carriers = [segment_of(name, model.joints) for name in names]
-    columns = tuple(root_first(carriers, model.roles.root))
+    columns = tuple(carrier_first(carriers, carrier(model, carriers)))
     segments = tuple(carriers[k] for k in columns)
     times_s = np.arange(len(standing)) / rate_hz
     still = [

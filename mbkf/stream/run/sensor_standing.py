@@ -16,7 +16,7 @@ from mbkf.imu.segments import segment_of
 from mbkf.io.imu.mount import write_mounts
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.imu.standing import root_first
+from mbkf.pipelines.imu.standing import carrier_first
 from mbkf.pipelines.live.worn import STAND_S, LiveWorn, StandingSensors, live_worn
 from mbkf.stream.receiving.reader import PAUSE_S, READ_S, SILENT_S
 from mbkf.stream.run.connecting import wait_for
@@ -107,7 +107,8 @@ class SensorStanding:
             if name not in found.sensors:
                 raise UnknownName("sensor", name, found.sensors)
         names = [name for name in found.sensors if not self._only or name in self._only]
-        root_first([segment_of(name, self._model.joints) for name in names], self._model.roles.root)
+        segments = [segment_of(name, self._model.joints) for name in names]
+        carrier_first(segments, segments[0])  # refuses a segment with two sensors
         self._chosen = [found.sensors.index(name) for name in names]
         self.stream = found
         self._standing = StandingSensors(names, found.rate_hz)

@@ -97,10 +97,27 @@ def test_standing_in_the_recording_is_where_the_motion_begins():
     )
 
 
-def test_without_a_pelvis_or_a_standing_sensor_it_is_told_what_is_missing(walk):
-    with pytest.raises(InvalidInput, match="pelvis"):
-        inertial_motion(
-            [one for one in walk.moving if one.name != "pelvis"], walk.subject, standing=walk.standing
-        )
+def test_three_sensors_on_a_leg_tell_knee_and_ankle_and_claim_nothing_else():
+    one, leg = worn(), ("right_thigh", "right_shank", "right_foot")
+    standing, moving = ([r for r in readings if r.name in leg] for readings in (one.standing, one.moving))
+    settings = InertialMotionSettings(smooth=False)
+    result = inertial_motion(
+        moving, one.subject, standing=standing, posture=one.posture, settings=settings
+    ).result
+    clinical = ClinicalAngles(one.model)
+    truth, own = clinical.angles(one.motion.q), clinical.angles(result.q)
+    for name in ("knee_angle_r", "ankle_angle_r"):
+        k = clinical.names.index(name)
+        assert np.degrees(np.sqrt(np.mean((own[100:, k] - truth[100:, k]) ** 2))) < 5.0
+    sd = np.degrees(result.angles_sd[:, result.coordinate_names.index("hip_flexion_r")])
+    assert sd.min() > 30.0 and not result.valid.any()
+    assert np.isnan(result.moments).all()
+    assert "right_thigh_y" in next(text for text in result.warnings if "move no sensor" in text)
+
+
+def test_what_is_missing_or_twice_is_told(walk):
     with pytest.raises(InvalidInput, match="lacks sensor"):
         inertial_motion(walk.moving, walk.subject, standing=walk.standing[:3])
+    twice = [*walk.moving, replace(walk.moving[0], name="hips")]
+    with pytest.raises(InvalidInput, match="two sensors sit on pelvis"):
+        inertial_motion(twice, walk.subject, standing=walk.standing)

@@ -6,6 +6,7 @@ from mbkf.imu.worn_mounts import worn_mounts
 from mbkf.pipelines.imu.motion_inputs import (
     MOST_HZ,
     MotionSettings,
+    carrier,
     frame_times,
     motion_inputs,
     motion_recording,
@@ -27,9 +28,17 @@ def test_fast_sensors_are_thinned_out():
 
 def test_dofs_of_segments_without_sensors_are_not_told():
     model = worn().model
-    found = untold(model, ("right_thigh",))
+    found = untold(model, ("pelvis", "right_thigh"))
     assert not found[:6].any() and not found[model.joint("right_thigh").v].any()
     assert found[model.joint("left_thigh").v].all()
+
+
+def test_a_root_without_a_sensor_moves_with_the_segment_nearest_to_it():
+    model, leg = worn().model, ("right_foot", "right_thigh", "right_shank")
+    assert carrier(model, leg) == "right_thigh" and carrier(model, (*leg, "pelvis")) == "pelvis"
+    found = untold(model, leg)
+    assert not found[:6].any() and found[model.joint("right_thigh").v].all()
+    assert not found[model.joint("right_shank").v].any()
 
 
 def test_feet_rest_while_the_person_stands_and_not_while_they_swing():

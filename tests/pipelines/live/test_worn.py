@@ -85,9 +85,9 @@ def test_lost_frames_do_not_end_it(turn, imus, calibrated):
     assert sum(step.estimate.started for step in steps) == 1
 
 
-def test_the_root_needs_a_sensor_and_names_are_segments(turn, imus):
-    with pytest.raises(InvalidInput, match="pelvis"):
-        live_worn(turn.model, ["left_thigh"], imus[:200, :1], RATE_HZ)
+def test_names_are_segments_and_none_has_two_sensors(turn, imus):
+    with pytest.raises(InvalidInput, match="two sensors sit on pelvis"):
+        live_worn(turn.model, ["pelvis", "hips"], imus[:200, :2], RATE_HZ)
     with pytest.raises(UnknownName, match="gadget"):
         live_worn(turn.model, ["pelvis", "gadget"], imus[:200, :2], RATE_HZ)
 

@@ -64,9 +64,8 @@ def test_who_does_not_stand_still_is_told(turn, tmp_path):
 
 
 def test_sensors_that_are_no_persons_are_refused_at_once(turn, tmp_path):
-    without_root = [one for one in turn.moving if one.name != "pelvis"]
-    with pytest.raises(InvalidInput, match="pelvis"):
-        standing(turn, tmp_path, without_root)
+    with pytest.raises(InvalidInput, match="two sensors sit on pelvis"):
+        standing(turn, tmp_path, [*turn.moving, replace(turn.moving[0], name="hips")])
     with pytest.raises(UnknownName, match="nowhere"):
         standing(turn, tmp_path, only=["nowhere"])
 
