@@ -29,6 +29,7 @@ from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.foot_contact import FootContact, FootContactSettings
 from mbkf.sensors.inertial_sensor import InertialSensor
 from mbkf.sensors.joint_limits import JointLimits
+from mbkf.sensors.load_transfer import LoadTransfer, LoadTransferSettings
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.markers import Markers
 from mbkf.sensors.newton_euler import NewtonEulerLaw, NewtonEulerSettings
@@ -49,6 +50,7 @@ class MotionSettings:
         worn: Noise of the sensors.
         standing: How still feet stand.
         stillness: When a foot's own sensor is at rest.
+        transfer: How load passes from foot to foot in walking.
         residual_force_n, residual_moment_nm: How exactly Newton's law holds: arms and head move, and no sensor tells.
         posture_scale: Factor on the spread of the posture prior. Sensors tell a posture's changes much better than the
             posture: the usual weight, in every frame, would draw the mounts along.
@@ -58,6 +60,7 @@ class MotionSettings:
     worn: WornSettings = field(default_factory=WornSettings)
     standing: StandingSettings = field(default_factory=StandingSettings)
     stillness: StillnessSettings = field(default_factory=StillnessSettings)
+    transfer: LoadTransferSettings = field(default_factory=LoadTransferSettings)
     residual_force_n: float = 60.0
     residual_moment_nm: float = 200.0
     posture_scale: float = 30.0
@@ -189,10 +192,12 @@ def worn_filter(
         s.law, residual_force_n=settings.residual_force_n, residual_moment_nm=settings.residual_moment_nm
     )
     sensors = InertialSensor(model, worn.mounts)
-    feet = [mount.segment for mount in worn.mounts if mount.segment in model.roles.feet]
+    told = {mount.segment for mount in worn.mounts}
+    # A foot without a sensor may be anywhere, and so may what it carries.
+    ground = _ground(model, dt, law, s.contact, settings.transfer) if told >= set(model.roles.feet) else []
     blocks: list[AnyBlock] = [
         Markers(inputs.sensor, inputs.noise_m, dt, unobservable, s.markers),
-        *_ground(model, dt, law, s.contact, both=len(feet) == len(model.roles.feet)),
+        *ground,
         StandingFeet(model, dt, settings.standing, standing_q),
         WornSensors(sensors, worn.bias_rad_s, bias_sd_rad_s, worn.turn_sd_rad, settings.worn),
         PosturePrior(posture, unobservable, replace(s.posture, posture_scale=settings.posture_scale)),
@@ -204,21 +209,24 @@ def worn_filter(
 
 
 def _ground(
-    model: Body, dt_s: float, law: NewtonEulerSettings, contact: FootContactSettings, *, both: bool
+    model: Body,
+    dt_s: float,
+    law: NewtonEulerSettings,
+    contact: FootContactSettings,
+    transfer: LoadTransferSettings,
 ) -> list[AnyBlock]:
-    """Newton's law and the feet's contact; neither where a foot has no sensor and may be anywhere.
+    """Newton's law, the feet's contact, and how load passes between them.
 
     Args:
         model: The body.
         dt_s: Time between frames.
         law: How exactly the law holds.
         contact: Noise of the reactions.
-        both: Whether both feet have a sensor.
+        transfer: How load passes from foot to foot.
     """
-    if not both:
-        return []
-    feet = ContactDetector(model, (), dt_s)
+    by_pitch = replace(contact, free_push_share=np.inf)  # heights of soles do not tell it
     return [
         NewtonEulerLaw(NewtonEuler(model), law),
-        FootContact(feet, GRAVITY_M_S2 * model.mass_kg, dt_s, contact),
+        FootContact(ContactDetector(model, (), dt_s), GRAVITY_M_S2 * model.mass_kg, dt_s, by_pitch),
+        LoadTransfer(model, dt_s, transfer),
     ]
