@@ -32,6 +32,9 @@ from tests.dynamics import DT, LOAD, MARKER_SD_M, SPREAD, trial
 LAST, LIVED = 130, 115
 """A frame of the walk in which a foot stands on its plate, and how many frames a block has seen by then."""
 
+STEP = 142
+"""A frame in which the load passes from foot to foot."""
+
 HIDDEN = ("hand", "forearm", "upper_arm", "foot", "toes", "head")
 """Segments out of sight in the last frames of some situations."""
 
@@ -181,15 +184,20 @@ class Scene:
         return Frame(markers, m.foot_wrench[t][self.order[1]], imus, AnyReading())
 
     def situation(self, name):
-        """Everything seen; limbs hidden; hidden, with inertial sensors; joints bent too far; nothing read at last."""
+        """Everything seen; limbs hidden; hidden, with inertial sensors; joints bent too far; a step without plates;
+        nothing read at last.
+        """
         if name not in self._situations:
             self._situations[name] = self._made_situation(name)
         return self._situations[name]
 
     def _made_situation(self, name):
         hides, worn = name in ("hidden", "worn"), name == "worn"
-        times = range(LAST - LIVED, LAST + 1)
+        last = STEP if name == "step" else LAST
+        times = range(last - LIVED, last + 1)
         frames = [self.frame(t, hides and t > LAST - 3, worn) for t in times]
+        if name == "step":
+            frames = [frame._replace(plates=np.full_like(frame.plates, np.nan)) for frame in frames]
         m = self.walk.motion
         motion = [Motion(m.q[t], m.v[t], m.a[t], m.foot_wrench[t]) for t in times]
         if name == "bent":
@@ -243,5 +251,13 @@ def bent(model):
 
 
 SITUATIONS = ("seen", "hidden", "worn", "bent")
+STEPPING = ("LoadTransfer",)
+"""Blocks that are shown a step without plates, too; contacts of the feet then take shares of the state as given."""
+
 SILENT = ("nothing read", "nothing there")
 scene = lru_cache(None)(Scene)
+
+
+def situations_of(name):
+    """What a block of this name is shown."""
+    return (*SITUATIONS, "step") if name in STEPPING else SITUATIONS

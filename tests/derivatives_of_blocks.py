@@ -3,7 +3,7 @@
 import numpy as np
 
 from tests.block_contract import block_classes, derivative, shown, speaks
-from tests.block_scenes import SITUATIONS
+from tests.block_scenes import situations_of
 from tests.derivatives import checks
 
 LEFT_OUT = {"PlantedFeet": "the derivative by the configuration, as it says"}
@@ -23,7 +23,7 @@ def tolerance(kind):
 def add_case(kind):
     def compare(rng):
         pairs = []
-        for situation in SITUATIONS:
+        for situation in situations_of(kind.__name__):
             found = shown(kind, situation, off=int(rng.integers(1000)))
             if speaks(found.says()):
                 stated, numeric = derivative(found)

@@ -21,7 +21,7 @@ from tests.block_contract import (
     stacked,
     whole,
 )
-from tests.block_scenes import SILENT, SITUATIONS, scene
+from tests.block_scenes import SILENT, scene, situations_of
 from tests.motions import worst
 
 BLOCKS = block_classes()
@@ -33,7 +33,7 @@ PER_INSTRUMENT = {"WornSensors": "tests/sensors/test_worn_sensors.py"}
 
 def cases(name):
     """What the block has been shown wherever it speaks."""
-    found = [shown(BLOCKS[name], situation) for situation in SITUATIONS]
+    found = [shown(BLOCKS[name], situation) for situation in situations_of(name)]
     return [one for one in found if speaks(one.says())]
 
 
@@ -45,7 +45,7 @@ def test_the_standard_blocks_and_one_of_the_tests_own_are_found():
 
 @each_block
 def test_it_speaks_in_some_situation(name):
-    assert cases(name), f"{name} says nothing in any of {SITUATIONS}; add one in which it does"
+    assert cases(name), f"{name} says nothing in any of {situations_of(name)}; add one in which it does"
 
 
 @each_block
@@ -70,7 +70,7 @@ def test_a_frame_without_readings_says_nothing_of_readings(name):
 
 @pytest.mark.parametrize("name", [name for name in BLOCKS if name not in PER_INSTRUMENT])
 def test_the_order_of_instruments_changes_nothing(name):
-    for situation in SITUATIONS:
+    for situation in situations_of(name):
         one, other = (shown(BLOCKS[name], situation, seed) for seed in (None, 1))
         size = one.plant.layout.size
         for mine, theirs in zip(whole(one.says(), size), whole(other.says(), size), strict=True):
@@ -147,7 +147,7 @@ def arrays_in(thing, depth=0):
 
 @each_block
 def test_asked_again_it_says_the_same_and_writes_into_nothing_it_was_given(name):
-    for situation in (*SITUATIONS, *SILENT):
+    for situation in (*situations_of(name), *SILENT):
         found = shown(BLOCKS[name], situation)
         notes = found.situation.noted()
         given = (found.state, found.frame[:3], found.memory, found.decision, notes)

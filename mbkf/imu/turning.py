@@ -13,9 +13,14 @@ from mbkf.io.imu.readings import ImuReadings
 
 def with_turning(one: ImuReadings) -> ImuReadings:
     """The readings with the angular velocity of their orientations where they have none of their own."""
-    if one.orientation is None or np.isfinite(one.angular_velocity_rad_s).any():
+    if one.orientation is None or has_gyroscope(one):
         return one
     return replace(one, angular_velocity_rad_s=turning(one.orientation, one.time_s))
+
+
+def has_gyroscope(one: ImuReadings) -> bool:
+    """Whether any angular velocity was read."""
+    return bool(np.isfinite(one.angular_velocity_rad_s).any())
 
 
 def turning(orientation: Array, time_s: Array) -> Array:

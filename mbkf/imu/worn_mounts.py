@@ -39,6 +39,10 @@ class MountSettings:
         tilt_sd_rad: Spread of a tilt by gravity in a posture that is known.
         posture_sd_rad: Further spread where the posture while standing is only taken to be the neutral one.
         worn_otherwise_rad: A heading by swinging that is further from the usual one is told.
+        sway_rad: How far a segment turns to and fro while the person stands still: over a standing of length T a
+            gyroscope's mean reading is its bias to within this over T.
+        usual_bias_rad_s: Spread of biases before anything is read.
+        derived_bias_sd_rad_s: Spread of the bias of an angular velocity that follows from orientations.
     """
 
     custom_sd_rad: float = 0.17
@@ -47,6 +51,9 @@ class MountSettings:
     tilt_sd_rad: float = 0.026
     posture_sd_rad: float = 0.07
     worn_otherwise_rad: float = 0.8
+    sway_rad: float = 0.005
+    usual_bias_rad_s: float = 0.02
+    derived_bias_sd_rad_s: float = 1e-4
 
 
 @dataclass(frozen=True)
@@ -57,12 +64,14 @@ class Worn:
         mounts: How each sits.
         turn_sd_rad: (S, 3) spread of its turn about its segment's axes.
         bias_rad_s: (S, 3) gyroscope's reading at rest.
+        bias_sd_rad_s: (S,) spread of each component of it.
         remarks: Sensors that are worn otherwise than usual.
     """
 
     mounts: tuple[ImuMount, ...]
     turn_sd_rad: Array
     bias_rad_s: Array
+    bias_sd_rad_s: Array
     remarks: tuple[str, ...] = ()
 
 
@@ -75,6 +84,7 @@ def worn_mounts(
     posture_known: bool,
     settings: MountSettings = MountSettings(),
     turned: Collection[str] = (),
+    derived: Collection[str] = (),
 ) -> Worn:
     """Mounts and biases from standing still and from the movement.
 
@@ -87,15 +97,16 @@ def worn_mounts(
         posture_known: Whether it was measured; otherwise it is usual.
         settings: How well this is known.
         turned: Segments whose sensors are strapped on the other way round than usual.
+        derived: Segments whose sensors' angular velocities follow from orientations, and have no bias.
     """
     s, rotations = settings, model.placements(posture)[0]
     custom = {m.segment: m for m in typical_mounts(model, tuple(n for n in segments if n in EIGHT))}
     tilt_sd = s.tilt_sd_rad if posture_known else float(np.hypot(s.tilt_sd_rad, s.posture_sd_rad))
-    mounts, spreads, biases, remarks = [], [], [], []
+    mounts, spreads, biases, bias_sds, remarks = [], [], [], [], []
     for segment, still, one in zip(segments, standing, moving, strict=True):
         up = rotations[model.joint(segment).joint_id][2]
         felt = np.nanmean(still.specific_force_mps2, axis=0)
-        bias = np.nanmean(still.angular_velocity_rad_s, axis=0)
+        bias, bias_sd = (np.zeros(3), s.derived_bias_sd_rad_s) if segment in derived else _bias(still, s)
         usual = custom.get(segment)
         R = np.eye(3) if usual is None else quaternion_matrices(usual.rotation)
         R = upright(R, felt, up)
@@ -109,7 +120,8 @@ def worn_mounts(
         mounts.append(ImuMount(one.name, segment, usual_place(model, segment), matrix_quaternion(R)))
         spreads.append(np.sqrt((up * turn_sd) ** 2 + (1.0 - up**2) * tilt_sd**2))
         biases.append(bias)
-    return Worn(tuple(mounts), np.array(spreads), np.array(biases), tuple(remarks))
+        bias_sds.append(bias_sd)
+    return Worn(tuple(mounts), np.array(spreads), np.array(biases), np.array(bias_sds), tuple(remarks))
 
 
 def upright(R: Array, felt: Array, up: Array) -> Array:
@@ -127,6 +139,19 @@ def upright(R: Array, felt: Array, up: Array) -> Array:
         return R if here @ up > 0.0 else Rotation.from_rotvec(np.pi * _across(up)).as_matrix() @ R
     angle = np.arctan2(size, here @ up)
     return np.asarray(Rotation.from_rotvec(axis / size * angle).as_matrix() @ R)
+
+
+def _bias(still: ImuReadings, settings: MountSettings) -> tuple[Array, float]:
+    """(3,) a gyroscope's bias by its mean reading while standing, and its spread: both by how long that lasted.
+
+    Args:
+        still: The readings then.
+        settings: Sway and usual biases.
+    """
+    read = np.nanmean(still.angular_velocity_rad_s, axis=0)
+    sway = (settings.sway_rad * still.rate_hz / still.samples) ** 2
+    usual = settings.usual_bias_rad_s**2
+    return read * usual / (usual + sway), float(np.sqrt(usual * sway / (usual + sway)))
 
 
 def _swing_sd(model: Body, segment: str, settings: MountSettings) -> float | None:

@@ -17,6 +17,9 @@ WRENCH = "wrench"
 SUPPORT = "support"
 """Name of the slice of the wrench on all other parts: force N, moment N m about the world's origin."""
 
+UNSEEN_MOMENT = "unseen moment"
+"""Name of the slice of the moment of what no instrument shows: N m about the root's origin, in its axes."""
+
 
 class ExtraState(NamedTuple):
     """States that a block adds: a bias, a wrench at a chair, a length. They are random walks.

@@ -12,7 +12,7 @@ import numpy as np
 
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
-from mbkf.sensors.layout import SUPPORT, Layout
+from mbkf.sensors.layout import SUPPORT, UNSEEN_MOMENT, Layout
 from mbkf.sensors.states import LoadedState
 
 
@@ -46,29 +46,37 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
     def __init__(self, balance: NewtonEuler, settings: NewtonEulerSettings = NewtonEulerSettings()) -> None:
         self.balance, self.settings = balance, settings
         self._support: slice | None = None
-        self._extra = slice(0)
+        self._unseen: slice | None = None
+        self._support_extra, self._unseen_extra = slice(0), slice(0)
         self._sharp = 1.0 / np.repeat([settings.residual_force_n, settings.residual_moment_nm], 3)
 
     def bind(self, layout: Layout) -> None:
-        """Where the wrench of other contacts stands, if the state has one."""
+        """Where other wrenches stand: of other contacts, and of what no instrument shows, if the state has them."""
         if SUPPORT in layout:
-            self._support, self._extra = layout[SUPPORT], layout.extra_index(SUPPORT)
+            self._support, self._support_extra = layout[SUPPORT], layout.extra_index(SUPPORT)
+        if UNSEEN_MOMENT in layout:
+            self._unseen, self._unseen_extra = layout[UNSEEN_MOMENT], layout.extra_index(UNSEEN_MOMENT)
 
     def prepare(self, state: LoadedState, memory: None) -> Rows:
         """The law's rows at a state; they do not depend on the frame."""
-        nv, wrenches, support = len(state.v), state.w, self._support
+        nv, wrenches, support, unseen = len(state.v), state.w, self._support, self._unseen
         if support is not None:
             # At the root a wrench is the same wherever it acts: that of other parts adds to the right foot's.
             wrenches = wrenches.copy()
-            wrenches[:6] += state.extra[self._extra]
+            wrenches[:6] += state.extra[self._support_extra]
         root, sharp = self.balance.root(state.q, state.v, state.a, wrenches), self._sharp[:, None]
-        if support is None:
-            rows = root.by_state * sharp
-        else:
-            rows = np.zeros((6, support.stop))
-            np.multiply(root.by_state, sharp, out=rows[:, : 3 * nv + 12])
+        residual = root.residual
+        if support is None and unseen is None:
+            return Rows(root.by_state * sharp, -residual * self._sharp, readings=6)
+        rows = np.zeros((6, max(part.stop for part in (support, unseen) if part is not None)))
+        np.multiply(root.by_state, sharp, out=rows[:, : 3 * nv + 12])
+        if support is not None:
             np.multiply(root.by_wrench, sharp, out=rows[:, support])
-        return Rows(rows, -root.residual * self._sharp, readings=6)
+        if unseen is not None:
+            residual = residual.copy()
+            residual[3:] += state.extra[self._unseen_extra]
+            rows[3:, unseen] = np.diag(self._sharp[3:])
+        return Rows(rows, -residual * self._sharp, readings=6)
 
     def decide(
         self, at: OperatingPoint[LoadedState, Rows], frame: Frame, memory: None, notes: Notes

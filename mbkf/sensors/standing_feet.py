@@ -4,6 +4,7 @@ A foot whose own sensor is at rest lies flat on the floor: neither its sole's mi
 
     0 = u + r_u,  0 = ω + r_ω,  0 = z_heel + r_z,  0 = z_ball + r_z
 
+as far as it does not turn all the same: in walking it rolls from heel to ball even where its sensor is calm.
 A foot that carries weight otherwise rolls over the lower end of its sole, which hardly moves: 0 = u + ρ_u, 0 = z + ρ_z.
 u and ω are told in the foot's axes, with their derivatives by the whole posture. The floor is level, at height 0.
 A foot that has been at rest for longer than a step takes stays where it stands: 0 = (p − p₀)_xy + r_p, p₀ where it was.
@@ -12,6 +13,7 @@ A foot that has been at rest for longer than a step takes stays where it stands:
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import hypot
 from typing import NamedTuple
 
 import numpy as np
@@ -21,9 +23,9 @@ from mbkf.conventions import Array
 from mbkf.model.body import Body
 from mbkf.numerics.rotations import skew
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
-from mbkf.sensors.contact.feet import FeetOnBody
+from mbkf.sensors.contact.feet import FeetMotion, FeetOnBody
 from mbkf.sensors.contact.records import Contact
-from mbkf.sensors.contact.thresholds import SOLE_ENDS
+from mbkf.sensors.contact.thresholds import SOLE_ENDS, STAND_SPEED_M_S
 
 FOOT_REST = "feet at rest"
 """Name of the readings (2,) of a frame: 1 where right or left foot's own sensor is at rest, else 0."""
@@ -37,14 +39,19 @@ class StandingSettings:
         standing_speed_m_s, standing_turn_rad_s: Spread of the velocity of a foot at rest, per frame.
         standing_height_m: Spread of its heel's and ball's height.
         rolling_speed_m_s, rolling_height_m: The same of the lower end of a sole that rolls.
+        standing_lever_m: A foot at rest that still turns rolls over some point of its sole, this far from its middle.
+        stance_s: For so long it does: it errs alike in all frames of that time, by its lever times its turning in
+            velocity and times half the turn in height.
         stays_after_s, staying_m: A foot that has been at rest for so long stays where it is, with this spread.
     """
 
     standing_speed_m_s: float = 0.02
     standing_turn_rad_s: float = 0.1
     standing_height_m: float = 0.015
+    standing_lever_m: float = 0.14
+    stance_s: float = 0.5
     rolling_speed_m_s: float = 0.6
-    rolling_height_m: float = 0.05
+    rolling_height_m: float = 0.08
     stays_after_s: float = 1.0
     staying_m: float = 0.02
 
@@ -54,9 +61,17 @@ Places = tuple[Array | None, Array | None]
 
 
 class StandingDecision(NamedTuple):
-    """Which feet are at rest, which roll, 0 right and 1 left, and where feet stay."""
+    """Which feet are at rest, which roll, and where feet stay.
+
+    Attributes:
+        at_rest: Feet at rest, 0 right and 1 left.
+        turning_rad_s: How fast each of them turns all the same.
+        rolling: Feet that bear otherwise.
+        places: Where feet stay.
+    """
 
     at_rest: tuple[int, ...] = ()
+    turning_rad_s: tuple[float, ...] = ()
     rolling: tuple[int, ...] = ()
     places: Places = (None, None)
 
@@ -92,6 +107,7 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
         self._model, self.settings = model, settings
         self._feet, self._still = FeetOnBody(model), np.zeros(model.nv)
         self._data = model.pin_model.createData()
+        self._lever_m = settings.standing_lever_m * max(settings.stance_s / dt_s, 1.0) ** 0.5
         self._stays_after = round(settings.stays_after_s / dt_s)
         self._on_floor_m = np.zeros((2, SOLE_ENDS))
         if standing_q is not None:
@@ -108,12 +124,22 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
         """By the feet's own sensors, else by what carries weight."""
         rest = frame.readings.get(FOOT_REST)
         at_rest = tuple(f for f in (0, 1) if rest is not None and rest[f] > 0.5)
-        contact = notes.contact
+        feet, contact = self._feet.at(at.state.q, at.state.v), notes.contact
+        turning = tuple(float(np.linalg.norm(feet.twists[f][3:])) for f in at_rest)
         right, left = (memory.places[f] if f in at_rest else None for f in (0, 1))
-        if contact is None:
-            return StandingDecision(at_rest, (), (right, left))
-        loaded = [f for f in (0, 1) if contact.contacts[f] != Contact.AIR]
-        return StandingDecision(at_rest, tuple(f for f in loaded if f not in at_rest), (right, left))
+        loaded = [] if contact is None else [f for f in (0, 1) if contact.contacts[f] != Contact.AIR]
+        rolling = tuple(f for f in loaded if f not in at_rest and self._may_roll(feet, f))
+        return StandingDecision(at_rest, turning, rolling, (right, left))
+
+    def _may_roll(self, feet: FeetMotion, foot: int) -> bool:
+        """Whether a foot that is taken to bear is slow enough: one in swing, close above the floor, would be held back.
+
+        Args:
+            feet: The feet.
+            foot: 0 right, 1 left.
+        """
+        lowest = min(feet.soles[foot][:SOLE_ENDS], key=lambda point: point[2])
+        return feet.speed(foot, lowest, (0.0, 0.0)) < STAND_SPEED_M_S
 
     def remember(
         self,
@@ -138,19 +164,23 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
 
     def linearise(self, at: OperatingPoint[State, None], decision: StandingDecision) -> list[Rows]:
         """Rows on positions and velocities."""
-        at_rest, rolling, places = decision
+        at_rest, turning, rolling, places = decision
         if not (at_rest or rolling):
             return []
         s, q, v = self.settings, at.state.q, at.state.v
         pin.computeForwardKinematicsDerivatives(self._model.pin_model, self._data, q, v, self._still)
         soles = self._feet.at(q, self._still).soles
         found = []
-        for foot in at_rest:
-            ends = np.array(soles[foot][:SOLE_ENDS])
-            sds = np.repeat([s.standing_speed_m_s, s.standing_turn_rad_s], 3)
-            found.append(self._still_rows(foot, ends.mean(axis=0), sds))
-            for end, height in zip(ends, self._on_floor_m[foot], strict=True):
-                found.append(self._floor_rows(q, foot, end, height, s.standing_height_m))
+        for foot, turns in zip(at_rest, turning, strict=True):
+            ends, lever = np.array(soles[foot][:SOLE_ENDS]), self._lever_m * turns
+            speed, height = (
+                hypot(s.standing_speed_m_s, lever),
+                hypot(s.standing_height_m, 0.5 * s.stance_s * lever),
+            )
+            turn = hypot(s.standing_turn_rad_s, lever / s.standing_lever_m)
+            found.append(self._still_rows(foot, ends.mean(axis=0), np.repeat([speed, turn], 3)))
+            for end, on_floor in zip(ends, self._on_floor_m[foot], strict=True):
+                found.append(self._floor_rows(q, foot, end, on_floor, height))
             place = places[foot]
             if place is not None:
                 found.append(self._place_rows(q, foot, ends.mean(axis=0), place))

@@ -53,8 +53,34 @@ def test_tilt_and_heading_are_found_where_the_leg_swings(turn_deg):
     worn = found(R, swinging([0.0, 1.0, 0.0]), custom_sd_rad=10.0)
     off = Rotation.from_matrix(quaternion_matrices(worn.mounts[0].rotation) @ R.T).as_rotvec()
     np.testing.assert_allclose(np.degrees(off), 0.0, atol=1.0)
-    np.testing.assert_allclose(worn.bias_rad_s[0], BIAS, atol=1e-12)
     assert not worn.remarks
+
+
+@pytest.mark.parametrize("seconds", [0.5, 2.0, 10.0])
+def test_a_bias_is_known_by_how_long_the_person_stood(seconds):
+    """The mean reading is off by sway over time; it and what biases usually are count by their spreads."""
+    s = MountSettings()
+    still, moving = readings(USUAL, swinging([0.0, 1.0, 0.0]))
+    count = round(100 * seconds)
+    still = ImuReadings(
+        still.name,
+        np.arange(count) / 100,
+        np.tile(UP @ USUAL, (count, 1)),
+        np.tile(BIAS, (count, 1)),
+        None,
+        100.0,
+    )
+    worn = worn_mounts(MODEL, ("right_thigh",), (still,), (moving,), MODEL.neutral(), True, s)
+    sway, usual = (s.sway_rad / seconds) ** 2, s.usual_bias_rad_s**2
+    np.testing.assert_allclose(worn.bias_rad_s[0], BIAS * usual / (usual + sway), rtol=1e-9)
+    assert worn.bias_sd_rad_s[0] ** -2 == pytest.approx(1.0 / sway + 1.0 / usual, rel=1e-9)
+
+
+def test_an_angular_velocity_that_follows_from_orientations_has_no_bias():
+    still, moving = readings(USUAL, swinging([0.0, 1.0, 0.0]))
+    known = MODEL, ("right_thigh",), (still,), (moving,), MODEL.neutral(), True
+    worn = worn_mounts(*known, derived=("right_thigh",))
+    assert not worn.bias_rad_s.any() and worn.bias_sd_rad_s[0] < 1e-3
 
 
 def test_custom_and_swinging_count_by_their_spreads():

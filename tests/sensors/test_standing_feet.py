@@ -9,7 +9,13 @@ from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
 from mbkf.sensors.block import Frame, Notes, OperatingPoint
 from mbkf.sensors.contact.feet import FeetOnBody
 from mbkf.sensors.contact.records import Contact
-from mbkf.sensors.standing_feet import FOOT_REST, Rest, StandingDecision, StandingFeet
+from mbkf.sensors.standing_feet import (
+    FOOT_REST,
+    Rest,
+    StandingDecision,
+    StandingFeet,
+    StandingSettings,
+)
 from tests.motions import moderate_pose, reference_model
 
 MODEL = reference_model()
@@ -35,7 +41,12 @@ def stacked(rows):
 
 
 @pytest.mark.parametrize(
-    "decision", [StandingDecision((0,), (1,)), StandingDecision((0, 1)), StandingDecision((), (0,))]
+    "decision",
+    [
+        StandingDecision((0,), (0.4,), (1,)),
+        StandingDecision((0, 1), (0.0, 0.1)),
+        StandingDecision((), (), (0,)),
+    ],
 )
 def test_rows_are_the_derivatives_of_their_innovations(decision):
     block, h = StandingFeet(MODEL, 0.01), 1e-6
@@ -54,30 +65,61 @@ def test_a_body_at_rest_on_the_floor_it_stood_on_has_nothing_to_correct():
     lowest = np.array(FeetOnBody(MODEL).at(q, V).soles)[0, :2, 2].min()
     q[2] -= lowest
     block = StandingFeet(MODEL, 0.01, standing_q=q)
-    _, innovation = stacked(block.linearise(at(q, np.zeros(MODEL.nv)), StandingDecision((0,))))
+    _, innovation = stacked(block.linearise(at(q, np.zeros(MODEL.nv)), StandingDecision((0,), (0.0,))))
     np.testing.assert_allclose(innovation, 0.0, atol=1e-9)
 
 
-def decided(rest, contacts):
+REST = np.zeros(MODEL.nv)
+
+
+def decided(rest, contacts, v=REST):
     block, notes = StandingFeet(MODEL, 0.01), Notes()
     notes.contact = None if contacts is None else SimpleNamespace(contacts=contacts)
     readings = {} if rest is None else {FOOT_REST: np.array(rest, dtype=float)}
-    return block.decide(at(Q, V), Frame(np.zeros((0, 3)), np.zeros((0, 6)), None, readings), Rest(), notes)
+    return block.decide(at(Q, v), Frame(np.zeros((0, 3)), np.zeros((0, 6)), None, readings), Rest(), notes)
 
 
 def test_a_foot_at_rest_stands_and_one_that_carries_weight_rolls():
     both = (Contact.UNMEASURED, Contact.UNMEASURED)
-    assert decided((1, 0), both) == StandingDecision((0,), (1,))
-    assert decided((np.nan, 1), (Contact.AIR, Contact.UNMEASURED)) == StandingDecision((1,), ())
+    assert decided((1, 0), both) == StandingDecision((0,), (0.0,), (1,))
+    assert decided((np.nan, 1), (Contact.AIR, Contact.UNMEASURED)) == StandingDecision((1,), (0.0,), ())
     assert decided(None, (Contact.AIR, Contact.AIR)) == StandingDecision()
-    assert decided((0, 1), None) == StandingDecision((1,), ())
+    assert decided((0, 1), None) == StandingDecision((1,), (0.0,), ())
+
+
+def test_a_foot_in_swing_does_not_roll_however_low_it_is():
+    both, swinging = (Contact.UNMEASURED, Contact.UNMEASURED), np.zeros(MODEL.nv)
+    swinging[MODEL.joint("right_thigh").v] = 0.0, 4.0, 0.0
+    assert decided((0, 0), both).rolling == (0, 1)
+    assert decided((0, 0), both, swinging).rolling == (1,)
+
+
+@pytest.mark.parametrize("turning", [0.0, 0.3])
+def test_what_a_foot_at_rest_is_read_to_do_counts_less_the_more_it_turns(turning):
+    s = StandingSettings()
+    block = StandingFeet(MODEL, 0.01, s)
+    still, heel, *_ = block.linearise(at(Q, V), StandingDecision((0,), (turning,)))
+    known, *_ = StandingFeet(MODEL, 0.01, s).linearise(at(Q, V), StandingDecision((0,), (0.0,)))
+    # A stance of half a second is fifty frames that err alike, by the lever times the turning.
+    lever = s.standing_lever_m * turning * 50.0**0.5
+    for rows, sd in ((slice(0, 3), s.standing_speed_m_s), (slice(3, 6), s.standing_turn_rad_s)):
+        more = lever if rows.start == 0 else lever / s.standing_lever_m
+        np.testing.assert_allclose(
+            still.innovation[rows] * np.hypot(sd, more), known.innovation[rows] * sd, rtol=1e-12
+        )
+    size = np.hypot(s.standing_height_m, 0.25 * lever)
+    np.testing.assert_allclose(
+        np.abs(heel.jacobian[0, 2] ** 2 + heel.jacobian[0, 0] ** 2 + heel.jacobian[0, 1] ** 2),
+        size**-2,
+        rtol=1e-9,
+    )
 
 
 def test_a_foot_at_rest_for_longer_than_a_step_stays_where_it_is_until_it_moves():
     block, here = StandingFeet(MODEL, 0.25), at(Q, V)
     memory, kept = block.begin(), []
     for rest in (True, True, True, True, True, False, True):
-        decision = StandingDecision((0,) if rest else ())
+        decision = StandingDecision((0,), (0.0,)) if rest else StandingDecision()
         memory = block.remember(here.state, here, decision, memory)
         kept.append(memory.places[0] is not None)
     assert kept == [False, False, False, True, True, False, False]

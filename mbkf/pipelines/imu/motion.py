@@ -20,7 +20,7 @@ from mbkf.imu.heading import HeadingSettings, held_headings, turned
 from mbkf.imu.orientation import OrientSettings, orientations
 from mbkf.imu.segment_course import configurations
 from mbkf.imu.segments import segment_of
-from mbkf.imu.turning import with_turning
+from mbkf.imu.turning import has_gyroscope, with_turning
 from mbkf.imu.worn_mounts import MountSettings, Worn, worn_mounts
 from mbkf.io.imu.mount import ImuMount
 from mbkf.io.imu.readings import ImuReadings
@@ -110,6 +110,7 @@ class _Plan:
         from_standing: Whether the frames begin there.
         times_s: (T,) the frames.
         settings: Of the whole.
+        derived: Segments of sensors without a gyroscope, whose angular velocities follow from orientations.
         turned: Segments whose sensors are strapped on the other way round than usual.
     """
 
@@ -122,6 +123,7 @@ class _Plan:
     from_standing: bool
     times_s: Array
     settings: InertialMotionSettings
+    derived: frozenset[str] = frozenset()
     turned: frozenset[str] = frozenset()
 
 
@@ -163,7 +165,12 @@ def inertial_motion(
     order = carrier_first(names, carrier(model, names))
     sensors, segments = tuple(sensors[k] for k in order), tuple(names[k] for k in order)
     with single_threaded():
-        plan = _planned(model, sensors, segments, standing, posture, chosen)
+        plan = replace(
+            _planned(model, sensors, segments, standing, posture, chosen),
+            derived=frozenset(
+                name for name, k in zip(segments, order, strict=True) if not has_gyroscope(readings[k])
+            ),
+        )
         found = worn_otherwise(
             model, segments, lambda turned, names: misfit(*_filter(_renamed(plan, turned, names)))
         )
@@ -201,13 +208,15 @@ def _renamed(plan: _Plan, turned: frozenset[str], names: Mapping[str, str]) -> _
         turned: Segments whose sensors are the other way round.
         names: Other segment by segment.
     """
-    return replace(plan, turned=turned, segments=tuple(names.get(name, name) for name in plan.segments))
+    segments = tuple(names.get(name, name) for name in plan.segments)
+    derived = frozenset(names.get(name, name) for name in plan.derived)
+    return replace(plan, turned=turned, segments=segments, derived=derived)
 
 
 def _worn(plan: _Plan) -> Worn:
     """How the sensors sit."""
     known = plan.model, plan.segments, plan.still, plan.sensors, plan.posture, plan.posture_known
-    return worn_mounts(*known, plan.settings.mounts, plan.turned)
+    return worn_mounts(*known, plan.settings.mounts, plan.turned, plan.derived)
 
 
 def _filter(plan: _Plan, worn: Worn | None = None) -> tuple[WornTracking, Recording]:
@@ -219,9 +228,8 @@ def _filter(plan: _Plan, worn: Worn | None = None) -> tuple[WornTracking, Record
     """
     sensors, s = worn or _worn(plan), plan.settings
     inputs = motion_inputs(plan.model, _dt(plan), plan.segments)
-    bias_sd = np.full(sensors.bias_rad_s.shape, s.filter.bias_sd_rad_s)
     standing_q = plan.posture if plan.posture_known else None
-    filter = worn_filter(inputs, sensors, bias_sd, _first(plan, sensors), s.filter, standing_q)
+    filter = worn_filter(inputs, sensors, _first(plan, sensors), s.filter, standing_q)
     known = plan.sensors, plan.segments, plan.model, plan.times_s, s.filter
     return filter, motion_recording(*known, causal=not s.smooth)
 

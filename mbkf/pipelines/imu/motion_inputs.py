@@ -36,6 +36,7 @@ from mbkf.sensors.newton_euler import NewtonEulerLaw, NewtonEulerSettings
 from mbkf.sensors.posture import PosturePrior
 from mbkf.sensors.posture_sensor import PostureSensor
 from mbkf.sensors.standing_feet import FOOT_REST, StandingFeet, StandingSettings
+from mbkf.sensors.unseen_moment import UnseenMoment, UnseenMomentSettings
 from mbkf.sensors.worn_sensors import WornSensors, WornSettings
 
 MOST_HZ = 130.0
@@ -51,20 +52,20 @@ class MotionSettings:
         standing: How still feet stand.
         stillness: When a foot's own sensor is at rest.
         transfer: How load passes from foot to foot in walking.
+        unseen: Moment of arms and head, which no sensor shows.
         residual_force_n, residual_moment_nm: How exactly Newton's law holds: arms and head move, and no sensor tells.
         posture_scale: Factor on the spread of the posture prior. Sensors tell a posture's changes much better than the
             posture: the usual weight, in every frame, would draw the mounts along.
-        bias_sd_rad_s: How well a bias at rest is known.
     """
 
     worn: WornSettings = field(default_factory=WornSettings)
     standing: StandingSettings = field(default_factory=StandingSettings)
     stillness: StillnessSettings = field(default_factory=StillnessSettings)
     transfer: LoadTransferSettings = field(default_factory=LoadTransferSettings)
+    unseen: UnseenMomentSettings = field(default_factory=UnseenMomentSettings)
     residual_force_n: float = 60.0
     residual_moment_nm: float = 200.0
     posture_scale: float = 30.0
-    bias_sd_rad_s: float = 0.001
 
 
 def frame_times(one: ImuReadings) -> Array:
@@ -171,7 +172,6 @@ def _rest(
 def worn_filter(
     inputs: FilterInputs,
     worn: Worn,
-    bias_sd_rad_s: Array,
     first: FirstPosture,
     settings: MotionSettings,
     standing_q: Array | None = None,
@@ -181,7 +181,6 @@ def worn_filter(
     Args:
         inputs: Of :func:`motion_inputs`.
         worn: The calibrated sensors.
-        bias_sd_rad_s: (S, 3) how well their biases are known.
         first: The first posture.
         settings: Noise.
         standing_q: (nq,) posture while standing where it was measured.
@@ -191,15 +190,15 @@ def worn_filter(
     law = replace(
         s.law, residual_force_n=settings.residual_force_n, residual_moment_nm=settings.residual_moment_nm
     )
-    sensors = InertialSensor(model, worn.mounts)
+    sensors, bias_sd = InertialSensor(model, worn.mounts), np.repeat(worn.bias_sd_rad_s[:, None], 3, axis=1)
     told = {mount.segment for mount in worn.mounts}
     # A foot without a sensor may be anywhere, and so may what it carries.
-    ground = _ground(model, dt, law, s.contact, settings.transfer) if told >= set(model.roles.feet) else []
+    ground = _ground(model, dt, law, s.contact, settings) if told >= set(model.roles.feet) else []
     blocks: list[AnyBlock] = [
         Markers(inputs.sensor, inputs.noise_m, dt, unobservable, s.markers),
         *ground,
         StandingFeet(model, dt, settings.standing, standing_q),
-        WornSensors(sensors, worn.bias_rad_s, bias_sd_rad_s, worn.turn_sd_rad, settings.worn),
+        WornSensors(sensors, worn.bias_rad_s, bias_sd, worn.turn_sd_rad, settings.worn),
         PosturePrior(posture, unobservable, replace(s.posture, posture_scale=settings.posture_scale)),
         JointLimits(posture, unobservable, s.limits),
     ]
@@ -213,20 +212,21 @@ def _ground(
     dt_s: float,
     law: NewtonEulerSettings,
     contact: FootContactSettings,
-    transfer: LoadTransferSettings,
+    settings: MotionSettings,
 ) -> list[AnyBlock]:
-    """Newton's law, the feet's contact, and how load passes between them.
+    """Newton's law, the feet's contact, how load passes between them, and the moment of what is not seen.
 
     Args:
         model: The body.
         dt_s: Time between frames.
         law: How exactly the law holds.
         contact: Noise of the reactions.
-        transfer: How load passes from foot to foot.
+        settings: How load passes from foot to foot, and what is not seen.
     """
     by_pitch = replace(contact, free_push_share=np.inf)  # heights of soles do not tell it
     return [
         NewtonEulerLaw(NewtonEuler(model), law),
         FootContact(ContactDetector(model, (), dt_s), GRAVITY_M_S2 * model.mass_kg, dt_s, by_pitch),
-        LoadTransfer(model, dt_s, transfer),
+        LoadTransfer(model, dt_s, settings.transfer),
+        UnseenMoment(dt_s, settings.unseen),
     ]

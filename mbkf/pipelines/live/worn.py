@@ -149,7 +149,6 @@ def live_worn(
     worn = worn_mounts(model, segments, still, still, at_rest, known, settings.mounts)
     inputs = motion_inputs(model, 1.0 / rate_hz, segments)
     first = first_posture(model, segments, np.tile(at_rest, (2, 1)), 1.0 / rate_hz, True, settings.start)
-    bias_sd = np.full(worn.bias_rad_s.shape, settings.filter.bias_sd_rad_s)
-    filter = worn_filter(inputs, worn, bias_sd, first, settings.filter, posture)
+    filter = worn_filter(inputs, worn, first, settings.filter, posture)
     body = MountErrors(model, segments, worn.turn_sd_rad)
     return LiveWorn(columns, segments, worn, inputs, filter, body, settings)

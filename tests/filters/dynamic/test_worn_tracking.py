@@ -14,7 +14,7 @@ def test_it_starts_where_it_is_told_and_later_frames_may_move_it():
     known = worn_mounts(one.model, segments, one.standing, one.moving, one.posture, True)
     first = first_posture(one.model, segments, one.motion.q[:2], 0.01, True)
     inputs = motion_inputs(one.model, 0.01, segments)
-    filter = worn_filter(inputs, known, np.full((8, 3), 0.001), first, MotionSettings(), one.posture)
+    filter = worn_filter(inputs, known, first, MotionSettings(), one.posture)
     recording = motion_recording(one.moving, segments, one.model, one.motion.times_s, MotionSettings())
     started = filter.start(recording, 0, None)
     assert started.started and started.tracked

@@ -19,7 +19,7 @@ def test_sensors_the_other_way_round_fit_worse():
     found = []
     for turned in ((), ("right_thigh", "left_thigh", "right_shank", "left_shank"), ("pelvis",)):
         known = worn_mounts(one.model, segments, one.standing, one.moving, one.posture, True, turned=turned)
-        filter = worn_filter(inputs, known, np.full((8, 3), 0.001), first, settings, one.posture)
+        filter = worn_filter(inputs, known, first, settings, one.posture)
         found.append(misfit(filter, recording))
     assert found[0] < 0.6 * min(found[1:])
 

@@ -56,5 +56,5 @@ def test_newton_s_law_needs_both_feet():
         known = worn_mounts(walk.model, segments, *chosen, walk.posture, True)
         first = first_posture(walk.model, segments, np.tile(walk.posture, (2, 1)), 0.01, True)
         inputs = motion_inputs(walk.model, 0.01, segments)
-        filter = worn_filter(inputs, known, np.full((len(segments), 3), 0.001), first, MotionSettings())
+        filter = worn_filter(inputs, known, first, MotionSettings())
         assert any(isinstance(block, NewtonEulerLaw) for block in filter.kalman.blocks) is holds

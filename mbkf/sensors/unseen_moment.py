@@ -1,0 +1,62 @@
+"""Moment of what no instrument shows, as a block: arms and head that are held otherwise than taken, masses that differ.
+
+    dm/dt = −m/τ + noise, standing at m ~ N(0, σ² I₃)          a state, about the pelvis's origin and axes
+    0 = [ID(q, v, a) − Σ J_fᵀ w_f]₄₋₆ + m + r                   Newton's law (:mod:`mbkf.sensors.newton_euler`)
+
+Arms that hang forward bend a body's balance for as long as they do. Taken for noise that is new in every frame, their
+moment would be averaged away, and the filter would bend the trunk and the knees instead. The decay is told as a reading
+of zero in every frame, whose spread σ √(τ / 2Δt) leaves a random walk of 2σ²/τ the variance σ².
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
+from mbkf.sensors.layout import UNSEEN_MOMENT, ExtraState, Layout
+from mbkf.sensors.states import LoadedState
+
+
+@dataclass(frozen=True)
+class UnseenMomentSettings:
+    """What moves besides what instruments show.
+
+    Attributes:
+        unseen_moment_nm: σ, per component.
+        unseen_memory_s: τ.
+    """
+
+    unseen_moment_nm: float = 50.0
+    unseen_memory_s: float = 2.0
+
+
+class UnseenMoment(Block[LoadedState, None, bool, None]):
+    """A state of three, and its decay."""
+
+    prior = True
+
+    def __init__(self, dt_s: float, settings: UnseenMomentSettings = UnseenMomentSettings()) -> None:
+        """Args: time between frames; what is not seen."""
+        self.settings = settings
+        s = settings
+        self._walk = s.unseen_moment_nm * (2.0 / s.unseen_memory_s) ** 0.5
+        self._sd = s.unseen_moment_nm * (0.5 * s.unseen_memory_s / dt_s) ** 0.5
+
+    def states(self) -> list[ExtraState]:
+        """The moment, N m, in the pelvis's axes."""
+        start_sd = np.full(3, self.settings.unseen_moment_nm)
+        return [ExtraState(UNSEEN_MOMENT, np.zeros(3), start_sd, np.full(3, self._walk))]
+
+    def bind(self, layout: Layout) -> None:
+        """Where it stands in the state."""
+        self._slice, self._extra = layout[UNSEEN_MOMENT], layout.extra_index(UNSEEN_MOMENT)
+
+    def decide(self, at: OperatingPoint[LoadedState, None], frame: Frame, memory: None, notes: Notes) -> bool:
+        """It decays in every frame."""
+        return True
+
+    def linearise(self, at: OperatingPoint[LoadedState, None], decision: bool) -> Rows:
+        """Three rows on the moment."""
+        return Rows(np.eye(3) / self._sd, -at.state.extra[self._extra] / self._sd, self._slice.start)
