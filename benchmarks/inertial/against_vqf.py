@@ -132,26 +132,32 @@ def _degrees(name: str, angle_rad: float) -> Check:
 
 
 def _spreads(kind: str, own: Sequence[Orientation], sensors: Sequence[ImuReadings]) -> Iterator[Check]:
-    """Errors over stated spreads, of tilt and heading, root mean square of each trial, and cover by 95 % intervals."""
-    ratios, covers = [], []
+    """Errors over stated spreads of tilt and heading, root mean square over all trials, and cover by 95 % intervals.
+
+    A heading errs by what iron does to the field, once per trial: the root of each trial by itself is small in most of
+    them and large in some, and its mean (for information) smaller than the spread of such errors.
+    """
+    squares, covers = [], []
     for course, one in zip(own, sensors, strict=True):
         assert one.orientation is not None and one.moving is not None and course.sd_rad is not None
         truth = change_frame(one.orientation, "ENU", "NWU")
         there = one.moving & np.isfinite(truth).all(axis=1)
         off = multiply(change_frame(course.quaternion, "ENU", "NWU")[there], conjugate(truth[there]))
         z = 2.0 * np.where(off[:, 3:] < 0.0, -off, off)[:, :3] / course.sd_rad[there]
-        ratios.append(np.sqrt((z**2).mean(axis=0)))
+        squares.append((z**2).mean(axis=0))
         covers.append((np.abs(z) < 1.96).mean(axis=0))
-    (x, y, heading), cover = np.mean(ratios, axis=0), np.mean(covers, axis=0)
-    tilt = float(np.hypot(x, y) / np.sqrt(2.0))
-    for name, value in (("tilt", tilt), ("heading", float(heading))):
-        yield Check(f"BROAD, {kind}: error / stated sd, {name}", value, 0.7, ">=")
-        yield Check(f"BROAD, {kind}: error / stated sd, {name}, not more", value, 1.4, "<=")
-    yield Check(
-        f"BROAD, {kind}: cover of 95 % intervals, tilt", 100 * float(cover[:2].mean()), 90.0, ">=", "%"
-    )
-    yield Check(f"BROAD, {kind}: cover, tilt, not more", 100 * float(cover[:2].mean()), 98.0, "<=", "%")
-    yield Check(f"BROAD, {kind}: cover of 95 % intervals, heading", 100 * float(cover[2]), 90.0, ">=", "%")
+    by_trial, cover = np.array(squares), 100.0 * np.mean(covers, axis=0)
+    for name, square, share in (
+        ("tilt", by_trial[:, :2].mean(axis=1), float(cover[:2].mean())),
+        ("heading", by_trial[:, 2], float(cover[2])),
+    ):
+        ratio = float(np.sqrt(square.mean()))
+        yield Check(f"BROAD, {kind}: error / stated sd, {name}", ratio, 0.7, ">=")
+        yield Check(f"BROAD, {kind}: error / stated sd, {name}, not more", ratio, 1.4, "<=")
+        alone = float(np.sqrt(square).mean())
+        yield Check(f"BROAD, {kind}: error / stated sd, {name}, mean of each trial's", alone, np.inf, "<=")
+        yield Check(f"BROAD, {kind}: cover of 95 % intervals, {name}", share, 90.0, ">=", "%")
+        yield Check(f"BROAD, {kind}: cover, {name}, not more", share, 98.0, "<=", "%")
 
 
 def _starts(sensors: Sequence[ImuReadings]) -> Iterator[Check]:

@@ -54,7 +54,7 @@ class OrientationSettings:
         dip_tolerance_rad: Change of its dip that does.
         field_memory_s: Time in which a new field becomes the usual one.
         field_direction_sd_rad: How far iron in a room bends the field's direction for good. No reading tells; it is
-            part of the stated spread of headings.
+            part of the stated spread of headings (root mean square of seven trials of BROAD, the largest 7°).
         integrating: Whether a reading is the mean since the one before, as digital sensors give it (on BROAD this
             halves the error that the other reading leaves), or the value at its time, as virtual sensors have it.
         rest_bias: Whether a sensor that lies still is taken not to turn at all. A slow steady turn looks the same:
@@ -83,7 +83,7 @@ class OrientationSettings:
     field_tolerance: float = 0.1
     dip_tolerance_rad: float = 0.15
     field_memory_s: float = 20.0
-    field_direction_sd_rad: float = 0.035
+    field_direction_sd_rad: float = 0.052
     integrating: bool = True
     rest_bias: bool = True
     rest_rate_rad_s: float = 0.035
