@@ -22,6 +22,7 @@ from mbkf.imu.placement import EIGHT, typical_mounts
 from mbkf.imu.virtual import virtual_imus
 from mbkf.io.capture import read_capture
 from mbkf.io.imu.readings import ImuReadings
+from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
@@ -149,6 +150,8 @@ def marker_rows(context: Context) -> Iterator[Check]:
     seeds = range(1 if context.quick else 2)
     ratios: dict[str, list[float]] = {}
     alone: dict[str, list[float]] = {}
+    of_bodies: list[float] = []
+    known: list[float] = []
     floor_mm = 0.0
     for seed in seeds:
         subject = synthesise_subject(seed)
@@ -164,15 +167,21 @@ def marker_rows(context: Context) -> Iterator[Check]:
         rng = np.random.default_rng([seed, 27])
         hidden = occlusions(frames, count, HIDDEN_SHARE, rng)
         hidden[: round(0.3 * RATE_HZ)] = False
-        without = _hidden_error(capture, subject, hidden, None)
-        beside = _hidden_error(capture, subject, hidden, sensors)
-        own = _hidden_error(capture, subject, hidden, ImuOnBody(readings))
+        made = [_with_hidden(capture, subject, hidden, imus) for imus in (None, sensors, ImuOnBody(readings))]
+        without, beside, own = (_marker_error(capture, one) for one in made)
         floor_mm = max(floor_mm, 1e3 * _mean_arms_error(model, capture, subject))
         gone = np.zeros_like(hidden)
         gone[round(ALONE_S[0] * RATE_HZ) : round(ALONE_S[1] * RATE_HZ)] = True
-        lost = _hidden_error(capture, subject, gone, sensors)
+        lost = _marker_error(capture, _with_hidden(capture, subject, gone, sensors))
+        of_body = [_body_error(capture, subject, one)[:, carried] for one in made[:2]]
+        of_bodies.append(_rms(of_body[1][hidden[:, carried]]) / _rms(of_body[0][hidden[:, carried]]))
+        exact = capture.trial.markers.positions_m - _true_markers(capture, subject)
+        apart = np.linalg.norm(exact, axis=2)[:, carried]
+        known.append(_rms(apart[hidden[:, carried] & np.isfinite(apart)]))
         for label, chosen in groups.items():
             base = _rms(without[:, chosen][hidden[:, chosen] & np.isfinite(without[:, chosen])])
+            if label != "all markers":
+                known[-1] /= base
             for kind, error in (("", beside), (" (mounts found from the markers)", own)):
                 value = _rms(error[:, chosen][hidden[:, chosen] & np.isfinite(error[:, chosen])])
                 ratios.setdefault(label + kind, []).append(value / base)
@@ -185,6 +194,14 @@ def marker_rows(context: Context) -> Iterator[Check]:
     for label, values in ratios.items():
         bound = 0.7 if label == "markers on segments with sensors" else math.inf
         yield Check(f"27 % hidden, markers + 8 sensors / markers alone, {label}", max(values), bound, "<=")
+    head = "27 % hidden, markers + 8 sensors / markers alone, markers on segments with sensors"
+    yield Check(f"{head}: places on the body against their true ones", max(of_bodies), math.inf, "<=")
+    yield Check(
+        "27 % hidden: measured markers, which skin moves, from the true body / from markers alone",
+        max(known),
+        math.inf,
+        "<=",
+    )
     for label, values in alone.items():
         yield Check(f"sensors alone for 2 s, {label}", max(values), 60.0, "<=", "mm")
 
@@ -212,15 +229,37 @@ def _mean_arms_error(model: HumanModel, capture: SyntheticCapture, subject: Subj
     return _rms(np.array(apart))
 
 
-def _hidden_error(
-    capture: SyntheticCapture, subject: Subject, hidden: BoolArray, imus: ImuOnBody | None
-) -> Array:
-    """(T, M) distance of reconstructed and measured markers, m, when some are hidden."""
+def _true_markers(capture: SyntheticCapture, subject: Subject, q: Array | None = None) -> Array:
+    """(T, M, 3) markers on the bones, m, of the true motion or of another one (T, nq)."""
+    own = capture.truth.q if q is None else q
+    sensor = MarkerSensor(
+        body_of(subject),
+        [m.segment for m in subject.markers],
+        np.array([m.position_m for m in subject.markers]),
+    )
+    return np.array([sensor.positions(one) for one in own])
+
+
+def _body_error(capture: SyntheticCapture, subject: Subject, made: Reconstruction) -> Array:
+    """(T, M) distance of the markers' places on the reconstructed body from those on the true one, m."""
+    apart = _true_markers(capture, subject, made.q) - _true_markers(capture, subject)
+    return np.asarray(np.linalg.norm(apart, axis=2))
+
+
+def _marker_error(capture: SyntheticCapture, made: Reconstruction) -> Array:
+    """(T, M) distance of reconstructed and measured markers, m."""
     markers = capture.trial.markers
-    shown = replace(markers, positions_m=np.where(hidden[:, :, None], np.nan, markers.positions_m))
-    settings = ReconstructSettings(smooth=False)
-    made = reconstruct(replace(capture.trial, markers=shown), subject, settings=settings, imus=imus)
-    error = np.full(hidden.shape, np.nan)
+    error = np.full(markers.present.shape, np.nan)
     own = [markers.names.index(name) for name in made.marker_names]
     error[:, own] = np.linalg.norm(made.predicted_m - markers.positions_m[:, own], axis=2)
     return error
+
+
+def _with_hidden(
+    capture: SyntheticCapture, subject: Subject, hidden: BoolArray, imus: ImuOnBody | None
+) -> Reconstruction:
+    """The trial, causal, when some markers are hidden."""
+    markers = capture.trial.markers
+    shown = replace(markers, positions_m=np.where(hidden[:, :, None], np.nan, markers.positions_m))
+    settings = ReconstructSettings(smooth=False)
+    return reconstruct(replace(capture.trial, markers=shown), subject, settings=settings, imus=imus)
