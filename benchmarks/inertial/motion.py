@@ -27,7 +27,7 @@ from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.subject import Subject
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
-from mbkf.pipelines.imu.angles import AnglesSettings, imu_angles
+from mbkf.pipelines.imu.angles import AnglesSettings, ImuAngles, imu_angles
 from mbkf.pipelines.imu.motion import InertialMotion, inertial_motion
 from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
 from mbkf.pipelines.scale import scale
@@ -82,6 +82,7 @@ def rows(context: Context) -> Iterator[Check]:
     for name in () if context.quick else REAL:
         yield from _real_rows(context, name)
     yield from _magnetometer_rows(synthetic("walk", 5.0), 1 if context.quick else 8)
+    yield from _angles_rows(synthetic("walk", 10.0), 1 if context.quick else 8)
     yield from _opensense_rows(context)
 
 
@@ -222,6 +223,42 @@ def _magnetometer_rows(case: Case, sensors: int) -> Iterator[Check]:
         f"magnetometers: bad ones named, alone, of {len(named)}", float(sum(named)), float(len(named)), ">="
     )
     yield Check("magnetometers: furthest change of an angle by a bad one", changed, 0.5, "<=", "deg")
+
+
+def _angles_rows(case: Case, sensors: int) -> Iterator[Check]:
+    """The same for angles by orientations with magnetometers: flexions of other joints hardly change."""
+    model = HumanModel.of(case.subject)
+    joined = {
+        angle.name: (joint.proximal, joint.distal)
+        for joint in ClinicalAngles(model).joints
+        for angle in joint.angles
+    }
+
+    def angles(moving: Sequence[ImuReadings]) -> ImuAngles:
+        return imu_angles(moving, model, standing=case.standing, posture=case.posture)
+
+    sound = angles(case.moving)
+    yield Check("magnetometers, imu angles: sound ones accused", float(len(sound.warnings)), 0.0, "<=")
+    named, changed, own = [], 0.0, 0.0
+    for k in range(sensors):
+        for spoil in BAD.values():
+            bad = list(case.moving)
+            bad[k] = replace(bad[k], magnetic_field=spoil(bad[k].magnetic_field))
+            found = angles(bad)
+            named.append(
+                [text.split(":")[0] for text in found.warnings] == [f"magnetometer of {bad[k].name}"]
+            )
+            apart = np.degrees(np.abs(found.angles - sound.angles)).max(axis=0)
+            for name in SAGITTAL:
+                change = float(apart[found.names.index(name)])
+                if bad[k].name in joined[name]:
+                    own = max(own, change)
+                else:
+                    changed = max(changed, change)
+    head = "magnetometers, imu angles"
+    yield Check(f"{head}: bad ones named, alone, of {len(named)}", float(sum(named)), float(len(named)), ">=")
+    yield Check(f"{head}: furthest change of another joint's flexion", changed, 0.5, "<=", "deg")
+    yield Check(f"{head}: furthest change of a flexion beside the bad one", own, np.inf, "<=", "deg")
 
 
 def _opensense_rows(context: Context) -> Iterator[Check]:

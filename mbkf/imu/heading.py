@@ -6,7 +6,7 @@ within some degrees of each other. Each joint is read so, with its own spread; h
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,9 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.imu.frames import multiply, rotate
 from mbkf.model.clinical_table import ClinicalJoint
+
+ARBITRARY_SD_RAD = 3.0
+"""Spread of a heading of which nothing is known."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +42,7 @@ def held_headings(
     dt_s: float,
     joints: Iterable[ClinicalJoint],
     settings: HeadingSettings | None = None,
+    arbitrary: Collection[int] = (),
 ) -> Array:
     """Corrections (T, S) of headings, rad, to be added to those of segments; the first segment's is 0.
 
@@ -50,6 +54,7 @@ def held_headings(
         dt_s: Time between samples.
         joints: The body's joints; those with a heading_sd_deg between two of the segments hold their headings.
         settings: Its weights.
+        arbitrary: Segments whose heading is not known at the start: their sensors' fields are left out.
     """
     s = settings or HeadingSettings()
     holding = [
@@ -67,10 +72,12 @@ def held_headings(
     sd = np.radians([spread for _, _, spread in holding]) * s.spread_scale
     apart = heading @ H.T
     apart -= 2.0 * np.pi * np.round(np.median(apart, axis=0) / (2.0 * np.pi))
-    P = s.start_sd_rad**2 * np.eye(n)
-    P[0, 0] = 1e-12
+    # All headings are told against that of one sensor, the first whose heading is known.
+    known_one = next((k for k in range(n) if k not in arbitrary), 0)
+    P = np.diag([ARBITRARY_SD_RAD**2 if k in arbitrary else s.start_sd_rad**2 for k in range(n)])
+    P[known_one, known_one] = 1e-12
     Q = s.walk_rad**2 * dt_s * np.eye(n)
-    Q[0, 0] = 0.0
+    Q[known_one, known_one] = 0.0
     above, below = [one[0] for one in holding], [one[1] for one in holding]
     x, means, covariances = np.zeros(n), np.empty((count, n)), np.empty((count, n, n))
     for t in range(count):

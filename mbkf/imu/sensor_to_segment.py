@@ -25,11 +25,11 @@ def facing(
 
     Thighs and shanks swing about the side-to-side axis, the first principal axis of their angular velocities
     seen from above; of its two senses it is the left one about which shanks have turned against thighs, for knees bend
-    one way only. How the pelvis, the first segment, has turned since standing is taken off, so that people may walk
-    about, and stand in another direction than they walk.
+    one way only. How the first segment, usually the pelvis, has turned since standing is taken off, so that people may
+    walk about, and stand in another direction than they walk.
 
     Args:
-        segments: S names, the pelvis first.
+        segments: S names, one whose turning about the vertical is the person's first.
         orientation: (T, S, 4) sensor → one world, z up, with one common heading.
         gyro: (T, S, 3) rad/s in sensor axes.
         standing: (S, 4) sensor → world while standing.
@@ -37,30 +37,56 @@ def facing(
     """
     swinging = {name for pair in knees for name in pair}
     legs = [k for k, name in enumerate(segments) if name in swinging]
-    if not legs:
+    orientation = facing_as_stood(orientation, standing[0])
+    left = swing_axis(orientation[:, legs], gyro[:, legs]) if legs else None
+    if left is None:
         return None
-    since = multiply(orientation[:, 0], conjugate(standing[0]))
-    twist = 2.0 * np.arctan2(since[:, 2], since[:, 3])
-    back = np.stack([0.0 * twist, 0.0 * twist, -np.sin(0.5 * twist), np.cos(0.5 * twist)], axis=-1)
-    orientation = multiply(back[:, None], orientation)
-    world = np.nan_to_num(rotate(orientation[:, legs], gyro[:, legs]))[..., :2].reshape(-1, 2)
-    values, vectors = np.linalg.eigh(world.T @ world / len(world))
-    if values[1] < LEAST_SWING_RAD_S**2 or values[1] < 2.0 * values[0]:
-        return None
-    left = vectors[:, 1]
     bend = 0.0
     for pair in knees:
         if set(pair) <= set(segments):
             thigh, shank = (segments.index(name) for name in pair)
-            bend += _turn_about(orientation[:, shank], standing[shank], left)
-            bend -= _turn_about(orientation[:, thigh], standing[thigh], left)
+            bend += turn_about(orientation[:, shank], standing[shank], left)
+            bend -= turn_about(orientation[:, thigh], standing[thigh], left)
     if bend < 0.0:
         left = -left
     return float(np.arctan2(-left[0], left[1]))
 
 
-def _turn_about(orientation: Array, standing: Array, axis: Array) -> float:
-    """Mean turn, rad, since standing about a level axis (2,)."""
+def facing_as_stood(orientation: Array, standing: Array) -> Array:
+    """(T, S, 4) orientations, less how the pelvis, the first segment, has turned about the vertical since standing.
+
+    Args:
+        orientation: (T, S, 4) sensor → world, z up.
+        standing: (4,) the pelvis's sensor while standing.
+    """
+    since = multiply(orientation[:, 0], conjugate(standing))
+    twist = 2.0 * np.arctan2(since[:, 2], since[:, 3])
+    back = np.stack([0.0 * twist, 0.0 * twist, -np.sin(0.5 * twist), np.cos(0.5 * twist)], axis=-1)
+    return multiply(back[:, None], orientation)
+
+
+def swing_axis(orientation: Array, gyro: Array) -> Array | None:
+    """(2,) level axis about which segments swing, of either sense; None where they hardly do.
+
+    Args:
+        orientation: (T, S, 4) sensor → world, z up.
+        gyro: (T, S, 3) rad/s in sensor axes.
+    """
+    world = np.nan_to_num(rotate(orientation, gyro))[..., :2].reshape(-1, 2)
+    values, vectors = np.linalg.eigh(world.T @ world / len(world))
+    if values[1] < LEAST_SWING_RAD_S**2 or values[1] < 2.0 * values[0]:
+        return None
+    return np.asarray(vectors[:, 1])
+
+
+def turn_about(orientation: Array, standing: Array, axis: Array) -> float:
+    """Mean turn, rad, since standing about a level axis.
+
+    Args:
+        orientation: (T, 4) sensor → world, z up.
+        standing: (4,) the same while standing.
+        axis: (2,) the axis.
+    """
     since = multiply(orientation, conjugate(standing))
     since = np.where(since[:, 3:] < 0.0, -since, since)
     angle = 2.0 * np.arctan2(since[:, :2] @ axis, since[:, 3])

@@ -3,10 +3,10 @@
     0 = (1 − s) F_behind − s F_ahead + r,   s = (1 − x)^γ,   x = (φ − φ₀) / (φ₁ − φ₀),   r ~ N(0, (σ m g)²)
 
 φ is the pitch of the foot behind, φ₀ that at which the other foot landed, φ₁ that at which it leaves the floor: as the
-last time, as usual before the first. Newton's law knows how two feet share a load by the moment of the whole body alone;
-where arms and head are not seen that is not known to better than a fifth of the weight, and heights of soles, by which
-markers tell the same (:mod:`mbkf.sensors.contact.sharing`), are not known to a centimetre. A foot's pitch is known to a
-degree.
+last time, as usual before the first. Newton's law knows how two feet share a load by the moment of the whole body;
+where arms and head are not seen it is not known to better than a fifth of the weight, and heights of soles, by which
+markers tell the same (:mod:`mbkf.sensors.contact.sharing`), are not known to a centimetre. A foot's pitch is known to
+a degree.
 That load passes in a smooth and similar way in every walk is known since L. Ren, R. K. Jones and D. Howard, Journal of
 Biomechanics 41 (2008) 2750–2759, who take it to be a function of time.
 """

@@ -1,8 +1,9 @@
 """Joints hold headings: a drifting sensor is brought back, a common turn is left alone."""
 
 import numpy as np
+import pytest
 
-from mbkf.imu.frames import exponential, multiply
+from mbkf.imu.frames import conjugate, exponential, multiply
 from mbkf.imu.heading import HeadingSettings, held_headings, turned
 from mbkf.model.body_file import load_body
 
@@ -30,6 +31,22 @@ def test_a_drifting_shank_is_brought_back():
     np.testing.assert_allclose(found[100:, 2], -drift[100:, 2], atol=0.04)
     np.testing.assert_allclose(found[:, [1, 3]], 0.0, atol=0.06)
     np.testing.assert_array_equal(found[:, 0], 0.0)
+
+
+@pytest.mark.parametrize("k", range(4))
+@pytest.mark.parametrize("off", [-2.5, 1.0])
+def test_an_arbitrary_heading_is_found_by_the_joints(k, off):
+    """Also the first segment's, against which the others are then told."""
+    true = walking()
+    away = np.zeros((len(true), 4))
+    away[:, k] = off
+    found = turned(
+        turned(true, away), held_headings(SEGMENTS, turned(true, away), DT, JOINTS, arbitrary=(k,))
+    )
+    apart = multiply(found[200:], conjugate(true[200:]))
+    headings = 2.0 * np.arctan2(apart[..., 2], apart[..., 3])
+    relative = np.angle(np.exp(1j * (headings - headings[:, [0]])))
+    np.testing.assert_allclose(relative, 0.0, atol=0.06)
 
 
 def test_sound_headings_and_turning_round_are_left_alone():

@@ -122,3 +122,23 @@ def rate_of(time_s: Array, where: str) -> float:
         raise InvalidInput(f"{where}: the times do not increase; give the rate with --rate")
     regular = steps[np.abs(steps - usual) < 0.5 * usual]
     return 1.0 / float(regular.mean() if len(regular) else usual)
+
+
+def between(one: ImuReadings, first_s: float, last_s: float) -> ImuReadings:
+    """The readings from one time to another, s, without orientations.
+
+    Args:
+        one: The readings.
+        first_s: The first time.
+        last_s: The last one.
+    """
+    kept = (one.time_s >= first_s - 1e-9) & (one.time_s <= last_s + 1e-9)
+    return ImuReadings(
+        one.name,
+        one.time_s[kept],
+        one.specific_force_mps2[kept],
+        one.angular_velocity_rad_s[kept],
+        None if one.magnetic_field is None else one.magnetic_field[kept],
+        one.rate_hz,
+        one.frame,
+    )

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation, Slerp
 
 from mbkf.conventions import Array, StageCallback
 from mbkf.errors import InvalidInput
@@ -16,14 +15,25 @@ from mbkf.imu.orientation import OrientSettings, orientations
 from mbkf.imu.placement import EIGHT, typical_mounts, usual_place
 from mbkf.imu.segment_course import configurations
 from mbkf.imu.segments import segment_of
-from mbkf.imu.sensor_to_segment import alignments, facing, mean_orientation
+from mbkf.imu.sensor_to_segment import (
+    alignments,
+    facing,
+    mean_orientation,
+)
+from mbkf.imu.worn_mounts import worn_mounts
 from mbkf.io.imu.mount import ImuMount
-from mbkf.io.imu.readings import ImuReadings
+from mbkf.io.imu.readings import ImuReadings, between
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
 from mbkf.pipelines.imu.orient import prepared
 from mbkf.pipelines.imu.standing import root_first, standing_window
+from mbkf.pipelines.imu.unlike_magnetometers import (
+    at_times,
+    free_orientations,
+    turning_rates,
+    unlike_magnetometers,
+)
 
 _DOUBT_RAD, _DOUBT_SHARE, _DOUBT_EVERY = np.radians(15.0), 0.02, 5
 
@@ -107,14 +117,27 @@ def imu_angles(
         q, common = _orientations(sensors, chosen, time_s, progress)
         window = None if still is not None else standing_window(sensors, time_s, standing)
         upright = mean_orientation(q[window]) if window is not None else _attitudes(still or ())
+        strange = (
+            unlike_magnetometers(body, segments, sensors, q, upright)
+            if common and not chosen.from_file
+            else ()
+        )
+        left_out = [k for k, one in enumerate(sensors) if one.name in {bad.sensor for bad in strange}]
         rest = _posture(body, posture, segments)
-        headings = _headings(body, segments, q, time_s, upright, rest, common)
+        headings = _headings(body, segments, q, time_s, upright, rest, common, left_out)
         q, upright = turned(q, -headings[None]), turned(upright[None], -headings[None])[0]
         aligned = alignments(upright, rest, 0.0)
+        if left_out:
+            stood = still or _while_standing(sensors, time_s, window)
+            q[:, left_out] = free_orientations([sensors[k] for k in left_out], time_s)
+            aligned[left_out] = _by_standing_and_swinging(body, segments, sensors, stood, posture)[left_out]
         course = multiply(q, conjugate(aligned))
-        if chosen.hold_headings and len(segments) > 1:
+        if (chosen.hold_headings or left_out) and len(segments) > 1:
             dt = 1.0 / sensors[0].rate_hz
-            course = turned(course, held_headings(segments, course, dt, clinical.joints, chosen.heading))
+            held = held_headings(segments, course, dt, clinical.joints, chosen.heading, left_out)
+            if not chosen.hold_headings:
+                held[:, [k for k in range(len(segments)) if k not in left_out]] = 0.0
+            course = turned(course, held)
         motion = configurations(body, segments, course)
     values = clinical.angles(motion)
     wanted = [k for k, name in enumerate(clinical.names) if _determined(clinical, name, segments)]
@@ -123,7 +146,7 @@ def imu_angles(
         for one, segment, turn in zip(sensors, segments, aligned, strict=True)
     )
     found = tuple(clinical.names[k] for k in wanted)
-    remarks = (*warnings, *_doubts(body, segments, motion, common))
+    remarks = (*warnings, *(one.told for one in strange), *_doubts(body, segments, motion, common))
     return ImuAngles(time_s, motion, found, values[:, wanted], mounts, remarks)
 
 
@@ -135,6 +158,25 @@ def _standing_sensors(standing: Sequence[object], names: Sequence[str]) -> list[
             f"the standing recording lacks sensor {missing[0]} or its magnetometer; stand still in the trial itself"
         )
     return [by_name[name] for name in names]
+
+
+def _while_standing(sensors: Sequence[ImuReadings], time_s: Array, window: slice | None) -> list[ImuReadings]:
+    assert window is not None
+    first, last = time_s[window.start], time_s[window.stop - 1]
+    return [between(one, first, last) for one in sensors]
+
+
+def _by_standing_and_swinging(
+    body: HumanModel,
+    segments: Sequence[str],
+    sensors: Sequence[ImuReadings],
+    stood: Sequence[ImuReadings],
+    posture: Array | None,
+) -> Array:
+    """(S, 4) sensor → segment by gravity while standing and by how legs swing: no magnetometer is needed."""
+    at_rest = _posture_of(body, posture)
+    worn = worn_mounts(body, segments, stood, sensors, at_rest, posture is not None)
+    return np.array([mount.rotation for mount in worn.mounts])
 
 
 def _unbiased(one: ImuReadings, rest: ImuReadings) -> ImuReadings:
@@ -166,23 +208,18 @@ def _orientations(
         courses = [one.quaternion for one in found]
         common = settings.orient.magnetometer and all(one.magnetic_field is not None for one in sensors)
     return np.stack(
-        [_at(one.time_s, course, time_s) for one, course in zip(sensors, courses, strict=True)], axis=1
+        [at_times(one.time_s, course, time_s) for one, course in zip(sensors, courses, strict=True)], axis=1
     ), common
 
 
-def _at(times: Array, course: Array | None, wanted: Array) -> Array:
-    """(T, 4) orientations at other times; missing ones are bridged."""
-    assert course is not None
-    there = np.all(np.isfinite(course), axis=1)
-    if there.all() and len(times) == len(wanted) and np.array_equal(times, wanted):
-        return course
-    between = Slerp(times[there], Rotation.from_quat(course[there]))
-    return between(np.clip(wanted, times[there][0], times[there][-1])).as_quat()
+def _posture_of(body: HumanModel, posture: Array | None) -> Array:
+    """(nq,) the posture while standing."""
+    return body.neutral() if posture is None else posture
 
 
 def _posture(body: HumanModel, posture: Array | None, segments: Sequence[str]) -> Array:
     """(S, 4) segment → world while standing, the pelvis facing x."""
-    q = body.neutral() if posture is None else posture
+    q = _posture_of(body, posture)
     rotations, _ = body.placements(q)
     turns = matrix_quaternion(np.array([rotations[body.joint(name).joint_id] for name in segments]))
     forward = rotations[body.root.joint_id][:, 0]
@@ -198,23 +235,19 @@ def _headings(
     upright: Array,
     rest: Array,
     common: bool,
+    left_out: Sequence[int],
 ) -> Array:
     """(S,) where each sensor's world sees the person face: one heading where they share it, else one each."""
     usual = _by_custom(body, segments, upright, rest)
     if not common:
         return usual
-    seen = facing(segments, q, _turning(q, time_s), upright, body.roles.knees)
+    # How the person has turned since standing is told by the first sensor whose field is sound, usually the pelvis's.
+    sound = [k for k in range(len(segments)) if k not in left_out]
+    gyro = turning_rates(q, time_s)[:, sound]
+    seen = facing([segments[k] for k in sound], q[:, sound], gyro, upright[sound], body.roles.knees)
     if seen is None:
-        seen = float(np.arctan2(np.sin(usual).mean(), np.cos(usual).mean()))
+        seen = float(np.arctan2(np.sin(usual[sound]).mean(), np.cos(usual[sound]).mean()))
     return np.full(len(segments), seen)
-
-
-def _turning(q: Array, time_s: Array) -> Array:
-    """(T, S, 3) angular velocities, rad/s in sensor axes, of orientations (T, S, 4); the last one is repeated."""
-    between = multiply(conjugate(q[:-1]), q[1:])
-    between = np.where(between[..., 3:] < 0.0, -between, between)
-    rates = 2.0 * between[..., :3] / np.diff(time_s)[:, None, None]
-    return np.concatenate([rates, rates[-1:]])
 
 
 def _by_custom(body: HumanModel, segments: Sequence[str], upright: Array, rest: Array) -> Array:

@@ -1,7 +1,10 @@
 """Magnetic fields compared between sensors: which magnetometer does not see what the others see.
 
-The body's motion tells how each sensor is turned, without magnetometers. Turned into the world with it, all sensors of
-a person see one field, but for iron nearby. One that sees it from elsewhere, or of another size, is named.
+Where the body's motion is known without magnetometers, it tells how each sensor is turned. Turned into the world with
+it, all sensors of a person see one field, but for iron nearby. One that sees it from elsewhere, or of another size, is
+named (:func:`strange_fields`). Before a motion is known, gyroscope and accelerometer tell a sensor's attitude but for
+its heading: all fields are as strong and as steep, and legs whose headings come from their fields swing about one
+level axis, in one sense (:func:`unlike_fields`). Neither depends on how sensors are strapped on.
 """
 
 from __future__ import annotations
@@ -20,8 +23,24 @@ LEAST_SENSORS = 3
 MOST_TURN_RAD = 0.45
 """A field further from the others' than this is another one; indoors fields differ by some 15°."""
 
+MOST_ASKEW_RAD = 0.7
+"""A leg's side-to-side axis further from the others' than this is turned by its field: toes point outwards by less."""
+
 SIZES = (0.6, 1.6)
 """Sizes of a field, as a share of the others', that indoor fields have."""
+
+
+@dataclass(frozen=True)
+class Swing:
+    """About which level axis a segment swings, in the world of its sensor's field.
+
+    Attributes:
+        axis_rad: Direction of the axis about the vertical.
+        told: Whether it points to the left; otherwise it may point to the right as well.
+    """
+
+    axis_rad: float
+    told: bool
 
 
 @dataclass(frozen=True)
@@ -67,11 +86,82 @@ def strange_fields(readings: Sequence[ImuReadings], rotations: Sequence[Array]) 
     sizes = np.linalg.norm(fields, axis=1) / np.linalg.norm(usual)
     cosines = fields @ usual / (np.linalg.norm(fields, axis=1) * np.linalg.norm(usual))
     turns = np.arccos(np.clip(cosines, -1.0, 1.0))
-    return tuple(
+    return _named([name for name, _ in known], turns, sizes)
+
+
+def unlike_fields(
+    readings: Sequence[ImuReadings], free: Sequence[Array], swing: Sequence[Swing | None]
+) -> tuple[StrangeField, ...]:
+    """Magnetometers whose field has another size or dip than the others', or a heading by which its leg swings askew.
+
+    Args:
+        readings: Sensors with magnetometers.
+        free: (T, 3, 3) of each, sensor → a world of its own, z up, without its magnetometer.
+        swing: How each segment swings; None for one that does not.
+    """
+    parts = [
+        _level_and_up(one.magnetic_field, R)
+        for one, R in zip(readings, free, strict=True)
+        if one.magnetic_field is not None
+    ]
+    if len(parts) != len(readings) or len(parts) < LEAST_SENSORS or not all(len(one) for one in parts):
+        return ()
+    fields = np.array([np.median(one, axis=0) for one in parts])
+    usual = most_central(fields)
+    sizes = np.linalg.norm(fields, axis=1) / np.linalg.norm(usual)
+    turns = np.abs(np.arctan2(fields[:, 1], fields[:, 0]) - np.arctan2(usual[1], usual[0]))
+    # A magnetometer whose axes are turned sees the field dip otherwise in every attitude.
+    apart = [
+        np.sqrt(np.mean(np.sum((own - field) ** 2, axis=1))) for own, field in zip(parts, fields, strict=True)
+    ]
+    turns = np.maximum(turns, np.arctan2(apart, np.linalg.norm(usual)))
+    askew = _askew(swing)
+    turns = np.where(askew > MOST_ASKEW_RAD, askew, turns)
+    return _named([one.name for one in readings], turns, sizes)
+
+
+def _level_and_up(field_ut: Array, rotations: Array) -> Array:
+    """(n, 2) level and upward part of the known ones of readings (T, 3), turned by (T, 3, 3)."""
+    turned = (rotations @ field_ut[:, :, None])[:, :, 0]
+    known = turned[np.isfinite(turned).all(axis=1)]
+    return np.column_stack([np.hypot(known[:, 0], known[:, 1]), known[:, 2]])
+
+
+def _askew(swing: Sequence[Swing | None]) -> Array:
+    """(S,) angles, rad, between axes and the one that others are nearest to; 0 where there is none.
+
+    Of axes that point to the left most do so: one that does not is turned by more than a right angle.
+    """
+    known = [(k, one) for k, one in enumerate(swing) if one is not None]
+    found = np.zeros(len(swing))
+    if len(known) < LEAST_SENSORS:
+        return found
+    angles = np.array([one.axis_rad for _, one in known])
+    axis = 0.5 * np.arctan2(
+        *most_central(np.column_stack([np.cos(2.0 * angles), np.sin(2.0 * angles)]))[::-1]
+    )
+    along = np.cos(angles - axis)
+    senses = np.sign(along) * [one.told for _, one in known]
+    most = np.sign(senses.sum()) if abs(senses.sum()) >= 2 else 0.0
+    cosines = np.where(senses * most < 0.0, -np.abs(along), np.abs(along))
+    found[[k for k, _ in known]] = np.arccos(np.clip(cosines, -1.0, 1.0))
+    return found
+
+
+def _named(names: Sequence[str], turns: Array, sizes: Array) -> tuple[StrangeField, ...]:
+    """Those whose field is too far from the others'; none where it is most of them, of which it cannot be told.
+
+    Args:
+        names: (S,) sensors.
+        turns: (S,) angles between each one's field and the others', rad.
+        sizes: (S,) sizes as shares of theirs.
+    """
+    found = tuple(
         StrangeField(name, float(turn), float(size))
-        for (name, _), turn, size in zip(known, turns, sizes, strict=True)
+        for name, turn, size in zip(names, turns, sizes, strict=True)
         if turn > MOST_TURN_RAD or not SIZES[0] <= size <= SIZES[1]
     )
+    return found if 2 * len(found) < len(names) else ()
 
 
 def world_field(field_ut: Array, rotations: Array) -> Array:

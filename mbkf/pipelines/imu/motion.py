@@ -23,7 +23,7 @@ from mbkf.imu.segments import segment_of
 from mbkf.imu.turning import has_gyroscope, with_turning
 from mbkf.imu.worn_mounts import MountSettings, Worn, worn_mounts
 from mbkf.io.imu.mount import ImuMount
-from mbkf.io.imu.readings import ImuReadings
+from mbkf.io.imu.readings import ImuReadings, between
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.model.clinical import ClinicalAngles
@@ -290,22 +290,8 @@ def _planned(
         return _Plan(model, sensors, segments, still, at_rest, known, False, times, settings)
     window = standing_window(sensors, sensors[0].time_s, standing)
     first, last = (float(sensors[0].time_s[k]) for k in (window.start, window.stop - 1))
-    still = tuple(_between(one, first, last) for one in sensors)
+    still = tuple(between(one, first, last) for one in sensors)
     return _Plan(model, sensors, segments, still, at_rest, known, True, times[times >= first], settings)
-
-
-def _between(one: ImuReadings, first_s: float, last_s: float) -> ImuReadings:
-    """A sensor's readings between two times."""
-    kept = (one.time_s >= first_s - 1e-9) & (one.time_s <= last_s + 1e-9)
-    return ImuReadings(
-        one.name,
-        one.time_s[kept],
-        one.specific_force_mps2[kept],
-        one.angular_velocity_rad_s[kept],
-        None if one.magnetic_field is None else one.magnetic_field[kept],
-        one.rate_hz,
-        one.frame,
-    )
 
 
 def _dt(plan: _Plan) -> float:
@@ -321,7 +307,7 @@ def _first(plan: _Plan, worn: Worn) -> FirstPosture:
     early = [
         replace(part, angular_velocity_rad_s=part.angular_velocity_rad_s - bias)
         for part, bias in (
-            (_between(one, begin, begin + GUESS_S), bias)
+            (between(one, begin, begin + GUESS_S), bias)
             for one, bias in zip(plan.sensors, worn.bias_rad_s, strict=True)
         )
     ]

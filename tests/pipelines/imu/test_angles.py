@@ -127,6 +127,22 @@ def test_orientations_of_the_file_may_be_used():
     assert worst(found, truth) < 1.0
 
 
+@pytest.mark.parametrize("name", ["pelvis", "left_shank", "right_foot"])
+def test_a_bad_magnetometer_is_named_and_left_out(name):
+    readings, truth = marching()
+    sound = imu_angles(readings, MODEL, standing=(0.0, 1.8))
+    bad = [
+        replace(one, magnetic_field=0.3 * one.magnetic_field[:, [2, 0, 1]]) if one.name == name else one
+        for one in readings
+    ]
+    found = imu_angles(bad, MODEL, standing=(0.0, 1.8))
+    assert next(text for text in found.warnings if "magnetometer of" in text).startswith(
+        f"magnetometer of {name}"
+    )
+    assert len(found.warnings) == len(sound.warnings) + 1
+    assert worst(found, truth) < 3.0
+
+
 def test_what_is_doubtful_is_told():
     readings, _ = marching(0.7, careless=False)
     assert imu_angles(readings, MODEL).warnings == ()
