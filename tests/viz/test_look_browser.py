@@ -41,6 +41,7 @@ def page(opened, server):
         page.set_viewport_size({"width": 1280, "height": 720})
         page.goto(f"http://127.0.0.1:{server.port}/trial/look?session=P1&trial=walk1")
         until(page, LOADED)
+        page.evaluate("look.events.mergeMs = 60000")  # keys pressed by a slow machine follow each other, too
         yield page
         server.workspace.note_events("P1", "walk1", None)
 
@@ -56,7 +57,10 @@ def starts(server):
 
 
 def saved(page):
-    until(page, "look.strip.said.textContent.startsWith('Saved')")
+    until(
+        page,
+        "look.strip.said.textContent.startsWith('Saved') && !look.saving.waiting && !look.saving.busy",
+    )
 
 
 def chosen(page, side, kind):
@@ -89,7 +93,6 @@ def test_an_event_moved_with_the_keyboard_changes_the_session_file_and_the_curve
     page.keyboard.press("Control+z")
     saved(page)
     assert page.locator(".event.hand").count() == 0, "moves that follow each other are undone at once"
-    until(page, "!look.saving.waiting && !look.saving.busy")
     assert by_hand(server) is None and dict(starts(server)) == before
 
 
@@ -105,7 +108,6 @@ def test_events_are_deleted_added_and_taken_back(page, server):
     page.get_by_role("button", name="Add: Right toe-off").press("Enter")
     assert page.locator(".event").count() == count
     saved(page)
-    until(page, "!look.saving.waiting && !look.saving.busy")
     (added,) = [one for one in by_hand(server) if abs(one.time_s - 1.2) < 1e-6]
     assert (added.side, added.kind.value) == ("right", "off")
     page.get_by_role("button", name="Undo").click()
@@ -145,8 +147,7 @@ def test_another_trial_lies_beside_and_its_curves_are_drawn(page):
     same = "[0, 1, 2].every((k) => Math.abs(look.ghost.body.localToWorld(look.ghost.segments[0].position.clone())"
     same += ".getComponent(k) - mbkf.view.viewer.scene.localToWorld(mbkf.view.segments[0].position.clone())"
     same += ".getComponent(k)) < 0.05)"
-    page.wait_for_timeout(200)
-    assert page.evaluate(same), "the same walk, laid over itself, is where it is"
+    until(page, same)  # the same walk, laid over itself, is where it is
     knee = "mbkf.panel.other(mbkf.panel.quantities.get('angle:knee_angle_r'))"
     own = "mbkf.recording.series(mbkf.panel.quantities.get('angle:knee_angle_r'))"
     assert page.evaluate(f"Math.abs({knee}.values[60] - {own}.values[60]) < 1")

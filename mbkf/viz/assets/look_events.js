@@ -8,7 +8,7 @@ class FootEvents {
   constructor(found, byHand, span) {
     this.next = 0;
     const keyed = (list) => list.map((one) => ({ ...one, key: this.next++ }));
-    Object.assign(this, { found: keyed(found), list: byHand && keyed(byHand), span, past: [], future: [], moved: null, onChange: null });
+    Object.assign(this, { found: keyed(found), list: byHand && keyed(byHand), span, past: [], future: [], moved: null, mergeMs: MERGE_MS, onChange: null });
   }
 
   get byHand() {
@@ -48,7 +48,7 @@ class FootEvents {
   move(key, time) {
     const to = this.within(time), now = performance.now();
     if (to === this.get(key).time_s) return;
-    const again = this.moved && this.moved.key === key && now - this.moved.at < MERGE_MS;
+    const again = this.moved && this.moved.key === key && now - this.moved.at < this.mergeMs;
     this.moved = { key, at: now };
     this.set(this.shown.map((one) => (one.key === key ? { ...one, time_s: to } : one)), again);
   }
