@@ -1,5 +1,6 @@
 """`mbkf view` writes one page or serves it until interrupted; bad input is one line."""
 
+import signal
 import subprocess
 import sys
 import urllib.request
@@ -25,15 +26,22 @@ def test_html_writes_one_page(result, tmp_path, capsys):
     assert "MeshCat" in (tmp_path / "walk.html").read_text(encoding="utf-8")
 
 
+def heed_interrupts():
+    """A process begun in the background of a shell ignores SIGINT, and so do its children."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def test_the_page_is_served_until_interrupted(result):
     words = [sys.executable, "-m", "mbkf", "view", str(result), "--no-browser"]
-    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(
+        words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=heed_interrupts
+    ) as process:
         try:
             url = process.stdout.readline().strip()
             with urllib.request.urlopen(url, timeout=20) as answer:
                 assert b"walk" in answer.read()
         finally:
-            process.send_signal(2)
+            process.send_signal(signal.SIGINT)
         assert process.wait(20) == 0, process.stderr.read()
 
 

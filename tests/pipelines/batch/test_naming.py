@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from mbkf.errors import UnknownName
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture import read_capture
 from mbkf.io.results_folder import read_reconstruction, read_summary
@@ -76,5 +77,6 @@ def test_a_person_without_any_name_is_found_from_the_points(tmp_path):
     assert table["status"].to_pylist() == ["done"]
     found = read_reconstruction(tmp_path / "out" / "P1" / "raw")
     assert found.subject.mass_kg == pytest.approx(SUBJECT.mass_kg, rel=0.05), "weighed by the plates"
-    worn = body_of_points(raw, SUBJECT.mass_kg, SUBJECT.height_m, SUBJECT.protocol)
-    assert worn.protocol == SUBJECT.protocol and found.subject.protocol != SUBJECT.protocol
+    assert found.subject.protocol != SUBJECT.protocol
+    with pytest.raises(UnknownName, match="nosuch"):
+        body_of_points(raw, SUBJECT.mass_kg, SUBJECT.height_m, "nosuch")

@@ -77,7 +77,7 @@ def test_exchanged_sides_are_told(walk):
 
 
 def test_standing_in_the_recording_is_where_the_motion_begins():
-    one = worn("squat", 4.0)
+    one = worn("squat", 2.0)
     joined = tuple(
         replace(
             still,
