@@ -26,16 +26,14 @@ def test_html_writes_one_page(result, tmp_path, capsys):
     assert "MeshCat" in (tmp_path / "walk.html").read_text(encoding="utf-8")
 
 
-def heed_interrupts():
-    """A process begun in the background of a shell ignores SIGINT, and so do its children."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+HEEDING = "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler)"
+"""A shell's background job is born ignoring SIGINT, and so are its children."""
 
 
 def test_the_page_is_served_until_interrupted(result):
-    words = [sys.executable, "-m", "mbkf", "view", str(result), "--no-browser"]
-    with subprocess.Popen(
-        words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=heed_interrupts
-    ) as process:
+    code = f"{HEEDING}; from mbkf.cli.main import main; sys.exit(main(sys.argv[1:]))"
+    words = [sys.executable, "-c", code, "view", str(result), "--no-browser"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         try:
             url = process.stdout.readline().strip()
             with urllib.request.urlopen(url, timeout=20) as answer:
