@@ -32,7 +32,7 @@ def test_a_set_is_changed_and_saved_by_clicks(server, browser):
     editor.locator(".item", has_text="RASI").click(timeout=60_000)
     editor.locator("#segment").select_option("")
     editor.locator("#save").click()
-    editor.locator("#state", has_text="saved").wait_for()
+    editor.locator("#state", has_text="saved:").wait_for()
     editor.locator("#done").click()
     page.locator("dialog").wait_for(state="detached")
     folder = server.workspace.root / "more" / "P1"
