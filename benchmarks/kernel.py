@@ -23,9 +23,9 @@ from benchmarks.equality.compare import BOUND, difference
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.kernel.loading import COMPILED, REFERENCE, SWITCH, library
-from mbkf.pipelines.reconstruct import reconstruct
-from mbkf.pipelines.reconstruct_settings import ReconstructSettings
-from mbkf.pipelines.synth import synthesise
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
+from mbkf.trial.synth import synthesise
 
 MOTIONS = (
     "squat",

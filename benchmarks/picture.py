@@ -20,8 +20,8 @@ from mbkf.io.subject import read_subject
 from mbkf.io.truth import Truth, read_truth
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
-from mbkf.pipelines.reconstruct import reconstruct
 from mbkf.sensors.contact.soles import sole_points
+from mbkf.trial.reconstruct import reconstruct
 
 MEASURED, BODY, FORCE, TRUTH = "#7a869a", "#1f3a5f", "#c8553d", "#111111"
 CHAINS = (

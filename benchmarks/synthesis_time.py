@@ -12,7 +12,7 @@ import numpy as np
 
 from benchmarks.checks import Check, Context
 from benchmarks.speed.products import product_seconds
-from mbkf.pipelines.synth import synthesise, write_folder
+from mbkf.trial.synth import synthesise, write_folder
 
 SECONDS, QUICK_SECONDS = (15.0, 60.0), (1.0, 4.0)
 RATE_HZ = 100.0

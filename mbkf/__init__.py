@@ -21,52 +21,52 @@ if TYPE_CHECKING:
     from mbkf.model.human import HumanModel
     from mbkf.model.protocol import load_protocol
     from mbkf.numerics.kalman import Information
-    from mbkf.pipelines.batch.run import batch
-    from mbkf.pipelines.export import export_result
-    from mbkf.pipelines.imu.orient import orient
-    from mbkf.pipelines.inertia.estimate import InertiaEstimate, estimate_inertia
-    from mbkf.pipelines.label import label
-    from mbkf.pipelines.reconstruct import Hidden, ReconstructSettings, reconstruct
-    from mbkf.pipelines.results.summary import summarise
-    from mbkf.pipelines.scale import scale
-    from mbkf.pipelines.synth import synthesise
-    from mbkf.pipelines.tracker import Estimate, Tracker, standard_blocks
     from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
     from mbkf.sensors.contact.plates import plate_wrenches
     from mbkf.sensors.layout import ExtraState, Layout
+    from mbkf.study.batch.run import batch
+    from mbkf.trial.export import export_result
+    from mbkf.trial.inertia.estimate import InertiaEstimate, estimate_inertia
+    from mbkf.trial.inertial.orient import orient
+    from mbkf.trial.label import label
+    from mbkf.trial.reconstruct import Hidden, ReconstructSettings, reconstruct
+    from mbkf.trial.results.summary import summarise
+    from mbkf.trial.scale import scale
+    from mbkf.trial.synth import synthesise
+    from mbkf.trial.tracker import Estimate, Tracker, standard_blocks
 
 _HOMES = {
     "Block": "mbkf.sensors.block",
-    "Estimate": "mbkf.pipelines.tracker",
+    "Estimate": "mbkf.trial.tracker",
     "ExtraState": "mbkf.sensors.layout",
     "Frame": "mbkf.sensors.block",
-    "Hidden": "mbkf.pipelines.reconstruct",
+    "Hidden": "mbkf.trial.reconstruct",
     "HumanModel": "mbkf.model.human",
-    "InertiaEstimate": "mbkf.pipelines.inertia.estimate",
+    "InertiaEstimate": "mbkf.trial.inertia.estimate",
     "Information": "mbkf.numerics.kalman",
     "Layout": "mbkf.sensors.layout",
     "Notes": "mbkf.sensors.block",
     "OperatingPoint": "mbkf.sensors.block",
-    "ReconstructSettings": "mbkf.pipelines.reconstruct",
+    "ReconstructSettings": "mbkf.trial.reconstruct",
     "Rows": "mbkf.sensors.block",
-    "Tracker": "mbkf.pipelines.tracker",
-    "batch": "mbkf.pipelines.batch.run",
-    "estimate_inertia": "mbkf.pipelines.inertia.estimate",
-    "export_result": "mbkf.pipelines.export",
-    "label": "mbkf.pipelines.label",
+    "Tracker": "mbkf.trial.tracker",
+    "batch": "mbkf.study.batch.run",
+    "estimate_inertia": "mbkf.trial.inertia.estimate",
+    "export_result": "mbkf.trial.export",
+    "label": "mbkf.trial.label",
     "load_body": "mbkf.model.body_file",
     "load_protocol": "mbkf.model.protocol",
-    "orient": "mbkf.pipelines.imu.orient",
+    "orient": "mbkf.trial.inertial.orient",
     "plate_wrenches": "mbkf.sensors.contact.plates",
     "read_capture": "mbkf.io.capture",
     "read_imu": "mbkf.io.imu.files",
     "read_reconstruction": "mbkf.io.results_folder",
     "read_subject": "mbkf.io.subject",
-    "reconstruct": "mbkf.pipelines.reconstruct",
-    "scale": "mbkf.pipelines.scale",
-    "standard_blocks": "mbkf.pipelines.tracker",
-    "summarise": "mbkf.pipelines.results.summary",
-    "synthesise": "mbkf.pipelines.synth",
+    "reconstruct": "mbkf.trial.reconstruct",
+    "scale": "mbkf.trial.scale",
+    "standard_blocks": "mbkf.trial.tracker",
+    "summarise": "mbkf.trial.results.summary",
+    "synthesise": "mbkf.trial.synth",
     "write_reconstruction": "mbkf.io.results_folder",
     "write_subject": "mbkf.io.subject",
 }

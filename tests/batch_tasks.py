@@ -5,7 +5,7 @@ import signal
 from dataclasses import dataclass
 from pathlib import Path
 
-from mbkf.pipelines.batch.outcome import Outcome, Status
+from mbkf.study.batch.outcome import Outcome, Status
 
 
 @dataclass(frozen=True)

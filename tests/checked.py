@@ -6,9 +6,9 @@ from functools import cache
 import numpy as np
 
 from mbkf.model.human import HumanModel
-from mbkf.pipelines.checks.evidence import Evidence
-from mbkf.pipelines.trial.markers_alone import Motion
 from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
+from mbkf.trial.checks.evidence import Evidence
+from mbkf.trial.preparation.markers_alone import Motion
 from tests.dynamics import trial
 
 QUIET = CaptureSettings(markers_sd_m=0.001, skin_sd_m=0.0, occlusion=0.0, offset_n=(0.0, 0.0))

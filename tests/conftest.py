@@ -35,7 +35,7 @@ def real_data() -> Path:
 
 @pytest.fixture(scope="session", autouse=True)
 def one_thread():
-    """Small matrices on one thread, as the pipelines run them."""
+    """Small matrices on one thread, as the trial's questions run them."""
     with single_threaded():
         yield
 

@@ -12,8 +12,8 @@ from mbkf.filters.inverse_dynamics import inverse_dynamics
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.filters.tracking import track
-from mbkf.pipelines.trial.filters import FilterInputs, tracking_filter
 from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.trial.preparation.filters import FilterInputs, tracking_filter
 from tests.dynamics import DT, MARKER_SD_M, trial
 from tests.motions import angle_errors, marker_positions
 

@@ -8,12 +8,12 @@ import numpy as np
 from mbkf.io.contacts import Source
 from mbkf.io.results import Reconstruction
 from mbkf.model.clinical import ClinicalAngles, dof_names
-from mbkf.pipelines.results.supports import pressed_points
 from mbkf.sensors.contact.records import Contact
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
+from mbkf.trial.results.supports import pressed_points
 from tests.motions import marker_positions
 
 LOST = slice(100, 110)

@@ -6,8 +6,8 @@ import numpy as np
 
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject
-from mbkf.pipelines.scale import scale
-from mbkf.pipelines.synth import synthesise
+from mbkf.trial.scale import scale
+from mbkf.trial.synth import synthesise
 
 
 @dataclass(frozen=True)

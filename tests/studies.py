@@ -4,7 +4,7 @@ from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
 
-from mbkf.pipelines.synth import synthesise, write_folder
+from mbkf.trial.synth import synthesise, write_folder
 
 SECONDS = 2.5
 

@@ -17,9 +17,9 @@ from mbkf.io.capture import read_capture
 from mbkf.io.results import Reconstruction
 from mbkf.io.results_opensim import angles_table, torques_table
 from mbkf.io.storage import read_storage
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
-from mbkf.pipelines.results.summary import summarise
-from mbkf.pipelines.scale import scale
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.results.summary import summarise
+from mbkf.trial.scale import scale
 
 pytestmark = pytest.mark.slow
 

@@ -8,9 +8,9 @@ import numpy as np
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
 from mbkf.io.truth import Truth
-from mbkf.pipelines.scale import scale
-from mbkf.pipelines.synth import synthesise
 from mbkf.synthesis.cameras import without_labels
+from mbkf.trial.scale import scale
+from mbkf.trial.synth import synthesise
 
 SECONDS = 1.2
 

@@ -18,8 +18,8 @@ from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
-from mbkf.pipelines.scale import scale
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.scale import scale
 
 MOST_OFFSET_DEG = (4.0, 6.0, 6.0)
 """Sagittal, frontal and transverse plane."""

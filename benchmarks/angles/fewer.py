@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks.angles.archives import ARCHIVES, Archive, followed
 from benchmarks.checks import Check, information
 from mbkf.io.records import Capture
-from mbkf.pipelines.scale import scale
+from mbkf.trial.scale import scale
 
 MOST_DEG = 2.0
 

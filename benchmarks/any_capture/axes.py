@@ -23,8 +23,8 @@ from mbkf.io.capture import read_capture
 from mbkf.io.records import AxesSource, Capture
 from mbkf.io.turning import turned
 from mbkf.model.protocol import detect_protocol
-from mbkf.pipelines.axes.decision import right_axes
-from mbkf.pipelines.axes.evidence import MarkerPlaces, marker_places
+from mbkf.trial.axes.decision import right_axes
+from mbkf.trial.axes.evidence import MarkerPlaces, marker_places
 
 MOST_SECONDS = 0.2
 """Time that the check may take on one capture."""

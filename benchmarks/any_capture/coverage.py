@@ -17,10 +17,10 @@ from mbkf.errors import MbkfError
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import detect_protocol, load_protocol
-from mbkf.pipelines.coverage import INFERRED_KEY, USE_KEY
-from mbkf.pipelines.scale import scale
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.trial.preparation.coverage import INFERRED_KEY, USE_KEY
+from mbkf.trial.scale import scale
 
 MASS_KG = 70.0
 LEAST_SHARE = 0.6

@@ -31,9 +31,9 @@ from mbkf.io.subject import Subject
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.numerics.cardan import cardan_angles, quaternion_matrices
-from mbkf.pipelines.reconstruct import reconstruct
-from mbkf.pipelines.results.progression import kind_of, progression_of
-from mbkf.pipelines.scale import scale
+from mbkf.trial.reconstruct import reconstruct
+from mbkf.trial.results.progression import kind_of, progression_of
+from mbkf.trial.scale import scale
 
 TURNS_DEG = (30.0, 90.0, 180.0)
 """Angles by which the captures are turned about the vertical."""

@@ -16,8 +16,8 @@ from mbkf.io.axes import rotation_to_world
 from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
 from mbkf.io.trc import write_trc
-from mbkf.pipelines.synth import synthesise
 from mbkf.synthesis.capture import CaptureSettings
+from mbkf.trial.synth import synthesise
 
 SECONDS = 1.5
 SEED = 3

@@ -19,13 +19,13 @@ from mbkf.io.records import Capture
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.model.clinical import ClinicalAngles
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
-from mbkf.pipelines.scale import scale
 from mbkf.synthesis.cameras import occlusions
 from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
 from mbkf.synthesis.motion import TrueMotion, synthesise_motion
 from mbkf.synthesis.motions import registered_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.scale import scale
 
 SETS, MOTIONS = ("halpe26", "opencap43"), ("walk", "squat", "jump")
 SEEDS = (11, 12, 13)

@@ -11,7 +11,7 @@ import numpy as np
 from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture
 from mbkf.model.protocol import Protocol, detect_protocol, load_protocol, protocol_names
-from mbkf.pipelines.axes.captures import checked_for_protocol
+from mbkf.trial.axes.captures import checked_for_protocol
 
 LEAKS = 0.5
 """A shipped set that knows more than this share of a capture's names does not count while that capture is judged."""

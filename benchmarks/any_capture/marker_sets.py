@@ -16,7 +16,7 @@ from benchmarks.any_capture.marked import CAPTURES, Known, beside, hidden_names,
 from benchmarks.any_capture.set_angles import Compared, angle_rows, compared, reference
 from benchmarks.checks import Check, information
 from mbkf.errors import MbkfError
-from mbkf.pipelines.marker_set.inferred import InferredSet, infer_marker_set
+from mbkf.trial.protocol.inferred import InferredSet, infer_marker_set
 
 SURE = 0.9
 """A wrong marker of at least this probability was not told; the program's own bound does not move this one."""

@@ -16,7 +16,7 @@ from mbkf.cli.main import main
 from mbkf.io.axes import axes_matrix
 from mbkf.io.storage import read_storage
 from mbkf.io.subject import read_subject
-from mbkf.pipelines.axes.captures import REPORT_KEY
+from mbkf.trial.axes.captures import REPORT_KEY
 
 KNEE_DEG = (-5.0, 75.0)
 """A walker's knee."""

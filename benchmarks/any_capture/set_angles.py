@@ -14,9 +14,9 @@ from mbkf.errors import MbkfError
 from mbkf.io.records import Capture
 from mbkf.io.results import Reconstruction
 from mbkf.model.protocol import Protocol
-from mbkf.pipelines.marker_set.inferred import InferredSet
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
-from mbkf.pipelines.scale import scale
+from mbkf.trial.protocol.inferred import InferredSet
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.scale import scale
 
 MOST_FRAMES = 400
 MASS_KG = 70.0

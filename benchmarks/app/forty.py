@@ -13,7 +13,7 @@ from benchmarks.app.sessions import FORTY, forty
 from benchmarks.app.visit import Server, Visit, until, visit
 from benchmarks.checks import Check, information
 from mbkf.io.session import SESSION_FILE
-from mbkf.pipelines.batch.run import batch
+from mbkf.study.batch.run import batch
 
 MEMORY_MB, LIST_S, PAINT_S = 300.0, 1.0, 2.0
 

@@ -15,8 +15,8 @@ from mbkf.io.c3d_write import write_c3d
 from mbkf.io.records import AnalogChannel, Capture, CaptureEvent
 from mbkf.io.session import SessionNotes, TrialNotes, write_session
 from mbkf.io.trc import write_trc
-from mbkf.pipelines.synth import synthesise
 from mbkf.synthesis.person import synthesise_subject
+from mbkf.trial.synth import synthesise
 
 HIT = "window.hit=1"
 EVIL = (

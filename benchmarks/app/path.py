@@ -15,7 +15,7 @@ from benchmarks.checks import Check
 from mbkf.io.results import OFFSETS, SHAPES
 from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.session import read_session
-from mbkf.pipelines.batch.run import batch
+from mbkf.study.batch.run import batch
 
 CLICKS, SECONDS = 12, 180.0
 

@@ -16,8 +16,8 @@ from benchmarks.app.visit import Visit, browser, served, visit
 from benchmarks.screenshots import keep
 from benchmarks.session.change import MOTIONS, marked_anew, register_bent_walk
 from mbkf.io.c3d_write import write_c3d
-from mbkf.pipelines.synth import synthesise
 from mbkf.synthesis.person import synthesise_subject
+from mbkf.trial.synth import synthesise
 
 SESSIONS = ("Ana/1 before", "Ana/2 after")
 TRIALS, SEED = 3, 3

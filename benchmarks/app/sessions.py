@@ -10,8 +10,8 @@ import numpy as np
 
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.records import Capture, MarkerTrajectories
-from mbkf.pipelines.synth import synthesise
 from mbkf.synthesis.person import synthesise_subject
+from mbkf.trial.synth import synthesise
 
 WRONG_KG = 120.0
 WALKS, WALK_S = 4, 4.0

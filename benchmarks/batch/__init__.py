@@ -13,8 +13,8 @@ from benchmarks.batch.faults import fault_rows
 from benchmarks.batch.many import many_rows
 from benchmarks.batch.study import fresh, study
 from benchmarks.checks import Check, Context, information
-from mbkf.pipelines.batch.cluster import LOCAL
-from mbkf.pipelines.batch.run import batch
+from mbkf.study.batch.cluster import LOCAL
+from mbkf.study.batch.run import batch
 
 PERSONS, TRIALS, QUICK = 4, 16, (2, 3)
 """Persons and trials of each."""

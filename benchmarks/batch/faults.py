@@ -17,10 +17,10 @@ from benchmarks.batch.study import fresh, study
 from benchmarks.checks import Check, Context
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture import read_capture
-from mbkf.pipelines.batch.outcome import Outcome, ReconstructTrial, Task
-from mbkf.pipelines.batch.run import follow, plan_of
-from mbkf.pipelines.batch.workers import LocalWorkers
-from mbkf.pipelines.reconstruct_settings import ReconstructSettings
+from mbkf.study.batch.outcome import Outcome, ReconstructTrial, Task
+from mbkf.study.batch.run import follow, plan_of
+from mbkf.study.batch.workers import LocalWorkers
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 PERSONS, TRIALS, QUICK = 4, 16, (2, 4)
 STOPPED_AT = 0.4

@@ -18,10 +18,10 @@ from time import perf_counter, sleep
 
 from benchmarks.checks import Check, Context
 from mbkf.errors import InvalidInput
-from mbkf.pipelines.batch.outcome import Outcome, ReconstructTrial, Status, Task, peak_memory_mb
-from mbkf.pipelines.batch.run import follow, plan_of
-from mbkf.pipelines.batch.workers import LocalWorkers
-from mbkf.pipelines.reconstruct_settings import ReconstructSettings
+from mbkf.study.batch.outcome import Outcome, ReconstructTrial, Status, Task, peak_memory_mb
+from mbkf.study.batch.run import follow, plan_of
+from mbkf.study.batch.workers import LocalWorkers
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 TRIALS, QUICK_TRIALS = 10_000, 500
 PAUSE_S, WORKERS = 0.010, 2

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from mbkf.pipelines.synth import synthesise, write_folder
+from mbkf.trial.synth import synthesise, write_folder
 
 SECONDS = 4.0
 

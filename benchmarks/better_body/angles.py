@@ -13,8 +13,8 @@ from benchmarks.references import rms
 from mbkf.conventions import Array
 from mbkf.io.subject import Subject
 from mbkf.model.clinical import ClinicalAngles
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
 from mbkf.synthesis.person import body_of
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
 
 MOST_OF_TRUE = 1.3
 START_S = 0.2

@@ -15,12 +15,12 @@ from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
 from mbkf.io.truth import Truth
 from mbkf.model.protocol import load_protocol
-from mbkf.pipelines.scale import scale
-from mbkf.pipelines.synth import synthesise
 from mbkf.scaling import fit
 from mbkf.scaling.problem import ScalingProblem
 from mbkf.synthesis.capture import CaptureSettings
 from mbkf.synthesis.person import body_of, synthesise_subject
+from mbkf.trial.scale import scale
+from mbkf.trial.synth import synthesise
 
 NOISE = CaptureSettings(skin_sd_m=0.003)
 """3 mm of skin movement; cameras, occlusion and plates as `mbkf synth` has them."""

@@ -10,8 +10,8 @@ import numpy as np
 from mbkf.errors import NotConverged
 from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject
-from mbkf.pipelines.synth import synthesise
 from mbkf.synthesis.capture import CaptureSettings, SyntheticCapture
+from mbkf.trial.synth import synthesise
 
 SECONDS, RATE_HZ = {"walk": (2.0, 2.5), "jump": (2.4, 2.9), "squat": (2.0, 2.5)}, (60, 250)
 """Shortest and longest of each motion, s; and camera rates."""

@@ -18,10 +18,10 @@ from mbkf.io.truth import Truth
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
-from mbkf.pipelines.results.innovations import SETTLING_S
-from mbkf.pipelines.results.summary import ROOT_DOFS
-from mbkf.pipelines.scale import scale
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.results.innovations import SETTLING_S
+from mbkf.trial.results.summary import ROOT_DOFS
+from mbkf.trial.scale import scale
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,8 @@ from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.io.truth import Truth
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
-from mbkf.pipelines.synth import synthesise
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.synth import synthesise
 
 PERSONS = (0, 2, 3, 4)
 FORCE_PERCENT = {"sit_to_stand": 6.0, "kneel": 10.0, "rail": 10.0}

@@ -21,10 +21,10 @@ from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture, PlateReadings
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
-from mbkf.pipelines.results.summary import summarise
-from mbkf.pipelines.synth import synthesise
 from mbkf.sensors.contact.cleaning import cleaned
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.results.summary import summarise
+from mbkf.trial.synth import synthesise
 
 FILTERS = ("dynamic", "kinematic")
 JOINTS = ("hip_flexion", "knee_angle", "ankle_angle")

@@ -18,8 +18,8 @@ from benchmarks.contact.shared import BEARS_N, PASSES, REAL_WALKS, RealWalk, rea
 from benchmarks.contact.withheld import MEASURED_UNTIL_S, compared, without_plates
 from mbkf.conventions import Array
 from mbkf.io.results import Reconstruction
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
 from mbkf.sensors.contact.records import Contact
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
 
 RUNS = {
     "treadmill run": RealWalk(

@@ -21,12 +21,12 @@ from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
-from mbkf.pipelines.scale import scale
-from mbkf.pipelines.synth import synthesise
 from mbkf.sensors.contact.records import Contact
 from mbkf.synthesis.capture import CaptureSettings
 from mbkf.synthesis.person import body_of
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.scale import scale
+from mbkf.trial.synth import synthesise
 
 BEARS_N = 20.0
 """Vertical force from which a foot bears."""

@@ -21,8 +21,8 @@ from mbkf.conventions import GRAVITY_M_S2
 from mbkf.io.records import Capture
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
 from mbkf.sensors.contact.records import Contact
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
 
 MODES = {
     "causal": ReconstructSettings(smooth=False),

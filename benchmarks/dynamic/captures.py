@@ -21,8 +21,8 @@ from mbkf.io.results import Reconstruction
 from mbkf.io.results_folder import Summary
 from mbkf.io.storage import Table, read_storage
 from mbkf.io.subject import Subject
-from mbkf.pipelines.results.summary import summarise
-from mbkf.pipelines.scale import scale
+from mbkf.trial.results.summary import summarise
+from mbkf.trial.scale import scale
 
 LEFT = 1
 MARKER_FACTOR = 1.1

@@ -23,10 +23,10 @@ from mbkf.io.records import Capture
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
-from mbkf.pipelines.reconstruct import subject_markers
-from mbkf.pipelines.results.summary import ROOT_DOFS
 from mbkf.synthesis.cameras import OCCLUSION_FRAMES, occlusions
 from mbkf.synthesis.capture import CaptureSettings
+from mbkf.trial.reconstruct import subject_markers
+from mbkf.trial.results.summary import ROOT_DOFS
 
 FRACTIONS = (0.10, 0.27)
 CAUSAL_MM = {0.10: 7.5, 0.27: 11.0}

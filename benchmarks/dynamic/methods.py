@@ -24,8 +24,8 @@ from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct, subject_markers
 from mbkf.scaling.correction import correct_markers
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct, subject_markers
 
 WORKERS = 2
 

@@ -21,11 +21,11 @@ from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.reconstruct import subject_markers
 from mbkf.sensors.contact.offline import assign_feet
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 from mbkf.sensors.posture_sensor import PostureSensor
+from mbkf.trial.reconstruct import subject_markers
 
 
 @dataclass(frozen=True)

@@ -34,10 +34,10 @@ from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.io.truth import Truth
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.results.summary import ROOT_DOFS
-from mbkf.pipelines.synth import synthesise
 from mbkf.synthesis.capture import CaptureSettings
 from mbkf.synthesis.person import body_of
+from mbkf.trial.results.summary import ROOT_DOFS
+from mbkf.trial.synth import synthesise
 
 MOTIONS = ("walk", "squat", "jump")
 NOISE = CaptureSettings(markers_sd_m=0.001, skin_sd_m=0.005)

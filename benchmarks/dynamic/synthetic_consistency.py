@@ -16,8 +16,8 @@ from benchmarks.checks import Check, information
 from benchmarks.dynamic.methods import Mapper, Method, rows_or_failure
 from benchmarks.dynamic.synthetic import MATCHED, Case, differences, make_case
 from mbkf.conventions import Array
-from mbkf.pipelines.results.innovations import SETTLING_S
-from mbkf.pipelines.results.summary import ROOT_DOFS, compare_with_truth
+from mbkf.trial.results.innovations import SETTLING_S
+from mbkf.trial.results.summary import ROOT_DOFS, compare_with_truth
 
 _TWO_SIDED_95 = 1.959964
 

@@ -27,9 +27,9 @@ from mbkf.conventions import Array
 from mbkf.io.results import Reconstruction
 from mbkf.io.truth import Truth
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.results.summary import ROOT_DOFS
 from mbkf.synthesis.cameras import true_markers
 from mbkf.synthesis.person import body_of
+from mbkf.trial.results.summary import ROOT_DOFS
 
 FCDI_SMOOTHED, DYNAMIC_SMOOTHED = f"{FCDI}, smoothed", f"{DYNAMIC}, smoothed"
 METHODS = {name: {**CAUSAL, **SMOOTHED}[name] for name in (FCDI, DYNAMIC, FCDI_SMOOTHED, DYNAMIC_SMOOTHED)}

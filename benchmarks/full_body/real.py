@@ -30,8 +30,8 @@ from benchmarks.references import rms
 from benchmarks.thesis_report.contents import Findings, Row, Sheet
 from benchmarks.thesis_report.delay import delay
 from mbkf.io.results import Reconstruction
-from mbkf.pipelines.results.summary import ROOT_DOFS
 from mbkf.synthesis.person import body_of
+from mbkf.trial.results.summary import ROOT_DOFS
 
 QUICK_CAPTURES = ("rajagopal walk",)
 

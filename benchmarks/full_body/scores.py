@@ -14,8 +14,8 @@ from mbkf.io.results import Reconstruction
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.newton_euler import NewtonEuler
-from mbkf.pipelines.results.summary import ROOT_DOFS
 from mbkf.synthesis.person import body_of
+from mbkf.trial.results.summary import ROOT_DOFS
 
 DIVERGED_DEG = 10.0
 """A reconstruction with a larger RMS error of its angles, or with numbers that are not finite, has diverged."""

@@ -33,8 +33,8 @@ from mbkf.io.records import Capture
 from mbkf.io.results import Reconstruction
 from mbkf.io.truth import Truth
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.synth import synthesise
 from mbkf.synthesis.person import body_of
+from mbkf.trial.synth import synthesise
 
 SECONDS, SEEDS = 2.4, 2
 """One squat of each of so many persons."""

@@ -28,10 +28,10 @@ from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.reconstruct import subject_markers
-from mbkf.pipelines.synth import synthesise
-from mbkf.pipelines.trial.filters import tracking_filter
-from mbkf.pipelines.trial.inputs import trial_inputs
+from mbkf.trial.preparation.filters import tracking_filter
+from mbkf.trial.preparation.inputs import trial_inputs
+from mbkf.trial.reconstruct import subject_markers
+from mbkf.trial.synth import synthesise
 
 ROUNDS, QUICK_ROUNDS = 5, 1
 """The thesis, too, runs its capture five times."""

@@ -14,9 +14,9 @@ from mbkf.io.records import Capture, PlateReadings
 from mbkf.io.subject import Subject
 from mbkf.io.truth import Truth
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.synth import synthesise
 from mbkf.synthesis.capture import CaptureSettings
 from mbkf.synthesis.person import body_of
+from mbkf.trial.synth import synthesise
 
 WALK, GENERAL, SQUAT, LOST, JUMP = "walk", "general movement", "squat", "squat, knee lost", "jump"
 MOVEMENTS = (WALK, GENERAL, SQUAT, LOST, JUMP)

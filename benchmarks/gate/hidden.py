@@ -13,7 +13,7 @@ from benchmarks.dynamic.methods import Method
 from benchmarks.gate.metrics import HIGHER, Change, Metric, told
 from benchmarks.labelling.rows import Trial, hard, labelled, shuffled
 from benchmarks.references import rms
-from mbkf.pipelines.reconstruct import reconstruct
+from mbkf.trial.reconstruct import reconstruct
 
 RUN, RUN_SEED, HIDDEN_SHARE = "rajagopal run", 2, 0.27
 """A treadmill's belt takes hidden feet along; whole feet are hidden, and one marker of a foot alone is seen."""

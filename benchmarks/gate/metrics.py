@@ -12,17 +12,17 @@ from benchmarks.dynamic.captures import load
 from mbkf.io.capture import read_capture
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
-from mbkf.pipelines.label import label
-from mbkf.pipelines.labelling.score import score
-from mbkf.pipelines.live.filter import LiveFilter, live_inputs
-from mbkf.pipelines.reconstruct import Hidden, reconstruct
-from mbkf.pipelines.reconstruct_settings import ReconstructSettings
-from mbkf.pipelines.results.summary import summarise
-from mbkf.pipelines.results.truth import truth_beside
-from mbkf.pipelines.scale import scale
-from mbkf.pipelines.synth import synthesise, write_folder
-from mbkf.pipelines.trial.filters import tracking_filter
 from mbkf.sensors.block import Frame
+from mbkf.trial.label import label
+from mbkf.trial.labelling.score import score
+from mbkf.trial.live.filter import LiveFilter, live_inputs
+from mbkf.trial.preparation.filters import tracking_filter
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import Hidden, reconstruct
+from mbkf.trial.results.summary import summarise
+from mbkf.trial.results.truth import truth_beside
+from mbkf.trial.scale import scale
+from mbkf.trial.synth import synthesise, write_folder
 
 LOWER, HIGHER, NEAR_ONE = "lower", "higher", "near one"
 """Which way a number is better; the last is of consistency, told as its distance from one."""

@@ -22,10 +22,10 @@ from mbkf.filters.estimate import Recording, TrackingFilter
 from mbkf.filters.filter import Step
 from mbkf.kernel.loading import REFERENCE
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.reconstruct import ReconstructSettings, subject_markers
-from mbkf.pipelines.trial.filters import tracking_filter
-from mbkf.pipelines.trial.inputs import trial_inputs
 from mbkf.sensors.contact.records import Contact
+from mbkf.trial.preparation.filters import tracking_filter
+from mbkf.trial.preparation.inputs import trial_inputs
+from mbkf.trial.reconstruct import ReconstructSettings, subject_markers
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "one_step.md"

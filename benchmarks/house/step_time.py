@@ -19,7 +19,7 @@ from benchmarks.checks import Check, information
 from benchmarks.house.step_files import ROOT
 from benchmarks.house.step_worker import FILTERS
 from mbkf.errors import InvalidInput
-from mbkf.pipelines.synth import synthesise, write_folder
+from mbkf.trial.synth import synthesise, write_folder
 
 WORKER = Path(__file__).with_name("step_worker.py")
 STEPS, PAIRS, QUICK_PAIRS = 150, 16, 4

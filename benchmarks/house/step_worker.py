@@ -17,23 +17,22 @@ from typing import Any
 
 import mbkf
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.reconstruct import ReconstructSettings, subject_markers
 
 FILTERS = ("dynamic", "kinematic")
+
+NOW = "mbkf.trial.preparation.filters", "mbkf.trial.preparation.inputs", "mbkf.trial.reconstruct"
+BEFORE = "mbkf.pipelines.trial.filters", "mbkf.pipelines.trial.inputs", "mbkf.pipelines.reconstruct"
+"""Modules of the filters, of their inputs and of the question, in this tree and in one from before it had places."""
 
 
 def followed(folder: Path) -> tuple[Any, dict[str, Any]]:
     """The trial's recording and a filter for it by name, from where this tree keeps them."""
-    try:
-        homes = "mbkf.pipelines.trial.filters", "mbkf.pipelines.trial.inputs"
-        filters, inputs_of = (import_module(home) for home in homes)
-    except ImportError:  # before pipelines had folders
-        homes = "mbkf.pipelines.followers", "mbkf.pipelines.trial_inputs"
-        filters, inputs_of = (import_module(home) for home in homes)
+    homes = NOW if (Path(mbkf.__file__).parent / "trial").is_dir() else BEFORE
+    filters, inputs_of, question = (import_module(home) for home in homes)
     capture = mbkf.read_capture(folder / "trial.c3d")
     subject = mbkf.read_subject(folder / "subject.toml")
-    shown = subject_markers(capture.markers, subject)
-    inputs, recording = inputs_of.trial_inputs(shown, capture.plates, subject, ReconstructSettings())
+    shown = question.subject_markers(capture.markers, subject)
+    inputs, recording = inputs_of.trial_inputs(shown, capture.plates, subject, question.ReconstructSettings())
     made = getattr(filters, "tracking_filter", None) or filters.follower
     return recording, {name: made(name, inputs) for name in FILTERS}
 

@@ -12,8 +12,8 @@ from benchmarks.dynamic.captures import Person, load
 from mbkf.errors import NotObservable
 from mbkf.model.inertial_regressor import PER_OWN
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.inertia.estimate import estimate_from_rows, halves, lacking, rows_of
-from mbkf.pipelines.inertia.prior import PLACE
+from mbkf.trial.inertia.estimate import estimate_from_rows, halves, lacking, rows_of
+from mbkf.trial.inertia.prior import PLACE
 
 CAPTURES = ("rajagopal walk", "rajagopal run", "gait2354", "biomechzoo HC032A", "biomechzoo HC044A")
 """Nothing was set on them."""

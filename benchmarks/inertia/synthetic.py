@@ -29,11 +29,11 @@ from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
 from mbkf.io.truth import Truth
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.inertia.estimate import InertiaEstimate, estimate_inertia
-from mbkf.pipelines.results.summary import ROOT_DOFS
-from mbkf.pipelines.synth import synthesise
 from mbkf.synthesis.capture import CaptureSettings
 from mbkf.synthesis.person import body_of
+from mbkf.trial.inertia.estimate import InertiaEstimate, estimate_inertia
+from mbkf.trial.results.summary import ROOT_DOFS
+from mbkf.trial.synth import synthesise
 
 PERSONS = (1, 2, 5, 7)
 """Places in :data:`benchmarks.full_body.persons.PERSONS`; what is estimated and its prior were set on 0, 3 and 6."""

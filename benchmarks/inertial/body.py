@@ -26,16 +26,16 @@ from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
-from mbkf.pipelines.imu.angles import AnglesSettings, imu_angles
-from mbkf.pipelines.imu.on_body import ImuOnBody
-from mbkf.pipelines.imu.synth import BodyMotion
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
-from mbkf.pipelines.scale import scale
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.cameras import occlusions
 from mbkf.synthesis.capture import SyntheticCapture, synthesise_capture
 from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
+from mbkf.trial.inertial.angles import AnglesSettings, imu_angles
+from mbkf.trial.inertial.on_body import ImuOnBody
+from mbkf.trial.inertial.synth import BodyMotion
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.scale import scale
 
 SAGITTAL = tuple(f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle", "ankle_angle") for side in "rl")
 STANDING_S, RATE_HZ = 5.0, 100.0

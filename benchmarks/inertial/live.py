@@ -21,12 +21,12 @@ from mbkf.conventions import Array
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
-from mbkf.pipelines.imu.motion import InertialMotionSettings, inertial_motion
-from mbkf.pipelines.reconstruct import ReconstructSettings
 from mbkf.stream.file_source import FileSource
 from mbkf.stream.played import played_sensors
 from mbkf.stream.run.sensor_standing import SensorStanding
 from mbkf.stream.run.session import LiveSession
+from mbkf.trial.inertial.motion import InertialMotionSettings, inertial_motion
+from mbkf.trial.reconstruct import ReconstructSettings
 
 SECONDS, STOOD_S, SEEDS = 14.0, 2.0, (0, 1, 2)
 

@@ -27,13 +27,13 @@ from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.subject import Subject
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
-from mbkf.pipelines.imu.angles import AnglesSettings, ImuAngles, imu_angles
-from mbkf.pipelines.imu.motion import InertialMotion, inertial_motion
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
-from mbkf.pipelines.scale import scale
 from mbkf.scaling.stature import person_of_stature
 from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
+from mbkf.trial.inertial.angles import AnglesSettings, ImuAngles, imu_angles
+from mbkf.trial.inertial.motion import InertialMotion, inertial_motion
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.scale import scale
 
 RATE_HZ, STANDING_S, SETTLED_S = 100.0, 5.0, 1.0
 ERRORS, ASKEW_RAD = ImuErrors(gyro_bias_sd_rad_s=float(np.radians(0.5))), float(np.radians(5.0))

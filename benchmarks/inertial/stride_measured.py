@@ -15,7 +15,7 @@ from mbkf.imu.key_points import NOISY_WEIGHTS, KeyPointSettings
 from mbkf.imu.zero_velocity import phases
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.imu.table import read_imu_csv
-from mbkf.pipelines.imu.stride import FootResult, StrideSettings, measure_strides
+from mbkf.trial.inertial.stride import FootResult, StrideSettings, measure_strides
 
 FOLDER, RATE_HZ = "imu_gaitmap_foot", 204.8
 NEAREST_S = 0.3

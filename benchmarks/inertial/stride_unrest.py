@@ -11,7 +11,7 @@ from joblib import Parallel, delayed
 from benchmarks.checks import Check, Context
 from benchmarks.inertial.stride_feet import KINDS, STAND_S, SimulatedFoot, simulated_foot
 from mbkf.errors import InvalidInput
-from mbkf.pipelines.imu.stride import measure_strides
+from mbkf.trial.inertial.stride import measure_strides
 
 FEET, QUICK_FEET, LONGEST_M, RMSE_MM = 200, 20, 3.0, 60.0
 CUT = 4

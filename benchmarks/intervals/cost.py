@@ -13,11 +13,11 @@ from benchmarks.dynamic.methods import tared
 from mbkf.filters.record import OFFSETS_HELD_S
 from mbkf.io.subject import Subject
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct, subject_markers
-from mbkf.pipelines.scale import scale
-from mbkf.pipelines.synth import synthesise
-from mbkf.pipelines.trial.inputs import trial_inputs
 from mbkf.scaling import fit
+from mbkf.trial.preparation.inputs import trial_inputs
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct, subject_markers
+from mbkf.trial.scale import scale
+from mbkf.trial.synth import synthesise
 
 REPEATS = 40
 

@@ -14,8 +14,8 @@ from benchmarks.checks import Check, information
 from mbkf.conventions import SIDES
 from mbkf.io.capture import read_capture
 from mbkf.io.storage import read_storage
-from mbkf.pipelines.reconstruct import reconstruct
-from mbkf.pipelines.scale import scale
+from mbkf.trial.reconstruct import reconstruct
+from mbkf.trial.scale import scale
 
 ANGLES = {"hip_flexion": 1.0, "knee_angle": 1.0, "ankle_angle": 1.0, "elbow_flex": 1.0}
 """Flexion coordinates, ours and OpenSim's by the same name, and the sign between them."""

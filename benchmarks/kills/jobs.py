@@ -25,8 +25,8 @@ from mbkf.io.results_opensim import MARKERS_FILE
 from mbkf.io.storage import read_storage
 from mbkf.io.subject import read_subject
 from mbkf.io.trc import read_trc
-from mbkf.pipelines.synth import synthesise, write_folder
 from mbkf.stream.run.folder import LOG_FOLDER
+from mbkf.trial.synth import synthesise, write_folder
 
 RATE_HZ = 100.0
 OLD_FRAMES, NEW_FRAMES = 101, 141

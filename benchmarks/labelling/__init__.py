@@ -21,8 +21,8 @@ from benchmarks.labelling.rows import Trial, crossing_rows, hard_rows, loss_rows
 from benchmarks.labelling.speed import speed_rows
 from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture
-from mbkf.pipelines.scale import scale
-from mbkf.pipelines.synth import synthesise
+from mbkf.trial.scale import scale
+from mbkf.trial.synth import synthesise
 
 REAL = ("biomechzoo HC032A", "biomechzoo HC044A", "gaitalytics", "rajagopal walk", "rajagopal run")
 CONTRADICTORY, EXCHANGED = "biomechzoo HC032A", {"LHFB": "LTUB", "LTUB": "LHFB"}

@@ -36,11 +36,11 @@ from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.model.protocol import load_protocol
-from mbkf.pipelines.label import labelled_capture
-from mbkf.pipelines.label_unscaled import label_unscaled
-from mbkf.pipelines.labelling.score import LabelScore, score
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
-from mbkf.pipelines.scale import scale
+from mbkf.trial.label import labelled_capture
+from mbkf.trial.label_unscaled import label_unscaled
+from mbkf.trial.labelling.score import LabelScore, score
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.scale import scale
 
 FOLDER = "autolabel_unlabelled_fullbody"
 KNEELING, PRONE, MARKER_SET = "S09_KneeltoRun02_UNLABELLED.c3d", "PronetoRun01_labelled.c3d", "MarkerSet.xml"

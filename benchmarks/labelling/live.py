@@ -12,10 +12,10 @@ from mbkf.conventions import Array
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.labelling.score import LabelScore, score
-from mbkf.pipelines.live.filter import LiveFilter
-from mbkf.pipelines.live.labels import LiveLabels, live_body
 from mbkf.sensors.block import Frame
+from mbkf.trial.labelling.score import LabelScore, score
+from mbkf.trial.live.filter import LiveFilter
+from mbkf.trial.live.labels import LiveLabels, live_body
 
 _PERCENT = 100.0
 

@@ -14,9 +14,9 @@ from mbkf.conventions import Array
 from mbkf.errors import MbkfError
 from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.subject import Subject, match_names
-from mbkf.pipelines.label import label
-from mbkf.pipelines.labelling.score import LabelScore, score
 from mbkf.synthesis.cameras import ghosts, occlusions, without_labels
+from mbkf.trial.label import label
+from mbkf.trial.labelling.score import LabelScore, score
 
 NEVER_WRONG = ("biomechzoo", "gaitalytics", "synthetic")
 GHOSTS, HIDDEN_SHARE = 5, 0.10

@@ -18,8 +18,8 @@ from mbkf.filters.kinematic.tracking import KinematicTracking
 from mbkf.labelling.running import RunningLabeller
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.synth import synthesise
 from mbkf.sensors.marker_sensor import MarkerSensor
+from mbkf.trial.synth import synthesise
 
 MARKERS, POINTS = 36, 50
 PARTS = ("prediction", "assignment", "correction", "memory")

@@ -20,8 +20,8 @@ from benchmarks.dynamic.captures import SOURCES
 from benchmarks.live.runs import Run, Trial, difference, play
 from mbkf.io.capture import read_capture
 from mbkf.io.subject import write_subject
-from mbkf.pipelines.scale import scale
-from mbkf.pipelines.synth import synthesise, write_folder
+from mbkf.trial.scale import scale
+from mbkf.trial.synth import synthesise, write_folder
 
 SECONDS, QUICK_SECONDS = 60.0, 5.0
 FAST_HZ, FAST_SECONDS = 250.0, 10.0

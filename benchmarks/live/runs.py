@@ -27,9 +27,9 @@ from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.results import Reconstruction
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.subject import read_subject
-from mbkf.pipelines.live.log import SUBJECT_FILE, read_live_log
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
 from mbkf.stream.run.folder import LOG_FOLDER
+from mbkf.trial.live.log import SUBJECT_FILE, read_live_log
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
 
 MARGIN_S = 60.0
 """Beyond the length of the capture, so much time may pass before a run is given up."""

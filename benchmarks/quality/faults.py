@@ -10,9 +10,9 @@ from benchmarks.checks import Check, information
 from benchmarks.quality.spoilt import Followed
 from mbkf.io.findings import Finding
 from mbkf.io.records import PlateReadings
-from mbkf.pipelines.checks import clocks, gains, mass, newton
-from mbkf.pipelines.checks.clocks import delayed
-from mbkf.pipelines.checks.orientation import laid
+from mbkf.trial.checks import clocks, gains, mass, newton
+from mbkf.trial.checks.clocks import delayed
+from mbkf.trial.checks.orientation import laid
 
 MASSES = (0.75, 0.9, 1.1, 1.3)
 DELAYS_MS = (10.0, 20.0, 40.0)

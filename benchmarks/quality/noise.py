@@ -24,9 +24,9 @@ from mbkf.io.capture import read_capture
 from mbkf.io.findings import Finding
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject, read_subject
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
-from mbkf.pipelines.results import innovations
-from mbkf.pipelines.results.summary import summarise
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.results import innovations
+from mbkf.trial.results.summary import summarise
 
 LOW, HIGH = innovations.BAND
 

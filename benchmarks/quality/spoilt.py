@@ -12,14 +12,14 @@ from benchmarks.dynamic.captures import Person, load
 from mbkf.io.findings import Finding
 from mbkf.io.records import MarkerTrajectories, PlateReadings
 from mbkf.io.subject import Subject
-from mbkf.pipelines.checks.judge import plate_checks
-from mbkf.pipelines.reconstruct import ReconstructSettings, subject_markers
-from mbkf.pipelines.synth import synthesise
-from mbkf.pipelines.trial.inputs import trial_inputs
-from mbkf.pipelines.trial.markers_alone import Motion, markers_alone
-from mbkf.pipelines.trial.other_contacts import with_other_contacts
 from mbkf.sensors.supports.block import BEARING
 from mbkf.synthesis.capture import CaptureSettings
+from mbkf.trial.checks.judge import plate_checks
+from mbkf.trial.preparation.inputs import trial_inputs
+from mbkf.trial.preparation.markers_alone import Motion, markers_alone
+from mbkf.trial.preparation.other_contacts import with_other_contacts
+from mbkf.trial.reconstruct import ReconstructSettings, subject_markers
+from mbkf.trial.synth import synthesise
 
 KNOWN = ("rajagopal walk", "rajagopal run", "gait2354", "biomechzoo HC032A", "biomechzoo HC044A")
 KNOWN_MOTIONS = (("squat", 0), ("belt_walk", 0))

@@ -23,11 +23,11 @@ from mbkf.io.subject import read_subject
 from mbkf.io.truth import read_truth
 from mbkf.model.body_file import load_body
 from mbkf.model.protocol import load_protocol
-from mbkf.pipelines.batch.curves import read_curves
-from mbkf.pipelines.batch.inputs import is_made_from
-from mbkf.pipelines.batch.run import plan_of
-from mbkf.pipelines.info import describe
-from mbkf.pipelines.protocol.from_osim import import_osim
+from mbkf.study.batch.curves import read_curves
+from mbkf.study.batch.inputs import is_made_from
+from mbkf.study.batch.run import plan_of
+from mbkf.trial.info import describe
+from mbkf.trial.protocol.from_osim import import_osim
 from mbkf.viz.report.document import read_labels
 
 MOST_M, MOST_N = 1e4, 1e6

@@ -29,11 +29,11 @@ from mbkf.io.imu.write import write_imu_csv
 from mbkf.io.norms import Band, Norms, write_norms
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.results_folder import write_reconstruction
-from mbkf.pipelines.batch.curves import SCHEMA, write_curves_table
-from mbkf.pipelines.batch.inputs import write_record
-from mbkf.pipelines.reconstruct import reconstruct
-from mbkf.pipelines.results.summary import summarise
-from mbkf.pipelines.synth import synthesise, write_folder
+from mbkf.study.batch.curves import SCHEMA, write_curves_table
+from mbkf.study.batch.inputs import write_record
+from mbkf.trial.reconstruct import reconstruct
+from mbkf.trial.results.summary import summarise
+from mbkf.trial.synth import synthesise, write_folder
 
 SECONDS = 1.0
 PLATES_HZ, SAMPLES, FRAMES = 500.0, 100, 20

@@ -31,10 +31,10 @@ from benchmarks.robustness.stream_schedule import Schedule, Sent
 from benchmarks.robustness.stream_wire import LslWire
 from mbkf.errors import InvalidInput
 from mbkf.io.capture import read_capture
-from mbkf.pipelines.live.log import read_live_log
-from mbkf.pipelines.synth import synthesise, write_folder
 from mbkf.stream.played import Played, played
 from mbkf.stream.run.folder import LOG_FOLDER
+from mbkf.trial.live.log import read_live_log
+from mbkf.trial.synth import synthesise, write_folder
 
 LAP_S = 6.0
 WARM_SHARE, WARM_S = 1.0 / 3.0, 120.0

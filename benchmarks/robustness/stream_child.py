@@ -25,11 +25,11 @@ from benchmarks.robustness.stream_wire import LslWire, NatNetWire, Wire
 from mbkf.io.capture import read_capture
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.subject import read_subject
-from mbkf.pipelines.live.log import read_live_log
-from mbkf.pipelines.reconstruct import ReconstructSettings
 from mbkf.stream.played import Played, played
 from mbkf.stream.run.folder import LOG_FOLDER
 from mbkf.stream.run.session import LiveOutcome, LiveSession
+from mbkf.trial.live.log import read_live_log
+from mbkf.trial.reconstruct import ReconstructSettings
 
 PATIENCE_S, LINGER_S = 20.0, 0.5
 """A stream is looked for so long; after its last frame it stays so long."""

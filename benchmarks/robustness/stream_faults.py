@@ -18,7 +18,7 @@ from pathlib import Path
 
 from benchmarks.checks import Check, Context, information
 from benchmarks.robustness.stream_kinds import KINDS, LSL, NATNET
-from mbkf.pipelines.synth import synthesise, write_folder
+from mbkf.trial.synth import synthesise, write_folder
 
 TIMES = 3
 """Each fault is played so often, with a seed of its own each time."""

@@ -11,10 +11,10 @@ from benchmarks.checks import Check, Context, information, within
 from benchmarks.dynamic.methods import in_parallel
 from benchmarks.session.change import recorded
 from mbkf.conventions import Array
-from mbkf.pipelines.session.comparison import CurvePair, by_curve, compare
-from mbkf.pipelines.session.cycles import Key
-from mbkf.pipelines.session.gather import session_of
-from mbkf.pipelines.session.means import Difference
+from mbkf.study.session.comparison import CurvePair, by_curve, compare
+from mbkf.study.session.cycles import Key
+from mbkf.study.session.gather import session_of
+from mbkf.study.session.means import Difference
 
 PERSONS, QUICK_PERSONS = 40, 4
 

@@ -22,14 +22,14 @@ from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.reconstruct import reconstruct
-from mbkf.pipelines.reconstruct_settings import ReconstructSettings
-from mbkf.pipelines.scale import scale
-from mbkf.pipelines.synth import synthesise
 from mbkf.synthesis.motions import motion_names, register_motion
 from mbkf.synthesis.person import PLACEMENT_SD_M, body_of, synthesise_subject
 from mbkf.synthesis.plan import MotionPlan
 from mbkf.synthesis.walk import walk_plan
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
+from mbkf.trial.scale import scale
+from mbkf.trial.synth import synthesise
 
 BENT_RAD = float(np.deg2rad(10.0))
 """How much more the knees are bent at their straightest in the second session."""

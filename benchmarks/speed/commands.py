@@ -13,7 +13,7 @@ import numpy as np
 
 from benchmarks.checks import Check, information
 from mbkf.errors import InvalidInput
-from mbkf.pipelines.synth import synthesise, write_folder
+from mbkf.trial.synth import synthesise, write_folder
 
 SECONDS = 5.0
 CAUSAL_S, SMOOTHED_S = 1.5, 2.2

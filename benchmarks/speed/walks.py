@@ -16,14 +16,14 @@ from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture, PlateReadings
 from mbkf.io.subject import Subject
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.reconstruct import subject_markers
-from mbkf.pipelines.reconstruct_settings import ReconstructSettings
-from mbkf.pipelines.scale import scale
-from mbkf.pipelines.synth import synthesise
-from mbkf.pipelines.trial.filters import tracking_filter
-from mbkf.pipelines.trial.inputs import trial_inputs
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.person import body_of
+from mbkf.trial.preparation.filters import tracking_filter
+from mbkf.trial.preparation.inputs import trial_inputs
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import subject_markers
+from mbkf.trial.scale import scale
+from mbkf.trial.synth import synthesise
 
 REAL = "rajagopal walk"
 APART_M = np.array([0.02, 0.0, 0.02])

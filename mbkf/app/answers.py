@@ -6,9 +6,9 @@ from mbkf.app.recordings import recording_rows
 from mbkf.app.runs import Runs, RunState
 from mbkf.app.workspace import Workspace
 from mbkf.io.session import SessionNotes, TrialKind, plain_session, session_of
-from mbkf.pipelines.survey.problems import plain_problem
-from mbkf.pipelines.survey.session import SurveyedSession
-from mbkf.pipelines.survey.trial import SurveyedTrial
+from mbkf.study.survey.problems import plain_problem
+from mbkf.study.survey.session import SurveyedSession
+from mbkf.study.survey.trial import SurveyedTrial
 
 Plain = dict[str, object]
 

@@ -16,7 +16,7 @@ from mbkf.app.replies import asked
 from mbkf.app.workspace import Workspace
 from mbkf.errors import MbkfError, UnknownName
 from mbkf.io.results_folder import read_reconstruction
-from mbkf.pipelines.export import RESULT_FORMATS, export_result
+from mbkf.trial.export import RESULT_FORMATS, export_result
 from mbkf.viz.film.film import FILMS, write_film
 
 _FILMING = threading.Lock()

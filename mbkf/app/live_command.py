@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mbkf.app.workspace import Workspace
 from mbkf.errors import InvalidInput
-from mbkf.pipelines.survey.session import SurveyedSession
+from mbkf.study.survey.session import SurveyedSession
 
 LSL, NATNET, FILE = "lsl", "natnet", "file"
 """Where frames come from."""

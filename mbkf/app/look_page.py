@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.session import FootEvent, plain_events
-from mbkf.pipelines.gait.events import foot_events, plain_found
+from mbkf.trial.gait.events import foot_events, plain_found
 from mbkf.viz.language import languages, words
 from mbkf.viz.page import asset, embedded, viewer_script
 from mbkf.viz.scene.recording import recording

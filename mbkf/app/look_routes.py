@@ -15,8 +15,8 @@ from mbkf.app.runs import RUNNING, Runs
 from mbkf.app.workspace import Workspace
 from mbkf.errors import FileFormatError, InvalidInput, MbkfError
 from mbkf.io.session import FootEvent, plain_events, session_of
-from mbkf.pipelines.batch.curves import SIDES, read_curves
-from mbkf.pipelines.batch.trial import CURVES_FILE, curves_anew
+from mbkf.study.batch.curves import SIDES, read_curves
+from mbkf.study.batch.trial import CURVES_FILE, curves_anew
 
 MOST_EVENTS = 100_000
 """Events of one trial that are taken; an hour of running has a quarter of them."""

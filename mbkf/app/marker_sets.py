@@ -11,9 +11,9 @@ from mbkf.app.workspace import Workspace
 from mbkf.errors import InvalidInput
 from mbkf.io.capture import read_capture
 from mbkf.io.session import SessionNotes, TrialKind
-from mbkf.pipelines.protocol.editing import starting_set
-from mbkf.pipelines.protocol.standing import stand_beside
-from mbkf.pipelines.survey.session import SurveyedSession
+from mbkf.study.survey.session import SurveyedSession
+from mbkf.trial.protocol.editing import starting_set
+from mbkf.trial.protocol.standing import stand_beside
 from mbkf.viz.protocol.edit import MarkerSetEdit
 
 SET_FILE = "marker_set.toml"

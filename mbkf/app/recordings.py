@@ -10,8 +10,8 @@ from mbkf.app.workspace import Workspace
 from mbkf.errors import MbkfError
 from mbkf.io.results_folder import SUMMARY_FILE, read_summary
 from mbkf.io.session import TrialKind
-from mbkf.pipelines.survey.problems import Problem, plain_problem
 from mbkf.stream.run.report import LIVE_FILE
+from mbkf.study.survey.problems import Problem, plain_problem
 
 Plain = dict[str, object]
 

@@ -14,7 +14,7 @@ from mbkf.app import reports
 from mbkf.app.replies import asked, page, told
 from mbkf.app.workspace import Workspace
 from mbkf.errors import MbkfError
-from mbkf.pipelines.session.tables import write_session_curves
+from mbkf.study.session.tables import write_session_curves
 from mbkf.viz.language import ENGLISH
 
 

@@ -7,9 +7,9 @@ from pathlib import Path
 from mbkf.app.workspace import Workspace
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.norms import read_norms, write_norms
-from mbkf.pipelines.session.gather import session_from
-from mbkf.pipelines.session.norms import norms_of
-from mbkf.pipelines.session.records import Session
+from mbkf.study.session.gather import session_from
+from mbkf.study.session.norms import norms_of
+from mbkf.study.session.records import Session
 from mbkf.viz.session.document import session_page
 
 NORMS_FILE = "norms.toml"

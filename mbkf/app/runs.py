@@ -17,11 +17,11 @@ from pathlib import Path
 from mbkf.app.workspace import Workspace
 from mbkf.errors import MbkfError
 from mbkf.io.atomic import replacing
-from mbkf.pipelines.batch.outcome import Outcome, ReconstructTrial, Status, Task
-from mbkf.pipelines.batch.plan import Plan
-from mbkf.pipelines.batch.run import outcomes_of
-from mbkf.pipelines.batch.workers import Executor, LocalWorkers
-from mbkf.pipelines.reconstruct_settings import ReconstructSettings
+from mbkf.study.batch.outcome import Outcome, ReconstructTrial, Status, Task
+from mbkf.study.batch.plan import Plan
+from mbkf.study.batch.run import outcomes_of
+from mbkf.study.batch.workers import Executor, LocalWorkers
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 RUNS_FILE = "runs.json"
 """File in the folder of the results with the state of each session's run."""

@@ -17,17 +17,17 @@ from mbkf.errors import InvalidInput
 from mbkf.io.atomic import replacing
 from mbkf.io.results_folder import SUMMARY_FILE
 from mbkf.io.session import SESSION_FILE, FootEvent, SessionNotes, read_session, write_session
-from mbkf.pipelines.batch.folder import (
+from mbkf.stream.run.report import LIVE_FILE
+from mbkf.study.batch.folder import (
     SUBJECT_FILE,
     person_and_session,
     plan_of_folder,
     session_folders,
     stated_of,
 )
-from mbkf.pipelines.batch.plan import FORBIDDEN, Person, Plan, Trial
-from mbkf.pipelines.survey.session import SurveyedSession, survey_session
-from mbkf.pipelines.survey.trial import SurveyedTrial, survey_trial
-from mbkf.stream.run.report import LIVE_FILE
+from mbkf.study.batch.plan import FORBIDDEN, Person, Plan, Trial
+from mbkf.study.survey.session import SurveyedSession, survey_session
+from mbkf.study.survey.trial import SurveyedTrial, survey_trial
 
 RESULTS = "results"
 """Folder of the results in the page's folder."""

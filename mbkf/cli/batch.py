@@ -73,9 +73,9 @@ def run(args: argparse.Namespace) -> int:
     """
     from mbkf.cli.options import asked_spreads, lag_seconds
     from mbkf.cli.progress import stages
-    from mbkf.pipelines.batch.run import batch
-    from mbkf.pipelines.presets import with_preset
-    from mbkf.pipelines.reconstruct_settings import ReconstructSettings
+    from mbkf.study.batch.run import batch
+    from mbkf.trial.preparation.presets import with_preset
+    from mbkf.trial.preparation.settings import ReconstructSettings
 
     settings = ReconstructSettings(
         filter=args.filter or "dynamic",

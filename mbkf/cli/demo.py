@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from mbkf.cli.synth import add_motion_options
 
 if TYPE_CHECKING:
-    from mbkf.pipelines.demo import Demo
+    from mbkf.trial.demo import Demo
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -45,7 +45,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.cli.progress import stages
     from mbkf.cli.reconstruct import print_summary
     from mbkf.errors import InvalidInput
-    from mbkf.pipelines.demo import LABELLED, run_demo
+    from mbkf.trial.demo import LABELLED, run_demo
 
     if args.seed < 0:
         raise InvalidInput(f"--seed must be 0 or more, got {args.seed}")

@@ -69,7 +69,7 @@ def run(args: argparse.Namespace) -> int:
             args, _OF_SUBJECT, "a file of a subject", "a result", "the folder that 'mbkf reconstruct' wrote"
         )
         from mbkf.io.subject import read_subject
-        from mbkf.pipelines.export import export_subject
+        from mbkf.trial.export import export_subject
 
         export_subject(read_subject(source), args.to, args.out)
     print(args.out)
@@ -87,7 +87,7 @@ def _export_result(source: Path, kind: str, out: str) -> None:
         with stages() as report:
             write_film(result, kind, out, progress=report)
         return
-    from mbkf.pipelines.export import export_result
+    from mbkf.trial.export import export_result
 
     export_result(result, kind, out)
 

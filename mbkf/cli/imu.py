@@ -123,7 +123,7 @@ def standing_told(args: argparse.Namespace) -> tuple[float, float] | tuple[ImuRe
 def posture_told(path: str, model: HumanModel) -> Array:
     """(nq,) configuration in the middle of a standing motion."""
     from mbkf.errors import InvalidInput
-    from mbkf.pipelines.imu.synth import read_motion
+    from mbkf.trial.inertial.synth import read_motion
 
     motion = read_motion(path)
     if motion.model.nq != model.nq:

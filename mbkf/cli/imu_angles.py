@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from mbkf.pipelines.imu.angles import ImuAngles
+    from mbkf.trial.inertial.angles import ImuAngles
 
 _EPILOG = """\
 examples:
@@ -70,7 +70,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.atomic import check_folder
     from mbkf.io.subject import read_subject
     from mbkf.model.human import HumanModel
-    from mbkf.pipelines.imu.angles import AnglesSettings, imu_angles
+    from mbkf.trial.inertial.angles import AnglesSettings, imu_angles
 
     folder = check_folder(args.out)
     model = HumanModel.scaled()

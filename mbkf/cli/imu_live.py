@@ -84,9 +84,9 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.errors import InvalidInput
     from mbkf.io.atomic import check_folder
     from mbkf.model.human import HumanModel
-    from mbkf.pipelines.reconstruct import ReconstructSettings
     from mbkf.stream.run.sensor_standing import SensorStanding
     from mbkf.stream.run.session import LiveSession
+    from mbkf.trial.reconstruct import ReconstructSettings
 
     if args.seconds is not None:
         check_positive("--seconds", args.seconds)

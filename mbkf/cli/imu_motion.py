@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from mbkf.pipelines.imu.motion import InertialMotion
+    from mbkf.trial.inertial.motion import InertialMotion
 
 _EPILOG = """\
 examples:
@@ -61,8 +61,8 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.imu.mount import write_mounts
     from mbkf.io.results_folder import RESULT_FILES, write_reconstruction
     from mbkf.model.human import HumanModel
-    from mbkf.pipelines.imu.motion import InertialMotionSettings, inertial_motion
-    from mbkf.pipelines.results.summary import summarise
+    from mbkf.trial.inertial.motion import InertialMotionSettings, inertial_motion
+    from mbkf.trial.results.summary import summarise
 
     folder, person = check_folder(args.out, RESULT_FILES), person_told(args)
     sensors = read_session(args.files, args)

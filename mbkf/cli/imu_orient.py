@@ -76,7 +76,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.atomic import check_folder
     from mbkf.io.atomic_folder import replacing_folder
     from mbkf.io.imu.write import write_orientation_csv
-    from mbkf.pipelines.imu.orient import orient, orientation_summary
+    from mbkf.trial.inertial.orient import orient, orientation_summary
 
     settings = OrientSettings(
         args.filter,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mbkf.io.imu.readings import ImuReadings
-    from mbkf.pipelines.imu.stride import StrideMeasurement, StrideSettings
+    from mbkf.trial.inertial.stride import StrideMeasurement, StrideSettings
 
 PICTURE_FILE = "feet.png"
 _MOST_FEET = 2
@@ -81,8 +81,8 @@ def run(args: argparse.Namespace) -> int:
     """
     from mbkf.cli.progress import stages
     from mbkf.io.atomic import check_folder
-    from mbkf.pipelines.imu.stride import measure_strides
-    from mbkf.pipelines.imu.stride_folder import write_strides
+    from mbkf.trial.inertial.stride import measure_strides
+    from mbkf.trial.inertial.stride_folder import write_strides
     from mbkf.viz.imu.foot_path import write_foot_path
 
     check_folder(args.out)
@@ -100,7 +100,7 @@ def _settings(args: argparse.Namespace) -> StrideSettings:
     from mbkf.errors import InvalidInput
     from mbkf.imu.foot_filter import LEVEL_M, FootFilterSettings
     from mbkf.imu.key_points import KeyPointSettings
-    from mbkf.pipelines.imu.stride import StrideSettings
+    from mbkf.trial.inertial.stride import StrideSettings
 
     own = {name: getattr(args, name) for name in ("threshold", "window") if getattr(args, name) is not None}
     if args.weights is not None:
@@ -144,7 +144,7 @@ def _print(measured: StrideMeasurement, out: str) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from mbkf.pipelines.imu.stride import STRAIGHT_DEG, stride_summary
+    from mbkf.trial.inertial.stride import STRAIGHT_DEG, stride_summary
 
     summary: dict[str, Any] = stride_summary(measured)
     table = Table(title=f"{out}: {summary['method_meaning']}", title_justify="left")

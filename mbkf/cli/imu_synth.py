@@ -60,7 +60,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.atomic import check_folder
     from mbkf.io.imu.mount import read_mounts, write_mounts
     from mbkf.io.imu.write import write_imu_csv
-    from mbkf.pipelines.imu.synth import read_motion, synthesise_imus
+    from mbkf.trial.inertial.synth import read_motion, synthesise_imus
 
     out = Path(args.out)
     if out.suffix.lower() != ".csv":

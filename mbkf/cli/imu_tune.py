@@ -53,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
     """
     from mbkf.cli.imu import read
     from mbkf.io.atomic import check_folder, replacing
-    from mbkf.pipelines.imu.orient import prepared
+    from mbkf.trial.inertial.orient import prepared
 
     if args.out is not None:
         from pathlib import Path

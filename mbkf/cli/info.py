@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from mbkf.pipelines.info import AxesSummary, CaptureSummary, MarkerSummary, ProtocolSummary
+    from mbkf.trial.info import AxesSummary, CaptureSummary, MarkerSummary, ProtocolSummary
 
 _MOST_WITH_GAPS = 30
 _PIPED_WIDTH = 110
@@ -52,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
     """
     from mbkf.cli.options import axes_options
     from mbkf.io.capture import read_capture
-    from mbkf.pipelines.info import describe
+    from mbkf.trial.info import describe
 
     summary = describe(read_capture(args.file, forces=args.forces, **axes_options(args)))
     if args.json:
@@ -135,7 +135,7 @@ def _channels(summary: CaptureSummary) -> str:
 
 
 def _protocol(protocol: ProtocolSummary | None) -> str:
-    from mbkf.pipelines.coverage import listed
+    from mbkf.trial.preparation.coverage import listed
 
     if protocol is None:
         return "none knows these markers, and no person was found among them; scaling needs --protocol"

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from mbkf.conventions import StageCallback
     from mbkf.io.records import Capture
     from mbkf.io.subject import Subject
-    from mbkf.pipelines.label import Labelling, LabelSummary
+    from mbkf.trial.label import Labelling, LabelSummary
 
 _EPILOG = """\
 examples:
@@ -80,9 +80,9 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
     from mbkf.io.subject import write_subject
-    from mbkf.pipelines.axes.captures import turned_like_subject
-    from mbkf.pipelines.labelling.files import write_labels
-    from mbkf.pipelines.labelling.score import score
+    from mbkf.trial.axes.captures import turned_like_subject
+    from mbkf.trial.labelling.files import write_labels
+    from mbkf.trial.labelling.score import score
 
     out = _checked(Path(args.out), Path(args.raw))
     check_folder(out.parent)
@@ -114,11 +114,11 @@ def _label(
     from mbkf.cli.scale import warn_of_markers
     from mbkf.io.capture import read_capture
     from mbkf.io.subject import read_subject
-    from mbkf.pipelines.axes.captures import turned_like_subject
-    from mbkf.pipelines.label import label
-    from mbkf.pipelines.label_nameless import label_nameless
-    from mbkf.pipelines.label_unscaled import label_unscaled
-    from mbkf.pipelines.scale import scale
+    from mbkf.trial.axes.captures import turned_like_subject
+    from mbkf.trial.label import label
+    from mbkf.trial.label_nameless import label_nameless
+    from mbkf.trial.label_unscaled import label_unscaled
+    from mbkf.trial.scale import scale
 
     person = {"mass_kg": args.mass, "height_m": args.height}
     if args.subject is not None:

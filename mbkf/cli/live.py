@@ -121,10 +121,10 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.errors import InvalidInput
     from mbkf.io.atomic import check_folder
     from mbkf.io.subject import Subject
-    from mbkf.pipelines.presets import with_preset
-    from mbkf.pipelines.reconstruct import ReconstructSettings
     from mbkf.stream.run.session import LiveSession
     from mbkf.stream.run.standing import StandingStart
+    from mbkf.trial.preparation.presets import with_preset
+    from mbkf.trial.reconstruct import ReconstructSettings
 
     if args.recover is not None:
         return _recover(Path(args.recover))

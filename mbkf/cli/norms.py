@@ -46,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
     from pathlib import Path
 
     from mbkf.io.norms import write_norms
-    from mbkf.pipelines.session.norms import build_norms
+    from mbkf.study.session.norms import build_norms
 
     out = Path(args.out)
     norms = build_norms([Path(folder) for folder in args.folders], args.name or out.stem)

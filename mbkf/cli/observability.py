@@ -10,8 +10,8 @@ import numpy as np
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from mbkf.pipelines.observability import ProtocolObservability
     from mbkf.sensors.observability import Observability
+    from mbkf.trial.observability import ProtocolObservability
 
 WEAKEST_SHOWN = 5
 _EPILOG = """\
@@ -53,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
 
     from mbkf.errors import InvalidInput
     from mbkf.model.protocol import load_protocol, protocol_names
-    from mbkf.pipelines.observability import check_protocol
+    from mbkf.trial.observability import check_protocol
 
     console = Console(highlight=False)
     lost = [name.strip() for name in args.lost.split(",") if name.strip()]

@@ -60,7 +60,7 @@ def marker_table(protocol: Protocol) -> Table:
     """The markers of a set, segment by segment in the order of the body."""
     from rich.table import Table
 
-    from mbkf.pipelines.protocol.editing import SURE
+    from mbkf.trial.protocol.editing import SURE
 
     table = Table(title=f"{protocol.title} ({protocol.name})", title_justify="left")
     for heading in ("marker", "segment", "landmark", "kind", "x, y, z mm", "may move mm"):

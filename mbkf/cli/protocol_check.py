@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from mbkf.pipelines.protocol.check import SetCheck
+    from mbkf.trial.protocol.check import SetCheck
 
 WORST_SHOWN = 8
 
@@ -53,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.cli.protocol import wide_console
     from mbkf.io.capture import read_capture
     from mbkf.model.protocol import load_protocol
-    from mbkf.pipelines.protocol.check import BAD, check_set
+    from mbkf.trial.protocol.check import BAD, check_set
 
     protocol = load_protocol(args.protocol)
     capture = read_capture(args.capture, **axes_options(args))
@@ -64,7 +64,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _show(found: SetCheck, console: Console) -> None:
-    from mbkf.pipelines.coverage import UNKNOWN, listed
+    from mbkf.trial.preparation.coverage import UNKNOWN, listed
 
     console.print(found.use.told, soft_wrap=True)
     if found.use.unknown:

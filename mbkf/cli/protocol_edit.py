@@ -53,8 +53,8 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
     from mbkf.model.protocol_file import checked_name
-    from mbkf.pipelines.protocol.editing import starting_set
-    from mbkf.pipelines.protocol.standing import stand_beside
+    from mbkf.trial.protocol.editing import starting_set
+    from mbkf.trial.protocol.standing import stand_beside
     from mbkf.viz.protocol.edit import EditPage
     from mbkf.viz.server import checked_port
 

@@ -46,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
     from mbkf.model.protocol_file import checked_name, write_protocol
-    from mbkf.pipelines.marker_set.inferred import infer_marker_set
+    from mbkf.trial.protocol.inferred import infer_marker_set
 
     out = checked_name(args.out)
     check_folder(out.parent)

@@ -37,7 +37,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.cli.protocol import print_set, wide_console
     from mbkf.io.atomic import check_folder
     from mbkf.model.protocol_file import checked_name, write_protocol
-    from mbkf.pipelines.protocol.from_osim import import_osim
+    from mbkf.trial.protocol.from_osim import import_osim
 
     out = None if args.out is None else checked_name(args.out)
     if out is not None:

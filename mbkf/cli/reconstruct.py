@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from mbkf.io.results_folder import Summary
-    from mbkf.pipelines.imu.on_body import ImuOnBody
-    from mbkf.pipelines.reconstruct import Hidden
+    from mbkf.trial.inertial.on_body import ImuOnBody
+    from mbkf.trial.reconstruct import Hidden
 
 _EPILOG = """\
 examples:
@@ -139,10 +139,10 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.capture import read_capture
     from mbkf.io.results_folder import RESULT_FILES, write_reconstruction
     from mbkf.io.subject import read_subject
-    from mbkf.pipelines.presets import with_preset
-    from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
-    from mbkf.pipelines.results.summary import summarise
-    from mbkf.pipelines.results.truth import truth_beside
+    from mbkf.trial.preparation.presets import with_preset
+    from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+    from mbkf.trial.results.summary import summarise
+    from mbkf.trial.results.truth import truth_beside
 
     hide = tuple(parse_hide(text) for text in args.hide)
     subject = read_subject(args.subject)
@@ -178,7 +178,7 @@ def _imus(args: argparse.Namespace) -> ImuOnBody | None:
     from mbkf.errors import InvalidInput
     from mbkf.io.imu.files import read_imu
     from mbkf.io.imu.mount import read_mounts
-    from mbkf.pipelines.imu.on_body import ImuOnBody
+    from mbkf.trial.inertial.on_body import ImuOnBody
 
     if not args.imu:
         if args.imu_mounts is not None:
@@ -195,7 +195,7 @@ def parse_hide(text: str) -> Hidden:
         InvalidInput: The text is not of that form.
     """
     from mbkf.errors import InvalidInput
-    from mbkf.pipelines.reconstruct import Hidden
+    from mbkf.trial.reconstruct import Hidden
 
     names, at, window = text.partition("@")
     first, colon, last = window.partition(":")
@@ -214,7 +214,7 @@ def print_summary(summary: Summary, folder: Path) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from mbkf.pipelines.coverage import listed
+    from mbkf.trial.preparation.coverage import listed
 
     console = Console(highlight=False, markup=False)
     title = f"{summary['trial']} ({summary['filter']} filter)"

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from mbkf.pipelines.session.records import Session
+    from mbkf.study.session.records import Session
 
 _EPILOG = """\
 examples:
@@ -87,8 +87,8 @@ def _trial(args: argparse.Namespace, folder: Path) -> int:
 
 def _session(args: argparse.Namespace, folders: list[Path]) -> int:
     from mbkf.io.norms import read_norms
-    from mbkf.pipelines.session.gather import results_in, session_from
-    from mbkf.pipelines.session.tables import check_curves_file, write_session_curves
+    from mbkf.study.session.gather import results_in, session_from
+    from mbkf.study.session.tables import check_curves_file, write_session_curves
     from mbkf.viz.language import ENGLISH
     from mbkf.viz.session.document import session_page, write_session_report
 

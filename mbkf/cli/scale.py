@@ -79,9 +79,9 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.atomic import check_folder
     from mbkf.io.capture import read_capture
     from mbkf.io.subject import write_subject
-    from mbkf.pipelines.inertia.estimate import with_inertia
-    from mbkf.pipelines.scale import scale
-    from mbkf.pipelines.weighing import PROVISIONAL_KG, weighed
+    from mbkf.trial.inertia.estimate import with_inertia
+    from mbkf.trial.scale import scale
+    from mbkf.trial.weighing import PROVISIONAL_KG, weighed
 
     weighs = args.mass == AUTO
     if args.mass is not None and not weighs and not args.mass > 0:
@@ -138,8 +138,8 @@ def warn_of_fit(subject: Subject) -> None:
 
 def warn_of_markers(subject: Subject) -> None:
     """Tells an inferred set's doubts, exchanged names, and a protocol that knows too few of the person's markers."""
-    from mbkf.pipelines.scale import EXCHANGED_KEY
-    from mbkf.pipelines.trial.exchanged import exchange_notes
+    from mbkf.trial.preparation.exchanged import exchange_notes
+    from mbkf.trial.scale import EXCHANGED_KEY
 
     inferred = subject.report.get("inferred")
     for name, odds in inferred["doubtful"].items() if isinstance(inferred, dict) else ():
@@ -155,7 +155,7 @@ def warn_of_markers(subject: Subject) -> None:
 
 def _use(use: dict[str, Any]) -> str:
     """How much the protocol knows, and which markers are ignored."""
-    from mbkf.pipelines.coverage import listed
+    from mbkf.trial.preparation.coverage import listed
 
     ignored = use["ignored"]
     return f"{use['told']}; {len(ignored)} ignored" + (f": {listed(ignored)}" if ignored else "")

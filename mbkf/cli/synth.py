@@ -53,8 +53,8 @@ def run(args: argparse.Namespace) -> int:
     """Make the capture and write its folder."""
     from mbkf.cli.progress import stages
     from mbkf.io.atomic import check_folder
-    from mbkf.pipelines.synth import synthesise, write_folder
     from mbkf.synthesis.capture import CaptureSettings
+    from mbkf.trial.synth import synthesise, write_folder
 
     if args.seed < 0:
         raise InvalidInput(f"--seed must be 0 or more, got {args.seed}")

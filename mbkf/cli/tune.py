@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from mbkf.io.preset import Preset
-    from mbkf.pipelines.tune import Tuned
+    from mbkf.study.tune import Tuned
 
 _EPILOG = """\
 examples:
@@ -92,9 +92,9 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.capture import read_capture
     from mbkf.io.preset import write_preset
     from mbkf.io.subject import read_subject
-    from mbkf.pipelines.presets import check_name, place_of
-    from mbkf.pipelines.reconstruct import ReconstructSettings
-    from mbkf.pipelines.tune import TuneSettings, tune
+    from mbkf.study.tune import TuneSettings, tune
+    from mbkf.trial.preparation.presets import check_name, place_of
+    from mbkf.trial.reconstruct import ReconstructSettings
 
     if args.runs < 1:
         raise InvalidInput(f"--runs must be at least 1, got {args.runs}")

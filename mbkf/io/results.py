@@ -104,7 +104,7 @@ class Reconstruction:
         measured: (T,) every contact that bears load stands on a measured plate, of its own or shared: frames in which
             the residual from measured plates means something.
         valid: (T,) every contact that bears load is measured, or estimated so that the torques it loads are known well
-            enough (:mod:`mbkf.pipelines.results.validity`).
+            enough (:mod:`mbkf.trial.results.validity`).
         foot_source: (T, 2) how the wrench of right and left foot is known (:class:`mbkf.io.contacts.Source`): 0 no
             load, 1 measured, 2 its share of one plate under both feet, 3 estimated.
         support_names: (B,) parts that may bear load besides the feet, e.g. "pelvis", "right_hand"; empty where the

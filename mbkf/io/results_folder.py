@@ -83,7 +83,7 @@ class Summary(TypedDict):
         hidden_marker_rms_mm, hidden_marker_max_mm: Distances of markers hidden on purpose.
         residual_force_rms_n, residual_moment_rms_nm: Residual at the pelvis in measured frames.
         valid_frames: Frames in which every contact that bears load is measured, or estimated so that the torques it
-            loads are known well enough (:mod:`mbkf.pipelines.results.validity`).
+            loads are known well enough (:mod:`mbkf.trial.results.validity`).
         measured_frames: Frames in which plates measure every contact.
         contacts: Which part of the body bore load from when to when, how much, and how that is known.
         plate_force_change_rms_n, plate_moment_change_rms_nm: Estimated minus measured plate wrenches.

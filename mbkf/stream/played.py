@@ -13,9 +13,9 @@ from mbkf.errors import InvalidInput
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.records import Capture, PlateReadings
 from mbkf.io.resample import WHOLE
-from mbkf.pipelines.imu.motion_inputs import frame_times
-from mbkf.pipelines.imu.on_body import frame_readings
 from mbkf.stream.source import PlateSamples, StreamDescription, without_readings
+from mbkf.trial.inertial.motion_inputs import frame_times
+from mbkf.trial.inertial.on_body import frame_readings
 
 
 @dataclass(frozen=True)

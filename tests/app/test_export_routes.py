@@ -8,8 +8,8 @@ from mbkf.app import export_routes as module
 from mbkf.app.export_routes import exported
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.io.results_folder import write_reconstruction
-from mbkf.pipelines.results.summary import summarise
 from mbkf.stream.run.report import LIVE_FILE
+from mbkf.trial.results.summary import summarise
 from tests.app.asking import asked, plain
 from tests.recordings import walk
 

@@ -7,9 +7,9 @@ import pytest
 
 from mbkf.app import live_routes as module
 from mbkf.app.live_routes import frame_page
-from mbkf.pipelines.live.log import FRAMES_FILE
 from mbkf.stream.lsl.discovery import FoundStream
 from mbkf.stream.run.folder import LOG_FOLDER
+from mbkf.trial.live.log import FRAMES_FILE
 from tests.app.asking import asked, plain
 
 PATIENCE_S = 60.0

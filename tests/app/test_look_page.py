@@ -8,8 +8,8 @@ import pytest
 from mbkf.app.look_page import SCRIPTS, look_data, look_page
 from mbkf.io.results_folder import write_result_files
 from mbkf.io.session import EventKind, FootEvent
-from mbkf.pipelines.gait.events import foot_events, plain_found
-from mbkf.pipelines.results.summary import summarise
+from mbkf.trial.gait.events import foot_events, plain_found
+from mbkf.trial.results.summary import summarise
 from mbkf.viz.language import words
 from mbkf.viz.page import asset
 from tests.recordings import walk

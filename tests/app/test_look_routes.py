@@ -10,10 +10,10 @@ from mbkf.app.look_routes import MOST_EVENTS, cycles_in, events_said
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.session import EventKind, FootEvent, SessionNotes, TrialKind, TrialNotes, read_session
-from mbkf.pipelines.batch.curves import curves_of, read_curves
-from mbkf.pipelines.batch.inputs import RECORD
-from mbkf.pipelines.batch.run import batch
-from mbkf.pipelines.batch.trial import CURVES_FILE
+from mbkf.study.batch.curves import curves_of, read_curves
+from mbkf.study.batch.inputs import RECORD
+from mbkf.study.batch.run import batch
+from mbkf.study.batch.trial import CURVES_FILE
 from tests.app.asking import asked, plain
 
 EVENTS = "/trial/events?session=P1&trial=walk1"

@@ -3,7 +3,7 @@
 import re
 
 from mbkf.app.pages import LOOKS, SCRIPTS, SECTIONS, page_words, start_page
-from mbkf.pipelines.survey.problems import TEXTS
+from mbkf.study.survey.problems import TEXTS
 from mbkf.viz.language import words
 from mbkf.viz.page import asset
 from tests.io.reconstructions import made_up

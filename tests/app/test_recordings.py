@@ -9,10 +9,10 @@ from mbkf.app.recordings import recording_rows
 from mbkf.app.workspace import RESULTS, Workspace
 from mbkf.errors import InvalidInput
 from mbkf.io.results_folder import write_reconstruction
-from mbkf.pipelines.batch.run import batch
-from mbkf.pipelines.reconstruct_settings import ReconstructSettings
-from mbkf.pipelines.results.summary import summarise
 from mbkf.stream.run.report import LIVE_FILE
+from mbkf.study.batch.run import batch
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.results.summary import summarise
 from tests.captures import snapshot
 from tests.recordings import walk
 from tests.studies import study

@@ -6,9 +6,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from mbkf.io.results_folder import write_reconstruction
-from mbkf.pipelines.results.summary import summarise
+from mbkf.trial.results.summary import summarise
 from tests.app.asking import asked, plain
-from tests.pipelines.session.sessions import walks
+from tests.study.session.sessions import walks
 
 
 @pytest.fixture(scope="module")

@@ -8,9 +8,9 @@ from mbkf.errors import InvalidInput
 from mbkf.io.norms import read_norms
 from mbkf.io.results_folder import write_reconstruction
 from mbkf.io.session import SessionNotes, TrialNotes
-from mbkf.pipelines.results.summary import summarise
-from tests.pipelines.session.sessions import walks
+from mbkf.trial.results.summary import summarise
 from tests.studies import study
+from tests.study.session.sessions import walks
 
 
 @pytest.fixture

@@ -11,8 +11,8 @@ from mbkf.app.runs import CANCELLED, FAILED, FINISHED, RUNNING, RUNS_FILE, WAITI
 from mbkf.app.workspace import RESULTS, Workspace
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.session import SessionNotes
-from mbkf.pipelines.batch.outcome import Outcome, ReconstructTrial, Status
-from mbkf.pipelines.batch.run import batch
+from mbkf.study.batch.outcome import Outcome, ReconstructTrial, Status
+from mbkf.study.batch.run import batch
 from tests.studies import study
 
 PATIENCE_S = 60.0

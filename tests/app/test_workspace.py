@@ -6,9 +6,9 @@ from mbkf.app import workspace as module
 from mbkf.app.workspace import RESULTS, Workspace
 from mbkf.errors import InvalidInput
 from mbkf.io.session import SessionNotes, read_session
-from mbkf.pipelines.batch.folder import plan_of_folder
-from mbkf.pipelines.batch.run import batch
-from mbkf.pipelines.reconstruct_settings import ReconstructSettings
+from mbkf.study.batch.folder import plan_of_folder
+from mbkf.study.batch.run import batch
+from mbkf.trial.preparation.settings import ReconstructSettings
 from tests.studies import study
 
 

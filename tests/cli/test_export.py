@@ -9,7 +9,7 @@ from mbkf.cli.export import add_parser
 from mbkf.cli.main import OneLineParser, main
 from mbkf.io.results_folder import MOTION_FILE, write_reconstruction
 from mbkf.io.subject import Subject, SubjectMarker, write_subject
-from mbkf.pipelines.export import FORMATS, RESULT_FORMATS
+from mbkf.trial.export import FORMATS, RESULT_FORMATS
 from tests.recordings import walk
 
 

@@ -13,7 +13,7 @@ from mbkf.io.imu.mount import read_mounts
 from mbkf.io.imu.write import write_imu_csv
 from mbkf.io.storage import read_storage
 from tests.imu.turning import turning
-from tests.pipelines.imu.test_angles import SAGITTAL, marching
+from tests.trial.inertial.test_angles import SAGITTAL, marching
 
 
 @pytest.fixture(scope="module")

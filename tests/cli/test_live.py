@@ -21,9 +21,9 @@ from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture import read_capture
 from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.subject import read_subject
-from mbkf.pipelines.live.log import FRAMES_FILE
-from mbkf.pipelines.live.results import live_results
 from mbkf.stream.run.folder import LOG_FOLDER
+from mbkf.trial.live.log import FRAMES_FILE
+from mbkf.trial.live.results import live_results
 from mbkf.viz.live.page import LivePage
 from mbkf.viz.live.standing_page import StandingPage
 from tests.captures import MASS_KG, made_capture

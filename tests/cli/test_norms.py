@@ -5,8 +5,8 @@ import pytest
 from mbkf.cli.main import main
 from mbkf.io.norms import read_norms
 from mbkf.io.results_folder import write_reconstruction
-from mbkf.pipelines.results.summary import summarise
-from tests.pipelines.session.sessions import walks
+from mbkf.trial.results.summary import summarise
+from tests.study.session.sessions import walks
 
 
 @pytest.fixture(scope="module")

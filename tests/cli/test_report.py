@@ -6,9 +6,9 @@ import pytest
 
 from mbkf.cli.main import main
 from mbkf.io.results_folder import write_reconstruction
-from mbkf.pipelines.results.summary import summarise
-from tests.pipelines.session.sessions import walks
+from mbkf.trial.results.summary import summarise
 from tests.recordings import walk
+from tests.study.session.sessions import walks
 
 
 @pytest.fixture(scope="module")

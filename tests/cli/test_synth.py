@@ -6,7 +6,7 @@ from mbkf.cli.main import main
 from mbkf.io.c3d import read_c3d
 from mbkf.io.subject import read_subject
 from mbkf.io.truth import read_truth
-from mbkf.pipelines.synth import FILES
+from mbkf.trial.synth import FILES
 
 
 @pytest.mark.slow

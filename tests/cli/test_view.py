@@ -9,7 +9,7 @@ import pytest
 
 from mbkf.cli.main import main
 from mbkf.io.results_folder import write_reconstruction
-from mbkf.pipelines.results.summary import summarise
+from mbkf.trial.results.summary import summarise
 from tests.recordings import walk
 
 pytestmark = pytest.mark.slow

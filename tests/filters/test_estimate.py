@@ -10,7 +10,7 @@ from mbkf.filters.estimate import NO_WRENCH, TrackingFilter
 from mbkf.filters.kinematic.tracking import WARM_UP_S
 from mbkf.filters.spread import SpreadReader
 from mbkf.filters.tracking import track
-from mbkf.pipelines.trial.filters import FILTERS
+from mbkf.trial.preparation.filters import FILTERS
 from tests.dynamics import DT, MARKER_SD_M
 from tests.followed import (
     FRAMES,

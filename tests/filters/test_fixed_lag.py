@@ -7,7 +7,7 @@ import pytest
 
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
 from mbkf.filters.tracking import track
-from mbkf.pipelines.trial.filters import FILTERS
+from mbkf.trial.preparation.filters import FILTERS
 from tests.dynamics import DT
 from tests.followed import WHOLE, errors, estimates, made, made_filter, recording, tracked, without
 from tests.motions import angle_errors, reference_model

@@ -7,7 +7,7 @@ from mbkf.filters.dynamic.smoother import smooth
 from mbkf.filters.lag import FixedLag, lag_frames
 from mbkf.filters.tracking import track
 from mbkf.numerics.passage import LinearStep
-from mbkf.pipelines.trial.filters import FILTERS
+from mbkf.trial.preparation.filters import FILTERS
 from tests.dynamics import DT
 from tests.filters.test_fixed_lag import Told
 from tests.followed import FRAMES, SETTLED, WHOLE, errors, estimates, made_filter, recording, tracked, without

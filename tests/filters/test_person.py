@@ -9,8 +9,8 @@ import pytest
 from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
 from mbkf.filters.person import DOUBT, MOST_RAD_S, corrected_or_own, departed, is_person
 from mbkf.filters.tracking import track
-from mbkf.pipelines.trial.filters import FILTERS
 from mbkf.sensors.contact.possible import MOST_WEIGHTS
+from mbkf.trial.preparation.filters import FILTERS
 from tests.followed import estimates, made_filter, recording
 
 every_filter = pytest.mark.parametrize("name", FILTERS)

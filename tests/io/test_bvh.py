@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.errors import InvalidInput, ShapeError
 from mbkf.io.bvh import BvhJoint, bvh_text
-from tests.pipelines.exchange.bvh_reading import places, read
+from tests.trial.exchange.bvh_reading import places, read
 
 ORIGIN, UP = np.zeros(3), np.array([0.0, 0.5, 0.0])
 CHAIN = (BvhJoint("hip", -1, ORIGIN), BvhJoint("knee", 0, -UP), BvhJoint("ankle", 1, -UP, 0.2 * UP),

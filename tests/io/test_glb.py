@@ -5,7 +5,7 @@ import pytest
 
 from mbkf.errors import InvalidInput, ShapeError
 from mbkf.io.glb import GlbMaterial, GlbMesh, GlbMotion, GlbNode, glb_bytes
-from tests.pipelines.exchange.glb_reading import Glb
+from tests.trial.exchange.glb_reading import Glb
 
 GREY = GlbMaterial("grey", (0.5, 0.02, 1.0), 0.5)
 UP = np.array([0.0, 1.0, 0.0])

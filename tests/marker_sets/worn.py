@@ -11,10 +11,10 @@ from scipy.spatial.transform import Rotation
 
 from mbkf.io.records import MarkerTrajectories
 from mbkf.model.sides import mirrored
-from mbkf.pipelines.synth import synthesise
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.capture import CaptureSettings
 from mbkf.synthesis.person import body_of, synthesise_subject
+from mbkf.trial.synth import synthesise
 
 FRAMES = 5
 RATE_HZ = 100.0

@@ -2,7 +2,7 @@
 
 import pytest
 
-from mbkf.pipelines.scale import scale
+from mbkf.trial.scale import scale
 from tests.captures import MASS_KG, made_capture
 
 

@@ -13,10 +13,10 @@ from mbkf.io.records import Capture
 from mbkf.io.results import ARRAYS, Reconstruction
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.subject import Subject
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
 from mbkf.stream.played import played
 from mbkf.stream.run.session import LiveOutcome, LiveSession
 from mbkf.stream.source import PlateSamples, SourceFrame
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
 
 SETTINGS = ReconstructSettings(correct_markers=False)
 

@@ -8,10 +8,10 @@ import pytest
 
 from mbkf.cli.main import build_parser
 from mbkf.errors import InvalidInput, UnknownName
-from mbkf.pipelines.synth import synthesise
 from mbkf.synthesis import motions
 from mbkf.synthesis.motions import motion_names, register_motion, registered_motion
 from mbkf.synthesis.squat import squat_plan
+from mbkf.trial.synth import synthesise
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from mbkf.pipelines.results.summary import summarise
+from mbkf.trial.results.summary import summarise
 from mbkf.viz.live.page import LivePage
 from mbkf.viz.report.document import write_report
 from mbkf.viz.scene.playback import write_playback

@@ -9,9 +9,9 @@ import pytest
 from mbkf.app.server import AppServer
 from mbkf.io.results_folder import write_result_files
 from mbkf.io.session import SESSION_FILE, read_session
-from mbkf.pipelines.batch.curves import read_curves
-from mbkf.pipelines.batch.trial import CURVES_FILE
-from mbkf.pipelines.results.summary import summarise
+from mbkf.study.batch.curves import read_curves
+from mbkf.study.batch.trial import CURVES_FILE
+from mbkf.trial.results.summary import summarise
 from tests.recordings import walk
 from tests.studies import study
 from tests.viz.browsing import PATIENCE_S, until

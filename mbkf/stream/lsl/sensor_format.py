@@ -17,9 +17,9 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.imu.channels import Channel, channel_signals
-from mbkf.pipelines.imu.motion_inputs import MOST_HZ
 from mbkf.stream.lsl.format import COUNTER, StreamInfo, described_channels
 from mbkf.stream.source import StreamDescription
+from mbkf.trial.inertial.motion_inputs import MOST_HZ
 
 SENSOR_TYPE = "IMU"
 SENSOR_TYPES = ("imu", "inertial", "mocap", "motion", "accelerometer", "sensor", "sensors", "wearable")

@@ -13,10 +13,10 @@ from mbkf.errors import MbkfError
 from mbkf.io.atomic import replacing
 from mbkf.io.results_folder import Summary, write_reconstruction
 from mbkf.io.subject import Subject, read_subject, write_subject
-from mbkf.pipelines.live.log import SUBJECT_FILE, LiveLog, LiveStream, read_live_log
-from mbkf.pipelines.live.results import results_of
-from mbkf.pipelines.results.summary import summarise
 from mbkf.stream.source import StreamDescription
+from mbkf.trial.live.log import SUBJECT_FILE, LiveLog, LiveStream, read_live_log
+from mbkf.trial.live.results import results_of
+from mbkf.trial.results.summary import summarise
 
 LOG_FOLDER = "live-log"
 """Folder in the output folder that holds the log while a run goes on, and after one whose results could not be made."""

@@ -12,11 +12,11 @@ from mbkf.filters.inverse_dynamics import support_torques
 from mbkf.filters.record import UNASKED
 from mbkf.io.contacts import foot_sources
 from mbkf.model.newton_euler import NewtonEuler
-from mbkf.pipelines.live.filter import LiveInputs
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import KeptContact
 from mbkf.stream.receiving.alignment import ReadyFrame
 from mbkf.stream.results.frame import LiveFrame
+from mbkf.trial.live.filter import LiveInputs
 
 RATE_OVER_S = 1.0
 """The rate is counted over this time."""

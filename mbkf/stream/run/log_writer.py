@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.io.frame_log import FrameLogWriter
-from mbkf.pipelines.live.log import LiveLog
 from mbkf.stream.source import PlateSamples
+from mbkf.trial.live.log import LiveLog
 
 EVERY_S = 0.2
 """Interval at which new rows are written."""

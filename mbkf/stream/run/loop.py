@@ -9,7 +9,6 @@ from collections import deque
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.pipelines.live.filter import LiveStep
 from mbkf.stream.receiving.alignment import BRIDGED_S, Note, ReadyFrame
 from mbkf.stream.receiving.reader import SILENT_S
 from mbkf.stream.receiving.receiver import START_SLACK_S, Receiver
@@ -17,6 +16,7 @@ from mbkf.stream.run.failure import Failure
 from mbkf.stream.run.output import RunOutput
 from mbkf.stream.run.setup import LiveSetup
 from mbkf.stream.run.statistics import RunStatistics
+from mbkf.trial.live.filter import LiveStep
 
 TAKE_S = 0.1
 """How long a frame is waited for before the loop checks whether it is to end."""

@@ -8,12 +8,12 @@ from collections.abc import Callable, Sequence
 from numpy.typing import NDArray
 
 from mbkf.filters.record import FrameRecorder
-from mbkf.pipelines.live.filter import LiveStep
 from mbkf.stream.receiving.alignment import Note, ReadyFrame
 from mbkf.stream.results.frame import FrameSink
 from mbkf.stream.run.frame_maker import FrameMaker
 from mbkf.stream.run.setup import LiveSetup
 from mbkf.stream.run.statistics import RunStatistics
+from mbkf.trial.live.filter import LiveStep
 
 
 class RunOutput:

@@ -9,9 +9,9 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.filters.estimate import Posterior, Prediction
 from mbkf.io.subject import Subject
-from mbkf.pipelines.live.filter import NUMERICAL
-from mbkf.pipelines.live.labels import LiveLabels, live_body
 from mbkf.stream.receiving.alignment import Note, ReadyFrame
+from mbkf.trial.live.filter import NUMERICAL
+from mbkf.trial.live.labels import LiveLabels, live_body
 
 NamedFrames = list[tuple[ReadyFrame, Array]]
 """Frames with their markers (M, 3)."""

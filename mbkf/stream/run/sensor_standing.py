@@ -16,8 +16,6 @@ from mbkf.imu.segments import segment_of
 from mbkf.io.imu.mount import write_mounts
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.imu.standing import carrier_first
-from mbkf.pipelines.live.worn import STAND_S, LiveWorn, StandingSensors, live_worn
 from mbkf.stream.receiving.reader import PAUSE_S, READ_S, SILENT_S
 from mbkf.stream.run.connecting import wait_for
 from mbkf.stream.run.events import EventLog
@@ -26,6 +24,8 @@ from mbkf.stream.run.prompting import Prompting
 from mbkf.stream.run.report import LIVE_FILE, ReportFile
 from mbkf.stream.run.resumed import ResumedSource
 from mbkf.stream.source import FrameSource, StreamDescription, plausible_imus
+from mbkf.trial.inertial.standing import carrier_first
+from mbkf.trial.live.worn import STAND_S, LiveWorn, StandingSensors, live_worn
 
 MOUNTS_FILE = "mounts.toml"
 

@@ -12,9 +12,6 @@ from pathlib import Path
 from mbkf.io.results_folder import Summary
 from mbkf.io.subject import Subject
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.live.filter import live_settings
-from mbkf.pipelines.live.worn import LiveWorn
-from mbkf.pipelines.reconstruct import ReconstructSettings, recorded
 from mbkf.stream.receiving.receiver import FrameCounts, Receiver
 from mbkf.stream.results.frame import FrameSink
 from mbkf.stream.run.connecting import wait_for
@@ -29,6 +26,9 @@ from mbkf.stream.run.report import LIVE_FILE, ReportFile, frame_report
 from mbkf.stream.run.setup import LiveSetup, prepare, prepare_sensors
 from mbkf.stream.run.statistics import RunStatistics
 from mbkf.stream.source import FrameSource
+from mbkf.trial.live.filter import live_settings
+from mbkf.trial.live.worn import LiveWorn
+from mbkf.trial.reconstruct import ReconstructSettings, recorded
 
 RUNNING = "running"
 """State of a run in live.json until it has ended."""

@@ -13,17 +13,17 @@ from mbkf.imu.rest_watch import FeetAtRest
 from mbkf.io.subject import Subject
 from mbkf.model.body import Body
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.live.filter import LiveFilter, LiveInputs, live_inputs
-from mbkf.pipelines.live.labels import live_body
-from mbkf.pipelines.live.worn import LiveWorn
-from mbkf.pipelines.reconstruct import ReconstructSettings
-from mbkf.pipelines.trial.filters import tracking_filter
 from mbkf.sensors.block import Frame
 from mbkf.sensors.standing_feet import FOOT_REST
 from mbkf.stream.receiving.alignment import Note, ReadyFrame
 from mbkf.stream.run.frame_maker import FrameMaker
 from mbkf.stream.run.point_names import PointNames
 from mbkf.stream.source import StreamDescription
+from mbkf.trial.live.filter import LiveFilter, LiveInputs, live_inputs
+from mbkf.trial.live.labels import live_body
+from mbkf.trial.live.worn import LiveWorn
+from mbkf.trial.preparation.filters import tracking_filter
+from mbkf.trial.reconstruct import ReconstructSettings
 
 
 class SensorFrames:

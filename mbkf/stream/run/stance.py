@@ -10,8 +10,8 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
 from mbkf.model.protocol import Protocol
-from mbkf.pipelines.live.scaling import Stance, StillWatch, worn_markers
 from mbkf.stream.source import SourceFrame, StreamDescription, plausible
+from mbkf.trial.live.scaling import Stance, StillWatch, worn_markers
 
 MOST_LISTED = 4
 """So many missing markers are listed by name."""

@@ -12,7 +12,6 @@ from mbkf.errors import InvalidInput
 from mbkf.io.subject import Subject, write_subject
 from mbkf.model.protocol import Protocol
 from mbkf.numerics.threads import single_threaded
-from mbkf.pipelines.live.scaling import STILL_S, scale_standing
 from mbkf.stream.receiving.reader import PAUSE_S, READ_S, SILENT_S
 from mbkf.stream.run.connecting import wait_for
 from mbkf.stream.run.events import EventLog
@@ -23,6 +22,7 @@ from mbkf.stream.run.resumed import ResumedSource
 from mbkf.stream.run.scaling_job import ScalingJob
 from mbkf.stream.run.stance import StanceFrames
 from mbkf.stream.source import FrameSource, StreamDescription
+from mbkf.trial.live.scaling import STILL_S, scale_standing
 
 SUBJECT_FILE = "subject.toml"
 

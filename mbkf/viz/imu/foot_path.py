@@ -9,7 +9,7 @@ import numpy as np
 
 from mbkf.imu.zero_velocity import phases
 from mbkf.io.atomic import replacing
-from mbkf.pipelines.imu.stride import FootResult, StrideMeasurement
+from mbkf.trial.inertial.stride import FootResult, StrideMeasurement
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

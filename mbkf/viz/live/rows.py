@@ -9,10 +9,10 @@ from mbkf.io.contacts import Source, bearing
 from mbkf.model.body import Body
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.segment_poses import segment_poses
-from mbkf.pipelines.results.supports import Supports, pressed_points
 from mbkf.sensors.contact.plates import pressure_and_free_moment
 from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.stream.results.frame import LiveFrame
+from mbkf.trial.results.supports import Supports, pressed_points
 from mbkf.viz.scene.channels import Layout, marker_states
 
 MOST_UNLABELLED = 60

@@ -11,8 +11,8 @@ from mbkf.errors import InvalidInput, MbkfError
 from mbkf.io.plain_data import parse_json
 from mbkf.model.protocol import Protocol
 from mbkf.model.protocol_file import checked_name, write_protocol
-from mbkf.pipelines.protocol.editing import Choice, edited
-from mbkf.pipelines.protocol.standing import Standing
+from mbkf.trial.protocol.editing import Choice, edited
+from mbkf.trial.protocol.standing import Standing
 from mbkf.viz.protocol.page import EDIT_SCRIPTS, page_text, set_data
 from mbkf.viz.server import PageServer
 
@@ -57,7 +57,7 @@ class MarkerSetEdit:
 
         Args:
             word: ``{"do": "done"}``, or ``{"do": "save", "choices": {NAME: {WHAT: TEXT}}}`` with a field of
-                :class:`~mbkf.pipelines.protocol.editing.Choice` for WHAT.
+                :class:`~mbkf.trial.protocol.editing.Choice` for WHAT.
         """
         try:
             asked = parse_json(word)

@@ -11,8 +11,8 @@ from mbkf.io.atomic import replacing
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import Protocol
 from mbkf.model.segment_poses import segment_poses
-from mbkf.pipelines.protocol.editing import SURE
-from mbkf.pipelines.protocol.standing import Standing, faced_forward, in_world, neutral_on_floor
+from mbkf.trial.protocol.editing import SURE
+from mbkf.trial.protocol.standing import Standing, faced_forward, in_world, neutral_on_floor
 from mbkf.viz.page import asset, embedded, viewer_script
 from mbkf.viz.protocol.colours import segment_colours
 from mbkf.viz.scene.channels import Layout

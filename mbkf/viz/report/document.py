@@ -13,9 +13,9 @@ from mbkf.io.plain_data import parse_json
 from mbkf.io.results import Reconstruction
 from mbkf.io.results_folder import LABELS_FILE
 from mbkf.io.session import FootEvent
-from mbkf.pipelines.gait.cycles import find_gait
-from mbkf.pipelines.results.progression import LABORATORY
-from mbkf.pipelines.results.summary import progression_summary
+from mbkf.trial.gait.cycles import find_gait
+from mbkf.trial.results.progression import LABORATORY
+from mbkf.trial.results.summary import progression_summary
 from mbkf.viz.markup import folded, paragraph, section, table
 from mbkf.viz.page import asset
 from mbkf.viz.report.contacts import contact_section

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import SIDES, Array
-from mbkf.pipelines.gait.cycles import Gait, GaitParameter
-from mbkf.pipelines.gait.events import FootEvents
+from mbkf.trial.gait.cycles import Gait, GaitParameter
+from mbkf.trial.gait.events import FootEvents
 from mbkf.viz.markup import paragraph, section, table
 from mbkf.viz.svg import Bar, bar_chart, number
 from mbkf.viz.wording import SIDE_NAMES

@@ -12,8 +12,8 @@ from mbkf.conventions import GRAVITY_M_S2, SIDES, Array
 from mbkf.io.results import Reconstruction
 from mbkf.model.description import BodyDescription
 from mbkf.model.human import reference_body
-from mbkf.pipelines.gait.cycles import POINTS, Gait, over_cycle
-from mbkf.pipelines.gait.facing import facing
+from mbkf.trial.gait.cycles import POINTS, Gait, over_cycle
+from mbkf.trial.gait.facing import facing
 from mbkf.viz.markup import folded, grid, key, paragraph, section, table
 from mbkf.viz.report.spreads import Curve, band_key, cycle_sd, offsets_told, spread_note
 from mbkf.viz.svg import WIDTH, Line, Mark, chart, number

@@ -9,7 +9,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.io.results import Reconstruction, varying_sd
-from mbkf.pipelines.gait.cycles import Cycle, over_cycle
+from mbkf.trial.gait.cycles import Cycle, over_cycle
 
 SHIFTS = (
     "How sure a number is has two parts. A curve could be shifted as a whole, because the person's body is not known "

@@ -11,9 +11,9 @@ from mbkf.conventions import SIDES
 from mbkf.io.norms import Band, Norms
 from mbkf.io.session import TrialKind
 from mbkf.model.description import BodyDescription
-from mbkf.pipelines.session.chosen import Chosen, chosen_curves
-from mbkf.pipelines.session.comparison import CurvePair
-from mbkf.pipelines.session.cycles import FORCES, PERCENT, POWER, REACTION, Key, SideCycles
+from mbkf.study.session.chosen import Chosen, chosen_curves
+from mbkf.study.session.comparison import CurvePair
+from mbkf.study.session.cycles import FORCES, PERCENT, POWER, REACTION, Key, SideCycles
 from mbkf.viz.session.terms import Terms
 from mbkf.viz.svg import Line, Mark, chart
 from mbkf.viz.wording import wordings

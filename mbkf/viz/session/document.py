@@ -9,9 +9,9 @@ from pathlib import Path
 from mbkf.io.atomic import replacing
 from mbkf.io.norms import Norms
 from mbkf.model.human import reference_body
-from mbkf.pipelines.session.comparison import Comparison, by_curve, compare, measure_pairs
-from mbkf.pipelines.session.cycles import Key
-from mbkf.pipelines.session.records import MovementGroup, Session
+from mbkf.study.session.comparison import Comparison, by_curve, compare, measure_pairs
+from mbkf.study.session.cycles import Key
+from mbkf.study.session.records import MovementGroup, Session
 from mbkf.version import __version__
 from mbkf.viz.language import ENGLISH
 from mbkf.viz.markup import folded, grid, key, paragraph, section, table

@@ -9,9 +9,9 @@ import numpy as np
 
 from mbkf.io.norms import Norms
 from mbkf.io.session import TrialKind
-from mbkf.pipelines.session.comparison import MeasurePair, measure_mean
-from mbkf.pipelines.session.means import Mean, difference_of, paired_difference
-from mbkf.pipelines.session.records import Measure, Session
+from mbkf.study.session.comparison import MeasurePair, measure_mean
+from mbkf.study.session.means import Mean, difference_of, paired_difference
+from mbkf.study.session.records import Measure, Session
 from mbkf.viz.markup import folded, table
 from mbkf.viz.session.terms import Terms
 from mbkf.viz.svg import number

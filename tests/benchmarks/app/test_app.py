@@ -14,7 +14,7 @@ from mbkf.errors import InvalidInput
 from mbkf.io.capture import read_capture
 from mbkf.io.results_folder import write_reconstruction
 from mbkf.io.session import read_session
-from mbkf.pipelines.results.summary import summarise
+from mbkf.trial.results.summary import summarise
 from tests.recordings import walk
 
 

@@ -7,9 +7,9 @@ import pyarrow as pa
 from benchmarks.batch import OF_THE_RUN, differing
 from benchmarks.batch.faults import FULL, KILLED, Full, Killed, _befallen
 from benchmarks.batch.study import fresh
-from mbkf.pipelines.batch.outcome import ReconstructTrial, ScalePerson
-from mbkf.pipelines.batch.plan import Person, Trial
-from mbkf.pipelines.reconstruct_settings import ReconstructSettings
+from mbkf.study.batch.outcome import ReconstructTrial, ScalePerson
+from mbkf.study.batch.plan import Person, Trial
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 
 def test_cells_that_differ_are_counted_those_of_the_run_are_not():

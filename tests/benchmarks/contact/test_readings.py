@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.contact import readings
 from benchmarks.contact.readings import FAULTS, broken, curve_change, fault_rows, peak_change, refused
-from mbkf.pipelines.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
 from tests.walker import walker
 
 BY_NAME = {fault.name: fault for fault in FAULTS}
@@ -37,7 +37,7 @@ def test_rows_pass_and_fail_where_nothing_is_cleaned(monkeypatch):
     trial, subject = walker().trial, walker().subject
     monkeypatch.setattr(readings, "FAULTS", (BY_NAME["twenty samples of 2e4 N"],))
     assert all(row.passed for row in fault_rows("walk", trial, subject, "kinematic"))
-    monkeypatch.setattr("mbkf.pipelines.trial.inputs.cleaned", lambda plates, _: (plates, ()))
+    monkeypatch.setattr("mbkf.trial.preparation.inputs.cleaned", lambda plates, _: (plates, ()))
     rows = {row.name: row for row in fault_rows("walk", trial, subject, "kinematic")}
     assert not any(row.passed for name, row in rows.items() if "told" in name or name.endswith("frames"))
 

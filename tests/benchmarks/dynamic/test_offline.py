@@ -14,10 +14,10 @@ from benchmarks.dynamic.offline import (
 )
 from benchmarks.references import rms
 from mbkf.errors import NotObservable
-from mbkf.pipelines.synth import synthesise
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.capture import CaptureSettings
 from mbkf.synthesis.person import body_of
+from mbkf.trial.synth import synthesise
 
 RATE_HZ = 100.0
 INSIDE = slice(30, -30)

@@ -19,7 +19,7 @@ from benchmarks.dynamic.synthetic import (
     make_case,
     method_rows,
 )
-from mbkf.pipelines.results.summary import compare_with_truth
+from mbkf.trial.results.summary import compare_with_truth
 
 BASE = Baseline(torque_nm=5.0, torque_scale=0.1, velocity_rad_s=1.0, velocity_scale=0.6, offline_nm=2.0)
 FOUND = Errors(

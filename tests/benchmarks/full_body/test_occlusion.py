@@ -33,7 +33,7 @@ from benchmarks.full_body.occlusion import (
     scores_of,
 )
 from benchmarks.full_body.occlusion_drawings import occlusion_drawings
-from mbkf.pipelines.synth import synthesise
+from mbkf.trial.synth import synthesise
 
 USUAL = Condition(SHARE, GAP_S)
 

@@ -10,8 +10,8 @@ from benchmarks.dynamic.synthetic import Case
 from benchmarks.full_body import single_markers
 from benchmarks.full_body.filters import CAUSAL, DYNAMIC, FCDI, FDMC_PRINTED
 from benchmarks.full_body.single_markers import Change, Sensitivities, Slide
-from mbkf.pipelines.synth import synthesise
 from mbkf.synthesis.person import body_of
+from mbkf.trial.synth import synthesise
 
 FRAMES = 40
 

@@ -6,7 +6,7 @@ import pytest
 from benchmarks.dynamic.methods import tared
 from benchmarks.full_body import speed
 from benchmarks.full_body.filters import DYNAMIC, FCDI, FDMC, FDMC_PRINTED
-from mbkf.pipelines.synth import synthesise
+from mbkf.trial.synth import synthesise
 
 FRAMES, ROUNDS = 12, 2
 

@@ -8,7 +8,7 @@ import pytest
 from benchmarks.inertial.body import SAGITTAL, _angle_rows, worn
 from benchmarks.inertial.orientation import _FAULTS
 from mbkf.imu.checks import problems
-from mbkf.pipelines.imu.synth import BodyMotion
+from mbkf.trial.inertial.synth import BodyMotion
 from tests.dynamics import trial
 from tests.imu.turning import turning
 

@@ -16,8 +16,8 @@ from benchmarks.inertial.stride_study import (
     measure_study,
     settings_of,
 )
-from mbkf.pipelines.imu.stride import measure_strides
 from mbkf.synthesis.cubic_steps import CASES, cubic_steps
+from mbkf.trial.inertial.stride import measure_strides
 from tests.foot_walks import foot_walk
 
 

@@ -11,7 +11,7 @@ from tests.captures import made_capture
 @pytest.fixture(scope="module")
 def trial():
     """A person standing, with a subject that knows the same markers by name."""
-    from mbkf.pipelines.scale import scale
+    from mbkf.trial.scale import scale
 
     capture = made_capture(120)
     return Trial("made", capture, scale(made_capture(20, 0.0)))

@@ -4,7 +4,7 @@ import numpy as np
 
 from benchmarks.quality.noise import BURST_M, QUICK, SHOWN, SPOILT, chosen, law_rows, shaken, slid
 from mbkf.io.findings import Finding
-from mbkf.pipelines.checks.newton import FORCE, MOMENT
+from mbkf.trial.checks.newton import FORCE, MOMENT
 
 PLACES = np.zeros((1000, 3, 3))
 

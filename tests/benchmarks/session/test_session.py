@@ -4,7 +4,7 @@ import numpy as np
 
 from benchmarks.session import Found, cover
 from benchmarks.session.change import BENT_RAD, bent_walk_plan
-from mbkf.pipelines.session.cycles import Key
+from mbkf.study.session.cycles import Key
 from mbkf.synthesis.walk import walk_plan
 from tests.motions import reference_model
 

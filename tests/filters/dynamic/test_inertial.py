@@ -10,8 +10,8 @@ from mbkf.filters.fixed_lag import SmoothingSettings
 from mbkf.filters.tracking import track
 from mbkf.imu.placement import typical_mounts
 from mbkf.imu.virtual import ImuErrors, virtual_imus
-from mbkf.pipelines.trial.filters import tracking_filter
 from mbkf.sensors.inertial_sensor import InertialSensor
+from mbkf.trial.preparation.filters import tracking_filter
 from tests.followed import FRAMES, inputs, made, recording, without
 
 pytestmark = pytest.mark.slow

@@ -3,8 +3,8 @@
 import numpy as np
 
 from mbkf.imu.worn_mounts import worn_mounts
-from mbkf.pipelines.imu.motion_inputs import MotionSettings, motion_inputs, motion_recording, worn_filter
-from mbkf.pipelines.imu.motion_start import first_posture
+from mbkf.trial.inertial.motion_inputs import MotionSettings, motion_inputs, motion_recording, worn_filter
+from mbkf.trial.inertial.motion_start import first_posture
 from tests.worn import worn
 
 

@@ -13,8 +13,8 @@ from mbkf.io.hdf5 import SEAL, USER_BLOCK
 from mbkf.io.imu.files import read_imu
 from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.truth import read_truth
-from mbkf.pipelines.batch.curves import read_curves
-from mbkf.pipelines.batch.inputs import is_made_from, write_record
+from mbkf.study.batch.curves import read_curves
+from mbkf.study.batch.inputs import is_made_from, write_record
 from mbkf.viz.report.document import read_labels
 from tests.io.damaged.refusal import refusal
 

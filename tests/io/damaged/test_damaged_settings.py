@@ -13,8 +13,8 @@ from mbkf.io.preset import read_preset
 from mbkf.io.subject import Subject, SubjectMarker, read_subject, write_subject
 from mbkf.model.body_file import load_body
 from mbkf.model.protocol import load_protocol
-from mbkf.pipelines.batch.run import plan_of
-from mbkf.pipelines.protocol.from_osim import import_osim
+from mbkf.study.batch.run import plan_of
+from mbkf.trial.protocol.from_osim import import_osim
 from tests.io.damaged.refusal import refusal
 
 

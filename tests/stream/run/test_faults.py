@@ -15,11 +15,11 @@ from mbkf.io.c3d_write import write_c3d
 from mbkf.io.frame_log import read_frame_log
 from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.subject import write_subject
-from mbkf.pipelines.live.log import FRAMES_FILE, LiveLog, LiveStream, blank
 from mbkf.stream.run import log_writer
 from mbkf.stream.run.folder import LOG_FOLDER
 from mbkf.stream.run.log_writer import LogWriter
 from mbkf.stream.source import FARTHEST_M, PlateSamples
+from mbkf.trial.live.log import FRAMES_FILE, LiveLog, LiveStream, blank
 from tests.stream.scripted import (
     Collected,
     assert_same,

@@ -5,8 +5,8 @@ import pytest
 
 from mbkf.io.frame_log import read_frame_log
 from mbkf.io.results_folder import read_reconstruction
-from mbkf.pipelines.live.log import FRAMES_FILE, PLATES_FILE
 from mbkf.stream.run.folder import LOG_FOLDER, drop_log, write_results
+from mbkf.trial.live.log import FRAMES_FILE, PLATES_FILE
 from tests.stream.scripted import follow, frames_of
 
 pytestmark = pytest.mark.slow

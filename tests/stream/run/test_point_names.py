@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from mbkf.pipelines.live.labels import live_body
 from mbkf.stream.receiving.alignment import ReadyFrame
 from mbkf.stream.run.point_names import PointNames
+from mbkf.trial.live.labels import live_body
 from tests.stream.scripted import frames_of
 
 

@@ -11,10 +11,6 @@ from mbkf.filters.inverse_dynamics import support_torques
 from mbkf.filters.record import FrameRecorder
 from mbkf.io.contacts import Source
 from mbkf.io.results_folder import read_reconstruction
-from mbkf.pipelines.live.filter import live_inputs
-from mbkf.pipelines.live.results import live_results
-from mbkf.pipelines.reconstruct import ReconstructSettings
-from mbkf.pipelines.trial.filters import tracking_filter
 from mbkf.stream.receiving.alignment import ReadyFrame
 from mbkf.stream.results.frame import LiveFrame
 from mbkf.stream.run.events import MOST, EventLog
@@ -22,6 +18,10 @@ from mbkf.stream.run.folder import LOG_FOLDER
 from mbkf.stream.run.frame_maker import FrameMaker
 from mbkf.stream.run.report import ROOM_BYTES, ReportFile, latency_summary
 from mbkf.stream.run.session import LiveSession
+from mbkf.trial.live.filter import live_inputs
+from mbkf.trial.live.results import live_results
+from mbkf.trial.preparation.filters import tracking_filter
+from mbkf.trial.reconstruct import ReconstructSettings
 from tests.stream.scripted import (
     Collected,
     ScriptedSource,

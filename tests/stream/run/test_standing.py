@@ -12,12 +12,12 @@ from mbkf.errors import InvalidInput
 from mbkf.io.records import Capture
 from mbkf.io.subject import read_subject
 from mbkf.model.protocol import load_protocol
-from mbkf.pipelines.scale import scale
 from mbkf.stream.run import prompting, standing
 from mbkf.stream.run.report import LIVE_FILE
 from mbkf.stream.run.session import LiveSession
 from mbkf.stream.run.standing import MOST_KEPT, SUBJECT_FILE, KnownPerson, StandingStart
 from mbkf.stream.source import PlateSamples
+from mbkf.trial.scale import scale
 from tests.captures import MASS_KG, made_capture
 from tests.stream.scripted import SETTINGS, ScriptedSource, assert_same, frames_of, offline
 

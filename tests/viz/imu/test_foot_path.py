@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.imu.zero_velocity import phases
-from mbkf.pipelines.imu.stride import measure_strides
+from mbkf.trial.inertial.stride import measure_strides
 from mbkf.viz.imu.foot_path import foot_path_figure, write_foot_path
 from tests.foot_walks import foot_walk
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from mbkf.io.contacts import Source
-from mbkf.pipelines.results.supports import pressed_points
 from mbkf.sensors.supports.bearings import BearingParts
 from mbkf.stream.results.frame import LiveFrame
+from mbkf.trial.results.supports import pressed_points
 from mbkf.viz.live.rows import MOST_UNLABELLED, DisplayRows
 from tests.motions import assert_near
 from tests.recordings import walk, walker

@@ -13,7 +13,7 @@ from websockets.sync.client import connect
 from mbkf.errors import InvalidInput
 from mbkf.io.records import MarkerTrajectories
 from mbkf.model.protocol import Protocol, load_protocol
-from mbkf.pipelines.protocol.standing import stand_beside
+from mbkf.trial.protocol.standing import stand_beside
 from mbkf.viz.protocol.edit import EditPage
 from tests.captures import made_capture
 from tests.viz.browsing import until

@@ -8,7 +8,7 @@ import pytest
 
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
-from mbkf.pipelines.protocol.standing import Standing, neutral_on_floor, stand_beside
+from mbkf.trial.protocol.standing import Standing, neutral_on_floor, stand_beside
 from mbkf.viz.protocol.colours import segment_colours
 from mbkf.viz.protocol.page import UNKNOWN, set_data, show_page, write_show_page
 from tests.captures import made_capture

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mbkf.errors import FileFormatError
-from mbkf.pipelines.results.summary import summarise
+from mbkf.trial.results.summary import summarise
 from mbkf.viz.report.document import labels_of, read_labels, report_page, write_report
 from tests.recordings import broken_walk, walk
 

@@ -6,7 +6,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
-from mbkf.pipelines.gait.cycles import GaitParameter, find_gait
+from mbkf.trial.gait.cycles import GaitParameter, find_gait
 from mbkf.viz.report.gait import gait_section, stance_chart
 from tests.recordings import walk
 

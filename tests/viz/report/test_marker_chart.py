@@ -5,7 +5,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
-from mbkf.pipelines.results.summary import summarise
+from mbkf.trial.results.summary import summarise
 from mbkf.viz.report.marker_chart import (
     CHART,
     HIDDEN,

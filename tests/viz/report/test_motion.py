@@ -7,7 +7,7 @@ import pytest
 
 from mbkf.model.body_file import load_body
 from mbkf.model.human import HumanModel
-from mbkf.pipelines.gait.cycles import find_gait
+from mbkf.trial.gait.cycles import find_gait
 from mbkf.viz.report.motion import (
     angle_cells,
     cycle_chart,

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.pipelines.results.summary import summarise
+from mbkf.trial.results.summary import summarise
 from mbkf.viz.report.quality import BAD, CARE, GOOD, NONE, quality_section, verdicts
 from tests.recordings import broken_walk, walk
 

@@ -6,7 +6,7 @@ from html import escape
 import numpy as np
 import pytest
 
-from mbkf.pipelines.gait.cycles import find_gait
+from mbkf.trial.gait.cycles import find_gait
 from mbkf.viz.report.motion import angle_cells, motion_section, reaction_cells, time_chart, torque_cells
 from mbkf.viz.report.spreads import Curve, cycle_sd, offsets_told, spread_note
 from tests.motions import assert_near

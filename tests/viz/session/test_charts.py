@@ -8,13 +8,13 @@ import numpy as np
 from mbkf.io.norms import Band
 from mbkf.io.session import TrialKind
 from mbkf.model.human import reference_body
-from mbkf.pipelines.session.comparison import by_curve, compare
-from mbkf.pipelines.session.cycles import Key
-from mbkf.pipelines.session.gather import session_of
-from mbkf.pipelines.session.norms import norms_of
+from mbkf.study.session.comparison import by_curve, compare
+from mbkf.study.session.cycles import Key
+from mbkf.study.session.gather import session_of
+from mbkf.study.session.norms import norms_of
 from mbkf.viz.session.charts import Shown, joint_rows, norm_of, pair_charts, session_chart
 from mbkf.viz.session.terms import Terms
-from tests.pipelines.session.sessions import estimated, session, walks
+from tests.study.session.sessions import estimated, session, walks
 
 KNEE = Shown(Key("torque", "knee_angle"), "Knee <flexion>", "bent")
 ENGLISH = Terms("en")

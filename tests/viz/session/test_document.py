@@ -6,12 +6,12 @@ from dataclasses import replace
 import pytest
 
 from mbkf.errors import InvalidInput
-from mbkf.pipelines.session.gather import session_of
-from mbkf.pipelines.session.norms import norms_of
+from mbkf.study.session.gather import session_of
+from mbkf.study.session.norms import norms_of
 from mbkf.viz.language import languages
 from mbkf.viz.session.document import session_page, write_session_report
-from tests.pipelines.session.sessions import estimated, session, walks
 from tests.recordings import recorded
+from tests.study.session.sessions import estimated, session, walks
 
 
 def everything(language):

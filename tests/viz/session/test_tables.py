@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from mbkf.io.session import TrialKind
-from mbkf.pipelines.session.comparison import measure_pairs
-from mbkf.pipelines.session.norms import norms_of
-from mbkf.pipelines.session.records import Measure
+from mbkf.study.session.comparison import measure_pairs
+from mbkf.study.session.norms import norms_of
+from mbkf.study.session.records import Measure
 from mbkf.viz.session.tables import changes_table, measures_table, trials_table
 from mbkf.viz.session.terms import Terms
-from tests.pipelines.session.sessions import session
+from tests.study.session.sessions import session
 
 ENGLISH, SPANISH = Terms("en"), Terms("es")
 

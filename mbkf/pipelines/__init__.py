@@ -1,1 +1,0 @@
-"""One question of a user per file: scale, reconstruct, synthesise, describe, export."""

@@ -1,1 +1,0 @@
-"""Which marker set a person's captures wear: a shipped protocol, or one inferred from them."""

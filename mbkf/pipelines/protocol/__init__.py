@@ -1,1 +1,0 @@
-"""Marker sets: taken from other programs' files, checked against a capture, changed by hand."""

@@ -1,1 +1,0 @@
-"""A trial prepared for a filter: its inputs, and the chosen filter built from them."""

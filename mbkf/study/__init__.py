@@ -1,0 +1,1 @@
+"""Many trials of one person or of many: batches, sessions, surveys of folders, and tuned settings."""

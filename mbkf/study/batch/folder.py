@@ -1,0 +1,230 @@
+"""A folder of captures understood: a folder with captures is a session, the first folder on the way to it a person.
+
+    study/P01/static.c3d, study/P01/walk1.c3d                  person P01
+    study/P01/monday/static.c3d, study/P01/monday/walk1.trc    person P01, session monday
+
+Standing trials are known by their names; where none is, by standing still. Ground reactions lie beside their trial,
+under its name with ``grf`` or ``forces``. ``session.toml`` in a session's folder, or above it, states mass, height and
+protocol; in the session's own folder also which trials stand still, which are left out, and strikes and toe-offs that a
+person set (:mod:`mbkf.io.session`).
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from mbkf.errors import FileFormatError
+from mbkf.io.capture import CAPTURES, FORCES
+from mbkf.io.results_folder import MOTION_FILE
+from mbkf.io.session import HEIGHT_M, MASS_KG, SESSION_FILE, SessionNotes, TrialKind, read_session
+from mbkf.study.batch.plan import (
+    MOST_LOOKED_AT,
+    MOST_MOVING,
+    Files,
+    Person,
+    Plan,
+    Trial,
+    folder_name,
+    planned,
+)
+
+CAPTURE_SUFFIXES = (".c3d", ".trc")
+"""Captures of a folder, the more telling first; other formats are named in a list."""
+
+SUBJECT_FILE = "subject.toml"
+"""A person scaled before, in the session's folder."""
+
+STATIC = re.compile(
+    r"(^|[^a-z])(static|statique|statisch|estatica|estatico|standing|stand|calib(ration)?|cal|[tna]-?_?pose|neutral)"
+    r"([^a-z]|$)"
+)
+"""Names of standing trials, in lower case."""
+
+STATED = ("mass_kg", "height_m", "protocol")
+"""What a session file states of the person."""
+
+
+def plan_of_folder(folder: Path) -> Plan:
+    """The persons and trials of a folder.
+
+    Raises:
+        FileFormatError: A session file is damaged.
+        InvalidInput: It holds no trial.
+    """
+    root = folder.absolute()
+    trials: list[Trial] = []
+    for place, captures in _sessions(root):
+        trials += _trials(root, place, captures)
+    return planned(trials, str(folder))
+
+
+def is_static(path: Path, notes: SessionNotes | None = None) -> bool:
+    """Whether a capture is a standing trial: by what is stated of it, else by its name.
+
+    Args:
+        path: The capture.
+        notes: What is stated of its session.
+    """
+    stated = None if notes is None else notes.trial(path.stem).kind
+    if stated is not None:
+        return stated == TrialKind.STATIC
+    return STATIC.search(path.stem.lower()) is not None
+
+
+def forces_beside(path: Path, files: Sequence[Path]) -> Path | None:
+    """The file of ground reactions that belongs to a capture: its own name with ``grf`` or ``forces``, or its suffix.
+
+    Args:
+        path: The capture.
+        files: The files of its folder.
+    """
+    own = _essence(path.stem)
+    for file in files:
+        name = file.stem.lower()
+        if file == path or file.suffix.lower() not in FORCES.suffixes:
+            continue
+        named = file.suffix.lower() not in CAPTURES.suffixes or "grf" in name or "force" in name
+        if named and (name == path.stem.lower() or _essence(name) == own) and not _is_other(file):
+            return file
+    return None
+
+
+def _essence(stem: str) -> str:
+    """A name without what tells markers and ground reactions apart."""
+    words = re.split(r"[_\-. ]+", stem.lower())
+    return "_".join(
+        w
+        for w in words
+        if w not in {"grf", "grfs", "force", "forces", "markers", "marker", "motion", "capture"}
+    )
+
+
+def _is_other(file: Path) -> bool:
+    """Whether a motion file holds coordinates or moments, as OpenSim's tools write them, and no forces."""
+    return file.suffix.lower() in {".mot", ".sto"} and not re.search(r"grf|force", file.stem.lower())
+
+
+def captures_in(folder: Path) -> list[Path]:
+    """The captures that lie in a folder itself, one for each name, the more telling format first."""
+    by_stem: dict[str, Path] = {}
+    for suffix in reversed(CAPTURE_SUFFIXES):
+        for path in sorted(folder.iterdir()):
+            if path.suffix.lower() == suffix and path.is_file() and not path.name.startswith("."):
+                by_stem[path.stem.lower()] = path
+    return [by_stem[stem] for stem in sorted(by_stem)]
+
+
+def session_folders(root: Path) -> list[Path]:
+    """The folders with captures in a folder, itself included; hidden ones and folders of results are left out.
+
+    Folders that vanish meanwhile, as unfinished results do, hold none.
+    """
+    found = []
+    for place, folders, files in os.walk(root):
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        seen = [
+            name for name in files if not name.startswith(".") and name.lower().endswith(CAPTURE_SUFFIXES)
+        ]
+        if seen and MOTION_FILE not in files and any((Path(place) / name).is_file() for name in seen):
+            found.append(Path(place))
+    return sorted(found)
+
+
+def _sessions(root: Path) -> Iterator[tuple[Path, list[Path]]]:
+    """Folders with captures, and these."""
+    for place in session_folders(root):
+        yield place, captures_in(place)
+
+
+def _trials(root: Path, place: Path, captures: Sequence[Path]) -> list[Trial]:
+    """The trials of one session."""
+    notes, files = stated_of(root, place), sorted(place.iterdir())
+    kept = [path for path in captures if not notes.trial(path.stem).excluded]
+    statics = tuple(path for path in kept if is_static(path, notes))
+    moving = [Files(path, forces_beside(path, files)) for path in kept if path not in statics]
+    subject = place / SUBJECT_FILE
+    person = Person(
+        *person_and_session(root, place),
+        statics,
+        tuple(moving[: MOST_MOVING if statics else MOST_LOOKED_AT]),
+        notes.mass_kg,
+        notes.height_m,
+        notes.protocol,
+        subject if subject.is_file() else None,
+    )
+    return [
+        Trial(person, path, forces, folder_name(path.stem), notes.trial(path.stem).events)
+        for path, forces in moving
+    ]
+
+
+def person_and_session(root: Path, place: Path) -> tuple[str, str]:
+    """The names of the person and of the session that a folder with captures is.
+
+    Args:
+        root: The study's folder.
+        place: The session's folder, in it.
+    """
+    parts = place.relative_to(root).parts
+    session = folder_name("-".join(parts[1:])) if parts[1:] else ""
+    return folder_name(parts[0] if parts else root.name), session
+
+
+def stated_of(root: Path, place: Path) -> SessionNotes:
+    """What session files say, the nearest first; of trials only the session's own.
+
+    Args:
+        root: The study's folder.
+        place: The session's folder, in it.
+
+    Raises:
+        FileFormatError: One is damaged, or says something impossible.
+    """
+    found = SessionNotes()
+    for folder in reversed([place, *(p for p in place.parents if p == root or root in p.parents)]):
+        file = folder / SESSION_FILE
+        if file.is_file():
+            nearer = _found_set(read_session(file), folder)
+            found = replace(
+                nearer,
+                mass_kg=found.mass_kg if nearer.mass_kg is None else nearer.mass_kg,
+                height_m=found.height_m if nearer.height_m is None else nearer.height_m,
+                protocol=nearer.protocol or found.protocol,
+                trials=nearer.trials if folder == place else {},
+            )
+        elif folder == place:
+            found = replace(found, trials={})
+    return found
+
+
+def _found_set(notes: SessionNotes, folder: Path) -> SessionNotes:
+    """The notes with a marker set's file where it lies: beside the session file."""
+    if notes.protocol and notes.protocol.lower().endswith(".toml"):
+        return replace(notes, protocol=str(folder / notes.protocol))
+    return notes
+
+
+def checked_entry(key: str, value: object, file: Path, line: int | None = None) -> float | str:
+    """A mass, height or protocol as it must be.
+
+    Args:
+        key: One of :data:`STATED`.
+        value: What the file says.
+        file: The file.
+        line: Its line, None where it is not known.
+
+    Raises:
+        FileFormatError: It is not one.
+    """
+    if key == "protocol":
+        if isinstance(value, str) and value:
+            return value
+        raise FileFormatError(file, "protocol must be a name or a file", line)
+    low, high = {"mass_kg": MASS_KG, "height_m": HEIGHT_M}[key]
+    if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
+        raise FileFormatError(file, f"{key} must be a number between {low:g} and {high:g}, got {value}", line)
+    return float(value)

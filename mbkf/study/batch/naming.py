@@ -1,0 +1,87 @@
+"""Captures whose points have no names: the person found from them, and names before they are reconstructed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mbkf.io.records import Capture
+from mbkf.io.subject import Subject
+from mbkf.trial.axes.captures import turned_like_subject
+from mbkf.trial.label import LabelSummary, label, label_summary, labelled_capture
+from mbkf.trial.label_nameless import label_nameless
+from mbkf.trial.label_unscaled import label_unscaled
+
+NAMED_SHARE = 0.5
+"""A capture that names a smaller share of the person's markers, and has points without names, is labelled."""
+
+
+@dataclass(frozen=True)
+class Named:
+    """A capture with names.
+
+    Attributes:
+        capture: The capture to reconstruct.
+        summary: What the labeller tells of it; None where the capture's own names were enough.
+        warnings: Names that may be wrong.
+    """
+
+    capture: Capture
+    summary: LabelSummary | None = None
+    warnings: tuple[str, ...] = ()
+
+
+def is_nameless(capture: Capture) -> bool:
+    """Whether not one point of a capture has a name."""
+    return all(name.startswith("*") for name in capture.markers.names)
+
+
+def body_of_points(capture: Capture, mass_kg: float, height_m: float | None, protocol: str | None) -> Subject:
+    """The person that the points of a capture without names show.
+
+    Args:
+        capture: The capture.
+        mass_kg: Body mass, kg.
+        height_m: Body height, m, if known.
+        protocol: The markers that were worn; None for a set inferred from the points.
+
+    Raises:
+        NotObservable: Too few points, or no person is found among them.
+        NotConverged: The points do not fit a person.
+    """
+    if protocol is None:
+        return label_nameless(capture, mass_kg=mass_kg, height_m=height_m)[1]
+    return label_unscaled(capture, protocol, mass_kg=mass_kg, height_m=height_m)[1]
+
+
+def needs_names(capture: Capture, subject: Subject) -> bool:
+    """Whether most of a person's markers are points without names in a capture.
+
+    Args:
+        capture: The capture.
+        subject: The scaled person.
+    """
+    names = set(capture.markers.names)
+    own = [marker.name for marker in subject.markers]
+    known = sum(name in names for name in own)
+    unnamed = sum(name.startswith("*") for name in names)
+    return unnamed > 0 and known < NAMED_SHARE * len(own)
+
+
+def named(capture: Capture, subject: Subject) -> Named:
+    """The capture, labelled where its points have no names.
+
+    Args:
+        capture: The capture.
+        subject: The scaled person.
+
+    Raises:
+        NotObservable: Too few points are seen to name them.
+    """
+    if not needs_names(capture, subject):
+        return Named(capture)
+    turned = turned_like_subject(capture, subject)
+    found = label(turned, subject)
+    doubts = () if found.doubts is None else tuple(found.doubts.warnings())
+    share = f"{100.0 * found.assigned_fraction:.1f} % of the marker samples have a point"
+    told = f"the points had no names and were labelled: {share}"
+    return Named(labelled_capture(turned, found), label_summary(found), (told, *doubts))

@@ -1,0 +1,178 @@
+"""A batch from end to end: a folder or a list in, a folder per trial and tables over all trials out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from os import cpu_count
+from pathlib import Path
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from mbkf.conventions import StageCallback
+from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.io.atomic import check_folder
+from mbkf.io.leftovers import sweep
+from mbkf.study.batch.cluster import ClusterWorkers
+from mbkf.study.batch.folder import plan_of_folder
+from mbkf.study.batch.lists import plan_of_csv, plan_of_toml
+from mbkf.study.batch.outcome import Outcome, ReconstructTrial, ScalePerson, Status, Task
+from mbkf.study.batch.plan import Person, Plan, Trial
+from mbkf.study.batch.tables import write_tables
+from mbkf.study.batch.workers import Executor, LocalWorkers
+from mbkf.trial.preparation.settings import ReconstructSettings
+
+LISTS = {".toml": plan_of_toml, ".csv": plan_of_csv}
+
+
+def batch(
+    source: str | Path,
+    out: str | Path,
+    *,
+    workers: int | None = None,
+    dask: str | None = None,
+    shard: tuple[int, int] | None = None,
+    settings: ReconstructSettings | None = None,
+    progress: StageCallback | None = None,
+) -> pa.Table:
+    """Scales every person once and reconstructs every trial; what is done and unchanged is not done again.
+
+    Args:
+        source: A folder of captures (:mod:`mbkf.study.batch.folder`), or a list of persons and trials in TOML or
+            CSV (:mod:`mbkf.study.batch.lists`).
+        out: Folder for the results: ``SUBJECT[/SESSION]/TRIAL``, and the tables ``summary`` and ``curves``, each as
+            CSV and Parquet.
+        workers: Processes, one thread each; by default as many as this computer has processors.
+        dask: Address of a Dask scheduler whose workers do it instead; "local" for a cluster on this computer.
+        shard: (I, N): only every N-th trial, from the I-th (from 1) on, for jobs that know nothing of each other.
+        settings: The filter and its settings.
+        progress: Called with the stage, items done and items in all.
+
+    Returns:
+        The table of trials: a row for each, with ``status``, ``reason`` and all of its ``summary.json``.
+
+    Raises:
+        FileFormatError: The list is damaged, or a file stands where a folder is needed.
+        InvalidInput: There is no trial, no such shard, or no scheduler answers.
+        MissingDependency: Dask is not installed.
+        OSError: The folder cannot be written to.
+    """
+    if workers is not None and workers < 1:
+        raise InvalidInput(f"{workers} workers can do nothing; give one or more")
+    target, plan = check_folder(out), plan_of(Path(source))
+    if shard is not None:
+        plan = plan.shard(*shard)
+    count = workers or cpu_count() or 1
+    executor: Executor = LocalWorkers(count) if dask is None else ClusterWorkers(dask, count)
+    suffix = "" if shard is None else f"-{shard[0]}-of-{shard[1]}"
+    try:
+        return follow(plan, target, settings or ReconstructSettings(), executor, progress, suffix)
+    finally:
+        executor.close()
+        for trial in plan.trials:
+            sweep(target / trial.place)
+
+
+def follow(
+    plan: Plan,
+    out: Path,
+    settings: ReconstructSettings,
+    executor: Executor,
+    progress: StageCallback | None = None,
+    suffix: str = "",
+) -> pa.Table:
+    """Does what a plan says, and makes its tables; returns that of the trials.
+
+    Args:
+        plan: The persons and trials.
+        out: The batch's folder.
+        settings: The filter and its settings.
+        executor: Who does it.
+        progress: Called with the stage, items done and items in all.
+        suffix: Ends the tables' names.
+
+    Raises:
+        OSError: The folder cannot be written to.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    outcomes = outcomes_of(plan, out, settings, executor, progress)
+    return pq.read_table(write_tables(plan, outcomes, out, suffix))
+
+
+def plan_of(source: Path) -> Plan:
+    """The persons and trials of a folder or list.
+
+    Raises:
+        FileFormatError: It is neither, or damaged.
+        InvalidInput: It holds no trial.
+    """
+    if source.is_dir():
+        return plan_of_folder(source)
+    if source.suffix.lower() not in LISTS:
+        raise FileFormatError(source, "is no folder, and no list in TOML or CSV")
+    return LISTS[source.suffix.lower()](source)
+
+
+def outcomes_of(
+    plan: Plan,
+    out: Path,
+    settings: ReconstructSettings,
+    executor: Executor,
+    progress: StageCallback | None = None,
+) -> list[Outcome]:
+    """What becomes of each trial: persons are scaled first.
+
+    Args:
+        plan: The persons and trials.
+        out: The batch's folder.
+        settings: The filter and its settings.
+        executor: Who does it.
+        progress: Called with the stage, items done and items in all.
+    """
+    persons = plan.persons
+    scaled = dict(
+        zip(
+            persons,
+            _done([ScalePerson(person, out) for person in persons], executor, "Scaling", progress),
+            strict=True,
+        )
+    )
+    ready = [trial for trial in plan.trials if scaled[trial.person].subject is not None]
+    tasks = (ReconstructTrial(one, _subject(scaled, one.person), out, settings) for one in ready)
+    found = dict(zip(ready, _done(tasks, executor, "Trials", progress, len(ready)), strict=True))
+    return [found.get(trial) or _unscaled(trial, scaled) for trial in plan.trials]
+
+
+def _done(
+    tasks: Iterable[Task] | Sequence[Task],
+    executor: Executor,
+    stage: str,
+    progress: StageCallback | None,
+    count: int | None = None,
+) -> list[Outcome]:
+    """Outcomes in the order of their tasks.
+
+    Args:
+        tasks: They.
+        executor: Who does them.
+        stage: What is being done, for the progress.
+        progress: Called with the stage, items done and items in all.
+        count: How many there are, where the tasks have no length.
+    """
+    total = len(tasks) if isinstance(tasks, Sequence) else count or 0
+    found: dict[int, Outcome] = {}
+    for number, outcome in executor.run(tasks):
+        found[number] = outcome
+        if progress is not None:
+            progress(stage, len(found), total)
+    return [found[number] for number in range(total)]
+
+
+def _subject(scaled: dict[Person, Outcome], person: Person) -> Path:
+    subject = scaled[person].subject
+    assert subject is not None, "only trials of scaled persons are done"
+    return subject
+
+
+def _unscaled(trial: Trial, scaled: dict[Person, Outcome]) -> Outcome:
+    return Outcome(Status.FAILED, f"the person could not be scaled: {scaled[trial.person].reason}")

@@ -1,0 +1,85 @@
+"""One trial of a batch reconstructed into a folder of its own, which appears whole or not at all."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+from mbkf.io.atomic_folder import replacing_folder
+from mbkf.io.capture import read_capture
+from mbkf.io.results_folder import LABELS_FILE, read_reconstruction, write_result_files
+from mbkf.io.session import plain_events
+from mbkf.io.subject import read_subject
+from mbkf.study.batch.curves import write_curves
+from mbkf.study.batch.inputs import RECORD, fingerprint, is_made_from, read_record, write_record
+from mbkf.study.batch.naming import named
+from mbkf.study.batch.plan import Trial
+from mbkf.trial.preparation.settings import ReconstructSettings, recorded
+from mbkf.trial.reconstruct import reconstruct
+from mbkf.trial.results.summary import summarise
+
+CURVES_FILE = "curves.parquet"
+"""File of a trial's cycles in its result folder."""
+
+
+def trial_done(trial: Trial, subject: Path, out: Path, settings: ReconstructSettings) -> bool:
+    """Reconstructs a trial, unless its folder was made from the same inputs before; returns whether anything was done.
+
+    Where only the events by hand are others than before, only the curves are made again.
+
+    Args:
+        trial: The trial.
+        subject: The person's file.
+        out: The batch's folder.
+        settings: The filter and its settings.
+
+    Raises:
+        MbkfError: An input is unusable.
+        OSError: A file cannot be read or written; nothing half-written stays.
+    """
+    target = out / trial.place
+    files = [trial.path, subject, *([] if trial.forces is None else [trial.forces])]
+    told = recorded(settings)
+    del told["kernel"]  # both find the same
+    made_from = fingerprint(files, told)
+    if trial.events is not None:
+        made_from["events"] = plain_events(trial.events)
+    if is_made_from(target / RECORD, made_from):
+        return curves_anew(trial, out)
+    person = read_subject(subject)
+    given = named(read_capture(trial.path, forces=trial.forces), person)
+    result = reconstruct(given.capture, person, settings=settings)
+    result = replace(result, warnings=(*result.warnings, *given.warnings))
+    with replacing_folder(target, last=RECORD) as partial:
+        write_result_files(result, summarise(result), partial)
+        write_curves(result, partial / CURVES_FILE, trial.events)
+        if given.summary is not None:
+            told_labels = json.dumps(given.summary, indent=2) + "\n"
+            (partial / LABELS_FILE).write_text(told_labels, encoding="utf-8")
+        write_record(partial / RECORD, made_from)
+    return True
+
+
+def curves_anew(trial: Trial, out: Path) -> bool:
+    """Makes the curves of a trial that was done again, unless its events are those of before; returns whether it did.
+
+    The record is written last: a kill in between leaves one that tells of the events before, and the curves are made
+    once more.
+
+    Args:
+        trial: The trial.
+        out: The batch's folder.
+
+    Raises:
+        FileFormatError: Its result or record is missing or damaged.
+        OSError: A file cannot be read or written.
+    """
+    target = out / trial.place
+    told = None if trial.events is None else plain_events(trial.events)
+    made_from = read_record(target / RECORD)
+    if made_from.get("events") == told:
+        return False
+    write_curves(read_reconstruction(target), target / CURVES_FILE, trial.events)
+    write_record(target / RECORD, {**made_from, "events": told})
+    return True

@@ -1,0 +1,223 @@
+"""The gait cycles of one trial: every quantity over 0–100 % of each cycle, per kg of body mass where it is a load."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
+from mbkf.io.contacts import Source
+from mbkf.io.results import Reconstruction
+from mbkf.model.description import BodyDescription
+from mbkf.model.human import reference_body
+from mbkf.trial.gait.curves import ENDINGS, SideCurve, side_curves
+from mbkf.trial.gait.cycles import POINTS, Cycle, Gait, over_cycle
+from mbkf.trial.gait.facing import facing
+
+FORCES = ("forward", "medial", "upward")
+"""Components of a reaction: in the direction the person faces, towards the other foot, up."""
+
+EDGE = 0.025
+"""Share of a cycle at both ends in which it does not matter how the foot's load is known: a foot that lands at a
+plate's edge is read a frame or two late."""
+
+ANGLE, TORQUE, POWER, REACTION = "angle", "torque", "power", "reaction"
+
+
+class Key(NamedTuple):
+    """What a curve is of: "angle", "torque", "power" or "reaction", and the coordinate without its side."""
+
+    quantity: str
+    name: str
+
+    @property
+    def is_load(self) -> bool:
+        """Whether it is known from loads, and so measured or estimated."""
+        return self.quantity != ANGLE
+
+
+@dataclass(frozen=True)
+class Curves:
+    """A quantity over cycles.
+
+    Attributes:
+        unit: deg, m, N m/kg, W/kg, or % of body weight.
+        values: (C, 101) over each cycle.
+        sd: (C, 101) standard deviations.
+        shift_sd: (C, 101) the part of these that shifts all cycles alike.
+        midline: Whether it belongs to the trunk, whose loads depend on both feet.
+    """
+
+    unit: str
+    values: Array
+    sd: Array
+    shift_sd: Array
+    midline: bool = False
+
+
+@dataclass(frozen=True)
+class SessionCycle:
+    """A cycle of a session.
+
+    Attributes:
+        trial: Its trial.
+        cycle: When it was.
+        measured: Whether a plate of its own measured the foot's load throughout: then the leg's torques are measured,
+            whatever the other foot stands on.
+        valid: Whether the leg's torques are known: measured, or every load estimated well enough.
+        body_measured, body_valid: The same of every load on the body, for the trunk's torques.
+    """
+
+    trial: str
+    cycle: Cycle
+    measured: bool
+    valid: bool
+    body_measured: bool
+    body_valid: bool
+
+
+@dataclass(frozen=True)
+class SideCycles:
+    """The cycles of one side.
+
+    Attributes:
+        side: 0 right, 1 left.
+        cycles: C of them.
+        curves: What they show.
+    """
+
+    side: int
+    cycles: tuple[SessionCycle, ...]
+    curves: Mapping[Key, Curves]
+
+
+def cycles_of_trial(r: Reconstruction, gait: Gait | None, side: int) -> SideCycles:
+    """The cycles of one side of a trial in which the body was followed throughout.
+
+    Curves of the midline are as either side sees them: those of the left are mirrored.
+
+    Args:
+        r: The trial's results.
+        gait: Its gait; None for a trial without.
+        side: 0 right, 1 left.
+    """
+    kept = [] if gait is None else [c for c in gait.of(side) if _within(r, c, r.tracked).all()]
+    cycles = tuple(_told(r, c) for c in kept)
+    if not kept:
+        return SideCycles(side, (), {})
+    mirrored = mirrored_midline(reference_body(r.subject)) if side else frozenset()
+    whole = frozenset(r.coordinate_names)
+    curves = {}
+    for curve in [*side_curves(r, side), *_reactions(r, side)]:
+        factor, unit = _shown(curve, r.subject.mass_kg)
+        sign = -1.0 if curve.name in mirrored and curve.quantity != POWER else 1.0
+        value, sd, shift = (
+            np.array([over_cycle(r.times_s, k * each, c) for c in kept])
+            for k, each in ((sign * factor, curve.value), (factor, curve.sd), (factor, curve.offset_sd))
+        )
+        curves[Key(curve.quantity, curve.name)] = Curves(unit, value, sd, shift, curve.name in whole)
+    curves |= _whole_joints(curves, reference_body(r.subject), side)
+    return SideCycles(side, cycles, curves)
+
+
+def _whole_joints(curves: Mapping[Key, Curves], body: BodyDescription, side: int) -> dict[Key, Curves]:
+    """The power of each joint as a whole, under the joint's name: the sum over its coordinates."""
+    found = {}
+    for joint in body.clinical_joints:
+        if joint.name.endswith(ENDINGS[1 - side]):
+            continue
+        parts = [
+            curves[key]
+            for a in joint.angles
+            if (key := Key(POWER, a.name.removesuffix(ENDINGS[side]))) in curves
+        ]
+        if parts:
+            found[Key(POWER, joint.name.removesuffix(ENDINGS[side]))] = Curves(
+                parts[0].unit,
+                np.sum([one.values for one in parts], axis=0),
+                np.sqrt(np.sum([one.sd**2 for one in parts], axis=0)),
+                np.sqrt(np.sum([one.shift_sd**2 for one in parts], axis=0)),
+                parts[0].midline,
+            )
+    return found
+
+
+def together(parts: list[SideCycles], side: int) -> SideCycles:
+    """Cycles of several trials of one side; curves that one of them lacks are left out.
+
+    Args:
+        parts: The cycles of each trial.
+        side: 0 right, 1 left.
+    """
+    filled = [part for part in parts if part.cycles]
+    if not filled:
+        return SideCycles(side, (), {})
+    keys = [key for key in filled[0].curves if all(key in part.curves for part in filled)]
+
+    def joined(key: Key) -> Curves:
+        each = [part.curves[key] for part in filled]
+        return Curves(
+            each[0].unit,
+            np.concatenate([one.values for one in each]),
+            np.concatenate([one.sd for one in each]),
+            np.concatenate([one.shift_sd for one in each]),
+            each[0].midline,
+        )
+
+    cycles = tuple(cycle for part in filled for cycle in part.cycles)
+    return SideCycles(side, cycles, {key: joined(key) for key in keys})
+
+
+def mirrored_midline(body: BodyDescription) -> frozenset[str]:
+    """Coordinates of the midline that change their sign in a mirror: about x and z, and along y."""
+    found = set()
+    for joint in body.clinical_joints:
+        if joint.name.endswith(("_r", "_l")):
+            continue
+        found |= {angle.name for angle in joint.angles if angle.axis != "y"}
+        found |= {place.name for place in joint.translations if place.axis == "y"}
+    return frozenset(found)
+
+
+def _told(r: Reconstruction, cycle: Cycle) -> SessionCycle:
+    """How the loads of a cycle are known."""
+    edge = np.minimum(r.times_s - cycle.start_s, cycle.end_s - r.times_s) < EDGE * cycle.seconds
+    own = edge | np.isin(r.foot_source[:, cycle.side], (Source.NONE, Source.MEASURED))
+    measured, body_measured, valid = (
+        bool(_within(r, cycle, one).all()) for one in (own, r.measured, r.valid)
+    )
+    return SessionCycle(r.trial, cycle, measured, measured or valid, body_measured, valid)
+
+
+def _within(r: Reconstruction, cycle: Cycle, flags: BoolArray) -> BoolArray:
+    return flags[(r.times_s >= cycle.start_s) & (r.times_s <= cycle.end_s)]
+
+
+def _shown(curve: SideCurve, mass_kg: float) -> tuple[float, str]:
+    """Factor to, and unit of, what a report shows."""
+    if curve.quantity == REACTION:
+        return 100.0 / (mass_kg * GRAVITY_M_S2), "% BW"
+    if curve.quantity == ANGLE:
+        return 1.0, curve.unit
+    return 1.0 / mass_kg, f"{curve.unit}/kg"
+
+
+def _reactions(r: Reconstruction, side: int) -> Iterator[SideCurve]:
+    """The reaction on a foot, in the axes of the person."""
+    axes = facing(r)
+    axes = np.stack([axes[:, 0], axes[:, 1] * (1.0 if side == 0 else -1.0), axes[:, 2]], axis=1)
+    unknown = np.full((r.frames, 3), np.nan)
+    spreads = [
+        unknown if sd is None else np.sqrt(np.einsum("tij,tj->ti", axes**2, sd[:, side, :3] ** 2))
+        for sd in (r.foot_wrench_sd, r.foot_wrench_sd_offset)
+    ]
+    force = np.einsum("tij,tj->ti", axes, r.foot_wrench[:, side, :3])
+    for k, name in enumerate(FORCES):
+        yield SideCurve(REACTION, name, "N", force[:, k], spreads[0][:, k], spreads[1][:, k])
+
+
+PERCENT = np.linspace(0.0, 100.0, POINTS)
+"""(101,) points of a cycle."""

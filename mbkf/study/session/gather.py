@@ -1,0 +1,239 @@
+"""A session put together from the folders of its results, one trial after the other."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from mbkf.errors import InvalidInput
+from mbkf.io.records import MarkerTrajectories
+from mbkf.io.results import Reconstruction
+from mbkf.io.results_folder import MOTION_FILE, read_reconstruction
+from mbkf.io.session import SessionNotes, TrialKind, TrialNotes
+from mbkf.io.session import session_of as session_of_entries
+from mbkf.io.subject import Subject
+from mbkf.study.batch.inputs import RECORD, read_record
+from mbkf.study.session.cycles import SideCycles, cycles_of_trial, together
+from mbkf.study.session.jumps import jump_measures
+from mbkf.study.session.records import Measure, MovementGroup, Session, SessionTrial
+from mbkf.study.session.squats import squat_measures
+from mbkf.study.survey.movement import kind_of_markers
+from mbkf.trial.gait.cycles import Gait, find_gait
+
+GAIT_KINDS = (TrialKind.WALK, TrialKind.RUN, TrialKind.UNKNOWN)
+"""Kinds whose cycles are looked at; feet of jumps and squats strike, too."""
+
+TRACKED_SHARE, MARKER_RMS_M = 0.95, 0.015
+"""A trial that was followed in a smaller share of its frames is bad; markers further from the body call for care."""
+
+MOST_DEEP = 3
+"""Folders in folders in which results are looked for."""
+
+
+@dataclass(frozen=True)
+class _Part:
+    """What one trial gives to its session."""
+
+    told: SessionTrial
+    subject: Subject
+    sides: tuple[SideCycles, SideCycles]
+    gait: Gait | None
+    jumps: tuple[Measure, ...]
+    squats: tuple[Measure, ...]
+
+
+def results_in(folder: Path) -> list[Path]:
+    """The folders with results in a folder, itself included, in order of their names.
+
+    Raises:
+        InvalidInput: There is none.
+    """
+    if (folder / MOTION_FILE).is_file():
+        return [folder]
+    found = [
+        file.parent
+        for deep in range(1, MOST_DEEP + 1)
+        for file in folder.glob("*/" * deep + MOTION_FILE)
+        if not any(part.startswith(".") for part in file.relative_to(folder).parts)
+    ]
+    if not found:
+        raise InvalidInput(f"{folder}: no results are here; make them with mbkf reconstruct or mbkf batch")
+    return sorted(found)
+
+
+def session_from(folders: Sequence[Path], name: str, notes: SessionNotes | None = None) -> Session:
+    """Reads the results of a session.
+
+    Args:
+        folders: A folder with results for each trial.
+        name: How the session is called.
+        notes: What is stated of it: kinds of trials, which are left out, and the person.
+
+    Raises:
+        FileFormatError: A result is damaged.
+        InvalidInput: No trial is left.
+    """
+    stated = notes or SessionNotes()
+    read = ((read_reconstruction(folder), folder) for folder in folders)
+    pairs = ((r, _with_events(stated.trial(r.trial), folder)) for r, folder in read)
+    return _session(((r, told) for r, told in pairs if not told.excluded), name, stated)
+
+
+def session_of(results: Iterable[Reconstruction], name: str, notes: SessionNotes | None = None) -> Session:
+    """The session of results; each is let go before the next one is asked for.
+
+    Args:
+        results: The trials.
+        name: How the session is called.
+        notes: What is stated of it.
+
+    Raises:
+        InvalidInput: There is no trial.
+    """
+    stated = notes or SessionNotes()
+    return _session(((r, stated.trial(r.trial)) for r in results), name, stated)
+
+
+def _session(
+    results: Iterable[tuple[Reconstruction, TrialNotes]], name: str, stated: SessionNotes
+) -> Session:
+    """The session of trials, each with what is stated of it.
+
+    Raises:
+        InvalidInput: There is no trial.
+    """
+    parts, seen = [], Counter[str]()
+    for r, notes in results:
+        seen[r.trial] += 1
+        parts.append(_part(r if seen[r.trial] == 1 else _again(r, seen[r.trial]), notes))
+    if not parts:
+        raise InvalidInput(f"{name}: there is no trial to report on")
+    kinds = [kind for kind in GAIT_KINDS if any(_gait_of(part, kind) for part in parts)]
+    return Session(
+        name,
+        parts[0].subject,
+        tuple(part.told for part in parts),
+        tuple(_group(kind, [part for part in parts if _gait_of(part, kind)]) for kind in kinds),
+        _joined([part.jumps for part in parts]),
+        _joined([part.squats for part in parts]),
+        stated.sex or None,
+        stated.age,
+    )
+
+
+def told_of(r: Reconstruction, kind: TrialKind | None = None) -> SessionTrial:
+    """A trial in short.
+
+    Args:
+        r: Its results.
+        kind: What it is; told from its markers when None.
+    """
+    rms = _marker_rms_m(r)
+    outside = tuple(f"{one.name}: {one.hint}" for one in r.checks if one.verdict == "outside")
+    if r.tracked.mean() < TRACKED_SHARE:
+        verdict = "bad"
+    elif outside or rms > MARKER_RMS_M:
+        verdict = "care"
+    else:
+        verdict = "good"
+    if kind is None:
+        kind = kind_of_markers(MarkerTrajectories(r.marker_names, r.measured_m, r.rate_hz))
+    seconds = r.frames / r.rate_hz
+    return SessionTrial(
+        r.trial, kind, seconds, verdict, (*outside, *r.warnings), f"{r.filter}, {r.later_frames}"
+    )
+
+
+def _with_events(stated: TrialNotes, folder: Path) -> TrialNotes:
+    """What is stated of a trial, with the events by hand that its batch knew where none are stated.
+
+    Raises:
+        FileFormatError: The batch's record is damaged.
+    """
+    record = folder / RECORD
+    if stated.events is not None or not record.is_file():
+        return stated
+    known = read_record(record).get("events")
+    if known is None:
+        return stated
+    return replace(
+        stated, events=session_of_entries({"trial": {"x": {"event": known}}}, record).trial("x").events
+    )
+
+
+def _part(r: Reconstruction, stated: TrialNotes) -> _Part:
+    told = told_of(r, stated.kind)
+    gait = find_gait(r, stated.events) if told.kind in GAIT_KINDS and r.tracked.any() else None
+    sides = (cycles_of_trial(r, gait, 0), cycles_of_trial(r, gait, 1))
+    return _Part(
+        told,
+        r.subject,
+        sides,
+        gait,
+        jump_measures(r) if told.kind == TrialKind.JUMP else (),
+        squat_measures(r) if told.kind == TrialKind.SQUAT else (),
+    )
+
+
+def _again(r: Reconstruction, number: int) -> Reconstruction:
+    """A trial whose name was there before, under a name of its own."""
+    return replace(r, trial=f"{r.trial} ({number})")
+
+
+def _marker_rms_m(r: Reconstruction) -> float:
+    apart = np.where(r.present[:, :, None], r.measured_m - r.predicted_m, np.nan)[r.tracked]
+    return float(np.sqrt(np.nanmean((apart**2).sum(axis=2)))) if np.isfinite(apart).any() else 0.0
+
+
+def _gait_of(part: _Part, kind: TrialKind) -> bool:
+    return part.told.kind == kind and part.gait is not None
+
+
+def _group(kind: TrialKind, parts: list[_Part]) -> MovementGroup:
+    """Trials of a kind together."""
+    sides = (together([p.sides[0] for p in parts], 0), together([p.sides[1] for p in parts], 1))
+    return MovementGroup(
+        kind, tuple(p.told.name for p in parts), sides, _joined([_parameters(p) for p in parts])
+    )
+
+
+def _parameters(part: _Part) -> tuple[Measure, ...]:
+    """Spatiotemporal parameters of one trial."""
+    assert part.gait is not None
+    name = part.told.name
+    return tuple(
+        Measure(
+            one.name,
+            one.unit,
+            dict(zip("rl", one.values, strict=True)),
+            {side: (name,) * len(values) for side, values in zip("rl", one.values, strict=True)},
+        )
+        for one in part.gait.parameters
+    )
+
+
+def _joined(parts: Sequence[tuple[Measure, ...]]) -> tuple[Measure, ...]:
+    """Measures of several trials together; those with flight and those without keep their own rows."""
+    found: dict[str, list[Measure]] = {}
+    for measures in parts:
+        for one in measures:
+            found.setdefault(one.name, []).append(one)
+    return tuple(_one_measure(same) for same in found.values())
+
+
+def _one_measure(same: list[Measure]) -> Measure:
+    sides = list(dict.fromkeys(side for one in same for side in one.values))
+
+    def each(values: Mapping[str, tuple[str, ...]], side: str) -> tuple[str, ...]:
+        return values.get(side, ())
+
+    return Measure(
+        same[0].name,
+        same[0].unit,
+        {side: np.concatenate([one.values.get(side, np.empty(0)) for one in same]) for side in sides},
+        {side: tuple(name for one in same for name in each(one.trials, side)) for side in sides},
+    )

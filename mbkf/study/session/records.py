@@ -1,0 +1,94 @@
+"""A session as it is reported: its trials, the gait of each kind, jumps and squats."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from mbkf.conventions import Array
+from mbkf.io.session import TrialKind
+from mbkf.io.subject import Subject
+from mbkf.study.session.cycles import SideCycles
+
+
+@dataclass(frozen=True)
+class SessionTrial:
+    """A trial of a session.
+
+    Attributes:
+        name: Its name.
+        kind: What it is.
+        seconds: Duration.
+        verdict: "good", "care" or "bad": the worst that its checks found.
+        remarks: What they found, in words.
+        filter: The filter, and which later frames it knew.
+    """
+
+    name: str
+    kind: TrialKind
+    seconds: float
+    verdict: str
+    remarks: tuple[str, ...]
+    filter: str
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A number of each cycle, jump or squat, for both sides or for the body.
+
+    Attributes:
+        name: E.g. "Speed".
+        unit: Of the values.
+        values: By "r" and "l", or "" for the body as a whole; each (N,).
+        trials: The trial of each value, in the same way.
+    """
+
+    name: str
+    unit: str
+    values: Mapping[str, Array]
+    trials: Mapping[str, tuple[str, ...]]
+
+
+@dataclass(frozen=True)
+class MovementGroup:
+    """The trials of a kind that have gait, together.
+
+    Attributes:
+        kind: Walk, run, or unknown where nothing tells.
+        trials: Their names.
+        sides: Cycles of the right and the left foot.
+        measures: Spatiotemporal parameters.
+    """
+
+    kind: TrialKind
+    trials: tuple[str, ...]
+    sides: tuple[SideCycles, SideCycles]
+    measures: tuple[Measure, ...]
+
+
+@dataclass(frozen=True)
+class Session:
+    """A session of one person.
+
+    Attributes:
+        name: As it is shown.
+        subject: The scaled person.
+        trials: All trials that were reconstructed.
+        gaits: Trials with gait cycles, by kind.
+        jumps: Measures of each jump; empty without.
+        squats: Measures of each squat; empty without.
+        sex, age: As stated; None where they are not.
+    """
+
+    name: str
+    subject: Subject
+    trials: tuple[SessionTrial, ...]
+    gaits: tuple[MovementGroup, ...]
+    jumps: tuple[Measure, ...] = ()
+    squats: tuple[Measure, ...] = ()
+    sex: str | None = None
+    age: float | None = None
+
+    def gait(self, kind: TrialKind) -> MovementGroup | None:
+        """The gait of a kind; None without."""
+        return next((one for one in self.gaits if one.kind == kind), None)

@@ -1,0 +1,299 @@
+"""What is done about a capture's axes: left as they are, put right, or refused, by the body and the plates in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.errors import InvalidInput
+from mbkf.io.axes import (
+    METRES_PER_UNIT,
+    WORLD_AXES,
+    axes_matrix,
+    axes_text,
+    nearest_axis,
+    rotation_to_world,
+)
+from mbkf.io.records import AxesSource, Capture
+from mbkf.io.turning import recentred, turned
+from mbkf.trial.axes.evidence import FLAT_SINE, BodyAttitude, MarkerPlaces, body_attitude
+from mbkf.trial.axes.plates import contradiction, pushed_away
+
+UPRIGHT_COSINE = np.cos(np.deg2rad(30.0))
+"""A body stands upright along an axis that its height makes less than this angle with."""
+
+ALWAYS, EVER = 0.95, 0.05
+"""Shares of frames: upright all the time, and at times. Who stands along an axis in all frames of a capture, with legs
+straight and feet across it, was not lying; who does so at times may rise from the floor."""
+
+STRAIGHT = 0.6
+"""Height over that of the reference body of the same size, above which a body is not folded."""
+
+STANDING = 0.5
+"""Share of the frames upright along an axis in which a foot lies across it, from which a person stands along it: 1 of a
+walk, 0.93 of a run; 0.2 to 0.35 of two persons who lie with their toes on the floor."""
+
+HANDED, SAME_SIGN = 0.3, 0.9
+"""Mean triple product of forward, left and up, and the share of frames of its sign, from which the body is taken to be
+right-handed or mirrored. Twenty-five measured captures have means of 0.63 (legs alone) to 1 and shares of 0.98 to 1."""
+
+EXPLAINED, SCATTER = 0.7, 0.45
+"""Share of the markers' spread that a body has to explain (measured captures: 0.78 to 0.98), and the scatter of lengths
+within segments that it may have (0.05 to 0.32; names in a wrong order 0.64 and more): else the names are others'."""
+
+POSSIBLE_M, PLAUSIBLE_M = (0.65, 2.6), (1.0, 2.2)
+"""Heights of a person beyond which a unit is refused, and between which another is proposed."""
+
+_AXES = {name: np.array(rows[2], dtype=np.float64) for name, rows in WORLD_AXES.items()}
+"""World directions by the names of axes."""
+
+
+class Verdict(StrEnum):
+    """What was found about a capture's axes."""
+
+    RIGHT = "right"
+    """Up and handedness are those of the body."""
+    PUT_RIGHT = "put right"
+    """They were not, and it is clear what they are."""
+    KEPT = "kept"
+    """They may not be; they are kept, for the reason that the note gives."""
+    UNCLEAR = "unclear"
+    """Somebody lies who never stands, and the file does not say which axis points up."""
+    REFUSED = "refused"
+    """Body and plates, or body and file, contradict each other."""
+    UNKNOWN = "unknown"
+    """Too few markers with a known place on the body."""
+    GIVEN = "given"
+    """The caller named the axes."""
+
+
+@dataclass(frozen=True)
+class AxesFinding:
+    """What was found about a capture's axes.
+
+    Attributes:
+        verdict: The verdict.
+        turn: (3, 3) what the capture has to be turned by; the identity unless axes are put right.
+        note: One line about it, "" where there is nothing to tell.
+    """
+
+    verdict: Verdict
+    turn: Array
+    note: str = ""
+
+
+def right_axes(
+    captures: Sequence[Capture], places: Sequence[MarkerPlaces], *, with_plates: bool = True
+) -> list[Capture]:
+    """Captures of one person with their axes checked, and put right where that is needed.
+
+    A capture that does not tell its axes takes those of the others that were read alike: a laboratory's static and
+    moving trials have the same. What it does tell, where its feet stand, is not overruled.
+
+    Args:
+        captures: The captures.
+        places: Places of each one's markers on the body.
+        with_plates: Whether plates are used: captures that are upright are refused where they push elsewhere.
+
+    Returns:
+        The captures, in their order; the same objects where nothing was changed or remarked.
+
+    Raises:
+        InvalidInput: Body, plates and file contradict each other, or the body is of no person's size.
+    """
+    found = [
+        find_axes(one, place, with_plates=with_plates) for one, place in zip(captures, places, strict=True)
+    ]
+    known: dict[tuple[str, AxesSource], list[AxesFinding]] = {}
+    for one, finding in zip(captures, found, strict=True):
+        if finding.verdict in (Verdict.RIGHT, Verdict.PUT_RIGHT):
+            known.setdefault((one.axes, one.axes_source), []).append(finding)
+    result = []
+    for one, own in zip(captures, found, strict=True):
+        others = known.get((one.axes, one.axes_source), [])
+        agreed = bool(others) and all(np.array_equal(other.turn, others[0].turn) for other in others)
+        result.append(applied(one, others[0] if agreed and may_follow(own, others[0].turn) else own))
+    return result
+
+
+def may_follow(finding: AxesFinding, turn: Array) -> bool:
+    """Whether a capture about which this was found may be turned as another of the same person was.
+
+    Args:
+        finding: What was found about it.
+        turn: (3, 3) what the other was turned by.
+    """
+    if finding.verdict is Verdict.KEPT:  # its up is known, its handedness is not
+        return bool(turn[2, 2] == 1.0)
+    return finding.verdict in (Verdict.UNKNOWN, Verdict.UNCLEAR)
+
+
+def applied(capture: Capture, finding: AxesFinding) -> Capture:
+    """The capture with what was found about it: turned, and with the note; itself where there is neither.
+
+    Raises:
+        InvalidInput: Its axes or its unit cannot be right, and it is not clear what they are.
+    """
+    if finding.verdict in (Verdict.REFUSED, Verdict.UNCLEAR):
+        raise InvalidInput(f"{capture.path or 'capture'}: {finding.note}")
+    if finding.verdict is Verdict.PUT_RIGHT:
+        capture = put_right(capture, finding.turn)
+    return replace(capture, notes=(*capture.notes, finding.note)) if finding.note else capture
+
+
+def put_right(capture: Capture, turn: Array) -> Capture:
+    """A capture turned into the axes of the body in it.
+
+    Args:
+        capture: The capture.
+        turn: (3, 3) signed permutation.
+    """
+    found = turned(capture, turn, AxesSource.BODY)
+    return replace(found, plates=tuple(recentred(plate) for plate in found.plates))
+
+
+def find_axes(capture: Capture, places: MarkerPlaces, *, with_plates: bool = True) -> AxesFinding:
+    """Whether a capture's axes are those of the person in it.
+
+    Args:
+        capture: A capture whose markers have names.
+        places: Places of its markers on the body.
+        with_plates: As for :func:`right_axes`.
+    """
+    same = np.eye(3)
+    if capture.axes_source is AxesSource.GIVEN:
+        return AxesFinding(Verdict.GIVEN, same)
+    body = body_attitude(capture.markers, places)
+    if body is None or np.median(body.explained) < EXPLAINED or body.scatter > SCATTER:
+        return AxesFinding(Verdict.UNKNOWN, same)
+    impossible = _impossible_size(capture, body, places)
+    if impossible:
+        return AxesFinding(Verdict.REFUSED, same, impossible)
+    old, up, mirrored = axes_matrix(capture.axes), _up(capture, body), _mirrored(body)
+    if up.unclear:
+        return AxesFinding(Verdict.UNCLEAR, same, up.remark)
+    remarks = [up.remark] if up.remark else []
+    if mirrored is None:
+        remarks.append("the markers do not show whether they are mirrored")
+    new = old if up.axis == "z" else rotation_to_world(_stored(up.axis, old))
+    if mirrored:
+        new = new * np.array([[1.0], [-1.0], [1.0]])
+    turn = new @ old.T
+    evidence = _evidence(body, up.axis, bool(mirrored), old)
+    if np.array_equal(turn, same):
+        against = pushed_away(capture.plates) if with_plates and _stands_along(body, "z") else ""
+        if against:
+            hint = "look at the axes of both (--up, --axes)"
+            return AxesFinding(Verdict.REFUSED, same, f"the body stands upright, but {against}; {hint}")
+        return AxesFinding(Verdict.KEPT if remarks else Verdict.RIGHT, same, "; ".join(remarks))
+    against = contradiction(capture, turn, places)
+    if against:
+        hint = f"name the axes that point forward, left and up (--axes={capture.axes} keeps them)"
+        return AxesFinding(Verdict.REFUSED, same, f"{evidence}, but {against}; {hint}")
+    told = _told(capture, axes_text(new), evidence, up.axis)
+    return AxesFinding(Verdict.PUT_RIGHT, turn, "; ".join([told, *remarks]))
+
+
+@dataclass(frozen=True)
+class _Up:
+    """World axis that points up in truth; what is to be told about it; whether it is not clear after all."""
+
+    axis: str
+    remark: str = ""
+    unclear: bool = False
+
+
+def _up(capture: Capture, body: BodyAttitude) -> _Up:
+    """Which axis points up: the one that the body is along, or, where it lies at times, the one it stands along."""
+    main = nearest_axis(body.up.mean(axis=0))
+    standing = [a for a in _AXES if _along(body, a) >= EVER and _on_feet(body, a) >= STANDING]
+    axis = main
+    if main == "z" and standing and "z" not in standing:
+        axis = standing[0]
+    if axis == "z":
+        return _Up("z")
+    stored = _stored(axis, axes_matrix(capture.axes))
+    share = f"in {100 * _along(body, axis):.0f} % of frames the body extends along {stored} of the file"
+    if capture.axes_source is AxesSource.UP_GIVEN:
+        return _Up("z", f"{share}; up is {capture.up_axis}, as given")
+    if axis == main and _stands_along(body, axis):
+        return _Up(axis)
+    if capture.axes_source in (AxesSource.PLATES, AxesSource.SCREEN, AxesSource.MADE):
+        return _Up("z", f"{share}; up is {capture.up_axis}, as the file says")
+    if standing == ["z"]:
+        return _Up("z", f"{share}, but stands on its feet along {capture.up_axis} only, which is taken as up")
+    hint = f"which axis points up? give --up (--up={capture.up_axis} where the person lies)"
+    return _Up("z", f"{share} and does not stand along {capture.up_axis}, taken as up; {hint}", unclear=True)
+
+
+def _stored(axis: str, matrix: Array) -> str:
+    """Name in the file of a world axis."""
+    return nearest_axis(_AXES[axis] @ matrix)
+
+
+def _along(body: BodyAttitude, axis: str) -> float:
+    """Share of the frames in which the body extends upwards along a world axis."""
+    return float((body.up @ _AXES[axis] > UPRIGHT_COSINE).mean())
+
+
+def _stands_along(body: BodyAttitude, axis: str) -> bool:
+    """Whether the body stands on its feet along a world axis all the time, with straight legs."""
+    straight = bool(np.median(body.stretch) >= STRAIGHT * body.size)
+    return straight and _along(body, axis) >= ALWAYS and _on_feet(body, axis) >= STANDING
+
+
+def _on_feet(body: BodyAttitude, axis: str) -> float:
+    """Share of the frames upright along a world axis in which a foot lies across it; 0 where no foot is seen."""
+    along = body.up @ _AXES[axis] > UPRIGHT_COSINE
+    rise = np.abs(body.feet[along] @ _AXES[axis])
+    seen = ~np.isnan(rise).all(axis=1)
+    return float((np.nanmin(rise[seen], axis=1) < FLAT_SINE).mean()) if seen.any() else 0.0
+
+
+def _mirrored(body: BodyAttitude) -> bool | None:
+    """Whether right and left are exchanged; None where it cannot be told."""
+    seen = body.handedness[~np.isnan(body.handedness)]
+    if not len(seen) or abs(seen.mean()) < HANDED:
+        return None
+    mirrored = bool(seen.mean() < 0.0)
+    return mirrored if ((seen < 0.0) == mirrored).mean() >= SAME_SIGN else None
+
+
+def _impossible_size(capture: Capture, body: BodyAttitude, places: MarkerPlaces) -> str:
+    """That a body is too small or too large for a person, so that the unit is wrong; "" where it is not."""
+    height, used = body.size * places.height_m, capture.length_unit
+    if np.isnan(height) or POSSIBLE_M[0] <= height <= POSSIBLE_M[1]:
+        return ""
+    hint = "give the right unit with --unit"
+    for unit, metres in METRES_PER_UNIT.items():
+        other = height * metres / METRES_PER_UNIT[used]
+        if PLAUSIBLE_M[0] <= other <= PLAUSIBLE_M[1]:
+            hint = f"in {unit} it is {other:.2f} m: give --unit {unit}"
+            break
+    return f"read in {used}, the body is {height:.4g} m tall, which no person is; {hint}"
+
+
+def _evidence(body: BodyAttitude, axis: str, mirrored: bool, old: Array) -> str:
+    """Why axes are put right, in words."""
+    words = []
+    if axis != "z":
+        words.append(
+            f"the body stands along {_stored(axis, old)} in {100 * _along(body, axis):.0f} % of frames"
+        )
+    if mirrored:
+        words.append("right markers lay left of the left ones")
+    return " and ".join(words)
+
+
+def _told(capture: Capture, new: str, evidence: str, axis: str) -> str:
+    """What was put right, in one line."""
+    kept = f"--axes={capture.axes} keeps them"
+    if axis == "z":
+        what = "markers and plates" if capture.plates else "markers"
+        flipped = new.split(",")[1].removeprefix("-")
+        return f"{what} mirrored: {flipped} flipped ({evidence}); {kept}"
+    return f"axes put right: {new} point forward, left and up, not {capture.axes} ({evidence}); {kept}"

@@ -1,0 +1,160 @@
+"""What a body's motion, known from markers alone, asks for, beside what its plates give, averaged alike."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
+from mbkf.io.records import PlateReadings
+from mbkf.model.body import Body
+from mbkf.numerics.windows import dilated, slopes
+from mbkf.sensors.contact.offline import assign_feet, stretches
+from mbkf.sensors.contact.plates import plate_wrenches
+from mbkf.sensors.supports.momentum import LEAST_WINDOW, WholeBody
+from mbkf.trial.preparation.markers_alone import Motion
+
+WINDOW_S = 0.1
+"""Duration over which rates of momentum and plates are taken."""
+
+BRIDGE_S = 0.1
+"""A shorter stretch of frames in which a foot seems to stand beside the plates is one of landing or leaving: it is
+judged, as clocks that differ show nowhere else."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Both sides of Newton's law over a trial.
+
+    Attributes:
+        times_s: (T,) times of the frames.
+        rate_hz: Frame rate.
+        mass_kg: The mass that the body was given.
+        plates: The plates, P of them.
+        centre_m: (T, 3) centre of mass.
+        momentum: (T, 6) of the body, about it.
+        asked: (T, 6) force N and moment N m about the centre of mass that the motion asks for besides weight.
+        given: (T, P, 6) what each plate gives, about the centre of mass, averaged as ``asked`` is.
+        raw: (T, P, 6) plates' wrenches about the world's origin, frame by frame; NaN where not recorded.
+        accounted: (T,) frames in which every foot that bears stands on a plate.
+        floor_m: Height of the floor as the soles show it.
+    """
+
+    times_s: Array
+    rate_hz: float
+    mass_kg: float
+    plates: tuple[PlateReadings, ...]
+    centre_m: Array
+    momentum: Array
+    asked: Array
+    given: Array
+    raw: Array
+    accounted: BoolArray
+    floor_m: float
+
+    @classmethod
+    def of(
+        cls,
+        model: Body,
+        motion: Motion,
+        times_s: Array,
+        rate_hz: float,
+        plates: Sequence[PlateReadings],
+    ) -> Evidence:
+        """Of a trial.
+
+        Args:
+            model: The body.
+            motion: Its motion from markers alone.
+            times_s: (T,) times of the frames.
+            rate_hz: Frame rate.
+            plates: The plates.
+        """
+        body = WholeBody.of(model, motion.q, motion.v)
+        loads = assign_feet(model, motion.q, times_s, rate_hz, tuple(plates))
+        asked = body.missing_wrench(np.zeros_like(body.momentum), rate_hz, WINDOW_S)
+        raw = plate_wrenches(tuple(plates), times_s, rate_hz)
+        known = ~np.isnan(body.momentum).any(axis=1) & ~np.isnan(raw).any(axis=(1, 2)) & (len(plates) > 0)
+        return cls(
+            times_s,
+            rate_hz,
+            model.mass_kg,
+            tuple(plates),
+            body.centre_m,
+            body.momentum,
+            asked,
+            _averaged(_about(raw, body.centre_m), rate_hz),
+            raw,
+            known & _bridged(loads.valid, round(BRIDGE_S * rate_hz)),
+            loads.floor_m,
+        )
+
+    @property
+    def weight_n(self) -> float:
+        """Weight of the mass that the body was given."""
+        return self.mass_kg * GRAVITY_M_S2
+
+    @property
+    def total(self) -> Array:
+        """(T, 6) what all plates together give."""
+        return np.asarray(self.given.sum(axis=1))
+
+    @property
+    def clear(self) -> BoolArray:
+        """(T,) accounted frames whose averages reach into no other."""
+        return self.known & self.accounted & ~dilated(~self.accounted, round(0.5 * WINDOW_S * self.rate_hz))
+
+    @property
+    def known(self) -> BoolArray:
+        """(T,) frames in which both sides are known."""
+        return np.asarray(~np.isnan(self.asked[:, 0]) & ~np.isnan(self.given).any(axis=(1, 2)))
+
+    def gives(self, plates: Sequence[PlateReadings]) -> Array:
+        """(T, P, 6) what other readings of the plates give, as ``given``."""
+        raw = plate_wrenches(tuple(plates), self.times_s, self.rate_hz)
+        return _averaged(_about(raw, self.centre_m), self.rate_hz)
+
+    def with_plate(self, p: int, plate: PlateReadings) -> Evidence:
+        """The same with other readings of plate ``p``; which frames are accounted for stays."""
+        plates, given = list(self.plates), self.given.copy()
+        plates[p], given[:, p] = plate, self.gives([plate])[:, 0]
+        return replace(self, plates=tuple(plates), given=given)
+
+    def restricted(self, frames: BoolArray) -> Evidence:
+        """The same with these frames (T,) accounted for."""
+        return replace(self, accounted=frames)
+
+    def without(self, frames: BoolArray) -> Evidence:
+        """The same with some frames (T,) not accounted for."""
+        return replace(self, accounted=self.accounted & ~frames)
+
+
+def _about(raw: Array, centre_m: Array) -> Array:
+    """(T, P, 6) wrenches about the centre of mass (T, 3)."""
+    moved = raw.copy()
+    moved[..., 3:] -= np.cross(centre_m[:, None], raw[..., :3])
+    return moved
+
+
+def _averaged(series: Array, rate_hz: float) -> Array:
+    """(T, P, 6) means over the window, weighted as slopes of momentum are; NaN where a window is not known."""
+    window = max(2 * round(0.5 * WINDOW_S * rate_hz) + 1, LEAST_WINDOW)
+    flat = series.reshape(len(series), -1)
+    found = np.full(flat.shape, np.nan)
+    if not flat.shape[1]:
+        return found.reshape(series.shape)
+    for run in stretches(np.asarray(~np.isnan(flat).any(axis=1))):
+        if len(run) >= window:
+            found[run] = slopes(np.cumsum(flat[run], axis=0) - 0.5 * flat[run], window, 1.0)
+    return found.reshape(series.shape)
+
+
+def _bridged(mask: BoolArray, frames: int) -> BoolArray:
+    """(T,) mask in which shorter gaps between two stretches are filled."""
+    found = mask.copy()
+    for run in stretches(~mask):
+        if len(run) <= frames and run[0] > 0 and run[-1] < len(mask) - 1:
+            found[run] = True
+    return found

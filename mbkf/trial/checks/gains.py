@@ -1,0 +1,91 @@
+"""Plates against each other: the gain of each one's vertical force by what the motion asks for.
+
+a_z = Σ_p c_p f_z,p over the frames in which only feet on plates bear; a plate's gain is 1 / c_p. Only its ratio to the
+others' is told here, which does not depend on the mass.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.io.findings import Finding, judgement, not_judged
+from mbkf.trial.checks.evidence import Evidence
+from mbkf.trial.checks.newton import expected_force
+
+NAME = "plates against plates"
+
+BOUND_PERCENT = 5.0
+"""Plates whose gains differ by more are told."""
+
+BODY_PERCENT = 1.5
+"""What legs and their scaled masses make plates seem to differ by."""
+
+LEAST_S = 0.3
+"""A plate is compared that carries most of the load for so long."""
+
+MOST_SD_PERCENT = 4.0
+"""A difference that is known no better is not judged."""
+
+LEAST_SHARE = 0.5
+"""Most of the load."""
+
+NOISE_S = 0.1
+"""Time over which what motion and plates differ by stays alike."""
+
+RCOND = 1e-3
+"""A plate that hardly gives anything has no gain of its own."""
+
+EXPLAINED = 2.0
+"""What gains leave is noise where it is less than so many times what is lacking where all is well."""
+
+
+def gain_finding(evidence: Evidence) -> Finding:
+    """By how much the plate that is furthest off differs from the others, %."""
+    clear = evidence.clear
+    vertical = np.where(clear[:, None], evidence.given[:, :, 2], 0.0)
+    most = vertical > LEAST_SHARE * np.maximum(vertical.sum(axis=1), 1.0)[:, None]
+    enough = (most & clear[:, None]).sum(axis=0) >= LEAST_S * evidence.rate_hz
+    if enough.sum() < 2:
+        return not_judged(NAME, "%", BOUND_PERCENT, "needs two plates that carry most of the load in turn")
+    inverse, covariance = _fitted(vertical[clear], evidence)
+    inverse, covariance = inverse[enough], covariance[np.ix_(enough, enough)]
+    names = [plate.name for plate, known in zip(evidence.plates, enough, strict=True) if known]
+    found = []
+    for p in range(len(names)):
+        others = np.arange(len(names)) != p
+        mean = float(np.median(inverse[others]))
+        contrast = np.where(others, -1.0 / others.sum(), 1.0)
+        sd = 100.0 * float(np.sqrt(contrast @ covariance @ contrast)) / mean
+        found.append((100.0 * float(mean / inverse[p] - 1.0), float(np.hypot(sd, BODY_PERCENT)), names[p]))
+    off, sd, name = max(found, key=lambda one: abs(one[0]) / one[1])
+    if sd > MOST_SD_PERCENT:
+        return not_judged(NAME, "%", BOUND_PERCENT, f"the motion tells gains only to {sd:.0f} %")
+    verdict = judgement(off, sd, BOUND_PERCENT)
+    hint = f"plate '{name}' reads {abs(off):.0f} % {'more' if off > 0 else 'less'} than the others"
+    if verdict == "outside":
+        hint += ": look at the gains and units of both" if len(names) == 2 else ": look at its gain and unit"
+    return Finding(NAME, off, sd, "%", BOUND_PERCENT, verdict, hint)
+
+
+def _fitted(vertical: Array, evidence: Evidence) -> tuple[Array, Array]:
+    """(P,) inverse gains and their covariance, from what plates give in clear frames (n, P)."""
+    asked = evidence.asked[evidence.clear, 2]
+    inverse = np.linalg.lstsq(vertical, asked, rcond=RCOND)[0]
+    left = asked - vertical @ inverse
+    variance = float(left @ left) / len(left) * NOISE_S * evidence.rate_hz
+    return np.asarray(inverse), np.asarray(variance * np.linalg.pinv(vertical.T @ vertical, rcond=RCOND**2))
+
+
+def explained(evidence: Evidence) -> bool:
+    """Whether feet on plates, each with a gain of its own, give all that the motion asks for in the vertical.
+
+    What looks like a seat or a hand may be a plate that reads too little.
+    """
+    clear = evidence.clear
+    if clear.sum() < LEAST_S * evidence.rate_hz:
+        return False
+    vertical, asked = evidence.given[clear, :, 2], evidence.asked[clear, 2]
+    inverse = np.linalg.lstsq(vertical, asked, rcond=RCOND)[0]
+    left = float(np.sqrt(np.mean((asked - vertical @ inverse) ** 2)))
+    return left < EXPLAINED * expected_force(evidence, clear)

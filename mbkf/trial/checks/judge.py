@@ -1,0 +1,86 @@
+"""All checks of a trial, in the order in which one explains the next."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.io.findings import Finding
+from mbkf.io.records import MarkerTrajectories, PlateReadings
+from mbkf.io.subject import Subject
+from mbkf.model.body import Body
+from mbkf.numerics.windows import dilated
+from mbkf.trial.checks import clocks, floor, gains, lengths, mass, newton, orientation, rigidity
+from mbkf.trial.checks.evidence import Evidence
+from mbkf.trial.preparation.markers_alone import Motion
+
+OTHERS_S = 0.2
+"""So near to a contact of another part than a foot, what plates give is not all."""
+
+
+def marker_checks(markers: MarkerTrajectories, subject: Subject) -> tuple[Finding, ...]:
+    """Checks that need markers and the subject alone.
+
+    Args:
+        markers: The subject's markers, under the subject's names.
+        subject: The person.
+    """
+    return lengths.length_finding(subject), rigidity.rigidity_finding(markers, subject)
+
+
+def plate_checks(
+    model: Body,
+    motion: Motion,
+    times_s: Array,
+    rate_hz: float,
+    plates: tuple[PlateReadings, ...],
+    others: BoolArray | None = None,
+) -> tuple[Finding, ...]:
+    """Checks of the plates against the motion of markers alone.
+
+    A plate that lies otherwise than its file says, and a clock that is late, are put right for the checks that follow,
+    so that each tells one thing; Newton's law is told as the capture has it.
+
+    Args:
+        model: The body.
+        motion: Its motion from markers alone.
+        times_s: (T,) times of the frames.
+        rate_hz: Frame rate.
+        plates: The plates.
+        others: (T,) frames in which parts besides the feet were found to bear; None for none.
+    """
+    if not plates:
+        return ()
+
+    def evidence_of(given: tuple[PlateReadings, ...]) -> Evidence:
+        return Evidence.of(model, motion, times_s, rate_hz, given)
+
+    as_told = evidence_of(plates)
+    near = np.zeros(len(times_s), dtype=bool)
+    if others is not None and not gains.explained(as_told):
+        near = dilated(others, round(OTHERS_S * rate_hz))
+    axes, laid = orientation.axes_findings(as_told.without(near))
+    turned = any(one.verdict == "outside" for one in axes)
+    evidence = evidence_of(laid) if turned else as_told
+    clock = clocks.clock_finding(evidence.without(near))
+    if clock.verdict == "outside" and clock.value is not None:
+        evidence = evidence_of(clocks.delayed(laid, -1e-3 * clock.value))
+    gain = gains.gain_finding(evidence.without(near))
+    weight = mass.mass_finding(evidence, near, gain.verdict != "outside")
+    before = newton.newton_findings(as_told.restricted(evidence.accounted & ~near))
+    places = orientation.place_findings(evidence.without(near))
+    height = floor.floor_finding(evidence, model, motion)
+    return (weight, *before, gain, clock, *axes, *places, height)
+
+
+def told(checks: tuple[Finding, ...]) -> tuple[str, ...]:
+    """What is to be told of checks in words: those outside; Newton's law where no other one explains it."""
+    outside = [one for one in checks if one.verdict == "outside"]
+    consequences = (newton.FORCE, newton.MOMENT)
+    causes = [one for one in outside if one.name not in consequences]
+    return tuple(f"{one.name}: {_number(one)}; {one.hint}" for one in causes or outside)
+
+
+def _number(finding: Finding) -> str:
+    assert finding.value is not None and finding.expected_sd is not None
+    return f"{finding.value:+.3g} {finding.unit} (noise explains ± {2.0 * finding.expected_sd:.2g})"

@@ -1,0 +1,203 @@
+"""Each plate's axes and place: whether it fits the motion as its file has it, or turned, mirrored or moved better.
+
+While a plate carries most of the load, its shear and its moment about the centre of mass have to be those that the
+motion asks for. The plate is tried in the eight ways in which a rectangle can be laid down, turned by quarters and
+mirrored; where it lies beside its place by d, the moment d × f is missing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from mbkf.conventions import Array, BoolArray
+from mbkf.io.findings import Finding, judgement, not_judged
+from mbkf.io.records import PlateReadings
+from mbkf.trial.checks.evidence import Evidence
+
+SHEAR_SHARE, MOMENT_M = 0.04, 0.025
+"""What shear, in body weights, and moment, in body weights times m, differ by where all is well (root of mean square
+per component in public walks and runs: 0.02 to 0.07 and 0.01 to 0.03)."""
+
+BOUND = 1.5
+"""A plate that misfits so many times as much as it does laid down in another way lies in that one. The right way
+misfits less than any other: 0.1 to 0.6 times as much."""
+
+TIMES_SD = 0.5
+"""Standard deviation of that number where two ways fit alike."""
+
+BOUND_MM, PLACE_MM = 50.0, 15.0
+"""A plate further beside its place than the first is told; scaled bodies' centres of mass are wrong by the second."""
+
+NOISE_S = 0.1
+"""Time over which what motion and plates differ by stays alike."""
+
+ALONE, BESIDE = 0.7, 0.25
+"""A plate is judged while it carries the first share of what all give; its axes, where it never does, the second."""
+
+MATCHES = 0.25
+"""Frames count in which the plates' vertical force is what the motion asks for to this share, whatever stands where."""
+
+LEAST_S = 0.2
+"""Duration that is needed."""
+
+UNLOADED = "nothing stands on this plate alone for long enough"
+
+
+def axes_findings(evidence: Evidence) -> tuple[tuple[Finding, ...], tuple[PlateReadings, ...]]:
+    """One finding for each plate, and the plates laid down as fits best where that is not as their file has it.
+
+    The plate that gains most by it is laid down otherwise first; the others are judged beside it as it lies then.
+    """
+    found: dict[int, Finding] = {}
+    while True:
+        others = [p for p in range(len(evidence.plates)) if p not in found]
+        judged = {p: _axes(evidence, p) for p in others}
+        outside = [p for p in others if judged[p][0].verdict == "outside"]
+        if not outside:
+            found |= {p: finding for p, (finding, _) in judged.items()}
+            return tuple(found[p] for p in sorted(found)), evidence.plates
+        worst = max(outside, key=lambda p: judged[p][0].value or 0.0)
+        found[worst], laid_down = judged[worst]
+        evidence = evidence.with_plate(worst, laid_down)
+
+
+def place_findings(evidence: Evidence) -> tuple[Finding, ...]:
+    """How far each plate lies beside its place: d that makes most of the missing moment d × f."""
+    findings = []
+    gain = _gain(evidence)
+    for p, plate in enumerate(evidence.plates):
+        name, frames = f"place of plate '{plate.name}'", _bearing(evidence, p, ALONE)
+        if frames is None:
+            findings.append(not_judged(name, "mm", BOUND_MM, UNLOADED))
+            continue
+        missing = (gain * evidence.asked - evidence.total)[frames]
+        findings.append(_place(name, evidence.given[frames, p], missing, evidence.rate_hz))
+    return tuple(findings)
+
+
+def laid(plate: PlateReadings, quarters: int, mirrored: bool) -> PlateReadings:
+    """A plate's readings as if it lay otherwise: mirrored across its own x axis, then turned about the vertical.
+
+    Args:
+        plate: The plate.
+        quarters: By how many quarter turns.
+        mirrored: Whether it is mirrored.
+    """
+    turn = _matrix(plate, quarters, mirrored)
+    # A moment is an axial vector: mirrored, it changes its sign besides.
+    axial = turn * (-1.0 if mirrored else 1.0)
+    pressed = plate.origin_m + (plate.centre_of_pressure_m - plate.origin_m) @ turn.T
+    return replace(
+        plate,
+        force_n=plate.force_n @ turn.T,
+        moment_nm=plate.moment_nm @ axial.T,
+        centre_of_pressure_m=pressed,
+    )
+
+
+def _matrix(plate: PlateReadings, quarters: int, mirrored: bool) -> Array:
+    """(3, 3) of world axes: the plate's own horizontal axis is that of its first edge, or the world's."""
+    edge = np.array([1.0, 0.0, 0.0])
+    if plate.corners_m is not None:
+        edge = plate.corners_m[1] - plate.corners_m[0]
+        edge = edge * [1.0, 1.0, 0.0] / np.hypot(edge[0], edge[1])
+    axes = np.array([edge, [-edge[1], edge[0], 0.0], [0.0, 0.0, 1.0]]).T
+    cos, sin = ((1, 0), (0, 1), (-1, 0), (0, -1))[quarters % 4]
+    turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    return np.asarray(axes @ turn @ np.diag([1.0, -1.0 if mirrored else 1.0, 1.0]) @ axes.T)
+
+
+def _ways() -> Iterator[tuple[int, bool, str]]:
+    """The other ways to lay a plate down: quarter turns, mirrored, and in words."""
+    for mirrored in (False, True):
+        for quarters in range(4):
+            words = [f"turned by {90 * quarters}°"] if quarters else []
+            if mirrored:
+                words = ["mirrored", *words]
+            if words:
+                yield quarters, mirrored, " and ".join(words)
+
+
+def carried(evidence: Evidence) -> BoolArray:
+    """(T,) frames in which plates carry what the motion asks for, up to one gain, whoever stands where."""
+    asked, total = evidence.asked[:, 2], evidence.total[:, 2]
+    bears = evidence.known & (asked > 0.3 * evidence.weight_n) & (total > 0.3 * asked)
+    if not bears.any():
+        return bears
+    share = np.where(bears, total / np.where(bears, asked, 1.0), np.nan)
+    return bears & (np.abs(share / np.nanmedian(share) - 1.0) < MATCHES)
+
+
+def _bearing(evidence: Evidence, p: int, *shares: float) -> BoolArray | None:
+    """(T,) frames in which a plate carries most, or the least share that is enough; None where they are too few.
+
+    Args:
+        evidence: Motion and plates.
+        p: Which plate.
+        shares: Shares of the load that are enough, the best one first; both where none is named.
+    """
+    share = evidence.given[:, p, 2] / np.maximum(evidence.total[:, 2], 1.0)
+    for least in shares or (ALONE, BESIDE):
+        frames = carried(evidence) & (share > least)
+        if frames.sum() >= LEAST_S * evidence.rate_hz:
+            return frames
+    return None
+
+
+def _gain(evidence: Evidence) -> float:
+    """What plates give over what the motion asks for, so that a wrong mass accuses no plate."""
+    frames = carried(evidence)
+    if not frames.any():
+        return 1.0
+    return float(evidence.total[frames, 2].sum() / evidence.asked[frames, 2].sum())
+
+
+def _misfit(missing: Array, weight_n: float) -> float:
+    """Root of the mean square of a missing wrench (n, 6) in units of its usual spread, shear and moment alike."""
+    shear, moment = missing[:, :2] / (SHEAR_SHARE * weight_n), missing[:, 3:] / (MOMENT_M * weight_n)
+    return float(np.sqrt(np.mean(np.hstack([shear, moment]) ** 2)))
+
+
+def _axes(evidence: Evidence, p: int) -> tuple[Finding, PlateReadings]:
+    """The verdict on one plate's axes, and the plate as it fits."""
+    plate, frames, gain = evidence.plates[p], _bearing(evidence, p), _gain(evidence)
+    name = f"axes of plate '{plate.name}'"
+    if frames is None:
+        return not_judged(name, "times", BOUND, UNLOADED), plate
+    ways = tuple(_ways())
+    tried = [laid(plate, quarters, mirrored) for quarters, mirrored, _ in ways]
+    changed = (evidence.given[:, p : p + 1] - evidence.gives(tried))[frames]
+    missing, weight_n = (gain * evidence.asked - evidence.total)[frames], gain * evidence.weight_n
+    misfit = _misfit(missing, weight_n)
+    fits = [_misfit(missing + changed[:, k], weight_n) for k in range(len(tried))]
+    best = int(np.argmin(fits))
+    times = misfit / max(fits[best], 1e-9)
+    verdict = judgement(times, TIMES_SD, BOUND)
+    hint = "its misfit over the least one turned or mirrored"
+    if verdict == "outside":
+        hint = f"{ways[best][2]} it fits {times:.1f} times as well: are its corners and axes right?"
+    return Finding(name, times, TIMES_SD, "times", BOUND, verdict, hint), tried[best]
+
+
+def _place(name: str, given: Array, missing: Array, rate_hz: float) -> Finding:
+    """How far a plate lies beside its place: d that makes most of missing moments (n, 6) d × f, f given (n, 6).
+
+    Args:
+        name: Name of the finding.
+        given: What the plate gives.
+        missing: What is missing.
+        rate_hz: Frame rate.
+    """
+    # Only what is alike in all frames counts: the mean moment over the mean force.
+    force, moment = given[:, 2].mean(), missing[:, 3:5]
+    along, across = -moment[:, 1].mean() / force, moment[:, 0].mean() / force
+    off_mm = 1e3 * float(np.hypot(along, across))
+    samples = max(len(moment) / (NOISE_S * rate_hz), 1.0)
+    sd_mm = 1e3 * float(moment.std(axis=0).max() / force / np.sqrt(samples))
+    sd_mm = float(np.hypot(sd_mm, PLACE_MM))
+    verdict = judgement(off_mm, sd_mm, BOUND_MM)
+    hint = f"the motion has it {1e3 * along:+.0f} mm along x, {1e3 * across:+.0f} mm along y of where it is said to be"
+    return Finding(name, off_mm, sd_mm, "mm", BOUND_MM, verdict, hint)

@@ -1,0 +1,69 @@
+"""A scaled subject as a model file of another program, and a result as a motion file of one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from mbkf.errors import FileFormatError, UnknownName
+from mbkf.io.atomic import replacing
+from mbkf.io.results import Reconstruction
+from mbkf.io.subject import Subject
+from mbkf.model.human import HumanModel
+from mbkf.model.mjcf import to_mjcf
+from mbkf.model.urdf import to_urdf
+from mbkf.trial.exchange.result_bvh import write_result_bvh
+from mbkf.trial.exchange.result_c3d import write_result_c3d
+from mbkf.trial.exchange.result_glb import write_result_glb
+
+FORMATS = {"urdf": to_urdf, "mjcf": to_mjcf}
+"""What a subject can be exported to, by name."""
+
+RESULT_FORMATS = {"c3d": write_result_c3d, "bvh": write_result_bvh, "glb": write_result_glb}
+"""What a result can be exported to, by name."""
+
+
+def export_subject(subject: Subject, kind: str, path: str | Path) -> None:
+    """Writes a subject's body with its markers, whole or not at all.
+
+    Args:
+        subject: The scaled person.
+        kind: A key of :data:`FORMATS`.
+        path: The file to write.
+
+    Raises:
+        UnknownName: The format, the body, or a marker's segment is unknown.
+        FileFormatError: A folder stands where the file is needed.
+        OSError: The file cannot be written.
+    """
+    _check(kind, FORMATS, path)
+    model = HumanModel.of(subject)
+    text = FORMATS[kind](model, subject.markers)
+    with replacing(path) as partial:
+        partial.write_text(text, encoding="utf-8")
+
+
+def export_result(reconstruction: Reconstruction, kind: str, path: str | Path) -> None:
+    """Writes a reconstruction as a file of other programs, whole or not at all.
+
+    Args:
+        reconstruction: The result, e.g. of :func:`mbkf.reconstruct` or :func:`mbkf.read_reconstruction`.
+        kind: "c3d" (Mokka, Visual3D, Nexus: markers, angles, moments, powers, joint centres, reactions, events), "bvh"
+            (animation: the segments' rotations, cm, y up) or "glb" (glTF 2.0: the moving body, m, y up).
+        path: The file to write; that of a C3D file ends in ``.c3d``.
+
+    Raises:
+        UnknownName: The format or the subject's body is unknown.
+        FileFormatError: A folder stands where the file is needed.
+        InvalidInput: There is no motion in the result, or a C3D file is named otherwise.
+        OSError: The file cannot be written.
+    """
+    _check(kind, RESULT_FORMATS, path)
+    RESULT_FORMATS[kind](reconstruction, path)
+
+
+def _check(kind: str, formats: Iterable[str], path: str | Path) -> None:
+    if kind not in formats:
+        raise UnknownName("format", kind, formats)
+    if Path(path).is_dir():
+        raise FileFormatError(path, "is a folder; name a file")

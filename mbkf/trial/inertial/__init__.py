@@ -1,0 +1,1 @@
+"""Inertial sensors: the questions of ``mbkf imu``, one per file, and sensors beside markers."""

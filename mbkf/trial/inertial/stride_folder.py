@@ -1,0 +1,72 @@
+"""The folder ``mbkf imu stride`` writes: strides.csv, trajectory.csv and summary.json."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from mbkf.io.atomic_folder import replacing_folder
+from mbkf.trial.inertial.stride import StrideMeasurement, stride_summary
+
+STRIDES_FILE, TRAJECTORY_FILE, SUMMARY_FILE = "strides.csv", "trajectory.csv", "summary.json"
+
+STRIDE_COLUMNS = (
+    "foot", "stride", "start_s", "end_s", "length_m", "length_sd_m", "duration_s", "speed_m_s", "rise_m", "lift_m",
+    "swing_s", "turn_deg", "refused",
+)  # fmt: skip
+
+TRAJECTORY_COLUMNS = (
+    "foot", "time_s", "x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s", "qx", "qy", "qz", "qw", "rest",
+)  # fmt: skip
+
+
+def write_strides(measured: StrideMeasurement, folder: str | Path) -> Path:
+    """Writes the tables, which replace earlier ones as one; blank cells where something is unknown.
+
+    Returns:
+        The folder, made where missing.
+
+    Raises:
+        FileFormatError: A file stands where the folder is needed.
+        OSError: The folder cannot be written to.
+    """
+    with replacing_folder(folder, last=SUMMARY_FILE) as partial:
+        _write(partial / STRIDES_FILE, STRIDE_COLUMNS, _stride_rows(measured))
+        _write(partial / TRAJECTORY_FILE, TRAJECTORY_COLUMNS, _trajectory_rows(measured))
+        text = json.dumps(stride_summary(measured), indent=2, allow_nan=False, ensure_ascii=False)
+        (partial / SUMMARY_FILE).write_text(text + "\n", encoding="utf-8")
+    return Path(folder).absolute()
+
+
+def _stride_rows(measured: StrideMeasurement) -> Iterable[list[str]]:
+    for foot in measured.feet:
+        for number, stride in enumerate(foot.strides, start=1):
+            values = [getattr(stride, name) for name in STRIDE_COLUMNS[2:-2]]
+            turn = _cell(math.degrees(stride.turn_rad))
+            yield [foot.name, str(number), *map(_cell, values), turn, stride.doubt]
+
+
+def _trajectory_rows(measured: StrideMeasurement) -> Iterable[list[str]]:
+    for foot in measured.feet:
+        quaternions = foot.orientation
+        if quaternions is None:
+            quaternions = np.full((len(foot.time_s), 4), np.nan)
+        numbers = np.column_stack([foot.time_s, foot.position_m, foot.velocity_m_s, quaternions])
+        for row, still in zip(numbers, foot.still, strict=True):
+            yield [foot.name, *map(_cell, row), str(int(still))]
+
+
+def _cell(value: float) -> str:
+    return f"{value:.6g}" if math.isfinite(value) else ""
+
+
+def _write(path: Path, columns: Sequence[str], rows: Iterable[list[str]]) -> None:
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        writer.writerows(rows)

@@ -1,0 +1,271 @@
+"""Contents of a capture: markers and their gaps, plates and their offsets, channels, events, axes."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from mbkf.conventions import BoolArray
+from mbkf.errors import MbkfError, UnknownName
+from mbkf.io.axes import axes_matrix, axes_text
+from mbkf.io.records import Capture, CaptureEvent, PlateReadings
+from mbkf.model.protocol import detect_protocol
+from mbkf.trial.axes.captures import find_axes_by_names
+from mbkf.trial.preparation.coverage import MarkerUse, use_by_protocol
+from mbkf.trial.protocol.choice import shipped_protocol
+from mbkf.trial.protocol.inferred import InferredSet, infer_marker_set
+
+
+@dataclass(frozen=True)
+class MarkerSummary:
+    """How completely one marker was seen.
+
+    Attributes:
+        name: Its name.
+        missing_fraction: Share of frames in which it is missing, 0 to 1.
+        pieces: Number of contiguous stretches in which it is seen.
+    """
+
+    name: str
+    missing_fraction: float
+    pieces: int
+
+
+@dataclass(frozen=True)
+class PlateSummary:
+    """What one force plate recorded.
+
+    Attributes:
+        name: Its name.
+        rate_hz: Sample rate in Hz.
+        duration_s: Length of its recording in s.
+        corners_m: Four world corners in m, or None where the file has no geometry.
+        offset_n: Vertical force removed as offset, in N.
+        loaded_fraction: Share of samples above the threshold, 0 to 1.
+        peak_n: Largest vertical force in N.
+        threshold_n: Vertical force in N from which the plate counts as loaded.
+    """
+
+    name: str
+    rate_hz: float
+    duration_s: float
+    corners_m: tuple[tuple[float, ...], ...] | None
+    offset_n: float
+    loaded_fraction: float
+    peak_n: float
+    threshold_n: float
+
+
+@dataclass(frozen=True)
+class ChannelSummary:
+    """One analog channel: name, unit, sample rate in Hz."""
+
+    name: str
+    unit: str
+    rate_hz: float
+
+
+@dataclass(frozen=True)
+class AxesSummary:
+    """How a capture's axes were read, and what the body in it says.
+
+    Attributes:
+        read: Axes of the file that were taken as forward, left and up.
+        source: Where that is known from.
+        verdict: What was found: "right", "put right", "kept", "unclear" (somebody lies), "refused", "unknown" (too few
+            markers whose names are known) or "given".
+        used: Axes that the other commands would use.
+        note: One line about it, "" where there is nothing to tell.
+    """
+
+    read: str
+    source: str
+    verdict: str
+    used: str
+    note: str
+
+
+@dataclass(frozen=True)
+class ProtocolSummary:
+    """The marker set that `mbkf scale` would use, and how much of the capture it explains.
+
+    Attributes:
+        name: Its name.
+        known: Number of markers that it knows, of those that have a name and were seen.
+        markers: Number of these.
+        share: The first over the second, 0 to 1.
+        accepted: Whether `mbkf scale` takes it unasked.
+        ignored: Why a marker is not used, by its name.
+        told: What was inferred, in one line; "" for a shipped protocol.
+        doubtful: Segments of every doubtful marker with their probabilities, of an inferred set.
+    """
+
+    name: str
+    known: int
+    markers: int
+    share: float
+    accepted: bool
+    ignored: Mapping[str, str]
+    told: str = ""
+    doubtful: Mapping[str, list[tuple[str, float]]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class CaptureSummary:
+    """What a capture holds.
+
+    Attributes:
+        path: The file.
+        frames: Number of marker frames.
+        rate_hz: Frame rate in Hz.
+        start_time_s: Time of the first frame in s.
+        duration_s: Frames divided by rate, in s.
+        up_axis: Axis of the file that points up.
+        length_unit: Length unit of the file.
+        subject_mass_kg: Body mass the file states, or None.
+        labelled: Number of markers with a name of their own.
+        unlabelled: Number of trajectories called ``*0``, ``*1`` ….
+        missing_fraction: Share of missing samples over all markers, 0 to 1.
+        extent_m: Lowest and highest x, y, z of all markers in m (world axes), or None without markers.
+        markers: Each marker.
+        plates: Each force plate.
+        derived: Number of derived points by kind.
+        channels: Each analog channel.
+        events: Labelled instants.
+        notes: What the reader noticed.
+        axes: How the axes were read, and what the body says.
+        protocol: The marker set: a shipped protocol or an inferred one, else the protocol that knows most of the names;
+            None where there is neither.
+    """
+
+    path: str
+    frames: int
+    rate_hz: float
+    start_time_s: float
+    duration_s: float
+    up_axis: str
+    length_unit: str
+    subject_mass_kg: float | None
+    labelled: int
+    unlabelled: int
+    missing_fraction: float
+    extent_m: tuple[tuple[float, ...], tuple[float, ...]] | None
+    markers: tuple[MarkerSummary, ...]
+    plates: tuple[PlateSummary, ...]
+    derived: Mapping[str, int]
+    channels: tuple[ChannelSummary, ...]
+    events: tuple[CaptureEvent, ...]
+    notes: tuple[str, ...]
+    axes: AxesSummary
+    protocol: ProtocolSummary | None
+
+
+def describe(capture: Capture) -> CaptureSummary:
+    """Summarise a capture.
+
+    Args:
+        capture: What a reader returned.
+
+    Returns:
+        Counts, shares and ranges, ready to be shown.
+    """
+    markers = capture.markers
+    present = markers.present
+    seen = markers.positions_m[present]
+    unlabelled = sum(name.startswith("*") for name in markers.names)
+    extent = (tuple(seen.min(axis=0).tolist()), tuple(seen.max(axis=0).tolist())) if len(seen) else None
+    return CaptureSummary(
+        path=capture.path,
+        frames=markers.frames,
+        rate_hz=markers.rate_hz,
+        start_time_s=markers.start_time_s,
+        duration_s=markers.frames / markers.rate_hz,
+        up_axis=capture.up_axis,
+        length_unit=capture.length_unit,
+        subject_mass_kg=capture.subject_mass_kg,
+        labelled=len(markers.names) - unlabelled,
+        unlabelled=unlabelled,
+        missing_fraction=float(1.0 - present.mean()) if present.size else 0.0,
+        extent_m=extent,
+        markers=tuple(
+            MarkerSummary(name, float(1.0 - column.mean()) if len(column) else 0.0, count_pieces(column))
+            for name, column in zip(markers.names, present.T, strict=True)
+        ),
+        plates=tuple(_plate(plate) for plate in capture.plates),
+        derived=dict(Counter(point.kind for point in capture.derived)),
+        channels=tuple(ChannelSummary(c.name, c.unit, c.rate_hz) for c in capture.analog),
+        events=capture.events,
+        notes=capture.notes,
+        axes=_axes(capture),
+        protocol=_protocol(capture),
+    )
+
+
+def _protocol(capture: Capture) -> ProtocolSummary | None:
+    """The shipped protocol that knows enough of the names, else an inferred one; None without a person."""
+    shipped = shipped_protocol([capture])
+    if shipped is None:
+        try:
+            inferred = infer_marker_set(None, [capture])
+        except MbkfError:
+            return _nearest(capture)
+        return _summary(use_by_protocol([capture.markers], inferred.protocol), inferred)
+    return _summary(use_by_protocol([capture.markers], shipped), None)
+
+
+def _nearest(capture: Capture) -> ProtocolSummary | None:
+    """The shipped protocol that knows most of the names, though too few."""
+    try:
+        protocol = detect_protocol(capture.markers.names)
+    except UnknownName:
+        return None
+    return _summary(use_by_protocol([capture.markers], protocol), None)
+
+
+def _summary(use: MarkerUse, inferred: InferredSet | None) -> ProtocolSummary:
+    known = use.markers - len(use.unknown)
+    told, doubts = ("", {}) if inferred is None else (inferred.line, inferred.doubts)
+    return ProtocolSummary(
+        use.protocol, known, use.markers, use.share, use.accepted, dict(use.ignored), told, doubts
+    )
+
+
+def _axes(capture: Capture) -> AxesSummary:
+    found = find_axes_by_names(capture)
+    return AxesSummary(
+        read=capture.axes,
+        source=capture.axes_source.value,
+        verdict=found.verdict.value,
+        used=axes_text(found.turn @ axes_matrix(capture.axes)),
+        note=found.note,
+    )
+
+
+def count_pieces(present: BoolArray) -> int:
+    """Number of contiguous stretches in which something is seen.
+
+    Args:
+        present: (T,) whether it is seen in a frame.
+
+    Returns:
+        The number of stretches, 0 where it is never seen.
+    """
+    return int(np.count_nonzero(np.diff(np.concatenate([[False], present]).astype(int)) == 1))
+
+
+def _plate(plate: PlateReadings) -> PlateSummary:
+    vertical = plate.force_n[:, 2]
+    corners = plate.corners_m
+    return PlateSummary(
+        name=plate.name,
+        rate_hz=plate.rate_hz,
+        duration_s=len(vertical) / plate.rate_hz,
+        corners_m=None if corners is None else tuple(tuple(corner) for corner in corners.tolist()),
+        offset_n=float(plate.offset[2]),
+        loaded_fraction=float((vertical >= plate.threshold_n).mean()) if len(vertical) else 0.0,
+        peak_n=float(vertical.max()) if len(vertical) else 0.0,
+        threshold_n=plate.threshold_n,
+    )

@@ -1,0 +1,92 @@
+"""The results of a live run from its log, equal to the causal ones of ``reconstruct`` on the same frames."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from mbkf.errors import NotObservable
+from mbkf.filters.tracking import Track, track_of
+from mbkf.imu.segments import segment_of
+from mbkf.io.records import Capture, MarkerTrajectories
+from mbkf.io.results import Reconstruction
+from mbkf.io.subject import Subject, read_subject
+from mbkf.model.human import HumanModel
+from mbkf.numerics.threads import single_threaded
+from mbkf.trial.inertial.motion_result import Timeline, motion_result
+from mbkf.trial.live.filter import live_inputs
+from mbkf.trial.live.log import SUBJECT_FILE, Logged, read_live_log
+from mbkf.trial.reconstruct import ReconstructSettings, assemble
+
+
+def live_results(folder: Path, notes: tuple[str, ...] = ()) -> Reconstruction:
+    """Motion, torques and reactions of a logged run; what its damaged log lacks stands in their warnings.
+
+    Args:
+        folder: The log.
+        notes: Remarks for the reader, e.g. of lost frames.
+
+    Raises:
+        FileFormatError: The log is missing or damaged.
+        NotObservable: In no frame did the markers fit the body.
+    """
+    return results_of(read_live_log(folder), read_subject(folder / SUBJECT_FILE), notes)
+
+
+def results_of(logged: Logged, subject: Subject, notes: tuple[str, ...] = ()) -> Reconstruction:
+    """The same from what was read of the log.
+
+    Args:
+        logged: Contents of the log.
+        subject: The person.
+        notes: Remarks for the reader.
+
+    Raises:
+        NotObservable: In no frame did the markers fit the body.
+    """
+    notes = (*notes, *(f"live: {sentence}" for sentence in logged.left_out))
+    chosen = str(logged.settings["filter"])
+    settings = ReconstructSettings(filter=chosen, smooth=False, correct_markers=False)
+    result = track_of(logged.rows)
+    if logged.stream.sensors:
+        return _by_sensors(logged, subject, notes, result)
+    if not result.starts:
+        raise NotObservable(
+            "in no frame of the stream did the markers fit the scaled body; is this the subject's protocol, "
+            "and is the vertical axis right (--up)?"
+        )
+    measured = _measured(logged)
+    # A stream may have held nonsense, which ends as NaN.
+    with single_threaded(), np.errstate(invalid="ignore", divide="ignore"):
+        inputs = live_inputs(logged.names, measured.rate_hz, logged.stream.plates, subject, settings).inputs
+        capture = Capture(logged.stream.trial, measured, logged.stream.plates, notes=notes)
+        hidden = np.zeros(measured.present.shape, dtype=bool)
+        found = assemble(capture, subject, settings, measured, hidden, inputs, result)
+    return replace(found, settings=logged.settings)
+
+
+def _by_sensors(logged: Logged, subject: Subject, notes: tuple[str, ...], tracked: Track) -> Reconstruction:
+    """The result where inertial sensors alone show the person.
+
+    Args:
+        logged: Contents of the log.
+        subject: The person.
+        notes: Remarks for the reader.
+        tracked: What the filter found.
+    """
+    stream, joints = logged.stream, HumanModel.of(subject).joints
+    segments = [segment_of(name, joints) for name in stream.sensors]
+    timeline = Timeline(stream.trial, stream.rate_hz, _start_s(logged))
+    with single_threaded(), np.errstate(invalid="ignore", divide="ignore"):
+        return motion_result(subject, segments, timeline, tracked, notes=notes, told=logged.settings)
+
+
+def _start_s(logged: Logged) -> float:
+    return logged.stream.start_time_s + logged.first / logged.stream.rate_hz
+
+
+def _measured(logged: Logged) -> MarkerTrajectories:
+    start = _start_s(logged)
+    return MarkerTrajectories(logged.names, logged.rows["measured_m"], logged.stream.rate_hz, start)

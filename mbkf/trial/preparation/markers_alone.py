@@ -1,0 +1,47 @@
+"""A trial's motion as its markers alone tell it, before plates and Newton's law have a say."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from mbkf.conventions import Array
+from mbkf.filters.estimate import Posterior, Recording
+from mbkf.filters.fixed_lag import FixedLagSmoother, SmoothingSettings
+from mbkf.filters.tracking_loop import followed
+from mbkf.trial.preparation.filters import FilterInputs, motion_filter
+
+
+class Motion(NamedTuple):
+    """A trial's motion: (T, nq) configurations and (T, nv) velocities, NaN where it is not tracked."""
+
+    q: Array
+    v: Array
+
+
+def markers_alone(
+    inputs: FilterInputs, recording: Recording, progress: Callable[[int, int], None] | None = None
+) -> Motion:
+    """The motion by the kinematic filter, smoothed.
+
+    Args:
+        inputs: What filters are built from.
+        recording: What the instruments read.
+        progress: Called with frames done and frames in all.
+    """
+    filter, frames = motion_filter(inputs), len(recording)
+    q, v = np.full((frames, filter.model.nq), np.nan), np.full((frames, filter.model.nv), np.nan)
+
+    def keep(found: Sequence[tuple[int, Posterior]]) -> None:
+        for t, posterior in found:
+            q[t], v[t] = posterior.q, posterior.v
+
+    smoother = FixedLagSmoother(filter, recording, SmoothingSettings())
+    for t, fresh, _ in followed(filter, recording):
+        keep(smoother.push(t, fresh))
+        if progress is not None and (t % 20 == 0 or t == frames - 1):
+            progress(t + 1, frames)
+    keep(smoother.finish())
+    return Motion(q, v)

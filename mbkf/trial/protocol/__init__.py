@@ -1,0 +1,1 @@
+"""Marker protocols: chosen or inferred for a capture, imported from other programs, checked and edited."""

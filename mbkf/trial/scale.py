@@ -1,0 +1,182 @@
+"""From captures to a scaled subject."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from mbkf.conventions import StageCallback
+from mbkf.errors import InvalidInput, MbkfError, NotConverged, NotObservable
+from mbkf.io.records import Capture
+from mbkf.io.subject import Subject
+from mbkf.model.body_file import load_body
+from mbkf.model.description import BodyDescription
+from mbkf.model.protocol import Protocol, load_protocol
+from mbkf.numerics.threads import single_threaded
+from mbkf.scaling.fit import scale_subject
+from mbkf.scaling.problem import ScalingSettings
+from mbkf.trial.axes.captures import REPORT_KEY, checked_for_protocol, told_axes
+from mbkf.trial.preparation.coverage import INFERRED_KEY, USE_KEY, use_by_protocol
+from mbkf.trial.preparation.exchanged import trials_put_right
+from mbkf.trial.protocol.choice import ChosenSet, choose_marker_set, inferred_choice
+
+EXCHANGED_KEY = "names_exchanged"
+"""Key of a subject's report under which names are told that trials exchange: ``[a, b, frames]`` by pair."""
+
+EXPECTED = 4.0
+"""Markers that fit worse (RMS) than so many times their noise may not be those that their names say."""
+
+BETTER = 0.7
+"""An inferred marker set takes a shipped one's place where its markers fit to so much of that one's RMS, or better."""
+
+
+def scale(
+    static: Capture | None = None,
+    trials: Sequence[Capture] = (),
+    *,
+    mass_kg: float | None = None,
+    height_m: float | None = None,
+    protocol: str | Protocol | None = None,
+    body: str | Path | BodyDescription | None = None,
+    settings: ScalingSettings | None = None,
+    progress: StageCallback | None = None,
+) -> Subject:
+    """Fits the body to a person.
+
+    Args:
+        static: A standing trial, if there is one.
+        trials: Trials of any movement.
+        mass_kg: Body mass; by default what the captures state.
+        height_m: Body height, if known.
+        protocol: Protocol, its name or its file; by default the shipped one that the marker names belong to, else one
+            inferred from the captures.
+        body: The reference body: its name, a file of your own, or what :func:`mbkf.load_body` read; by default the one
+            the protocol was written for. Markers of segments it does not have are left out.
+        settings: Weights of the priors.
+        progress: Called with the stage, items done and items in all.
+
+    Raises:
+        InvalidInput: No trial, no mass, a mass or height that cannot be, a protocol placed on another body, axes or a
+            unit that cannot be right.
+        UnknownName: There is no such protocol or body, or it names unknown segments.
+        FileFormatError: The body's or the protocol's file is missing or damaged.
+        NotObservable: Too few markers of the protocol, or no person is found among markers that none knows.
+        NotConverged: The markers do not fit a person.
+    """
+    captures = ([] if static is None else [static]) + list(trials)
+    if not captures:
+        raise InvalidInput("scaling needs a static trial or at least one --trial")
+    if mass_kg is None:
+        mass_kg = next((c.subject_mass_kg for c in captures if c.subject_mass_kg is not None), None)
+    if mass_kg is None:
+        raise InvalidInput("the captures do not state the body mass; give --mass KG")
+    if isinstance(body, str | Path):
+        body = load_body(body)
+    chosen = None
+    if protocol is None:
+        chosen = choose_marker_set(static, trials, body)
+    elif isinstance(protocol, str):
+        protocol = load_protocol(protocol, body)
+    elif body is not None and (protocol.body.name, protocol.body.text) != (body.name, body.text):
+        raise InvalidInput(
+            f"the protocol '{protocol.name}' is placed on the body '{protocol.body.name}', not on '{body.name}'; "
+            "read it with load_protocol(name, body)"
+        )
+    report = None if progress is None else lambda done, total: progress("Scaling", done, total)
+
+    def scaled(by: ChosenSet) -> Subject:
+        return _scaled(static is not None, captures, by, mass_kg, height_m, settings, report)
+
+    if chosen is None:
+        assert isinstance(protocol, Protocol)
+        return scaled(ChosenSet(protocol, tuple(captures)))
+    if chosen.inferred is not None:
+        return scaled(chosen)
+    return _better(scaled, chosen, lambda: inferred_choice(static, trials, body))
+
+
+def _better(
+    scaled: Callable[[ChosenSet], Subject], shipped: ChosenSet, inferred: Callable[[], ChosenSet]
+) -> Subject:
+    """The person scaled by a shipped protocol; by an inferred set where the protocol's names fit no body well."""
+    subject, refused = None, None
+    try:
+        subject = scaled(shipped)
+    except (NotConverged, NotObservable) as error:
+        refused = error
+    expected = EXPECTED * float(np.median([marker.noise_m for marker in shipped.protocol.markers]))
+    if subject is not None and _rms_m(subject) <= expected:
+        return subject
+    try:
+        other = scaled(inferred())
+    except MbkfError:
+        other = None
+    if other is not None and (subject is None or _rms_m(other) < BETTER * _rms_m(subject)):
+        return other
+    if subject is None:
+        assert refused is not None
+        raise refused
+    return subject
+
+
+def _rms_m(subject: Subject) -> float:
+    rms = subject.report["marker_rms_mm"]
+    assert isinstance(rms, float)
+    return rms / 1e3
+
+
+def _scaled(
+    standing: bool,
+    captures: Sequence[Capture],
+    chosen: ChosenSet,
+    mass_kg: float,
+    height_m: float | None,
+    settings: ScalingSettings | None,
+    progress: Callable[[int, int], None] | None,
+) -> Subject:
+    """The person scaled by a marker set, with what became of the markers in the report."""
+    protocol = chosen.protocol
+    use = use_by_protocol([one.markers for one in captures], protocol)
+    checked = checked_for_protocol(chosen.captures, protocol)
+    first = 1 if standing else 0
+    exchanged = () if chosen.inferred is None else chosen.inferred.exchanged
+    with single_threaded():
+        if standing and len(checked) > 1:
+            trials, more = trials_put_right(checked[0].markers, checked[1:], protocol)
+            exchanged = (*exchanged, *more)
+            checked = [checked[0], *trials]
+        subject = scale_subject(
+            [one.markers for one in checked[:first]],
+            [one.markers for one in checked[first:]],
+            protocol,
+            mass_kg=mass_kg,
+            height_m=height_m,
+            settings=settings,
+            progress=progress,
+        )
+    told = told_axes(captures, checked)
+    use = use.without(_rarely_seen(captures, protocol, subject))
+    extra: dict[str, object] = {USE_KEY: use.as_report()}
+    if exchanged:
+        extra[EXCHANGED_KEY] = [list(one) for one in exchanged]
+    if told:
+        extra[REPORT_KEY] = told
+    if chosen.inferred is not None:
+        extra[INFERRED_KEY] = {"told": chosen.inferred.line, "doubtful": chosen.inferred.doubts}
+    return replace(subject, report={**subject.report, **extra})
+
+
+def _rarely_seen(captures: Sequence[Capture], protocol: Protocol, subject: Subject) -> dict[str, str]:
+    """The reason by each name of the captures whose marker scaling saw too rarely to place it."""
+    left_out = subject.report["left_out"]
+    assert isinstance(left_out, dict)
+    matches = [protocol.match(one.markers.names) for one in captures]
+    return {
+        name: left_out[marker.name]
+        for match in matches
+        for name, marker in match.items()
+        if marker.name in left_out
+    }

@@ -1,0 +1,172 @@
+"""Folders understood: persons, sessions, standing trials, ground reactions, stated masses."""
+
+import os
+import shutil
+from pathlib import Path
+
+import pytest
+
+from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.io.session import EventKind, FootEvent
+from mbkf.study.batch.folder import forces_beside, is_static, plan_of_folder, session_folders
+
+
+def made(folder, *names, **texts):
+    for name in names:
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(b"")
+    for name, text in texts.items():
+        (folder / name.replace("__", "/").replace("_toml", ".toml")).write_text(text, encoding="utf-8")
+    return folder
+
+
+def told(plan):
+    return [(t.person.name, t.person.session, t.path.name) for t in plan.trials]
+
+
+def test_the_first_folder_is_the_person_and_further_ones_the_session(tmp_path):
+    made(
+        tmp_path,
+        "P1/walk1.c3d",
+        "P1/static.c3d",
+        "P2/monday/am/run.trc",
+        "P2/tuesday/run.trc",
+        "P2/.old/x.c3d",
+    )
+    assert told(plan_of_folder(tmp_path)) == [
+        ("P1", "", "walk1.c3d"), ("P2", "monday-am", "run.trc"), ("P2", "tuesday", "run.trc"),
+    ]  # fmt: skip
+
+
+def test_captures_in_the_folder_itself_are_one_person_s(tmp_path):
+    plan = plan_of_folder(made(tmp_path / "Anna", "walk.c3d", "Static01.c3d"))
+    assert told(plan) == [("Anna", "", "walk.c3d")]
+    assert [path.name for path in plan.persons[0].statics] == ["Static01.c3d"]
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["static.c3d", "Static_1.trc", "P01_cal_01.c3d", "T-Pose.c3d", "n_pose.trc", "HC032A_Static_HC032A01.c3d",
+     "calibration2.c3d", "standing.c3d", "statisch.c3d"],
+)  # fmt: skip
+def test_standing_trials_are_known_by_their_names(name):
+    assert is_static(Path(name))
+
+
+@pytest.mark.parametrize(
+    "name", ["walk.c3d", "ecstatic_dance.c3d", "calf_raise.c3d", "understand.trc", "run1.c3d"]
+)
+def test_other_names_are_not_standing_trials(name):
+    assert not is_static(Path(name))
+
+
+@pytest.mark.parametrize(
+    "capture, forces",
+    [("walk1.trc", "walk1_grf.mot"), ("run.trc", "run_grf.mot"), ("lower_walk1.trc", "lower_walk1.forces"),
+     ("motion_capture_walk.trc", "grf_walk.mot"), ("subject01_walk2_markers.trc", "subject01_walk2_grf.mot"),
+     ("walk1.trc", "walk1_forces.csv")],
+)  # fmt: skip
+def test_ground_reactions_lie_beside_their_trial(tmp_path, capture, forces):
+    made(tmp_path, capture, forces, "other_grf.mot", "walk.mot", "id_walk.sto", "walk1_angles.csv")
+    found = forces_beside(tmp_path / capture, sorted(tmp_path.iterdir()))
+    assert found is not None and found.name == forces
+
+
+def test_motion_files_without_forces_are_not_ground_reactions(tmp_path):
+    made(tmp_path, "walk.trc", "walk.mot", "walk_ik.sto", "walk.csv")
+    assert forces_beside(tmp_path / "walk.trc", sorted(tmp_path.iterdir())) is None
+
+
+def test_of_two_captures_of_one_name_the_c3d_is_taken(tmp_path):
+    assert told(plan_of_folder(made(tmp_path, "P1/walk.trc", "P1/walk.c3d"))) == [("P1", "", "walk.c3d")]
+
+
+def test_session_files_state_what_holds_below_them_the_nearest_first(tmp_path):
+    made(tmp_path, "P1/monday/walk.c3d", "P1/tuesday/walk.c3d")
+    (tmp_path / "P1" / "session.toml").write_text(
+        "mass_kg = 70\nheight_m = 1.8\nother = 3\n", encoding="utf-8"
+    )
+    (tmp_path / "P1" / "tuesday" / "session.toml").write_text("mass_kg = 71.5\n", encoding="utf-8")
+    monday, tuesday = plan_of_folder(tmp_path).persons
+    assert (monday.mass_kg, monday.height_m, monday.protocol) == (70.0, 1.8, None)
+    assert (tuesday.mass_kg, tuesday.height_m) == (71.5, 1.8)
+
+
+def test_trials_are_left_out_and_told_apart_by_the_session_file(tmp_path):
+    made(tmp_path, "P1/static.c3d", "P1/walk1.c3d", "P1/walk2.c3d", "P1/deep/walk1.c3d")
+    (tmp_path / "P1" / "session.toml").write_text(
+        'mass_kg = 70\n[trial.static]\nkind = "walk"\n[trial.walk1]\nkind = "static"\n'
+        '[trial.walk2]\nexcluded = "stumbled"\n',
+        encoding="utf-8",
+    )
+    plan = plan_of_folder(tmp_path)
+    assert told(plan) == [("P1", "", "static.c3d"), ("P1", "deep", "walk1.c3d")]
+    person, deep = plan.persons
+    assert [path.name for path in person.statics] == ["walk1.c3d"]
+    assert (deep.mass_kg, deep.statics) == (70.0, ())
+
+
+def test_events_by_hand_belong_to_their_trial(tmp_path):
+    made(tmp_path, "P1/static.c3d", "P1/walk1.c3d", "P1/walk2.c3d", "P1/walk3.c3d")
+    (tmp_path / "P1" / "session.toml").write_text(
+        '[[trial.walk1.event]]\nside = "left"\nkind = "off"\ntime_s = 1.5\n[trial.walk2]\nevent = []\n',
+        encoding="utf-8",
+    )
+    found = {trial.name: trial.events for trial in plan_of_folder(tmp_path).trials}
+    assert found == {"walk1": (FootEvent("left", EventKind.OFF, 1.5),), "walk2": (), "walk3": None}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "mass_kg = 'much'",
+        "mass_kg = 0",
+        "mass_kg = nan",
+        "height_m = 180",
+        "protocol = ''",
+        "mass_kg = true",
+        "= 3",
+    ],
+)
+def test_a_session_file_that_cannot_be_is_refused(tmp_path, text):
+    made(tmp_path, "P1/walk.c3d")
+    (tmp_path / "P1" / "session.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(FileFormatError, match=r"session\.toml"):
+        plan_of_folder(tmp_path)
+
+
+def test_a_person_scaled_before_is_taken(tmp_path):
+    made(tmp_path, "P1/walk.c3d", "P1/subject.toml", "P2/walk.c3d")
+    first, second = plan_of_folder(tmp_path).persons
+    assert first.subject == tmp_path / "P1" / "subject.toml" and second.subject is None
+
+
+def test_a_folder_without_trials_is_refused(tmp_path):
+    made(tmp_path, "P1/static.c3d", "notes.txt")
+    with pytest.raises(InvalidInput, match="no trial"):
+        plan_of_folder(tmp_path)
+
+
+def test_files_whose_names_no_folder_can_have_get_one_that_it_can(tmp_path):
+    made(tmp_path, "P<1>/mon:day/walk?.c3d")
+    (trial,) = plan_of_folder(tmp_path).trials
+    assert trial.path.name == "walk?.c3d" and trial.place.as_posix() == "P_1_/mon_day/walk_"
+
+
+def test_hidden_folders_and_those_that_vanish_meanwhile_are_left_out(tmp_path, monkeypatch):
+    """As those of results that are being written do while a page looks at the folder."""
+    for place in ("P1", "P2", ".hidden", "P1/.partial"):
+        (tmp_path / place).mkdir()
+        (tmp_path / place / "walk.c3d").touch()
+    (tmp_path / "P1" / ".walk.c3d").touch()
+    assert session_folders(tmp_path) == [tmp_path / "P1", tmp_path / "P2"]
+    walked = os.walk
+
+    def vanishing(root):
+        for step in walked(root):
+            shutil.rmtree(tmp_path / "P2", ignore_errors=True)
+            yield step
+
+    monkeypatch.setattr(os, "walk", vanishing)
+    assert session_folders(tmp_path) == [tmp_path / "P1"]

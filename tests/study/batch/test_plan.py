@@ -1,0 +1,86 @@
+"""A plan: each trial in a place of its own, persons once, shards that make up the whole."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mbkf.errors import InvalidInput
+from mbkf.study.batch.plan import Person, Plan, Trial, folder_name, planned
+
+
+def trials(count, persons=3):
+    return [
+        Trial(Person(f"P{k % persons}", "monday" if k % 2 else ""), Path(f"walk{k}.c3d"))
+        for k in range(count)
+    ]
+
+
+@given(st.integers(1, 40), st.integers(1, 12))
+def test_shards_make_up_the_whole_and_share_nothing(count, shards):
+    plan = planned(trials(count), "here")
+    parts = [plan.shard(k, shards).trials for k in range(1, shards + 1)]
+    together = [trial for part in parts for trial in part]
+    assert len(together) == len(set(together)) == count
+    assert set(together) == set(plan.trials)
+    assert max(map(len, parts)) - min(map(len, parts)) <= 1
+
+
+@pytest.mark.parametrize("number, count", [(0, 3), (4, 3), (-1, 2), (1, 0)])
+def test_a_shard_that_is_not_there_is_refused(number, count):
+    with pytest.raises(InvalidInput, match="there is no shard"):
+        Plan(tuple(trials(3))).shard(number, count)
+
+
+def test_persons_are_those_of_the_trials_once_each_and_in_order():
+    plan = planned(trials(12), "here")
+    assert [(p.name, p.session) for p in plan.persons] == [
+        ("P0", ""), ("P1", "monday"), ("P2", ""), ("P0", "monday"), ("P1", ""), ("P2", "monday"),
+    ]  # fmt: skip
+
+
+def test_places_are_person_session_and_trial():
+    one = Trial(Person("P1", "monday"), Path("a/walk.c3d"))
+    assert one.place == Path("P1/monday/walk")
+    assert Trial(Person("P1"), Path("a/walk.c3d"), name="first").place == Path("P1/first")
+
+
+def test_two_files_in_one_place_are_refused_and_one_file_twice_is_one_trial():
+    person = Person("P1")
+    with pytest.raises(InvalidInput, match="both be written"):
+        planned([Trial(person, Path("a/walk.c3d")), Trial(person, Path("b/walk.c3d"))], "list.csv")
+    assert len(planned([Trial(person, Path("a/walk.c3d"))] * 2, "list.csv").trials) == 1
+
+
+@pytest.mark.parametrize("name", ["..", ".", "a/b", "a\\b", "a:b", "a\nb"])
+def test_names_that_no_folder_can_have_are_refused(name):
+    for trial in (
+        Trial(Person(name), Path("walk.c3d")),
+        Trial(Person("P1", name), Path("walk.c3d")),
+        Trial(Person("P1"), Path("walk.c3d"), name=name),
+    ):
+        with pytest.raises(InvalidInput, match="cannot be a folder"):
+            planned([trial], "list.csv")
+
+
+def test_a_plan_of_nothing_is_refused():
+    with pytest.raises(InvalidInput, match="no trial was found"):
+        planned([], "study")
+
+
+@pytest.mark.parametrize(
+    ("name", "folder"),
+    [
+        ("walk 1", "walk 1"),
+        ("a<b>:c", "a_b__c"),
+        ("..", "_.."),
+        ("", "_"),
+        ("ünïcode", "ünïcode"),
+        ("a/b", "a_b"),
+    ],
+)
+def test_names_of_files_become_names_of_folders(name, folder):
+    assert (
+        folder_name(name) == folder and planned([Trial(Person("P"), Path("a.c3d"), name=folder)], "x").trials
+    )

@@ -1,0 +1,117 @@
+"""A batch from end to end: bad files cost only themselves, what is done is not done again, workers change nothing."""
+
+from functools import cache
+from tempfile import mkdtemp
+
+import numpy as np
+import pytest
+
+from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.study.batch import run as module
+from mbkf.study.batch.run import batch, plan_of
+from mbkf.trial.preparation.settings import ReconstructSettings
+from tests.captures import snapshot
+from tests.studies import study, walk_folder
+
+pytestmark = pytest.mark.slow
+
+SETTINGS = ReconstructSettings(filter="kinematic", smooth=False)
+TIMES = ("seconds", "peak_memory_mb", "step_seconds_median", "step_seconds_p99", "realtime_factor")
+
+
+@cache
+def done():
+    """Two persons, one with a damaged trial and one without markers in another: folder, results, table."""
+    from pathlib import Path
+
+    place = Path(mkdtemp(prefix="mbkf-batch-"))
+    source = study(place / "study", persons=2, trials=2)
+    (source / "P1" / "cut.c3d").write_bytes((walk_folder() / "trial.c3d").read_bytes()[:9000])
+    (source / "P3").mkdir()
+    (source / "P3" / "walk.c3d").write_bytes(b"nothing")
+    told = []
+    table = batch(source, place / "out", workers=2, settings=SETTINGS, progress=lambda *one: told.append(one))
+    return source, place / "out", table, told
+
+
+def rows(table):
+    return {row["folder"]: row for row in table.to_pylist()}
+
+
+def test_a_bad_file_costs_only_itself():
+    found = rows(done()[2])
+    assert {name: row["status"] for name, row in found.items()} == {
+        "P1/cut": "failed", "P1/walk1": "done", "P1/walk2": "done", "P2/walk1": "done", "P2/walk2": "done",
+        "P3/walk": "failed",
+    }  # fmt: skip
+    assert "cut short" in found["P1/cut"]["reason"]
+    assert "could not be scaled" in found["P3/walk"]["reason"]
+    assert found["P2/walk1"]["marker_rms_mm"] > 0.0 and found["P1/cut"]["marker_rms_mm"] is None
+
+
+def test_progress_is_told():
+    told = done()[3]
+    assert told[-1] == ("Trials", 5, 5) and ("Scaling", 3, 3) in told
+
+
+def test_a_second_run_does_nothing_again():
+    source, out, table, _ = done()
+    before = {name: data for name, data in snapshot(out).items() if "/" in name}
+    again = rows(batch(source, out, workers=1, settings=SETTINGS))
+    assert {row["status"] for row in again.values()} == {"unchanged", "failed"}
+    assert {name: data for name, data in snapshot(out).items() if "/" in name} == before
+    for name, row in rows(table).items():
+        for key, value in row.items():
+            if key not in (*TIMES, "status"):
+                assert again[name][key] == value, (name, key)
+
+
+def test_shards_make_the_whole_and_numbers_do_not_depend_on_the_workers(tmp_path):
+    source, _, table, _ = done()
+    parts = [batch(source, tmp_path, workers=1, shard=(k, 2), settings=SETTINGS) for k in (1, 2)]
+    assert sum(len(part) for part in parts) == len(table)
+    assert {path.name for path in tmp_path.glob("summary*.csv")} == {
+        "summary-1-of-2.csv",
+        "summary-2-of-2.csv",
+    }
+    whole = rows(batch(source, tmp_path, workers=1, settings=SETTINGS))
+    for name, row in rows(table).items():
+        for key, value in row.items():
+            if key in (*TIMES, "status", "reason"):
+                continue
+            if isinstance(value, float):
+                np.testing.assert_allclose(whole[name][key], value, rtol=1e-9)
+            else:
+                assert whole[name][key] == value, (name, key)
+    assert {row["status"] for row in whole.values()} == {"unchanged", "failed"}
+
+
+def test_what_was_interrupted_is_gone_on_with(tmp_path):
+    source = study(tmp_path / "study", trials=3)
+
+    def stop(stage, count, total):
+        if (stage, count) == ("Trials", 1):
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        batch(source, tmp_path / "out", workers=1, settings=SETTINGS, progress=stop)
+    assert not [path for path in (tmp_path / "out").rglob("*") if path.name.startswith(".")]
+    statuses = batch(source, tmp_path / "out", workers=1, settings=SETTINGS)["status"].to_pylist()
+    assert set(statuses) <= {"done", "unchanged"} and "unchanged" in statuses
+
+
+@pytest.mark.parametrize(
+    "changes, why", [({"workers": 0}, "workers can do nothing"), ({"shard": (3, 2)}, "no shard")]
+)
+def test_what_cannot_be_asked_is_refused(tmp_path, changes, why):
+    with pytest.raises(InvalidInput, match=why):
+        batch(study(tmp_path / "study"), tmp_path / "out", **changes)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_source_is_a_folder_or_a_list(tmp_path):
+    (tmp_path / "walk.c3d").touch()
+    with pytest.raises(FileFormatError, match="no folder, and no list"):
+        plan_of(tmp_path / "walk.c3d")
+    assert len(plan_of(tmp_path).trials) == 1
+    assert set(module.LISTS) == {".toml", ".csv"}

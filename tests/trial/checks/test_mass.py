@@ -1,0 +1,55 @@
+"""The mass by the plates' impulse: found whatever the body was given, and never without enough to tell by."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mbkf.trial.checks.mass import mass_finding
+from tests.checked import amplified, body, evidence, nothing, plates
+
+
+@pytest.mark.parametrize("name", ["walk", "squat"])
+@pytest.mark.parametrize("wrong", [0.75, 0.9, 1.0, 1.1, 1.3])
+def test_the_mass_is_found_whatever_was_stated(name, wrong):
+    given = evidence(name, mass=wrong)
+    found = mass_finding(given, nothing(given))
+    assert found.better == pytest.approx(body(name).mass_kg, rel=0.01)
+    assert found.value == pytest.approx(100.0 * (wrong - 1.0), abs=1.3)
+    assert found.verdict == ("inside" if wrong == 1.0 else "outside")
+    assert ("--mass auto" in found.hint) == (wrong != 1.0)
+
+
+def test_the_law_of_impulse_holds_over_less_than_a_cycle():
+    """Acceleration does not average out then, and is counted."""
+    given, frame = evidence(), np.arange(len(evidence().times_s))
+    parts = [given.restricted(given.accounted & (frame >= k) & (frame < k + 65)) for k in range(10, 200, 15)]
+    found = [mass_finding(part, nothing(given)).better for part in parts]
+    judged = [mass_kg for mass_kg in found if mass_kg is not None]
+    assert len(judged) > 5
+    assert judged == pytest.approx([body().mass_kg] * len(judged), rel=0.02)
+
+
+def test_plates_that_contradict_each_other_accuse_nobody():
+    read = plates()
+    given = evidence(read=amplified(read, [0.9] * len(read)))
+    assert mass_finding(given, nothing(given)).verdict == "outside"
+    found = mass_finding(given, nothing(given), plates_agree=False)
+    assert found.verdict == "doubtful" and found.better is None
+
+
+def test_who_sits_is_weighed_only_while_standing():
+    given = evidence("squat")
+    sits = np.zeros(len(given.times_s), dtype=bool)
+    sits[: len(sits) // 2] = True
+    raw = given.raw.copy()
+    raw[sits] *= 0.4
+    seated = replace(given, raw=raw)
+    assert mass_finding(seated, nothing(given)).verdict == "not judged"
+    assert mass_finding(seated, sits).better == pytest.approx(body("squat").mass_kg, rel=0.02)
+
+
+def test_too_little_is_not_judged():
+    given = evidence()
+    short = given.restricted(np.arange(len(given.times_s)) < 40)
+    assert mass_finding(short, nothing(given)).verdict == "not judged"

@@ -1,0 +1,81 @@
+"""Plates laid down otherwise than their file says are found and laid back; right ones are left alone."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mbkf.trial.checks.orientation import axes_findings, carried, laid, place_findings
+from tests.checked import evidence, plates
+
+
+def walked_on():
+    """Plates of the walk on which somebody stands alone."""
+    found, _ = axes_findings(evidence())
+    return [p for p, one in enumerate(found) if one.verdict != "not judged"]
+
+
+def test_right_plates_are_left_alone():
+    found, same = axes_findings(evidence())
+    assert walked_on()
+    assert {one.verdict for one in found} <= {"inside", "not judged"}
+    assert all(one is other for one, other in zip(same, plates(), strict=True))
+
+
+@pytest.mark.parametrize(("quarters", "mirrored"), [(2, False), (1, False), (0, True), (2, True)])
+def test_a_plate_laid_otherwise_is_found_and_laid_back(quarters, mirrored):
+    read, p = list(plates()), walked_on()[1]
+    read[p] = laid(read[p], quarters, mirrored)
+    found, back = axes_findings(evidence(read=tuple(read)))
+    assert [k for k, one in enumerate(found) if one.verdict == "outside"] == [p]
+    assert f"'{read[p].name}'" in found[p].name
+    np.testing.assert_allclose(back[p].force_n, plates()[p].force_n, atol=1e-9)
+    np.testing.assert_allclose(back[p].moment_nm, plates()[p].moment_nm, atol=1e-9)
+
+
+def test_a_wrong_mass_accuses_no_plate():
+    found, _ = axes_findings(evidence(mass=1.3))
+    assert "outside" not in {one.verdict for one in found}
+
+
+def test_laying_a_plate_moves_its_centre_of_pressure_alike():
+    """A force at a point of the plate acts at the point that the turn takes it to."""
+    plate = plates()[0]
+    turned = laid(plate, 2, False)
+    loaded = ~np.isnan(plate.centre_of_pressure_m[:, 0])
+    sum_of_both = plate.centre_of_pressure_m[loaded, :2] + turned.centre_of_pressure_m[loaded, :2]
+    np.testing.assert_allclose(sum_of_both, 2.0 * plate.origin_m[None, :2] + 0.0 * sum_of_both, atol=1e-9)
+    for way in ((1, False), (0, True), (3, True)):
+        other = laid(plate, *way)
+        arm = other.centre_of_pressure_m - other.origin_m
+        moment = np.cross(arm, other.force_n)[loaded]
+        np.testing.assert_allclose(other.moment_nm[loaded, :2], moment[:, :2], atol=0.5)
+
+
+def test_four_quarter_turns_are_none():
+    plate = plates()[0]
+    around = plate
+    for _ in range(4):
+        around = laid(around, 1, False)
+    np.testing.assert_allclose(around.force_n, plate.force_n, atol=1e-9)
+    np.testing.assert_allclose(laid(laid(plate, 0, True), 0, True).moment_nm, plate.moment_nm, atol=1e-9)
+
+
+def test_a_plate_beside_its_place_is_found():
+    read, p = list(plates()), walked_on()[1]
+    read[p] = replace(read[p], origin_m=read[p].origin_m + np.array([0.08, -0.06, 0.0]))
+    found = place_findings(evidence(read=tuple(read)))
+    assert found[p].value == pytest.approx(100.0, abs=15.0)
+    assert found[p].verdict == "outside"
+    along = float(found[p].hint.split()[4])
+    assert along == pytest.approx(-80.0, abs=15.0), "it lies back along x"
+    assert {one.verdict for k, one in enumerate(place_findings(evidence()))} <= {"inside", "not judged"}
+
+
+def test_frames_count_in_which_plates_carry_all():
+    given = evidence()
+    half = replace(
+        given, given=np.where((np.arange(len(given.times_s)) < 50)[:, None, None], 0.4, 1.0) * given.given
+    )
+    assert carried(given)[10:40].all()
+    assert not carried(half)[:40].any()

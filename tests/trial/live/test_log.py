@@ -1,0 +1,49 @@
+"""The log of a live run: what was written comes back, and no number in it decides how much memory is asked for."""
+
+import numpy as np
+import pytest
+
+from mbkf.filters.record import blank
+from mbkf.stream.source import empty_plate
+from mbkf.trial.live.log import MISSING_PER_ROW, MOST_MISSING, LiveLog, LiveStream, read_live_log
+
+DTYPE = np.dtype([("number", "<i8"), ("footing", "<i8", (2,)), ("q", "<f8", (5,))])
+
+
+def logged(folder, numbers, indices=(0, 1, 2)):
+    """What is read of a log with such numbers of frames and samples."""
+    plate = empty_plate("1", 1000.0, 0.0, np.zeros(3), 10.0, None)
+    log = LiveLog(folder, LiveStream("x", 100.0, 0.0, (plate,)), DTYPE, {"filter": "dynamic"}, ["LASI"])
+    rows, samples = blank(DTYPE, len(numbers)), np.zeros(len(indices), log.plates.dtype)
+    rows["number"], rows["q"] = numbers, np.arange(len(numbers))[:, None]
+    samples["index"], samples["wrench"] = indices, np.arange(len(indices))[:, None, None]
+    log.frames.append(rows)
+    log.plates.append(samples)
+    log.close()
+    return read_live_log(folder)
+
+
+def test_lost_frames_are_blank(tmp_path):
+    found = logged(tmp_path / "log", [7, 8, 11], [70, 73])
+    assert (found.first, found.left_out) == (7, ())
+    assert found.rows["number"].tolist() == [7, 8, 9, 10, 11]
+    np.testing.assert_array_equal(found.rows["q"][:, 0], [0, 1, np.nan, np.nan, 2])
+    (plate,) = found.stream.plates
+    np.testing.assert_array_equal(plate.force_n[:, 0], [0, np.nan, np.nan, 1])
+    assert plate.start_time_s == pytest.approx(0.07)
+
+
+@pytest.mark.parametrize("strange", [2**60, -(2**60), -(2**63), 2**63 - 1, 1, 2, 10**7])
+def test_rows_from_a_strange_number_on_are_left_out(tmp_path, strange):
+    found = logged(tmp_path / "log", [0, 1, 2, strange], [0, 1, 2, strange, strange])
+    assert found.rows["number"].tolist() == [0, 1, 2]
+    assert len(found.stream.plates[0].force_n) == 3
+    frames, samples = found.left_out
+    assert frames.startswith("1 frames are left out")
+    assert samples.startswith("2 samples of the plates are left out")
+
+
+def test_a_gap_may_be_as_long_as_rows_allow(tmp_path):
+    most = MOST_MISSING + 2 * MISSING_PER_ROW
+    assert len(logged(tmp_path / "a", [0, 1, most + 2]).rows) == most + 3
+    assert len(logged(tmp_path / "b", [0, 1, most + 3]).rows) == 2

@@ -1,0 +1,84 @@
+"""Filters by name: which one it is, what it is told, and that a wrong name is refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mbkf.errors import UnknownName
+from mbkf.filters.dynamic.settings import DynamicSettings
+from mbkf.filters.dynamic.tracking import DynamicTracking
+from mbkf.filters.kinematic.settings import KinematicSettings
+from mbkf.filters.kinematic.tracking import KinematicTracking
+from mbkf.filters.torque.settings import preset
+from mbkf.filters.torque.tracking import TorqueTracking
+from mbkf.sensors.foot_contact import FootContact
+from mbkf.sensors.foot_plates import FootPlates
+from mbkf.sensors.markers import MarkerSettings
+from mbkf.trial.preparation.filters import FILTERS, tracking_filter
+from tests.dynamics import DT
+from tests.followed import inputs, made
+
+CLASSES = {"kinematic": KinematicTracking, "torque": TorqueTracking, "dynamic": DynamicTracking}
+every_filter = pytest.mark.parametrize("name", FILTERS)
+
+
+def test_there_are_three_filters():
+    assert set(FILTERS) == set(CLASSES)
+
+
+@every_filter
+def test_a_name_is_a_filter_of_this_body(name):
+    known = inputs()
+    found = tracking_filter(name, known)
+    assert type(found) is CLASSES[name]
+    assert found.model is made().model
+    assert found.dt_s == DT
+    assert found.kalman.sensor is known.sensor
+    np.testing.assert_array_equal(found.kalman.noise_m, known.noise_m)
+
+
+@every_filter
+def test_all_wait_as_long_before_they_start_anew(name):
+    """The kinematic settings say so, since all are started by that filter."""
+    assert (
+        tracking_filter(name, inputs(kinematic=KinematicSettings(restart_after_s=0.7))).restart_after_s == 0.7
+    )
+
+
+@every_filter
+def test_unobservable_dofs_reach_the_filter(name):
+    unobservable = np.zeros(made().model.nv, dtype=bool)
+    unobservable[30] = True
+    np.testing.assert_array_equal(
+        tracking_filter(name, inputs(unobservable=unobservable)).kalman.unobservable, unobservable
+    )
+
+
+def test_settings_reach_their_own_filter():
+    known = replace(
+        inputs(),
+        kinematic=KinematicSettings(acceleration_scale=3.0),
+        dynamic=DynamicSettings(markers=MarkerSettings(marker_noise_scale=2.0)),
+        torque=preset("FDMC"),
+    )
+    assert tracking_filter("kinematic", known).kalman.settings.acceleration_scale == 3.0
+    dynamic = tracking_filter("dynamic", known).kalman
+    assert dynamic.settings is known.dynamic
+    np.testing.assert_array_equal(dynamic.noise_m, 2.0 * known.noise_m)
+    assert tracking_filter("torque", known).kalman.settings is known.torque
+
+
+@pytest.mark.parametrize("name", ["torque", "dynamic"])
+def test_plates_reach_the_filters_that_read_them(name):
+    found = tracking_filter(name, inputs(plates=made().plates[:1]))
+    kinds = (FootPlates, FootContact)
+    (block,) = (one for one in found.kalman.blocks if isinstance(one, kinds))
+    assert len(block.detector.surfaces_m) == 1
+
+
+def test_wrong_names_are_refused():
+    with pytest.raises(UnknownName, match="unknown filter 'dynamics'; did you mean dynamic"):
+        tracking_filter("dynamics", inputs())
+    with pytest.raises(UnknownName, match="known are kinematic, torque, dynamic"):
+        tracking_filter("", inputs())

@@ -1,0 +1,54 @@
+"""Exporting a subject or a result: the file appears whole, or an error says why not."""
+
+from xml.etree import ElementTree as ET
+
+import numpy as np
+import pytest
+
+import mbkf
+from mbkf.errors import FileFormatError, UnknownName
+from mbkf.io.subject import Subject, SubjectMarker
+from mbkf.trial.export import FORMATS, RESULT_FORMATS, export_result, export_subject
+from tests.recordings import walk
+
+SUBJECT = Subject(
+    "human18",
+    70.0,
+    {"head": 1.1},
+    (SubjectMarker("C7", "torso", np.array([-0.08, 0, 0.3]), 0.005, 0.0),),
+    "p",
+)
+
+
+@pytest.mark.parametrize(("kind", "tag", "name"), [("urdf", "robot", "marker_C7"), ("mjcf", "mujoco", "C7")])
+def test_a_subject_is_written_with_its_markers(tmp_path, kind, tag, name):
+    path = tmp_path / "deeper" / f"body.{kind}"
+    export_subject(SUBJECT, kind, path)
+    root = ET.parse(path).getroot()
+    assert root.tag == tag
+    assert any(element.get("name") == name for element in root.iter())
+    assert [p.name for p in path.parent.iterdir()] == [path.name]
+
+
+def test_wrong_formats_and_places_are_refused(tmp_path):
+    assert set(FORMATS) == {"urdf", "mjcf"}
+    with pytest.raises(UnknownName, match="urdf"):
+        export_subject(SUBJECT, "urfd", tmp_path / "x")
+    with pytest.raises(FileFormatError, match="folder"):
+        export_subject(SUBJECT, "urdf", tmp_path)
+
+
+@pytest.mark.parametrize("kind", ["c3d", "bvh", "glb"])
+def test_a_result_is_written_whole(tmp_path, kind):
+    path = tmp_path / "deeper" / f"walk.{kind}"
+    mbkf.export_result(walk(), kind, path)
+    assert path.stat().st_size > 10_000
+    assert [p.name for p in path.parent.iterdir()] == [path.name]
+
+
+def test_wrong_formats_and_places_of_results_are_refused(tmp_path):
+    assert set(RESULT_FORMATS) == {"c3d", "bvh", "glb"}
+    with pytest.raises(UnknownName, match="bvh"):
+        export_result(walk(), "bhv", tmp_path / "x")
+    with pytest.raises(FileFormatError, match="folder"):
+        export_result(walk(), "glb", tmp_path)
