@@ -43,6 +43,7 @@ class Captured:
         extra: What ``mbkf reconstruct`` needs beyond that.
         filters: The filters it is followed with.
         modes: Whether causal, smoothed, live.
+        question: What follows ``mbkf`` where another command than reconstruct or live is compared.
     """
 
     name: str
@@ -52,6 +53,7 @@ class Captured:
     extra: tuple[str, ...] = ()
     filters: tuple[str, ...] = FILTERS
     modes: tuple[Mode, ...] = MODES
+    question: tuple[str, ...] = ()
 
     @property
     def runs(self) -> tuple[Run, ...]:
@@ -60,6 +62,8 @@ class Captured:
 
     def words(self, run: Run) -> tuple[str, ...]:
         """What follows ``mbkf`` for a run, without ``--out``."""
+        if self.question:
+            return self.question
         subject = ("--subject", SUBJECT, "--filter", run.filter)
         if run.mode == "live":
             return ("live", "--from", f"file:{self.trial}", "--speed", "0", *subject, *self.options)
@@ -218,6 +222,58 @@ _REAL = (
             ),
         ),
     ),
+    with_static("ric_run", "ric_run/20140515T133244_run.c3d", "ric_run/20140515T133244_static.c3d", 70.0),
+    with_static(
+        "functional_walk", "functional_walk/FunctionalWalk.c3d", "functional_walk/FunctionalStatic.c3d", 60.0
+    ),
+    with_static("fukuchi_run", "fukuchi_run/RBDS001runT35.c3d", "fukuchi_run/RBDS001static.c3d", 60.3),
+    by_itself("start_off_treadmill", "start_off_treadmill/markers.trc", 70.0, "start_off_treadmill/grf.mot"),
+    with_static("landings", "landings/doubleLegLanding.c3d", "landings/aStaticTrial.c3d", 70.0),
+    by_itself("french_walk", "french_walk_no_pelvis/marche281.c3d", 69.0),
+    with_static("unipd_walk", "unipd_walk/Walking1.c3d", "unipd_walk/Static1.c3d", 70.0),
+    with_static(
+        "flywheel_squat", "flywheel_squat/S1_FlywheelSquat.c3d", "flywheel_squat/S1_StandingRef.c3d", 75.0
+    ),
+    by_itself("cmu_basketball", "cmu_basketball/cmu_dribble_shoot_basketball.c3d", 75.0),
+    with_static(
+        "jam_walk",
+        "jam_walk/overground_17.trc",
+        "jam_walk/static1.trc",
+        70.0,
+        "jam_walk/overground_17_grf.mot",
+    ),
+    with_static(
+        "opencap_s6",
+        "opencap_s6_walk/s6_walking1.trc",
+        "opencap_s6_walk/s6_static1.trc",
+        59.0,
+        "opencap_s6_walk/s6_walking1_forces.mot",
+    ),
+    with_static(
+        "rehazenter", "rehazenter_walk/2014001_C1_01.c3d", "rehazenter_walk/2014001_ST_static.c3d", 70.0
+    ),
+    with_static(
+        "biobuddy", "biobuddy_functional/functional_right_knee.c3d", "biobuddy_functional/static.c3d", 70.0
+    ),
+    with_static(
+        "knee_challenge",
+        "grand_challenge_knee/ss1.trc",
+        "grand_challenge_knee/static.trc",
+        75.0,
+        "grand_challenge_knee/ss1_grf.mot",
+    ),
+    by_itself("two_persons", "two_persons_art/ART-Human_2persons_integer.c3d", 70.0),
+    *(
+        with_static(
+            f"foreign_{person}_{motion}",
+            f"foreign_truth/{person}/{motion}/trial.trc",
+            f"foreign_truth/{person}/static.trc",
+            mass_kg,
+            f"foreign_truth/{person}/{motion}/grf.mot",
+        )
+        for person, mass_kg in (("adult", 85.3), ("child", 23.0))
+        for motion in ("walk", "squat", "run")
+    ),
     by_itself("c3d_Eb015pr", f"{_ENCODINGS}/Eb015pr.c3d", 70.0, protocol="opensim_fullbody2009"),
     *(
         # The same trial in other encodings: one filter says whether it is read alike.
@@ -282,15 +338,58 @@ _OPTIONS = (
     ),
 )
 
-CAPTURES: tuple[Captured, ...] = (*_REAL, *(synthetic(m) for m in ("squat", "walk", "jump")), *_OPTIONS)
+
+def _asked(name: str, *question: str, prepare: tuple[tuple[str, ...], ...] = ()) -> Captured:
+    """Another question about a capture than that of its motion by markers."""
+    return Captured(name, "", prepare, filters=("asked",), modes=("plain",), question=question)
+
+
+_SENSORS = (
+    ("synth", "--motion", "walk", "--seconds", "4", "--out", "{made}"),
+    ("imu", "synth", "{made}/truth.h5", "--out", "{made}/walk.csv"),
+)
+_INERTIAL = (
+    *(
+        _asked(
+            f"imu_motion_{mode.strip('-') or 'smoothed'}",
+            *("imu", "motion", "{made}/walk.csv", "--subject", "{made}/subject.toml", "--standing", "0:0.6"),
+            *((mode,) if mode else ()),
+            prepare=_SENSORS,
+        )
+        for mode in ("", "--causal")
+    ),
+    _asked(
+        "imu_angles_opensense",
+        *("imu", "angles", "{data}/imu_opensense_walk", "--from-file", "--standing", "0:0.5"),
+    ),
+    _asked(
+        "imu_orient_broad",
+        *("imu", "orient", "{data}/imu_broad/11_undisturbed_slow_translation_B.mat", "--frame", "ENU"),
+    ),
+    _asked("imu_stride_gaitmap", "imu", "stride", "{data}/imu_gaitmap_foot/imu_sample.csv"),
+)
+
+_MOTIONS = (
+    "squat",
+    "walk",
+    "jump",
+    "turn",
+    "one_foot",
+    "reach",
+    "step_up",
+    "general",
+    "sit_to_stand",
+    "rail",
+    "kneel",
+    "belt_walk",
+)
+CAPTURES: tuple[Captured, ...] = (*_REAL, *(synthetic(m) for m in _MOTIONS), *_OPTIONS, *_INERTIAL)
 
 LEFT_OUT = {
-    "biobuddy_functional": "its marker set is newer than the trees that are compared",
-    "rehazenter_walk": "its marker set is newer than the trees that are compared",
     "csu_2d_id_reference": "a table of six markers in a plane, no capture file",
-    "imu_broad": "one inertial sensor on a board, no markers",
-    "imu_gaitmap_foot": "inertial sensors on the feet; three markers per foot in a table",
-    "imu_opensense_walk": "inertial sensors, no markers",
+    "breaker": "damaged files",
+    "judgement": "persons and names that are wrong on purpose",
+    "strangers3": "excerpts of files, for readers",
     "imu_qmt_fullbody": "inertial sensors, no markers",
 }
 """Folders of the data whose captures ``mbkf reconstruct`` cannot follow, each with the reason."""

@@ -107,9 +107,11 @@ def test_tables_of_a_subject_are_known_by_their_names(tmp_path):
 def test_captures_have_names_of_their_own_and_every_folder_is_used_or_left_out(real_data):
     names = [capture.name for capture in CAPTURES]
     assert len(set(names)) == len(names)
-    words = " ".join(word for c in CAPTURES for words in (*c.prepare, (c.trial,)) for word in words)
+    words = " ".join(
+        word for c in CAPTURES for words in (*c.prepare, (c.trial, *c.question)) for word in words
+    )
     folders = {path.name for path in real_data.iterdir() if path.is_dir()}
-    assert {name for name in folders if f"{{data}}/{name}/" not in words} == set(LEFT_OUT)
+    assert {name for name in folders if f"{{data}}/{name}" not in words} == set(LEFT_OUT)
     for word in {w for c in CAPTURES for words in c.prepare for w in (*words, *c.options, c.trial)}:
         if word.startswith("{data}"):
             assert Path(word.replace("{data}", str(real_data))).is_file(), word
