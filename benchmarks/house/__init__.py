@@ -1,4 +1,4 @@
-"""What the source tree itself must show: how short the way of one step is, what users can add, documentation, circles.
+"""Bounds of the source tree itself: files of one step, extensions by users, documentation, prose, folders, circles.
 
 No reference captures are needed. The time of a step is compared with another tree's where one is given: ``--old TREE``.
 """
@@ -13,7 +13,9 @@ from benchmarks.house import step_time
 from benchmarks.house.circles import circles
 from benchmarks.house.documentation import documentation
 from benchmarks.house.examples import body_rows, loop_rows, ran, sensor_rows
-from benchmarks.house.step_files import READ, ROOT, executed_in_a_step, listed, undeclared
+from benchmarks.house.folders import MOST_FILES, largest_folder
+from benchmarks.house.prose import MOST_HARD, hard_to_read
+from benchmarks.house.step_files import PACKAGE, READ, ROOT, executed_in_a_step, listed, undeclared
 
 OWN_BLOCK = "DriftingTracker"
 """A block that stands in tests/blocks and is registered nowhere."""
@@ -28,6 +30,13 @@ def run(context: Context) -> list[Check]:
     checks += [
         Check("public definitions without docstring", len(found.undocumented), 0, "<="),
         Check("functions of three or more arguments without Args", len(found.without_arguments), 0, "<="),
+        Check(
+            "docstrings and messages: share hard to read",
+            hard_to_read(PACKAGE.rglob("*.py")),
+            MOST_HARD,
+            "<=",
+        ),
+        Check("trial/ and study/: files in the largest folder", largest_folder(), MOST_FILES, "<=", "files"),
         Check("files in a circle of imports", len(set(circles())), 0, "<="),
         Check("warnings while the documentation is built", documentation_warnings(context.out), 0, "<="),
     ]

@@ -50,14 +50,6 @@ class Documentation:
     undocumented: tuple[str, ...]
     without_arguments: tuple[str, ...]
 
-    @property
-    def row(self) -> str:
-        """Both counts as a line of a table."""
-        return (
-            "public definitions without docstring; functions of three or more arguments without Args: "
-            f"{len(self.undocumented)}; {len(self.without_arguments)}"
-        )
-
 
 def documentation(root: Path = ROOT, folders: Iterable[str] = ("mbkf", "benchmarks")) -> Documentation:
     """Counts what the folders of a source tree leave undocumented."""
