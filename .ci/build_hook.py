@@ -1,6 +1,7 @@
-"""Compiles the kernel when the package is built or installed; without a compiler the package goes without it.
+"""Compiles the kernel when the package is built or installed.
 
-Run by hatchling (pyproject.toml), never by mbkf. The stable ABI makes one build serve every Python from 3.11 on.
+Run by hatchling (pyproject.toml), never by mbkf; ``python .ci/build_hook.py`` compiles it in place, for work on mbkf.
+The stable ABI makes one build serve every Python from 3.11 on.
 """
 
 from __future__ import annotations
@@ -17,20 +18,41 @@ from packaging.tags import sys_tags
 FOLDER = Path("mbkf") / "kernel"
 NAME = "_kernel"
 
+SWITCH, REFERENCE = "MBKF_KERNEL", "reference"
+"""The environment variable that mbkf.kernel.loading reads, too; with this value nothing is compiled."""
+
+WITHOUT = f"""mbkf is built without its compiled kernel, because {SWITCH}={REFERENCE} asks for that. A step of the
+filters takes several times as long; results agree to rounding."""
+
+FAILED = f"""The kernel of mbkf was not compiled: {{}}
+If a compiler reported an error, it stands above. If there is no C compiler, install one:
+  Debian, Ubuntu   apt install gcc libc6-dev
+  Fedora           dnf install gcc
+  macOS            xcode-select --install
+  Windows          Build Tools for Visual Studio, with the C++ workload
+  conda            conda install c-compiler
+To install mbkf without the kernel, set {SWITCH}={REFERENCE}: a step of the filters takes several times as long then."""
+
 
 class KernelHook(BuildHookInterface):
     """Puts the compiled kernel beside its sources, and from there into the wheel."""
 
     def initialize(self, version: str, build_data: dict[str, object]) -> None:  # noqa: ARG002, the hook's signature
-        """Called before a wheel is made, also that of an editable installation."""
+        """Called before a wheel is made, also that of an editable installation.
+
+        Raises:
+            SystemExit: The kernel cannot be compiled, and the environment does not ask to go without it.
+        """
         folder = Path(self.root) / FOLDER
-        try:
-            built = compiled(folder)
-        except Exception as failed:  # compilers fail in many ways, and none of them is an error here
+        if os.environ.get(SWITCH) == REFERENCE:
             for old in (*folder.glob(f"{NAME}*.so"), *folder.glob(f"{NAME}*.pyd")):
                 old.unlink()
-            self.app.display_warning(f"mbkf is installed without its compiled kernel: {failed}")
+            self.app.display_warning(WITHOUT)
             return
+        try:
+            built = compiled(folder)
+        except Exception as failed:  # setuptools and its compilers share no type of error
+            self.app.abort(FAILED.format(failed))
         build_data["pure_python"] = False
         build_data["tag"] = f"cp311-abi3-{_platform()}"
         cast(list[str], build_data["artifacts"]).append(f"/{built.relative_to(self.root).as_posix()}")
@@ -40,7 +62,7 @@ def compiled(folder: Path) -> Path:
     """Compiles all sources of a folder into one module of Python's stable ABI, in the same folder.
 
     Raises:
-        Exception: What setuptools raises where no compiler is found or a source does not compile.
+        Exception: Any that setuptools raises where no compiler is found or a source does not compile.
     """
     from setuptools import Distribution, Extension
     from setuptools.command.build_ext import build_ext
@@ -60,5 +82,9 @@ def compiled(folder: Path) -> Path:
 
 
 def _platform() -> str:
-    """The machine's tag; which Linux libraries a wheel runs with is told by the tool that makes releases."""
+    """The machine's tag; the tool that makes releases replaces it by one that names the Linux libraries needed."""
     return next(tag.platform for tag in sys_tags() if "linux_" not in tag.platform[1:])
+
+
+if __name__ == "__main__":
+    print(compiled(Path(__file__).resolve().parents[1] / FOLDER))

@@ -1,7 +1,6 @@
 """The wheel, installed away from the source tree, runs and finds its data."""
 
 import os
-import shutil
 import subprocess
 import sys
 import zipfile
@@ -55,18 +54,6 @@ def run_installed(site: Path, cwd: Path, *words: str) -> str:
     )
     assert done.returncode == 0, done.stderr
     return done.stdout.strip()
-
-
-def test_without_a_compiler_the_wheel_has_no_kernel_and_serves_every_machine(tmp_path, monkeypatch):
-    monkeypatch.setenv("CC", "no-compiler-has-this-name")
-    tree = tmp_path / "tree"
-    shutil.copytree(
-        ROOT, tree, ignore=shutil.ignore_patterns(".git", ".venv", "*.so", "*_cache", "docs", "tests")
-    )
-    pip("wheel", str(tree), "--no-deps", "-w", str(tmp_path))
-    (built,) = tmp_path.glob("mbkf-*.whl")
-    assert built.name.endswith("-py3-none-any.whl")
-    assert not [name for name in zipfile.ZipFile(built).namelist() if name.endswith((".so", ".pyd"))]
 
 
 def test_wheel_holds_the_package_its_data_and_nothing_else(wheel):
