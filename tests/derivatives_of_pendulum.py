@@ -2,10 +2,12 @@
 
 from functools import partial
 
-from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
-from mbkf.model.double_pendulum_pin import PinocchioPendulum
-from mbkf.model.forced_body import WithIdleStates
+from benchmarks.double_pendulum.forced_bodies import WithIdleStates
+from benchmarks.double_pendulum.pendulum import DoublePendulum, PendulumShape
+from benchmarks.double_pendulum.pinocchio_pendulum import PinocchioPendulum
 from tests.derivatives import checks, named, slope
+
+IDLE = "benchmarks.double_pendulum.forced_bodies.WithIdleStates"
 
 
 def loaded(rng, make, extra=0):
@@ -36,38 +38,40 @@ def manifold(block, body, q, v):
     return {f"{block}.retraction": (stated, numeric)}
 
 
-@checks("model.forced_body.PlainCoordinates.retraction")
+@checks("benchmarks.double_pendulum.forced_bodies.PlainCoordinates.retraction")
 def plain_coordinates(rng):
     body, q, v, _ = loaded(rng, DoublePendulum)
-    return manifold("model.forced_body.PlainCoordinates", body, q, v)
+    return manifold("benchmarks.double_pendulum.forced_bodies.PlainCoordinates", body, q, v)
 
 
-@checks("model.double_pendulum.DoublePendulum.linearise")
+@checks("benchmarks.double_pendulum.pendulum.DoublePendulum.linearise")
 def natural_coordinates(rng):
     body, q, v, u = loaded(rng, DoublePendulum)
     stated, numeric = map(joined, linearised(body, q, v, u))
-    return {"model.double_pendulum.DoublePendulum.linearise": (stated, numeric)}
+    return {"benchmarks.double_pendulum.pendulum.DoublePendulum.linearise": (stated, numeric)}
 
 
-@checks("model.double_pendulum_pin.PinocchioPendulum.linearise")
+@checks("benchmarks.double_pendulum.pinocchio_pendulum.PinocchioPendulum.linearise")
 def pinocchio_pendulum(rng):
     body, q, v, u = loaded(rng, PinocchioPendulum)
     stated, numeric = map(joined, linearised(body, q, v, u))
-    return {"model.double_pendulum_pin.PinocchioPendulum.linearise": (stated, numeric)}
+    return {"benchmarks.double_pendulum.pinocchio_pendulum.PinocchioPendulum.linearise": (stated, numeric)}
 
 
-@checks("model.forced_body.WithIdleStates.linearise", "model.forced_body.WithIdleStates.retraction")
+@checks(
+    "benchmarks.double_pendulum.forced_bodies.WithIdleStates.linearise",
+    "benchmarks.double_pendulum.forced_bodies.WithIdleStates.retraction",
+)
 def idle_states(rng):
     own, q, v, u = loaded(rng, DoublePendulum, extra=3)
     body = WithIdleStates(own, 3)
     stated, numeric = map(joined, linearised(body, q, v, u))
-    block = "model.forced_body.WithIdleStates"
-    return {f"{block}.linearise": (stated, numeric)} | manifold(block, body, q, v)
+    return {f"{IDLE}.linearise": (stated, numeric)} | manifold(IDLE, body, q, v)
 
 
 @checks(
-    "model.double_pendulum.DoublePendulum.inertial",
-    *(f"model.double_pendulum.Inertial.by_{x}" for x in "qva"),
+    "benchmarks.double_pendulum.pendulum.DoublePendulum.inertial",
+    *(f"benchmarks.double_pendulum.pendulum.Inertial.by_{x}" for x in "qva"),
 )
 def pendulum_inertia(rng):
     body, q, v, _ = loaded(rng, DoublePendulum)
@@ -75,7 +79,7 @@ def pendulum_inertia(rng):
     found = body.inertial(q, v, a)
     by_q = slope(lambda at: body.inertial(at, v, a).force, q)
     return named(
-        "model.double_pendulum",
+        "benchmarks.double_pendulum.pendulum",
         ("DoublePendulum.inertial", found.by_q, by_q),
         ("Inertial.by_q", found.by_q, by_q),
         ("Inertial.by_v", found.by_v, slope(lambda at: body.inertial(q, at, a).force, v)),
@@ -84,8 +88,8 @@ def pendulum_inertia(rng):
 
 
 @checks(
-    "model.double_pendulum.DoublePendulum.on_bars",
-    "model.double_pendulum.PointReading.jacobian",
+    "benchmarks.double_pendulum.pendulum.DoublePendulum.on_bars",
+    "benchmarks.double_pendulum.pendulum.PointReading.jacobian",
 )
 def points_on_bars(rng):
     body, q, _, _ = loaded(rng, DoublePendulum)
@@ -93,7 +97,7 @@ def points_on_bars(rng):
     stated = body.on_bars(q, share, bar).jacobian
     numeric = slope(lambda at: body.on_bars(at, share, bar).positions_m, q)
     return named(
-        "model.double_pendulum",
+        "benchmarks.double_pendulum.pendulum",
         ("DoublePendulum.on_bars", stated, numeric),
         ("PointReading.jacobian", stated, numeric),
     )

@@ -39,8 +39,6 @@ PLAIN = {"bool", "int", "float", "str"}
 
 TESTS = Path(__file__).parent
 ELSEWHERE = {
-    "model.forced_body.PlainCoordinates.transport": "model/test_forced_body.py",
-    "model.forced_body.WithIdleStates.transport": "model/test_forced_body.py",
     "model.forced_body.ForcedBody.linearise": "model/test_forced_body.py",
     "model.forced_body.ForcedBody.retraction": "model/test_human_dynamics.py",
     "model.forced_body.ForcedBody.transport": "model/test_human_dynamics.py",
@@ -148,7 +146,7 @@ def test_every_derivative_has_its_case():
 def thing_called(address):
     """What a dotted name stands for: the longest part of it that is a module, and the names within."""
     parts = address.split(".")
-    root = address if parts[0] == "tests" else f"mbkf.{address}"
+    root = address if parts[0] in ("tests", "benchmarks") else f"mbkf.{address}"
     for cut in range(len(parts) + 1, 1, -1):
         name = ".".join(root.split(".")[:cut])
         try:

@@ -13,14 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.double_pendulum.kinematic import PlainManifold, joint_torque
+from benchmarks.double_pendulum.motions import MARKER_BARS, MARKER_SHARES
+from benchmarks.double_pendulum.pendulum import ROOT, DoublePendulum, PendulumShape
 from benchmarks.double_pendulum.torque import START_VARIANCE
 from benchmarks.double_pendulum.trials import Estimate, Trial
 from mbkf.conventions import Array
 from mbkf.filters.dynamic.plant import DynamicState, SingerPlant, SingerSettings
-from mbkf.model.double_pendulum import ROOT, DoublePendulum, PendulumShape
 from mbkf.numerics.kalman import Information, correct, information
 from mbkf.numerics.smoothing import BackwardPass
-from mbkf.synthesis.pendulum import MARKER_BARS, MARKER_SHARES
 
 PLATE = np.array([0, 1, 5])
 """F_x, F_y and T_2 among the wrenches of both feet."""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from benchmarks.double_pendulum.motions import MOTIONS, pendulum_motion
+from benchmarks.double_pendulum.pendulum import DoublePendulum, PendulumShape
+from benchmarks.double_pendulum.pinocchio_pendulum import PinocchioPendulum
 from benchmarks.double_pendulum.thesis import ANNEX, STUDY
 from benchmarks.thesis_report.contents import OPEN, Band, Findings
 from mbkf.conventions import Array
 from mbkf.filters.torque.plant import Scheme, TorquePlant
-from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
-from mbkf.model.double_pendulum_pin import PinocchioPendulum
-from mbkf.synthesis.pendulum import MOTIONS, pendulum_motion
 
 STATES = 200
 STEP = 1e-3

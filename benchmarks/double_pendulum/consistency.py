@@ -12,6 +12,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from benchmarks.double_pendulum.laboratory import Laboratory
+from benchmarks.double_pendulum.motions import (
+    MARKER_BARS,
+    MARKER_SHARES,
+    RATE_HZ,
+    PendulumReadings,
+    pendulum_motion,
+)
+from benchmarks.double_pendulum.pendulum import DoublePendulum
 from benchmarks.double_pendulum.thesis import STUDY
 from benchmarks.double_pendulum.torque import START_VARIANCE, PendulumFilter, PendulumSettings
 from benchmarks.thesis_report.contents import Band, Findings, Sheet
@@ -19,15 +27,7 @@ from mbkf.conventions import Array
 from mbkf.filters.torque.integrators import Motion, runge_kutta
 from mbkf.filters.torque.plant import Scheme
 from mbkf.filters.torque.settings import SCHEMES
-from mbkf.model.double_pendulum import DoublePendulum
 from mbkf.numerics.threads import single_threaded
-from mbkf.synthesis.pendulum import (
-    MARKER_BARS,
-    MARKER_SHARES,
-    RATE_HZ,
-    PendulumReadings,
-    pendulum_motion,
-)
 
 SEEDS, QUICK_SEEDS = 200, 10
 FRAMES, SUBSTEPS = 100, 5

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 from benchmarks.double_pendulum.consistency import FRAMES, READING_DOF, STATE_DOF, Consistency
 from benchmarks.double_pendulum.kinematic import KinematicMethod
+from benchmarks.double_pendulum.motions import RATE_HZ, PendulumNoise
 from benchmarks.double_pendulum.studies import HIGH_RESIDUAL, WRONG, with_model
 from benchmarks.double_pendulum.sweeps import Sweep, Sweeps
 from benchmarks.double_pendulum.thesis import FCDI, FD, FDMC, KINEMATIC_ACCELERATION, STUDY, STUDY_RECIPE
@@ -32,7 +33,6 @@ from benchmarks.thesis_report.figures import (
 )
 from mbkf.conventions import Array
 from mbkf.synthesis.cameras import skin_artefact
-from mbkf.synthesis.pendulum import RATE_HZ, PendulumNoise
 
 SEED = 0
 GAPS_S = ((0.85, 1.15), (1.85, 2.15))

@@ -10,6 +10,8 @@ import numpy as np
 from benchmarks.double_pendulum.acceleration import AccelerationMethod, AccelerationSettings
 from benchmarks.double_pendulum.kinematic import KinematicMethod
 from benchmarks.double_pendulum.laboratory import Laboratory, Pair
+from benchmarks.double_pendulum.motions import PendulumNoise
+from benchmarks.double_pendulum.pendulum import PendulumShape
 from benchmarks.double_pendulum.studies import NO_ARTEFACT, WRONG, with_model
 from benchmarks.double_pendulum.sweeps import Sweeps, with_noise
 from benchmarks.double_pendulum.thesis import (
@@ -27,8 +29,6 @@ from benchmarks.double_pendulum.torque import Artefact
 from benchmarks.double_pendulum.trials import Method, Recipe, Scores
 from benchmarks.thesis_report.contents import OPEN, Band, Findings, Row, Sheet
 from mbkf.conventions import Array
-from mbkf.model.double_pendulum import PendulumShape
-from mbkf.synthesis.pendulum import PendulumNoise
 
 SMOOTHED_NOISE = 100.0
 """σ_P of the smoother, which need not follow quickly because it looks ahead."""

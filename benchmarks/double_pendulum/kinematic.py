@@ -8,15 +8,15 @@ from typing import ClassVar, cast
 
 import numpy as np
 
+from benchmarks.double_pendulum.motions import MARKER_BARS, MARKER_SHARES
+from benchmarks.double_pendulum.pendulum import DoublePendulum, PendulumShape
 from benchmarks.double_pendulum.torque import START_VARIANCE
 from benchmarks.double_pendulum.trials import Estimate, Trial
 from mbkf.conventions import Array
 from mbkf.filters.kinematic.plant import KinematicState, WhiteAccelerationPlant
 from mbkf.model.body import SegmentJoint
-from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
 from mbkf.model.human import HumanModel
 from mbkf.numerics.kalman import correct, information
-from mbkf.synthesis.pendulum import MARKER_BARS, MARKER_SHARES
 
 TORQUE_ROW = 3
 """τ_1 is what the equation of θ_2 asks for; residual efforts take what is left of the other three (thesis eq. 3.12)."""

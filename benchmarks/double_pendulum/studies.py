@@ -8,6 +8,8 @@ import numpy as np
 
 from benchmarks.double_pendulum.kinematic import KinematicMethod
 from benchmarks.double_pendulum.laboratory import Laboratory, Pair
+from benchmarks.double_pendulum.motions import PendulumNoise
+from benchmarks.double_pendulum.pendulum import PendulumShape
 from benchmarks.double_pendulum.thesis import (
     FCDI,
     FD,
@@ -20,8 +22,6 @@ from benchmarks.double_pendulum.thesis import (
 from benchmarks.double_pendulum.torque import TorqueMethod
 from benchmarks.double_pendulum.trials import Method, Recipe, Scores
 from benchmarks.thesis_report.contents import OPEN, Band, Claim, Findings, Row, Sheet, judged
-from mbkf.model.double_pendulum import PendulumShape
-from mbkf.synthesis.pendulum import PendulumNoise
 
 WRONG = PendulumShape(mass_1_kg=60.0, mass_2_kg=15.0)
 """Assumed masses instead of 50 and 25 kg: the whole mass is right, its distribution is not."""

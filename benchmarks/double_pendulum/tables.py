@@ -7,6 +7,7 @@ from time import perf_counter
 import numpy as np
 
 from benchmarks.double_pendulum.laboratory import FEW_SEEDS, Laboratory, Pair
+from benchmarks.double_pendulum.motions import PendulumNoise
 from benchmarks.double_pendulum.thesis import (
     ANNEX,
     ANNEX_RECIPE,
@@ -21,7 +22,6 @@ from benchmarks.thesis_report.contents import OPEN, Band, Claim, Findings, Row, 
 from mbkf.conventions import Array
 from mbkf.filters.torque.plant import Scheme
 from mbkf.numerics.threads import single_threaded
-from mbkf.synthesis.pendulum import PendulumNoise
 
 ROUNDS = 3
 SIMPLIFIED = "FE SE CT, simplified F"

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from benchmarks.double_pendulum.kinematic import KinematicMethod
+from benchmarks.double_pendulum.motions import PendulumNoise
+from benchmarks.double_pendulum.pendulum import PendulumShape
 from benchmarks.double_pendulum.torque import PendulumSettings, TorqueMethod
 from benchmarks.double_pendulum.trials import Recipe
 from benchmarks.thesis_report.contents import Row, Sheet
 from mbkf.filters.torque.plant import Scheme
 from mbkf.filters.torque.settings import SCHEMES
-from mbkf.model.double_pendulum import PendulumShape
-from mbkf.synthesis.pendulum import PendulumNoise
 
 STUDY = PendulumShape(mass_1_kg=50.0, mass_2_kg=25.0)
 """Table 3.1, the pendulum of all studies."""

@@ -8,15 +8,16 @@ from dataclasses import dataclass, field
 import numpy as np
 import scipy.linalg
 
+from benchmarks.double_pendulum.forced_bodies import WithIdleStates
+from benchmarks.double_pendulum.motions import MARKER_BARS, MARKER_SHARES
+from benchmarks.double_pendulum.pendulum import DoublePendulum, PendulumShape
 from benchmarks.double_pendulum.trials import Estimate, Trial
 from mbkf.conventions import Array
 from mbkf.errors import UnknownName
 from mbkf.filters.torque.plant import ForcedPrediction, ForcedState, Scheme, TorquePlant
-from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
-from mbkf.model.forced_body import ForcedBody, WithIdleStates
+from mbkf.model.forced_body import ForcedBody
 from mbkf.numerics.kalman import Information, correct, information
 from mbkf.numerics.smoothing import BackwardPass
-from mbkf.synthesis.pendulum import MARKER_BARS, MARKER_SHARES
 
 SENSORS = ("m1", "m2", "m3", "m4", "tau_1", "F_x", "F_y", "T_2")
 """Markers from top to bottom, then efforts (thesis eq. 3.61)."""

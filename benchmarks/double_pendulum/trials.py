@@ -8,16 +8,16 @@ from typing import Protocol
 
 import numpy as np
 
-from benchmarks.thesis_report.delay import delay
-from mbkf.conventions import Array, BoolArray
-from mbkf.model.double_pendulum import PendulumShape
-from mbkf.synthesis.pendulum import (
+from benchmarks.double_pendulum.motions import (
     PendulumMotion,
     PendulumNoise,
     PendulumReadings,
     pendulum_motion,
     readings,
 )
+from benchmarks.double_pendulum.pendulum import PendulumShape
+from benchmarks.thesis_report.delay import delay
+from mbkf.conventions import Array, BoolArray
 
 AFTER_GAP_S = 0.3
 """What counts as after a gap: as long again as the gap itself."""

@@ -15,6 +15,8 @@ from benchmarks.double_pendulum.acceleration import (
 from benchmarks.double_pendulum.bodies import body_findings
 from benchmarks.double_pendulum.consistency import SCHEMES_COMPARED, consistency_of
 from benchmarks.double_pendulum.kinematic import KinematicMethod, joint_torque
+from benchmarks.double_pendulum.motions import PendulumNoise, PendulumReadings
+from benchmarks.double_pendulum.pendulum import DoublePendulum
 from benchmarks.double_pendulum.thesis import ANNEX, FD, STUDY, TABLE_A2, annex_method
 from benchmarks.double_pendulum.torque import (
     SENSORS,
@@ -27,8 +29,6 @@ from benchmarks.double_pendulum.torque import (
 from benchmarks.double_pendulum.trials import Recipe, Trial, score
 from mbkf.errors import UnknownName
 from mbkf.filters.dynamic.plant import DynamicState
-from mbkf.model.double_pendulum import DoublePendulum
-from mbkf.synthesis.pendulum import PendulumNoise, PendulumReadings
 from tests.derivatives import slope
 
 CLEAN = Recipe(noise=PendulumNoise(camera_m=0.0, artefact_m=0.0, force_n=0.0, moment_nm=0.0))

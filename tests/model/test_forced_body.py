@@ -5,9 +5,10 @@ import inspect
 import numpy as np
 import pytest
 
-from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
-from mbkf.model.double_pendulum_pin import PinocchioPendulum
-from mbkf.model.forced_body import ForcedBody, LinearAcceleration, WithIdleStates
+from benchmarks.double_pendulum.forced_bodies import WithIdleStates
+from benchmarks.double_pendulum.pendulum import DoublePendulum, PendulumShape
+from benchmarks.double_pendulum.pinocchio_pendulum import PinocchioPendulum
+from mbkf.model.forced_body import ForcedBody, LinearAcceleration
 from mbkf.model.human_dynamics import HumanDynamics
 from tests.forced_bodies import Cart, DampedPendulum
 from tests.motions import reference_model
@@ -40,13 +41,3 @@ def test_speaks_the_protocol(name):
     assert shapes == [(body.nv,), square, square, (body.nv, body.nu), square]
     assert [part.shape for part in body.retraction(q, v)] == [square, square]
     np.testing.assert_allclose(body.difference(q, body.integrate(q, v)), v, atol=1e-12)
-
-
-def test_idle_states_push_nothing():
-    own = DampedPendulum()
-    body = WithIdleStates(own, 2)
-    q, v, u = np.array([0.3]), np.array([1.0]), np.array([2.0, 50.0, -7.0])
-    assert body.nu == 3
-    np.testing.assert_array_equal(body.acceleration(q, v, u), own.acceleration(q, v, u[:1]))
-    np.testing.assert_array_equal(body.linearise(q, v, u).by_u, [[1.0, 0.0, 0.0]])
-    np.testing.assert_array_equal(body.transport(v), own.transport(v))

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.double_pendulum.forced_bodies import WithIdleStates
 from mbkf.filters.torque.integrators import Motion, runge_kutta
 from mbkf.filters.torque.plant import ForcedState, Scheme, TorquePlant
-from mbkf.model.forced_body import WithIdleStates
 from mbkf.model.human_dynamics import FORCE_STATES, HumanDynamics
 from mbkf.numerics.discretisation import COVARIANCES, PROPAGATIONS
 from mbkf.numerics.kalman import correct, information

@@ -1,7 +1,6 @@
-"""A double pendulum in natural coordinates, a forced body as the whole human model is.
+"""A double pendulum in natural coordinates: a forced body, as the whole human model is.
 
-The example of M. Pérez Soto, doctoral thesis, Universidade da Coruña, 2022, section 3.3.1; equation numbers are that
-thesis's.
+After M. Pérez Soto, doctoral thesis, Universidade da Coruña, 2022, section 3.3.1, whose equation numbers are used here.
 
 Two bars hinged together at point 1; point 0 is the free end of bar 1, point 2 that of bar 2, which the ground holds
 with F_x, F_y and T_2 (the "plate"). τ_1 is the torque of the joint. Independent coordinates z = [x_0, y_0, θ_1, θ_2]
@@ -15,10 +14,11 @@ from dataclasses import dataclass, fields
 import casadi as ca
 import numpy as np
 
+from benchmarks.double_pendulum.compiled import Compiled
+from benchmarks.double_pendulum.forced_bodies import PlainCoordinates
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
-from mbkf.model.compiled import Compiled
-from mbkf.model.forced_body import LinearAcceleration, PlainCoordinates
+from mbkf.model.forced_body import LinearAcceleration
 
 EFFORTS = ("tau_1", "F_x", "F_y", "T_2")
 """Components of T_e (thesis eq. 3.58), N m, N, N, N m."""
@@ -32,7 +32,7 @@ ROOT = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 1.0
 
 @dataclass(frozen=True)
 class PendulumShape:
-    """What the bars are like.
+    """Masses and lengths of the bars.
 
     Attributes:
         mass_1_kg, mass_2_kg: Masses of the uniform bars.
@@ -53,7 +53,7 @@ class PendulumShape:
 
 @dataclass(frozen=True)
 class PointReading:
-    """Where points of the bars are: ``positions_m`` (2 M,) x, y of each, and their Jacobian (2 M, 4) by z."""
+    """Points of the bars: ``positions_m`` (2 M,) x, y of each, and their Jacobian (2 M, 4) by z."""
 
     positions_m: Array
     jacobian: Array
@@ -72,11 +72,11 @@ class Inertial:
 class DoublePendulum(PlainCoordinates):
     """Natural coordinates q̄ of the three points (thesis eq. 3.53), carried to z by q̄' = R ż; derivatives by CasADi.
 
-    Speaks :class:`mbkf.model.forced_body.ForcedBody`.
+    A :class:`mbkf.model.forced_body.ForcedBody`.
 
     Attributes:
         shape: The bars.
-        residual: Whether residual efforts are part of T_e.
+        residual: True where residual efforts are part of T_e.
         nv, nu: Degrees of freedom (4) and efforts (4, with residual 7).
     """
 

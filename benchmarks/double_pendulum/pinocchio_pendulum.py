@@ -8,10 +8,11 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 
+from benchmarks.double_pendulum.forced_bodies import PlainCoordinates
+from benchmarks.double_pendulum.pendulum import EFFORTS, RESIDUALS, PendulumShape
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
-from mbkf.model.double_pendulum import EFFORTS, RESIDUALS, PendulumShape
-from mbkf.model.forced_body import LinearAcceleration, PlainCoordinates
+from mbkf.model.forced_body import LinearAcceleration
 
 FROM_ABSOLUTE = np.array(
     [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, -1.0, 1.0]]
@@ -20,7 +21,7 @@ FROM_ABSOLUTE = np.array(
 
 
 class PinocchioPendulum(PlainCoordinates):
-    """The same body as :class:`mbkf.model.double_pendulum.DoublePendulum`, with the same arguments and results."""
+    """The body of :class:`~benchmarks.double_pendulum.pendulum.DoublePendulum`, with the same arguments and results."""
 
     nv = 4
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
+from benchmarks.double_pendulum.motions import MOTIONS, PendulumNoise, pendulum_motion, readings
+from benchmarks.double_pendulum.pendulum import DoublePendulum, PendulumShape
 from mbkf.errors import UnknownName
-from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
-from mbkf.synthesis.pendulum import MOTIONS, PendulumNoise, pendulum_motion, readings
 
 STUDY = PendulumShape(mass_1_kg=50.0, mass_2_kg=25.0)
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from benchmarks.double_pendulum.pendulum import ROOT, DoublePendulum, PendulumShape
 from mbkf.errors import InvalidInput
 from mbkf.filters.torque.integrators import Motion, runge_kutta
-from mbkf.model.double_pendulum import ROOT, DoublePendulum, PendulumShape
 from tests.derivatives import slope
 
 SHAPE = PendulumShape()

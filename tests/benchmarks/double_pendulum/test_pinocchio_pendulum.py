@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
-from mbkf.model.double_pendulum_pin import PinocchioPendulum
+from benchmarks.double_pendulum.pendulum import DoublePendulum, PendulumShape
+from benchmarks.double_pendulum.pinocchio_pendulum import PinocchioPendulum
 
 PARTS = ("a", "by_q", "by_v", "by_u")
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmarks.double_pendulum.pendulum import DoublePendulum, PendulumShape
 from mbkf.conventions import Array
 from mbkf.errors import UnknownName
-from mbkf.model.double_pendulum import DoublePendulum, PendulumShape
 from mbkf.synthesis.cameras import skin_artefact
 
 MARKER_SHARES = np.array([0.35, 0.65, 0.35, 0.65])

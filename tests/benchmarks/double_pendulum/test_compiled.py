@@ -4,7 +4,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from mbkf.model.compiled import Compiled
+from benchmarks.double_pendulum.compiled import Compiled
 
 
 @pytest.fixture
