@@ -156,9 +156,9 @@ class Scene:
         return found
 
     def made(self, kind, **changes):
-        """A block, bound to the layout of a filter that holds it."""
+        """A block, bound to the layout and body of a filter that holds it."""
         block = kind(**(self.arguments(kind) | changes))
-        block.bind(self.plant(block).layout)
+        block.bind(self.plant(block).layout, self.model)
         return block
 
     def plant(self, block):

@@ -23,7 +23,7 @@ class StraightState:
 class StraightPlant:
     """q' = q + noise, and states that blocks add."""
 
-    dt_s = 0.01
+    dt_s, model = 0.01, None
 
     def __init__(self, size, sd=0.0, blocks=()):
         extras = [extra for block in blocks for extra in block.states()]

@@ -16,7 +16,7 @@ FORCE_SD_N, MOMENT_SD_NM = 20.0, 4.0
 class Insole(mbkf.Block):
     """Readings (2, 4) of right and left foot: vertical force N, centre of pressure m."""
 
-    def bind(self, layout):
+    def bind(self, layout, body):
         self.first = layout.wrench.start
 
     def decide(self, at, frame, memory, notes):

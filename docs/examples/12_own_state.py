@@ -17,7 +17,7 @@ class Altimeter(mbkf.Block):
     def states(self):
         return [mbkf.ExtraState(DRIFT, start=np.zeros(1), start_sd=np.ones(1), walk_sd=np.array([0.02]))]
 
-    def bind(self, layout):
+    def bind(self, layout, body):
         self.layout = layout
 
     def decide(self, at, frame, memory, notes):

@@ -19,6 +19,7 @@ from mbkf.filters.innovations import Innovations, InnovationSpreads
 from mbkf.filters.once import Once
 from mbkf.filters.readings import Readings, summed
 from mbkf.kernel.covariance import correction, informed_with_rows
+from mbkf.model.body import Body
 from mbkf.numerics.kalman import correct
 from mbkf.numerics.running_spread import RunningSpread
 from mbkf.sensors.block import AnyBlock, Block, Frame, Notes, OperatingPoint, State
@@ -34,10 +35,12 @@ class Plant(Protocol[StateT]):
     """How a state moves from one frame to the next.
 
     Attributes:
+        model: The body that moves, to which blocks are bound.
         layout: Slices of its tangent state.
         dt_s: Time step.
     """
 
+    model: Body
     layout: Layout
     dt_s: float
 
@@ -197,7 +200,7 @@ class Filter(Generic[StateT]):
         self.plant, self.blocks, self.layout, self.update = plant, tuple(blocks), plant.layout, update
         self._spreads = InnovationSpreads(self.blocks, plant.dt_s)
         for block in self.blocks:
-            block.bind(self.layout)
+            block.bind(self.layout, plant.model)
         # Blocks that have something of their own to do; at these sizes empty calls count.
         self._inflating = self._with_own("inflate")
         self._reviewing = self._with_own("review")

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
+from mbkf.model.body import Body
 from mbkf.numerics.kalman import Information
 from mbkf.sensors.contact.records import ContactDecision
 from mbkf.sensors.layout import ExtraState, Layout
@@ -167,8 +168,13 @@ class Block(ABC, Generic[StateT, PreparedT, DecisionT, MemoryT]):
         """States that the block adds to the filter's."""
         return ()
 
-    def bind(self, layout: Layout) -> None:
-        """Told once which slice of the state is which; a block that speaks of added states keeps it."""
+    def bind(self, layout: Layout, body: Body) -> None:
+        """Called once by the filter; a block keeps what it needs.
+
+        Args:
+            layout: Slices of the filter's tangent state, added states among them.
+            body: The body that moves.
+        """
 
     def begin(self) -> MemoryT:
         """Memory before the first frame."""

@@ -21,6 +21,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.kernel.loading import library
+from mbkf.model.body import Body
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.contact.causal import ContactDetector
 from mbkf.sensors.contact.records import Contact, ContactDecision, FreeStance, KeptContact
@@ -130,7 +131,7 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
         self._kernel = library()
         self._first, self._feet = 0, (slice(0, 6), slice(6, 12))
 
-    def bind(self, layout: Layout) -> None:
+    def bind(self, layout: Layout, body: Body) -> None:
         """Where the wrenches stand in the state."""
         first = self._first = layout.wrench.start
         self._feet = slice(first, first + 6), slice(first + 6, first + 12)

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
+from mbkf.model.body import Body
 from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.numerics.kalman import Information, information
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint
@@ -132,7 +133,7 @@ class FootPlates(Block[ForceState, None, PlateDecision, PlateMemory]):
         self._plate = np.repeat([settings.plate_force_n, settings.plate_moment_nm], 3)
         self._air = np.repeat([settings.air_force_n, settings.air_moment_nm], 3)
 
-    def bind(self, layout: Layout) -> None:
+    def bind(self, layout: Layout, body: Body) -> None:
         """Where positions and wrenches stand in the state."""
         self._size = layout.size
         every = np.arange(layout.size)

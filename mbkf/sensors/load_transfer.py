@@ -117,7 +117,7 @@ class LoadTransfer(Block[LoadedState, None, TransferDecision, Walk]):
         weight_n = -float(model.pin_model.gravity.linear[2]) * model.mass_kg
         self._sd_n = settings.transfer_sd * weight_n * max(settings.transfer_memory_s / dt_s, 1.0) ** 0.5
 
-    def bind(self, layout: Layout) -> None:
+    def bind(self, layout: Layout, body: Body) -> None:
         """Where the wrenches stand in the state."""
         self._first = layout.wrench.start
 

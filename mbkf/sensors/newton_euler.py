@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mbkf.model.body import Body
 from mbkf.model.newton_euler import NewtonEuler
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.layout import SUPPORT, UNSEEN_MOMENT, Layout
@@ -50,7 +51,7 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
         self._support_extra, self._unseen_extra = slice(0), slice(0)
         self._sharp = 1.0 / np.repeat([settings.residual_force_n, settings.residual_moment_nm], 3)
 
-    def bind(self, layout: Layout) -> None:
+    def bind(self, layout: Layout, body: Body) -> None:
         """Where other wrenches stand: of other contacts, and of what no instrument shows, if the state has them."""
         if SUPPORT in layout:
             self._support, self._support_extra = layout[SUPPORT], layout.extra_index(SUPPORT)

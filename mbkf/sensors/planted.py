@@ -80,7 +80,7 @@ class PlantedFeet(Block[State, None, PlantedDecision, None]):
         self._dof = [model.joint(segment).v.start for segment in model.roles.feet]
         self._v = 0
 
-    def bind(self, layout: Layout) -> None:
+    def bind(self, layout: Layout, body: Body) -> None:
         """Where velocities stand in the state."""
         self._v = layout.v.start
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import BoolArray
+from mbkf.model.body import Body
 from mbkf.numerics.kalman import Information, information
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, State
 from mbkf.sensors.layout import Layout
@@ -43,7 +44,7 @@ class PostureAndRest(Block[State, None, None, None]):
         self._posture_sd = posture_scale * sensor.sd[self._free]
         self._moving, self._certainty = np.flatnonzero(~unobservable), rest_sd**-2
 
-    def bind(self, layout: Layout) -> None:
+    def bind(self, layout: Layout, body: Body) -> None:
         """Where velocities stand in the state."""
         self._nv, self._v, self._stop = layout.nv, layout.v.start + self._moving, layout.v.stop
 

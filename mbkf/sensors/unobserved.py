@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, read_only
+from mbkf.model.body import Body
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 from mbkf.sensors.layout import Layout
 from mbkf.sensors.states import AcceleratedState
@@ -51,7 +52,7 @@ class UnobservedJoints(Block[State, None, Notes, None]):
         velocity = np.clip(s.unseen_velocity_s * movement_sd, *s.unseen_velocity_range)
         return cls(velocity, s.unseen_acceleration_share * movement_sd)
 
-    def bind(self, layout: Layout) -> None:
+    def bind(self, layout: Layout, body: Body) -> None:
         """Where velocities, and accelerations after them, stand in the state."""
         self._v = layout.v.start
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mbkf.model.body import Body
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
 from mbkf.sensors.layout import UNSEEN_MOMENT, ExtraState, Layout
 from mbkf.sensors.states import LoadedState
@@ -49,7 +50,7 @@ class UnseenMoment(Block[LoadedState, None, bool, None]):
         start_sd = np.full(3, self.settings.unseen_moment_nm)
         return [ExtraState(UNSEEN_MOMENT, np.zeros(3), start_sd, np.full(3, self._walk))]
 
-    def bind(self, layout: Layout) -> None:
+    def bind(self, layout: Layout, body: Body) -> None:
         """Where it stands in the state."""
         self._slice, self._extra = layout[UNSEEN_MOMENT], layout.extra_index(UNSEEN_MOMENT)
 

@@ -17,6 +17,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import Array
+from mbkf.model.body import Body
 from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.numerics.rotations import skew
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows
@@ -90,7 +91,7 @@ class WornSensors(Block[LoadedState, None, Array | None, None]):
         """Biases and turns."""
         return self._states
 
-    def bind(self, layout: Layout) -> None:
+    def bind(self, layout: Layout, body: Body) -> None:
         """Where they stand in the state."""
         self._layout = layout
 

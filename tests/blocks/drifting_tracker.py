@@ -35,7 +35,7 @@ class DriftingTracker(Block):
         s = self.settings
         return [ExtraState(BIAS, np.zeros(3), np.full(3, s.bias_sd_m), np.full(3, s.bias_walk_m))]
 
-    def bind(self, layout):
+    def bind(self, layout, body):
         self._layout = layout
 
     def prepare(self, state, memory):

@@ -169,7 +169,7 @@ class Biased(Block):
     def states(self):
         return [ExtraState("b", np.array([0.3]), np.array([2.0]), np.array([0.7]))]
 
-    def bind(self, layout):
+    def bind(self, layout, body):
         self._row = np.zeros((1, layout.size))
         self._row[0, 0], self._row[0, layout["b"]] = 1.0, 1.0
 

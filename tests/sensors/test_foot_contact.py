@@ -16,7 +16,7 @@ from mbkf.sensors.layout import Layout
 FIRST, WEIGHT_N, DT = 6, 700.0, 0.01
 SETTINGS = FootContactSettings()
 BLOCK = FootContact(None, WEIGHT_N, DT, SETTINGS)
-BLOCK.bind(Layout.of(2, q=2, v=2, a=2, wrench=12))
+BLOCK.bind(Layout.of(2, q=2, v=2, a=2, wrench=12), None)
 MEMORY = ContactMemory((), (), float("nan"), (0.0, 0.0))
 SINGLE = (Contact.UNMEASURED, Contact.AIR, Contact.MEASURED)
 PAIRS = [*product(SINGLE, repeat=2), (Contact.SHARED, Contact.SHARED)]

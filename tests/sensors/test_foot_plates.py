@@ -28,7 +28,7 @@ def scene():
     u = body.forces(motion.q[FRAME], motion.v[FRAME], motion.a[FRAME], motion.foot_wrench[FRAME])
     plant = torque_plant(body)
     block = FootPlates(body, m.detector(), DT)
-    block.bind(plant.layout)
+    block.bind(plant.layout, plant.model)
     P = np.eye(plant.layout.size)
     return block, ForcedState(motion.q[FRAME], motion.v[FRAME], u, P), motion.foot_wrench[FRAME]
 

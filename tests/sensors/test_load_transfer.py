@@ -19,7 +19,7 @@ FREE, AIR, READ = Contact.UNMEASURED, Contact.AIR, Contact.MEASURED
 
 def block():
     made = LoadTransfer(MODEL, 1.0 / RATE_HZ)
-    made.bind(SimpleNamespace(wrench=slice(3 * MODEL.nv, 3 * MODEL.nv + 12)))
+    made.bind(SimpleNamespace(wrench=slice(3 * MODEL.nv, 3 * MODEL.nv + 12)), MODEL)
     return made
 
 

@@ -75,7 +75,7 @@ def test_the_wrench_of_other_contacts_counts_like_a_foots():
     other = [ExtraState("mine", np.zeros(2), np.ones(2), np.zeros(2))]
     plant = SingerPlant(MODEL, DT, np.zeros(MODEL.nv, dtype=bool), extras=[*other, *extras])
     block = NewtonEulerLaw(NewtonEuler(MODEL), SETTINGS)
-    block.bind(plant.layout)
+    block.bind(plant.layout, plant.model)
     wrench = np.array([20.0, -30.0, 400.0, 50.0, -80.0, 10.0])
     at = replace(state, extra=np.concatenate([[7.0, 7.0], wrench]))
     found, size = block.prepare(at, None), plant.layout.size

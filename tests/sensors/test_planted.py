@@ -54,7 +54,7 @@ def test_on_a_belt_the_point_goes_with_it():
 
 def test_a_belt_is_followed_less_closely_than_a_floor():
     block = PlantedFeet(MODEL, None, PlantedSettings(planted_speed_sd=0.03, belt_speed_share=0.1))
-    block.bind(Layout.of(MODEL.nv, q=MODEL.nv, v=MODEL.nv))
+    block.bind(Layout.of(MODEL.nv, q=MODEL.nv, v=MODEL.nv), MODEL)
     at = OperatingPoint(SimpleNamespace(q=Q, v=V), None)
     foot = Planted(MODEL.roles.feet[0], SOLES.positions(Q)[0], flat=False)
     (floor,) = block.linearise(at, PlantedDecision((foot,), ()))

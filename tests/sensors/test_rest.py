@@ -19,7 +19,7 @@ def said(unobservable=()):
     mask = np.zeros(nv, dtype=bool)
     mask[list(unobservable)] = True
     block = PostureAndRest(PostureSensor(model), mask, SCALE, REST_SD)
-    block.bind(Layout.of(nv, q=nv, v=nv, u=3))
+    block.bind(Layout.of(nv, q=nv, v=nv, u=3), model)
     state = KinematicState(moderate_pose(model, rng), rng.normal(size=nv), np.eye(2 * nv))
     return model, state, block.linearise(prepared_at(block, state), None)
 

@@ -16,7 +16,7 @@ DOFS = np.array([1, 4])
 
 
 def said(block, dofs=DOFS):
-    block.bind(Layout.of(NV, q=NV, v=NV, a=NV))
+    block.bind(Layout.of(NV, q=NV, v=NV, a=NV), None)
     at = prepared_at(block, STATE)
     return block.linearise(at, block.decide(at, None, None, notes_of(unobserved=dofs)))
 

@@ -19,7 +19,7 @@ SETTINGS = UnseenMomentSettings(40.0, 2.0)
 
 def bound(block):
     plant = SingerPlant(MODEL, DT, np.zeros(MODEL.nv, dtype=bool), extras=block.states())
-    block.bind(plant.layout)
+    block.bind(plant.layout, plant.model)
     return plant
 
 
@@ -51,7 +51,7 @@ def test_newton_s_law_counts_it_in_the_root_s_axes():
     block = UnseenMoment(DT, SETTINGS)
     plant = bound(block)
     law = NewtonEulerLaw(NewtonEuler(MODEL), NewtonEulerSettings(2.0, 0.5))
-    law.bind(plant.layout)
+    law.bind(plant.layout, plant.model)
     state = random_state(MODEL, np.random.default_rng(0), standing(MODEL))
     without, given = (
         law.prepare(replace(state, extra=m), None) for m in (np.zeros(3), np.array([5.0, -3.0, 2.0]))

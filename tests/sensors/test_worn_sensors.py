@@ -31,7 +31,7 @@ def block_of(mounts):
         SETTINGS,
     )
     plant = SingerPlant(MODEL, 0.01, np.zeros(MODEL.nv, bool), extras=block.states())
-    block.bind(plant.layout)
+    block.bind(plant.layout, plant.model)
     return block, plant
 
 

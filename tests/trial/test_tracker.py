@@ -115,7 +115,7 @@ class Barometer(mbkf.Block):
     def states(self):
         return [mbkf.ExtraState("barometer", np.zeros(1), np.ones(1), np.zeros(1))]
 
-    def bind(self, layout):
+    def bind(self, layout, body):
         self.bias, self.index = layout["barometer"].start, layout.extra_index("barometer")
 
     def decide(self, at, frame, memory, notes):

@@ -17,6 +17,7 @@ from mbkf.conventions import Array
 from mbkf.filters.filter import Plant
 from mbkf.filters.torque.integrators import Motion, integrator
 from mbkf.model.forced_body import ForcedBody, LinearAcceleration
+from mbkf.model.human_dynamics import HumanDynamics
 from mbkf.numerics.discretisation import Discrete, discretise, symmetric
 from mbkf.sensors.block import Notes
 from mbkf.sensors.layout import WRENCH, Layout
@@ -100,6 +101,8 @@ class TorquePlant(Plant[ForcedState]):
         layout = Layout.of(body.nv, q=body.nv, v=body.nv, u=body.nu)
         self.layout = layout.with_last(WRENCH, wrenches) if wrenches else layout
         self.body, self.dt_s, self.density, self.scheme = body, dt_s, density, scheme
+        if isinstance(body, HumanDynamics):  # a filter binds its blocks to the model; a pendulum has none
+            self.model = body.model
         self.drift = drift
         self._advance = integrator(scheme.integrator)
         step_s = dt_s / max(1, scheme.substeps)

@@ -151,7 +151,7 @@ class CoordinationPrior(Block[State, Mapping[int, Followed], CoordinationDecisio
         self._repeat = max(1.0, settings.coordination_errs_s / dt_s) ** 0.5
         self._v = 0
 
-    def bind(self, layout: Layout) -> None:
+    def bind(self, layout: Layout, body: Body) -> None:
         """Where velocities stand in the state."""
         self._v = layout.v.start
 

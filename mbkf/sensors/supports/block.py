@@ -98,7 +98,7 @@ class Supports(Block[LoadedState, None, SupportDecision, tuple[int, ...]]):
         """The wrench of all other contacts about the world's origin: force N, moment N m."""
         return [ExtraState(SUPPORT, np.zeros(6), self._closed, np.zeros(6))]
 
-    def bind(self, layout: Layout) -> None:
+    def bind(self, layout: Layout, body: Body) -> None:
         """Where the wrench stands in the state."""
         self._slice, self._extra = layout[SUPPORT], layout.extra_index(SUPPORT)
 

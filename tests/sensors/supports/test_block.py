@@ -28,7 +28,7 @@ def scene(**changes):
     """The block, bound; a state on a seat; where the parts are."""
     block = Supports(MODEL, DT, SupportSettings(**changes))
     plant = SingerPlant(MODEL, DT, NOWHERE, extras=block.states())
-    block.bind(plant.layout)
+    block.bind(plant.layout, plant.model)
     rng = np.random.default_rng(0)
     P = np.zeros((plant.layout.size, plant.layout.size))
     n = plant.layout[SUPPORT].start
