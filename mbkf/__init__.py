@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from mbkf.trial.inertia.estimate import InertiaEstimate, estimate_inertia
     from mbkf.trial.inertial.orient import orient
     from mbkf.trial.label import label
-    from mbkf.trial.reconstruct import Hidden, ReconstructSettings, reconstruct
+    from mbkf.trial.preparation.settings import Hidden, ReconstructSettings
+    from mbkf.trial.reconstruct import reconstruct
     from mbkf.trial.results.summary import summarise
     from mbkf.trial.scale import scale
     from mbkf.trial.synth import synthesise
@@ -40,14 +41,14 @@ _HOMES = {
     "Estimate": "mbkf.trial.tracker",
     "ExtraState": "mbkf.sensors.layout",
     "Frame": "mbkf.sensors.block",
-    "Hidden": "mbkf.trial.reconstruct",
+    "Hidden": "mbkf.trial.preparation.settings",
     "HumanModel": "mbkf.model.human",
     "InertiaEstimate": "mbkf.trial.inertia.estimate",
     "Information": "mbkf.numerics.kalman",
     "Layout": "mbkf.sensors.layout",
     "Notes": "mbkf.sensors.block",
     "OperatingPoint": "mbkf.sensors.block",
-    "ReconstructSettings": "mbkf.trial.reconstruct",
+    "ReconstructSettings": "mbkf.trial.preparation.settings",
     "Rows": "mbkf.sensors.block",
     "Tracker": "mbkf.trial.tracker",
     "batch": "mbkf.study.batch.run",

@@ -17,7 +17,8 @@ from mbkf.io.capture import read_capture
 from mbkf.io.results import Reconstruction
 from mbkf.io.results_opensim import angles_table, torques_table
 from mbkf.io.storage import read_storage
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.results.summary import summarise
 from mbkf.trial.scale import scale
 

@@ -18,7 +18,8 @@ from mbkf.io.capture import read_capture
 from mbkf.io.records import Capture
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.scale import scale
 
 MOST_OFFSET_DEG = (4.0, 6.0, 6.0)

@@ -24,7 +24,8 @@ from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
 from mbkf.synthesis.motion import TrueMotion, synthesise_motion
 from mbkf.synthesis.motions import registered_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.scale import scale
 
 SETS, MOTIONS = ("halpe26", "opencap43"), ("walk", "squat", "jump")

@@ -14,8 +14,9 @@ from mbkf.errors import MbkfError
 from mbkf.io.records import Capture
 from mbkf.io.results import Reconstruction
 from mbkf.model.protocol import Protocol
+from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.protocol.inferred import InferredSet
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.scale import scale
 
 MOST_FRAMES = 400

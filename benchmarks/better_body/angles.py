@@ -14,7 +14,8 @@ from mbkf.conventions import Array
 from mbkf.io.subject import Subject
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.synthesis.person import body_of
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 
 MOST_OF_TRUE = 1.3
 START_S = 0.2

@@ -17,7 +17,8 @@ from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.io.truth import Truth
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.synth import synthesise
 
 PERSONS = (0, 2, 3, 4)

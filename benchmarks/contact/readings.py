@@ -22,7 +22,8 @@ from mbkf.io.records import Capture, PlateReadings
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.sensors.contact.cleaning import cleaned
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.results.summary import summarise
 from mbkf.trial.synth import synthesise
 

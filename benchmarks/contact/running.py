@@ -19,7 +19,8 @@ from benchmarks.contact.withheld import MEASURED_UNTIL_S, compared, without_plat
 from mbkf.conventions import Array
 from mbkf.io.results import Reconstruction
 from mbkf.sensors.contact.records import Contact
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 
 RUNS = {
     "treadmill run": RealWalk(

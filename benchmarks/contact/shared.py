@@ -24,7 +24,8 @@ from mbkf.io.subject import Subject
 from mbkf.sensors.contact.records import Contact
 from mbkf.synthesis.capture import CaptureSettings
 from mbkf.synthesis.person import body_of
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.scale import scale
 from mbkf.trial.synth import synthesise
 

@@ -21,7 +21,8 @@ from mbkf.io.records import Capture, PlateReadings
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.scale import scale
 
 LIFTS = {"stoop1": "t169_f620f800", "stoop2": "t169_f1395f1590", "stoop3": "t169_f2101f2300"}

@@ -22,7 +22,8 @@ from mbkf.io.records import Capture
 from mbkf.io.results import Reconstruction
 from mbkf.io.subject import Subject
 from mbkf.sensors.contact.records import Contact
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 
 MODES = {
     "causal": ReconstructSettings(smooth=False),

@@ -25,7 +25,7 @@ from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
 from mbkf.synthesis.cameras import OCCLUSION_FRAMES, occlusions
 from mbkf.synthesis.capture import CaptureSettings
-from mbkf.trial.reconstruct import subject_markers
+from mbkf.trial.preparation.selection import subject_markers
 from mbkf.trial.results.summary import ROOT_DOFS
 
 FRACTIONS = (0.10, 0.27)

@@ -25,7 +25,9 @@ from mbkf.io.subject import Subject
 from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare
 from mbkf.numerics.threads import single_threaded
 from mbkf.scaling.correction import correct_markers
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct, subject_markers
+from mbkf.trial.preparation.selection import subject_markers
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 
 WORKERS = 2
 

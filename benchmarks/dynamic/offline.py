@@ -25,7 +25,7 @@ from mbkf.sensors.contact.offline import assign_feet
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 from mbkf.sensors.posture_sensor import PostureSensor
-from mbkf.trial.reconstruct import subject_markers
+from mbkf.trial.preparation.selection import subject_markers
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ from mbkf.model.newton_euler import NewtonEuler
 from mbkf.numerics.threads import single_threaded
 from mbkf.trial.preparation.filters import tracking_filter
 from mbkf.trial.preparation.inputs import trial_inputs
-from mbkf.trial.reconstruct import subject_markers
+from mbkf.trial.preparation.selection import subject_markers
 from mbkf.trial.synth import synthesise
 
 ROUNDS, QUICK_ROUNDS = 5, 1

@@ -17,8 +17,8 @@ from mbkf.trial.label import label
 from mbkf.trial.labelling.score import score
 from mbkf.trial.live.filter import LiveFilter, live_inputs
 from mbkf.trial.preparation.filters import tracking_filter
-from mbkf.trial.preparation.settings import ReconstructSettings
-from mbkf.trial.reconstruct import Hidden, reconstruct
+from mbkf.trial.preparation.settings import Hidden, ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.results.summary import summarise
 from mbkf.trial.results.truth import truth_beside
 from mbkf.trial.scale import scale

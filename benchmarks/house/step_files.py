@@ -25,7 +25,8 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.sensors.contact.records import Contact
 from mbkf.trial.preparation.filters import tracking_filter
 from mbkf.trial.preparation.inputs import trial_inputs
-from mbkf.trial.reconstruct import ReconstructSettings, subject_markers
+from mbkf.trial.preparation.selection import subject_markers
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "one_step.md"

@@ -20,19 +20,21 @@ from mbkf.numerics.threads import single_threaded
 
 FILTERS = ("dynamic", "kinematic")
 
-NOW = "mbkf.trial.preparation.filters", "mbkf.trial.preparation.inputs", "mbkf.trial.reconstruct"
-BEFORE = "mbkf.pipelines.trial.filters", "mbkf.pipelines.trial.inputs", "mbkf.pipelines.reconstruct"
-"""Modules of the filters, of their inputs and of the question, in this tree and in one from before it had places."""
+PART = "mbkf.trial.preparation."
+NOW = f"{PART}filters", f"{PART}inputs", f"{PART}settings", f"{PART}selection"
+QUESTION = "mbkf.pipelines.reconstruct"
+BEFORE = "mbkf.pipelines.trial.filters", "mbkf.pipelines.trial.inputs", QUESTION, QUESTION
+"""Modules of filters, inputs, settings and the choice of markers, in this tree and in one from before it had places."""
 
 
 def followed(folder: Path) -> tuple[Any, dict[str, Any]]:
     """The trial's recording and a filter for it by name, from where this tree keeps them."""
     homes = NOW if (Path(mbkf.__file__).parent / "trial").is_dir() else BEFORE
-    filters, inputs_of, question = (import_module(home) for home in homes)
+    filters, inputs_of, settings, selection = (import_module(home) for home in homes)
     capture = mbkf.read_capture(folder / "trial.c3d")
     subject = mbkf.read_subject(folder / "subject.toml")
-    shown = question.subject_markers(capture.markers, subject)
-    inputs, recording = inputs_of.trial_inputs(shown, capture.plates, subject, question.ReconstructSettings())
+    shown = selection.subject_markers(capture.markers, subject)
+    inputs, recording = inputs_of.trial_inputs(shown, capture.plates, subject, settings.ReconstructSettings())
     made = getattr(filters, "tracking_filter", None) or filters.follower
     return recording, {name: made(name, inputs) for name in FILTERS}
 

@@ -34,7 +34,8 @@ from mbkf.synthesis.person import body_of, synthesise_subject
 from mbkf.trial.inertial.angles import AnglesSettings, imu_angles
 from mbkf.trial.inertial.on_body import ImuOnBody
 from mbkf.trial.inertial.synth import BodyMotion
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.scale import scale
 
 SAGITTAL = tuple(f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle", "ankle_angle") for side in "rl")

@@ -26,7 +26,7 @@ from mbkf.stream.played import played_sensors
 from mbkf.stream.run.sensor_standing import SensorStanding
 from mbkf.stream.run.session import LiveSession
 from mbkf.trial.inertial.motion import InertialMotionSettings, inertial_motion
-from mbkf.trial.reconstruct import ReconstructSettings
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 SECONDS, STOOD_S, SEEDS = 14.0, 2.0, (0, 1, 2)
 

@@ -32,7 +32,8 @@ from mbkf.synthesis.motion import synthesise_motion
 from mbkf.synthesis.person import body_of, synthesise_subject
 from mbkf.trial.inertial.angles import AnglesSettings, ImuAngles, imu_angles
 from mbkf.trial.inertial.motion import InertialMotion, inertial_motion
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.scale import scale
 
 RATE_HZ, STANDING_S, SETTLED_S = 100.0, 5.0, 1.0

@@ -15,7 +15,9 @@ from mbkf.io.subject import Subject
 from mbkf.numerics.threads import single_threaded
 from mbkf.scaling import fit
 from mbkf.trial.preparation.inputs import trial_inputs
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct, subject_markers
+from mbkf.trial.preparation.selection import subject_markers
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.scale import scale
 from mbkf.trial.synth import synthesise
 

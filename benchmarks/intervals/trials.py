@@ -18,7 +18,8 @@ from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
 from mbkf.synthesis.capture import CaptureSettings
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.results.innovations import SETTLING_S
 from mbkf.trial.results.summary import ROOT_DOFS
 from mbkf.trial.scale import scale

@@ -39,7 +39,8 @@ from mbkf.model.protocol import load_protocol
 from mbkf.trial.label import labelled_capture
 from mbkf.trial.label_unscaled import label_unscaled
 from mbkf.trial.labelling.score import LabelScore, score
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.scale import scale
 
 FOLDER = "autolabel_unlabelled_fullbody"

@@ -29,7 +29,8 @@ from mbkf.io.results_folder import read_reconstruction
 from mbkf.io.subject import read_subject
 from mbkf.stream.run.folder import LOG_FOLDER
 from mbkf.trial.live.log import SUBJECT_FILE, read_live_log
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 
 MARGIN_S = 60.0
 """Beyond the length of the capture, so much time may pass before a run is given up."""

@@ -15,8 +15,8 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.trial.checks.evidence import Evidence
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import markers_alone
+from mbkf.trial.preparation.selection import subject_markers
 from mbkf.trial.preparation.settings import ReconstructSettings
-from mbkf.trial.reconstruct import subject_markers
 
 CUT_OFFS_HZ = (4.0, 5.0, 6.0, 8.0, 10.0, 12.0)
 """Cut-offs of low-passes among which every tool's best is taken; 6 Hz is what OpenSim's examples use."""

@@ -24,7 +24,8 @@ from mbkf.io.capture import read_capture
 from mbkf.io.findings import Finding
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject, read_subject
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.results import innovations
 from mbkf.trial.results.summary import summarise
 

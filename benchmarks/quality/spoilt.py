@@ -18,7 +18,8 @@ from mbkf.trial.checks.judge import plate_checks
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import Motion, markers_alone
 from mbkf.trial.preparation.other_contacts import with_other_contacts
-from mbkf.trial.reconstruct import ReconstructSettings, subject_markers
+from mbkf.trial.preparation.selection import subject_markers
+from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.synth import synthesise
 
 KNOWN = ("rajagopal walk", "rajagopal run", "gait2354", "biomechzoo HC032A", "biomechzoo HC044A")

@@ -29,7 +29,7 @@ from mbkf.stream.played import Played, played
 from mbkf.stream.run.folder import LOG_FOLDER
 from mbkf.stream.run.session import LiveOutcome, LiveSession
 from mbkf.trial.live.log import read_live_log
-from mbkf.trial.reconstruct import ReconstructSettings
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 PATIENCE_S, LINGER_S = 20.0, 0.5
 """A stream is looked for so long; after its last frame it stays so long."""

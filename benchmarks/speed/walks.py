@@ -20,8 +20,8 @@ from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.synthesis.person import body_of
 from mbkf.trial.preparation.filters import tracking_filter
 from mbkf.trial.preparation.inputs import trial_inputs
+from mbkf.trial.preparation.selection import subject_markers
 from mbkf.trial.preparation.settings import ReconstructSettings
-from mbkf.trial.reconstruct import subject_markers
 from mbkf.trial.scale import scale
 from mbkf.trial.synth import synthesise
 

@@ -86,7 +86,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.model.human import HumanModel
     from mbkf.stream.run.sensor_standing import SensorStanding
     from mbkf.stream.run.session import LiveSession
-    from mbkf.trial.reconstruct import ReconstructSettings
+    from mbkf.trial.preparation.settings import ReconstructSettings
 
     if args.seconds is not None:
         check_positive("--seconds", args.seconds)

@@ -124,7 +124,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.stream.run.session import LiveSession
     from mbkf.stream.run.standing import StandingStart
     from mbkf.trial.preparation.presets import with_preset
-    from mbkf.trial.reconstruct import ReconstructSettings
+    from mbkf.trial.preparation.settings import ReconstructSettings
 
     if args.recover is not None:
         return _recover(Path(args.recover))

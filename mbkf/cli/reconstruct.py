@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from mbkf.io.results_folder import Summary
     from mbkf.trial.inertial.on_body import ImuOnBody
-    from mbkf.trial.reconstruct import Hidden
+    from mbkf.trial.preparation.settings import Hidden
 
 _EPILOG = """\
 examples:
@@ -140,7 +140,8 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.results_folder import RESULT_FILES, write_reconstruction
     from mbkf.io.subject import read_subject
     from mbkf.trial.preparation.presets import with_preset
-    from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+    from mbkf.trial.preparation.settings import ReconstructSettings
+    from mbkf.trial.reconstruct import reconstruct
     from mbkf.trial.results.summary import summarise
     from mbkf.trial.results.truth import truth_beside
 
@@ -195,7 +196,7 @@ def parse_hide(text: str) -> Hidden:
         InvalidInput: The text is not of that form.
     """
     from mbkf.errors import InvalidInput
-    from mbkf.trial.reconstruct import Hidden
+    from mbkf.trial.preparation.settings import Hidden
 
     names, at, window = text.partition("@")
     first, colon, last = window.partition(":")

@@ -94,7 +94,7 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.subject import read_subject
     from mbkf.study.tune import TuneSettings, tune
     from mbkf.trial.preparation.presets import check_name, place_of
-    from mbkf.trial.reconstruct import ReconstructSettings
+    from mbkf.trial.preparation.settings import ReconstructSettings
 
     if args.runs < 1:
         raise InvalidInput(f"--runs must be at least 1, got {args.runs}")

@@ -35,7 +35,7 @@ from mbkf.study.tuning.parameters import PARAMETERS, TuningParameter, parameter_
 from mbkf.study.tuning.result import FLAT_FACTOR, Tuned, TunedParameter
 from mbkf.study.tuning.trial_parts import TrialPart, likelihood_per_reading, split_trials
 from mbkf.trial.axes.captures import checked_for_subject
-from mbkf.trial.reconstruct import ReconstructSettings
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,8 @@ from mbkf.model.human import HumanModel
 from mbkf.trial.label import LabelSummary, label
 from mbkf.trial.labelling.files import write_labels
 from mbkf.trial.labelling.score import score
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.results.summary import summarise
 from mbkf.trial.scale import scale
 from mbkf.trial.synth import synthesise, write_folder

@@ -27,7 +27,7 @@ from mbkf.sensors.block import NO_READINGS, AnyBlock, Frame
 from mbkf.sensors.contact.possible import without_impossible
 from mbkf.trial.live.filter import LiveFilter, LiveInputs, live_inputs, live_settings
 from mbkf.trial.preparation.filters import standard, tracking_filter
-from mbkf.trial.reconstruct import ReconstructSettings
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 
 @dataclass(frozen=True)

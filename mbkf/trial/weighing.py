@@ -16,7 +16,8 @@ from mbkf.trial.checks import mass
 from mbkf.trial.checks.judge import plate_checks
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import markers_alone
-from mbkf.trial.reconstruct import ReconstructSettings, subject_markers
+from mbkf.trial.preparation.selection import subject_markers
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 PROVISIONAL_KG = 70.0
 """A mass to scale with before it is known; scale factors and markers do not depend on it."""

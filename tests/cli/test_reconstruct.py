@@ -18,7 +18,7 @@ from mbkf.io.results import ARRAYS
 from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.storage import read_storage
 from mbkf.io.trc import read_trc
-from mbkf.trial.reconstruct import Hidden
+from mbkf.trial.preparation.settings import Hidden
 from tests.captures import made_capture
 
 pytestmark = pytest.mark.slow

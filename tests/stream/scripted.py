@@ -16,7 +16,8 @@ from mbkf.io.subject import Subject
 from mbkf.stream.played import played
 from mbkf.stream.run.session import LiveOutcome, LiveSession
 from mbkf.stream.source import PlateSamples, SourceFrame
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 
 SETTINGS = ReconstructSettings(correct_markers=False)
 

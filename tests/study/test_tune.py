@@ -12,7 +12,8 @@ from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.study.tune import TuneSettings, tune
 from mbkf.synthesis.person import body_of, synthesise_subject
 from mbkf.trial.preparation.inputs import trial_inputs
-from mbkf.trial.reconstruct import ReconstructSettings, subject_markers
+from mbkf.trial.preparation.selection import subject_markers
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 pytestmark = pytest.mark.slow
 

@@ -7,7 +7,8 @@ from mbkf.errors import NotObservable
 from mbkf.labelling.assignment import HIDDEN
 from mbkf.trial.label import label, label_summary, labelled_capture
 from mbkf.trial.labelling.score import score
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from tests.walker import unlabelled, walker
 
 pytestmark = pytest.mark.slow

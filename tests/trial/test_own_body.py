@@ -17,7 +17,8 @@ from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel, reference_body
 from mbkf.model.protocol import load_protocol
 from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.scale import scale
 from tests.captures import LEGS, MASS_KG, made_capture, only
 from tests.recordings import walker

@@ -14,7 +14,8 @@ from mbkf.errors import InvalidInput, NotObservable, UnknownName
 from mbkf.io.records import PlateReadings
 from mbkf.io.subject import STANDING_KEY
 from mbkf.model.clinical import ClinicalAngles, dof_names
-from mbkf.trial.reconstruct import Hidden, ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import Hidden, ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from tests.motions import (
     angle_errors,
     assert_near,

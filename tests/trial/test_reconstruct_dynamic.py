@@ -9,7 +9,8 @@ import pytest
 from mbkf.filters.torque.settings import preset
 from mbkf.io.results import ARRAYS
 from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
-from mbkf.trial.reconstruct import Hidden, ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import Hidden, ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from tests.dynamics import trial
 from tests.motions import angle_errors
 

@@ -9,7 +9,8 @@ import pytest
 
 from mbkf.synthesis.capture import CaptureSettings
 from mbkf.trial.preparation import inputs
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.results.summary import summarise
 from mbkf.trial.results.validity import MOST_NM_PER_KG
 from mbkf.trial.synth import synthesise

@@ -9,7 +9,7 @@ import pytest
 import mbkf
 from mbkf.errors import InvalidInput, NotObservable, ShapeError
 from mbkf.io.body_covariance import BodyCovariance
-from mbkf.trial.reconstruct import ReconstructSettings
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 FRAMES = 45
 

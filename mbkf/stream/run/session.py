@@ -28,7 +28,7 @@ from mbkf.stream.run.statistics import RunStatistics
 from mbkf.stream.source import FrameSource
 from mbkf.trial.live.filter import live_settings
 from mbkf.trial.live.worn import LiveWorn
-from mbkf.trial.reconstruct import ReconstructSettings, recorded
+from mbkf.trial.preparation.settings import ReconstructSettings, recorded
 
 RUNNING = "running"
 """State of a run in live.json until it has ended."""

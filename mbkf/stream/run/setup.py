@@ -23,7 +23,7 @@ from mbkf.trial.live.filter import LiveFilter, LiveInputs, live_inputs
 from mbkf.trial.live.labels import live_body
 from mbkf.trial.live.worn import LiveWorn
 from mbkf.trial.preparation.filters import tracking_filter
-from mbkf.trial.reconstruct import ReconstructSettings
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 
 class SensorFrames:

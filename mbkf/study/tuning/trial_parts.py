@@ -20,7 +20,8 @@ from mbkf.io.subject import Subject
 from mbkf.scaling.correction import correct_markers
 from mbkf.trial.preparation.filters import FilterInputs, tracking_filter
 from mbkf.trial.preparation.inputs import trial_inputs
-from mbkf.trial.reconstruct import ReconstructSettings, subject_markers
+from mbkf.trial.preparation.selection import subject_markers
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 SETTLING_S = 0.5
 """Innovations within this time after a start of the filter are left out."""

@@ -24,7 +24,8 @@ from mbkf.trial.inertia.prior import PLACE, inertia_prior
 from mbkf.trial.inertia.rows import STEP_S, TrialRows, trial_rows
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import markers_alone
-from mbkf.trial.reconstruct import ReconstructSettings, subject_markers
+from mbkf.trial.preparation.selection import subject_markers
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 INERTIA_KEY = "inertia"
 """Key of a subject's report under which it stands what plates told of its inertial parameters."""

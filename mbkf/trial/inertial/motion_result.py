@@ -14,7 +14,7 @@ from mbkf.io.subject import Subject
 from mbkf.model.human import HumanModel
 from mbkf.trial.inertial.motion_inputs import motion_inputs
 from mbkf.trial.preparation.settings import ReconstructSettings
-from mbkf.trial.reconstruct import assemble
+from mbkf.trial.results.assembly import assemble
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,8 @@ from mbkf.io.subject import Subject, match_names
 from mbkf.sensors.block import Frame
 from mbkf.trial.preparation.filters import FilterInputs
 from mbkf.trial.preparation.inputs import FilterSettings, trial_inputs
-from mbkf.trial.reconstruct import ReconstructSettings, subject_markers
+from mbkf.trial.preparation.selection import subject_markers
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 NUMERICAL = (np.linalg.LinAlgError, ArithmeticError, ValueError, MbkfError)
 """Errors of arithmetic on unusable readings; the filter then starts anew."""

@@ -18,7 +18,8 @@ from mbkf.numerics.threads import single_threaded
 from mbkf.trial.inertial.motion_result import Timeline, motion_result
 from mbkf.trial.live.filter import live_inputs
 from mbkf.trial.live.log import SUBJECT_FILE, Logged, read_live_log
-from mbkf.trial.reconstruct import ReconstructSettings, assemble
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.results.assembly import assemble
 
 
 def live_results(folder: Path, notes: tuple[str, ...] = ()) -> Reconstruction:

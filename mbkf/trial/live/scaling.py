@@ -23,7 +23,7 @@ from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 from mbkf.sensors.posture_sensor import PostureSensor
 from mbkf.trial.label_unscaled import label_unscaled
-from mbkf.trial.reconstruct import subject_markers
+from mbkf.trial.preparation.selection import subject_markers
 from mbkf.trial.scale import scale
 
 STILL_S = 1.0

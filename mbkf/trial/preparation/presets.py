@@ -13,7 +13,7 @@ from mbkf.filters.settings import changed, flat
 from mbkf.filters.torque.settings import SCHEMES, preset
 from mbkf.io.preset import SUFFIX, Preset, preset_folder, read_preset, saved_presets
 from mbkf.trial.preparation.filters import FILTERS
-from mbkf.trial.reconstruct import ReconstructSettings
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 SettingsT = TypeVar("SettingsT")
 

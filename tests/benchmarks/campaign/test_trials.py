@@ -10,7 +10,8 @@ from benchmarks.campaign import trials
 from benchmarks.campaign.draw import drawn
 from benchmarks.campaign.trials import error_of, outcome
 from mbkf.errors import InvalidInput
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from tests.walker import walker
 
 

@@ -7,7 +7,8 @@ import pytest
 
 from benchmarks.contact import readings
 from benchmarks.contact.readings import FAULTS, broken, curve_change, fault_rows, peak_change, refused
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from tests.walker import walker
 
 BY_NAME = {fault.name: fault for fault in FAULTS}

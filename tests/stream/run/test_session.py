@@ -21,7 +21,7 @@ from mbkf.stream.run.session import LiveSession
 from mbkf.trial.live.filter import live_inputs
 from mbkf.trial.live.results import live_results
 from mbkf.trial.preparation.filters import tracking_filter
-from mbkf.trial.reconstruct import ReconstructSettings
+from mbkf.trial.preparation.settings import ReconstructSettings
 from tests.stream.scripted import (
     Collected,
     ScriptedSource,

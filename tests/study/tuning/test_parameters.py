@@ -7,7 +7,7 @@ import pytest
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.filters.settings import flat
 from mbkf.study.tuning.parameters import PARAMETERS, parameter_names
-from mbkf.trial.reconstruct import ReconstructSettings
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 
 @pytest.mark.parametrize("kind", PARAMETERS)

@@ -6,7 +6,7 @@ import pytest
 
 from mbkf.errors import InvalidInput
 from mbkf.study.tuning.trial_parts import likelihood_per_reading, split_trials
-from mbkf.trial.reconstruct import ReconstructSettings
+from mbkf.trial.preparation.settings import ReconstructSettings
 from tests.walker import walker
 
 SETTINGS = ReconstructSettings(filter="kinematic", correct_markers=False)

@@ -18,7 +18,8 @@ from mbkf.trial.axes.captures import (
     turned_like_subject,
 )
 from mbkf.trial.axes.decision import Verdict
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.results.summary import summarise
 from mbkf.trial.scale import scale
 from tests.captures import MASS_KG, made_capture

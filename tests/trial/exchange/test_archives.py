@@ -6,7 +6,8 @@ import pytest
 from mbkf.io.c3d import read_c3d
 from mbkf.io.capture import read_capture
 from mbkf.trial.exchange.result_c3d import write_result_c3d
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.scale import scale
 
 pytestmark = pytest.mark.slow

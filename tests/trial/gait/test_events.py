@@ -18,7 +18,8 @@ from mbkf.trial.gait.events import (
     foot_events,
     plain_found,
 )
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.scale import scale
 from tests.motions import assert_near
 from tests.recordings import LOST, broken_walk, walk

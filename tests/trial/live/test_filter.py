@@ -23,7 +23,8 @@ from mbkf.trial.live.log import (
 from mbkf.trial.live.results import live_results
 from mbkf.trial.preparation.filters import FILTERS, tracking_filter
 from mbkf.trial.preparation.inputs import trial_inputs
-from mbkf.trial.reconstruct import ReconstructSettings, subject_markers
+from mbkf.trial.preparation.selection import subject_markers
+from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.scale import scale
 from tests.captures import MASS_KG, made_capture
 

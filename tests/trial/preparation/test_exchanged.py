@@ -9,7 +9,9 @@ from mbkf.io.capture import read_capture
 from mbkf.model.protocol import load_protocol
 from mbkf.scaling.verdict import DOUBTS_KEY
 from mbkf.trial.preparation.exchanged import exchange_notes, names_put_right, trials_put_right
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct, subject_markers
+from mbkf.trial.preparation.selection import subject_markers
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from mbkf.trial.results.summary import summarise
 from mbkf.trial.scale import EXCHANGED_KEY, scale
 from tests.walker import walker

@@ -7,7 +7,7 @@ import numpy as np
 from mbkf.io.body_covariance import BodyCovariance
 from mbkf.model.clinical import dof_names
 from mbkf.trial.preparation.inputs import MIN_PRESENT, trial_inputs
-from mbkf.trial.reconstruct import ReconstructSettings
+from mbkf.trial.preparation.settings import ReconstructSettings
 from tests.walker import walker
 
 

@@ -11,7 +11,7 @@ from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
 from mbkf.trial.preparation.filters import tracking_filter
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import markers_alone
-from mbkf.trial.reconstruct import ReconstructSettings
+from mbkf.trial.preparation.settings import ReconstructSettings
 from tests.dynamics import trial
 
 QUIET = CaptureSettings(markers_sd_m=0.001, skin_sd_m=0.0, occlusion=0.0, offset_n=(0.0, 0.0))

@@ -17,7 +17,8 @@ from mbkf.trial.preparation.filters import tracking_filter
 from mbkf.trial.preparation.inputs import trial_inputs
 from mbkf.trial.preparation.markers_alone import markers_alone
 from mbkf.trial.preparation.other_contacts import with_other_contacts
-from mbkf.trial.reconstruct import ReconstructSettings, reconstruct
+from mbkf.trial.preparation.settings import ReconstructSettings
+from mbkf.trial.reconstruct import reconstruct
 from tests.dynamics import trial
 from tests.supported import SEAT, seat, seated
 

@@ -6,7 +6,7 @@ from mbkf.errors import FileFormatError, InvalidInput, UnknownName
 from mbkf.filters.torque.settings import preset as torque_preset
 from mbkf.io.preset import Preset, write_preset
 from mbkf.trial.preparation.presets import BUILT_IN, check_name, place_of, with_preset
-from mbkf.trial.reconstruct import ReconstructSettings
+from mbkf.trial.preparation.settings import ReconstructSettings
 
 PLAIN = ReconstructSettings(smooth=True)
 

@@ -1,0 +1,62 @@
+"""Parts of a capture that a reconstruction reads: the subject's markers, without hidden samples and withheld plates."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mbkf.conventions import BoolArray
+from mbkf.errors import InvalidInput, NotObservable, UnknownName
+from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
+from mbkf.io.subject import Subject, match_names
+from mbkf.scaling.frames import MIN_MARKERS
+from mbkf.trial.preparation.settings import Hidden
+
+
+def subject_markers(markers: MarkerTrajectories, subject: Subject) -> MarkerTrajectories:
+    """The capture's trajectories of the subject's markers, under the subject's names.
+
+    Raises:
+        NotObservable: There are too few of them.
+    """
+    found = match_names(markers.names, subject.markers)
+    if len(found) < MIN_MARKERS:
+        raise NotObservable(
+            f"the capture has {len(found)} of the subject's markers (protocol '{subject.protocol}'; "
+            f"at least {MIN_MARKERS} are needed); its own are {', '.join(markers.names[:6]) or 'none'}"
+        )
+    return replace(markers.select(tuple(found)), names=tuple(marker.name for marker in found.values()))
+
+
+def hidden_samples(markers: MarkerTrajectories, hide: Sequence[Hidden]) -> BoolArray:
+    """(T, M) measured samples that are hidden on request.
+
+    Raises:
+        InvalidInput: A time window ends before it begins.
+        UnknownName: The subject has no marker of that name.
+    """
+    hidden = np.zeros(markers.present.shape, dtype=bool)
+    for one in hide:
+        if one.to_s < one.from_s:
+            raise InvalidInput(f"--hide: the time window {one.from_s}:{one.to_s} ends before it begins")
+        frames = (markers.times_s >= one.from_s) & (markers.times_s <= one.to_s)
+        for name in one.names:
+            if name not in markers.names:
+                raise UnknownName("marker", name, markers.names, "--hide")
+            hidden[frames, markers.names.index(name)] = True
+    return hidden & markers.present
+
+
+def plates_without(capture: Capture, without: Sequence[str]) -> tuple[PlateReadings, ...]:
+    """Plates of the capture, except those named.
+
+    Raises:
+        UnknownName: The capture has no plate of that name.
+    """
+    names = [plate.name for plate in capture.plates]
+    for name in without:
+        if name not in names:
+            raise UnknownName("plate", name, names or ["(the capture has none)"], "--without-plate")
+    return tuple(plate for plate in capture.plates if plate.name not in without)

@@ -1,0 +1,78 @@
+"""Warnings of a trial's result: of the checks, the innovations, the subject and the track."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from mbkf.conventions import BoolArray
+from mbkf.filters.tracking import Track
+from mbkf.io.findings import Finding
+from mbkf.io.results import Reconstruction
+from mbkf.io.subject import Subject
+from mbkf.scaling.verdict import DOUBTS_KEY
+from mbkf.trial.checks.judge import told
+from mbkf.trial.preparation.coverage import INFERRED_KEY
+from mbkf.trial.results import innovations
+from mbkf.trial.results.supports import supports_told
+
+
+def all_warnings(checks: Sequence[Finding], subject: Subject, found: Reconstruction) -> tuple[str, ...]:
+    """Warnings of a result, in order: of checks, innovations, the marker set, the subject file, the trial.
+
+    Args:
+        checks: The checks of the trial.
+        subject: The person.
+        found: The result, with the warnings of the trial itself.
+    """
+    report = subject.report
+    inferred, doubts = report.get(INFERRED_KEY), report.get(DOUBTS_KEY)
+    return (
+        *told(tuple(checks)),
+        *innovations.told(found),
+        *((str(inferred["told"]),) if isinstance(inferred, dict) else ()),
+        *(f"the subject file: {doubt}" for doubt in (doubts if isinstance(doubts, list) else ())),
+        *found.warnings,
+        *supports_told(found.contacts),
+    )
+
+
+def track_warnings(
+    result: Track, names: tuple[str, ...], unobservable: BoolArray, instrument: str
+) -> list[str]:
+    """Remarks on a trial.
+
+    Args:
+        result: The track.
+        names: (nv,) of the dofs.
+        unobservable: (nv,) those that no instrument tells of.
+        instrument: What tells of the others.
+    """
+    warnings = []
+    if unobservable.any():
+        listed = ", ".join(name for name, without in zip(names, unobservable, strict=True) if without)
+        warnings.append(
+            f"{int(unobservable.sum())} dofs move no {instrument} and keep the neutral posture: {listed}"
+        )
+    lost = int((~result.tracked).sum())
+    if lost:
+        warnings.append(
+            f"{lost} of {len(result.tracked)} frames have too few markers within the gate to track the body, "
+            "or most of them far from where it was"
+        )
+    if result.uncorrected.any():
+        warnings.append(
+            f"what later frames made of {int(result.uncorrected.sum())} of {len(result.tracked)} frames is no person: "
+            "they stand as the filter alone had them; readings contradict each other, see the units and the checks"
+        )
+    gone = int((~result.known[result.starts[0] :]).sum()) if result.starts else 0
+    if gone:
+        warnings.append(
+            f"in {gone} frames the readings lead to no person that moves: nothing is told of them, and they do not "
+            "count as tracked; see the units and the checks"
+        )
+    if len(result.starts) > 1:
+        warnings.append("the filter started anew at frames " + ", ".join(str(t) for t in result.starts[1:]))
+    refused = int(result.refused.sum())
+    if refused:
+        warnings.append(f"{refused} marker samples lay outside the innovation gate and were refused")
+    return warnings
