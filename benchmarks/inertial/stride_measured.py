@@ -12,9 +12,9 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.imu.key_points import NOISY_WEIGHTS, KeyPointSettings
-from mbkf.imu.zero_velocity import phases
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.imu.table import read_imu_csv
+from mbkf.numerics.runs import runs
 from mbkf.trial.inertial.stride import FootResult, StrideSettings, measure_strides
 
 FOLDER, RATE_HZ = "imu_gaitmap_foot", 204.8
@@ -114,7 +114,7 @@ def compare_one(
     rests = [
         float(foot.time_s[stop - 1] - foot.time_s[start])
         for foot in feet.values()
-        for start, stop in phases(foot.still)
+        for start, stop in runs(foot.still)
     ]
     return Compared(
         name, found[:, 0], found[:, 1], np.array([one.length_m for one in reference]), np.array(rests)
@@ -123,7 +123,7 @@ def compare_one(
 
 def matched(foot: FootResult, reference: ReferenceStride) -> tuple[float, float]:
     """Length between the rests nearest to the reference's events, and its standard deviation; NaN if one is missing."""
-    rests = phases(foot.still)
+    rests = runs(foot.still)
     ends = [_nearest(foot, rests, at) for at in (reference.start_s, reference.end_s)]
     if None in ends or ends[0] == ends[1]:
         return math.nan, math.nan

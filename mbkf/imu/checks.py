@@ -12,10 +12,11 @@ from typing import Literal
 
 import numpy as np
 
-from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
+from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.errors import InvalidInput
 from mbkf.imu.frames import exponential, multiply, rotate
 from mbkf.io.imu.readings import ImuReadings
+from mbkf.numerics.runs import runs
 
 STUCK_S = 0.5
 """An axis that repeats one value for so long, while the sensor moves, is stuck."""
@@ -128,12 +129,12 @@ def _time_problems(one: ImuReadings) -> list[Problem]:
 
 
 def _gaps(one: ImuReadings, name: str, values: Array) -> list[Problem]:
-    runs = _runs(np.any(np.isnan(values), axis=1))
-    if not runs:
+    gaps = runs(np.any(np.isnan(values), axis=1))
+    if not gaps:
         return []
-    start, end = max(runs, key=lambda run: run[1] - run[0])
+    start, end = max(gaps, key=lambda run: run[1] - run[0])
     text = (
-        f"sensor {one.name}: the {name} has {len(runs)} gaps, the longest {(end - start) / one.rate_hz:.3g} s at "
+        f"sensor {one.name}: the {name} has {len(gaps)} gaps, the longest {(end - start) / one.rate_hz:.3g} s at "
         f"{one.time_s[start]:.2f} s; check the radio link or export again; the filter bridges them"
     )
     return [Problem(one.name, "gap", text, False)]
@@ -147,9 +148,9 @@ def _stuck(one: ImuReadings, name: str, values: Array) -> list[Problem]:
     for axis in range(3):
         others = [k for k in range(3) if k != axis]
         moving = np.logical_not(np.all(same[:, others], axis=1))
-        runs = [(a, b) for a, b in _runs(same[:, axis]) if b - a >= least and moving[a:b].mean() > _MOVING]
-        if runs:
-            start, end = max(runs, key=lambda run: run[1] - run[0])
+        stuck = [(a, b) for a, b in runs(same[:, axis]) if b - a >= least and moving[a:b].mean() > _MOVING]
+        if stuck:
+            start, end = max(stuck, key=lambda run: run[1] - run[0])
             text = (
                 f"sensor {one.name}: axis {'xyz'[axis]} of the {name} is stuck at {values[start, axis]:.4g} "
                 f"for {(end - start) / one.rate_hz:.3g} s from {one.time_s[start]:.2f} s; blank those cells or replace "
@@ -164,18 +165,18 @@ def _saturated(one: ImuReadings, name: str, values: Array) -> list[Problem]:
     for axis in range(3):
         series = values[:, axis]
         for limit in (np.nanmax(series), np.nanmin(series)):
-            runs = _runs(series == limit)
-            count, longest = sum(b - a for a, b in runs), max(b - a for a, b in runs)
+            full = runs(series == limit)
+            count, longest = sum(b - a for a, b in full), max(b - a for a, b in full)
             often = count >= SATURATED_SAMPLES and (longest > 1 or count >= _SCATTERED)
             if not often or abs(limit) < _LEAST_RANGES[name]:
                 continue
-            if any(b - a >= STUCK_S * one.rate_hz for a, b in runs):
+            if any(b - a >= STUCK_S * one.rate_hz for a, b in full):
                 continue  # a stuck axis, reported elsewhere
-            share = sum(b - a for a, b in runs)
+            share = sum(b - a for a, b in full)
             unit, size = ("deg/s", limit / _DEGREE) if name == "gyroscope" else ("g", limit / GRAVITY_M_S2)
             text = (
                 f"sensor {one.name}: axis {'xyz'[axis]} of the {name} is saturated at {size:.4g} {unit} in "
-                f"{share} samples (first at {one.time_s[runs[0][0]]:.2f} s); record with a wider range, angles after a "
+                f"{share} samples (first at {one.time_s[full[0][0]]:.2f} s); record with a wider range, angles after a "
                 "clipped turn are off"
             )
             found.append(Problem(one.name, "saturated", text, False))
@@ -251,9 +252,3 @@ def _windows(one: ImuReadings) -> tuple[Array, Array] | None:
     busy = (rates[whole] ** 2).sum(axis=(1, 2))
     most = whole[np.argsort(busy)[-max(_MOST_WINDOWS // 4, len(busy) // 2) :][-_MOST_WINDOWS:]]
     return (rates[most], force[most]) if len(most) else None
-
-
-def _runs(flags: BoolArray) -> list[tuple[int, int]]:
-    """Stretches [start, end) where a flag is set."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(int)))
-    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]

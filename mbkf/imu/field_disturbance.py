@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.imu.zero_velocity import phases
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.numerics.cardan import quaternion_matrices
+from mbkf.numerics.runs import runs
 
 SIZE_SHARE, DIP_RAD = 0.2, 0.26
 """A field that differs from the usual one by more, in size or dip, is disturbed."""
@@ -34,7 +34,7 @@ def field_remarks(one: ImuReadings, quaternion: Array) -> tuple[str, ...]:
     disturbed = np.maximum(np.abs(off_size) / SIZE_SHARE, np.abs(off_dip) / DIP_RAD)
     window = max(1, round(MEAN_S * one.rate_hz))
     mean = np.convolve(np.where(known, disturbed, 0.0), np.ones(window) / window, mode="same")
-    long = [(a, b) for a, b in phases(mean > 1.0) if b - a >= SHORTEST_S * one.rate_hz]
+    long = [(a, b) for a, b in runs(mean > 1.0) if b - a >= SHORTEST_S * one.rate_hz]
     if not long:
         return ()
     share = sum(b - a for a, b in long) / one.samples

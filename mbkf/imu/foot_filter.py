@@ -18,9 +18,9 @@ import pinocchio as pin
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.errors import InvalidInput
 from mbkf.imu.frames import attitude
-from mbkf.imu.zero_velocity import phases
 from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.numerics.kalman import Information, correct
+from mbkf.numerics.runs import runs
 
 SIZE = 18
 V, P, LEVER, ROTATION, GYRO_BIAS, ACC_BIAS = (slice(k, k + 3) for k in range(0, SIZE, 3))
@@ -302,10 +302,10 @@ def _first_stance(
     f: Array, w: Array, rate_hz: float, still: BoolArray, rolling: BoolArray | None
 ) -> tuple[int, int]:
     """First sample, and the one after the last, of the first rest; without any, of the calmest of early stances."""
-    rests = phases(still)
+    rests = runs(still)
     if rests:
         return rests[0]
-    stances = [] if rolling is None else phases(rolling)
+    stances = [] if rolling is None else runs(rolling)
     if not stances:
         raise InvalidInput("the foot never stands still, so nothing holds its velocity; check rate and units")
     early = [one for one in stances if one[0] <= stances[0][0] + _EARLY_S * rate_hz]

@@ -14,7 +14,7 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.imu.foot_filter import READ, SIZE, FootRun, FootState, FootStep, P
 from mbkf.imu.frames import matrix_quaternion
-from mbkf.imu.zero_velocity import phases
+from mbkf.numerics.runs import runs
 from mbkf.numerics.smoothing import BackwardPass
 
 
@@ -40,7 +40,7 @@ class FootTrack:
 
 def rest_middles(still: BoolArray) -> list[int]:
     """Sample in the middle of each run of true values in a mask (T,)."""
-    return [(start + stop - 1) // 2 for start, stop in phases(still)]
+    return [(start + stop - 1) // 2 for start, stop in runs(still)]
 
 
 def filtered_track(run: FootRun) -> FootTrack:

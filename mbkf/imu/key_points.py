@@ -23,7 +23,7 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput
 from mbkf.imu.frames import attitude, exponential, rotate
-from mbkf.imu.zero_velocity import phases
+from mbkf.numerics.runs import runs
 
 USUAL_WEIGHTS, NOISY_WEIGHTS = (0.1, 0.45, 0.45), (0.2, 0.4, 0.4)
 """α_σ, α_μ (s²/m) and α_ω (s/rad) as the study has them: in general, and for noise and drift together."""
@@ -206,7 +206,7 @@ def _bias(w: Array, key: BoolArray, settings: KeyPointSettings) -> Array:
     """(3,) mean angular velocity (T, 3) of the first rest."""
     if settings.still_s == 0.0:
         return np.zeros(3)
-    start, stop = phases(key)[0]
+    start, stop = runs(key)[0]
     size = max(1, round(settings.still_s * settings.rate_hz))
     mean: Array = w[start : min(stop, start + size)].mean(axis=0)
     return mean
@@ -225,7 +225,7 @@ def _between_key_points(gravity: Array, key: BoolArray, angle: Array, loss: floa
     # A vector fixed in the world turns against the sensor; a step reaches from middle to middle of two windows.
     halfway = exponential(-0.5 * (angle[1:] + angle[:-1]))
     back = halfway * np.array([-1.0, -1.0, -1.0, 1.0])
-    for start, stop in phases(~key):
+    for start, stop in runs(~key):
         forwards, backwards = found.copy(), found.copy()
         if start > 0:
             for k in range(start, stop):

@@ -12,8 +12,8 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput
-from mbkf.imu.zero_velocity import phases
 from mbkf.numerics.cardan import quaternion_matrices
+from mbkf.numerics.runs import runs
 
 SHORTEST_M = 0.15
 """Shorter movements (shifts of weight, shuffling on the spot) are no strides."""
@@ -85,7 +85,7 @@ def find_strides(
     """
     if not shortest_m >= 0.0:
         raise InvalidInput(f"the shortest stride must be 0 m or more, got {shortest_m}")
-    rests = phases(still)
+    rests = runs(still)
     step_s = float(time_s[1] - time_s[0]) if len(time_s) > 1 else 0.0
     half_s = _half_rest(rests, step_s)
     strides = []

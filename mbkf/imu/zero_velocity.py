@@ -12,6 +12,7 @@ import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
 from mbkf.errors import InvalidInput
+from mbkf.numerics.runs import runs
 
 _POSITIVE = (
     "window_s", "acceleration_m_s2", "angular_rate_rad_s", "threshold", "longest_swing_s", "rolling_threshold",
@@ -126,7 +127,7 @@ def rolling_samples(
     unsteady = unrest(specific_force_mps2, angular_velocity_rad_s, rate_hz, short)
     found, reach = np.zeros(len(still), dtype=bool), max(1, round(0.5 * settings.rolling_s * rate_hz))
     apart = max(1, round(settings.rolling_apart_s * rate_hz))
-    for start, stop in phases(~still):
+    for start, stop in runs(~still):
         if stop - start < settings.longest_swing_s * rate_hz:
             continue
         calm = -np.log(unsteady[start:stop] + 1e-9)
@@ -135,10 +136,3 @@ def rolling_samples(
             if (start == 0 or k - start >= apart) and (stop == len(still) or stop - k >= apart):
                 found[max(start, k - reach) : min(stop, k + reach + 1)] = True
     return found
-
-
-def phases(mask: BoolArray) -> list[tuple[int, int]]:
-    """First sample, and the one after the last, of each run of true values in a mask (T,)."""
-    edges = np.diff(np.concatenate([[0], np.asarray(mask, dtype=np.int8), [0]]))
-    starts, stops = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
-    return [(int(a), int(b)) for a, b in zip(starts, stops, strict=True)]

@@ -6,6 +6,7 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import InvalidInput, UnknownName
+from mbkf.numerics.runs import spread_indices
 
 METRES_PER_UNIT = {"mm": 1e-3, "cm": 1e-2, "dm": 1e-1, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 """Length units a file may state, and their size in metres."""
@@ -155,7 +156,7 @@ def body_extent_m(positions_m: Array) -> float:
     Returns:
         Extent in m, NaN where no frame has four markers.
     """
-    chosen = np.unique(np.linspace(0, len(positions_m) - 1, _CHECKED_FRAMES).astype(int))
+    chosen = spread_indices(len(positions_m), _CHECKED_FRAMES)
     extents = []
     for points in positions_m[chosen] if len(positions_m) else ():
         seen = points[~np.isnan(points).any(axis=1)]

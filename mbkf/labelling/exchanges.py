@@ -17,6 +17,7 @@ import numpy as np
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.numerics.percentiles import known_percentiles
+from mbkf.numerics.runs import runs, spread_indices
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 if TYPE_CHECKING:
@@ -128,7 +129,7 @@ def observed_distances(positions_m: Array, distances: Distances) -> Distances:
         positions_m: (T, M, 3) named trajectories, NaN where hidden, exchanged in the fewer of the frames.
         distances: What is expected of pairs that are never seen together.
     """
-    looks = np.unique(np.linspace(0, len(positions_m) - 1, LOOKS).astype(int))
+    looks = spread_indices(len(positions_m), LOOKS)
     apart = np.sqrt(np.maximum(_squared(positions_m[looks]), 0.0))
     low, middle, high = known_percentiles(apart, (10.0, 50.0, 90.0))
     seen = (~np.isnan(apart)).sum(axis=0) >= FEW
@@ -200,7 +201,7 @@ def misfits(positions_m: Array, distances: Distances) -> tuple[Array, Array]:
 
 def _suspects(shown_m: Array, distances: Distances, turning: BoolArray) -> Indices:
     """(P, 2) pairs that fit better the other way round in some frame looked at, or whose δ turns about (M, M)."""
-    looks = np.unique(np.linspace(0, len(shown_m) - 1, LOOKS).astype(int))
+    looks = spread_indices(len(shown_m), LOOKS)
     near, frames = distances.neighbours, shown_m[looks]
     count = shown_m.shape[1]
     apart = np.sqrt(np.maximum(_squared(frames), 0.0))  # (F, M, M)
@@ -248,7 +249,7 @@ def _chosen(shown_m: Array, distances: Distances, pairs: Indices) -> list[Exchan
     tried = []
     for p, (a, b) in enumerate(pairs):
         kept = np.zeros(len(shown_m), dtype=bool)
-        for first, end in _runs(state[:, p]):
+        for first, end in runs(state[:, p]):
             there = slice(first, end)
             looked = stored[there, p] > 0.0
             both = ~np.isnan(delta[there, p, 0])
@@ -315,9 +316,3 @@ def _likeliest(gain: Array, turn: Array) -> BoolArray:
     for t in range(frames - 1, 0, -1):
         state[t - 1] = state[t] ^ came[t, state[t].astype(int), every]
     return state
-
-
-def _runs(state: BoolArray) -> list[tuple[int, int]]:
-    """First frame and the frame after the last of every run of True."""
-    edges = np.diff(np.concatenate([[0], state.astype(int), [0]]))
-    return list(zip(np.flatnonzero(edges == 1).tolist(), np.flatnonzero(edges == -1).tolist(), strict=True))

@@ -14,6 +14,7 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.labelling.assignment import Indices
 from mbkf.labelling.tracks import Tracks
+from mbkf.numerics.runs import spread_indices
 
 LOOKS = 160
 """Frames, spread over the capture, from which distances are learnt."""
@@ -61,7 +62,7 @@ def choose_keyframes(points_m: Array, tracks: Tracks, frame: int, count: int) ->
     Returns:
         None where the frame shows fewer than three tracks that may be a body's.
     """
-    looks = np.unique(np.append(np.linspace(0, len(points_m) - 1, LOOKS).astype(int), frame))
+    looks = np.union1d(spread_indices(len(points_m), LOOKS), frame)
     every = tracks.positions(points_m, looks)
     there = ~np.isnan(every[:, :, 0])
     own = there[np.searchsorted(looks, frame)] & (there.mean(axis=0) >= MIN_SHOWN) & moving(every)

@@ -10,6 +10,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.placing import likeness
 from mbkf.labelling.tracks import Tracks
+from mbkf.numerics.runs import spread_indices
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 from mbkf.sensors.posture_sensor import PostureSensor
@@ -55,7 +56,7 @@ def name_tracks(
         tracks: Their tracks.
         owner: (count,) marker of the tracks named so far.
     """
-    looks = np.unique(np.linspace(0, len(points_m) - 1, LOOKS).astype(int))
+    looks = spread_indices(len(points_m), LOOKS)
     seen = tracks.positions(points_m, looks)
     known = trajectories(points_m, tracks, owner, len(sd_m))[looks]
     evidence = _evidence(sensor, sd_m, seen, known)

@@ -16,6 +16,7 @@ from mbkf.conventions import Array
 from mbkf.labelling.assignment import Indices
 from mbkf.labelling.first_frame import FirstFrameSearch
 from mbkf.labelling.tracklets import Tracklets
+from mbkf.numerics.runs import spread_indices
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 
 LOOKS = 16
@@ -47,7 +48,8 @@ def renamed(search: FirstFrameSearch, markers_m: Array, q: Array) -> Indices:
         markers_m: (T, M, 3) labelled trajectories, NaN where hidden.
         q: (T, nq) poses, NaN where the body was not tracked.
     """
-    looks = _spread(np.flatnonzero(~np.isnan(q).any(axis=1)), LOOKS)
+    followed = np.flatnonzero(~np.isnan(q).any(axis=1))
+    looks = followed[spread_indices(len(followed), LOOKS)]
     name = np.arange(markers_m.shape[1])
     shown = markers_m[looks]
     worth, poses = _worth(search, shown, q[looks])
@@ -87,7 +89,8 @@ def exchanged(
             for together in _overlapping(np.flatnonzero((label == a) | (label == b)), tracklets):
                 spans = tracklets.spans[together]
                 first, end = int(spans[:, 0].min()), int(spans[:, 1].max())
-                looks = _spread(first + np.flatnonzero(np.asarray(followed)[first:end]), FEW_LOOKS)
+                there = first + np.flatnonzero(np.asarray(followed)[first:end])
+                looks = there[spread_indices(len(there), FEW_LOOKS)]
                 if _likelier_exchanged(search, markers_m[looks], q[looks], a, b):
                     label[together] = a + b - label[together]
     return label
@@ -121,13 +124,6 @@ def _freely(search: FirstFrameSearch, markers_m: Array, q: Array) -> float:
 def _fit(search: FirstFrameSearch, markers_m: Array, start: Array) -> Array:
     fit = fit_pose(search.sensor, search.posture, markers_m, search.sd_m, start, max_iterations=10)
     return fit.q
-
-
-def _spread(frames: Indices, most: int) -> Indices:
-    """A few of the frames from the first to the last."""
-    if not len(frames):
-        return frames
-    return frames[np.unique(np.linspace(0, len(frames) - 1, most).astype(int))]
 
 
 def _moved(markers_m: Array, old: int, new: int) -> Array:

@@ -10,6 +10,7 @@ from scipy.optimize import linear_sum_assignment
 from mbkf.conventions import Array, BoolArray
 from mbkf.labelling.assignment import HIDDEN, Indices, squared_distances
 from mbkf.labelling.tracklets import SURE, linked
+from mbkf.numerics.runs import spread_indices
 
 GAP_S, GAP_M = 0.25, 0.030
 """A tracklet goes on with one that begins no later than this, and no further from where it was heading."""
@@ -116,9 +117,8 @@ def follow(points_m: Array, rate_hz: float) -> Tracks:
 
 def columns_are_tracks(points_m: Array) -> bool:
     """Whether the columns of a capture (T, C, 3) hold the same physical point from frame to frame."""
-    looks = np.unique(np.linspace(1, len(points_m) - 1, LOOKS).astype(int))
     same = stay = 0
-    for t in looks[looks > 0]:
+    for t in spread_indices(len(points_m), LOOKS, first=1):
         both = ~np.isnan(points_m[t - 1 : t + 1]).any(axis=(0, 2))
         stay += int(both.sum())
         same += int(continued(points_m[t - 1], points_m[t])[both].sum())

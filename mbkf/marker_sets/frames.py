@@ -8,6 +8,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.io.records import MarkerTrajectories
+from mbkf.numerics.runs import spread_indices
 
 SPREAD = 16
 """Frames of a movement that are looked at."""
@@ -45,7 +46,7 @@ def spread_frames(trials: Sequence[MarkerTrajectories], names: Sequence[str]) ->
         columns = _in_order(one, names)
         seen = (~np.isnan(columns[:, :, 0])).sum(axis=1)
         good = np.flatnonzero(seen >= 0.5 * seen.max(initial=0))
-        chosen.append(columns[good[np.unique(np.linspace(0, len(good) - 1, SPREAD).astype(int))]])
+        chosen.append(columns[good[spread_indices(len(good), SPREAD)]])
     return np.concatenate(chosen)
 
 

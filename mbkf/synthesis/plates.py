@@ -9,6 +9,7 @@ import numpy as np
 from mbkf.conventions import SIDES, Array
 from mbkf.io.records import CaptureEvent, PlateReadings
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N, centre_of_pressure
+from mbkf.numerics.runs import runs
 
 SIZE_M = (0.50, 0.40)
 GAP_M = 0.005
@@ -63,7 +64,7 @@ def placements(wrench: Array, surface_m: Array) -> list[Placement]:
     found: list[Placement] = []
     for side in range(len(SIDES)):
         own: list[Placement] = []
-        for start, end in spells(wrench[:, side, 2] > 0):
+        for start, end in runs(wrench[:, side, 2] > 0):
             force, moment = wrench[start:end, side, :3], wrench[start:end, side, 3:]
             height = surface_m[start:end, side, None]
             lever = np.column_stack([-moment[:, 1], moment[:, 0]]) + height * force[:, :2]
@@ -81,12 +82,6 @@ def placements(wrench: Array, surface_m: Array) -> list[Placement]:
 
 def _same_spot(a: Placement, b: Placement) -> bool:
     return bool(a.surface_m == b.surface_m and np.linalg.norm(a.middle - b.middle) < SAME_PLACE_M)
-
-
-def spells(on: np.ndarray) -> list[tuple[int, int]]:
-    """(start, end) of the runs of True in a (S,) condition."""
-    edges = np.flatnonzero(np.diff(np.r_[False, on, False].astype(int)))
-    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
 
 
 def outlines(placed: list[Placement]) -> list[Array]:
@@ -221,7 +216,7 @@ def contact_events(wrench: Array, rate_hz: float) -> tuple[CaptureEvent, ...]:
     """Foot strikes and foot offs inside the recording, in order of time."""
     events = []
     for side, context in enumerate(("Right", "Left")):
-        for start, end in spells(wrench[:, side, 2] > 0):
+        for start, end in runs(wrench[:, side, 2] > 0):
             if start > 0:
                 events.append(CaptureEvent("Foot Strike", context, start / rate_hz))
             if end < len(wrench):

@@ -16,6 +16,7 @@ from mbkf.io.subject import Subject
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.first_frame import FirstFrame, labelled
 from mbkf.labelling.running import RunningSettings
+from mbkf.numerics.runs import spread_indices
 from mbkf.numerics.threads import single_threaded
 from mbkf.trial.labelling.any_attitude import STAGE, AnyAttitude
 from mbkf.trial.labelling.body import LabelBody, label_body
@@ -253,7 +254,7 @@ def _likeliest(
 def _likelihood(body: LabelBody, run: _Run) -> float:
     """Worth of a run's labels, summed over a few frames."""
     total, shown = 0.0, run.labelling.markers.positions_m
-    for t in np.unique(np.linspace(0, len(shown) - 1, COMPARED).astype(int)):
+    for t in spread_indices(len(shown), COMPARED):
         if not np.isnan(run.q[t]).any():
             total += body.search.worth(shown[t], run.q[t])
     return total

@@ -23,6 +23,7 @@ from mbkf.labelling.naming import name_tracks, trajectories
 from mbkf.labelling.tracks import Tracks, follow
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import Protocol, load_protocol
+from mbkf.numerics.runs import spread_indices
 from mbkf.numerics.threads import single_threaded
 from mbkf.scaling.fit import scale_subject
 from mbkf.scaling.naming import Naming, NamingProblem
@@ -201,8 +202,8 @@ class _Search:
 
     def _nameless(self, owner: Indices) -> int:
         """How many tracks without a label are seen in half of the frames, and move where most do."""
-        lives, looks = self._tracks.lives(), np.linspace(0, len(self._points_m) - 1, LOOKS).astype(int)
-        moves = moving(self._tracks.positions(self._points_m, np.unique(looks)))
+        lives, looks = self._tracks.lives(), spread_indices(len(self._points_m), LOOKS)
+        moves = moving(self._tracks.positions(self._points_m, looks))
         return int(((owner == HIDDEN) & (lives.mean(axis=1) >= 0.5) & moves).sum())
 
     def _problem(self, owner: Indices) -> NamingProblem:

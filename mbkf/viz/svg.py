@@ -9,9 +9,9 @@ from html import escape
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mbkf.conventions import Array
+from mbkf.numerics.runs import runs
 
 WIDTH, HEIGHT = 340.0, 150.0
 LEFT, RIGHT, TOP, BOTTOM = 40.0, 8.0, 24.0, 20.0
@@ -245,17 +245,12 @@ def _side(side: str) -> str:
     return side or "m"
 
 
-def _runs(known: NDArray[np.bool_]) -> list[slice]:
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]])))
-    return [slice(first, last) for first, last in zip(edges[::2], edges[1::2], strict=True)]
-
-
 _TENTHS = 'transform="scale(.1)"'
 
 
 def _path(box: _Box, line: Line) -> str:
     known = np.isfinite(line.y)
-    d = "".join(box.path(*_thinned(line.x[run], line.y[run], box.width)) for run in _runs(known))
+    d = "".join(box.path(*_thinned(line.x[a:b], line.y[a:b], box.width)) for a, b in runs(known))
     return (
         f'<path {_TENTHS} class="{"thin" if line.thin else "line"} {_side(line.side)}'
         f'{" dashed" if line.dashed else ""}" d="{d}"/>'
@@ -268,10 +263,10 @@ def _band(box: _Box, line: Line, sd: Array | None, kind: str) -> str:
     if sd is None:
         return ""
     d = ""
-    for run in _runs(np.isfinite(line.y) & np.isfinite(sd)):
-        if run.stop - run.start < 2:
+    for first, end in runs(np.isfinite(line.y) & np.isfinite(sd)):
+        if end - first < 2:
             continue
-        step = max(1, 2 * (run.stop - run.start) // round(box.width))
+        run, step = slice(first, end), max(1, 2 * (end - first) // round(box.width))
         x, y, wide = line.x[run][::step], line.y[run][::step], 2.0 * sd[run][::step]
         d += box.path(np.concatenate([x, x[::-1]]), np.concatenate([y + wide, (y - wide)[::-1]])) + "z"
     return f'<path {_TENTHS} class="{kind} {_side(line.side)}" d="{d}"/>' if d else ""

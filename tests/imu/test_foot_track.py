@@ -15,7 +15,7 @@ from mbkf.imu.foot_filter import (
 )
 from mbkf.imu.foot_track import filtered_track, rest_middles, smoothed_track
 from mbkf.imu.strides import find_strides
-from mbkf.imu.zero_velocity import phases
+from mbkf.numerics.runs import runs
 from tests.foot_walks import foot_walk
 
 pytestmark = pytest.mark.slow
@@ -56,7 +56,7 @@ def test_the_smoother_knows_in_the_swing_what_the_next_rest_will_say():
     walk = foot_walk((1.2,) * 6, force_noise_m_s2=0.5, rate_noise_rad_s=0.1, seed=5)
     run = run_of(walk)
     truth = np.gradient(walk.position_m, 1.0 / walk.readings.rate_hz, axis=0)
-    late = [start - 3 for start, _ in phases(walk.still)[1:]]
+    late = [start - 3 for start, _ in runs(walk.still)[1:]]
     speed = {
         name: np.linalg.norm(track.velocity_m_s[late], axis=1) - np.linalg.norm(truth[late], axis=1)
         for name, track in (("filter", filtered_track(run)), ("smoother", smoothed_track(run)))
@@ -88,7 +88,7 @@ def test_certainty_of_the_ways_is_that_of_the_joint_gaussian():
         reach[k] = np.tensordot(steps[k].Phi, reach[k - 1], axes=(1, 0))
         reach[k, :, k] = np.eye(SIZE)
     entering = np.zeros((N, SIZE, N, SIZE))
-    start = slice(*phases(walk.still)[0])
+    start = slice(*runs(walk.still)[0])
     f, w = walk.readings.specific_force_mps2, walk.readings.angular_velocity_rad_s
     _, entering[0, :, 0] = _start(f[start], w[start], walk.readings.rate_hz, SETTINGS, True)
     for k in range(1, N):

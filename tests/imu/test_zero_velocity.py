@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.errors import InvalidInput
-from mbkf.imu.zero_velocity import StillnessSettings, phases, still_samples, unrest
+from mbkf.imu.zero_velocity import StillnessSettings, still_samples, unrest
+from mbkf.numerics.runs import runs
 from tests.foot_walks import foot_walk
 
 SETTINGS = StillnessSettings()
@@ -22,7 +23,7 @@ def readings_of(walk):
 def test_the_rests_of_a_walk_are_found_at_any_rate(rate_hz):
     walk = foot_walk(rate_hz=rate_hz, force_noise_m_s2=0.05, rate_noise_rad_s=0.01)
     found = still_samples(*readings_of(walk), SETTINGS)
-    assert len(phases(found)) == len(phases(walk.still)) == 4
+    assert len(runs(found)) == len(runs(walk.still)) == 4
     assert (found == walk.still).mean() > 0.9
 
 
@@ -45,16 +46,16 @@ def test_short_rests_are_none_and_short_movements_are_bridged():
     w[120:200] = 3.0
     w[250:] = 3.0
     settings = StillnessSettings(window_s=0.02, bridge_s=0.15, shortest_s=0.1)
-    assert phases(still_samples(f, w, 100.0, settings)) == [(0, 119), (201, 249)]
+    assert runs(still_samples(f, w, 100.0, settings)) == [(0, 119), (201, 249)]
     longer = StillnessSettings(window_s=0.02, bridge_s=0.15, shortest_s=0.6)
-    assert phases(still_samples(f, w, 100.0, longer)) == [(0, 119)]
+    assert runs(still_samples(f, w, 100.0, longer)) == [(0, 119)]
 
 
 @given(st.lists(st.booleans(), max_size=40))
 def test_phases_are_the_runs_of_a_mask(bits):
     mask = np.array(bits, dtype=bool)
     again = np.zeros_like(mask)
-    for start, stop in phases(mask):
+    for start, stop in runs(mask):
         assert start < stop
         assert start == 0 or not mask[start - 1]
         assert stop == len(mask) or not mask[stop]
@@ -79,6 +80,6 @@ def test_a_foot_that_never_rests_may_stand_where_it_is_stillest():
     rolling = rolling_samples(f, w, one.rate_hz, still, settings)
     assert not (rolling & still).any()
     speed = np.linalg.norm(np.gradient(foot.position_m, 1.0 / one.rate_hz, axis=0), axis=1)
-    stances = phases(still | rolling)
+    stances = runs(still | rolling)
     assert sum(speed[a:b].min() < 0.3 for a, b in stances) >= 8
     assert not rolling_samples(f, w, one.rate_hz, np.ones_like(still), settings).any()

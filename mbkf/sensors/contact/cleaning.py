@@ -15,7 +15,8 @@ from mbkf.conventions import GRAVITY_M_S2, BoolArray
 from mbkf.io.records import PlateReadings
 from mbkf.io.turning import plate_normal
 from mbkf.io.wrench import centre_of_pressure
-from mbkf.sensors.contact.faults import NO_FAULT, bridged, faults_of, runs
+from mbkf.numerics.runs import runs
+from mbkf.sensors.contact.faults import NO_FAULT, bridged, faults_of
 from mbkf.sensors.contact.possible import Fault, Faults, reaches
 
 BRIDGED_S = 0.025

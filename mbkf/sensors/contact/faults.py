@@ -18,6 +18,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray
+from mbkf.numerics.runs import runs
 from mbkf.sensors.contact.possible import MOST_WEIGHTS, Fault, Faults, impossible
 
 JUMP_WEIGHTS, JUMP_RATE = 0.5, 1000.0
@@ -93,12 +94,6 @@ def bridged(wrench: Array, bad: BoolArray) -> Array:
     for channel in filled.T:
         channel[gaps] = np.interp(gaps, good, channel[good]) if len(good) else 0.0
     return filled
-
-
-def runs(mask: BoolArray) -> list[tuple[int, int]]:
-    """First sample of each unbroken run of True in a mask (S,), and the sample after its last."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
-    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
 
 
 def _pulls(wrench: Array, faults: Faults, rate_hz: float, weight_n: float) -> bool:

@@ -13,6 +13,7 @@ from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import SubjectMarker
 from mbkf.model.description import BodyDescription
 from mbkf.model.protocol import ProtocolMarker, load_protocol, protocol_names
+from mbkf.numerics.runs import spread_indices
 
 FRAMES = 60
 """Frames, spread over the capture, that are looked at; a person's attitude changes slowly."""
@@ -145,7 +146,7 @@ def body_attitude(markers: MarkerTrajectories, places: MarkerPlaces) -> BodyAtti
     enough = np.flatnonzero((~np.isnan(positions).any(axis=2)).sum(axis=1) >= FEWEST_MARKERS)
     if not len(enough):
         return None
-    frames = enough[np.unique(np.linspace(0, len(enough) - 1, FRAMES).astype(int))]
+    frames = enough[spread_indices(len(enough), FRAMES)]
     segments = np.array(places.segments)
     feet = [np.isin(segments, list(foot)) for foot in places.feet]
     found = []

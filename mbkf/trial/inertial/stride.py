@@ -17,8 +17,9 @@ from mbkf.imu.foot_track import filtered_track, smoothed_track
 from mbkf.imu.key_points import KeyPointSettings, follow_key_points
 from mbkf.imu.stride_doubts import doubted, out_of_reach
 from mbkf.imu.strides import SHORTEST_M, Stride, find_strides
-from mbkf.imu.zero_velocity import StillnessSettings, phases, rolling_samples, still_samples
+from mbkf.imu.zero_velocity import StillnessSettings, rolling_samples, still_samples
 from mbkf.io.imu.readings import ImuReadings
+from mbkf.numerics.runs import runs
 from mbkf.version import __version__
 
 METHODS = {
@@ -253,7 +254,7 @@ def _foot_numbers(foot: FootResult) -> dict[str, object]:
         "rate_hz": foot.rate_hz,
         "strides": len(foot.strides),
         "straight_strides": len(straight),
-        "rests": len(phases(foot.still)),
+        "rests": len(runs(foot.still)),
         "rests_refused_samples": foot.refused,
         "strides_refused": len(foot.strides) - len(_accepted(foot.strides)),
         "distance_m": sum(stride.length_m for stride in _accepted(foot.strides)),
@@ -294,7 +295,7 @@ def _both_numbers(feet: Sequence[FootResult]) -> dict[str, object]:
 
 def _landing(foot: FootResult, stride: Stride) -> int:
     """First sample of the rest that ends a stride."""
-    return next(start for start, stop in phases(foot.still) if start <= stride.last < stop)
+    return next(start for start, stop in runs(foot.still) if start <= stride.last < stop)
 
 
 def _straight(strides: Sequence[Stride]) -> list[Stride]:

@@ -19,6 +19,7 @@ from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.labelling.exchanges import Distances, body_distances, exchanges, misfits
 from mbkf.labelling.tracklets import Tracklets, linked
 from mbkf.labelling.tracks import COLUMNS_ARE_TRACKS, continued
+from mbkf.numerics.runs import spread_indices
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 PLACED_SD_M = 0.015
@@ -131,9 +132,8 @@ def with_claims(labels: Indices, names: KnownNames) -> Indices:
 
 def _stay(positions_m: Array, named: Indices) -> bool:
     """Whether the points of named columns are from frame to frame the same ones."""
-    looks = np.unique(np.linspace(1, len(positions_m) - 1, LOOKS).astype(int))
     same = both = 0
-    for t in looks[looks > 0]:
+    for t in spread_indices(len(positions_m), LOOKS, first=1):
         there = ~np.isnan(positions_m[t - 1 : t + 1, named]).any(axis=(0, 2))
         both += int(there.sum())
         same += int(continued(positions_m[t - 1], positions_m[t])[named][there].sum())

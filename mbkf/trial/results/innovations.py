@@ -9,6 +9,7 @@ import numpy as np
 from mbkf.conventions import READING_KINDS, Array, BoolArray
 from mbkf.io.findings import Finding
 from mbkf.io.results import Reconstruction
+from mbkf.numerics.runs import runs
 from mbkf.trial.checks.newton import FORCE, MOMENT
 
 SETTLING_S = 0.5
@@ -129,11 +130,9 @@ def _stretches(r: Reconstruction) -> Iterator[tuple[float, float, float, str]]:
     high: BoolArray = _moving(squared.sum(axis=1), width) > STRETCH_NIS * np.maximum(
         _moving(readings.sum(axis=1), width), 1.0
     )
-    begins = np.flatnonzero(np.diff(np.concatenate([[False], high, [False]]).astype(int)) == 1)
-    ends = np.flatnonzero(np.diff(np.concatenate([[False], high, [False]]).astype(int)) == -1)
-    for opened, closed in zip(begins, ends + width - 1, strict=True):
+    for opened, ended in runs(high):
         # Windows begin before what raises them, and end after it.
-        mine = slice(opened, closed)
+        mine = slice(opened, ended + width - 1)
         raised = opened + np.flatnonzero(squared[mine].sum(axis=1) > STRETCH_NIS * readings[mine].sum(axis=1))
         begin, end = raised[0], raised[-1] + 1
         own, count = squared[begin:end].sum(axis=0), readings[begin:end].sum(axis=0)

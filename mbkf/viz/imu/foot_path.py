@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbkf.imu.zero_velocity import phases
 from mbkf.io.atomic import replacing
+from mbkf.numerics.runs import runs
 from mbkf.trial.inertial.stride import FootResult, StrideMeasurement
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def write_foot_path(measured: StrideMeasurement, path: str | Path) -> None:
 
 def _draw_path(axes: Axes, foot: FootResult, colour: str) -> None:
     axes.plot(foot.position_m[:, 0], foot.position_m[:, 1], color=colour, lw=1.0, label=foot.name)
-    middles = [(start + stop - 1) // 2 for start, stop in phases(foot.still)]
+    middles = [(start + stop - 1) // 2 for start, stop in runs(foot.still)]
     axes.plot(*foot.position_m[middles, :2].T, "o", ms=3.5, color=colour, mec="white", mew=0.5)
 
 
@@ -70,7 +70,7 @@ def _draw_height(axes: Axes, foot: FootResult, colour: str) -> None:
     height = 100.0 * foot.position_m[:, 2]
     axes.plot(foot.time_s, height, color=colour, lw=1.0)
     step = float(np.median(np.diff(foot.time_s)))
-    for start, stop in phases(foot.still):
+    for start, stop in runs(foot.still):
         axes.axvspan(
             foot.time_s[start] - 0.5 * step,
             foot.time_s[stop - 1] + 0.5 * step,

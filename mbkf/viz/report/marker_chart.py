@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.io.results import Reconstruction
+from mbkf.numerics.runs import runs
 from mbkf.viz.svg import number, ticks
 
 SEEN, UNSEEN, REFUSED, HIDDEN, LOST = range(5)
@@ -47,8 +48,7 @@ def longest_gap_s(r: Reconstruction) -> Array:
     """(M,) longest time that a marker was not seen or hidden, s."""
     longest = np.zeros(len(r.marker_names))
     for m, absent in enumerate((~r.present).T):
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], absent, [False]])))
-        longest[m] = (edges[1::2] - edges[::2]).max(initial=0) / r.rate_hz
+        longest[m] = max((end - first for first, end in runs(absent)), default=0) / r.rate_hz
     return longest
 
 

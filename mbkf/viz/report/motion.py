@@ -12,6 +12,7 @@ from mbkf.conventions import GRAVITY_M_S2, SIDES, Array
 from mbkf.io.results import Reconstruction
 from mbkf.model.description import BodyDescription
 from mbkf.model.human import reference_body
+from mbkf.numerics.runs import spread_indices
 from mbkf.trial.gait.cycles import POINTS, Gait, over_cycle
 from mbkf.trial.gait.facing import facing
 from mbkf.viz.markup import folded, grid, key, paragraph, section, table
@@ -255,7 +256,7 @@ def cycle_chart(times_s: Array, gait: Gait, cell: Cell) -> str:
         each = np.array([over_cycle(times_s, curve.values, cycle) for cycle in cycles])
         wide, inner = (cycle_sd(times_s, sd, cycles) for sd in (curve.sd, curve.inner_sd))
         if len(cycles) > 1:
-            some = np.unique(np.linspace(0, len(cycles) - 1, MOST_SINGLE).astype(int))
+            some = spread_indices(len(cycles), MOST_SINGLE)
             thin += [Line(percent, one, None, side, thin=True) for one in each[some]]
         bold.append(Line(percent, each.mean(axis=0), wide, side, inner_sd=inner))
         if side:

@@ -11,6 +11,7 @@ from mbkf.conventions import SIDES
 from mbkf.io.norms import Band, Norms
 from mbkf.io.session import TrialKind
 from mbkf.model.description import BodyDescription
+from mbkf.numerics.runs import spread_indices
 from mbkf.study.session.chosen import Chosen, chosen_curves
 from mbkf.study.session.comparison import CurvePair
 from mbkf.study.session.cycles import FORCES, PERCENT, POWER, REACTION, Key, SideCycles
@@ -161,7 +162,7 @@ def _single(chosen: Chosen, letter: str) -> list[Line]:
     """Cycles one by one; estimated ones beside measured ones do not widen the axis."""
     lines = []
     if len(chosen.counted) > 1:
-        some = np.unique(np.linspace(0, len(chosen.counted) - 1, MOST_SINGLE).astype(int))
+        some = spread_indices(len(chosen.counted), MOST_SINGLE)
         lines = [Line(PERCENT, one, None, letter, thin=True) for one in chosen.counted[some]]
     lines += [
         Line(PERCENT, one, None, letter, thin=True, dashed=True, scales=False)

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbkf.sensors.contact.faults import DROP_WEIGHTS, bridged, faults_of, runs
+from mbkf.numerics.runs import runs
+from mbkf.sensors.contact.faults import DROP_WEIGHTS, bridged, faults_of
 from mbkf.sensors.contact.possible import Fault
 
 RATE_HZ, WEIGHT_N, REACH_M, SAMPLES = 1000.0, 700.0, 0.8, 1200

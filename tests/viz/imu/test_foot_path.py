@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mbkf.imu.zero_velocity import phases
+from mbkf.numerics.runs import runs
 from mbkf.trial.inertial.stride import measure_strides
 from mbkf.viz.imu.foot_path import foot_path_figure, write_foot_path
 from tests.foot_walks import foot_walk
@@ -23,7 +23,7 @@ def test_paths_heights_and_strides_are_drawn_with_the_rests(measured):
     for n, (foot, height) in enumerate(zip(measured.feet, heights, strict=True)):
         line, dots = path.lines[2 * n : 2 * n + 2]
         assert np.allclose(line.get_xydata(), foot.position_m[:, :2])
-        assert len(dots.get_xdata()) == len(phases(foot.still)) == len(height.patches)
+        assert len(dots.get_xdata()) == len(runs(foot.still)) == len(height.patches)
         assert height.get_title("left").startswith(foot.name)
         assert np.allclose(height.lines[0].get_ydata(), 100 * foot.position_m[:, 2])
     assert len(lengths.containers) == sum(len(foot.strides) for foot in measured.feet)
