@@ -10,6 +10,7 @@ from mbkf.io.session import EventKind, FootEvent
 from mbkf.trial.gait.events import (
     LOADED_N,
     SAME_S,
+    SHORTEST_S,
     FeetInMotion,
     events_by_hand,
     events_of_load,
@@ -41,6 +42,23 @@ def test_short_blinks_are_no_events():
     assert (len(found.strikes_s), len(found.offs_s)) == (1, 1)
 
 
+@pytest.mark.parametrize(("frames", "contacts"), [(7, 0), (8, 1)])
+def test_a_contact_of_the_shortest_time_is_one_and_one_frame_less_is_noise(frames, contacts):
+    assert SHORTEST_S == 0.08  # 8 frames
+    force = np.zeros(300)
+    force[100 : 100 + frames] = 600.0
+    found = events_of_load(TIMES, force)
+    assert (len(found.strikes_s), len(found.offs_s)) == (contacts, contacts)
+
+
+def test_a_contact_that_the_trial_cuts_short_is_no_blink():
+    force = np.zeros(300)
+    force[:3] = force[-3:] = 600.0
+    found = events_of_load(TIMES, force)
+    assert_near(found.offs_s, [TIMES[2] + 0.01 * (600.0 - LOADED_N) / 600.0], 1e-9)
+    assert_near(found.strikes_s, [TIMES[-4] + 0.01 * LOADED_N / 600.0], 1e-9)
+
+
 def test_what_begins_or_ends_unseen_is_no_event():
     force = np.where(TIMES < 1.0, 600.0, 0.0)
     assert len(events_of_load(TIMES, force).strikes_s) == 0
@@ -51,16 +69,17 @@ def test_what_begins_or_ends_unseen_is_no_event():
 
 @pytest.mark.parametrize("heading", [0.0, 2.0])
 @pytest.mark.parametrize("speed_m_s", [0.0, 1.3])
-def test_motion_tells_strikes_on_floors_and_treadmills_in_any_direction(heading, speed_m_s):
+@pytest.mark.parametrize("after_frame_s", [0.0, 0.003, -0.004])
+def test_motion_tells_strikes_on_floors_and_treadmills_in_any_direction(heading, speed_m_s, after_frame_s):
     forward = np.array([np.cos(heading), np.sin(heading)])
     pelvis = speed_m_s * TIMES[:, None] * forward
-    swing = 0.3 * np.cos(2.0 * np.pi * (TIMES - 0.4))
+    swing = 0.3 * np.cos(2.0 * np.pi * (TIMES - 0.4 - after_frame_s))
     soles = np.zeros((300, 2, 3, 3))
     soles[:, 0, :, :2] = (pelvis + swing[:, None] * forward)[:, None]
     soles[:, 1, :, :2] = pelvis[:, None]
     feet = FeetInMotion(TIMES, soles, np.tile(forward, (300, 1)), pelvis)
-    assert_near(events_of_motion(feet, 0).strikes_s, [0.4, 1.4, 2.4], 1e-3)
-    assert_near(events_of_motion(feet, 0).offs_s, [0.9, 1.9], 1e-3)
+    assert_near(events_of_motion(feet, 0).strikes_s, np.array([0.4, 1.4, 2.4]) + after_frame_s, 1e-5)
+    assert_near(events_of_motion(feet, 0).offs_s, np.array([0.9, 1.9]) + after_frame_s, 1e-5)
     assert len(events_of_motion(feet, 1).strikes_s) == 0, "a foot that does not swing does not walk"
 
 
