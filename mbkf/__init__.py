@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from mbkf.io.results_folder import read_reconstruction, write_reconstruction
     from mbkf.io.subject import read_subject, write_subject
     from mbkf.model.body_file import load_body
+    from mbkf.model.clinical import ClinicalAngles
     from mbkf.model.human import HumanModel
     from mbkf.model.protocol import load_protocol
     from mbkf.numerics.kalman import Information
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "Block": "mbkf.sensors.block",
+    "ClinicalAngles": "mbkf.model.clinical",
     "Estimate": "mbkf.trial.tracker",
     "ExtraState": "mbkf.sensors.layout",
     "Frame": "mbkf.sensors.block",
@@ -74,6 +76,7 @@ _HOMES = {
 
 __all__ = [
     "Block",
+    "ClinicalAngles",
     "Estimate",
     "ExtraState",
     "Frame",

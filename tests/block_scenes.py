@@ -41,16 +41,20 @@ HIDDEN = ("hand", "forearm", "upper_arm", "foot", "toes", "head")
 NO_IMUS, NO_NAMES = None, {}
 
 
+SIZES = {"goniometer": 1}
+"""Numbers in the readings of blocks that do not read three."""
+
+
 class AnyReading(Mapping):
-    """Readings (3,) under every name, the same whenever asked; all NaN if so asked."""
+    """Readings (3,) under every name but those of :data:`SIZES`, the same whenever asked; all NaN if so asked."""
 
     def __init__(self, missing=False):
         self._missing = missing
 
     def __getitem__(self, name):
         if self._missing:
-            return np.full(3, np.nan)
-        return 0.1 * np.random.default_rng(sum(name.encode())).normal(size=3)
+            return np.full(SIZES.get(name, 3), np.nan)
+        return 0.1 * np.random.default_rng(sum(name.encode())).normal(size=SIZES.get(name, 3))
 
     def __contains__(self, name):
         return True

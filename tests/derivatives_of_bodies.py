@@ -5,6 +5,7 @@ from functools import partial
 import numpy as np
 import pinocchio as pin
 
+from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human_dynamics import FORCE_STATES, WRENCH_FRAMES, HumanDynamics
 from mbkf.model.newton_euler import NewtonEuler
 from tests.derivatives import along, checks, named, slope
@@ -31,6 +32,17 @@ def manifold(rng):
         ("integration_derivatives", [A, B], [by_q, by_d]),
         ("difference_derivative", model.difference_derivative(q, end), back),
     )
+
+
+@checks("model.clinical.ClinicalAngles.jacobian")
+def clinical_angles(rng):
+    model = random_model(rng)
+    clinical, q = ClinicalAngles(model), moderate_pose(model, rng)
+    stated = [clinical.jacobian(name, q) for name in clinical.names]
+    numeric = central_difference(
+        model, lambda at: np.array([clinical.value(n, at) for n in clinical.names]), q
+    )
+    return named("model.clinical.ClinicalAngles", ("jacobian", stated, numeric))
 
 
 @checks(

@@ -1,6 +1,6 @@
 """Clinical joint angles of a posture, their rates and the joint moments conjugate to them.
 
-Inside mbkf a joint is a rotation; people read angles. The body file says which.
+A joint of the model is a rotation; people read angles about named axes, which the body file defines.
 θ̇ = E v with the tangent velocity v, v = B θ̇, and m = Bᵀ τ, so that Σ m θ̇ = τᵀ v joint by joint.
 """
 
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray, read_only
-from mbkf.errors import InvalidInput, ShapeError
+from mbkf.errors import InvalidInput, ShapeError, UnknownName
 from mbkf.model.angle_reading import AngleReading, JointAxes
 from mbkf.model.body import Body
 from mbkf.model.clinical_table import Angle, ClinicalJoint
@@ -185,6 +185,40 @@ class ClinicalAngles:
     def vertical(self, q: Array) -> Array:
         """(T, 3) the world's vertical in the root's own axes, for configurations (T, nq)."""
         return self._root_rotation(self._checked("q", q, self.model.nq))[:, 2]
+
+    def value(self, name: str, q: Array) -> float:
+        """One coordinate at one configuration.
+
+        Args:
+            name: Name of the coordinate, e.g. ``"knee_angle_r"``; all are in :attr:`names`.
+            q: (nq,) configuration.
+
+        Returns:
+            Rad; m for a translation of the pelvis.
+
+        Raises:
+            UnknownName: The body has no such coordinate.
+        """
+        return float(self.angles(np.asarray(q)[None])[0, self._column(name)])
+
+    def jacobian(self, name: str, q: Array) -> Array:
+        """(nv,) derivative of :meth:`value` in the tangent space of q (nq,); very large at a singularity."""
+        return np.asarray(self.rate_matrix(q)[self._column(name)])
+
+    def rate(self, name: str, q: Array, v: Array) -> float:
+        """Rate of :meth:`value`, rad/s; m/s for a translation.
+
+        Args:
+            name: Name of the coordinate.
+            q: (nq,) configuration.
+            v: (nv,) velocity.
+        """
+        return float(self.jacobian(name, q) @ v)
+
+    def _column(self, name: str) -> int:
+        if name not in self.names:
+            raise UnknownName("clinical coordinate", name, self.names)
+        return self.names.index(name)
 
     def angles(self, q: Array, start: Array | None = None) -> Array:
         """Coordinates of a motion, continuous in time (see :func:`mbkf.numerics.cardan.follow`).

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from mbkf.errors import InvalidInput, ShapeError
+from mbkf.errors import InvalidInput, ShapeError, UnknownName
 from mbkf.model.angle_reading import AngleReading, JointAxes, Line
 from mbkf.model.clinical import ClinicalAngles, dof_names
 from mbkf.model.human import HumanModel
@@ -124,6 +124,21 @@ def test_rates_are_the_finite_difference_of_the_angles(model, clinical):
         pair = np.array([model.integrate(q, s * step * v) for s in (-1, 1)])
         expected = (clinical.angles(pair[1:])[0] - clinical.angles(pair[:1])[0]) / (2 * step)
         np.testing.assert_allclose(clinical.rate_matrix(q) @ v, expected, rtol=1e-6, atol=1e-7)
+
+
+def test_one_angle_by_name_and_its_rate(model, clinical):
+    """The derivative of each, tests/derivatives_of_bodies.py checks on the manifold."""
+    rng, step = np.random.default_rng(8), 1e-6
+    q, v = random_posture(model, rng), rng.normal(size=model.nv)
+    for name, expected in zip(clinical.names, clinical.angles(q[None])[0], strict=True):
+        assert clinical.value(name, q) == expected
+        after, before = (clinical.value(name, model.integrate(q, s * step * v)) for s in (1, -1))
+        assert clinical.rate(name, q, v) == pytest.approx((after - before) / (2 * step), rel=1e-6, abs=1e-7)
+
+
+def test_an_unknown_angle_is_refused_with_the_known_ones(model, clinical):
+    with pytest.raises(UnknownName, match=r"knee_flexion.*did you mean"):
+        clinical.value("knee_flexion_r", model.neutral())
 
 
 def test_power_of_moments_equals_power_of_torques_joint_by_joint(model, clinical):
