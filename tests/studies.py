@@ -4,9 +4,15 @@ from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
 
+import pyarrow as pa
+
+from mbkf.study.batch.run import follow, plan_of
+from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.synth import synthesise, write_folder
 
 SECONDS = 2.5
+QUICK = ReconstructSettings(filter="kinematic", smooth=False)
+"""A filter for tests that ask nothing of the estimates."""
 
 
 @cache
@@ -16,6 +22,22 @@ def walk_folder() -> Path:
     person, made = synthesise("walk", seconds=SECONDS)
     write_folder(person, made, folder)
     return folder
+
+
+class ThisProcess:
+    """An executor without workers: tasks are done in order, where they are asked for."""
+
+    def run(self, tasks):
+        for number, task in enumerate(tasks):
+            yield number, task()
+
+    def close(self):
+        pass
+
+
+def batch_here(source: Path, out: Path, settings: ReconstructSettings = QUICK) -> pa.Table:
+    """A batch without workers."""
+    return follow(plan_of(source), out, settings, ThisProcess())
 
 
 def study(folder: Path, persons: int = 1, trials: int = 1) -> Path:

@@ -14,9 +14,9 @@ from pathlib import Path
 from benchmarks.mutants.mutant import Mutant
 from mbkf.errors import MbkfError
 
-LEFT_OUT = shutil.ignore_patterns(
-    ".git", ".venv", "venv", "build", "dist", "results", "__pycache__", ".*_cache"
-)
+AT_THE_TOP = {".git", ".venv", "venv", "build", "dist", "results"}
+"""Folders of the tree that are not copied; nor is any cache."""
+
 LONGEST_S = 600.0
 """Tests that take longer than this are stopped, and have failed."""
 
@@ -45,7 +45,12 @@ class Copy:
             folder: A folder that does not exist yet.
             data: Folder of the reference captures; without it their tests are skipped.
         """
-        root = Path(shutil.copytree(tree, folder, ignore=LEFT_OUT))
+
+        def left_out(where: str, names: list[str]) -> set[str]:
+            caches = {name for name in names if name == "__pycache__" or name.endswith("_cache")}
+            return caches | (AT_THE_TOP & set(names) if Path(where) == tree else set())
+
+        root = Path(shutil.copytree(tree, folder, ignore=left_out))
         environment = {**os.environ, "PYTHONPATH": str(root), "OMP_NUM_THREADS": "1"}
         if data is not None:
             environment["MBKF_DATA"] = str(data)

@@ -143,3 +143,29 @@ def test_real_recordings_are_sound(real_data):
     )
     assert [problem.text for problem in problems(feet) if problem.fatal] == []
     assert [problem.text for problem in problems(body) if problem.fatal] == []
+
+
+@pytest.mark.parametrize(("swing_g", "fatal"), [(2.0, False), (0.5, True)])
+def test_a_force_of_more_than_3_g_in_the_middle_is_a_runner_s_only_where_it_changes_much(swing_g, fatal):
+    """By more than 40 % of its size, one standard deviation; otherwise its unit or scale is wrong."""
+    size = 2.5 + swing_g * np.sin(2.0 * np.pi * 2.7 * SOUND.time_s)
+    running = size[:, None] * SOUND.specific_force_mps2
+    (problem,) = problems([replace(SOUND, specific_force_mps2=running)])
+    assert (problem.kind, problem.fatal) == ("unit", fatal)
+    assert "check its unit" in problem.text
+
+
+def test_the_gyroscope_is_judged_while_it_turns_most():
+    """In a rest of any length gravity stays where it is, whatever the gyroscope's sign."""
+    rest = np.ones((round(18.0 * RATE_HZ), 1))
+    noise = np.random.default_rng(1).normal(0.0, 0.01, (len(rest), 3))
+    gyro = np.concatenate([-SOUND.angular_velocity_rad_s, noise])
+    force = np.concatenate(
+        [
+            SOUND.specific_force_mps2,
+            rest * MADE.force[-1] / np.linalg.norm(MADE.force[-1]) * GRAVITY_M_S2 + noise,
+        ]
+    )
+    times = np.arange(len(gyro)) / RATE_HZ
+    (problem,) = problems([ImuReadings("a", times, force, gyro, None, RATE_HZ)])
+    assert problem.kind == "sign"

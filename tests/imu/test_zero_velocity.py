@@ -10,6 +10,7 @@ from mbkf.errors import InvalidInput
 from mbkf.imu.zero_velocity import StillnessSettings, still_samples, unrest
 from mbkf.numerics.runs import runs
 from tests.foot_walks import foot_walk
+from tests.motions import assert_near
 
 SETTINGS = StillnessSettings()
 
@@ -49,6 +50,32 @@ def test_short_rests_are_none_and_short_movements_are_bridged():
     assert runs(still_samples(f, w, 100.0, settings)) == [(0, 119), (201, 249)]
     longer = StillnessSettings(window_s=0.02, bridge_s=0.15, shortest_s=0.6)
     assert runs(still_samples(f, w, 100.0, longer)) == [(0, 119)]
+
+
+@pytest.mark.parametrize(("samples", "rests"), [(8, 1), (9, 2)])
+def test_a_movement_is_bridged_up_to_its_longest_duration(samples, rests):
+    """The mean over three samples sees a movement one sample before it begins and after it ends."""
+    f, w = np.tile([0.0, 0.0, GRAVITY_M_S2], (300, 1)), np.zeros((300, 3))
+    w[100 : 100 + samples] = 3.0
+    settings = StillnessSettings(window_s=0.03, bridge_s=0.1, shortest_s=0.1)
+    assert len(runs(still_samples(f, w, 100.0, settings))) == rests
+
+
+@pytest.mark.parametrize(("samples", "rests"), [(12, 1), (11, 0)])
+def test_a_rest_lasts_its_shortest_duration_or_longer(samples, rests):
+    f, w = np.tile([0.0, 0.0, GRAVITY_M_S2], (300, 1)), np.full((300, 3), 3.0)
+    w[100 : 100 + samples] = 0.0
+    settings = StillnessSettings(window_s=0.03, bridge_s=0.1, shortest_s=0.1)
+    assert len(runs(still_samples(f, w, 100.0, settings))) == rests
+
+
+@pytest.mark.parametrize(("window_s", "samples"), [(0.1, 11), (0.11, 11), (0.2, 21), (0.01, 3)])
+def test_a_shock_is_seen_half_a_window_before_and_after(window_s, samples):
+    """The window has an odd number of samples, and three at least."""
+    f, w = np.tile([0.0, 0.0, GRAVITY_M_S2], (100, 1)), np.zeros((100, 3))
+    w[50] = 1.0
+    found = unrest(f, w, 100.0, StillnessSettings(window_s=window_s, angular_rate_rad_s=0.5))
+    assert_near(found, np.where(abs(np.arange(100) - 50) <= samples // 2, 12.0 / samples, 0.0), 1e-9)
 
 
 @given(st.lists(st.booleans(), max_size=40))

@@ -1,9 +1,11 @@
 """A tracklet's label is decided by all of its frames."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.stats import multivariate_normal
 
 from mbkf.labelling.assignment import HIDDEN
 from mbkf.labelling.offline_relabelling import (
@@ -150,3 +152,17 @@ def test_where_all_is_in_doubt_nothing_is(scene):
     tracklets = linked(positions)
     so_far = np.tile([0, 1, 2], (100, 1))
     assert not doubtful(so_far, positions, tracklets, course, NOISE_M, 1.0 / RATE_HZ, SETTINGS).any()
+
+
+@pytest.mark.parametrize(("ghosts", "named"), [(0.9, True), (1.1, False)])
+def test_a_single_look_names_a_point_where_its_marker_is_denser_there_than_ghosts(scene, ghosts, named):
+    """2 ln N(r; 0, S I) against 2 ln λ, both per m³."""
+    _, course = scene
+    off, place = 0.01, SETTINGS.placement_sd_m**2 + NOISE_M[0] ** 2 + course.variance_m2[0, 0]
+    one = course.on_body_m[:1, :1] + np.array([off, 0.0, 0.0])
+    density = multivariate_normal(np.zeros(3), place).pdf([off, 0.0, 0.0])
+    first = SmoothedMarkers(*(part[:1] for part in (course.on_body_m, course.rotations, course.variance_m2)))
+    settings = replace(SETTINGS, ghosts_per_m3=ghosts * density)
+    tracklets = linked(one)
+    label = relabel(np.full((1, 1), HIDDEN), one, tracklets, first, NOISE_M, 1.0 / RATE_HZ, settings)
+    assert (label == 0).all() == named

@@ -95,3 +95,16 @@ def test_positions_and_lives_of_tracks():
 
 def test_nothing_makes_no_tracks():
     assert follow(np.full((5, 3, 3), np.nan), RATE_HZ).count == 0
+
+
+@pytest.mark.parametrize(("along_m", "tracks"), [(0.09, 1), (-0.05, 2)])
+def test_a_point_may_come_back_anywhere_on_the_way_it_was_going_and_not_behind_it(along_m, tracks):
+    """At 1 m/s for 0.1 s, beside a point at rest; the two change their columns."""
+    frames, gap = 40, 10
+    course = np.ones((frames, 2, 3))
+    course[:, 0] = np.column_stack([np.arange(frames) / 100.0, np.zeros((frames, 2))])
+    course[20 : 20 + gap - 1, 0] = np.nan
+    course[20 + gap - 1 :, 0, 0] += course[19, 0, 0] + along_m - course[20 + gap - 1, 0, 0]
+    course[::2] = course[::2, ::-1]
+    assert not columns_are_tracks(course)
+    assert follow(course, 100.0).count == 1 + tracks

@@ -98,6 +98,18 @@ def test_a_wrench_on_one_foot_asks_nothing_of_the_other_leg():
     assert (np.abs(change[moves]) > 0).all()
 
 
+@seeds
+def test_a_load_on_any_segment_counts_as_the_ground_s_wrenches_do(seed):
+    model, balance, s = made(seed)
+    expected = balance.torques(s.q, s.v, s.a, s.w)
+    found = balance.torques(s.q, s.v, s.a, np.zeros(12))
+    feet = [model.joint(foot).joint_id for foot in model.roles.feet]
+    balance.loaded(found, dict(zip(feet, s.w.reshape(2, 6), strict=True)))
+    assert_near(found.tau, expected.tau, 1e-9)
+    nv = model.nv
+    assert_near(found.by_state[:, : 3 * nv], expected.by_state[:, : 3 * nv], 1e-9)
+
+
 def test_later_calls_leave_torques_alone():
     model, balance, s = made(0)
     found = balance.torques(s.q, s.v, s.a, s.w)

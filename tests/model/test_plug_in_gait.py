@@ -39,10 +39,10 @@ def test_axes_are_rotations_near_the_bodys():
 
 
 def test_sides_mirror_each_other():
-    found, flip = (
-        read(RTHIGHROTATION=0.1, LTHIGHROTATION=0.1, RTIBIALTORSION=-0.2, LTIBIALTORSION=-0.2),
-        np.diag(MIRROR),
-    )
+    """Offsets are stored alike for both sides, but for the ankle's tilt, a turn about the body's own forward axis."""
+    offsets = {"THIGHROTATION": (0.1, 0.1), "TIBIALTORSION": (-0.2, -0.2), "ANKLEABADD": (0.05, -0.05)}
+    stored = {f"{side}{name}": both[k] for name, both in offsets.items() for k, side in enumerate("RL")}
+    found, flip = read(**stored), np.diag(MIRROR)
     for joint in ("hip", "knee", "ankle"):
         right, left = found[f"{joint}_r"], found[f"{joint}_l"]
         np.testing.assert_allclose(left.proximal, flip @ right.proximal @ flip, atol=1e-8)

@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 from mbkf.filters.dynamic.plant import DynamicState, SingerPlant
@@ -124,3 +125,18 @@ def test_a_foot_at_rest_for_longer_than_a_step_stays_where_it_is_until_it_moves(
         kept.append(memory.places[0] is not None)
     assert kept == [False, False, False, True, True, False, False]
     assert memory.places[1] is None
+
+
+def test_a_foot_at_rest_is_read_to_move_as_the_middle_of_heel_and_ball_does():
+    """Against the place of that middle a moment later, in the foot's own axes."""
+    block, h, s = StandingFeet(MODEL, 0.01), 1e-6, StandingSettings()
+    still, *_ = block.linearise(at(Q, V), StandingDecision((0,), (0.0,)))
+    feet, foot = FeetOnBody(MODEL), MODEL.joint(MODEL.roles.feet[0]).joint_id
+
+    def middle(time_s):
+        q = pin.integrate(MODEL.pin_model, Q, time_s * V)
+        return np.mean(feet.at(q, V).soles[0][:2], axis=0)
+
+    velocity = (middle(h) - middle(-h)) / (2.0 * h)
+    rotation = MODEL.placements(Q)[0][foot]
+    np.testing.assert_allclose(-s.standing_speed_m_s * still.innovation[:3], rotation.T @ velocity, atol=1e-7)

@@ -145,3 +145,14 @@ def test_a_dof_without_acceleration_stays_as_well_known_as_it_is():
     assert_near(
         plant.predict(s).P[np.ix_(own, own)], (phi @ s.P @ phi.T)[np.ix_(own, own)], 1e-12 * worst(s.P)
     )
+
+
+def test_a_busy_joint_s_noise_follows_its_acceleration_up_to_its_share_of_the_table():
+    """The pelvis's translation, which gravity and the ground move together, is bounded sooner than all else."""
+    s = SingerSettings(quiet_share=0.1, activity_gain=6.0, busy_shares=(2.0, 8.0))
+    plant = SingerPlant(MODEL, DT, np.zeros(NV, dtype=bool), s)
+    table = MODEL.movement_sd
+    assert_near(plant.noise(np.zeros(NV)), 0.1 * table, 1e-12)
+    assert_near(plant.noise((0.1 * table) ** 2), np.hypot(0.1, 0.6) * table, 1e-12)
+    most = np.r_[np.full(3, 2.0), np.full(NV - 3, 8.0)]
+    assert_near(plant.noise((100.0 * table) ** 2), most * table, 1e-12)

@@ -122,3 +122,14 @@ def test_a_foot_over_an_idle_plate_is_not_near_to_bearing():
         0.0,
         0.0,
     )
+
+
+def test_of_two_feet_above_the_floor_the_lower_one_carries_a_body_that_does_not_fall():
+    q = standing(MODEL, 0.5)
+    thigh = MODEL.joint("right_thigh")
+    step = np.zeros(MODEL.nv)
+    step[thigh.v.start + 1] = -0.6
+    q = MODEL.integrate(q, step)
+    right, left = (sole[0][2] for sole in FEET.at(q, STILL).soles)
+    assert right > left + 0.05
+    assert list(decided(q, memory((0.0, 0.0))).carrying) == [1]

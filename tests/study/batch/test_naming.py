@@ -10,9 +10,8 @@ from mbkf.io.capture import read_capture
 from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.subject import read_subject
 from mbkf.study.batch.naming import body_of_points, is_nameless, named, needs_names
-from mbkf.study.batch.run import batch
 from mbkf.viz.report.document import labels_of
-from tests.studies import study, walk_folder
+from tests.studies import batch_here, study, walk_folder
 
 
 @pytest.fixture(scope="module")
@@ -33,29 +32,21 @@ def test_names_are_needed_where_points_have_none(captures):
     assert named(captures["trial"], SUBJECT).capture is captures["trial"]
 
 
-def test_a_batch_names_them_and_tells(tmp_path):
+def test_a_batch_names_them_and_tells_beside_the_result_whatever_the_trial_is_called(tmp_path):
     """The same walk with and without names: the same motion."""
     folder = study(tmp_path / "study", trials=1)
-    write_c3d(read_capture(walk_folder() / "raw.c3d"), folder / "P1" / "raw.c3d")
-    table = batch(folder, tmp_path / "out", workers=1)
+    write_c3d(read_capture(walk_folder() / "raw.c3d"), folder / "P1" / "summary.c3d")
+    table = batch_here(folder, tmp_path / "out")
     assert table["status"].to_pylist() == ["done", "done"]
-    raw, walk = (tmp_path / "out" / "P1" / name for name in ("raw", "walk1"))
+    raw, walk = (tmp_path / "out" / "P1" / name for name in ("summary", "walk1"))
     found, other = read_reconstruction(raw), read_reconstruction(walk)
     assert abs(found.angles - other.angles)[20:-20].max() < 0.05
     assert any("were labelled" in text for text in found.warnings)
     assert not any("were labelled" in text for text in other.warnings)
-    labels = labels_of(raw, read_summary(raw)["trial"])
+    assert read_summary(raw)["trial"] == "summary", "the result's own summary is whole"
+    labels = labels_of(raw, "summary")
     assert labels is not None and labels["assigned_fraction"] > 0.9
     assert labels_of(walk, "walk1") is None
-
-
-def test_labels_are_told_beside_the_result_whatever_the_trial_is_called(tmp_path):
-    folder = study(tmp_path / "study", trials=1)
-    write_c3d(read_capture(walk_folder() / "raw.c3d"), folder / "P1" / "summary.c3d")
-    batch(folder, tmp_path / "out", workers=1)
-    place = tmp_path / "out" / "P1" / "summary"
-    assert read_summary(place)["trial"] == "summary", "the result's own summary is whole"
-    assert labels_of(place, "summary")["assigned_fraction"] > 0.9
 
 
 def test_a_trial_that_cannot_be_labelled_is_told_and_the_others_are_done(tmp_path):
@@ -63,7 +54,7 @@ def test_a_trial_that_cannot_be_labelled_is_told_and_the_others_are_done(tmp_pat
     raw = read_capture(walk_folder() / "raw.c3d")
     few = replace(raw, markers=raw.markers.select(raw.markers.names[:4]))
     write_c3d(few, folder / "P1" / "few.c3d")
-    table = batch(folder, tmp_path / "out", workers=1).to_pylist()
+    table = batch_here(folder, tmp_path / "out").to_pylist()
     assert {one["trial"]: one["status"] for one in table} == {"few": "failed", "walk1": "done"}
 
 
@@ -73,7 +64,7 @@ def test_a_person_without_any_name_is_found_from_the_points(tmp_path):
     raw = read_capture(walk_folder() / "raw.c3d")
     assert is_nameless(raw)
     write_c3d(raw, folder / "raw.c3d")
-    table = batch(folder.parent, tmp_path / "out", workers=1)
+    table = batch_here(folder.parent, tmp_path / "out")
     assert table["status"].to_pylist() == ["done"]
     found = read_reconstruction(tmp_path / "out" / "P1" / "raw")
     assert found.subject.mass_kg == pytest.approx(SUBJECT.mass_kg, rel=0.05), "weighed by the plates"

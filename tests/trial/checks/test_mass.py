@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.trial.checks.mass import mass_finding
+from mbkf.conventions import GRAVITY_M_S2
+from mbkf.trial.checks.mass import SCALE_PERCENT, SPEED_SD_M_S, mass_finding
 from tests.checked import amplified, body, evidence, nothing, plates
 
 
@@ -53,3 +54,15 @@ def test_too_little_is_not_judged():
     given = evidence()
     short = given.restricted(np.arange(len(given.times_s)) < 40)
     assert mass_finding(short, nothing(given)).verdict == "not judged"
+
+
+@pytest.mark.parametrize("breaks", [1, 2, 4])
+def test_each_stretch_adds_the_errors_of_two_speeds(breaks):
+    """Where one part begins with the frame that ends another the speed between them cancels."""
+    given, frame = evidence("squat"), np.arange(len(evidence("squat").times_s))
+    gaps = np.linspace(0, len(frame), breaks + 1)[1:-1].astype(int)
+    kept = given.accounted & ~np.isin(frame, gaps)
+    seconds = (kept.sum() - breaks) / given.rate_hz
+    speeds_percent = 100.0 * SPEED_SD_M_S * np.sqrt(2.0 * breaks) / (GRAVITY_M_S2 * seconds)
+    sd = mass_finding(given.restricted(kept), nothing(given)).expected_sd
+    assert sd**2 - SCALE_PERCENT**2 == pytest.approx(speeds_percent**2, rel=0.1)
