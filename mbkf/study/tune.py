@@ -40,12 +40,12 @@ from mbkf.trial.preparation.settings import ReconstructSettings
 
 @dataclass(frozen=True)
 class TuneSettings:
-    """How a filter is tuned.
+    """Settings of the tuning of a filter.
 
     Attributes:
         filter: "dynamic" or "kinematic".
-        parameters: Names of :data:`PARAMETERS`; None for the default ones.
-        hold_out: Positions of the held-out trials; None for the last of several, or the second half of one.
+        parameters: Names of :data:`PARAMETERS`; None: the default ones.
+        hold_out: Positions of the held-out trials; None: the last of several, or the second half of one.
         calls: Most runs over the trials in the search.
         reconstruct: Settings to start from.
     """
@@ -74,7 +74,7 @@ def tune(
 
     Raises:
         UnknownName: The filter or a parameter does not exist.
-        InvalidInput: A trial is too short, none is left to learn from, or the axes of one cannot be right.
+        InvalidInput: A trial is too short, every trial is held out, or the axes of one cannot be right.
         NotObservable: The markers do not determine the body.
         NotConverged: The markers do not fit the subject's body.
     """

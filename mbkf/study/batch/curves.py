@@ -63,7 +63,7 @@ def write_curves(r: Reconstruction, path: Path, by_hand: Iterable[FootEvent] | N
     Args:
         r: The reconstruction.
         path: The file.
-        by_hand: Strikes and toe-offs that a person set; None for those that are found.
+        by_hand: Strikes and toe-offs set by a person; None: those found by the filter or the motion.
 
     Raises:
         OSError: It cannot be written.
@@ -86,7 +86,7 @@ def curves_of(r: Reconstruction, by_hand: Iterable[FootEvent] | None = None) -> 
 
     Args:
         r: The reconstruction.
-        by_hand: Strikes and toe-offs that a person set; None for those that are found.
+        by_hand: Strikes and toe-offs set by a person; None: those found by the filter or the motion.
     """
     gait = find_gait(r, by_hand)
     tables = []
@@ -98,7 +98,7 @@ def curves_of(r: Reconstruction, by_hand: Iterable[FootEvent] | None = None) -> 
 
 
 def _curves(r: Reconstruction, side: int) -> Iterator[SideCurve]:
-    """What is told of cycles of a side: reactions in the laboratory's axes."""
+    """Quantities of a side's cycles; reactions are in the laboratory's axes."""
     yield from side_curves(r, side)
     unknown = np.full(len(r.times_s), np.nan)
     for k, axis in enumerate(AXES):

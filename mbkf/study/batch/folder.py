@@ -3,7 +3,7 @@
     study/P01/static.c3d, study/P01/walk1.c3d                  person P01
     study/P01/monday/static.c3d, study/P01/monday/walk1.trc    person P01, session monday
 
-Standing trials are known by their names; where none is, by standing still. Ground reactions lie beside their trial,
+Standing trials are recognised by their names, else by standing still. Ground reactions lie beside their trial,
 under its name with ``grf`` or ``forces``. ``session.toml`` in a session's folder, or above it, states mass, height and
 protocol; in the session's own folder also which trials stand still, which are left out, and strikes and toe-offs that a
 person set (:mod:`mbkf.io.session`).
@@ -45,7 +45,7 @@ STATIC = re.compile(
 """Names of standing trials, in lower case."""
 
 STATED = ("mass_kg", "height_m", "protocol")
-"""What a session file states of the person."""
+"""Person as stated in a session file."""
 
 
 def plan_of_folder(folder: Path) -> Plan:
@@ -63,11 +63,11 @@ def plan_of_folder(folder: Path) -> Plan:
 
 
 def is_static(path: Path, notes: SessionNotes | None = None) -> bool:
-    """Whether a capture is a standing trial: by what is stated of it, else by its name.
+    """True for a standing trial: as stated in the session file, else by its name.
 
     Args:
         path: The capture.
-        notes: What is stated of its session.
+        notes: Statements of the session file.
     """
     stated = None if notes is None else notes.trial(path.stem).kind
     if stated is not None:
@@ -94,7 +94,7 @@ def forces_beside(path: Path, files: Sequence[Path]) -> Path | None:
 
 
 def _essence(stem: str) -> str:
-    """A name without what tells markers and ground reactions apart."""
+    """A name without the suffix that distinguishes markers from ground reactions."""
     words = re.split(r"[_\-. ]+", stem.lower())
     return "_".join(
         w
@@ -104,7 +104,7 @@ def _essence(stem: str) -> str:
 
 
 def _is_other(file: Path) -> bool:
-    """Whether a motion file holds coordinates or moments, as OpenSim's tools write them, and no forces."""
+    """True for a motion file of coordinates or moments, as OpenSim's tools write them, without forces."""
     return file.suffix.lower() in {".mot", ".sto"} and not re.search(r"grf|force", file.stem.lower())
 
 
@@ -121,7 +121,7 @@ def captures_in(folder: Path) -> list[Path]:
 def session_folders(root: Path) -> list[Path]:
     """The folders with captures in a folder, itself included; hidden ones and folders of results are left out.
 
-    Folders that vanish meanwhile, as unfinished results do, hold none.
+    Folders that vanish meanwhile, as unfinished results do, count as empty.
     """
     found = []
     for place, folders, files in os.walk(root):
@@ -175,7 +175,7 @@ def person_and_session(root: Path, place: Path) -> tuple[str, str]:
 
 
 def stated_of(root: Path, place: Path) -> SessionNotes:
-    """What session files say, the nearest first; of trials only the session's own.
+    """Statements of session files, the nearest first; of trials only the session's own.
 
     Args:
         root: The study's folder.
@@ -213,9 +213,9 @@ def checked_entry(key: str, value: object, file: Path, line: int | None = None) 
 
     Args:
         key: One of :data:`STATED`.
-        value: What the file says.
+        value: Value in the file.
         file: The file.
-        line: Its line, None where it is not known.
+        line: Its line; None: unknown.
 
     Raises:
         FileFormatError: It is not one.

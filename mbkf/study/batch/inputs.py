@@ -1,4 +1,4 @@
-"""What a result was made from, so that what is done and unchanged is not done again: files by their contents."""
+"""Inputs of a result, files by their contents, so that finished and unchanged results are kept."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from mbkf.io.plain_data import parse_json
 from mbkf.version import __version__
 
 RECORD = "batch.json"
-"""File in a result's folder that says what it was made from."""
+"""File in a result's folder that lists the inputs of the result."""
 
 
 def fingerprint(files: Sequence[Path], settings: Mapping[str, object]) -> dict[str, object]:
-    """What a result follows from: contents of files, settings and version, as plain data.
+    """Inputs of a result as plain data: contents of files, settings and version.
 
     Args:
         files: The inputs.
@@ -34,7 +34,7 @@ def fingerprint(files: Sequence[Path], settings: Mapping[str, object]) -> dict[s
 
 
 def is_made_from(record: Path, made_from: Mapping[str, object]) -> bool:
-    """Whether a record says that its result was made from the same; file names do not count, contents do."""
+    """True where a record lists the same inputs; file names do not count, contents do."""
     try:
         found = parse_json(record.read_text(encoding="utf-8"))
         return _contents(found) == _contents(made_from)
@@ -43,7 +43,7 @@ def is_made_from(record: Path, made_from: Mapping[str, object]) -> bool:
 
 
 def read_record(record: Path) -> dict[str, object]:
-    """What a result was made from, and under "events" the strikes and toe-offs by hand, where there are any.
+    """Inputs of a result, and under "events" the strikes and toe-offs by hand, where there are any.
 
     Raises:
         FileFormatError: It is missing or damaged.
@@ -55,7 +55,7 @@ def read_record(record: Path) -> dict[str, object]:
 
 
 def write_record(record: Path, made_from: Mapping[str, object]) -> None:
-    """Writes what a result was made from.
+    """Writes the inputs of a result.
 
     Raises:
         OSError: It cannot be written.

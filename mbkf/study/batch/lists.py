@@ -13,7 +13,8 @@ TOML, a table per person and session::
     subject = "P01/subject.toml"   # scaled before, instead of static and mass
 
 CSV, a row per trial: columns ``subject`` and ``trial``, and ``session``, ``static``, ``forces``, ``name``, ``mass_kg``,
-``height_m``, ``protocol``, ``subject_file`` where they are known; what one row states of a person holds for all.
+``height_m``, ``protocol``, ``subject_file`` where they are known; a statement about a person holds for all of the
+person's rows.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ def plan_of_toml(file: Path) -> Plan:
     try:
         listed = read_toml(file)
     except (OSError, ValueError) as error:
-        raise FileFormatError(file, f"is no list in TOML ({error})") from error
+        raise FileFormatError(file, f"cannot be read as a list in TOML ({error})") from error
     entries = listed.get("subject")
     if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
         raise FileFormatError(file, "has no [[subject]]")
@@ -62,7 +63,7 @@ def plan_of_csv(file: Path) -> Plan:
         with file.open(encoding="utf-8-sig", newline="") as opened:
             rows = list(csv.DictReader(opened))
     except (OSError, ValueError, csv.Error) as error:
-        raise FileFormatError(file, f"is no list in CSV ({error})") from error
+        raise FileFormatError(file, f"cannot be read as a list in CSV ({error})") from error
     known = set(rows[0]) if rows else set()
     for name in ("subject", "trial"):
         if rows and name not in known:
@@ -85,7 +86,7 @@ def plan_of_csv(file: Path) -> Plan:
 
 
 def _with(person: Person, row: Mapping[str, str], file: Path, line: int) -> Person:
-    """A person with what a row adds."""
+    """A person completed by the statements of a row."""
     if not person.name:
         raise FileFormatError(file, "names no subject", line)
     found: dict[str, object] = {}
@@ -106,7 +107,7 @@ def _number(text: str, file: Path, line: int) -> float:
     try:
         return float(text)
     except ValueError:
-        raise FileFormatError(file, f"'{text}' is no number", line) from None
+        raise FileFormatError(file, f"'{text}' should be a number", line) from None
 
 
 def _file(file: Path, name: str, line: int | None = None) -> Path:
@@ -143,7 +144,7 @@ def _trials(file: Path, entry: Entry) -> list[Trial]:
         subject=None if subject is None else _file(file, subject),
     )
     person = replace(person, **stated)  # type: ignore[arg-type]
-    return [Trial(person, path, forces, told) for path, forces, told in found]
+    return [Trial(person, path, forces, trial_name) for path, forces, trial_name in found]
 
 
 def _trial(file: Path, person: str, one: object) -> tuple[Path, Path | None, str]:

@@ -21,7 +21,7 @@ class Named:
 
     Attributes:
         capture: The capture to reconstruct.
-        summary: What the labeller tells of it; None where the capture's own names were enough.
+        summary: The labeller's summary; None where the capture's own names were enough.
         warnings: Names that may be wrong.
     """
 
@@ -31,7 +31,7 @@ class Named:
 
 
 def is_nameless(capture: Capture) -> bool:
-    """Whether not one point of a capture has a name."""
+    """True where every point of a capture lacks a name."""
     return all(name.startswith("*") for name in capture.markers.names)
 
 
@@ -42,10 +42,10 @@ def body_of_points(capture: Capture, mass_kg: float, height_m: float | None, pro
         capture: The capture.
         mass_kg: Body mass, kg.
         height_m: Body height, m, if known.
-        protocol: The markers that were worn; None for a set inferred from the points.
+        protocol: The markers that were worn; None: a set inferred from the points.
 
     Raises:
-        NotObservable: Too few points, or no person is found among them.
+        NotObservable: Too few points, or the body fits none of them.
         NotConverged: The points do not fit a person.
     """
     if protocol is None:
@@ -54,7 +54,7 @@ def body_of_points(capture: Capture, mass_kg: float, height_m: float | None, pro
 
 
 def needs_names(capture: Capture, subject: Subject) -> bool:
-    """Whether most of a person's markers are points without names in a capture.
+    """True where most of a person's markers are points without names in a capture.
 
     Args:
         capture: The capture.
@@ -83,5 +83,5 @@ def named(capture: Capture, subject: Subject) -> Named:
     found = label(turned, subject)
     doubts = () if found.doubts is None else tuple(found.doubts.warnings())
     share = f"{100.0 * found.assigned_fraction:.1f} % of the marker samples have a point"
-    told = f"the points had no names and were labelled: {share}"
-    return Named(labelled_capture(turned, found), label_summary(found), (told, *doubts))
+    note = f"the points had no names and were labelled: {share}"
+    return Named(labelled_capture(turned, found), label_summary(found), (note, *doubts))

@@ -1,4 +1,4 @@
-"""What became of one task of a batch, and the task itself: what workers are given, and what they give back."""
+"""Tasks of a batch and their outcomes: input and output of the workers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from mbkf.trial.preparation.settings import ReconstructSettings
 
 
 class Status(StrEnum):
-    """What became of a task."""
+    """Outcome of a task."""
 
     DONE = "done"
     UNCHANGED = "unchanged"
@@ -29,14 +29,14 @@ class Status(StrEnum):
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a task.
+    """Outcome of a task.
 
     Attributes:
         status: Whether it was done now, before, or failed.
         reason: Why it failed, in one line.
         seconds: How long it took.
-        peak_memory_mb: Most memory that its worker had until then; None where the system does not tell.
-        subject: The scaled person's file; None for a trial, or where that failed.
+        peak_memory_mb: Most memory that its worker had until then; None where the system does not state it.
+        subject: The scaled person's file; None: a trial, or a failed scaling.
     """
 
     status: Status
@@ -98,17 +98,17 @@ class ReconstructTrial:
 
 
 def failed(error: BaseException) -> Outcome:
-    """An outcome for an error, told in one line."""
-    told = " ".join(str(error).split()) or type(error).__name__
+    """An outcome for an error, in one line."""
+    text = " ".join(str(error).split()) or type(error).__name__
     if isinstance(error, OSError) and error.strerror is not None:
-        told = f"{error.strerror}: {error.filename}" if error.filename else error.strerror
+        text = f"{error.strerror}: {error.filename}" if error.filename else error.strerror
     elif not isinstance(error, MbkfError):
-        told = f"unforeseen {type(error).__name__}: {told} (a bug in mbkf)"
-    return Outcome(Status.FAILED, told)
+        text = f"unforeseen {type(error).__name__}: {text} (a bug in mbkf; please report it)"
+    return Outcome(Status.FAILED, text)
 
 
 def _outcome(work: Callable[[], Outcome]) -> Outcome:
-    """What work finds, or its error, with time and memory."""
+    """Result of the work or its error, with time and memory."""
     begin = time.perf_counter()
     try:
         with single_threaded():
@@ -120,7 +120,7 @@ def _outcome(work: Callable[[], Outcome]) -> Outcome:
 
 
 def peak_memory_mb() -> float | None:
-    """Most memory that this process has had, MB; None where the system does not tell."""
+    """Most memory that this process has had, MB; None where the system does not state it."""
     if os.name != "posix":
         return None
     import resource

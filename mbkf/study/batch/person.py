@@ -19,7 +19,7 @@ from mbkf.trial.scale import scale
 from mbkf.trial.weighing import PROVISIONAL_KG, weighed
 
 SUBJECT_FILE, RECORD = "subject.toml", "subject.json"
-"""Files of a scaled person in the person's folder: the body, and what it was made from."""
+"""Files of a scaled person in the person's folder: the body, and its inputs."""
 
 
 def subject_of(person: Person, out: Path) -> Path:
@@ -54,11 +54,11 @@ def subject_of(person: Person, out: Path) -> Path:
 def scaled(person: Person) -> Subject:
     """The person's body: by the first standing trial, by its name or else by standing still, else by the moving ones.
 
-    Captures whose points have no names tell nothing beside one that has names; where none has, the body is found
+    Captures whose points have no names are left out beside one that has names; without such a one, the body is found
     with the names of the first moving one.
 
     Raises:
-        MbkfError: No trial can be read, or they do not tell body or mass.
+        MbkfError: No trial can be read, or body or mass cannot be determined from them.
         OSError: A file cannot be read.
     """
     static = read_capture(person.statics[0]) if person.statics else None
@@ -71,8 +71,8 @@ def scaled(person: Person) -> Subject:
         static, trials = still, []
     trials = (found if nameless else trials)[:MOST_MOVING]
     captures = [*([] if static is None else [static]), *trials]
-    told = (one.subject_mass_kg for one in captures if one.subject_mass_kg is not None)
-    stated_kg = next(told, None) if person.mass_kg is None else person.mass_kg
+    file_masses = (one.subject_mass_kg for one in captures if one.subject_mass_kg is not None)
+    stated_kg = next(file_masses, None) if person.mass_kg is None else person.mass_kg
     mass_kg = PROVISIONAL_KG if stated_kg is None else stated_kg
     if nameless and trials:
         subject = body_of_points(trials[0], mass_kg, person.height_m, person.protocol)
@@ -86,7 +86,7 @@ def scaled(person: Person) -> Subject:
         return weighed(subject, [named(one, subject).capture for one in captures])
     except InvalidInput as error:
         raise InvalidInput(
-            f"no capture tells the body mass; state mass_kg in session.toml or in the list ({error})"
+            f"the body mass follows from no capture; state mass_kg in session.toml or in the list ({error})"
         ) from error
 
 

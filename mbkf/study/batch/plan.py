@@ -1,4 +1,4 @@
-"""What a batch is to do: the persons of each session, and their trials."""
+"""Plan of a batch: the persons of each session, and their trials."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from mbkf.errors import InvalidInput
 from mbkf.io.session import FootEvent
 
 FORBIDDEN = re.compile(r'[/\\:*?"<>|\x00-\x1f]')
-"""What no system allows in a folder's name."""
+"""Characters that some system refuses in a folder's name."""
 
 
 MOST_MOVING = 3
-"""So many trials are scaled from where there is no standing one, or weighed by where that one has no plates."""
+"""Number of trials used for scaling without a standing trial, or for weighing where that trial has no plates."""
 
 MOST_LOOKED_AT = 12
-"""Among so many trials a standing one is looked for where no name tells."""
+"""Number of trials searched for a standing one where names do not identify it."""
 
 
 class Files(NamedTuple):
-    """A capture, and the ground reactions beside it; None for those of the capture itself."""
+    """A capture, and the ground reactions beside it (None: those of the capture itself)."""
 
     path: Path
     forces: Path | None = None
@@ -39,9 +39,9 @@ class Person:
         statics: Standing trials; the first one is used.
         moving: The first moving trials, :data:`MOST_MOVING` at most; :data:`MOST_LOOKED_AT`, of which some may be
             standing ones, where no standing trial is known.
-        mass_kg: Body mass; None for what the captures state, else what their plates tell.
-        height_m: Body height; None where it is not known.
-        protocol: Marker protocol; None for the one that the names belong to.
+        mass_kg: Body mass; None: as stated in the captures, else by their plates.
+        height_m: Body height; None: unknown.
+        protocol: Marker protocol; None: recognised by the names.
         subject: A subject file to take instead of scaling.
     """
 
@@ -67,9 +67,9 @@ class Trial:
     Attributes:
         person: Whose it is.
         path: The capture.
-        forces: Ground reactions beside it; None for those of the capture itself.
+        forces: Ground reactions beside it; None: those of the capture itself.
         name: Its folder's name among the person's trials.
-        events: Strikes and toe-offs that a person set; None for those that are found.
+        events: Strikes and toe-offs set by a person; None: those that are found.
     """
 
     person: Person
@@ -99,15 +99,15 @@ class Plan:
         """Every ``count``-th trial, from the ``number``-th (from 1) on.
 
         Raises:
-            InvalidInput: There is no such shard.
+            InvalidInput: The shard does not exist.
         """
         if not 1 <= number <= count:
-            raise InvalidInput(f"there is no shard {number}/{count}; give 1/{count} to {count}/{count}")
+            raise InvalidInput(f"shard {number}/{count} does not exist; give 1/{count} to {count}/{count}")
         return Plan(self.trials[number - 1 :: count])
 
 
 def folder_name(name: str) -> str:
-    """A name as a folder may have it: what cannot stand in one becomes a low line."""
+    """A name as a folder may have it: characters that cannot stand in one become a low line."""
     found = FORBIDDEN.sub("_", name)
     return f"_{found}" if found in {"", ".", ".."} else found
 
@@ -120,11 +120,11 @@ def planned(trials: Sequence[Trial], where: str) -> Plan:
         where: File or folder that they were read from, for messages.
 
     Raises:
-        InvalidInput: There are none, two have the same place, or a name cannot be a folder's.
+        InvalidInput: The plan is empty, two trials have the same place, or a name cannot be a folder's.
     """
     if not trials:
         raise InvalidInput(
-            f"{where}: no trial was found; see mbkf batch --help for what a folder or list holds"
+            f"{where}: no trial was found; mbkf batch --help describes the contents of a folder or list"
         )
     places: dict[Path, Path] = {}
     for trial in trials:

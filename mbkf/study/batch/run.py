@@ -35,7 +35,7 @@ def batch(
     settings: ReconstructSettings | None = None,
     progress: StageCallback | None = None,
 ) -> pa.Table:
-    """Scales every person once and reconstructs every trial; what is done and unchanged is not done again.
+    """Scales every person once and reconstructs every trial; finished and unchanged results are kept.
 
     Args:
         source: A folder of captures (:mod:`mbkf.study.batch.folder`), or a list of persons and trials in TOML or
@@ -53,7 +53,7 @@ def batch(
 
     Raises:
         FileFormatError: The list is damaged, or a file stands where a folder is needed.
-        InvalidInput: There is no trial, no such shard, or no scheduler answers.
+        InvalidInput: No trial was found, the shard does not exist, or no scheduler answers.
         MissingDependency: Dask is not installed.
         OSError: The folder cannot be written to.
     """
@@ -81,7 +81,7 @@ def follow(
     progress: StageCallback | None = None,
     suffix: str = "",
 ) -> pa.Table:
-    """Does what a plan says, and makes its tables; returns that of the trials.
+    """Carries out a plan and makes its tables; returns that of the trials.
 
     Args:
         plan: The persons and trials.
@@ -109,7 +109,7 @@ def plan_of(source: Path) -> Plan:
     if source.is_dir():
         return plan_of_folder(source)
     if source.suffix.lower() not in LISTS:
-        raise FileFormatError(source, "is no folder, and no list in TOML or CSV")
+        raise FileFormatError(source, "is neither a folder nor a list in TOML or CSV")
     return LISTS[source.suffix.lower()](source)
 
 
@@ -120,7 +120,7 @@ def outcomes_of(
     executor: Executor,
     progress: StageCallback | None = None,
 ) -> list[Outcome]:
-    """What becomes of each trial: persons are scaled first.
+    """Outcome of each trial: persons are scaled first.
 
     Args:
         plan: The persons and trials.
@@ -155,7 +155,7 @@ def _done(
     Args:
         tasks: They.
         executor: Who does them.
-        stage: What is being done, for the progress.
+        stage: Name of the stage, for the progress.
         progress: Called with the stage, items done and items in all.
         count: How many there are, where the tasks have no length.
     """

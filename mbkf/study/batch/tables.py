@@ -37,8 +37,8 @@ OWN = pa.schema(
     ]
 )
 """Columns of every trial. status: done, unchanged (done before, from the same) or failed, and then why. seconds,
-peak_memory_mb: of the worker. folder: of the results, in the batch's folder. What follows is summary.json, with a dot
-between the keys of tables in it; lists stand as JSON."""
+peak_memory_mb: of the worker. folder: of the results, in the batch's folder. The other columns are those of
+summary.json, with a dot between the keys of its tables; lists stand as JSON."""
 
 Row = dict[str, object]
 
@@ -48,7 +48,7 @@ def write_tables(plan: Plan, outcomes: Sequence[Outcome], out: Path, suffix: str
 
     Args:
         plan: The trials.
-        outcomes: What became of each.
+        outcomes: Outcome of each.
         out: The batch's folder.
         suffix: Ends the tables' names: that of a shard.
 
@@ -124,7 +124,7 @@ def _flat(values: Mapping[str, object], above: str = "") -> Iterator[tuple[str, 
 
 
 def _kind(value: object) -> pa.DataType | None:
-    """Type of a column that holds such a value; None where the value tells nothing."""
+    """Type of a column that holds such a value; None where the value leaves it open."""
     if value is None:
         return None
     if isinstance(value, bool):

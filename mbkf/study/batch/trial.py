@@ -40,9 +40,9 @@ def trial_done(trial: Trial, subject: Path, out: Path, settings: ReconstructSett
     """
     target = out / trial.place
     files = [trial.path, subject, *([] if trial.forces is None else [trial.forces])]
-    told = recorded(settings)
-    del told["kernel"]  # both find the same
-    made_from = fingerprint(files, told)
+    run_settings = recorded(settings)
+    del run_settings["kernel"]  # both find the same
+    made_from = fingerprint(files, run_settings)
     if trial.events is not None:
         made_from["events"] = plain_events(trial.events)
     if is_made_from(target / RECORD, made_from):
@@ -55,8 +55,8 @@ def trial_done(trial: Trial, subject: Path, out: Path, settings: ReconstructSett
         write_result_files(result, summarise(result), partial)
         write_curves(result, partial / CURVES_FILE, trial.events)
         if given.summary is not None:
-            told_labels = json.dumps(given.summary, indent=2) + "\n"
-            (partial / LABELS_FILE).write_text(told_labels, encoding="utf-8")
+            labels = json.dumps(given.summary, indent=2) + "\n"
+            (partial / LABELS_FILE).write_text(labels, encoding="utf-8")
         write_record(partial / RECORD, made_from)
     return True
 
@@ -64,7 +64,7 @@ def trial_done(trial: Trial, subject: Path, out: Path, settings: ReconstructSett
 def curves_anew(trial: Trial, out: Path) -> bool:
     """Makes the curves of a trial that was done again, unless its events are those of before; returns whether it did.
 
-    The record is written last: a kill in between leaves one that tells of the events before, and the curves are made
+    The record is written last: a kill in between leaves the record of the events before, and the curves are made
     once more.
 
     Args:
@@ -76,10 +76,10 @@ def curves_anew(trial: Trial, out: Path) -> bool:
         OSError: A file cannot be read or written.
     """
     target = out / trial.place
-    told = None if trial.events is None else plain_events(trial.events)
+    events = None if trial.events is None else plain_events(trial.events)
     made_from = read_record(target / RECORD)
-    if made_from.get("events") == told:
+    if made_from.get("events") == events:
         return False
     write_curves(read_reconstruction(target), target / CURVES_FILE, trial.events)
-    write_record(target / RECORD, {**made_from, "events": told})
+    write_record(target / RECORD, {**made_from, "events": events})
     return True

@@ -1,7 +1,7 @@
 """Tasks on the processes of one computer; a process that is killed costs only the task that it died of.
 
 When a worker dies, nobody knows which of the tasks that were under way it had. Those are done again one by one, each in
-a process of its own: the one that dies again is told so, the others are done.
+a process of its own: the one that dies again is reported so, the others are done.
 """
 
 from __future__ import annotations
@@ -115,7 +115,7 @@ class LocalWorkers:
 
 
 def end_without(parent: int) -> None:
-    """Ends this process soon after its parent has gone, which may have been killed and not told it.
+    """Ends this process soon after its parent has gone, which may have been killed without a word to it.
 
     Args:
         parent: Number of the parent's process.
@@ -131,5 +131,5 @@ def end_without(parent: int) -> None:
 
 
 def _broke(future: Future[Outcome]) -> bool:
-    """Whether a worker died before this was done."""
+    """True where a worker died before this was done."""
     return future.done() and isinstance(future.exception(), BrokenProcessPool)

@@ -1,8 +1,8 @@
 """Which cycles a mean is of: measured loads and estimated ones are never averaged together.
 
 Angles are means of all cycles. Loads of a leg are means of the cycles in which a plate of its own measured the foot,
-those of the trunk of the cycles in which every contact was measured; where there is none, of those whose loads are
-estimated well enough, and told so.
+those of the trunk of the cycles in which every contact was measured; otherwise of those whose loads are
+estimated well enough, and marked as estimated.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ class Chosen:
     """The cycles of a quantity, and the mean.
 
     Attributes:
-        told: The mean of the cycles that count; None where there is none.
-        estimated: Whether these are estimated, since none is measured.
+        mean: The mean of the cycles that count; None: no such cycle.
+        estimated: These are estimated, since no cycle is measured.
         counted: (K, 101) the cycles that count.
         others: (L, 101) estimated cycles beside measured ones: shown, never averaged.
         off_percent: Mean toe-off of the cycles that count; NaN without.
     """
 
-    told: Mean | None
+    mean: Mean | None
     estimated: bool
     counted: Array
     others: Array

@@ -66,7 +66,7 @@ class Comparison:
 
 
 def compare(before: Session, after: Session) -> tuple[Comparison, ...]:
-    """What differs between two sessions, for each kind of gait that both have.
+    """Differences between two sessions, for each kind of gait that both have.
 
     Args:
         before: The earlier session.
@@ -78,7 +78,7 @@ def compare(before: Session, after: Session) -> tuple[Comparison, ...]:
 
 
 def is_same_body(one: Subject, other: Subject) -> bool:
-    """Whether two persons were scaled alike, to the last digit: what is wrong with the body is the same then."""
+    """True for two persons scaled alike, to the last digit: errors of the body are then the same."""
     return dict(one.scale_factors) == dict(other.scale_factors) and [
         (m.name, *m.position_m) for m in one.markers
     ] == [(m.name, *m.position_m) for m in other.markers]
@@ -92,9 +92,9 @@ def _compare(before: MovementGroup, after: MovementGroup, same: bool) -> Compari
             if key not in first.curves:
                 continue
             old, new = chosen_curves(first, key), chosen_curves(second, key)
-            if old.told is None or new.told is None or old.estimated != new.estimated:
+            if old.mean is None or new.mean is None or old.estimated != new.estimated:
                 continue
-            apart = difference_of(new.told, old.told, same)
+            apart = difference_of(new.mean, old.mean, same)
             curves.append(CurvePair(key, side, second.curves[key].unit, old, new, apart))
     return Comparison(after.kind, tuple(curves), measure_pairs(before.measures, after.measures), same)
 
@@ -121,7 +121,7 @@ def measure_pairs(before: tuple[Measure, ...], after: tuple[Measure, ...]) -> tu
 
 
 def measure_mean(measure: Measure, side: str) -> Mean | None:
-    """The mean of a measure on a side; None where no value is known.
+    """The mean of a measure on a side; None: every value is unknown.
 
     Args:
         measure: The measure.

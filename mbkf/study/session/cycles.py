@@ -28,14 +28,14 @@ ANGLE, TORQUE, POWER, REACTION = "angle", "torque", "power", "reaction"
 
 
 class Key(NamedTuple):
-    """What a curve is of: "angle", "torque", "power" or "reaction", and the coordinate without its side."""
+    """Kind of a curve ("angle", "torque", "power" or "reaction") and its coordinate without the side."""
 
     quantity: str
     name: str
 
     @property
     def is_load(self) -> bool:
-        """Whether it is known from loads, and so measured or estimated."""
+        """True for quantities that follow from loads, and so are measured or estimated."""
         return self.quantity != ANGLE
 
 
@@ -86,7 +86,7 @@ class SideCycles:
     Attributes:
         side: 0 right, 1 left.
         cycles: C of them.
-        curves: What they show.
+        curves: The quantities shown.
     """
 
     side: int
@@ -101,11 +101,11 @@ def cycles_of_trial(r: Reconstruction, gait: Gait | None, side: int) -> SideCycl
 
     Args:
         r: The trial's results.
-        gait: Its gait; None for a trial without.
+        gait: Its gait; None: a trial without gait.
         side: 0 right, 1 left.
     """
     kept = [] if gait is None else [c for c in gait.of(side) if _within(r, c, r.tracked).all()]
-    cycles = tuple(_told(r, c) for c in kept)
+    cycles = tuple(_session_cycle(r, c) for c in kept)
     if not kept:
         return SideCycles(side, (), {})
     mirrored = mirrored_midline(reference_body(r.subject)) if side else frozenset()
@@ -182,8 +182,8 @@ def mirrored_midline(body: BodyDescription) -> frozenset[str]:
     return frozenset(found)
 
 
-def _told(r: Reconstruction, cycle: Cycle) -> SessionCycle:
-    """How the loads of a cycle are known."""
+def _session_cycle(r: Reconstruction, cycle: Cycle) -> SessionCycle:
+    """Source of the loads of a cycle."""
     edge = np.minimum(r.times_s - cycle.start_s, cycle.end_s - r.times_s) < EDGE * cycle.seconds
     own = edge | np.isin(r.foot_source[:, cycle.side], (Source.NONE, Source.MEASURED))
     measured, body_measured, valid = (
@@ -197,7 +197,7 @@ def _within(r: Reconstruction, cycle: Cycle, flags: BoolArray) -> BoolArray:
 
 
 def _shown(curve: SideCurve, mass_kg: float) -> tuple[float, str]:
-    """Factor to, and unit of, what a report shows."""
+    """Factor and unit of the values in a report."""
     if curve.quantity == REACTION:
         return 100.0 / (mass_kg * GRAVITY_M_S2), "% BW"
     if curve.quantity == ANGLE:

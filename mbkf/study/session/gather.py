@@ -36,9 +36,9 @@ MOST_DEEP = 3
 
 @dataclass(frozen=True)
 class _Part:
-    """What one trial gives to its session."""
+    """Contribution of one trial to its session."""
 
-    told: SessionTrial
+    trial: SessionTrial
     subject: Subject
     sides: tuple[SideCycles, SideCycles]
     gait: Gait | None
@@ -50,7 +50,7 @@ def results_in(folder: Path) -> list[Path]:
     """The folders with results in a folder, itself included, in order of their names.
 
     Raises:
-        InvalidInput: There is none.
+        InvalidInput: The folder holds no result.
     """
     if (folder / MOTION_FILE).is_file():
         return [folder]
@@ -71,7 +71,7 @@ def session_from(folders: Sequence[Path], name: str, notes: SessionNotes | None 
     Args:
         folders: A folder with results for each trial.
         name: How the session is called.
-        notes: What is stated of it: kinds of trials, which are left out, and the person.
+        notes: Statements of the session file: kinds of trials, which are left out, and the person.
 
     Raises:
         FileFormatError: A result is damaged.
@@ -80,7 +80,7 @@ def session_from(folders: Sequence[Path], name: str, notes: SessionNotes | None 
     stated = notes or SessionNotes()
     read = ((read_reconstruction(folder), folder) for folder in folders)
     pairs = ((r, _with_events(stated.trial(r.trial), folder)) for r, folder in read)
-    return _session(((r, told) for r, told in pairs if not told.excluded), name, stated)
+    return _session(((r, trial) for r, trial in pairs if not trial.excluded), name, stated)
 
 
 def session_of(results: Iterable[Reconstruction], name: str, notes: SessionNotes | None = None) -> Session:
@@ -89,10 +89,10 @@ def session_of(results: Iterable[Reconstruction], name: str, notes: SessionNotes
     Args:
         results: The trials.
         name: How the session is called.
-        notes: What is stated of it.
+        notes: Statements of the session file.
 
     Raises:
-        InvalidInput: There is no trial.
+        InvalidInput: The session has no trial.
     """
     stated = notes or SessionNotes()
     return _session(((r, stated.trial(r.trial)) for r in results), name, stated)
@@ -101,22 +101,22 @@ def session_of(results: Iterable[Reconstruction], name: str, notes: SessionNotes
 def _session(
     results: Iterable[tuple[Reconstruction, TrialNotes]], name: str, stated: SessionNotes
 ) -> Session:
-    """The session of trials, each with what is stated of it.
+    """The session of trials, each with its statements in the session file.
 
     Raises:
-        InvalidInput: There is no trial.
+        InvalidInput: The session has no trial.
     """
     parts, seen = [], Counter[str]()
     for r, notes in results:
         seen[r.trial] += 1
         parts.append(_part(r if seen[r.trial] == 1 else _again(r, seen[r.trial]), notes))
     if not parts:
-        raise InvalidInput(f"{name}: there is no trial to report on")
+        raise InvalidInput(f"{name}: no trial to report on was found; reconstruct at least one trial first")
     kinds = [kind for kind in GAIT_KINDS if any(_gait_of(part, kind) for part in parts)]
     return Session(
         name,
         parts[0].subject,
-        tuple(part.told for part in parts),
+        tuple(part.trial for part in parts),
         tuple(_group(kind, [part for part in parts if _gait_of(part, kind)]) for kind in kinds),
         _joined([part.jumps for part in parts]),
         _joined([part.squats for part in parts]),
@@ -125,12 +125,12 @@ def _session(
     )
 
 
-def told_of(r: Reconstruction, kind: TrialKind | None = None) -> SessionTrial:
+def trial_summary(r: Reconstruction, kind: TrialKind | None = None) -> SessionTrial:
     """A trial in short.
 
     Args:
         r: Its results.
-        kind: What it is; told from its markers when None.
+        kind: Kind of the trial; None: recognised from its markers.
     """
     rms = _marker_rms_m(r)
     outside = tuple(f"{one.name}: {one.hint}" for one in r.checks if one.verdict == "outside")
@@ -149,7 +149,7 @@ def told_of(r: Reconstruction, kind: TrialKind | None = None) -> SessionTrial:
 
 
 def _with_events(stated: TrialNotes, folder: Path) -> TrialNotes:
-    """What is stated of a trial, with the events by hand that its batch knew where none are stated.
+    """Statements about a trial, with the events by hand that its batch knew where the session file has none.
 
     Raises:
         FileFormatError: The batch's record is damaged.
@@ -166,16 +166,16 @@ def _with_events(stated: TrialNotes, folder: Path) -> TrialNotes:
 
 
 def _part(r: Reconstruction, stated: TrialNotes) -> _Part:
-    told = told_of(r, stated.kind)
-    gait = find_gait(r, stated.events) if told.kind in GAIT_KINDS and r.tracked.any() else None
+    trial = trial_summary(r, stated.kind)
+    gait = find_gait(r, stated.events) if trial.kind in GAIT_KINDS and r.tracked.any() else None
     sides = (cycles_of_trial(r, gait, 0), cycles_of_trial(r, gait, 1))
     return _Part(
-        told,
+        trial,
         r.subject,
         sides,
         gait,
-        jump_measures(r) if told.kind == TrialKind.JUMP else (),
-        squat_measures(r) if told.kind == TrialKind.SQUAT else (),
+        jump_measures(r) if trial.kind == TrialKind.JUMP else (),
+        squat_measures(r) if trial.kind == TrialKind.SQUAT else (),
     )
 
 
@@ -190,21 +190,21 @@ def _marker_rms_m(r: Reconstruction) -> float:
 
 
 def _gait_of(part: _Part, kind: TrialKind) -> bool:
-    return part.told.kind == kind and part.gait is not None
+    return part.trial.kind == kind and part.gait is not None
 
 
 def _group(kind: TrialKind, parts: list[_Part]) -> MovementGroup:
     """Trials of a kind together."""
     sides = (together([p.sides[0] for p in parts], 0), together([p.sides[1] for p in parts], 1))
     return MovementGroup(
-        kind, tuple(p.told.name for p in parts), sides, _joined([_parameters(p) for p in parts])
+        kind, tuple(p.trial.name for p in parts), sides, _joined([_parameters(p) for p in parts])
     )
 
 
 def _parameters(part: _Part) -> tuple[Measure, ...]:
     """Spatiotemporal parameters of one trial."""
     assert part.gait is not None
-    name = part.told.name
+    name = part.trial.name
     return tuple(
         Measure(
             one.name,

@@ -1,4 +1,4 @@
-"""What a jump trial shows: height by flight time and by the centre of mass, contact times, forces, power.
+"""Measures of a jump trial: height by flight time and by the centre of mass, contact times, forces, power.
 
 Height from the time in the air t is g t²/8 (P. V. Komi and C. Bosco, Med. Sci. Sports 10, 1978, 261-265); it counts too
 much where the legs are bent at landing. Height of the centre of mass is its highest place in the air less that at
@@ -15,14 +15,14 @@ from mbkf.study.session.loading import BodyPath, body_path, flights
 from mbkf.study.session.records import Measure
 
 PUSH_S, LANDING_S = 1.0, 0.5
-"""How long before take-off the push-off begins at most, and how long after touch-down the landing lasts."""
+"""Longest push-off before take-off, and duration of the landing after touch-down."""
 
 STANDING_M_S = 0.1
 """A centre of mass slower than this stands."""
 
 
 def jump_measures(r: Reconstruction) -> tuple[Measure, ...]:
-    """The measures of each jump of a trial; none where nobody leaves the floor."""
+    """The measures of each jump of a trial; empty where both feet never leave the floor."""
     path = body_path(r)
     found = flights(path)
     if not found:

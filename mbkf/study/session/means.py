@@ -7,7 +7,7 @@ trial i, N in all, k trials, mean squares between (MSB) and within trials (MSW),
     sigma_b^2 = max(0, (MSB - MSW) / n_0),   n_0 = (N - sum n_i^2 / N) / (k - 1),
     var(mean) = sigma_b^2 sum (n_i / N)^2 + MSW / N.
 
-What the body, which is not known exactly, shifts in every cycle alike does not fall with the number of cycles; its
+The shift that errors of the scaled body cause in every cycle alike does not fall with the number of cycles; its
 variance is added. Degrees of freedom are Welch and Satterthwaite's (B. L. Welch, Biometrika 34, 1947, 28-35).
 """
 
@@ -34,7 +34,7 @@ class Mean:
         sd: (P,) standard deviation between cycles; NaN for a single one.
         variance: (P,) of the mean, by how cycles and trials differ.
         freedom: (P,) degrees of freedom of that variance.
-        shift_variance: (P,) of what shifts all cycles alike.
+        shift_variance: (P,) of the shift that all cycles share.
         count: How many cycles.
     """
 
@@ -75,7 +75,7 @@ def mean_of(values: Array, trials: Sequence[str], shift_sd: Array, own_sd: Array
     Args:
         values: (C, P) cycles, C at least 1.
         trials: (C,) the trial that each is from.
-        shift_sd: (C, P) standard deviations of what shifts all cycles alike; NaN counts as 0.
+        shift_sd: (C, P) standard deviations of the shift that all cycles share; NaN counts as 0.
         own_sd: (C, P) stated standard deviations of a cycle by itself, which stand in for the spread between cycles
             where there is one only; NaN where that is not known, and then no interval is.
     """
@@ -107,7 +107,7 @@ def difference_of(after: Mean, before: Mean, same_body: bool) -> Difference:
 def paired_difference(
     values: Array, trials: Sequence[str], other_values: Array, other_trials: Sequence[str]
 ) -> Difference | None:
-    """The mean over trials of one quantity less another, with its interval: what a trial does to both cancels.
+    """The mean over trials of one quantity less another, with its interval: an error of a trial in both cancels.
 
     Args:
         values: (N,) of the first quantity, e.g. of right steps; NaN where not known.
@@ -116,7 +116,7 @@ def paired_difference(
         other_trials: (M,) the trial of each.
 
     Returns:
-        The difference; None where fewer than two trials know both.
+        The difference; None: fewer than two trials know both.
     """
     first, second = _by_trial(values, trials), _by_trial(other_values, other_trials)
     apart = np.array([first[name] - second[name] for name in first if name in second])

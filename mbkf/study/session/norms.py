@@ -32,7 +32,7 @@ def build_norms(folders: Sequence[Path], name: str) -> Norms:
 
     Raises:
         FileFormatError: A result is damaged.
-        InvalidInput: There are no results, or fewer than two persons with gait.
+        InvalidInput: No result was found, or fewer than two persons with gait.
     """
     persons: dict[Path, list[Path]] = {}
     for folder in folders:
@@ -63,8 +63,8 @@ def norms_of(sessions: Iterable[Session], name: str) -> Norms:
             for measure in gait.measures:
                 values = np.concatenate(list(measure.values.values()))
                 if np.isfinite(values).any():
-                    told = (measure.unit, np.array([np.nanmean(values)]))
-                    measures.setdefault((gait.kind.value, measure.name), []).append(told)
+                    value = (measure.unit, np.array([np.nanmean(values)]))
+                    measures.setdefault((gait.kind.value, measure.name), []).append(value)
     found = _bands(curves)
     if not found:
         raise InvalidInput(f"norms need gait of {LEAST_PERSONS} persons or more")
@@ -77,8 +77,8 @@ def _person_curves(gait: MovementGroup) -> Mapping[Key, tuple[str, Array]]:
     for side in gait.sides:
         for key in side.curves:
             chosen = chosen_curves(side, key)
-            if chosen.told is not None and not chosen.estimated:
-                found.setdefault(key, []).append((side.curves[key].unit, chosen.told.mean))
+            if chosen.mean is not None and not chosen.estimated:
+                found.setdefault(key, []).append((side.curves[key].unit, chosen.mean.mean))
     return {key: (each[0][0], np.mean([mean for _, mean in each], axis=0)) for key, each in found.items()}
 
 

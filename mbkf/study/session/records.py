@@ -17,10 +17,10 @@ class SessionTrial:
 
     Attributes:
         name: Its name.
-        kind: What it is.
+        kind: Its kind.
         seconds: Duration.
         verdict: "good", "care" or "bad": the worst that its checks found.
-        remarks: What they found, in words.
+        remarks: Their findings, in words.
         filter: The filter, and which later frames it knew.
     """
 
@@ -54,7 +54,7 @@ class MovementGroup:
     """The trials of a kind that have gait, together.
 
     Attributes:
-        kind: Walk, run, or unknown where nothing tells.
+        kind: Walk, run, or unknown.
         trials: Their names.
         sides: Cycles of the right and the left foot.
         measures: Spatiotemporal parameters.
@@ -77,7 +77,7 @@ class Session:
         gaits: Trials with gait cycles, by kind.
         jumps: Measures of each jump; empty without.
         squats: Measures of each squat; empty without.
-        sex, age: As stated; None where they are not.
+        sex, age: As stated; None: not stated.
     """
 
     name: str
@@ -90,5 +90,5 @@ class Session:
     age: float | None = None
 
     def gait(self, kind: TrialKind) -> MovementGroup | None:
-        """The gait of a kind; None without."""
+        """The gait of a kind; None: the trial has no such gait."""
         return next((one for one in self.gaits if one.kind == kind), None)

@@ -1,4 +1,4 @@
-"""What a squat trial shows: depth, knee flexion, knee torque and how the legs share the load, for each repetition."""
+"""Measures of a squat trial: depth, knee flexion, knee torque and the legs' shares of the load, for each repetition."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ RISEN = 0.25
 
 
 def squat_measures(r: Reconstruction) -> tuple[Measure, ...]:
-    """The measures of each squat of a trial; none where nobody squats."""
+    """The measures of each squat of a trial; empty without a squat."""
     path = body_path(r)
     found = repetitions(path)
     if not found:

@@ -1,8 +1,8 @@
-"""What a person does in a capture, told from the markers alone, whatever their names.
+"""Kind of movement in a capture, recognised from the markers alone, whatever their names.
 
-Feet are the low markers that keep their distances among each other; the pelvis is what moves half-way up. Where the
-feet pass each other again and again there is gait, with times at which both are off the floor a run; where both leave
-the floor together and the body rises, a jump; where they stay and the pelvis sinks, a squat.
+Feet are the low markers that keep their distances among each other; the pelvis carries the markers half-way up. Where
+the feet pass each other again and again there is gait, with flights of both feet a run; where both leave the floor
+together and the body rises, a jump; where they stay and the pelvis sinks, a squat.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from mbkf.sensors.contact.offline import stretches
 from mbkf.trial.protocol.standing import stands_still
 
 LEAST_SEEN = 0.3
-"""Markers that are seen in a smaller share of the frames tell nothing."""
+"""Markers that are seen in a smaller share of the frames are left out."""
 
 STILL_SHARE = 0.9
 """Of a standing person so many markers stay; of one who moves a leg or an arm fewer."""
@@ -30,8 +30,8 @@ RIGID_M = 0.03
 """Markers of a foot whose distance varies by less (a standard deviation) belong together."""
 
 LIFTED_M, FLIGHT_S, JUMP_S = 0.04, 0.05, 0.12
-"""A foot is off the floor when its lowest marker is so much above its lowest height; shorter flights are noise, longer
-ones that are no run's a jump's."""
+"""A foot is off the floor when its lowest marker is so much above its lowest height. Flights shorter than the second
+number are noise; flights longer than the third, outside a run, are those of a jump."""
 
 STEP_M = 0.015
 """In gait the lowest marker of either foot rises by this."""
@@ -65,7 +65,7 @@ class FeetAndPelvis:
 
 
 def kind_of_markers(markers: MarkerTrajectories) -> TrialKind:
-    """What the person of a capture does; unknown where the markers do not tell."""
+    """Kind of movement of the person in a capture; unknown where the markers leave it open."""
     if not markers.present.any():
         return TrialKind.UNKNOWN
     if stands_still(markers, STILL_SHARE):
@@ -75,7 +75,7 @@ def kind_of_markers(markers: MarkerTrajectories) -> TrialKind:
 
 
 def kind_of_movement(body: FeetAndPelvis, rate_hz: float) -> TrialKind:
-    """What feet and pelvis do.
+    """Kind of movement from the paths of feet and pelvis.
 
     Args:
         body: Feet and pelvis.
@@ -116,7 +116,7 @@ def flights_of(body: FeetAndPelvis, rate_hz: float) -> list[Array]:
 
 
 def passes(body: FeetAndPelvis) -> int:
-    """How often one foot passes the other, from clearly behind to clearly before it."""
+    """Number of times that one foot passes the other, from clearly behind to clearly before it."""
     apart = body.feet_m[:, 0, :2] - body.feet_m[:, 1, :2]
     known = apart[~np.isnan(apart).any(axis=1)]
     if len(known) < 3:
@@ -129,7 +129,7 @@ def passes(body: FeetAndPelvis) -> int:
 
 
 def feet_and_pelvis(markers: MarkerTrajectories) -> FeetAndPelvis | None:
-    """Feet and pelvis of a capture; None where two feet are not found."""
+    """Feet and pelvis of a capture; None: two feet are not found."""
     seen = markers.present.mean(axis=0) >= LEAST_SEEN
     positions = markers.positions_m[:, seen]
     if not positions.size:
@@ -150,14 +150,14 @@ def feet_and_pelvis(markers: MarkerTrajectories) -> FeetAndPelvis | None:
 
 
 def _steadiest(groups: list[Array], body: Array) -> Array:
-    """The group that stays nearest to its place in the body: of what moves half-way up the pelvis, and not a hand."""
+    """The group that stays nearest to its place in the body: of the markers half-way up the pelvis, and not a hand."""
     several = [group for group in groups if group.shape[1] > 1] or groups
     spreads = [np.nanstd(_centre(group) - body, axis=0).sum() for group in several]
     return several[int(np.argmin(spreads))]
 
 
 def _two_groups(positions: Array) -> list[Array] | None:
-    """The markers of the two largest groups that keep their distances; None where there are not two."""
+    """The markers of the two largest groups that keep their distances; None: fewer than two groups."""
     groups = _groups(positions)
     return [positions[:, group] for group in groups[:2]] if len(groups) > 1 else None
 

@@ -1,4 +1,4 @@
-"""What can be the matter with a session or a capture, and what to do about it."""
+"""Problems of a session or a capture, and their remedies."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ TEXTS: Mapping[str, tuple[str, str]] = {
     "no_plate": ("no force plate", "torques are estimated, with wide intervals"),
     "mass": (
         "the mass is stated as {0} kg, the plates bear {1} kg",
-        "take what the plates bear, or check the plates",
+        "take the mass that the plates bear, or check the plates",
     ),
     "no_trial": ("no trial can be used", "add captures with markers"),
     "no_static": ("no standing trial", "the body is scaled from the moving ones, and less certain"),
     "frames_lost": ("{0} of {1} frames were lost", "see live.json for when"),
 }
-"""What is the matter, and what to do, by key; {0} and {1} stand for values."""
+"""Problem and remedy by key; {0} and {1} stand for values."""
 
 GRAVE = frozenset({"unreadable", "no_marker", "no_trial"})
 """With these a capture, or the session, cannot be used as it is."""
@@ -40,7 +40,7 @@ class Problem:
 
     Attributes:
         key: One of :data:`TEXTS`; pages say it in their language.
-        values: What is filled in.
+        values: Values filled into the text.
     """
 
     key: str
@@ -48,7 +48,7 @@ class Problem:
 
     @property
     def what(self) -> str:
-        """What is the matter, in English."""
+        """The problem, in English."""
         text = TEXTS[self.key][0]
         for k, value in enumerate(self.values):
             text = text.replace(f"{{{k}}}", value)
@@ -56,22 +56,22 @@ class Problem:
 
     @property
     def todo(self) -> str:
-        """What to do about it, in English."""
+        """The remedy, in English."""
         return TEXTS[self.key][1]
 
     @property
     def grave(self) -> bool:
-        """Whether it cannot be used as it is."""
+        """True where the capture or session cannot be used as it is."""
         return self.key in GRAVE
 
     @property
     def marker_set(self) -> bool:
-        """Whether it is about the marker set, which the marker editor puts right."""
+        """True for problems of the marker set, which the marker editor puts right."""
         return self.key in OF_MARKER_SET
 
 
 def plain_problem(problem: Problem) -> dict[str, object]:
-    """What is the matter, and what to do, as plain data."""
+    """Problem and remedy as plain data."""
     return {
         "key": problem.key,
         "values": list(problem.values),

@@ -1,4 +1,4 @@
-"""A session's folder looked at: its captures, and what they say of the person together."""
+"""Survey of a session's folder: its captures, and their joint evidence on the person."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from mbkf.study.survey.problems import Problem
 from mbkf.study.survey.trial import SurveyedTrial, survey_trial
 
 MASS_SHARE = 0.05
-"""A stated mass that differs from what the plates bear by more is told."""
+"""A stated mass that differs by more from the mass on the plates is reported."""
 
 Survey = Callable[[Path, Path | None], SurveyedTrial]
 """Looks at a capture and the ground reactions beside it."""
@@ -24,10 +24,10 @@ class SurveyedSession:
 
     Attributes:
         folder: Its folder.
-        notes: What is stated of it.
+        notes: Statements of the session file.
         trials: Its captures, in the order of their names.
-        standing_kg: Mass by the plates under the person standing; None where they do not tell.
-        problems: What is the matter with the session as a whole.
+        standing_kg: Mass by the plates under the person standing; None: unknown.
+        problems: Problems of the session as a whole.
     """
 
     folder: Path
@@ -37,7 +37,7 @@ class SurveyedSession:
     problems: tuple[Problem, ...]
 
     def kind(self, trial: SurveyedTrial) -> TrialKind:
-        """What a trial is: as stated, else a standing one by its name, else as its markers show."""
+        """Kind of a trial: as stated, else a standing one by its name, else as its markers show."""
         stated = self.notes.trial(trial.name).kind
         if stated is not None:
             return stated
@@ -49,7 +49,7 @@ def survey_session(folder: Path, survey: Survey = survey_trial, root: Path | Non
 
     Args:
         folder: The session's folder.
-        survey: Looks at a capture; a page that shows a session again and again remembers what it saw.
+        survey: Looks at a capture; a page that shows a session again and again keeps its results.
         root: The study's folder, where it is one of more; session files above the session count down from there.
 
     Raises:
@@ -75,7 +75,7 @@ def _with_set(trial: SurveyedTrial, stated: SessionNotes) -> SurveyedTrial:
 
 
 def _problems(session: SurveyedSession, stated: float | None) -> tuple[Problem, ...]:
-    """What is the matter with the session as a whole, its person's mass stated in kg or not."""
+    """Problems of the session as a whole, its person's mass stated in kg or not."""
     found, standing = [], session.standing_kg
     if stated is None:
         stated = next((one.stated_kg for one in session.trials if one.stated_kg is not None), None)

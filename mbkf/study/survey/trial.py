@@ -1,4 +1,4 @@
-"""One capture of a session looked at: what it is, how long, what it holds, and what is wrong with it."""
+"""Survey of one capture of a session: kind, duration, content and problems."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from mbkf.trial.axes.captures import find_axes_by_names
 from mbkf.trial.preparation.coverage import use_by_protocol
 
 MISSING_SHARE = 0.2
-"""Captures in which more of the samples are missing are told."""
+"""Captures in which a larger share of the samples is missing are reported."""
 
 LEAST_STANDING_KG = 2.0
 """Plates under a standing person read more than this."""
@@ -34,15 +34,15 @@ class SurveyedTrial:
 
     Attributes:
         path: The capture.
-        forces: Ground reactions beside it; None for those of the capture itself.
-        kind: What the person does.
+        forces: Ground reactions beside it; None: those of the capture itself.
+        kind: Kind of movement.
         seconds, rate_hz: Its length and frame rate; 0 where it cannot be read.
         markers, unnamed: Markers with a name, and trajectories without.
-        protocol: The shipped marker protocol that explains them; empty where none does.
+        protocol: The shipped marker protocol that explains them; empty: no protocol does.
         plates, events: How many there are.
-        standing_kg: What its plates say of a person who stands still; None where they do not.
-        stated_kg: Body mass that the file states; None where it does not.
-        problems: What is the matter with it.
+        standing_kg: Mass on its plates of a person who stands still; None: unknown.
+        stated_kg: Body mass that the file states; None: not stated.
+        problems: Its problems.
     """
 
     path: Path
@@ -66,12 +66,12 @@ class SurveyedTrial:
 
     @property
     def usable(self) -> bool:
-        """Whether nothing grave is the matter."""
+        """True without a grave problem."""
         return not any(problem.grave for problem in self.problems)
 
 
 def survey_trial(path: Path, forces: Path | None = None) -> SurveyedTrial:
-    """Looks at a capture; one that cannot be read is told as a problem.
+    """Looks at a capture; one that cannot be read is reported as a problem.
 
     Args:
         path: The capture.
@@ -105,7 +105,7 @@ def survey_trial(path: Path, forces: Path | None = None) -> SurveyedTrial:
 
 
 def standing_mass(capture: Capture) -> float | None:
-    """Mass that the plates under a standing person bear, kg; None where there are none or their load varies."""
+    """Mass that the plates under a standing person bear, kg; None: no plates, or their load varies."""
     if not capture.plates:
         return None
     shortest = min(len(plate.force_n) for plate in capture.plates)
@@ -132,7 +132,7 @@ def _of_markers(capture: Capture, unnamed: int) -> tuple[Problem, ...]:
 
 
 def _protocol(capture: Capture) -> tuple[str, tuple[Problem, ...]]:
-    """The shipped protocol that explains a capture's markers, and what is doubtful about set and axes."""
+    """The shipped protocol that explains a capture's markers, and doubts about set and axes."""
     if not capture.markers.present.any() or all(name.startswith("*") for name in capture.markers.names):
         return "", ()
     try:

@@ -1,1 +1,1 @@
-"""The parts of tuning: what can be tuned, the likelihood of a trial, and what was found."""
+"""The parts of tuning: tunable settings, the likelihood of a trial, and the result."""

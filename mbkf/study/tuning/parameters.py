@@ -1,4 +1,4 @@
-"""What can be tuned of each filter: groups of settings that are scaled by one factor."""
+"""Tunable settings of each filter: groups of settings that are scaled by one factor."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class TuningParameter:
         fields: The settings.
         lowest, highest: Range of the factor on their defaults.
         default: Whether it is tuned unless others are named.
-        about: What it is.
+        about: Its meaning.
     """
 
     fields: tuple[str, ...]
@@ -46,7 +46,7 @@ PARAMETERS: Mapping[str, Mapping[str, TuningParameter]] = {
         "markers": TuningParameter(("marker_noise_scale",), 0.1, 5.0, True, "noise of the markers"),
     },
 }
-"""What can be tuned, by filter and name."""
+"""Tunable settings, by filter and name."""
 
 
 def parameter_names(filter_name: str, wanted: tuple[str, ...] | None) -> tuple[str, ...]:
@@ -54,7 +54,7 @@ def parameter_names(filter_name: str, wanted: tuple[str, ...] | None) -> tuple[s
 
     Args:
         filter_name: "dynamic" or "kinematic".
-        wanted: Names of :data:`PARAMETERS`; None for the default ones.
+        wanted: Names of :data:`PARAMETERS`; None: the default ones.
 
     Raises:
         UnknownName: The filter or a parameter does not exist.

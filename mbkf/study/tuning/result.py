@@ -32,7 +32,7 @@ class TunedParameter:
 
     @property
     def determined(self) -> bool:
-        """Whether the trials determine the parameter: whether its likelihood has a clear maximum."""
+        """True where the trials determine the parameter: its likelihood has a clear maximum."""
         return self.cost_nats >= FLAT_NATS
 
 
@@ -65,7 +65,7 @@ class Tuned:
 
     @property
     def better(self) -> bool:
-        """Whether the held-out readings are more probable than with the defaults."""
+        """True where the held-out readings are more probable than with the defaults."""
         return self.likelihood["held_out_after"] > self.likelihood["held_out_before"]
 
     @property
@@ -74,7 +74,7 @@ class Tuned:
         remarks = []
         if not self.better:
             remarks.append(
-                "held-out readings are no more probable with what was found, so the preset keeps the defaults"
+                "held-out readings are not more probable with the settings found; the preset keeps the defaults"
             )
         for one in self.parameters:
             if not one.determined:
@@ -86,7 +86,7 @@ class Tuned:
         return tuple(remarks)
 
     def preset(self, name: str) -> Preset:
-        """The preset to save: what was found, or the defaults where that was no better on held-out readings."""
+        """The preset to save: the settings found, or the defaults where those were not better on held-out readings."""
         return Preset(
             name,
             self.filter,

@@ -48,7 +48,7 @@ class TrialPart:
         Args:
             name: Name of the trial.
             kind: Name of the filter.
-            inputs: What the filter is built from.
+            inputs: Inputs of the filter.
             recording: Readings of the trial.
             since: First frame that counts.
 
@@ -111,10 +111,10 @@ def split_trials(
         subject: The scaled person.
         filter_name: Name of the filter.
         settings: Settings of the reconstruction.
-        hold_out: Positions of the held-out trials; None for the last of several, or the second half of one.
+        hold_out: Positions of the held-out trials; None: the last of several, or the second half of one.
 
     Raises:
-        InvalidInput: There is no trial, none is left to tune on, or one is too short.
+        InvalidInput: No trial is given, every trial is held out, or one is too short.
         NotObservable: The markers do not determine the body.
     """
     count = len(captures)
@@ -131,7 +131,7 @@ def split_trials(
         )
     out = (count - 1,) if hold_out is None else hold_out
     if len(set(out)) >= count:
-        raise InvalidInput("every trial is held out, so none is left to tune on")
+        raise InvalidInput("every trial is held out; leave at least one to tune on")
     parts = [TrialPart(name, filter_name, *one, 0) for name, one in zip(names, made, strict=True)]
     return [part for i, part in enumerate(parts) if i not in out], [
         part for i, part in enumerate(parts) if i in out

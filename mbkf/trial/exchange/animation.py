@@ -81,7 +81,7 @@ def held_rows(rows: NDArray[np.intp], tracked: BoolArray) -> NDArray[np.intp]:
         tracked: (T,) rows in which the body is followed.
 
     Raises:
-        InvalidInput: There is none.
+        InvalidInput: The body is followed in no frame.
     """
     known = (rows >= 0) & tracked[rows] if len(rows) else np.zeros(0, dtype=bool)
     if not known.any():

@@ -28,7 +28,7 @@ def even_rows(times_s: Array, rate_hz: float) -> NDArray[np.intp]:
 
 
 def at_rows(values: Array, rows: NDArray[np.intp]) -> Array:
-    """(F, …) values (T, …) of these rows; NaN where there is none."""
+    """(F, …) values (T, …) of these rows; NaN for missing rows."""
     found = np.asarray(values[rows], dtype=float)
     found[rows < 0] = np.nan
     return found

@@ -36,12 +36,12 @@ TURNED = {
     ("neck_extension", ""): "neck forward (flexion)",
     ("head_extension", ""): "face down (flexion)",
 }
-"""Coordinates whose sign is turned about, by the side of the point; and what is positive then."""
+"""Coordinates whose sign is reversed, by the side of the point, and their positive direction."""
 
 
 @dataclass(frozen=True)
 class Component:
-    """A coordinate in a point: its name, the sign it is stored with, and what is positive then."""
+    """A coordinate in a point: its name, the sign it is stored with, and its positive direction."""
 
     coordinate: str
     sign: float
@@ -54,7 +54,7 @@ class JointPoint:
 
     Attributes:
         stem: Its name there, e.g. "RHip".
-        components: x, y and z; None where the joint has no such coordinate.
+        components: x, y and z; None: the joint has no such coordinate.
         root: Whether it is the root, whose moments are residuals.
         distal: The segment that it moves.
     """
@@ -66,9 +66,9 @@ class JointPoint:
 
     @property
     def signs(self) -> str:
-        """What is positive, in words."""
-        told = zip("XYZ", self.components, strict=True)
-        return ", ".join(f"{axis}+ {c.positive or c.coordinate}" for axis, c in told if c is not None)
+        """Positive direction, in words."""
+        labelled = zip("XYZ", self.components, strict=True)
+        return ", ".join(f"{axis}+ {c.positive or c.coordinate}" for axis, c in labelled if c is not None)
 
     def values(self, r: Reconstruction, array: str) -> Array:
         """(T, 3) one of a result's arrays over coordinates; 0 for a coordinate that the joint does not have."""
@@ -141,9 +141,9 @@ def derived_from_joints(r: Reconstruction, model: Body) -> Iterator[DerivedPoint
     """
     read = "" if r.angles_read == "model" else f", in {r.angles_read} axes"
     for joint in joint_points(model.description.clinical_joints):
-        told = f"{joint.signs}{f', {r.direction} frame' if joint.root else ''}{read}"
+        description = f"{joint.signs}{f', {r.direction} frame' if joint.root else ''}{read}"
         degrees = np.rad2deg(joint.values(r, "angles"))
-        yield DerivedPoint(f"{joint.stem}Angles", "angle", degrees, "deg", told)
+        yield DerivedPoint(f"{joint.stem}Angles", "angle", degrees, "deg", description)
         sd = np.rad2deg(joint.values(r, "angles_sd"))
         yield DerivedPoint(f"{joint.stem}AnglesSD", "angle", sd, "deg", "standard deviations")
         if joint.root:

@@ -76,21 +76,21 @@ def result_capture(r: Reconstruction) -> Capture:
 
 def _fitted(r: Reconstruction) -> Iterator[DerivedPoint]:
     for k, name in enumerate(r.marker_names):
-        told = f"marker {name} on the reconstructed body"
-        yield DerivedPoint(name + FITTED, "point", r.predicted_m[:, k], "m", told)
+        description = f"marker {name} on the reconstructed body"
+        yield DerivedPoint(name + FITTED, "point", r.predicted_m[:, k], "m", description)
 
 
 def _loads(r: Reconstruction) -> Iterator[DerivedPoint]:
     """Forces on feet and other parts that ever bear load, and where they act."""
     loads = r.loads
-    told = "force on the body in the laboratory's axes, Z+ up"
+    description = "force on the body in the laboratory's axes, Z+ up"
     for k, name in enumerate(loads.names):
         if k >= len(FEET) and not loads.source[:, k].any():
             continue
         part = "".join(word.capitalize() for word in name.split("_"))
         side = SIDE_WORDS[k][0] if k < len(FEET) else ""
         force = f"{side}GroundReactionForce" if side else f"{part}ContactForce"
-        yield DerivedPoint(force, "force", loads.wrench[:, k, :3], "N", told)
+        yield DerivedPoint(force, "force", loads.wrench[:, k, :3], "N", description)
         where = f"{side}CentreOfPressure" if side else f"{part}ContactPoint"
         yield DerivedPoint(where, "point", loads.point_m[:, k], "m", "where that force acts")
 
@@ -112,7 +112,7 @@ def _places(r: Reconstruction, model: HumanModel) -> Iterator[DerivedPoint]:
 
 
 def _start_s(r: Reconstruction) -> float:
-    """Time of the first frame as a C3D file can tell it, by that frame's number; 0 where it is none of a trial's."""
+    """Time of the first frame as a C3D file can state it, by that frame's number; 0 where it is outside a trial."""
     if not r.frames:
         return 0.0
     number = round(float(r.times_s[0]) * r.rate_hz)

@@ -1,4 +1,4 @@
-"""What a trial tells of one side of the body: angles, torques and powers over time, with their standard deviations."""
+"""Curves of one side of the body over a trial: angles, torques and powers with their standard deviations."""
 
 from __future__ import annotations
 
@@ -44,14 +44,14 @@ def side_curves(r: Reconstruction, side: int) -> Iterator[SideCurve]:
     for name in r.coordinate_names:
         if name.endswith(other):
             continue
-        told = name.removesuffix(own)
+        coordinate = name.removesuffix(own)
         angle = (r.angle(name), r.angle_sd(name), r.angle_sd(name, "offset"))
         if name in TRANSLATIONS:
-            yield SideCurve("angle", told, "m", *angle)
+            yield SideCurve("angle", coordinate, "m", *angle)
             continue
-        yield SideCurve("angle", told, "deg", *(np.rad2deg(one) for one in angle))
-        if name.startswith(ROOT):  # what stands there is a residual
+        yield SideCurve("angle", coordinate, "deg", *(np.rad2deg(one) for one in angle))
+        if name.startswith(ROOT):  # the root's moment is a residual
             continue
         moment = (r.moment(name), r.moment_sd(name), r.moment_sd(name, "offset"))
-        yield SideCurve("torque", told, "N m", *moment)
-        yield SideCurve("power", told, "W", r.power(name), r.power_sd(name), r.power_sd(name, "offset"))
+        yield SideCurve("torque", coordinate, "N m", *moment)
+        yield SideCurve("power", coordinate, "W", r.power(name), r.power_sd(name), r.power_sd(name, "offset"))

@@ -95,11 +95,11 @@ class Gait:
 
 
 def find_gait(r: Reconstruction, by_hand: Iterable[FootEvent] | None = None) -> Gait | None:
-    """The gait of a reconstruction, or None where no foot makes a whole cycle.
+    """The gait of a reconstruction; None where no foot makes a whole cycle.
 
     Args:
         r: The reconstruction.
-        by_hand: All strikes and toe-offs, as a person set them; None for those that are found.
+        by_hand: All strikes and toe-offs, as a person set them; None: those that are found.
     """
     feet = feet_in_motion(r)
     events = foot_events(r, feet) if by_hand is None else events_by_hand(by_hand, r.times_s)
@@ -141,7 +141,7 @@ def over_cycle(times_s: Array, values: Array, cycle: Cycle) -> Array:
 
 
 def belt_velocity(feet: FeetInMotion, cycles: tuple[Cycle, ...]) -> Array:
-    """(2,) horizontal velocity of what the feet stand on: the ball's in mid-stance.
+    """(2,) horizontal velocity of the ground under the feet: the ball's in mid-stance.
 
     It is 0 unless the pelvis stays while the feet travel back: on a floor, feet of a sprint also move in mid-stance.
 
@@ -176,7 +176,7 @@ def _pelvis_speed(feet: FeetInMotion, cycles: tuple[Cycle, ...]) -> float:
 
 
 def _parameters(feet: FeetInMotion, cycles: tuple[Cycle, ...], belt: Array) -> tuple[GaitParameter, ...]:
-    """A step ends with the strike of its side; it is measured from the other foot's strike, on what moves along."""
+    """A step ends with the strike of its side; it is measured from the other foot's strike, on the ground."""
     table: dict[str, tuple[list[float], list[float]]] = {name: ([], []) for name, _ in _PARAMETERS}
     for cycle in cycles:
         side, T = cycle.side, cycle.seconds

@@ -108,18 +108,18 @@ def events_by_hand(events: Iterable[FootEvent], times_s: Array) -> tuple[FootEve
 
 
 def plain_found(events: tuple[FootEvents, FootEvents]) -> tuple[FootEvent, ...]:
-    """The same events one after another, by time, as a person's are told.
+    """The same events in one list in order of time, as events set by a person are stored.
 
     Args:
         events: Of the right and the left foot.
     """
-    told = [
+    found = [
         FootEvent(side, kind, float(time_s))
         for side, foot in zip(SIDES, events, strict=True)
         for kind, times in ((EventKind.STRIKE, foot.strikes_s), (EventKind.OFF, foot.offs_s))
         for time_s in times
     ]
-    return tuple(sorted(told, key=lambda event: event.time_s))
+    return tuple(sorted(found, key=lambda event: event.time_s))
 
 
 def events_of_load(times_s: Array, vertical_n: Array, threshold_n: float = LOADED_N) -> FootEvents:

@@ -1,4 +1,4 @@
-"""Where a person faces over a trial: the axes in which ground reactions are told."""
+"""Direction in which a person faces over a trial: the axes of reported ground reactions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Segment masses and centres of mass from whole trials with plates: offered with what speaks for them, never forced."""
+"""Segment masses and centres of mass from whole trials with plates: offered with their evidence, never forced."""
 
 from __future__ import annotations
 
@@ -28,32 +28,32 @@ from mbkf.trial.preparation.selection import subject_markers
 from mbkf.trial.preparation.settings import ReconstructSettings
 
 INERTIA_KEY = "inertia"
-"""Key of a subject's report under which it stands what plates told of its inertial parameters."""
+"""Key of a subject's report for its inertial parameters as estimated from plates."""
 
 LINEARISATIONS = 3
-"""How often masses times shifts are made linear anew."""
+"""Number of linearisations of masses times shifts."""
 
 LEAST_SAMPLES, LEAST_EACH = 30, 14
 """Samples with one before them, 0.05 s apart, that trials have to give in all; a trial with fewer does not count."""
 
 LEAST_FACTOR = 0.2
-"""A segment's mass over the table's, at least: what is told less is no body."""
+"""A segment's mass over the table's, at least: a smaller estimate is not physical."""
 
 
 @dataclass(frozen=True)
 class InertiaEstimate:
-    """What plates tell of a person's segments.
+    """Estimate of a person's segments from plates.
 
     Attributes:
         subject: The person with these inertial parameters and mass.
         mean: (4 S + 2 K,) by segment, relative change of mass and shift of the centre of mass, m, against the table;
             then by capture, how far plates lie beside their place, forward and left, m.
         log_ratio: Evidence for them against the table, nats: ln of the ratio of marginal likelihoods.
-        held_out_log_ratio: The same of each trial by what the others told, summed; of one trial, of its halves.
+        held_out_log_ratio: The same of each trial by the estimate from the others, summed; of one trial, of its halves.
         mass_sd_kg: Standard deviation of the whole mass.
         before, after: Root mean square of the force N and moment N m that plates, at their found places, lack by the
             table and by these.
-        captures: Names of the captures that told it.
+        captures: Names of the captures used.
         seconds: How much of them counted.
     """
 
@@ -69,7 +69,7 @@ class InertiaEstimate:
 
     @property
     def supported(self) -> bool:
-        """Whether the evidence is for these parameters, on what they were found from and on what was held out."""
+        """True where the evidence is for these parameters, on the data they were found from and on held-out data."""
         masses = [one.mass_factor for one in self.subject.inertia.values()]
         return bool(self.log_ratio > 0.0 and self.held_out_log_ratio > 0.0 and min(masses) > LEAST_FACTOR)
 
@@ -87,19 +87,19 @@ def estimate_inertia(subject: Subject, captures: Sequence[Capture]) -> InertiaEs
     subject = replace(subject, inertia={})
     regressor = InertialRegressor(HumanModel.of(subject))
     with single_threaded():
-        told = [(Path(one.path).name, _rows(regressor, subject, one)) for one in captures if one.plates]
-        told = [(name, rows) for name, rows in told if rows.follows.sum() >= LEAST_EACH]
-        if sum(int(rows.follows.sum()) for _, rows in told) < LEAST_SAMPLES:
+        usable = [(Path(one.path).name, _rows(regressor, subject, one)) for one in captures if one.plates]
+        usable = [(name, rows) for name, rows in usable if rows.follows.sum() >= LEAST_EACH]
+        if sum(int(rows.follows.sum()) for _, rows in usable) < LEAST_SAMPLES:
             raise NotObservable(
                 "no trial shows the inertia of segments: that needs 1.5 s and more in which only feet on plates bear"
             )
         return estimate_from_rows(
-            subject, regressor, [rows for _, rows in told], tuple(name for name, _ in told)
+            subject, regressor, [rows for _, rows in usable], tuple(name for name, _ in usable)
         )
 
 
 def with_inertia(subject: Subject, captures: Sequence[Capture]) -> Subject:
-    """The person with segments as plates tell them where the evidence is for that, and a note of it in the report.
+    """The person with segments by the plates where the evidence is for that, and a note of it in the report.
 
     Args:
         subject: The scaled person.
@@ -117,7 +117,7 @@ def with_inertia(subject: Subject, captures: Sequence[Capture]) -> Subject:
 def _note(found: InertiaEstimate, stated_kg: float) -> dict[str, object]:
     """Plain data about an estimate, for the subject's report."""
     verdict = "written" if found.supported else "the evidence is not for them, so the table is kept"
-    told = (
+    remark = (
         f"inertia by the plates of {', '.join(found.captures)} ({found.seconds:.1f} s): {verdict}; "
         f"ln evidence ratio against the table {found.log_ratio:+.1f}, held out {found.held_out_log_ratio:+.1f}; "
         f"plates lack {found.before[0]:.1f} N, {found.before[1]:.2f} N m by the table, {found.after[0]:.1f} N, "
@@ -135,7 +135,7 @@ def _note(found: InertiaEstimate, stated_kg: float) -> dict[str, object]:
     }
     return {
         "written": found.supported,
-        "told": told,
+        "told": remark,
         "log_ratio": found.log_ratio,
         "held_out_log_ratio": found.held_out_log_ratio,
         "segments": segments,
@@ -222,7 +222,7 @@ def lacking(regressor: InertialRegressor, rows: Sequence[TrialRows], mean: Array
 
 
 def _held_out(regressor: InertialRegressor, rows: Sequence[TrialRows]) -> float:
-    """Log evidence against the table of each part by what the others told, nats, summed; 0 for parts too short."""
+    """Log evidence of each part by the estimate from the others against the table, nats, summed; short parts: 0."""
     size, prior, found = PER_OWN * len(regressor.names), inertia_prior(regressor, len(rows)), 0.0
     series = _series(regressor, rows)
     for k in range(len(series)):

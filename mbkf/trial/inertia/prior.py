@@ -1,4 +1,4 @@
-"""How far people's segments are from the table: the prior of their masses and centres of mass."""
+"""Prior of segment masses and centres of mass: the spread of people about the table."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LEAST_CENTRE_M = 0.005
 """Standard deviation of a centre of mass, at least."""
 
 SIDES_ALIKE = 0.9
-"""Correlation of what right and left limbs differ from the table by."""
+"""Correlation of right and left limbs in their difference from the table."""
 
 WHOLE_SD = 0.01
 """Standard deviation of the whole mass, relative: clothes, shoes, scales."""
@@ -29,11 +29,11 @@ PLACE_SD_M = 0.003
 skin that stays aside for the whole trial."""
 
 PLACE = 2
-"""Numbers that tell the place of the plates in a trial."""
+"""Numbers that state the place of the plates in a trial."""
 
 
 def inertia_prior(regressor: InertialRegressor, trials: int) -> Belief:
-    """The parameters (4 S + 2 K) before any trial: what segments differ from the table by, and plates' places.
+    """The parameters (4 S + 2 K) before any trial: differences of segments from the table, and plates' places.
 
     Args:
         regressor: The body by the table.

@@ -25,8 +25,8 @@ class TrialRows:
     """Samples of a trial: force N and moment N m about the centre of mass by the table, world axes.
 
     Attributes:
-        asked: (N, 6, 10 S) what the motion asks for besides weight, by the segments' parameters.
-        given: (N, 6) what plates give.
+        asked: (N, 6, 10 S) load required by the motion besides weight, by the segments' parameters.
+        given: (N, 6) load on the plates.
         follows: (N,) whether a sample is one step after the one before it.
     """
 
@@ -35,7 +35,7 @@ class TrialRows:
     follows: BoolArray
 
     def series(self, regressor: InertialRegressor, about: Array, trial: int) -> Series:
-        """The samples by what segments differ from the table by, and by the plates' places (4 S + 2 K).
+        """The samples by the segments' differences from the table, and by the plates' places (4 S + 2 K).
 
         Args:
             regressor: The body by the table.

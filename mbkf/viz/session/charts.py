@@ -94,13 +94,13 @@ def session_chart(sides: tuple[SideCycles, SideCycles], shown: Shown, norm: Band
         if shown.key not in side.curves:
             continue
         chosen = chosen_curves(side, shown.key)
-        if chosen.told is None:
+        if chosen.mean is None:
             continue
         letter, unit = SIDES[side.side], side.curves[shown.key].unit
         estimated = estimated or chosen.estimated
         thin += _single(chosen, letter)
-        band = None if np.isnan(chosen.told.sd).all() else 0.5 * chosen.told.sd
-        bold.append(Line(PERCENT, chosen.told.mean, band, letter, dashed=chosen.estimated))
+        band = None if np.isnan(chosen.mean.sd).all() else 0.5 * chosen.mean.sd
+        bold.append(Line(PERCENT, chosen.mean.mean, band, letter, dashed=chosen.estimated))
         marks.append(Mark(chosen.off_percent, letter))
     if not bold:
         return ""
@@ -150,9 +150,9 @@ def pair_charts(pairs: Mapping[tuple[Key, int], CurvePair], shown: Shown, terms:
 def _pair_chart(pair: CurvePair, shown: Shown, terms: Terms) -> str:
     lines, marks = [], []
     for chosen, style in ((pair.before, "b"), (pair.after, SIDES[pair.side])):
-        assert chosen.told is not None
-        band = None if np.isnan(chosen.told.sd).all() else 0.5 * chosen.told.sd
-        lines.append(Line(PERCENT, chosen.told.mean, band, style, dashed=chosen.estimated))
+        assert chosen.mean is not None
+        band = None if np.isnan(chosen.mean.sd).all() else 0.5 * chosen.mean.sd
+        lines.append(Line(PERCENT, chosen.mean.mean, band, style, dashed=chosen.estimated))
         marks.append(Mark(chosen.off_percent, style))
     title = f"{shown.title}, {terms.say('left' if pair.side else 'right')}"
     return chart(title, terms.unit(pair.unit), lines, (0.0, 100.0), "%", marks=marks)

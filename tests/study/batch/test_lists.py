@@ -65,7 +65,7 @@ def test_a_later_row_may_state_the_mass(tmp_path):
     [
         ("subject,path\nP,a.c3d\n", "no column 'trial'"),
         ("subject,trial,weight\nP,a.c3d,3\n", "not known: weight"),
-        ("subject,trial,mass_kg\nP,a.c3d,\nP,b.c3d,heavy\n", "line 3: 'heavy' is no number"),
+        ("subject,trial,mass_kg\nP,a.c3d,\nP,b.c3d,heavy\n", "line 3: 'heavy' should be a number"),
         ("subject,trial,mass_kg\nP,a.c3d,5000\n", "line 2: mass_kg must be"),
         ("subject,trial\n,a.c3d\n", "line 2: names no subject"),
         ("subject,trial\nP,a\0.c3d\n", "zero byte|NUL"),
@@ -79,7 +79,7 @@ def test_a_csv_list_that_cannot_be_is_refused(tmp_path, text, why):
 @pytest.mark.parametrize(
     "text, why",
     [
-        ("[[subject]\n", "no list in TOML"),
+        ("[[subject]\n", "list in TOML"),
         ("title = 'x'\n", r"no \[\[subject\]\]"),
         ("subject = 3\n", r"no \[\[subject\]\]"),
         ("[[subject]]\ntrials = ['a.c3d']\n", "needs a name"),

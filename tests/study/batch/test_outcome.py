@@ -28,8 +28,8 @@ from mbkf.trial.preparation.settings import ReconstructSettings
             "No space left on device: a/motion.h5",
         ),
         (OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)), "No space left on device"),
-        (ValueError("odd"), "unforeseen ValueError: odd (a bug in mbkf)"),
-        (MemoryError(), "unforeseen MemoryError: MemoryError (a bug in mbkf)"),
+        (ValueError("odd"), "unforeseen ValueError: odd (a bug in mbkf; please report it)"),
+        (MemoryError(), "unforeseen MemoryError: MemoryError (a bug in mbkf; please report it)"),
     ],
 )
 def test_errors_are_told_in_one_line(error, told):

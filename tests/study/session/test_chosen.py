@@ -20,8 +20,8 @@ def side_of(results):
 def test_all_angles_count():
     side = side_of([walks()[0], estimated(walks()[1])])
     found = chosen_curves(side, ANGLE)
-    assert found.told.count == len(side.cycles) and not found.estimated and len(found.others) == 0
-    np.testing.assert_allclose(found.told.mean, side.curves[ANGLE].values.mean(axis=0))
+    assert found.mean.count == len(side.cycles) and not found.estimated and len(found.others) == 0
+    np.testing.assert_allclose(found.mean.mean, side.curves[ANGLE].values.mean(axis=0))
 
 
 def test_measured_loads_count_and_estimated_ones_stand_beside():
@@ -31,20 +31,20 @@ def test_measured_loads_count_and_estimated_ones_stand_beside():
     assert measured.any() and not measured.all() and not found.estimated
     np.testing.assert_array_equal(found.counted, side.curves[TORQUE].values[measured])
     np.testing.assert_array_equal(found.others, side.curves[TORQUE].values[~measured])
-    np.testing.assert_allclose(found.told.mean, found.counted.mean(axis=0))
+    np.testing.assert_allclose(found.mean.mean, found.counted.mean(axis=0))
 
 
 def test_estimated_loads_stand_in_where_nothing_is_measured():
     side = side_of([estimated(r) for r in walks()])
     found = chosen_curves(side, TORQUE)
-    assert found.estimated and found.told.count == len(side.cycles) and len(found.others) == 0
+    assert found.estimated and found.mean.count == len(side.cycles) and len(found.others) == 0
 
 
 def test_loads_that_are_not_known_count_nowhere():
     side = side_of([replace(estimated(r), valid=np.zeros(r.frames, bool)) for r in walks()])
     found = chosen_curves(side, TORQUE)
-    assert found.told is None and not found.estimated and np.isnan(found.off_percent)
-    assert chosen_curves(side, ANGLE).told is not None
+    assert found.mean is None and not found.estimated and np.isnan(found.off_percent)
+    assert chosen_curves(side, ANGLE).mean is not None
 
 
 def test_a_leg_counts_by_its_own_foot_and_the_trunk_by_both():

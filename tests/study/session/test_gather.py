@@ -10,7 +10,7 @@ from mbkf.io.findings import Finding
 from mbkf.io.results_folder import write_reconstruction
 from mbkf.io.session import EventKind, FootEvent, SessionNotes, TrialKind, TrialNotes, plain_events
 from mbkf.study.batch.inputs import RECORD, write_record
-from mbkf.study.session.gather import results_in, session_from, session_of, told_of
+from mbkf.study.session.gather import results_in, session_from, session_of, trial_summary
 from mbkf.trial.gait.cycles import find_gait
 from mbkf.trial.results.summary import summarise
 from tests.recordings import recorded
@@ -77,11 +77,11 @@ def test_verdicts():
     r = walks()[0]
     lost, outside = r.tracked.copy(), Finding("mass", 9.0, 1.0, "kg", 3.0, "outside", "look at it")
     lost[: r.frames // 2] = False
-    assert told_of(r).verdict == "good"
-    assert told_of(replace(r, tracked=lost)).verdict == "bad"
-    assert told_of(replace(r, checks=(outside,))).verdict == "care"
-    assert "mass: look at it" in told_of(replace(r, checks=(outside,))).remarks
-    assert told_of(replace(r, predicted_m=r.predicted_m + 0.02)).verdict == "care"
+    assert trial_summary(r).verdict == "good"
+    assert trial_summary(replace(r, tracked=lost)).verdict == "bad"
+    assert trial_summary(replace(r, checks=(outside,))).verdict == "care"
+    assert "mass: look at it" in trial_summary(replace(r, checks=(outside,))).remarks
+    assert trial_summary(replace(r, predicted_m=r.predicted_m + 0.02)).verdict == "care"
 
 
 def test_results_are_found_in_folders_and_read(tmp_path):
