@@ -54,9 +54,6 @@ def look_page(session: str, trial: str, others: Sequence[str], data: dict[str, o
         trial: What is looked at.
         others: Names of the session's other trials that have results.
         data: Of :func:`look_data`.
-
-    Raises:
-        FileFormatError: The installed meshcat brings no viewer.
     """
     known: dict[str, object] = {
         code: {"name": name, "words": dict(words(code, "look"))} for code, name in languages().items()

@@ -78,6 +78,8 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.imu.write import write_orientation_csv
     from mbkf.trial.inertial.orient import orient, orientation_summary
 
+    if args.compare:
+        from mbkf.viz.imu.orientation import write_comparison
     settings = OrientSettings(
         args.filter,
         not args.no_mag,
@@ -105,8 +107,6 @@ def run(args: argparse.Namespace) -> int:
                 course.sd_rad, note,
             )  # fmt: skip
             if result.compared:
-                from mbkf.viz.imu.orientation import write_comparison
-
                 write_comparison(course, result.compared[k], partial / f"{stem}_compare.png")
         (partial / "orientation.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
     _print(summary)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -28,7 +30,8 @@ examples:
   mbkf imu stride body.csv --sensor left_foot --sensor right_foot --level --out strides
   mbkf imu stride step.csv --method key-points --weights 0.2,0.4,0.4 --out step
 
-writes to DIR: strides.csv, trajectory.csv, summary.json and feet.png, a picture with the rests marked.
+writes to DIR: strides.csv, trajectory.csv, summary.json and feet.png, a picture with the rests marked
+(needs matplotlib, the extra "figures").
 """
 
 
@@ -83,7 +86,6 @@ def run(args: argparse.Namespace) -> int:
     from mbkf.io.atomic import check_folder
     from mbkf.trial.inertial.stride import measure_strides
     from mbkf.trial.inertial.stride_folder import write_strides
-    from mbkf.viz.imu.foot_path import write_foot_path
 
     check_folder(args.out)
     settings = _settings(args)
@@ -91,9 +93,21 @@ def run(args: argparse.Namespace) -> int:
     with stages() as report:
         measured = measure_strides(readings, settings, progress=report)
     folder = write_strides(measured, args.out)
-    write_foot_path(measured, folder / PICTURE_FILE)
+    _draw(measured, folder / PICTURE_FILE)
     _print(measured, str(args.out))
     return 0
+
+
+def _draw(measured: StrideMeasurement, path: Path) -> None:
+    from mbkf.errors import MissingDependency
+
+    try:
+        from mbkf.viz.imu.foot_path import write_foot_path
+    except MissingDependency as missing:
+        path.unlink(missing_ok=True)  # an earlier run's picture shows other strides
+        print(f"note: {path.name} was not drawn. {missing}", file=sys.stderr)
+    else:
+        write_foot_path(measured, path)
 
 
 def _settings(args: argparse.Namespace) -> StrideSettings:

@@ -88,12 +88,13 @@ def _trial(args: argparse.Namespace, folder: Path) -> int:
 def _session(args: argparse.Namespace, folders: list[Path]) -> int:
     from mbkf.io.norms import read_norms
     from mbkf.study.session.gather import results_in, session_from
-    from mbkf.study.session.tables import check_curves_file, write_session_curves
     from mbkf.viz.language import ENGLISH
     from mbkf.viz.session.document import session_page, write_session_report
 
     norms = None if args.norms is None else read_norms(args.norms)
     if args.curves is not None:
+        from mbkf.study.session.tables import check_curves_file, write_session_curves
+
         check_curves_file(Path(args.curves))
     out = Path(args.out) if args.out else folders[0] / "report.html"
 

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 from functools import cache
 from pathlib import Path
-
-from mbkf.errors import FileFormatError
 
 ASSETS = Path(__file__).resolve().parent / "assets"
 
@@ -23,9 +20,6 @@ def page(recording: dict[str, object] | None = None) -> str:
     Args:
         recording: What to play: ``scene`` and ``rows`` (see :mod:`mbkf.viz.scene.recording`); the page asks its
             server for a live stream when None.
-
-    Raises:
-        FileFormatError: The installed meshcat brings no viewer.
     """
     parts = {
         "connect": "'self'" if recording is None else "'none'",
@@ -51,30 +45,11 @@ def embedded(name: str, data: dict[str, object]) -> str:
     return f'<script type="application/json" id="{name}">' + text.replace("<", "\\u003c") + "</script>"
 
 
-def viewer_script() -> str:
-    """Meshcat's viewer, as it may stand in a script element.
-
-    Raises:
-        FileFormatError: The installed meshcat brings no viewer.
-    """
-    return _in_script(_viewer())
-
-
 @cache
-def _viewer() -> str:
-    """Meshcat's viewer (with three.js inside), below the licences it comes under."""
-    found = importlib.util.find_spec("meshcat")
-    folder = Path(found.origin).parent / "viewer" / "dist" if found and found.origin else Path("meshcat")
-    try:
-        names = (folder.parent / "LICENSE", folder / "main.min.js.LICENSE.txt")
-        licences = "\n".join(path.read_text(encoding="utf-8") for path in names if path.is_file())
-        return f"/*\n{licences.replace('*/', '* /')}\n*/\n" + (folder / "main.min.js").read_text(
-            encoding="utf-8"
-        )
-    except OSError as error:
-        raise FileFormatError(
-            folder, f"meshcat's viewer is missing ({error}); reinstall the package meshcat"
-        ) from error
+def viewer_script() -> str:
+    """The viewer of meshcat 0.3.2 (with three.js inside) below its licences, escaped for a script element."""
+    licences = "\n".join(asset(f"meshcat/{name}") for name in ("LICENSE", "main.min.js.LICENSE.txt"))
+    return _in_script(f"/*\n{licences.replace('*/', '* /')}\n*/\n{asset('meshcat/main.min.js')}")
 
 
 def _in_script(text: str) -> str:

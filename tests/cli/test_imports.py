@@ -4,7 +4,7 @@ import subprocess
 import sys
 
 UNUSED = {
-    "casadi", "matplotlib", "meshcat", "pylsl", "rich.progress", "scipy.interpolate", "scipy.io", "scipy.ndimage",
+    "casadi", "matplotlib", "pyarrow", "pylsl", "rich.progress", "scipy.interpolate", "scipy.io", "scipy.ndimage",
     "scipy.optimize", "scipy.signal", "scipy.spatial", "scipy.special", "scipy.stats", "sphinx", "websockets",
     "yourdfpy",
 }  # fmt: skip

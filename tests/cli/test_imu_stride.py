@@ -1,6 +1,7 @@
 """`mbkf imu stride`."""
 
 import json
+import sys
 
 import numpy as np
 import pytest
@@ -54,6 +55,24 @@ def test_both_feet_end_in_one_folder(tables, tmp_path, capsys):
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     lengths = [foot["length_m_mean"] for foot in summary["feet"].values()]
     assert lengths == pytest.approx([1.2, 1.2], abs=0.02)
+
+
+def test_without_matplotlib_the_numbers_are_written_and_a_note_says_what_is_missing(
+    tables, tmp_path, capsys, monkeypatch
+):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    for name in [name for name in sys.modules if name.startswith("mbkf.viz.imu")]:
+        monkeypatch.delitem(sys.modules, name)
+    assert run(tables / "left.csv", "--out", tmp_path / "out") == 0
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        "strides.csv",
+        "trajectory.csv",
+        "summary.json",
+    }
+    said = capsys.readouterr().err
+    assert "feet.png" in said and "matplotlib" in said
+    refused = ["imu", "orient", str(tables / "left.csv"), "--frame", "ENU", "--compare", "ekf"]
+    assert main([*refused, "--out", str(tmp_path / "o")]) == 2
 
 
 def test_feet_are_picked_from_a_file_of_many_sensors(tables, tmp_path, refused):
