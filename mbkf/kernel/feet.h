@@ -6,7 +6,7 @@
 
 enum { RIGHT = 0, LEFT = 1, FEET = 2, SOLE = 3, SOLE_ENDS = 2 };
 
-/* Numbers of mbkf/sensors/contact/thresholds.py, in the order of mbkf/kernel/contact.py. */
+/* Numbers of mbkf/sensors/contact/rules.py, in the order of mbkf/kernel/contact.py. */
 typedef struct {
     double reach, keep, belt_from, touch_height, stand_height, stand_speed, stand_after, alone_height, alone_speed;
     double leave_slack, floor_share, level, parted, faces_down, fall;

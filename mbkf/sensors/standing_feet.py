@@ -25,7 +25,7 @@ from mbkf.numerics.rotations import skew
 from mbkf.sensors.block import Block, Frame, Notes, OperatingPoint, Rows, State
 from mbkf.sensors.contact.feet import FeetMotion, FeetOnBody
 from mbkf.sensors.contact.records import Contact
-from mbkf.sensors.contact.thresholds import SOLE_ENDS, STAND_SPEED_M_S
+from mbkf.sensors.contact.rules import SOLE_ENDS, STANDING
 
 FOOT_REST = "feet at rest"
 """Name of the readings (2,) of a frame: 1 where right or left foot's own sensor is at rest, else 0."""
@@ -139,7 +139,7 @@ class StandingFeet(Block[State, None, StandingDecision, Rest]):
             foot: 0 right, 1 left.
         """
         lowest = min(feet.soles[foot][:SOLE_ENDS], key=lambda point: point[2])
-        return feet.speed(foot, lowest, (0.0, 0.0)) < STAND_SPEED_M_S
+        return feet.speed(foot, lowest, (0.0, 0.0)) < STANDING.speed_m_s
 
     def remember(
         self,

@@ -2,7 +2,7 @@
 
 A foot is *measured* when a loaded plate's centre of pressure lies under it, *unmeasured* when it carries weight where
 no plate reads (its wrench is then unknown, not zero), and otherwise in the *air*. Two feet on one plate *share* it.
-The limits, and how they differ from the offline ones, are in :mod:`mbkf.sensors.contact.thresholds`.
+The rules with their limits are in :mod:`mbkf.sensors.contact.rules`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from mbkf.io.records import PlateReadings
 from mbkf.model.body import Body
 from mbkf.sensors.contact.compiled import CompiledContact
 from mbkf.sensors.contact.feet import FeetMotion, FeetOnBody
-from mbkf.sensors.contact.plates import PlateAreas, least_load, pressed_at, surface_height
+from mbkf.sensors.contact.plates import PlateAreas, pressed_at, surface_height
 from mbkf.sensors.contact.records import (
     Contact,
     ContactDecision,
@@ -26,21 +26,26 @@ from mbkf.sensors.contact.records import (
     Planted,
     Pressed,
 )
-from mbkf.sensors.contact.soles import distance_to_sole, nearer_foot, share_along
-from mbkf.sensors.contact.stances import BOTH, free_stance, shared_between
-from mbkf.sensors.contact.thresholds import (
+from mbkf.sensors.contact.rules import (
+    BOTH,
     FLAT_FROM,
     FLAT_TO,
     LEAVE_SLACK,
-    LEVEL_M,
-    PARTED_M_S,
+    LEFT,
+    NEITHER,
+    RIGHT,
     SOLE_ENDS,
     STAND_AFTER_S,
+    least_load,
+    nearer_foot,
+    stand_together,
 )
+from mbkf.sensors.contact.soles import distance_to_sole, share_along
+from mbkf.sensors.contact.stances import free_stance, shared_between
 from mbkf.sensors.contact.unmeasured import UnmeasuredFeet
 
-_FEET_OF = {0: (0,), 1: (1,), BOTH: (0, 1), -1: ()}
-"""Feet by a plate's owner: right, left, both, none."""
+_FEET_OF = {RIGHT: (RIGHT,), LEFT: (LEFT,), BOTH: (RIGHT, LEFT), NEITHER: ()}
+"""Feet by a plate's owner."""
 
 
 class ContactDetector:
@@ -73,7 +78,9 @@ class ContactDetector:
     def begin(self) -> ContactMemory:
         """Memory before the first frame."""
         plates = len(self.surfaces_m)
-        return ContactMemory((-1,) * plates, (None,) * plates, float("nan"), (STAND_AFTER_S, STAND_AFTER_S))
+        return ContactMemory(
+            (NEITHER,) * plates, (None,) * plates, float("nan"), (STAND_AFTER_S, STAND_AFTER_S)
+        )
 
     def decide(
         self,
@@ -84,7 +91,7 @@ class ContactDetector:
         plate_wrench: Array,
         supported: bool = False,
     ) -> ContactDecision:
-        """What the feet stand on in one frame.
+        """Contact of both feet in one frame.
 
         Args:
             memory: From the frame before.
@@ -92,14 +99,15 @@ class ContactDetector:
             v: (nv,) predicted velocity.
             a: (nv,) predicted acceleration.
             plate_wrench: (K, 6) force N and moment N m about the world's origin; NaN where not recorded.
-            supported: Whether another part than the feet bears.
+            supported: True where another part than the feet carries load.
         """
         if self._compiled is not None:
             return self._compiled.decide(memory, (q, v, a), plate_wrench, supported)
-        memory, feet = memory.unpacked(), self._feet.at(q, v)
+        assert isinstance(memory, ContactMemory), "packed memories come from the compiled decision"
+        feet = self._feet.at(q, v)
         forces = plate_wrench[:, 2].tolist()
         loaded, unloaded, silent = self._by_load(forces)
-        pressed, foot_of_plate = list(memory.pressed), [-1] * len(forces)
+        pressed, foot_of_plate = list(memory.pressed), [NEITHER] * len(forces)
         wrench, contacts = np.zeros((2, 6)), [Contact.AIR, Contact.AIR]
         for k in loaded:
             point = pressed_at(plate_wrench[k].tolist(), self.surfaces_m[k])
@@ -112,11 +120,12 @@ class ContactDetector:
         for foot in elsewhere.carrying:
             contacts[foot] = Contact.UNMEASURED
         lowest_ball_m = _lowest_balls(memory, feet, elsewhere.touching_s)
+        small = [k for k in unloaded if forces[k] > 0.0]
         return ContactDecision(
             (contacts[0], contacts[1]),
             wrench,
             feet.middles_m,
-            any(foot_of_plate[k] < 0 for k in loaded),
+            any(foot_of_plate[k] == NEITHER for k in loaded),
             ContactMemory(
                 tuple(foot_of_plate),
                 tuple(pressed),
@@ -133,7 +142,7 @@ class ContactDetector:
             else None,
             elsewhere.near,
             elsewhere.floor_m_s,
-            _below(plate_wrench, [k for k in unloaded if forces[k] > 0.0]),
+            plate_wrench[small].sum(axis=0) if small else None,
         )
 
     def _by_load(self, forces_n: Sequence[float]) -> tuple[list[int], list[int], list[int]]:
@@ -146,7 +155,7 @@ class ContactDetector:
         return loaded, unloaded, silent
 
     def planted(self, decision: ContactDecision, q: Array, foot: int) -> Planted | None:
-        """The point at which a loaded foot does not slide; None for a foot in the air.
+        """Point at which a loaded foot does not slide; None for a foot in the air.
 
         A foot loaded between heel and ball lies flat, further back it rolls over its heel; loaded in front of the ball
         it stands on its toes.
@@ -171,36 +180,20 @@ class ContactDetector:
         return Planted(self._model.roles.feet[foot], pressed, flat=FLAT_FROM < share < FLAT_TO)
 
     def _owner(self, k: int, point: tuple[float, float], feet: FeetMotion, before: int) -> int:
-        """Foot of plate k with this centre of pressure: 0 right, 1 left, 2 both, -1 none.
+        """Foot or feet on plate k.
 
         Args:
             k: The plate.
             point: Its centre of pressure.
             feet: The feet.
-            before: Foot of the plate in the frame before.
-        """
-        if self._both_on(k, feet, LEAVE_SLACK if before == BOTH else 1.0):
-            return BOTH
-        return nearer_foot([distance_to_sole(*point, sole) for sole in feet.soles], before)
-
-    def _both_on(self, k: int, feet: FeetMotion, slack: float) -> bool:
-        """Whether both feet stand on plate k: their lowest points over it, level, and at rest against each other.
-
-        Args:
-            k: The plate.
-            feet: The feet.
-            slack: Factor on the limit of speed: feet that stood there together must clearly part.
+            before: Its foot in the frame before.
         """
         right, left = (min(sole, key=lambda point: point[2]) for sole in feet.soles)
-        level = abs(right[2] - left[2]) < LEVEL_M
-        if not (level and all(self._areas.over(k, x, y) for x, y, _ in (right, left))):
-            return False
-        return dist(feet.velocity(0, right), feet.velocity(1, left)) < slack * PARTED_M_S
-
-
-def _below(plate_wrench: Array, small: Sequence[int]) -> Array | None:
-    """(6,) sum of those of the wrenches (K, 6) that are smaller than what counts as a load; None for nothing."""
-    return plate_wrench[small].sum(axis=0) if small else None
+        if all(self._areas.over(k, x, y) for x, y, _ in (right, left)):
+            speed = dist(feet.velocity(RIGHT, right), feet.velocity(LEFT, left))
+            if stand_together(right[2] - left[2], speed, LEAVE_SLACK if before == BOTH else 1.0):
+                return BOTH
+        return nearer_foot([distance_to_sole(*point, sole) for sole in feet.soles], before)
 
 
 def _lowest_balls(
@@ -211,9 +204,10 @@ def _lowest_balls(
     Args:
         memory: From the frame before.
         feet: The feet.
-        touching_s: For how long they have touched the floor without a reading.
+        touching_s: Duration for which they have touched the floor without a reading.
     """
     right, left = (
-        min(feet.soles[f][1][2], memory.lowest_ball_m[f] if touching_s[f] > 0.0 else inf) for f in (0, 1)
+        min(feet.soles[f][1][2], memory.lowest_ball_m[f] if touching_s[f] > 0.0 else inf)
+        for f in (RIGHT, LEFT)
     )
     return right, left

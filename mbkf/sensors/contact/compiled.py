@@ -21,7 +21,7 @@ from mbkf.kernel.contact import (
 )
 from mbkf.kernel.tree import CompiledTree
 from mbkf.model.body import Body
-from mbkf.sensors.contact import thresholds
+from mbkf.sensors.contact import rules
 from mbkf.sensors.contact.floor import fall_frames, frames_of
 from mbkf.sensors.contact.records import Contact, ContactDecision, KeptContact, PackedMemory
 from mbkf.sensors.contact.soles import sole_locals
@@ -31,21 +31,19 @@ _CONTACTS = tuple((Contact((bits & 3) - 1), Contact((bits >> 2) - 1)) for bits i
 """What right and left foot stand on, by the bits that say so."""
 
 _LIMITS = (
-    thresholds.REACH_M,
-    thresholds.KEEP_M,
-    thresholds.BELT_FROM_M_S,
-    thresholds.TOUCH_HEIGHT_M,
-    thresholds.STAND_HEIGHT_M,
-    thresholds.STAND_SPEED_M_S,
-    thresholds.STAND_AFTER_S,
-    thresholds.ALONE_HEIGHT_M,
-    thresholds.ALONE_SPEED_M_S,
-    thresholds.LEAVE_SLACK,
-    thresholds.FLOOR_SHARE,
-    thresholds.LEVEL_M,
-    thresholds.PARTED_M_S,
-    thresholds.FACES_DOWN,
-    thresholds.FALL_M_S2,
+    rules.REACH_M,
+    rules.KEEP_M,
+    rules.BELT_FROM_M_S,
+    rules.LOWER_M,
+    *rules.STANDING,
+    rules.STAND_AFTER_S,
+    *rules.STANDING_ALONE,
+    rules.LEAVE_SLACK,
+    rules.FLOOR_SHARE,
+    rules.LEVEL_M,
+    rules.PARTED_M_S,
+    rules.FACES_DOWN,
+    rules.FALL_M_S2,
 )
 """Limits in the order of ``mbkf/kernel/feet.h``."""
 
@@ -65,7 +63,7 @@ class CompiledContact:
         """
         segments, places = sole_locals(model)
         joints = [model.joint(segment).joint_id for segment in (*segments, *model.roles.feet)]
-        frames = [frames_of(time_s, dt_s) for time_s in (thresholds.BELT_WINDOW_S, thresholds.STILL_FLOOR_S)]
+        frames = [frames_of(time_s, dt_s) for time_s in (rules.BELT_WINDOW_S, rules.STILL_FLOOR_S)]
         whole = np.array([*joints, model.root.joint_id, *frames, fall_frames(dt_s)], dtype=np.int32)
         self._surfaces_m = plates[:, 2].tolist()
         floor_m = min(self._surfaces_m, default=np.nan)

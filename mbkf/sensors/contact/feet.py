@@ -1,4 +1,4 @@
-"""Both feet at one state, as contact decisions need them: soles, which way they face, and how they move."""
+"""Both feet at one state, as contact decisions need them: soles, their tilt and their velocities."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
+from mbkf.sensors.contact.rules import FACES_DOWN
 from mbkf.sensors.contact.soles import Sole, sole_locals
-from mbkf.sensors.contact.thresholds import FACES_DOWN
 
 Vector = tuple[float, float, float]
 """A vector in the world."""
@@ -23,7 +23,8 @@ class FeetMotion(NamedTuple):
     Attributes:
         soles: Heel, ball and toe end of each.
         middles_m: (2, 3) middle of heel and toe end of each.
-        facing_down: Whether each sole faces the floor enough to be stood on (:func:`.soles.soles_down`).
+        facing_down: True for a sole that faces the floor enough to be stood on: not a foot on its side, its instep or
+            the tips of its toes.
         twists: Linear and angular velocity of each at the world's origin, m/s and rad/s.
         pelvis_m: The pelvis, x, y, z.
     """
@@ -56,12 +57,11 @@ class FeetOnBody:
     """The feet of a body."""
 
     def __init__(self, model: Body) -> None:
-        """Args: the body."""
         segments, local_m = sole_locals(model)
         feet = [model.joint(segment).joint_id for segment in model.roles.feet]
         self._model = model
         self._moves = np.array([model.supports[joint] for joint in feet], dtype=float)
-        # All points and axes that are looked at are combinations of the joints' axes and origins: one product.
+        # All points and axes below are combinations of the joints' axes and origins: one product.
         picked = np.zeros((11, len(model.supports), 4))
         for k, (segment, place) in enumerate(zip(segments, local_m, strict=True)):
             picked[k, model.joint(segment).joint_id] = *place, 1.0

@@ -1,12 +1,11 @@
-"""The floor's own motion, and whether the body falls: what the last second of movement tells of both, causally.
+"""Velocity of the floor, and evidence of a fall, from the last second of movement.
 
-On a belt a loaded sole moves, at the speed of the belt, and the pelvis does not go along. The floor's velocity is the
-median velocity of the lowest point of heels and balls while that is near the floor; a floor that stands still, as on
-the ground, is the default until there is enough evidence. What goes along with the pelvis glides or is carried, and
-its floor stands still.
+On a belt a loaded sole moves at the speed of the belt, and the pelvis does not go along. The floor's velocity is the
+median velocity of the lowest point of heels and balls while that is near the floor. A floor at rest is the default
+until there is enough evidence, and for a body that glides: its pelvis goes along with its soles.
 
-A filter that takes both feet to be in the air makes the body fall by Newton's law, and must not take that acceleration
-for proof: the height of the pelvis, which markers show, then has to fall, too.
+A filter that takes both feet to be in the air makes the body fall by Newton's law. That acceleration is no evidence of
+a fall: the height of the pelvis, which markers show, has to curve down as well.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.numerics.running_median import RunningMedian
-from mbkf.sensors.contact.thresholds import (
+from mbkf.sensors.contact.rules import (
     BELT_FROM_M_S,
     BELT_WINDOW_S,
     FALL_M_S2,
@@ -34,7 +33,7 @@ class Movement(NamedTuple):
     Attributes:
         low_m_s: Horizontal velocity, x and y, of the lowest sole point while it was near the floor; NaN else.
         pelvis_m: The pelvis, x, y, z.
-        airborne: For how many frames both feet have been held to be in the air.
+        airborne: Number of frames since which both feet are taken to be in the air.
     """
 
     low_m_s: tuple[RunningMedian, RunningMedian] = (RunningMedian(), RunningMedian())
@@ -44,7 +43,7 @@ class Movement(NamedTuple):
     def with_frame(
         self, low_m_s: tuple[float, float], pelvis_m: tuple[float, float, float], dt_s: float
     ) -> Movement:
-        """One frame more, and the oldest one forgotten.
+        """The movement with one more frame, without the oldest one beyond the window.
 
         Args:
             low_m_s: Horizontal velocity of the lowest sole point; NaN where it is not near the floor.
@@ -60,11 +59,7 @@ class Movement(NamedTuple):
         )
 
     def floor_m_s(self, dt_s: float) -> tuple[float, float]:
-        """Horizontal velocity of the floor; zero unless a belt is evident.
-
-        Args:
-            dt_s: Time between frames.
-        """
+        """Horizontal velocity of the floor; zero unless a belt is evident. ``dt_s`` is the time between frames."""
         still = frames_of(STILL_FLOOR_S, dt_s)
         x, y = (low.median(still) for low in self.low_m_s)
         speed = hypot(x, y)
@@ -75,12 +70,9 @@ class Movement(NamedTuple):
         return (0.0, 0.0) if goes_along else (x, y)
 
     def held_up(self, dt_s: float) -> bool:
-        """Whether a body whose feet are both held to be in the air was seen not to fall.
+        """True for a body taken to be in the air for a whole window whose pelvis does not curve down in it.
 
-        Its pelvis's height, over a window that lies within that time, does not curve down.
-
-        Args:
-            dt_s: Time between frames.
+        ``dt_s`` is the time between frames.
         """
         frames = fall_frames(dt_s)
         if self.airborne < frames:
@@ -94,12 +86,12 @@ NO_MOVEMENT = Movement()
 
 
 def frames_of(duration_s: float, dt_s: float) -> int:
-    """How many frames, one at least, are nearest to a duration."""
+    """Number of frames nearest to a duration; at least 1."""
     return max(1, round(duration_s / dt_s))
 
 
 def fall_frames(dt_s: float) -> int:
-    """Over how many frames a fall shows in the pelvis's height."""
+    """Number of frames over which the curvature of the pelvis's height is fitted."""
     return max(4, frames_of(FALL_WINDOW_S, dt_s) + 1)
 
 

@@ -1,7 +1,7 @@
 """Ground reactions of a tracked trial assigned to the feet, and the frames in which every contact is measured.
 
-The assignment looks at whole stretches of loading and at the trial's own floor. The limits, and how they differ from
-those of a live filter, are in :mod:`mbkf.sensors.contact.thresholds`.
+The assignment looks at whole stretches of loading and at the trial's own floor. Its rules, and their differences from
+those of a live filter, are in :mod:`mbkf.sensors.contact.rules`.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from mbkf.conventions import Array, BoolArray
 from mbkf.io.records import PlateReadings
 from mbkf.model.body import Body
 from mbkf.numerics.windows import dilated, majority, second_derivative
+from mbkf.sensors.contact.feet import FeetOnBody
 from mbkf.sensors.contact.plates import (
     PlateAreas,
     centres_of_pressure,
@@ -21,29 +22,26 @@ from mbkf.sensors.contact.plates import (
     plate_wrenches,
     surface_height,
 )
-from mbkf.sensors.contact.sharing import share_load
-from mbkf.sensors.contact.soles import distances_to_soles, nearer_foot, sole_points, soles_down
-from mbkf.sensors.contact.thresholds import (
+from mbkf.sensors.contact.rules import (
+    BOTH,
     FALL_EDGE_S,
-    FALL_M_S2,
     FALL_WINDOW_S,
     FLOOR_PERCENTILE,
-    LEAVE_SLACK,
-    LEVEL_M,
     MAJORITY_S,
     MIXED_SHARE,
-    PARTED_M_S,
+    NEITHER,
     REACH_M,
     SOLE_ENDS,
-    STAND_HEIGHT_M,
-    STAND_SPEED_M_S,
+    STANDING,
     STANDING_SHARE,
-    TOUCH_HEIGHT_M,
-    TOUCH_SPEED_M_S,
+    TOUCHING,
+    Touch,
+    falls,
+    nearer_foot,
+    stand_together,
 )
-
-BOTH = 2
-"""Number of both feet together, beside 0 right, 1 left and -1 none."""
+from mbkf.sensors.contact.sharing import share_load
+from mbkf.sensors.contact.soles import distances_to_soles, sole_points
 
 
 @dataclass(frozen=True)
@@ -56,7 +54,7 @@ class FootLoads:
         free_moment_nm: (T, 2) about the vertical through the centre of pressure; NaN unloaded.
         plate_wrench: (T, P, 6) every plate about the world's origin; zero outside its recording.
         foot_of_plate: (T, P) 0 right, 1 left, 2 both, -1 none.
-        valid: (T,) every loaded foot stands on a recorded plate.
+        valid: (T,) frames in which every loaded foot stands on a recorded plate.
         unread: (T, 2) feet that touch the floor where no plate reads.
         floor_m: Height of the floor as the soles show it; NaN where they were never tracked.
         warnings: Remarks for the reader of a report.
@@ -85,16 +83,16 @@ def assign_feet(
         rate_hz: Frame rate.
         plates: The plates of the trial.
     """
-    soles = sole_points(model, q)
+    soles, areas = sole_points(model, q), PlateAreas(plates)
     wrench = plate_wrenches(plates, times_s, rate_hz)
     recorded = np.asarray(~np.isnan(wrench).any(axis=2))
     wrench[~recorded] = 0.0
     pressure = np.full((len(q), len(plates), 3), np.nan)
-    foot = np.full((len(q), len(plates)), -1)
+    foot = np.full((len(q), len(plates)), NEITHER)
     for p, plate in enumerate(plates):
         pressure[:, p] = centres_of_pressure(wrench[:, p], surface_height(plate), plate.threshold_n)
         foot[:, p] = _foot_of_plate(pressure[:, p], soles, wrench[:, p, 2], rate_hz)
-    foot[_together(soles, PlateAreas(plates), rate_hz) & ~np.isnan(pressure[:, :, 0])] = BOTH
+    foot[_together(soles, areas, rate_hz) & ~np.isnan(pressure[:, :, 0])] = BOTH
     total = np.zeros((len(q), 2, 6))
     for side in range(2):
         total[:, side] = (wrench * (foot == side)[:, :, None]).sum(axis=1)
@@ -105,22 +103,29 @@ def assign_feet(
         shared = share_load(wrench[t, on].sum(axis=0), soles[t].tolist(), q[t, :3], surface)
         total[t], at_feet[t] = shared.wrench, shared.centres_m
         free[t] = free_moment(shared.wrench, shared.centres_m)
-    idle = _over_idle_plate(PlateAreas(plates), soles, pressure, recorded)
-    down = np.array([soles_down(model, one) for one in np.nan_to_num(q)]).reshape(-1, 2)
-    touching = _touching(soles, foot, rate_hz) & ~idle & down
+    on_plate = _on_plate(foot)
+    idle = _over_idle_plate(areas, soles, pressure, recorded)
+    touching = _touching(soles, on_plate, rate_hz, TOUCHING) & ~idle & _facing_down(model, q)
     flight = ~touching.any(axis=1) & falling(q[:, 2], rate_hz)
     valid, warnings = _validity(model, touching, flight, foot, wrench, pressure, recorded)
-    valid &= ~_on_silent_plate(PlateAreas(plates), soles, foot, recorded, rate_hz)
-    unread = touching & ~_on_plate(foot)
-    return FootLoads(
-        total, at_feet, free, wrench, foot, valid, unread, _floor_height(soles, _on_plate(foot)), warnings
-    )
+    valid &= ~_on_silent_plate(areas, soles, on_plate, recorded, rate_hz)
+    floor_m = _floor_height(soles, on_plate)
+    return FootLoads(total, at_feet, free, wrench, foot, valid, touching & ~on_plate, floor_m, warnings)
+
+
+def _facing_down(model: Body, q: Array) -> BoolArray:
+    """(T, 2) True for soles that face the floor at configurations q (T, nq); False where these are NaN."""
+    feet, still = FeetOnBody(model), np.zeros(model.nv)
+    found = np.zeros((len(q), 2), dtype=bool)
+    for t in np.flatnonzero(~np.isnan(q).any(axis=1)):
+        found[t] = feet.at(q[t], still).facing_down
+    return found
 
 
 def _floor_height(soles: Array, loaded: BoolArray) -> float:
-    """Height of the floor: the usual one of soles (T, 2, 3, 3) that plates see loaded (T, 2), else of the lowest ones.
+    """Height of the floor: median of the soles (T, 2, 3, 3) that plates see loaded (T, 2), else of the lowest ones.
 
-    The toe end dips into the floor when the toes bend, so that heel and ball count. NaN where no sole was tracked.
+    NaN where no sole was tracked.
     """
     lowest = soles[:, :, :SOLE_ENDS, 2].min(axis=2)
     known = ~np.isnan(lowest)
@@ -130,7 +135,7 @@ def _floor_height(soles: Array, loaded: BoolArray) -> float:
 
 
 def _over_idle_plate(areas: PlateAreas, soles: Array, pressure: Array, recorded: BoolArray) -> BoolArray:
-    """(T, 2) feet whose sole's middle lies over a plate that is recorded and not loaded: they carry nothing.
+    """(T, 2) feet that carry nothing: the middle of the sole lies over a plate that is recorded and not loaded.
 
     Args:
         areas: Outlines of the plates.
@@ -153,7 +158,7 @@ def _foot_of_plate(pressure: Array, soles: Array, vertical_n: Array, rate_hz: fl
         vertical_n: (T,) vertical force, the weight of a frame in its stretch.
         rate_hz: Frame rate.
     """
-    foot = np.full(len(pressure), -1)
+    foot = np.full(len(pressure), NEITHER)
     distance = distances_to_soles(pressure, soles)
     usable = np.asarray(~np.isnan(distance).any(axis=1))
     for stretch in stretches(~np.isnan(pressure[:, 0])):
@@ -164,7 +169,7 @@ def _foot_of_plate(pressure: Array, soles: Array, vertical_n: Array, rate_hz: fl
         mean = ((away * weight[:, None]).sum(axis=0) / weight.sum()).tolist()
         nearer = majority(away[:, 1] < away[:, 0], 2 * int(MAJORITY_S * rate_hz) + 1).astype(int)
         if (nearer != int(mean[1] < mean[0])).mean() > MIXED_SHARE:
-            foot[frames] = np.where(away.min(axis=1) <= REACH_M, nearer, -1)
+            foot[frames] = np.where(away.min(axis=1) <= REACH_M, nearer, NEITHER)
         else:
             foot[frames] = nearer_foot(mean)
     return foot
@@ -177,11 +182,11 @@ def stretches(mask: BoolArray) -> list[Array]:
 
 
 def _together(soles: Array, areas: PlateAreas, rate_hz: float) -> BoolArray:
-    """(T, P) plates on which both feet stand: their lowest points over it, level, and at rest against each other.
+    """(T, P) plates on which both feet stand.
 
     Args:
         soles: (T, 2, 3, 3) sole points, NaN where untracked.
-        areas: Outlines of the plates; on one without an outline no two feet are distinguished.
+        areas: Outlines of the plates; a plate without an outline is never shared.
         rate_hz: Frame rate.
     """
     together = np.zeros((len(soles), len(areas.known)), dtype=bool)
@@ -192,10 +197,10 @@ def _together(soles: Array, areas: PlateAreas, rate_hz: float) -> BoolArray:
     at = soles[known, :, :, 2].argmin(axis=2)[:, :, None, None]
     lowest = np.take_along_axis(soles[known], at, axis=2)[:, :, 0]
     velocity = np.take_along_axis(moving, at, axis=2)[:, :, 0]
-    level = np.abs(lowest[:, 0, 2] - lowest[:, 1, 2]) < LEVEL_M
-    slow = np.linalg.norm(velocity[:, 0] - velocity[:, 1], axis=1) < PARTED_M_S
+    speed = np.linalg.norm(velocity[:, 0] - velocity[:, 1], axis=1)
+    stand = np.asarray(stand_together(lowest[:, 0, 2] - lowest[:, 1, 2], speed))
     inside = areas.contain(lowest[:, :, :2].reshape(-1, 2)).reshape(len(known), 2, -1).all(axis=1)
-    together[known] = inside & (level & slow)[:, None]
+    together[known] = inside & stand[:, None]
     return together
 
 
@@ -222,14 +227,14 @@ def _on_plate(foot: Array) -> BoolArray:
 
 
 def _on_silent_plate(
-    areas: PlateAreas, soles: Array, foot: Array, recorded: BoolArray, rate_hz: float
+    areas: PlateAreas, soles: Array, on_plate: BoolArray, recorded: BoolArray, rate_hz: float
 ) -> BoolArray:
-    """(T,) frames in which a foot may stand on a plate that was not recorded; whoever cannot tell says so.
+    """(T,) frames in which a foot may stand on a plate that was not recorded, of known outline or not.
 
     Args:
         areas: Outlines of the plates.
         soles: (T, 2, 3, 3) sole points, NaN where untracked.
-        foot: (T, P) foot of each plate.
+        on_plate: (T, 2) feet on a loaded plate.
         recorded: (T, P) where plates were recorded.
         rate_hz: Frame rate.
     """
@@ -237,8 +242,7 @@ def _on_silent_plate(
     silent = np.flatnonzero(~recorded.all(axis=1))
     if not len(silent):
         return found
-    on_plate = _on_plate(foot)
-    standing = _touching(soles, foot, rate_hz, LEAVE_SLACK * STAND_HEIGHT_M, LEAVE_SLACK * STAND_SPEED_M_S)
+    standing = _touching(soles, on_plate, rate_hz, STANDING.relaxed())
     for t in silent:
         for side in np.flatnonzero(standing[t] & ~on_plate[t]):
             over = areas.contain(soles[t, side, :, :2]).any(axis=0) | ~areas.known
@@ -246,47 +250,39 @@ def _on_silent_plate(
     return found
 
 
-def _touching(
-    soles: Array,
-    foot: Array,
-    rate_hz: float,
-    height_m: float = TOUCH_HEIGHT_M,
-    speed_m_s: float = TOUCH_SPEED_M_S,
-) -> BoolArray:
-    """(T, 2) feet that touch the floor: a sole point is low and slow.
+def _touching(soles: Array, on_plate: BoolArray, rate_hz: float, limits: Touch) -> BoolArray:
+    """(T, 2) feet that touch the floor.
 
     Args:
         soles: (T, 2, 3, 3) sole points, NaN where untracked.
-        foot: (T, P) foot of each plate.
+        on_plate: (T, 2) feet on a loaded plate; their soles show the floor.
         rate_hz: Frame rate.
-        height_m: How low it is.
-        speed_m_s: How slow it is.
+        limits: Of height and speed.
     """
     touching = np.zeros((len(soles), 2), dtype=bool)
     known = ~np.isnan(soles[:, 0, 0, 0])
     if len(soles) < 2 or not known.any():  # a single frame has no speed
         return touching
     lowest = soles[:, :, :, 2].min(axis=2)
-    loaded = _on_plate(foot) & known[:, None]
+    loaded = on_plate & known[:, None]
     stood_on = {side: np.median(lowest[loaded[:, side], side]) for side in range(2) if loaded[:, side].any()}
     for side in range(2):
         lowest_ever = np.percentile(lowest[known, side], FLOOR_PERCENTILE)
         floor = stood_on.get(side, min([lowest_ever, *stood_on.values()]))
         speed = np.linalg.norm(np.gradient(soles[:, side], axis=0), axis=2) * rate_hz
-        low = soles[:, side, :, 2] < floor + height_m
-        touching[:, side] = (low & (speed < speed_m_s)).any(axis=1)
+        touching[:, side] = np.asarray(limits.holds(soles[:, side, :, 2], floor, speed)).any(axis=1)
     return touching
 
 
 def falling(height_m: Array, rate_hz: float) -> BoolArray:
-    """(T,) whether the pelvis (height (T,), NaN where untracked) falls faster than a supported body."""
-    falls = np.zeros(len(height_m), dtype=bool)
+    """(T,) frames in which the pelvis (height (T,), NaN where untracked) falls faster than a supported body."""
+    found = np.zeros(len(height_m), dtype=bool)
     window = 2 * round(0.5 * FALL_WINDOW_S * rate_hz) + 1
     for stretch in stretches(~np.isnan(height_m)):
         if len(stretch) > max(window, 5):
             curve = second_derivative(height_m[stretch], max(window, 5), 1.0 / rate_hz)
-            falls[stretch] = curve < FALL_M_S2
-    return dilated(falls, max(1, round(FALL_EDGE_S * rate_hz)))
+            found[stretch] = falls(curve)
+    return dilated(found, max(1, round(FALL_EDGE_S * rate_hz)))
 
 
 def _validity(
@@ -298,7 +294,7 @@ def _validity(
     pressure: Array,
     recorded: BoolArray,
 ) -> tuple[BoolArray, tuple[str, ...]]:
-    """(T,) frames in which every loaded foot stands on a recorded plate, and remarks for the reader.
+    """(T,) frames in which every loaded foot stands on a recorded plate, and warnings.
 
     Args:
         model: The body.
@@ -307,7 +303,7 @@ def _validity(
         foot: (T, P) foot of each plate.
         wrench: (T, P, 6) plates about the world's origin.
         pressure: (T, P, 3) their centres of pressure, NaN where not loaded.
-        recorded: (T, P) where they were recorded.
+        recorded: (T, P) frames in which they were recorded.
     """
     measured = (~touching | _on_plate(foot)).all(axis=1)
     weight = -model.pin_model.gravity.linear[2] * model.mass_kg
@@ -316,7 +312,12 @@ def _validity(
     valid = measured & (carried | flight) & ~stray & recorded.any(axis=1)
     warnings = []
     if stray.any():
-        warnings.append(f"{int(stray.sum())} frames have a loaded plate with no foot within {REACH_M:.2f} m")
+        warnings.append(
+            f"{int(stray.sum())} frames have a loaded plate with no foot within {REACH_M:.2f} m of its centre of "
+            "pressure; check the plate's place and axes, and whether something else stands on it"
+        )
     if foot.shape[1] and not valid.any():
-        warnings.append("no frame has every loaded foot on a measured plate")
+        warnings.append(
+            "no frame has every loaded foot on a recorded plate; check the plates' places and recordings"
+        )
     return valid, tuple(warnings)

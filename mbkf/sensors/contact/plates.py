@@ -1,6 +1,6 @@
 """Force plates as contact needs them: wrenches about the world's origin, centres of pressure, surfaces and areas.
 
-Everything here takes a wrench as force N and moment N m about the world's origin, and a plate as horizontal.
+Wrenches are force N and moment N m about the world's origin; plates are taken to be horizontal.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import numpy as np
 from mbkf.conventions import Array, BoolArray
 from mbkf.io.records import PlateReadings
 from mbkf.io.resample import average_over_frames
+from mbkf.sensors.contact.rules import least_load
 
 Number = TypeVar("Number", float, Array)
 
@@ -38,11 +39,6 @@ def plate_wrenches(plates: tuple[PlateReadings, ...], times_s: Array, rate_hz: f
 def surface_height(plate: PlateReadings) -> float:
     """Height of a plate's surface in the world, m."""
     return float(plate.origin_m[2] if plate.corners_m is None else plate.corners_m[:, 2].mean())
-
-
-def least_load(threshold_n: float) -> float:
-    """Vertical force from which a plate counts as loaded, N: its threshold, and upwards in any case."""
-    return max(threshold_n, float(np.finfo(float).tiny))
 
 
 def pressed_at(wrench: Sequence[Number], surface_m: float) -> tuple[Number, Number]:
@@ -107,23 +103,23 @@ class PlateAreas:
         self._boxes = np.concatenate([corners.min(axis=1), corners.max(axis=1)], axis=1).tolist()
 
     def outlines(self) -> Array:
-        """(K, 20) each plate's box from above, least x and y and most x and y, and its edges (4, 4): x, y and way."""
+        """(K, 20) box of each plate from above (least x, y, greatest x, y) and edges (4, 4): origin, direction."""
         edges = np.array(self._edges).reshape(-1, 16)
         return np.concatenate([np.array(self._boxes).reshape(-1, 4), edges], axis=1)
 
     def contain(self, points_m: Array) -> BoolArray:
-        """(n, K) whether points (n, 2) lie over each plate; never over one whose corners are not known."""
+        """(n, K) True for points (n, 2) over a plate; never for a plate whose corners are not known."""
         away = points_m[:, None, None] - self._from
         left = self._along[:, :, 0] * away[..., 1] - self._along[:, :, 1] * away[..., 0] >= 0.0
         return np.asarray((left.all(axis=-1) | ~left.any(axis=-1)) & self.known)
 
     def over(self, plate: int, x: float, y: float) -> bool:
-        """Whether a point lies over a plate, as :meth:`contain`; quicker for a single one.
+        """True for a point over a plate, as :meth:`contain`; quicker for a single one.
 
         Args:
             plate: Number of the plate.
             x: World coordinate of the point, m.
-            y: The other one.
+            y: Its other coordinate.
         """
         x_least, y_least, x_most, y_most = self._boxes[plate]
         if not (x_least <= x <= x_most and y_least <= y <= y_most and self.known[plate]):

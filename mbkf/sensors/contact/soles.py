@@ -1,4 +1,4 @@
-"""Soles of the body: heel, ball and toe end of each foot, and how far a point of the floor is from them."""
+"""Soles of the body: heel, ball and toe end of each foot, and distances of the floor's points from them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
-from mbkf.sensors.contact.thresholds import FACES_DOWN, KEEP_M, REACH_M
 from mbkf.sensors.marker_sensor import MarkerSensor
 
 Sole = Sequence[Sequence[float]]
@@ -36,24 +35,14 @@ def sole_points(model: Body, q: Array) -> Array:
     return points
 
 
-def soles_down(model: Body, q: Array) -> list[bool]:
-    """Whether right and left sole face the floor enough to be stood on, at a configuration q (nq,).
-
-    Those of a foot on its side, its instep or the tips of its toes do not.
-    """
-    rotations, _ = model.placements(q)
-    ids = [model.joint(segment).joint_id for segment in model.roles.feet]
-    return [float(rotations[joint][2, 2]) > FACES_DOWN for joint in ids]
-
-
 def share_along(x: float, y: float, sole: Sole) -> float:
-    """Where a point of the floor lies along a sole, seen from above: 0 at the heel, 1 at the toe end.
+    """Share of a sole's length at which a point of the floor lies, seen from above: 0 at the heel, 1 at the toe end.
 
-    NaN for a sole without length, which a body has that is lost so far away that numbers no longer resolve it.
+    NaN for a sole without length: that of a lost body, so far away that floating point no longer resolves it.
 
     Args:
         x: World coordinate of the point, m.
-        y: The other one.
+        y: Its other coordinate.
         sole: The sole.
     """
     (hx, hy, _), (tx, ty, _) = sole[0], sole[2]
@@ -67,7 +56,7 @@ def distance_to_sole(x: float, y: float, sole: Sole) -> float:
 
     Args:
         x: World coordinate of the point, m.
-        y: The other one.
+        y: Its other coordinate.
         sole: The sole.
     """
     along = min(max(share_along(x, y, sole), 0.0), 1.0)
@@ -82,16 +71,3 @@ def distances_to_soles(points_m: Array, soles: Array) -> Array:
         x, y, _ = points_m[t].tolist()
         found[t] = [distance_to_sole(x, y, sole) for sole in soles[t].tolist()]
     return found
-
-
-def nearer_foot(away_m: Sequence[float], before: int = -1) -> int:
-    """The foot that a centre of pressure belongs to: 0 right, 1 left, -1 none.
-
-    Args:
-        away_m: Distance from the right and from the left sole.
-        before: The foot it belonged to, which keeps it unless the other one is clearly nearer; -1 for none.
-    """
-    nearest = 0 if away_m[0] <= away_m[1] else 1
-    if before in (0, 1) and away_m[before] <= away_m[nearest] + KEEP_M:
-        nearest = before
-    return nearest if away_m[nearest] <= REACH_M else -1

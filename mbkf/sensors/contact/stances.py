@@ -8,11 +8,9 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.sensors.contact.records import FreeStance
+from mbkf.sensors.contact.rules import BOTH
 from mbkf.sensors.contact.sharing import SharedLoad, expected_stance, push_share, share_load
 from mbkf.sensors.contact.soles import Sole
-
-BOTH = 2
-"""Owner of a plate on which both feet stand."""
 
 
 def shared_between(

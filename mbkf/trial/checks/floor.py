@@ -7,8 +7,8 @@ import numpy as np
 from mbkf.io.findings import Finding, judgement, not_judged
 from mbkf.model.body import Body
 from mbkf.sensors.contact.plates import centres_of_pressure, surface_height
+from mbkf.sensors.contact.rules import REACH_M, SOLE_ENDS
 from mbkf.sensors.contact.soles import distances_to_soles, sole_points
-from mbkf.sensors.contact.thresholds import REACH_M, SOLE_ENDS
 from mbkf.trial.checks.evidence import Evidence
 from mbkf.trial.preparation.markers_alone import Motion
 

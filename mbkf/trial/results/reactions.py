@@ -12,9 +12,10 @@ from mbkf.filters.tracking import Track
 from mbkf.io.contacts import Source, bearing, foot_sources
 from mbkf.io.records import PlateReadings
 from mbkf.model.body import Body
-from mbkf.sensors.contact.offline import BOTH, FootLoads, assign_feet, falling
-from mbkf.sensors.contact.plates import least_load, pressure_and_free_moment, surface_height
+from mbkf.sensors.contact.offline import FootLoads, assign_feet, falling
+from mbkf.sensors.contact.plates import pressure_and_free_moment, surface_height
 from mbkf.sensors.contact.records import Contact
+from mbkf.sensors.contact.rules import BOTH, least_load
 from mbkf.trial.results.supports import Supports, supports_of
 
 PRESSURE_FROM_N = 20.0

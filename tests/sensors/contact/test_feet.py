@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from mbkf.sensors.contact.feet import FeetOnBody
-from mbkf.sensors.contact.soles import sole_locals, sole_points, soles_down
+from mbkf.sensors.contact.rules import FACES_DOWN
+from mbkf.sensors.contact.soles import sole_locals, sole_points
 from mbkf.sensors.marker_sensor import MarkerSensor
 from tests.motions import moderate_pose, reference_model
 
@@ -25,7 +26,16 @@ def test_soles_middles_and_pelvis_lie_where_the_body_has_them(seed):
     np.testing.assert_allclose(feet.soles, soles, atol=1e-14)
     np.testing.assert_allclose(feet.middles_m, 0.5 * (soles[:, 0] + soles[:, 2]), atol=1e-14)
     np.testing.assert_allclose(feet.pelvis_m, MODEL.placements(q)[1][MODEL.root.joint_id], atol=1e-14)
-    assert list(feet.facing_down) == soles_down(MODEL, q)
+
+
+@pytest.mark.parametrize("tilt_rad", np.linspace(0.0, np.pi, 8))
+def test_a_sole_faces_down_up_to_a_tilt(tilt_rad):
+    """The whole body pitched over on straight legs, so that both feet are tilted alike."""
+    step = np.zeros(MODEL.nv)
+    step[4] = tilt_rad
+    q = MODEL.integrate(MODEL.neutral(), step)
+    down = FEET.at(q, np.zeros(MODEL.nv)).facing_down
+    assert down == (np.cos(tilt_rad) > FACES_DOWN,) * 2
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.sensors.contact.floor import NO_MOVEMENT
-from mbkf.sensors.contact.thresholds import BELT_WINDOW_S
+from mbkf.sensors.contact.rules import BELT_WINDOW_S
 
 DT = 0.01
 

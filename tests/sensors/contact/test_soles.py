@@ -1,4 +1,4 @@
-"""Soles of the body in the world, their distance from points of the floor, and the foot a pressure belongs to."""
+"""Soles of the body in the world, and their distance from points of the floor."""
 
 import numpy as np
 import pytest
@@ -6,20 +6,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import minimize_scalar
 
+from mbkf.sensors.contact.rules import NEITHER, nearer_foot
 from mbkf.sensors.contact.soles import (
     distance_to_sole,
     distances_to_soles,
-    nearer_foot,
     share_along,
     sole_points,
 )
-from mbkf.sensors.contact.thresholds import KEEP_M, REACH_M
 from tests.dynamics import standing
 from tests.motions import assert_near, moderate_pose, random_model, reference_model
 
 MODEL = reference_model()
 SOLES = sole_points(MODEL, standing(MODEL)[None])[0]
-RIGHT, LEFT, NEITHER = 0, 1, -1
+RIGHT, LEFT = 0, 1
 metres = st.floats(-1.0, 1.0)
 
 
@@ -77,20 +76,3 @@ def test_no_pressure_belongs_to_soles_so_far_away_that_they_have_no_length():
     away = distances_to_soles(np.zeros((1, 3)), lost)[0]
     assert np.isnan(away).all()
     assert nearer_foot(away.tolist(), RIGHT) == NEITHER
-
-
-@pytest.mark.parametrize(
-    ("away", "before", "foot"),
-    [
-        ((0.05, 0.10), NEITHER, RIGHT),
-        ((0.10, 0.05), NEITHER, LEFT),
-        ((0.05, 0.05), NEITHER, RIGHT),
-        ((0.05, 0.05 + 0.9 * KEEP_M), LEFT, LEFT),
-        ((0.05, 0.05 + 1.1 * KEEP_M), LEFT, RIGHT),
-        ((1.1 * REACH_M, 2 * REACH_M), NEITHER, NEITHER),
-        ((0.9 * REACH_M, 1.01 * REACH_M), LEFT, NEITHER),
-        ((0.05, 0.10), 2, RIGHT),
-    ],
-)
-def test_a_pressure_belongs_to_the_nearer_sole_within_reach(away, before, foot):
-    assert nearer_foot(away, before) == foot

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from mbkf.sensors.contact.rules import BOTH
 from mbkf.sensors.contact.sharing import PUSH_SHARE, expected_stance
-from mbkf.sensors.contact.stances import BOTH, free_stance, shared_between
+from mbkf.sensors.contact.stances import free_stance, shared_between
 from tests.motions import assert_near
 
 FLAT = [[[0.0, y, 0.01], [0.15, y, 0.01], [0.22, y, 0.01]] for y in (-0.1, 0.1)]

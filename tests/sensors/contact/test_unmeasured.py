@@ -7,7 +7,7 @@ import numpy as np
 from mbkf.sensors.contact.feet import FeetOnBody
 from mbkf.sensors.contact.plates import PlateAreas
 from mbkf.sensors.contact.records import Contact, ContactMemory
-from mbkf.sensors.contact.thresholds import STAND_AFTER_S
+from mbkf.sensors.contact.rules import STAND_AFTER_S
 from mbkf.sensors.contact.unmeasured import UnmeasuredFeet
 from tests.dynamics import DT, plates_under, standing
 from tests.motions import reference_model
