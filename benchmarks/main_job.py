@@ -27,6 +27,7 @@ from benchmarks.references import (
 )
 from mbkf.errors import MbkfError
 from mbkf.io.c3d import read_c3d
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.results_folder import Summary, read_reconstruction, read_summary
 from mbkf.io.storage import Table, read_storage
 
@@ -115,7 +116,7 @@ def biomechzoo(data: Path, out: Path, person: str, number: str, mass_kg: float) 
     trial = folder / f"{person}_Straight_{person}{number}.c3d"
     static = folder / f"{person}_Static_{person}01.c3d"
     found = scale_and_reconstruct(trial, (static, "--mass", str(mass_kg)), out)
-    theirs = plug_in_gait_angles(read_c3d(trial))
+    theirs = plug_in_gait_angles(read_c3d(trial, CaptureOptions()))
     return [marker_check(found, 6.0), *angle_checks(found.angles, theirs, dict.fromkeys(FLEXIONS, 1.0), 0.97)]
 
 

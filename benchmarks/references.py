@@ -10,6 +10,7 @@ import numpy as np
 from mbkf.conventions import SIDES, Array
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.io.c3d import read_c3d
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.forces import read_forces_mot
 from mbkf.io.records import Capture
 from mbkf.io.storage import Table, read_storage
@@ -160,9 +161,9 @@ def plates_against_export(c3d: Path, mot: Path) -> tuple[float, float]:
     left aside, since it writes them with the opposite sign (its unloaded plate shows it), and so are its
     samples below the threshold, where it names the middle of the plate.
     """
-    exported = {plate.name: plate for plate in read_forces_mot(mot)}
+    exported = {plate.name: plate for plate in read_forces_mot(mot, CaptureOptions(tare=False, up="y"))}
     force, pressure = [], []
-    for plate in read_c3d(c3d).plates:
+    for plate in read_c3d(c3d, CaptureOptions()).plates:
         other = exported[plate.name]
         count = min(len(plate.force_n), len(other.force_n))
         theirs, point = other.force_n[:count], other.centre_of_pressure_m[:count]
@@ -177,7 +178,7 @@ def plates_against_export(c3d: Path, mot: Path) -> tuple[float, float]:
 
 def stored_markers(c3d: Path, trc: Path) -> float:
     """Largest difference in mm to the markers OpenSim read, beyond its rounding; ∞ where a gap differs."""
-    capture, theirs = read_c3d(c3d), read_trc(trc, up="z").markers
+    capture, theirs = read_c3d(c3d, CaptureOptions()), read_trc(trc, CaptureOptions(up="z")).markers
     rows = np.rint((_trc_times(trc) - capture.markers.start_time_s) * capture.markers.rate_hz).astype(int)
     names = tuple(name for name in theirs.names if name in capture.markers.names)
     own, stored = (_MM * m.positions_m for m in (capture.markers.select(names), theirs.select(names)))
@@ -203,7 +204,7 @@ def stored_forces(c3d: Path, at_plates: Path, at_pressure: Path) -> tuple[float,
     """
     middle, pressed = read_storage(at_plates), read_storage(at_pressure)
     forces, moments, pressures = [], [], []
-    for number, plate in enumerate(read_c3d(c3d, tare=False).plates, start=1):
+    for number, plate in enumerate(read_c3d(c3d, CaptureOptions(tare=False)).plates, start=1):
         rows = np.rint((middle.times_s - plate.start_time_s) * plate.rate_hz).astype(int)
         f, p, m = (_vectors(middle, f"{kind}{number}_{{}}") for kind in "fpm")
         moment = plate.moment_nm[rows] + np.cross(plate.origin_m - p / _MM, plate.force_n[rows])

@@ -13,8 +13,11 @@ from mbkf.errors import MbkfError
 from mbkf.version import __version__
 
 if TYPE_CHECKING:
-    from mbkf.io.capture import read_capture
-    from mbkf.io.imu.files import read_imu
+    from mbkf.io.capture import read_capture, register_force_reader, register_reader
+    from mbkf.io.capture_options import CaptureOptions
+    from mbkf.io.imu.files import read_imu, register_imu_reader
+    from mbkf.io.imu.readings import ImuReadings
+    from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
     from mbkf.io.results_folder import read_reconstruction, write_reconstruction
     from mbkf.io.subject import read_subject, write_subject
     from mbkf.model.body_file import load_body
@@ -39,17 +42,22 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "Block": "mbkf.sensors.block",
+    "Capture": "mbkf.io.records",
+    "CaptureOptions": "mbkf.io.capture_options",
     "ClinicalAngles": "mbkf.model.clinical",
     "Estimate": "mbkf.trial.tracker",
     "ExtraState": "mbkf.sensors.layout",
     "Frame": "mbkf.sensors.block",
     "Hidden": "mbkf.trial.preparation.settings",
     "HumanModel": "mbkf.model.human",
+    "ImuReadings": "mbkf.io.imu.readings",
     "InertiaEstimate": "mbkf.trial.inertia.estimate",
     "Information": "mbkf.numerics.kalman",
     "Layout": "mbkf.sensors.layout",
+    "MarkerTrajectories": "mbkf.io.records",
     "Notes": "mbkf.sensors.block",
     "OperatingPoint": "mbkf.sensors.block",
+    "PlateReadings": "mbkf.io.records",
     "ReconstructSettings": "mbkf.trial.preparation.settings",
     "Rows": "mbkf.sensors.block",
     "Tracker": "mbkf.trial.tracker",
@@ -66,6 +74,9 @@ _HOMES = {
     "read_reconstruction": "mbkf.io.results_folder",
     "read_subject": "mbkf.io.subject",
     "reconstruct": "mbkf.trial.reconstruct",
+    "register_force_reader": "mbkf.io.capture",
+    "register_imu_reader": "mbkf.io.imu.files",
+    "register_reader": "mbkf.io.capture",
     "scale": "mbkf.trial.scale",
     "standard_blocks": "mbkf.trial.tracker",
     "summarise": "mbkf.trial.results.summary",
@@ -76,18 +87,23 @@ _HOMES = {
 
 __all__ = [
     "Block",
+    "Capture",
+    "CaptureOptions",
     "ClinicalAngles",
     "Estimate",
     "ExtraState",
     "Frame",
     "Hidden",
     "HumanModel",
+    "ImuReadings",
     "InertiaEstimate",
     "Information",
     "Layout",
+    "MarkerTrajectories",
     "MbkfError",
     "Notes",
     "OperatingPoint",
+    "PlateReadings",
     "ReconstructSettings",
     "Rows",
     "Tracker",
@@ -105,6 +121,9 @@ __all__ = [
     "read_reconstruction",
     "read_subject",
     "reconstruct",
+    "register_force_reader",
+    "register_imu_reader",
+    "register_reader",
     "scale",
     "standard_blocks",
     "summarise",

@@ -21,6 +21,10 @@ class MbkfError(Exception):
         return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text)
 
 
+class MbkfWarning(UserWarning):
+    """A fault that ends nothing, such as an installed reader that cannot be loaded."""
+
+
 class FileFormatError(MbkfError):
     """A file is missing, unreadable or not what its name promises.
 
@@ -90,12 +94,13 @@ class MissingDependency(MbkfError):
 
     Attributes:
         package: The library.
-        needed_for: What needs it.
+        needed_for: The capability that needs it.
         extra: Extra of mbkf that installs it.
     """
 
     def __init__(self, package: str, needed_for: str, extra: str) -> None:
         self.package, self.needed_for, self.extra = package, needed_for, extra
         super().__init__(
-            f"{needed_for} needs the library '{package}'; install it with: pip install 'mbkf[{extra}]'"
+            f"{needed_for} needs the library '{package}'; install it with: pip install {package} "
+            f"(in a clone of mbkf also: pip install '.[{extra}]')"
         )

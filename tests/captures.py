@@ -10,13 +10,13 @@ import numpy as np
 from mbkf.cli.main import main
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.io.c3d_write import write_c3d
-from mbkf.io.forces import write_forces_mot
 from mbkf.io.records import Capture, MarkerTrajectories, PlateReadings
 from mbkf.io.trc import write_trc
 from mbkf.model.human import HumanModel
 from mbkf.model.protocol import load_protocol
 from mbkf.sensors.contact.soles import sole_points
 from mbkf.sensors.marker_sensor import MarkerSensor
+from tests.mot_files import write_forces_mot
 
 RATE_HZ = 100.0
 MASS_KG = 75.0

@@ -10,7 +10,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.io.axes import rotation_to_world
-from mbkf.io.c3d_plates import plate_axes
+from mbkf.io.plate_corners import plate_axes
 from mbkf.io.records import MarkerTrajectories
 
 MM = 1e3
@@ -189,7 +189,7 @@ def write_qualisys(true: TrueCapture, path: Path, *, in_plate_axes: bool, with_t
 def _write_qualisys_plate(
     true: TrueCapture, plate: TruePlate, path: Path, local: bool, with_times: bool
 ) -> None:
-    axes = plate_axes(plate.corners_m.T) if local else np.eye(3)
+    axes = plate_axes(plate.corners_m) if local else np.eye(3)
     point = (plate.point_m - plate.corners_m.mean(axis=0)) @ axes if local else plate.point_m
     values = [-plate.force_n @ axes, -plate.about_middle() @ axes, MM * point]
     titles = [f"{kind}_{axis}" for kind in ("Force", "Moment", "COP") for axis in "XYZ"]
@@ -245,7 +245,7 @@ def write_plate_tables(true: TrueCapture, folder: Path) -> Path:
     """
     turn = rotation_to_world("y")
     for number, plate in enumerate(true.plates, start=1):
-        axes = plate_axes(plate.corners_m.T)
+        axes = plate_axes(plate.corners_m)
         head = [f"Name,Force Plate {number}", f"Rate,{true.rate_hz:.6f}"]
         for k, corner in enumerate(plate.corners_m @ turn):
             head.append(",".join([f"Corner {k}", *(f"{value:.9g}" for value in corner)]))

@@ -62,4 +62,4 @@ def axe_script() -> str:
     try:
         return (files("axe_playwright_python") / "axe.min.js").read_text(encoding="utf-8")
     except (ModuleNotFoundError, OSError) as error:
-        raise MissingDependency("axe-playwright-python", "brings axe-core", "mbkf[test]") from error
+        raise MissingDependency("axe-playwright-python", "brings axe-core", "test") from error

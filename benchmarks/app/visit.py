@@ -61,7 +61,7 @@ def browser() -> Iterator[Any]:
     try:
         from playwright.sync_api import sync_playwright
     except ImportError as error:
-        raise MissingDependency("playwright", "drives the page in a browser", "mbkf[test]") from error
+        raise MissingDependency("playwright", "drives the page in a browser", "test") from error
     program = shutil.which("chromium") or shutil.which("google-chrome")
     if program is None:
         raise InvalidInput("no browser is here: install chromium")

@@ -20,6 +20,7 @@ import pyarrow.parquet as pq
 
 from mbkf.errors import MbkfError
 from mbkf.io.capture import read_capture
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.results_opensim import MARKERS_FILE
 from mbkf.io.storage import read_storage
@@ -218,7 +219,9 @@ def result_state(folder: Path) -> str:
     for table in (*folder.glob("*.mot"), *folder.glob("*.sto")):
         runs.add(read_storage(table).header["run"])
     assert len(runs) == 1, f"files of {len(runs)} runs"
-    assert result.frames == summary["frames"] == read_trc(folder / MARKERS_FILE).markers.frames
+    assert (
+        result.frames == summary["frames"] == read_trc(folder / MARKERS_FILE, CaptureOptions()).markers.frames
+    )
     assert (folder / NOTE).read_text() == NOTE
     return _age(result.frames)
 

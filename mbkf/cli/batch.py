@@ -16,9 +16,10 @@ examples:
   mbkf batch trials.toml --out results --dask tcp://10.0.0.1:8786    (a cluster's scheduler; "local" for this computer)
   mbkf batch study --out results --shard 3/16                        (one of 16 jobs that know nothing of each other)
 
-A folder with captures (.c3d, .trc) is a session; the first folder on the way to it names the person. Standing trials
-are known by their names (static, calibration, t-pose, …), ground reactions lie beside their trial under its name with
-"grf" or "forces", and session.toml states mass_kg, height_m and protocol where captures and plates do not.
+A folder with captures (.c3d, .trc, or of an installed reader) is a session; the first folder on the way to it names
+the person. Standing trials are known by their names (static, calibration, t-pose, …), ground reactions lie beside their
+trial under its name with "grf" or "forces", and session.toml states mass_kg, height_m and protocol where captures and
+plates do not.
 A list names them instead:
 
   subject,trial,static,forces,mass_kg                    [[subject]]

@@ -21,7 +21,7 @@ A result (a folder of 'mbkf reconstruct' or 'mbkf live', or its motion.h5):
         the centre of mass, foot strikes and offs; for Mokka, Visual3D, Nexus.
   bvh   the segments' rotations, cm, y up, z forward; for animation programs.
   glb   the body as 'mbkf view' draws it, moving; m, y up; for animation programs and browsers.
-  mp4, gif  a film of the 3-D view, 25 pictures a second. Needs Chromium, Chrome or Edge, and the extra 'film'.
+  mp4, gif  a film of the 3-D view, 25 pictures a second. Needs Chromium, Chrome or Edge, and pip install av playwright.
 
 examples:
   mbkf export subject.toml --to urdf --out subject.urdf

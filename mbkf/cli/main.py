@@ -11,11 +11,12 @@ import gc
 import importlib
 import os
 import sys
+import warnings
 from collections.abc import Sequence
 from typing import NoReturn
 
 from mbkf.cli.postponed import postpone
-from mbkf.errors import MbkfError
+from mbkf.errors import MbkfError, MbkfWarning
 from mbkf.version import __version__
 
 COMMANDS = (
@@ -31,6 +32,8 @@ EXIT_PIPE_CLOSED = 141  # 128 + SIGPIPE
 
 TRACEBACK_VARIABLE = "MBKF_TRACEBACK"
 """Environment variable that, when set, shows where an unforeseen error came from."""
+
+_PYTHONS_FORMAT = warnings.formatwarning
 
 GARBAGE_AFTER = 50_000
 """New objects after which Python looks for circles among them. Its own 700 suit programs whose objects come and go;
@@ -99,6 +102,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if out is not None and not out.strip():  # "" would be the folder that the command is called in
         return _fail("--out names nothing; give the folder or file to write")
     postpone()
+    warnings.formatwarning = _formatted
     try:
         code = args.run(args)
         sys.stdout.flush()  # so that a closed pipe is noticed here
@@ -125,6 +129,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _fail(message: str, code: int = EXIT_BAD_INPUT) -> int:
     print(f"mbkf: error: {_one_line(message)}", file=sys.stderr)
     return code
+
+
+def _formatted(
+    message: Warning | str, category: type[Warning], filename: str, lineno: int, line: str | None = None
+) -> str:
+    """A warning of mbkf as one line; others as Python has them."""
+    if issubclass(category, MbkfWarning):
+        return f"mbkf: warning: {_one_line(str(message))}\n"
+    return _PYTHONS_FORMAT(message, category, filename, lineno, line)
 
 
 def _one_line(text: str) -> str:

@@ -9,10 +9,10 @@ from typing import TypedDict
 from mbkf.io.capture import CAPTURES, FORCES
 from mbkf.io.readers import either
 
-CAPTURE_FILES = either(CAPTURES.suffixes)
-"""Suffixes of the captures that can be read, as help texts have them."""
+CAPTURE_FILES = either((*CAPTURES.suffixes_so_far, "that of an installed reader"))
+"""Suffixes of the captures that can be read, for help texts, which import no other package."""
 
-FORCE_FILES = either(FORCES.suffixes)
+FORCE_FILES = either((*FORCES.suffixes_so_far, "that of an installed reader"))
 """Suffixes of the files of ground reactions that can be read."""
 
 

@@ -40,10 +40,15 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 def add_motion_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that choose the motion, shared with ``mbkf demo``."""
-    names = motion_names()
-    usual = ", ".join(f"{name} {registered_motion(name).seconds:g}" for name in names)
-    parser.add_argument("--motion", choices=names, default=names[0], help=f"the person's motion ({names[0]})")
-    parser.add_argument("--seconds", metavar="S", type=float, help=f"duration ({usual})")
+    motions = [registered_motion(name) for name in motion_names(installed=False)]
+    names, usual = zip(*((one.name, f"{one.name} {one.seconds:g}") for one in motions), strict=True)
+    parser.add_argument(
+        "--motion",
+        metavar="NAME",
+        default=names[0],
+        help=f"the person's motion: {', '.join(names)}, or that of an installed package ({names[0]})",
+    )
+    parser.add_argument("--seconds", metavar="S", type=float, help=f"duration ({', '.join(usual)})")
     parser.add_argument(
         "--seed", metavar="N", type=int, default=0, help="another person, motion and noise (0)"
     )

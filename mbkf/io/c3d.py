@@ -7,12 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from mbkf.errors import FileFormatError, UnknownName
+from mbkf.errors import FileFormatError
 from mbkf.io.axes import (
     WORLD_AXES,
     axes_text,
     check_body_size,
-    length_unit,
     nearest_axis,
     rotation_to_world,
     up_axis,
@@ -21,41 +20,22 @@ from mbkf.io.c3d_analog import analog_channels, events, plate_readings, raw_plat
 from mbkf.io.c3d_decode import C3dContent, decode
 from mbkf.io.c3d_layout import check_layout
 from mbkf.io.c3d_parameters import C3dParameters
-from mbkf.io.c3d_plates import RawPlate, plate_axes
+from mbkf.io.c3d_plates import RawPlate
 from mbkf.io.c3d_points import read_points
-from mbkf.io.c3d_write import write_c3d
+from mbkf.io.capture_options import CaptureOptions
+from mbkf.io.marker_capture import StatedUnit
+from mbkf.io.plate_corners import plate_normal
 from mbkf.io.plausible import MASSES_KG
 from mbkf.io.records import AxesSource, Capture
-from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
-
-__all__ = ["read_c3d", "write_c3d"]
 
 
-def read_c3d(
-    path: str | Path,
-    *,
-    up: str | None = None,
-    unit: str | None = None,
-    cop_threshold_n: float = DEFAULT_COP_THRESHOLD_N,
-    tare: bool = True,
-    plates: bool = True,
-) -> Capture:
+def read_c3d(path: str | Path, options: CaptureOptions) -> Capture:
     """Read a C3D file.
 
     Positions, forces and moments come out in SI units and world axes (z up), forces as those of the plate on
-    the body. Derived points and analog channels stay in the file's own units and axes.
-
-    Args:
-        path: The file.
-        up: Axis of the file that points up ("x", "-y", "z" …); by default the normal of the force plates
-            decides, then POINT:Y_SCREEN, then z.
-        unit: Length unit of the file; by default POINT:UNITS, mm where that is empty.
-        cop_threshold_n: Vertical force in N below which no centre of pressure is given.
-        tare: Whether the offset a plate shows without load is removed.
-        plates: Whether force plates are read; False for a file whose plates are not usable.
-
-    Returns:
-        The capture; its times are the file's own (frame 1 at 0 s).
+    the body. Derived points and analog channels stay in the file's own units and axes. Times are the file's own
+    (frame 1 at 0 s). Without an axis in the options the normal of the force plates points up, else POINT:Y_SCREEN,
+    else z; without a unit POINT:UNITS holds, mm where that is empty.
 
     Raises:
         FileFormatError: The file is missing, no C3D file, cut short, or a plate is not usable.
@@ -63,37 +43,35 @@ def read_c3d(
         UnknownName: Unknown axis or unit.
     """
     path = Path(path)
-    layout = check_layout(path)
-    content = decode(path, layout)
+    content = decode(path, check_layout(path))
     parameters = content.parameters
     rate_hz = _rate(path, content)
     start_s = max(content.first_frame - 1, 0) / rate_hz
 
     notes = list(content.notes)
-    used_unit = _length_unit(path, parameters, unit, notes)
-    raw = raw_plates(path, content, used_unit, notes) if plates else []
-    used_up, source = (
-        (up_axis(up), AxesSource.UP_GIVEN) if up is not None else _up_axis(parameters, raw, notes)
-    )
-    markers, derived = read_points(content, used_up, used_unit, rate_hz, start_s, notes)
-    if unit is None:
-        notes += check_body_size(markers.positions_m, used_unit, str(path))
-    readings = [
-        plate_readings(plate, path, used_unit, used_up, start_s, cop_threshold_n, tare, notes)
-        for plate in raw
-    ]
+    stated = StatedUnit("POINT:UNITS", parameters.text("POINT", "UNITS"), "mm")
+    unit = stated.of(path, options, notes)
+    raw = raw_plates(path, content, unit, notes) if options.plates else []
+    if options.up is None:
+        up, source = _up_axis(parameters, raw, notes)
+    else:
+        up, source = up_axis(options.up), AxesSource.UP_GIVEN
+    markers, derived = read_points(content, up, unit, rate_hz, start_s, notes)
+    if options.unit is None:
+        notes += check_body_size(markers.positions_m, unit, str(path))
+    plates = tuple(plate_readings(plate, path, unit, up, start_s, options, notes) for plate in raw)
     return Capture(
         path=str(path),
         markers=markers,
-        plates=tuple(readings),
+        plates=plates,
         derived=derived,
         analog=analog_channels(content),
         events=events(content),
-        up_axis=used_up,
-        length_unit=used_unit,
+        up_axis=up,
+        length_unit=unit,
         notes=tuple(notes),
         subject_mass_kg=_mass_kg(parameters),
-        axes=axes_text(rotation_to_world(used_up)),
+        axes=axes_text(rotation_to_world(up)),
         axes_source=source,
         processing=parameters.single_numbers("PROCESSING"),
     )
@@ -111,24 +89,10 @@ def single_precision(value: float) -> float:
     return float(str(np.float32(value)))
 
 
-def _length_unit(path: Path, parameters: C3dParameters, given: str | None, notes: list[str]) -> str:
-    if given is not None:
-        return length_unit(given)
-    stated = parameters.text("POINT", "UNITS")
-    if not stated:
-        notes.append("POINT:UNITS is empty; lengths taken as mm, the default of C3D")
-        return "mm"
-    try:
-        return length_unit(stated)
-    except UnknownName as error:
-        reason = f"POINT:UNITS is '{stated}', no unit of length; give it with --unit (mm, cm or m)"
-        raise FileFormatError(path, reason) from error
-
-
 def _up_axis(parameters: C3dParameters, plates: list[RawPlate], notes: list[str]) -> tuple[str, AxesSource]:
     """The axis that points up, from the plates' surfaces, else from the screen axes, else z; and which it was."""
     screen = parameters.text("POINT", "Y_SCREEN").lower().removeprefix("+")
-    from_plates = {nearest_axis(-plate_axes(plate.corners)[:, 2]) for plate in plates}
+    from_plates = {nearest_axis(plate_normal(plate.corners.T)) for plate in plates}
     if len(from_plates) == 1:
         axis = from_plates.pop()
         if screen in WORLD_AXES and screen != axis:
@@ -138,7 +102,9 @@ def _up_axis(parameters: C3dParameters, plates: list[RawPlate], notes: list[str]
         notes.append(f"force plates face different axes ({', '.join(sorted(from_plates))})")
     if screen in WORLD_AXES:
         return screen, AxesSource.SCREEN
-    notes.append("neither plates nor POINT:Y_SCREEN state which axis points up; taken as z (--up changes it)")
+    notes.append(
+        "neither plates nor POINT:Y_SCREEN state the axis that points up; taken as z (--up changes it)"
+    )
     return "z", AxesSource.DEFAULT
 
 

@@ -12,8 +12,10 @@ from mbkf.io.axes import METRES_PER_UNIT, rotation_to_world
 from mbkf.io.c3d_decode import C3dContent
 from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.c3d_plates import CALIBRATION_OF_TYPE, RawPlate, check_geometry, wrench_at_surface
+from mbkf.io.capture_options import CaptureOptions
+from mbkf.io.plate_table import plate_with_corners
 from mbkf.io.records import AnalogChannel, CaptureEvent, PlateReadings
-from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare, require_finite
+from mbkf.io.wrench import require_finite
 
 _NAMED = 6
 _OFF_PLATE_M = 0.1
@@ -125,11 +127,10 @@ def plate_readings(
     unit: str,
     up: str,
     start_time_s: float,
-    threshold_n: float,
-    tare: bool,
+    options: CaptureOptions,
     notes: list[str],
 ) -> PlateReadings:
-    """One plate in SI units and world axes.
+    """Force on the body, moment about the centre of the surface and centre of pressure, SI units and world axes.
 
     Args:
         plate: The checked plate.
@@ -137,55 +138,34 @@ def plate_readings(
         unit: The file's length unit.
         up: Axis of the file that points up.
         start_time_s: Time of the first sample in s.
-        threshold_n: Vertical force in N below which no centre of pressure is given.
-        tare: Whether to remove the offset of the unloaded plate.
+        options: Removal of the offset, and threshold of the centre of pressure.
         notes: Receives offsets removed and doubts about the plate.
-
-    Returns:
-        Force on the body, moment about the centre of the surface, centre of pressure.
 
     Raises:
         InvalidInput: A force or moment is not a number.
     """
     rotation = rotation_to_world(up)
     corners = (rotation @ plate.corners * METRES_PER_UNIT[unit]).T
-    centre = corners.mean(axis=0)
-    with np.errstate(all="ignore"):  # what is no number is refused below
+    with np.errstate(all="ignore"):  # numbers that overflow are refused below
         wrench = wrench_at_surface(plate, unit, notes)
         wrench = np.hstack([wrench[:, :3] @ rotation.T, wrench[:, 3:] @ rotation.T])
     name = f"force plate {plate.number}"
     require_finite(wrench[:, :3], wrench[:, 3:], plate.rate_hz, start_time_s, f"{path}, {name}")
-    offset = np.zeros(6)
-    if tare:
-        found = find_tare(wrench, plate.rate_hz)
-        wrench, offset = remove_tare(wrench, found), found.offset
-        if not found.found:
-            notes.append(f"{name} is loaded all the time; no offset removed")
-        elif abs(offset[2]) >= 0.5:
-            notes.append(f"{name}: offset of {offset[2]:+.1f} N vertical force removed")
-    normal = np.cross(corners[0] - corners[2], corners[1] - corners[3])
-    normal *= np.sign(normal[2]) / np.linalg.norm(normal) if normal[2] else 1.0 / np.linalg.norm(normal)
-    pressure = centre_of_pressure(wrench[:, :3], wrench[:, 3:], centre, normal, threshold_n)
-    notes += _doubts(name, wrench, pressure, corners, threshold_n)
-    return PlateReadings(
-        name=str(plate.number),
-        rate_hz=plate.rate_hz,
-        start_time_s=start_time_s,
-        origin_m=centre,
-        force_n=wrench[:, :3],
-        moment_nm=wrench[:, 3:],
-        centre_of_pressure_m=pressure,
-        threshold_n=threshold_n,
-        corners_m=corners,
-        offset=offset,
-    )
+    record = str(plate.number), plate.rate_hz, start_time_s
+    found, tare = plate_with_corners(*record, corners, wrench, options)
+    if options.tare and not tare.found:
+        notes.append(f"{name} is loaded all the time; no offset removed")
+    elif abs(tare.offset[2]) >= 0.5:
+        notes.append(f"{name}: offset of {tare.offset[2]:+.1f} N vertical force removed")
+    notes += _doubts(name, found, corners)
+    return found
 
 
-def _doubts(name: str, wrench: Array, pressure: Array, corners: Array, threshold_n: float) -> list[str]:
+def _doubts(name: str, plate: PlateReadings, corners: Array) -> list[str]:
     """Remarks on readings that a person cannot have caused."""
     doubts = []
-    vertical = wrench[:, 2]
-    if vertical.min() < -5.0 * threshold_n and -vertical.min() > vertical.max():
+    vertical, pressure = plate.force_n[:, 2], plate.centre_of_pressure_m
+    if vertical.min() < -5.0 * plate.threshold_n and -vertical.min() > vertical.max():
         doubts.append(f"{name} pulls the body down by up to {-vertical.min():.0f} N; check signs and CORNERS")
     seen = pressure[~np.isnan(pressure).any(axis=1)]
     if len(seen):

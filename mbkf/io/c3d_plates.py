@@ -1,7 +1,7 @@
 """Force plates of a C3D file: from analog channels to force and moment about the centre of the surface.
 
-A plate's own axes follow from its corners, which lie in its quadrants (+x+y), (−x+y), (−x−y), (+x−y); its z
-points down, and the channels hold the force of the plate on the body, so that a standing person reads −Fz.
+A plate's own axes follow from its corners (:mod:`mbkf.io.plate_corners`); its z points down, and the channels hold the
+force of the plate on the body, so that a standing person reads −Fz.
 ORIGIN is the vector from the point the channels refer to, O, to the centre of the surface, S, in plate axes
 (its z is negative; for other signs see :mod:`mbkf.io.c3d_origin`). Moments move by M_S = M_O + F × ORIGIN. Layouts:
 
@@ -36,6 +36,7 @@ from mbkf.io.c3d_origin import (
     turned_by_depth,
     turned_by_pressure,
 )
+from mbkf.io.plate_corners import has_area, plate_axes, plate_sides
 
 CHANNELS_OF_TYPE = {1: 6, 2: 6, 3: 8, 4: 6, 5: 8, 6: 12, 7: 8}
 """Number of analog channels of each plate type that can be read."""
@@ -47,10 +48,9 @@ SENSORS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
 """Places of the four sensors of types 3, 6 and 7, over ORIGIN's (a, b)."""
 
 _FORCE_UNITS = {"n": 1.0, "newton": 1.0, "newtons": 1.0, "kn": 1000.0, "lbf": 4.4482216152605}
-_LEAST_SIDE_M = 0.02
 
 STILL_M, FAR_M = 0.001, 10.0
-"""No one stands this still, nor so far from a plate's middle."""
+"""A person's pressure moves by more than the first, and stays nearer to a plate's middle than the second."""
 
 
 @dataclass(frozen=True)
@@ -78,22 +78,6 @@ class RawPlate:
     calibration: Array | None = None
 
 
-def plate_axes(corners: Array) -> Array:
-    """Axes of a plate from its corners.
-
-    Args:
-        corners: (3, 4) corners in their order, any unit.
-
-    Returns:
-        (3, 3) rotation whose columns are the plate's x, y and (downward) z in the axes of the corners.
-    """
-    x, y = _sides(corners)
-    x = x / np.linalg.norm(x)
-    z = np.cross(x, y)
-    z = z / np.linalg.norm(z)
-    return np.column_stack([x, np.cross(z, x), z])
-
-
 def check_geometry(plate: RawPlate, path: str, unit: str) -> None:
     """Refuse plates whose position or calibration the file does not hold.
 
@@ -114,9 +98,9 @@ def check_geometry(plate: RawPlate, path: str, unit: str) -> None:
     if plate.readings.shape[1] != needed:
         found = plate.readings.shape[1]
         raise FileFormatError(path, f"{name} of type {plate.kind} needs {needed} channels, it has {found}")
-    sides = np.diff(plate.corners[:, [0, 1, 2, 3, 0]], axis=1) * METRES_PER_UNIT[unit]
-    area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1])) if np.isfinite(sides).all() else 0.0
-    if area < _LEAST_SIDE_M**2:
+    with np.errstate(over="ignore"):
+        usable = has_area(plate.corners.T * METRES_PER_UNIT[unit])
+    if not usable:
         raise FileFormatError(
             path, f"{name} has no usable CORNERS, so it is not calibrated; calibrate it or use --forces"
         )
@@ -129,21 +113,17 @@ def check_geometry(plate: RawPlate, path: str, unit: str) -> None:
         )
 
 
-def wrench_at_surface(plate: RawPlate, unit: str, notes: list[str] | None = None) -> Array:
-    """Force and moment of a plate on the body, about the centre of its surface.
+def wrench_at_surface(plate: RawPlate, unit: str, notes: list[str]) -> Array:
+    """(S, 6) force in N and moment in N m of a plate on the body, about the centre of its surface, in the file's axes.
 
     Args:
         plate: The plate, checked.
         unit: The file's length unit, in which moments are N times that unit unless they state their own.
-        notes: Receives that moments are in another unit, which is known by where they would press, and that ORIGIN has
-            another sign.
-
-    Returns:
-        (S, 6) force in N and moment in N m in the file's axes (not the plate's).
+        notes: Receives remarks on moments in another unit, which is known by where they would press, and on an ORIGIN
+            of another sign.
     """
     metre, name = METRES_PER_UNIT[unit], f"force plate {plate.number}"
-    told: list[str] = notes if notes is not None else []
-    origin = turned_by_depth(plate.origin * metre, name, told)
+    origin = turned_by_depth(plate.origin * metre, name, notes)
     values, units = plate.readings, plate.units
     if plate.kind in CALIBRATION_OF_TYPE:
         assert plate.calibration is not None  # check_geometry has seen to it
@@ -161,17 +141,17 @@ def wrench_at_surface(plate: RawPlate, unit: str, notes: list[str] | None = None
     else:
         force = values[:, :3] * _forces(units[:3])
         moment = values[:, 3:] * _moments(units[3:], metre)
-        half_sides_m = 0.25 * metre * np.linalg.norm(_sides(plate.corners), axis=1)
-        origin = turned_by_pressure(origin, force, moment, half_sides_m, name, told)
+        half_sides_m = 0.25 * metre * np.linalg.norm(plate_sides(plate.corners.T), axis=1)
+        origin = turned_by_pressure(origin, force, moment, half_sides_m, name, notes)
         shift = np.cross(force, origin)
         factor = _unit_factor(force, moment, shift, half_sides_m)
         if factor != 1.0:
-            told.append(
+            notes.append(
                 f"{name}: moments are taken {factor:g} times as large as their unit says, since the centre of "
                 "pressure is then on the plate"
             )
         moment = factor * moment + shift
-    axes = plate_axes(plate.corners)
+    axes = plate_axes(plate.corners.T)
     return np.hstack([force @ axes.T, moment @ axes.T])
 
 
@@ -184,7 +164,7 @@ def _unit_factor(force: Array, moment: Array, shift: Array, half_sides_m: Array)
     Args:
         force: (S, 3) N, plate axes.
         moment: (S, 3) N m as their unit says, about the transducers.
-        shift: (S, 3) what moving them to the surface adds, N m.
+        shift: (S, 3) moment that moving them to the surface adds, N m.
         half_sides_m: (2,) half the plate's sides.
     """
     loaded = np.abs(force[:, 2]) > LOADED_N
@@ -199,12 +179,6 @@ def _unit_factor(force: Array, moment: Array, shift: Array, half_sides_m: Array)
     if reach_m < STILL_M and on_plate(1e3) > MOSTLY:
         return 1e3
     return 1e-3 if reach_m > FAR_M and on_plate(1.0) < SELDOM and on_plate(1e-3) > MOSTLY else 1.0
-
-
-def _sides(corners: Array) -> tuple[Array, Array]:
-    """Twice the plate's sides along its x and y, from corners (3, 4) in their order."""
-    x = corners[:, 0] + corners[:, 3] - corners[:, 1] - corners[:, 2]
-    return x, corners[:, 0] + corners[:, 1] - corners[:, 2] - corners[:, 3]
 
 
 def _of_each_sensor(values: Array) -> Array:
@@ -226,7 +200,7 @@ def _of_sensors(forces: Array, places_m: Array) -> tuple[Array, Array]:
 
 
 def _forces(units: tuple[str, ...]) -> Array:
-    """Newtons per unit of force; units that are none (empty, V) are taken as N, by the format's rule."""
+    """Newtons per unit of force; an empty or unknown unit (V) counts as N, by the format's rule."""
     return np.array([_FORCE_UNITS.get(unit.strip().lower(), 1.0) for unit in units])
 
 
@@ -236,7 +210,7 @@ def _lengths(units: tuple[str, ...], metre: float) -> Array:
 
 
 def _moments(units: tuple[str, ...], metre: float) -> Array:
-    """N m per unit of moment ("Nmm", "N.m", "N*mm" …); units that are none are N times the file's length."""
+    """N m per unit of moment ("Nmm", "N.m", "N*mm" …); an empty or unknown unit is N times the file's length."""
     factors = []
     for unit in units:
         word = "".join(letter for letter in unit.lower() if letter.isalpha()).removeprefix("newton")

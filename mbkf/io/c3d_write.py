@@ -13,8 +13,8 @@ from mbkf.errors import InvalidInput
 from mbkf.io.atomic import replacing
 from mbkf.io.axes import METRES_PER_UNIT, finite, length_unit, rotation_to_world
 from mbkf.io.c3d_encode import MOST_ENTRIES, Value, encoded
-from mbkf.io.c3d_plates import plate_axes
 from mbkf.io.derived import COMPUTED_PLACES, GROUP_KINDS, TYPE_WORDS, UNIT_PARAMETERS
+from mbkf.io.plate_corners import plate_axes
 from mbkf.io.records import Capture, DerivedPoint, PlateReadings
 
 Parameters: TypeAlias = dict[str, Value]
@@ -181,7 +181,7 @@ def _corners(plate: PlateReadings) -> Array:
 
 def _plate_channels(plate: PlateReadings, corners: Array) -> Array:
     """(S, 6) force in N and moment in N mm about the middle of the corners, in the plate's own axes."""
-    axes = plate_axes(corners.T)
+    axes = plate_axes(corners)
     moment = plate.moment_nm + np.cross(plate.origin_m - corners.mean(axis=0), plate.force_n)
     return np.hstack([plate.force_n @ axes, moment @ axes * _MM])
 

@@ -1,6 +1,6 @@
 """One door to all capture files: chooses the format by the suffix and joins ground reactions.
 
-A reader of one's own joins the built-in ones by a decorator::
+A reader of one's own joins the built-in ones by a decorator (docs/own_reader.md)::
 
     @register_reader(".xyz", title="XYZ text")
     def read_xyz(path: Path, options: CaptureOptions) -> Capture: ...
@@ -9,42 +9,17 @@ A reader of one's own joins the built-in ones by a decorator::
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.axes import axes_matrix, axes_text, nearest_axis, rotation_to_world, up_axis
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.plausible import plausible
-from mbkf.io.readers import FileFormat, FormatRegistry, either
+from mbkf.io.readers import FileFormat, FormatRegistry, either, lazily
 from mbkf.io.records import AxesSource, Capture, MarkerTrajectories, PlateReadings
 from mbkf.io.turning import turned
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N, offset_remarks
-
-
-@dataclass(frozen=True)
-class CaptureOptions:
-    """How a capture, or a file of ground reactions, is read.
-
-    Attributes:
-        up: Axis of the file that points up; None for the one that the file states, or the format's default.
-        unit: Length unit; None for the one that the file states.
-        cop_threshold_n: Vertical force in N below which no centre of pressure is given.
-        tare: Whether the offset of unloaded plates is removed.
-        plates: Whether the file's own force plates are read.
-        trial_end_s: Time that ground reactions have to reach to last as long as the trial, None where not known.
-        shared_up: Axis with which markers were read that share their axes with the ground reactions; None otherwise.
-        notes: Receives the remarks of a reader of ground reactions.
-    """
-
-    up: str | None = None
-    unit: str | None = None
-    cop_threshold_n: float = DEFAULT_COP_THRESHOLD_N
-    tare: bool = True
-    plates: bool = True
-    trial_end_s: float | None = None
-    shared_up: str | None = None
-    notes: list[str] = field(default_factory=list, compare=False)
-
 
 Read = Callable[[Path, CaptureOptions], Capture]
 Write = Callable[[Capture, Path], None]
@@ -58,14 +33,16 @@ class CaptureFormat(FileFormat):
     Attributes:
         read: Reads a file.
         write: Writes a capture; None where that is not possible.
-        brings_plates: Whether such a file may hold force plates of its own.
-        forces_share_up: Whether ``up`` is also the axis of a separate file of ground reactions.
+        brings_plates: Such a file may hold force plates of its own.
+        forces_share_up: ``up`` is also the axis of a separate file of ground reactions.
+        in_folders: Such files are captures wherever they lie, so that a study's folders are searched for them.
     """
 
     read: Read
     write: Write | None = None
     brings_plates: bool = False
     forces_share_up: bool = False
+    in_folders: bool = True
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,18 +59,22 @@ FORCES: FormatRegistry[ForceFormat] = FormatRegistry("ground reactions")
 def register_reader(
     *suffixes: str,
     title: str,
+    recognises: Callable[[Path], bool] | None = None,
     write: Write | None = None,
     brings_plates: bool = False,
     forces_share_up: bool = False,
+    in_folders: bool = True,
 ) -> Callable[[Read], Read]:
     """Decorator that registers the reader of a format of captures.
 
     Args:
         suffixes: Lower-case endings of its files, each with its dot.
         title: Name of the format, for people.
+        recognises: True for a file of this kind, by its content; needed where another format has the suffix.
         write: Writes a capture to such a file.
-        brings_plates: Whether such a file may hold force plates of its own.
-        forces_share_up: Whether ``up`` is also the axis of a separate file of ground reactions.
+        brings_plates: Such a file may hold force plates of its own.
+        forces_share_up: ``up`` is also the axis of a separate file of ground reactions.
+        in_folders: A study's folders are searched for such files.
 
     Raises:
         InvalidInput: A suffix is not one, or is taken.
@@ -104,10 +85,12 @@ def register_reader(
             CaptureFormat(
                 title=title,
                 suffixes=suffixes,
+                recognises=recognises,
                 read=read,
                 write=write,
                 brings_plates=brings_plates,
                 forces_share_up=forces_share_up,
+                in_folders=in_folders,
             )
         )
         return read
@@ -149,7 +132,7 @@ def read_capture(
         up: Axis of the file that points up; by default the one that the file states or its format has.
         unit: Length unit of the markers; by default the one that the file states.
         cop_threshold_n: Vertical force in N below which no centre of pressure is given.
-        tare: Whether the offset an unloaded plate shows is removed.
+        tare: Remove the offset that an unloaded plate shows.
         axes: Axes of the file that point forward, left and up, as ``"x,-z,y"``, instead of ``up``; a left-handed
             choice mirrors the file. They hold, whatever the body of the person looks like in them.
 
@@ -158,8 +141,8 @@ def read_capture(
 
     Raises:
         FileFormatError: A file is missing, of an unknown kind, or broken.
-        InvalidInput: A force is not a number or impossible, the length unit or a rate cannot be right, ``axes`` are
-            none, or contradict ``up``.
+        InvalidInput: A force is not a number or impossible, the length unit or a rate cannot be right, ``axes`` name
+            no axes, or contradict ``up``.
         UnknownName: Unknown axis, unit, or naming of force columns.
     """
     path = Path(path)
@@ -172,7 +155,9 @@ def read_capture(
                 f"up axis '{up}' contradicts axes '{axes}', in which {vertical} points up; give one"
             )
         up = vertical
-    options = CaptureOptions(up, unit, cop_threshold_n, tare, plates=forces is None)
+    options = CaptureOptions(
+        up=up, unit=unit, cop_threshold_n=cop_threshold_n, tare=tare, plates=forces is None
+    )
     capture = _declared(kind.read(path, options), up)
     if forces is not None:
         capture = _with_forces(capture, Path(forces), kind, options)
@@ -183,7 +168,7 @@ def read_capture(
 
 
 def _declared(capture: Capture, up: str | None) -> Capture:
-    """The capture of a reader of one's own, which need not tell axes, with those that its ``up_axis`` means."""
+    """The capture of a reader that leaves ``axes`` alone, with those that its ``up_axis`` means."""
     if capture.axes_source is not AxesSource.MADE:
         return capture
     source = AxesSource.DEFAULT if up is None else AxesSource.UP_GIVEN
@@ -249,24 +234,9 @@ def writable_suffixes() -> tuple[str, ...]:
     return tuple(suffix for one in CAPTURES if one.write is not None for suffix in one.suffixes)
 
 
-def _write_c3d(capture: Capture, path: Path) -> None:
-    from mbkf.io.c3d_write import write_c3d
-
-    write_c3d(capture, path)
-
-
-@register_reader(".c3d", title="C3D", write=_write_c3d, brings_plates=True)
-def _read_c3d(path: Path, options: CaptureOptions) -> Capture:
-    from mbkf.io.c3d import read_c3d
-
-    return read_c3d(
-        path,
-        up=options.up,
-        unit=options.unit,
-        cop_threshold_n=options.cop_threshold_n,
-        tare=options.tare,
-        plates=options.plates,
-    )
+def folder_suffixes() -> tuple[str, ...]:
+    """Suffixes of captures that a study's folders are searched for, the more telling ones first."""
+    return tuple(suffix for one in CAPTURES if one.in_folders for suffix in one.suffixes)
 
 
 def _write_trc(capture: Capture, path: Path) -> None:
@@ -275,83 +245,19 @@ def _write_trc(capture: Capture, path: Path) -> None:
     write_trc(capture.markers, path)
 
 
-@register_reader(".trc", title="TRC", write=_write_trc, forces_share_up=True)
-def _read_trc(path: Path, options: CaptureOptions) -> Capture:
-    from mbkf.io.trc import read_trc
-
-    return read_trc(path, up=options.up, unit=options.unit)
-
-
-@register_reader(".csv", title="CSV of Motive", forces_share_up=True)
-def _read_motive(path: Path, options: CaptureOptions) -> Capture:
-    from mbkf.io.motive import read_motive
-
-    return read_motive(path, up=options.up, unit=options.unit)
-
-
-@register_reader(".tsv", title="TSV of Qualisys", brings_plates=True, forces_share_up=True)
-def _read_qualisys(path: Path, options: CaptureOptions) -> Capture:
-    from mbkf.io.qualisys import read_qualisys
-
-    return read_qualisys(
-        path,
-        up=options.up,
-        unit=options.unit,
-        cop_threshold_n=options.cop_threshold_n,
-        tare=options.tare,
-        plates=options.plates,
-    )
-
-
-@register_force_reader(".mot", ".sto", title="OpenSim storage")
-def _read_forces_mot(path: Path, options: CaptureOptions) -> tuple[PlateReadings, ...]:
-    from mbkf.io.forces import read_forces_mot
-
-    return read_forces_mot(
-        path,
-        up=options.up or options.shared_up,
-        cop_threshold_n=options.cop_threshold_n,
-        tare=options.tare,
-        until_s=options.trial_end_s,
-        notes=options.notes,
-    )
-
-
-@register_force_reader(".forces", title="Cortex forces")
-def _read_forces_cortex(path: Path, options: CaptureOptions) -> tuple[PlateReadings, ...]:
-    from mbkf.io.cortex import read_forces_cortex
-
-    return read_forces_cortex(
-        path,
-        up=options.up or options.shared_up,
-        cop_threshold_n=options.cop_threshold_n,
-        tare=options.tare,
-        notes=options.notes,
-    )
-
-
-@register_force_reader(".tsv", title="TSV of a Qualisys plate")
-def _read_forces_qualisys(path: Path, options: CaptureOptions) -> tuple[PlateReadings, ...]:
-    from mbkf.io.qualisys import read_forces_qualisys
-
-    return read_forces_qualisys(
-        path,
-        up=options.up,
-        cop_threshold_n=options.cop_threshold_n,
-        tare=options.tare,
-        notes=options.notes,
-    )
-
-
-@register_force_reader(".csv", ".txt", title="table with named columns")
-def _read_forces_csv(path: Path, options: CaptureOptions) -> tuple[PlateReadings, ...]:
-    from mbkf.io.force_csv import read_forces_csv
-
-    return read_forces_csv(
-        path,
-        up=options.up,
-        shared_up=options.shared_up,
-        cop_threshold_n=options.cop_threshold_n,
-        tare=options.tare,
-        notes=options.notes,
-    )
+register_reader(".c3d", title="C3D", write=lazily("c3d_write", "write_c3d"), brings_plates=True)(
+    lazily("c3d", "read_c3d")
+)
+register_reader(".trc", title="TRC", write=_write_trc, forces_share_up=True)(lazily("trc", "read_trc"))
+register_reader(".csv", title="CSV of Motive", forces_share_up=True, in_folders=False)(
+    lazily("motive", "read_motive")
+)
+register_reader(".tsv", title="TSV of Qualisys", brings_plates=True, forces_share_up=True, in_folders=False)(
+    lazily("qualisys", "read_qualisys")
+)
+register_force_reader(".mot", ".sto", title="OpenSim storage")(lazily("forces", "read_forces_mot"))
+register_force_reader(".forces", title="Cortex forces")(lazily("cortex", "read_forces_cortex"))
+register_force_reader(".tsv", title="TSV of a Qualisys plate")(lazily("qualisys", "read_forces_qualisys"))
+register_force_reader(".csv", ".txt", title="table with named columns")(
+    lazily("force_csv", "read_forces_csv")
+)

@@ -16,40 +16,23 @@ from pathlib import Path
 import numpy as np
 
 from mbkf.errors import FileFormatError
-from mbkf.io.force_table import ForceTable, plates_of_table, up_of_table
+from mbkf.io.capture_options import CaptureOptions
+from mbkf.io.force_table import ForceTable, plates_of_table
 from mbkf.io.records import PlateReadings
 from mbkf.io.text import TextFile, check_order, compare_count, number, numbers, read_text
-from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
 
 _MOST_HEADER_LINES = 20
 
 
-def read_forces_cortex(
-    path: str | Path,
-    *,
-    up: str | None = None,
-    cop_threshold_n: float = DEFAULT_COP_THRESHOLD_N,
-    tare: bool = False,
-    notes: list[str] | None = None,
-) -> tuple[PlateReadings, ...]:
-    """Read ground reactions from a ``.forces`` file.
+def read_forces_cortex(path: str | Path, options: CaptureOptions) -> tuple[PlateReadings, ...]:
+    """Ground reactions of a ``.forces`` file, one set per plate; sample 1 is at 0 s.
 
-    Args:
-        path: The file.
-        up: Axis of the file that points up; by default the one that carries the weight; y, as in
-            the TRC files beside it, where none does.
-        cop_threshold_n: Vertical force in N below which no centre of pressure is given.
-        tare: Whether an offset of an unloaded plate is removed, if it is 2 N or more.
-        notes: Receives what was completed, and a wrong count of samples.
-
-    Returns:
-        One set of readings per plate; sample 1 is at 0 s.
+    Without an axis in the options, the one that carries the weight points up, else y, as in the TRC files beside it.
 
     Raises:
         FileFormatError: The file is missing, not of that kind, cut short, or columns of a plate are missing.
         InvalidInput: A force, point or moment is not a number.
     """
-    remarks = notes if notes is not None else []
     file = read_text(Path(path), "a .forces file")
     header, start = _header(file)
     names = file.lines[start].lstrip("#").split()
@@ -64,7 +47,7 @@ def read_forces_cortex(
         rows.append(numbers(cells, file.path, line))
     if not rows:
         raise FileFormatError(file.path, "cut short: no samples after the names", start + 1)
-    remarks += compare_count(file, _count(header, "numberofsamples"), len(rows), "samples")
+    options.notes.extend(compare_count(file, _count(header, "numberofsamples"), len(rows), "samples"))
     rate_hz = number(header.get("samplerate", ""))
     if rate_hz is None or not rate_hz > 0.0:
         raise FileFormatError(file.path, "the header gives no SampleRate; write SampleRate=… into it")
@@ -73,11 +56,10 @@ def read_forces_cortex(
     table = ForceTable(
         str(path), tuple(names[1:]), values[:, 1:], rate_hz, (values[0, 0] - 1.0) / rate_hz, None, None, False
     )
-    axis = up_of_table(table, up, "y", remarks)
-    plates = plates_of_table(table, up=axis, threshold_n=cop_threshold_n, tare=tare, notes=remarks)
+    plates = plates_of_table(table, options)
     promised = _count(header, "numberofforceplates")
     if promised is not None and promised != len(plates):
-        remarks.append(f"the header counts {promised} force plates, {len(plates)} have columns")
+        options.notes.append(f"the header counts {promised} force plates, {len(plates)} have columns")
     return plates
 
 

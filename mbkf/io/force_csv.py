@@ -22,12 +22,13 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
 from mbkf.io.axes import METRES_PER_UNIT, UNIT_SPELLINGS
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.force_names import ForceSet, force_column, force_sets
-from mbkf.io.force_table import ForceTable, plates_of_table, up_of_table
+from mbkf.io.force_table import ForceTable, plates_of_table
+from mbkf.io.numbered_files import numbered_files
 from mbkf.io.plate_table import PlateTable, check_corners, faced_axis, plates_with_corners
 from mbkf.io.records import PlateReadings
 from mbkf.io.text import TextFile, check_order, csv_rows, even_rate, number, numbers, read_text
-from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
 
 _MOST_HEADER_LINES = 60
 _KINDS_IN_NAME = re.compile(r"(?:[A-Za-z]+\d+){2,}")
@@ -53,41 +54,22 @@ class _Titled:
     start: int
 
 
-def read_forces_csv(
-    path: str | Path,
-    *,
-    up: str | None = None,
-    shared_up: str | None = None,
-    cop_threshold_n: float = DEFAULT_COP_THRESHOLD_N,
-    tare: bool = False,
-    notes: list[str] | None = None,
-) -> tuple[PlateReadings, ...]:
-    """Read ground reactions from a table with named columns.
+def read_forces_csv(path: str | Path, options: CaptureOptions) -> tuple[PlateReadings, ...]:
+    """Ground reactions of a table with named columns, one set per plate or foot.
 
-    Args:
-        path: The file; of files that hold one numbered plate each, those of the others beside it are read too.
-        up: Axis of the file that points up; by default the one that plates with corners face, else that of
-            ``shared_up``, else the one that carries the weight, y where none does.
-        shared_up: Axis with which markers were read that share their axes with the table.
-        cop_threshold_n: Vertical force in N below which no centre of pressure is given.
-        tare: Whether an offset of an unloaded plate is removed.
-        notes: Receives what was completed, and which files were read.
-
-    Returns:
-        One set of readings per plate or foot.
+    Of files that hold one numbered plate each, those of the others beside it are read too. Without an axis in the
+    options, the one that plates with corners face points up, else the one that carries the weight, else y.
 
     Raises:
         FileFormatError: A file is missing or broken, or states no names, times, points of application or corners.
         InvalidInput: A force, point or moment is not a number.
         UnknownName: No column follows a known naming.
     """
-    remarks = notes if notes is not None else []
-    files = _beside(Path(path))
-    if len(files) > 1:
-        remarks.append(f"plates of one trial were read together: {', '.join(one.name for one in files)}")
+    path = Path(path)
+    numbered = _NUMBERED.fullmatch(path.stem)
     plates: list[PlateReadings] = []
     cornered: list[PlateTable] = []
-    for one in files:
+    for one in numbered_files(path, _NUMBERED, options.notes) if numbered else (path,):
         file = read_text(one, "a table of ground reactions")
         titled = _titled(file)
         table = _table(file, titled)
@@ -97,30 +79,13 @@ def read_forces_csv(
         if corners is not None and len(sets) == 1 and all(index is None for index in sets[0].point):
             cornered.append(_plate(table, sets[0], corners, match["plate"] if match else sets[0].name))
             continue
-        axis = up_of_table(table, up or shared_up, "y", remarks)
-        found = plates_of_table(table, up=axis, threshold_n=cop_threshold_n, tare=tare, notes=remarks)
+        found = plates_of_table(table, options)
         if match and len(found) == 1:
             found = (replace(found[0], name=match["plate"]),)
         plates += found
     if cornered:
-        axis = up or faced_axis(cornered[0])
-        plates += plates_with_corners(
-            cornered, up=axis, threshold_n=cop_threshold_n, tare=tare, notes=remarks
-        )
+        plates += plates_with_corners(cornered, options.up or faced_axis(cornered[0]), options)
     return tuple(plates)
-
-
-def _beside(path: Path) -> tuple[Path, ...]:
-    """Files of the plates of one trial, in the order of their numbers; the file alone where it is no such file."""
-    match = _NUMBERED.fullmatch(path.stem)
-    if match is None or not path.parent.is_dir():
-        return (path,)
-    found = {}
-    for other in path.parent.iterdir():
-        plate = _NUMBERED.fullmatch(other.stem)
-        if plate and plate["trial"] == match["trial"] and other.suffix.lower() == path.suffix.lower():
-            found[int(plate["plate"])] = other
-    return tuple(found[key] for key in sorted(found)) or (path,)
 
 
 def _cells(file: TextFile, index: int) -> list[str]:
@@ -151,7 +116,7 @@ def _titled(file: TextFile) -> _Titled:
 
 
 def _titles_of_name(stem: str) -> list[str]:
-    """Titles of a table without any, from a file name such as ``walk_F1Cop1F2Cop2``; empty where it tells nothing."""
+    """Titles of a table without any, from a file name such as ``walk_F1Cop1F2Cop2``; else empty."""
     last = stem.rpartition("_")[2]
     if not _KINDS_IN_NAME.fullmatch(last):
         return []

@@ -1,7 +1,7 @@
 """Ground reactions of a table of named columns: units, moments and axes completed where the numbers decide them.
 
-A table states, per set, the force and its point of application. What it does not state follows from mechanics or is
-told in a remark:
+A table states, per set, the force and its point of application. Other entries follow from mechanics, or a remark names
+the assumption:
 
 - **Up**: the mean force of a person is weight, so it points along the vertical.
 - **Sign**: a plate pushes. Forces that pull down, in a file that does not state whose they are, are those on the
@@ -14,15 +14,17 @@ told in a remark:
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
-from mbkf.io.axes import finite, rotation_to_world, up_axis
+from mbkf.io.axes import finite, nearest_axis, rotation_to_world, up_axis
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.force_names import ForceSet, force_sets
 from mbkf.io.records import PlateReadings
+from mbkf.io.turning import rotated
 from mbkf.io.wrench import LARGEST, centre_of_pressure, find_tare, remove_tare, require_finite
 
 _LEAST_OFFSET_N = 2.0
@@ -48,8 +50,8 @@ class ForceTable:
         start_time_s: Time of the first sample in s.
         metres: Metres per unit of the points; None where the file does not state the unit.
         newton_metres: N m per unit of the moments; None where the file does not state it.
-        at_point: Whether moments are stated to act at the point of application, as OpenSim has them.
-        on_body: Whether forces are stated to be those on the body; else they may be those on the plate.
+        at_point: Moments act at the point of application, as OpenSim has them.
+        on_body: Forces are those on the body; else they may be those on the plate.
     """
 
     path: str
@@ -73,31 +75,25 @@ class _Columns:
     moment: Array
 
 
-def plates_of_table(
-    table: ForceTable, *, up: str, threshold_n: float, tare: bool, notes: list[str]
-) -> tuple[PlateReadings, ...]:
+def plates_of_table(table: ForceTable, options: CaptureOptions) -> tuple[PlateReadings, ...]:
     """Ground reactions of a table, in SI units and world axes.
 
     With p the point of application, F the force and T the torque there, the moment about the set's origin o is
     T + (p − o) × F. The origin is the mean point of application while loaded, or the one that the moments have.
-    Where weight shows that another axis is vertical, all this is done with that one; the vectors keep to ``up``, so
-    that they stay in the axes of markers that were read with it.
-
-    Args:
-        table: The table.
-        up: Axis of the file that is taken as up.
-        threshold_n: Vertical force in N below which no centre of pressure is given.
-        tare: Whether an offset of the unloaded set is removed, if it is 2 N or more.
-        notes: Receives what was completed.
+    Where weight shows that another axis is vertical, all this is done with that one; the vectors keep to the axis that
+    was asked for, so that they stay in the axes of markers that were read with it. An offset of the unloaded set is
+    removed where it is 2 N or more.
 
     Raises:
-        FileFormatError: Columns of a set, or where its force acts, are missing.
+        FileFormatError: Columns of a set, or its point of application, are missing.
         InvalidInput: A force, point or torque is not a number.
         UnknownName: No column follows a known naming.
     """
-    sets, up = force_sets(table.names, table.path), up_axis(up)
-    stands = _standing(table, sets, up)
-    columns = [_columns(table, one, stands, notes) for one in sets]
+    notes, threshold_n = options.notes, options.cop_threshold_n
+    sets = force_sets(table.names, table.path)
+    up = up_axis(options.up or options.shared_up or _weight_axis(table, sets, notes))
+    standing = _standing(table, sets, up)
+    columns = [_columns(table, one, standing, notes) for one in sets]
     sign = 1.0 if table.on_body else reaction_sign([one.force for one in columns], notes)
     metres = _metres(table, columns, threshold_n, notes)
     readings = []
@@ -107,7 +103,7 @@ def plates_of_table(
         point[~loaded & ~finite(point)] = 0.0  # no force, so no point of application
         where = f"{table.path}, set '{one.name}'"
         require_finite(np.hstack([force, point]), moment, table.rate_hz, table.start_time_s, where)
-        factor, origin = _moment_reference(table, force[loaded], point[loaded], moment[loaded], where)
+        factor, origin = _moment_reference(table, force[loaded], point[loaded], moment[loaded], one.name)
         about = factor * moment
         if origin is None:
             origin = point[loaded].mean(axis=0) if loaded.any() else np.zeros(3)
@@ -118,34 +114,22 @@ def plates_of_table(
         elif not table.at_point:
             place = ", ".join(f"{value:.3f}" for value in origin)
             notes.append(f"set '{one.name}': moments refer to ({place}) m, as its centres of pressure show")
-        readings.append(
-            _readings(table, one.name, np.hstack([force, about]), point, origin, threshold_n, tare)
-        )
-    return into_axes(readings, stands, up, notes)
+        readings.append(_readings(table, one.name, np.hstack([force, about]), point, origin, options))
+    return into_axes(readings, standing, up, notes)
 
 
 def vertical_axis(forces: Sequence[Array]) -> str | None:
-    """The axis along which the forces point on the whole, "y" or "-z" for instance; None where no axis clearly does.
-
-    Args:
-        forces: (S, 3) forces in N of each set, in the axes of their file.
-    """
+    """The axis, "y" or "-z" for instance, of the mean of forces (S, 3) of each set; None for oblique or small ones."""
     with np.errstate(all="ignore"):
         mean = _mean_force(forces)
         size = float(np.linalg.norm(mean))
-    axis = int(np.argmax(np.abs(mean)))
-    if not size >= _LEAST_WEIGHT_N or abs(mean[axis]) < _VERTICAL_SHARE * size:
+    if not size >= _LEAST_WEIGHT_N or np.abs(mean).max() < _VERTICAL_SHARE * size:
         return None
-    return ("-" if mean[axis] < 0.0 else "") + "xyz"[axis]
+    return nearest_axis(mean)
 
 
 def reaction_sign(forces: Sequence[Array], notes: list[str]) -> float:
-    """1 where forces are those on the body, −1 where they are those on the plate.
-
-    Args:
-        forces: (S, 3) force in N of each set, world axes.
-        notes: Receives that they were turned.
-    """
+    """1 where the forces (S, 3) of each set, world axes, act on the body, −1 where they act on the plate."""
     mean = _mean_force(forces)
     if mean[2] > -_LEAST_WEIGHT_N or -mean[2] < _VERTICAL_SHARE * np.linalg.norm(mean):
         return 1.0
@@ -160,75 +144,52 @@ def _mean_force(forces: Sequence[Array]) -> Array:
 
 
 def into_axes(
-    plates: Sequence[PlateReadings], stands: str, up: str, notes: list[str]
+    plates: Sequence[PlateReadings], standing: str, up: str, notes: list[str]
 ) -> tuple[PlateReadings, ...]:
     """Plates that were read with one axis up as if another had been.
 
     Args:
         plates: Readings in world axes.
-        stands: Axis of the file that was up.
+        standing: Axis of the file that was up.
         up: Axis that is to be up.
-        notes: Receives that the two differ.
+        notes: Receives the remark that the two differ.
     """
-    if stands == up:
+    if standing == up:
         return tuple(plates)
     notes.append(
-        f"the ground reactions point along {stands} of their file, which was read with {up} up; give --up"
+        f"the ground reactions point along {standing} of their file, which was read with {up} up; give --up"
     )
-    turn = rotation_to_world(up) @ rotation_to_world(stands).T
-    return tuple(
-        replace(
-            plate,
-            origin_m=turn @ plate.origin_m,
-            force_n=plate.force_n @ turn.T,
-            moment_nm=plate.moment_nm @ turn.T,
-            centre_of_pressure_m=plate.centre_of_pressure_m @ turn.T,
-            corners_m=None if plate.corners_m is None else plate.corners_m @ turn.T,
-            offset=np.concatenate([turn @ plate.offset[:3], turn @ plate.offset[3:]]),
-        )
-        for plate in plates
-    )
+    turn = rotation_to_world(up) @ rotation_to_world(standing).T
+    return tuple(rotated(plate, turn, turn) for plate in plates)
 
 
 def _standing(table: ForceTable, sets: Sequence[ForceSet], up: str) -> str:
     """The axis of the file on which people stand: ``up``, unless weight points along another."""
-    found = vertical_axis([table.values[:, list(one.force)] for one in sets])
-    if found is None:
-        return up
-    if table.on_body:
-        return found
+    found = vertical_axis(_forces(table, sets))
+    if found is None or table.on_body:
+        return found or up
     return up if found[-1] == up[-1] else found[-1]
 
 
-def up_of_table(table: ForceTable, given: str | None, default: str, notes: list[str]) -> str:
-    """The axis of a table that points up: the one given, else the one that carries the weight, else the default.
-
-    Args:
-        table: The table.
-        given: Axis that the caller knows, or None.
-        default: Axis that such files usually have.
-        notes: Receives that weight decided against the default.
-
-    Raises:
-        FileFormatError: A column of a set is missing.
-        UnknownName: No column follows a known naming.
-    """
-    if given is not None:
-        return given
-    forces = [table.values[:, list(one.force)] for one in force_sets(table.names, table.path)]
-    found = vertical_axis(forces)
+def _weight_axis(table: ForceTable, sets: Sequence[ForceSet], notes: list[str]) -> str:
+    """The axis that carries the weight; y, the usual one, where the forces point along none."""
+    found = vertical_axis(_forces(table, sets))
     if found is not None and not table.on_body:
         found = found[-1]
-    if found is None or found == default:
-        return default
+    if found is None or found == "y":
+        return "y"
     notes.append(
         f"the ground reactions carry weight along {found}; taken as up in their file (--up changes it)"
     )
     return found
 
 
+def _forces(table: ForceTable, sets: Sequence[ForceSet]) -> list[Array]:
+    return [table.values[:, list(one.force)] for one in sets]
+
+
 def _columns(table: ForceTable, one: ForceSet, up: str, notes: list[str]) -> _Columns:
-    """A set's vectors in world axes; what has no column is completed."""
+    """A set's vectors in world axes; missing columns are completed."""
     rotation = rotation_to_world(up)
     vertical = int(np.argmax(np.abs(rotation[2])))
 
@@ -253,7 +214,7 @@ def _columns(table: ForceTable, one: ForceSet, up: str, notes: list[str]) -> _Co
     force, point_vectors, moment_vectors = (vectors(group) for group in (one.force, point, moment))
     if len(given) == 1:  # it is about the vertical that points up
         moment_vectors = np.abs(rotation[2]) * moment_vectors * np.sign(rotation[2, vertical])
-    with np.errstate(all="ignore"):  # what is no number is refused later
+    with np.errstate(all="ignore"):  # cells that are not numbers are refused later
         return _Columns(one.name, *(values @ rotation.T for values in (force, point_vectors, moment_vectors)))
 
 
@@ -270,16 +231,12 @@ def _metres(table: ForceTable, columns: Sequence[_Columns], threshold_n: float, 
 
 
 def _moment_reference(
-    table: ForceTable, force: Array, point: Array, moment: Array, where: str
+    table: ForceTable, force: Array, point: Array, moment: Array, name: str
 ) -> tuple[float, Array | None]:
     """N m per unit of the moments, and the point they refer to; None for the point of application.
 
-    Args:
-        table: The table.
-        force: (S, 3) forces while loaded, N.
-        point: (S, 3) points of application, m.
-        moment: (S, 3) moments in the table's unit.
-        where: The set, for the message.
+    All arrays are (S, 3) of a set's loaded samples: forces in N, points of application in m, moments in the table's
+    unit.
     """
     factors = (1.0, 1e-3) if table.newton_metres is None else (table.newton_metres,)
     if table.at_point or len(force) == 0 or not moment.any():
@@ -300,7 +257,7 @@ def _moment_reference(
             return factor, min(possible, key=lambda way: way[0][0])[1]
     raise FileFormatError(
         table.path,
-        f"{where.rpartition(', ')[2]}: moments do not agree with the points of application; export it again",
+        f"set '{name}': moments do not agree with the points of application; export it again",
     )
 
 
@@ -315,29 +272,23 @@ def _origin(force: Array, point: Array, moment: Array) -> Array:
 
 
 def _readings(
-    table: ForceTable,
-    name: str,
-    wrench: Array,
-    point: Array,
-    origin: Array,
-    threshold_n: float,
-    tare: bool,
+    table: ForceTable, name: str, wrench: Array, point: Array, origin: Array, options: CaptureOptions
 ) -> PlateReadings:
-    """Readings of a set; ``wrench`` is (S, 6) about ``origin``, ``point`` (S, 3) where the force acts."""
+    """Readings of a set; ``wrench`` is (S, 6) about ``origin``, ``point`` (S, 3) the point of application."""
+    threshold_n, offset = options.cop_threshold_n, np.zeros(6)
     pressure = np.where((wrench[:, 2] >= threshold_n)[:, None], point, np.nan)
-    offset = np.zeros(6)
-    found = find_tare(wrench, table.rate_hz) if tare else None
+    found = find_tare(wrench, table.rate_hz) if options.tare else None
     if found is not None and abs(found.offset[2]) >= _LEAST_OFFSET_N:
         wrench, offset = remove_tare(wrench, found), found.offset
         pressure = centre_of_pressure(wrench[:, :3], wrench[:, 3:], origin, _UP, threshold_n)
     return PlateReadings(
-        name=name,
-        rate_hz=table.rate_hz,
-        start_time_s=table.start_time_s,
-        origin_m=origin,
-        force_n=wrench[:, :3],
-        moment_nm=wrench[:, 3:],
-        centre_of_pressure_m=pressure,
-        threshold_n=threshold_n,
+        name,
+        table.rate_hz,
+        table.start_time_s,
+        origin,
+        wrench[:, :3],
+        wrench[:, 3:],
+        pressure,
+        threshold_n,
         offset=offset,
     )

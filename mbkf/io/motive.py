@@ -17,10 +17,12 @@ from pathlib import Path
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.errors import FileFormatError, UnknownName
-from mbkf.io.axes import check_body_size, finite, length_unit, positions_to_world, up_axis
+from mbkf.errors import FileFormatError
+from mbkf.io.axes import up_axis
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.labels import unique_labels, without_subject
-from mbkf.io.records import Capture, MarkerTrajectories
+from mbkf.io.marker_capture import StatedUnit, marker_capture
+from mbkf.io.records import Capture
 from mbkf.io.text import (
     TextFile,
     check_order,
@@ -51,24 +53,8 @@ class _Take:
     start: int
 
 
-def is_motive(path: Path) -> bool:
-    """Whether a CSV file is a take that Motive exported."""
-    if not path.is_file():
-        return False
-    with path.open(encoding="utf-8-sig", errors="replace") as file:
-        return file.readline().lower().startswith("format version")
-
-
-def read_motive(path: str | Path, *, up: str | None = None, unit: str | None = None) -> Capture:
-    """Read the markers of a take.
-
-    Args:
-        path: The file.
-        up: Axis of the file that points up; y by default.
-        unit: Length unit; by default the one in the header.
-
-    Returns:
-        Measured markers. Motive's "Unlabeled 1189" becomes ``*1189``; other columns are told.
+def read_motive(path: str | Path, options: CaptureOptions) -> Capture:
+    """Measured markers of a take; Motive's "Unlabeled 1189" becomes ``*1189``, a remark names other columns.
 
     Raises:
         FileFormatError: The file is missing, not of that kind, broken, or holds no measured markers.
@@ -77,19 +63,16 @@ def read_motive(path: str | Path, *, up: str | None = None, unit: str | None = N
     """
     file = read_text(Path(path), "a CSV file of Motive")
     take = _take(file)
-    axis = up_axis(up or "y")
     notes: list[str] = []
     columns, names = _markers(file, take, notes)
     times, values = _rows(file, take, columns)
     rate_hz = _rate(file, take)
     notes += compare_count(file, _frames(take), len(times), "frames")
     notes += compare_rate(rate_hz, times)
-    used_unit = _unit(file, take, unit, notes)
-    positions = positions_to_world(values, finite(values), axis, used_unit)
-    if unit is None:
-        notes += check_body_size(positions, used_unit, str(path))
-    markers = MarkerTrajectories(tuple(names), positions, rate_hz, float(times[0]))
-    return Capture(str(path), markers, up_axis=axis, length_unit=used_unit, notes=tuple(notes))
+    unit = StatedUnit("Length Units", take.entries.get("length units", ""), "m", 1)
+    axis, start_s = up_axis(options.up or "y"), float(times[0])
+    used_unit = unit.of(file.path, options, notes)
+    return marker_capture(file.path, names, values, rate_hz, start_s, axis, used_unit, options, notes)
 
 
 def _take(file: TextFile) -> _Take:
@@ -115,9 +98,9 @@ def _markers(file: TextFile, take: _Take, notes: list[str]) -> tuple[list[list[i
     rows = [row + [""] * (len(axes) - len(row)) for row in take.titles[:-1]]
     kinds = next((row for row in rows if {"marker", "rigid body", "bone"} & {c.lower() for c in row}), None)
     if kinds is None or rows.index(kinds) + 1 == len(rows):
-        raise FileFormatError(file.path, "no row tells which columns are markers; export it with its header")
+        raise FileFormatError(file.path, "no row states which columns are markers; export it with its header")
     labels = rows[rows.index(kinds) + 1]
-    what = rows[-1]
+    quantities = rows[-1]
     columns: list[list[int]] = []
     names: list[str] = []
     left_out: dict[str, None] = {}
@@ -125,7 +108,7 @@ def _markers(file: TextFile, take: _Take, notes: list[str]) -> tuple[list[list[i
     while index < len(axes):
         triple = [axis.lower() for axis in axes[index : index + 3]]
         kind = kinds[index].lower()
-        if kind == "marker" and what[index].lower() == "position" and triple == ["x", "y", "z"]:
+        if kind == "marker" and quantities[index].lower() == "position" and triple == ["x", "y", "z"]:
             columns.append([index, index + 1, index + 2])
             names.append(labels[index])
             index += 3
@@ -185,17 +168,3 @@ def _frames(take: _Take) -> int | None:
     """Frames that the header promises."""
     count = number(take.entries.get("total exported frames", take.entries.get("total frames in take", "")))
     return None if count is None else int(count)
-
-
-def _unit(file: TextFile, take: _Take, given: str | None, notes: list[str]) -> str:
-    if given is not None:
-        return length_unit(given)
-    stated = take.entries.get("length units", "")
-    if not stated:
-        notes.append("the header states no Length Units; lengths taken as m, Motive's own")
-        return "m"
-    try:
-        return length_unit(stated)
-    except UnknownName as error:
-        reason = f"Length Units is '{stated}', no unit of length; give it with --unit (mm, cm or m)"
-        raise FileFormatError(file.path, reason, 1) from error

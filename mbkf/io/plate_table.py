@@ -14,16 +14,16 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
-from mbkf.io.axes import rotation_to_world, up_axis
-from mbkf.io.c3d_plates import plate_axes
+from mbkf.io.axes import nearest_axis, rotation_to_world, up_axis
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.force_table import into_axes, reaction_sign
+from mbkf.io.plate_corners import has_area, plate_axes, plate_normal, upward_normal
 from mbkf.io.plausible import FARTHEST_M
 from mbkf.io.records import PlateReadings
-from mbkf.io.wrench import centre_of_pressure, find_tare, remove_tare, require_finite
+from mbkf.io.wrench import Tare, centre_of_pressure, find_tare, remove_tare, require_finite
 
 _AGREEMENT_M = 0.01
 _SAME_M = 0.001
-_LEAST_SIDE_M = 0.02
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class PlateTable:
         pressure_m: (S, 3) centres of pressure, or None where the file has none.
         rate_hz: Sample rate.
         start_time_s: Time of the first sample.
-        in_plate_axes: Whether the vectors are in the plate's axes (z down); None where the file does not say so.
+        in_plate_axes: The vectors are in the plate's axes (z down); None where the file does not say so.
     """
 
     path: str
@@ -58,10 +58,10 @@ class _Reading:
     """One way to read a plate.
 
     Attributes:
-        local: Whether the vectors were taken as in plate axes.
+        local: The vectors were taken as in plate axes.
         force_n: (S, 3) force in laboratory axes.
         moment_nm: (S, 3) moment about the plate's centre in laboratory axes.
-        error_m: How far it leaves the stated centres of pressure and the plate, infinite where nobody stood on it.
+        error_m: RMS distance from the stated centres of pressure and from the plate, infinite for an unloaded plate.
     """
 
     local: bool
@@ -71,16 +71,14 @@ class _Reading:
 
 
 def plates_with_corners(
-    tables: Sequence[PlateTable], *, up: str, threshold_n: float, tare: bool, notes: list[str]
+    tables: Sequence[PlateTable], up: str, options: CaptureOptions
 ) -> tuple[PlateReadings, ...]:
     """Readings of plates in SI units and world axes, about the centres of their surfaces.
 
     Args:
         tables: The plates of one trial.
         up: Axis of the laboratory that points up.
-        threshold_n: Vertical force in N below which no centre of pressure is given.
-        tare: Whether the offset of an unloaded plate is removed.
-        notes: Receives what was completed.
+        options: Removal of offsets, threshold of the centres of pressure, and the list that receives remarks.
 
     Raises:
         FileFormatError: A plate has no usable corners.
@@ -88,38 +86,68 @@ def plates_with_corners(
     """
     if not tables:
         return ()
-    read = [_best(table, threshold_n, notes) for table in tables]
-    stands, up = faced_axis(tables[0]), up_axis(up)
-    rotation = rotation_to_world(stands)
-    sign = reaction_sign([one.force_n @ rotation.T for one in read], notes)
-    readings = [
-        _readings(table, sign * np.hstack([one.force_n, one.moment_nm]), rotation, threshold_n, tare)
-        for table, one in zip(tables, read, strict=True)
-    ]
-    return into_axes(readings, stands, up, notes)
+    read = [_best(table, options) for table in tables]
+    standing, up = faced_axis(tables[0]), up_axis(up)
+    rotation = rotation_to_world(standing)
+    sign = reaction_sign([one.force_n @ rotation.T for one in read], options.notes)
+    readings = []
+    for table, one in zip(tables, read, strict=True):
+        wrench = sign * np.hstack([one.force_n @ rotation.T, one.moment_nm @ rotation.T])
+        corners_m = table.corners_m @ rotation.T
+        plate = table.name, table.rate_hz, table.start_time_s
+        readings.append(plate_with_corners(*plate, corners_m, wrench, options)[0])
+    return into_axes(readings, standing, up, options.notes)
+
+
+def plate_with_corners(
+    name: str, rate_hz: float, start_time_s: float, corners_m: Array, wrench: Array, options: CaptureOptions
+) -> tuple[PlateReadings, Tare]:
+    """A plate with corners, about the middle of its surface, and the offset found if one is to be removed.
+
+    Args:
+        name: Its name.
+        rate_hz: Sample rate.
+        start_time_s: Time of the first sample.
+        corners_m: (4, 3) corners in world axes.
+        wrench: (S, 6) force in N and moment in N m about the middle of the corners, world axes.
+        options: Removal of the offset, and threshold of the centre of pressure.
+    """
+    tare = find_tare(wrench, rate_hz) if options.tare else Tare(np.zeros(6), 0.0)
+    if options.tare:
+        wrench = remove_tare(wrench, tare)
+    centre, force, moment = corners_m.mean(axis=0), wrench[:, :3], wrench[:, 3:]
+    pressure = centre_of_pressure(force, moment, centre, upward_normal(corners_m), options.cop_threshold_n)
+    readings = PlateReadings(
+        name,
+        rate_hz,
+        start_time_s,
+        centre,
+        force,
+        moment,
+        pressure,
+        options.cop_threshold_n,
+        corners_m,
+        tare.offset,
+    )
+    return readings, tare
 
 
 def faced_axis(table: PlateTable) -> str:
     """The axis of the laboratory that a plate's surface faces, "z" or "-y" for instance."""
-    normal = -plate_axes(table.corners_m.T)[:, 2]
-    axis = int(np.argmax(np.abs(normal)))
-    return ("-" if normal[axis] < 0.0 else "") + "xyz"[axis]
+    return nearest_axis(plate_normal(table.corners_m))
 
 
 def check_corners(table: PlateTable) -> None:
-    """Refuses a plate whose corners enclose no area, or lie where no laboratory reaches.
+    """Refuses a plate whose corners enclose no area, or lie outside of any laboratory.
 
     Raises:
-        FileFormatError: They do not.
+        FileFormatError: It is such a plate.
     """
-    sides = np.diff(table.corners_m[[0, 1, 2, 3, 0]], axis=0)
-    near = bool((np.abs(table.corners_m) <= FARTHEST_M).all())
-    area = float(np.linalg.norm(np.cross(sides[0], sides[1]))) if near else 0.0
-    if area < _LEAST_SIDE_M**2:
+    if not has_area(table.corners_m, FARTHEST_M):
         raise FileFormatError(table.path, f"plate '{table.name}' has no usable corners; export them too")
 
 
-def _best(table: PlateTable, threshold_n: float, notes: list[str]) -> _Reading:
+def _best(table: PlateTable, options: CaptureOptions) -> _Reading:
     """The reading of a plate whose moments give the centres of pressure that the file states."""
     check_corners(table)
     where = f"{table.path}, plate '{table.name}'"
@@ -129,7 +157,7 @@ def _best(table: PlateTable, threshold_n: float, notes: list[str]) -> _Reading:
         raise FileFormatError(table.path, f"plate '{table.name}': {reason}")
     frames = (True, False) if table.in_plate_axes is None else (table.in_plate_axes,)
     ways = [
-        _read(table, local, about_centre, factor, threshold_n)
+        _read(table, local, about_centre, factor, options.cop_threshold_n)
         for factor in (1.0, 1e-3)
         for local in frames
         for about_centre in ((True,) if local else (True, False))
@@ -137,10 +165,10 @@ def _best(table: PlateTable, threshold_n: float, notes: list[str]) -> _Reading:
     best = min(ways, key=lambda way: way.error_m)
     other = min((way.error_m for way in ways if way.local != best.local), default=np.inf)
     if np.isfinite(other) and other < best.error_m + _SAME_M:
-        reason = "nothing tells whether its vectors are in plate or laboratory axes; export it with its DESCRIPTION"
+        reason = "its vectors fit plate and laboratory axes equally well; export it with its DESCRIPTION"
         raise FileFormatError(table.path, f"plate '{table.name}': {reason}")
     if best.error_m > _AGREEMENT_M and np.isfinite(best.error_m):
-        notes.append(
+        options.notes.append(
             f"plate '{table.name}': moments and centres of pressure disagree by {1e3 * best.error_m:.0f} mm"
         )
     return best if np.isfinite(best.error_m) else ways[0]
@@ -151,12 +179,12 @@ def _read(table: PlateTable, local: bool, about_centre: bool, factor: float, thr
 
     Args:
         table: The plate.
-        local: Whether the vectors are in the plate's axes.
-        about_centre: Whether moments refer to the plate's centre; else to the laboratory's origin.
+        local: The vectors are in the plate's axes.
+        about_centre: Moments refer to the plate's centre; else to the laboratory's origin.
         factor: N m per unit of the moments.
         threshold_n: Force normal to the plate from which on its centre of pressure counts.
     """
-    axes = plate_axes(table.corners_m.T)
+    axes = plate_axes(table.corners_m)
     centre, normal = table.corners_m.mean(axis=0), axes[:, 2]
     turn = axes.T if local else np.eye(3)
     force, moment = table.force_n @ turn, factor * table.moment @ turn
@@ -164,9 +192,8 @@ def _read(table: PlateTable, local: bool, about_centre: bool, factor: float, thr
         moment = moment - np.cross(centre, force)
     pressed = np.abs(force @ normal) >= threshold_n
     if table.pressure_m is not None:
-        pressed &= (np.abs(table.pressure_m) <= FARTHEST_M).all(axis=1) & table.pressure_m.any(
-            axis=1
-        )  # exact 0: none stated
+        pressed &= (np.abs(table.pressure_m) <= FARTHEST_M).all(axis=1)
+        pressed &= table.pressure_m.any(axis=1)  # exactly 0 where the file states no point
     if not pressed.any():
         return _Reading(local, force, moment, np.inf)
     found = centre + np.cross(normal, moment[pressed]) / (force[pressed] @ normal)[:, None]
@@ -181,29 +208,3 @@ def _read(table: PlateTable, local: bool, about_centre: bool, factor: float, thr
 def _rms(vectors: Array) -> float:
     """RMS of the norms of (S, 2) vectors."""
     return float(np.sqrt((vectors**2).sum(axis=1).mean()))
-
-
-def _readings(
-    table: PlateTable, wrench: Array, rotation: Array, threshold_n: float, tare: bool
-) -> PlateReadings:
-    """Readings in world axes; ``wrench`` is (S, 6) about the centre in laboratory axes."""
-    wrench = np.hstack([wrench[:, :3] @ rotation.T, wrench[:, 3:] @ rotation.T])
-    corners = table.corners_m @ rotation.T
-    centre, normal = corners.mean(axis=0), rotation @ plate_axes(table.corners_m.T)[:, 2]
-    normal = normal if normal[2] > 0.0 else -normal
-    offset = np.zeros(6)
-    if tare:
-        found = find_tare(wrench, table.rate_hz)
-        wrench, offset = remove_tare(wrench, found), found.offset
-    return PlateReadings(
-        name=table.name,
-        rate_hz=table.rate_hz,
-        start_time_s=table.start_time_s,
-        origin_m=centre,
-        force_n=wrench[:, :3],
-        moment_nm=wrench[:, 3:],
-        centre_of_pressure_m=centre_of_pressure(wrench[:, :3], wrench[:, 3:], centre, normal, threshold_n),
-        threshold_n=threshold_n,
-        corners_m=corners,
-        offset=offset,
-    )

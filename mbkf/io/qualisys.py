@@ -13,32 +13,26 @@ Source: Qualisys Track Manager, sections Motion data (.tsv) and Force data infor
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.errors import FileFormatError
-from mbkf.io.axes import (
-    METRES_PER_UNIT,
-    axes_text,
-    check_body_size,
-    finite,
-    length_unit,
-    positions_to_world,
-    rotation_to_world,
-    up_axis,
-)
+from mbkf.io.axes import METRES_PER_UNIT, length_unit, up_axis
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.force_names import force_sets
 from mbkf.io.labels import unique_labels, without_subject
+from mbkf.io.marker_capture import marker_capture
+from mbkf.io.numbered_files import numbered_files, plate_files
 from mbkf.io.plate_table import PlateTable, check_corners, faced_axis, plates_with_corners
-from mbkf.io.records import AxesSource, Capture, CaptureEvent, MarkerTrajectories, PlateReadings
+from mbkf.io.records import AxesSource, Capture, CaptureEvent, PlateReadings
 from mbkf.io.text import TextFile, check_order, compare_count, compare_rate, number, numbers, read_text
-from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N, offset_remarks
+from mbkf.io.wrench import offset_remarks
 
 _KEY = re.compile(r"[A-Z][A-Z0-9_]+")
-_PLATE_FILE = re.compile(r"(?P<trial>.*)_f_(?P<plate>\d+)", re.IGNORECASE)
+PLATE_FILE = re.compile(r"(?P<trial>.*)_f_(?P<plate>\d+)", re.IGNORECASE)
 _QUADRANTS = ("POSX_POSY", "NEGX_POSY", "NEGX_NEGY", "POSX_NEGY")
 _MM = METRES_PER_UNIT["mm"]
 
@@ -75,42 +69,27 @@ class QualisysTable:
         """FREQUENCY.
 
         Raises:
-            FileFormatError: It is not stated, or no number (an external time base).
+            FileFormatError: It is missing, or not a number (an external time base).
         """
         rate = self.number("FREQUENCY")
         if rate is None or not rate > 0.0:
-            raise FileFormatError(self.file.path, "FREQUENCY is no rate in Hz; write it into the header")
+            raise FileFormatError(self.file.path, "FREQUENCY is not a rate in Hz; write it into the header")
         return rate
 
 
-def read_qualisys(
-    path: str | Path,
-    *,
-    up: str | None = None,
-    unit: str | None = None,
-    cop_threshold_n: float = DEFAULT_COP_THRESHOLD_N,
-    tare: bool = True,
-    plates: bool = True,
-) -> Capture:
-    """Read a TSV file of trajectories, and the files of force plates beside it.
+def read_qualisys(path: str | Path, options: CaptureOptions) -> Capture:
+    """Markers, events and plates of a TSV file of trajectories and of the files of force plates beside it.
 
-    Args:
-        path: The file of trajectories.
-        up: Axis of the file that points up; by default the one the plates face, z where there are none.
-        unit: Length unit of the markers; mm by default.
-        cop_threshold_n: Vertical force in N below which no centre of pressure is given.
-        tare: Whether the offset an unloaded plate shows is removed.
-        plates: Whether the files of the plates are read.
-
-    Returns:
-        Markers, events and plates; a sample is missing where it is blank or exactly 0.
+    A sample is missing where it is blank or exactly 0. Without options, lengths are mm, and the axis that the plates
+    face points up, z where there are none.
 
     Raises:
         FileFormatError: The file is missing, not of that kind, or broken; or one of a plate is.
         InvalidInput: The markers cannot be in that unit, or a force is not a number.
         UnknownName: Unknown axis or unit.
     """
-    table = _table(Path(path))
+    path = Path(path)
+    table = _table(path)
     if table.header.get("DATA_INCLUDED", ["3D"])[0].strip().upper() != "3D" or not _names(table):
         reason = "holds no trajectories (DATA_INCLUDED 3D, MARKER_NAMES); export 3D data"
         raise FileFormatError(path, reason)
@@ -122,86 +101,36 @@ def read_qualisys(
     if stated is not None and stated != len(names):
         notes.append(f"the header counts {stated} markers, {len(names)} are named")
     rate_hz = table.rate_hz()
-    start_s = 0.0
     if times is not None:
         notes += compare_rate(rate_hz, times)
-        start_s = float(times[0])
-    beside = plate_files(Path(path)) if plates else ()
+    start_s = 0.0 if times is None else float(times[0])
+    beside = plate_files(path, PLATE_FILE) if options.plates else ()
     tables = [_plate(one, notes) for one in beside]
-    axis = _up(up, tables, notes)
+    axis = _up(options.up, tables, notes)
     source = AxesSource.PLATES if tables else AxesSource.DEFAULT
-    used_unit = length_unit(unit or "mm")
-    positions = positions_to_world(values, finite(values), axis, used_unit)
-    if unit is None:
-        notes += check_body_size(positions, used_unit, str(path))
     if beside:
         notes.append(f"ground reactions from {', '.join(one.name for one in beside)}")
-    readings = plates_with_corners(tables, up=axis, threshold_n=cop_threshold_n, tare=tare, notes=notes)
-    notes += offset_remarks(readings)
-    return Capture(
-        str(path),
-        MarkerTrajectories(tuple(names), positions, rate_hz, start_s),
-        readings,
-        events=_events(table),
-        up_axis=axis,
-        length_unit=used_unit,
-        notes=tuple(notes),
-        axes=axes_text(rotation_to_world(axis)),
-        axes_source=source if up is None else AxesSource.UP_GIVEN,
-    )
+    unit = length_unit(options.unit or "mm")
+    capture = marker_capture(path, names, values, rate_hz, start_s, axis, unit, options, notes, source)
+    readings = plates_with_corners(tables, axis, options)
+    notes = [*capture.notes, *options.notes, *offset_remarks(readings)]
+    return replace(capture, plates=readings, events=_events(table), notes=tuple(notes))
 
 
-def read_forces_qualisys(
-    path: str | Path,
-    *,
-    up: str | None = None,
-    cop_threshold_n: float = DEFAULT_COP_THRESHOLD_N,
-    tare: bool = True,
-    notes: list[str] | None = None,
-) -> tuple[PlateReadings, ...]:
-    """Read the file of a force plate, and those of the trial's other plates beside it.
+def read_forces_qualisys(path: str | Path, options: CaptureOptions) -> tuple[PlateReadings, ...]:
+    """The plate of a file and the trial's other plates beside it, named by the numbers of their files.
 
     Args:
         path: The file of one plate, or of the trajectories it belongs to.
-        up: Axis of the laboratory that points up; by default the one the plates face.
-        cop_threshold_n: Vertical force in N below which no centre of pressure is given.
-        tare: Whether the offset an unloaded plate shows is removed.
-        notes: Receives what was completed, and which files were read.
-
-    Returns:
-        The plates, named by the numbers of their files, about the centres of their surfaces.
+        options: Without an axis, the one that the plates face points up.
 
     Raises:
         FileFormatError: A file is missing, not of that kind, or broken.
         InvalidInput: A force or moment is not a number.
         UnknownName: Unknown axis.
     """
-    remarks = notes if notes is not None else []
-    path = Path(path)
-    files = plate_files(path)
-    if path not in files and (not files or _PLATE_FILE.fullmatch(path.stem)):
-        files = (path,)
-    if len(files) > 1:
-        remarks.append(f"plates of one trial were read together: {', '.join(one.name for one in files)}")
-    tables = [_plate(one, remarks) for one in files]
-    axis = _up(up, tables, remarks)
-    return plates_with_corners(tables, up=axis, threshold_n=cop_threshold_n, tare=tare, notes=remarks)
-
-
-def plate_files(path: Path) -> tuple[Path, ...]:
-    """Files of the force plates of a trial, in the order of their numbers.
-
-    Args:
-        path: The file of the trajectories, or of one of the plates.
-    """
-    match = _PLATE_FILE.fullmatch(path.stem)
-    trial = match["trial"] if match else path.stem
-    found = {}
-    for other in path.parent.iterdir() if path.parent.is_dir() else ():
-        plate = _PLATE_FILE.fullmatch(other.stem)
-        if plate and plate["trial"] == trial and other.suffix.lower() == path.suffix.lower():
-            found[int(plate["plate"])] = other
-    return tuple(found[number] for number in sorted(found))
+    tables = [_plate(one, options.notes) for one in numbered_files(Path(path), PLATE_FILE, options.notes)]
+    return plates_with_corners(tables, _up(options.up, tables, options.notes), options)
 
 
 def _table(path: Path) -> QualisysTable:
@@ -242,7 +171,7 @@ def _is_number(cell: str) -> bool:
 
 
 def _is_titles(cells: list[str]) -> bool:
-    """Whether cells are column titles in capitals (SAMPLE, TIME …) rather than an entry of the header."""
+    """True for column titles in capitals (SAMPLE, TIME …), which are not entries of the header."""
     return cells[0] in {"SAMPLE", "FRAME", "TIME"}
 
 
@@ -309,7 +238,7 @@ def _plate(path: Path, notes: list[str]) -> PlateTable:
     times = [i for i, title in enumerate(titles[:2]) if title.lower() == "time"]
     if times and np.isfinite(table.values[:, times[0]]).all():
         check_order(path, table.values[:, times[0]], "the time")
-    match = _PLATE_FILE.fullmatch(path.stem)
+    match = PLATE_FILE.fullmatch(path.stem)
     plate = PlateTable(
         str(path),
         match["plate"] if match else (table.header.get("FORCE_PLATE_NAME") or ["1"])[0],
@@ -326,7 +255,7 @@ def _plate(path: Path, notes: list[str]) -> PlateTable:
 
 
 def _in_plate_axes(description: str) -> bool | None:
-    """Whether DESCRIPTION says that the vectors are in plate axes; None where it says nothing."""
+    """True where DESCRIPTION names plate axes, False where it names the laboratory's; None otherwise."""
     words = description.lower()
     if "local" in words:
         return True
@@ -348,5 +277,5 @@ def _up(given: str | None, plates: list[PlateTable], notes: list[str]) -> str:
     found = {faced_axis(plate) for plate in plates}
     if len(found) == 1:
         return found.pop()
-    notes.append("no plate states which axis points up; taken as z (--up changes it)")
+    notes.append("no plate shows which axis points up; taken as z (--up changes it)")
     return "z"

@@ -1,17 +1,20 @@
 """Registry of file formats: which reader takes a file, by its suffix and, where a suffix is shared, by its content.
 
 Captures, ground reactions and inertial readings have a registry each, in :mod:`mbkf.io.capture` and
-:mod:`mbkf.io.imu.files`. The lists of suffixes in messages and on the command line come from there.
+:mod:`mbkf.io.imu.files`. Readers of other installed packages (:mod:`mbkf.io.installed`) join them at the first look-up.
+The lists of suffixes in messages and on the command line come from here.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from mbkf.errors import FileFormatError, InvalidInput
+from mbkf.io.installed import READERS, import_installed
 
 FOLDER = "/"
 """Suffix under which a reader of whole folders is registered."""
@@ -24,7 +27,7 @@ class FileFormat:
     Attributes:
         title: Its name, for people.
         suffixes: Lower-case endings with their dot, or :data:`FOLDER`.
-        recognises: Whether a file of such a suffix is of this kind, by its content; None where the suffix decides.
+        recognises: True for a file of such a suffix that is of this kind; None where the suffix decides.
     """
 
     title: str
@@ -32,6 +35,7 @@ class FileFormat:
     recognises: Callable[[Path], bool] | None = None
 
 
+T = TypeVar("T")
 Format = TypeVar("Format", bound=FileFormat)
 
 
@@ -39,7 +43,7 @@ class FormatRegistry(Generic[Format]):
     """The formats of one kind of content.
 
     Attributes:
-        content: The content in the plural, as messages have it: "captures".
+        content: The content in the plural, for messages: "captures".
     """
 
     def __init__(self, content: str) -> None:
@@ -47,6 +51,7 @@ class FormatRegistry(Generic[Format]):
         self._formats: list[Format] = []
 
     def __iter__(self) -> Iterator[Format]:
+        import_installed(READERS)
         return iter(tuple(self._formats))
 
     def add(self, one: Format) -> None:
@@ -72,8 +77,12 @@ class FormatRegistry(Generic[Format]):
     @property
     def suffixes(self) -> tuple[str, ...]:
         """Suffixes of files, in the order of registration."""
-        every = dict.fromkeys(suffix for one in self._formats for suffix in one.suffixes)
-        return tuple(suffix for suffix in every if suffix != FOLDER)
+        return _suffixes(self)
+
+    @property
+    def suffixes_so_far(self) -> tuple[str, ...]:
+        """Suffixes without those of installed readers that no look-up has asked for yet, for help texts."""
+        return _suffixes(self._formats)
 
     def format_of(self, path: Path) -> Format:
         """The format of a file: one that recognises its content, else the one of its suffix.
@@ -81,9 +90,10 @@ class FormatRegistry(Generic[Format]):
         Raises:
             FileFormatError: No format has its suffix; lists those that are known.
         """
-        folders = any(FOLDER in one.suffixes for one in self._formats)
+        formats = list(self)
+        folders = any(FOLDER in one.suffixes for one in formats)
         suffix = FOLDER if folders and path.is_dir() else path.suffix.lower()
-        own = [one for one in self._formats if suffix in one.suffixes]
+        own = [one for one in formats if suffix in one.suffixes]
         recognised = (one for one in own if one.recognises is not None and one.recognises(path))
         found = next(recognised, None) or next((one for one in own if one.recognises is None), None)
         if found is None:
@@ -92,6 +102,20 @@ class FormatRegistry(Generic[Format]):
             )
             raise FileFormatError(path, reason)
         return found
+
+
+def _suffixes(formats: Iterable[FileFormat]) -> tuple[str, ...]:
+    every = dict.fromkeys(suffix for one in formats for suffix in one.suffixes)
+    return tuple(suffix for suffix in every if suffix != FOLDER)
+
+
+def lazily(module: str, function: str) -> Callable[..., T]:
+    """A function of a module in :mod:`mbkf.io` that is imported at its first call."""
+
+    def call(*arguments: object) -> Any:
+        return getattr(import_module(f"mbkf.io.{module}"), function)(*arguments)
+
+    return call
 
 
 def either(names: Iterable[str]) -> str:

@@ -9,20 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.errors import FileFormatError, UnknownName
+from mbkf.errors import FileFormatError
 from mbkf.io.atomic import replacing
-from mbkf.io.axes import (
-    METRES_PER_UNIT,
-    axes_text,
-    check_body_size,
-    finite,
-    length_unit,
-    positions_to_world,
-    rotation_to_world,
-    up_axis,
-)
+from mbkf.io.axes import METRES_PER_UNIT, rotation_to_world, up_axis
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.labels import unique_labels
-from mbkf.io.records import AxesSource, Capture, MarkerTrajectories
+from mbkf.io.marker_capture import StatedUnit, marker_capture
+from mbkf.io.records import Capture, MarkerTrajectories
 from mbkf.io.text import TextFile, compare_count, compare_rate, number, numbers, read_text
 
 _TITLES = (
@@ -46,7 +39,7 @@ class TrcHeader:
         frames: NumFrames, None where it is not stated.
         markers: NumMarkers, None where it is not stated.
         unit: Units as written, "" where none is stated.
-        shifted: Whether the fields do not stand under their titles.
+        shifted: The fields do not stand under their titles.
     """
 
     rate_hz: float
@@ -56,28 +49,20 @@ class TrcHeader:
     shifted: bool
 
 
-def read_trc(path: str | Path, *, up: str | None = None, unit: str | None = None) -> Capture:
-    """Read a TRC file.
+def read_trc(path: str | Path, options: CaptureOptions) -> Capture:
+    """Markers of a TRC file at the header's rate; the Time column gives the time of the first frame.
 
     Blank cells, NaN and exact zeros are missing samples. The header's fields are found by their order, since
-    some programs put extra tabs between them. Counts that disagree with the rows, points beyond the names, names
-    that occur twice and another order of axes are told.
-
-    Args:
-        path: The file.
-        up: Axis of the file that points up; TRC files do not state it, by default it is OpenSim's y.
-        unit: Length unit; by default the one in the header.
-
-    Returns:
-        A capture with markers only, at the header's rate; the Time column gives the time of the first frame.
+    some programs put extra tabs between them. Remarks name counts that disagree with the rows, points beyond the
+    names, names that occur twice and another order of axes. TRC files do not state which axis points up; without an
+    axis in the options it is OpenSim's y.
 
     Raises:
         FileFormatError: The file is missing or not a TRC file; names the line.
         InvalidInput: The markers cannot be in that unit.
         UnknownName: Unknown axis or unit.
     """
-    source = AxesSource.DEFAULT if up is None else AxesSource.UP_GIVEN
-    path, up = Path(path), up_axis("y" if up is None else up)
+    path, up = Path(path), up_axis("y" if options.up is None else options.up)
     file = _file(path)
     header = _header(path, file.lines)
     cells = _rows(file)
@@ -100,20 +85,8 @@ def read_trc(path: str | Path, *, up: str | None = None, unit: str | None = None
     notes += compare_count(file, header.frames, len(values), "frames")
     if len(values) == len(times):
         notes += compare_rate(header.rate_hz, times)
-    used_unit = _unit(path, header.unit, unit, notes)
-    positions = positions_to_world(values, finite(values), up, used_unit)
-    if unit is None:
-        notes += check_body_size(positions, used_unit, str(path))
-    markers = MarkerTrajectories(labels, positions, header.rate_hz, float(times[0]))
-    return Capture(
-        str(path),
-        markers,
-        up_axis=up,
-        length_unit=used_unit,
-        notes=tuple(notes),
-        axes=axes_text(rotation_to_world(up)),
-        axes_source=source,
-    )
+    unit = StatedUnit("Units", header.unit, "mm", 3).of(path, options, notes)
+    return marker_capture(path, labels, values, header.rate_hz, float(times[0]), up, unit, options, notes)
 
 
 def _with_gaps(path: Path, times_s: Array, values: Array, rate_hz: float, notes: list[str]) -> Array:
@@ -137,7 +110,7 @@ def _with_gaps(path: Path, times_s: Array, values: Array, rate_hz: float, notes:
     if len(back):
         raise FileFormatError(path, f"in row {back[0] + 2}, the time goes back; export the file again")
     if not len(steps) or abs(float(np.median(steps)) - 1.0) > _UNEVEN:
-        return values  # the header's rate is not that of the rows, which is told
+        return values  # the header's rate is not that of the rows, on which there is a remark
     frames = np.concatenate([[0], np.cumsum(np.maximum(np.rint(np.minimum(steps, 1e9)), 1.0))]).astype(int)
     missing = int(frames[-1]) + 1 - len(values)
     if not missing:
@@ -185,7 +158,7 @@ def _file(path: Path) -> TextFile:
 
 
 def _header(path: Path, lines: list[str]) -> TrcHeader:
-    """Numbers in their order (DataRate, CameraRate, NumFrames, NumMarkers …) and the one word among them."""
+    """The header's numbers in their order (DataRate, CameraRate, NumFrames, NumMarkers …) and its one word."""
     words = lines[2].split()
     values = [value for word in words if (value := number(word)) is not None]
     unit = next((word for word in words if number(word) is None), "")
@@ -277,7 +250,7 @@ def _labels(names: list[str], notes: list[str]) -> tuple[str, ...]:
 
 
 def _order_of_axes(line: str, count: int, notes: list[str]) -> list[int]:
-    """Which column of each point is its x, y and z, by the fifth line (X1 Y1 Z1 …) where that is whole."""
+    """Columns of a point's x, y and z, by the fifth line (X1 Y1 Z1 …) where that is whole."""
     letters = [cell.strip()[0].upper() for cell in line.split() if cell.strip()[0].upper() in "XYZ"]
     triples = {"".join(letters[i : i + 3]) for i in range(0, len(letters), 3)}
     if len(letters) < 3 * count or len(triples) != 1 or sorted(triple := triples.pop()) != ["X", "Y", "Z"]:
@@ -286,16 +259,3 @@ def _order_of_axes(line: str, count: int, notes: list[str]) -> list[int]:
     if order != [0, 1, 2]:
         notes.append(f"the columns of each marker are ordered {', '.join(triple)}; read by their titles")
     return order
-
-
-def _unit(path: Path, stated: str, given: str | None, notes: list[str]) -> str:
-    if given is not None:
-        return length_unit(given)
-    if not stated:
-        notes.append("the header states no unit; lengths taken as mm")
-        return "mm"
-    try:
-        return length_unit(stated)
-    except UnknownName as error:
-        reason = f"Units is '{stated}', no unit of length; give it with --unit (mm, cm or m)"
-        raise FileFormatError(path, reason, 3) from error

@@ -16,7 +16,7 @@ DEFAULT_COP_THRESHOLD_N = 20.0
 """Vertical force below which a centre of pressure is mostly noise, in N."""
 
 LARGEST = 1e12
-"""No plate reads so much, in whatever unit: sums of squares of such numbers overflow before they are judged."""
+"""Readings of plates are smaller in any unit; sums of squares of such numbers would overflow."""
 
 UNLOADED_RANGE_N = (-200.0, 50.0)
 """Vertical force a plate without load may show; a plate cannot pull, so the range is wider below zero."""
@@ -41,7 +41,7 @@ class Tare:
 
     @property
     def found(self) -> bool:
-        """Whether the plate was without load for long enough."""
+        """True where the plate was without load for long enough."""
         return self.unloaded_s > 0.0
 
 
@@ -71,7 +71,7 @@ def centre_of_pressure(
 
 
 def require_finite(force_n: Array, moment_nm: Array, rate_hz: float, start_time_s: float, where: str) -> None:
-    """Refuse readings that are not numbers, or none that any plate gives in any unit.
+    """Refuse readings that are not numbers, or larger than any plate gives in any unit.
 
     Args:
         force_n: (S, 3) forces.
@@ -84,14 +84,14 @@ def require_finite(force_n: Array, moment_nm: Array, rate_hz: float, start_time_
         InvalidInput: A force or moment is NaN, infinite or beyond :data:`LARGEST`; says where first and how many.
     """
     bad = ~(finite(force_n) & finite(moment_nm))
-    what = "are not numbers"
+    fault = "are not numbers"
     if not bad.any():
         bad = np.asarray((np.abs(np.hstack([force_n, moment_nm])) > LARGEST).any(axis=1))
-        what = f"are larger than {LARGEST:g}"
+        fault = f"are larger than {LARGEST:g}"
     if bad.any():
         first = start_time_s + np.argmax(bad) / rate_hz
         raise InvalidInput(
-            f"{where}: {bad.sum()} of {len(bad)} samples of force or moment {what}, the first at "
+            f"{where}: {bad.sum()} of {len(bad)} samples of force or moment {fault}, the first at "
             f"{first:.3f} s; cut these samples or leave the plate out"
         )
 
@@ -108,9 +108,6 @@ def find_tare(wrench: Array, rate_hz: float) -> Tare:
     Args:
         wrench: (S, 6) force in N and moment in N m of the plate on the body, world axes (z up).
         rate_hz: Sample rate in Hz.
-
-    Returns:
-        The offset and how long the plate was seen without load.
     """
     size = max(4, round(_WINDOW_S * rate_hz))
     count = len(wrench) // size
@@ -133,21 +130,13 @@ def find_tare(wrench: Array, rate_hz: float) -> Tare:
 
 
 def remove_tare(wrench: Array, tare: Tare) -> Array:
-    """Readings without their offset; samples a software had zeroed stay zero.
-
-    Args:
-        wrench: (S, 6) force in N and moment in N m.
-        tare: The offset, as :func:`find_tare` gives it.
-
-    Returns:
-        (S, 6) corrected readings.
-    """
+    """(S, 6) readings without their offset; samples a software had zeroed stay zero."""
     zeroed = (wrench == 0.0).all(axis=1)
     return np.where(zeroed[:, None], 0.0, wrench - tare.offset)
 
 
 def offset_remarks(plates: Sequence[PlateReadings]) -> list[str]:
-    """Which offsets were removed from plates or sets."""
+    """Remarks on the offsets that were removed from plates or sets."""
     return [
         f"set '{plate.name}': offset of {plate.offset[2]:+.1f} N vertical force removed"
         for plate in plates
@@ -156,14 +145,7 @@ def offset_remarks(plates: Sequence[PlateReadings]) -> list[str]:
 
 
 def half_sample_mode(values: Array) -> float:
-    """Mode of a sample: the half of it that is closest together, again and again (Bickel and Frühwirth 2006).
-
-    Args:
-        values: (n,) numbers, at least one.
-
-    Returns:
-        The value around which the sample is densest.
-    """
+    """Mode of a sample (n,): the half of it that is closest together, repeatedly (Bickel and Frühwirth 2006)."""
     kept = np.sort(values)
     while len(kept) > 2:
         half = (len(kept) + 1) // 2

@@ -6,7 +6,8 @@ messages and in :func:`mbkf.synthesis.motion.synthesise_motion`::
     @register_motion("sway", seconds=5.0)
     def sway_plan(model, seconds, rng): ...
 
-The built-in motions are imported when one is planned, so that this module stays light.
+The built-in motions are imported when one is planned, so that this module stays light; modules of other installed
+packages (group ``mbkf.motions``, :mod:`mbkf.io.installed`) when an unknown name or all names are asked for.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mbkf.errors import InvalidInput, UnknownName
+from mbkf.io.installed import MOTIONS, import_installed
 
 if TYPE_CHECKING:
     import numpy as np
@@ -81,12 +83,21 @@ def registered_motion(name: str) -> RegisteredMotion:
         UnknownName: There is no such motion; lists the known ones.
     """
     if name not in _MOTIONS:
+        import_installed(MOTIONS)
+    if name not in _MOTIONS:
         raise UnknownName("motion", name, _MOTIONS)
     return _MOTIONS[name]
 
 
-def motion_names(*, static: bool = False) -> tuple[str, ...]:
-    """Names of the motions offered as trials, in the order of registration; with ``static`` the others as well."""
+def motion_names(*, static: bool = False, installed: bool = True) -> tuple[str, ...]:
+    """Names of the motions offered as trials, in the order of registration.
+
+    Args:
+        static: Other motions as well.
+        installed: Import the motions of other installed packages first.
+    """
+    if installed:
+        import_installed(MOTIONS)
     return tuple(name for name, motion in _MOTIONS.items() if motion.trial or static)
 
 

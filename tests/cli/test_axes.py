@@ -9,13 +9,13 @@ import pytest
 from mbkf.cli.main import main
 from mbkf.io.c3d_write import write_c3d
 from mbkf.io.capture import read_capture
-from mbkf.io.forces import write_forces_mot
 from mbkf.io.records import AxesSource
 from mbkf.io.results_folder import read_summary
 from mbkf.io.subject import read_subject
 from mbkf.io.trc import write_trc
 from mbkf.io.turning import turned
 from tests.captures import MASS_KG, made_capture
+from tests.mot_files import write_forces_mot
 
 pytestmark = pytest.mark.slow
 

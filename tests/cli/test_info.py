@@ -9,11 +9,11 @@ import pytest
 
 from mbkf.cli import info
 from mbkf.errors import FileFormatError
-from mbkf.io.c3d import write_c3d
-from mbkf.io.forces import write_forces_mot
+from mbkf.io.c3d_write import write_c3d
 from mbkf.io.records import Capture, CaptureEvent, MarkerTrajectories, PlateReadings
 from mbkf.io.trc import write_trc
 from tests.captures import made_capture
+from tests.mot_files import write_forces_mot
 
 
 @pytest.fixture

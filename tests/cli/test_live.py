@@ -373,7 +373,7 @@ def test_replay_refuses_a_missing_file(refused):
 def test_a_missing_library_is_named(person, tmp_path, refused, monkeypatch):
     monkeypatch.setitem(sys.modules, "pylsl", None)
     words = ["live", "--from", "lsl", "--subject", person.subject, "--out", tmp_path / "out"]
-    refused(words, "pip install 'mbkf[lsl]'")
+    refused(words, "pip install pylsl (in a clone of mbkf also: pip install '.[lsl]')")
 
 
 def test_a_first_signal_asks_and_a_second_breaks_off():

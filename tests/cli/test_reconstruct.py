@@ -14,6 +14,7 @@ from mbkf.cli.main import main
 from mbkf.cli.reconstruct import parse_hide
 from mbkf.io.c3d import read_c3d
 from mbkf.io.c3d_write import write_c3d
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.results import ARRAYS
 from mbkf.io.results_folder import read_reconstruction, read_summary
 from mbkf.io.storage import read_storage
@@ -114,7 +115,7 @@ def test_opensim_files_agree_with_the_motion(plain):
     reactions = read_storage(out / "reactions.mot")
     for side, column in enumerate(("ground_force_r_vy", "ground_force_l_vy")):
         np.testing.assert_allclose(reactions.column(column), motion.foot_wrench[:, side, 2], atol=1e-6)
-    markers = read_trc(out / "markers.trc").markers
+    markers = read_trc(out / "markers.trc", CaptureOptions()).markers
     np.testing.assert_allclose(markers.positions_m, motion.predicted_m, atol=1e-8)
 
 
@@ -123,7 +124,7 @@ def test_reactions_are_the_plates_or_near_them(name, tolerance_n, person, plain)
     """Exactly what was measured after the kinematic filter, an estimate within the plates' noise of the dynamic one."""
     reactions = read_storage(plain(name) / "reactions.mot")
     total = reactions.column("ground_force_r_vy") + reactions.column("ground_force_l_vy")
-    plates = sum(plate.force_n[0, 2] for plate in read_c3d(person.trial).plates)
+    plates = sum(plate.force_n[0, 2] for plate in read_c3d(person.trial, CaptureOptions()).plates)
     np.testing.assert_allclose(total, plates, atol=tolerance_n)
 
 

@@ -4,6 +4,7 @@ import pytest
 
 from mbkf.cli.main import main
 from mbkf.io.c3d import read_c3d
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.subject import read_subject
 from mbkf.io.truth import read_truth
 from mbkf.trial.synth import FILES
@@ -34,13 +35,13 @@ def test_writes_a_folder(tmp_path, capsys):
     )
     assert sorted(path.name for path in out.iterdir()) == sorted(FILES)
     assert "squat" in capsys.readouterr().out
-    truth, trial = read_truth(out / "truth.h5"), read_c3d(out / "trial.c3d")
+    truth, trial = read_truth(out / "truth.h5"), read_c3d(out / "trial.c3d", CaptureOptions())
     subject = read_subject(out / "subject.toml")
     assert trial.markers.rate_hz == 60.0
     assert trial.markers.frames == len(truth.times_s) == 91
     assert trial.markers.names == tuple(marker.name for marker in subject.markers) == truth.marker_names
-    assert len(read_c3d(out / "raw.c3d").markers.names) == len(trial.markers.names) + 1
-    assert read_c3d(out / "static.c3d").markers.present.all()
+    assert len(read_c3d(out / "raw.c3d", CaptureOptions()).markers.names) == len(trial.markers.names) + 1
+    assert read_c3d(out / "static.c3d", CaptureOptions()).markers.present.all()
 
 
 def test_help_has_an_example(capsys):

@@ -8,10 +8,10 @@ from mbkf.cli.main import main
 from mbkf.cli.tune import forces_of, positions
 from mbkf.errors import InvalidInput, UnknownName
 from mbkf.io.c3d_write import write_c3d
-from mbkf.io.forces import write_forces_mot
 from mbkf.io.preset import read_preset
 from mbkf.io.trc import write_trc
 from tests.captures import made_capture
+from tests.mot_files import write_forces_mot
 
 pytestmark = pytest.mark.slow
 

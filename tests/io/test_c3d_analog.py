@@ -6,6 +6,7 @@ import pytest
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.axes import rotation_to_world
 from mbkf.io.c3d import read_c3d
+from mbkf.io.capture_options import CaptureOptions
 from tests.io.c3d_builder import CENTRE_M, CORNERS_MM, PLATE_AXES, Plate, build_c3d, standing_points
 
 FRAMES, PER_FRAME = 100, 10
@@ -27,7 +28,7 @@ def made(path, *plates, **options):
 
 
 def test_force_on_the_body_at_its_place_with_its_times(tmp_path):
-    capture = read_c3d(made(tmp_path / "a.c3d", Plate(2, channels()), first_frame=250))
+    capture = read_c3d(made(tmp_path / "a.c3d", Plate(2, channels()), first_frame=250), CaptureOptions())
     (plate,) = capture.plates
     assert (plate.name, plate.rate_hz, plate.start_time_s) == ("1", 1000.0, 2.5)
     np.testing.assert_allclose(plate.origin_m, CENTRE_M, atol=1e-9)
@@ -46,7 +47,7 @@ OFFSET = (2.0, -3.0, -32.0, 4.0, -2.0, 1.0)
 
 @pytest.mark.parametrize("tare", [True, False])
 def test_offset_is_removed_on_request_and_told(tmp_path, tare):
-    capture = read_c3d(made(tmp_path / "a.c3d", Plate(2, channels(offset=OFFSET))), tare=tare)
+    capture = read_c3d(made(tmp_path / "a.c3d", Plate(2, channels(offset=OFFSET))), CaptureOptions(tare=tare))
     (plate,) = capture.plates
     np.testing.assert_allclose(plate.offset, OFFSET if tare else np.zeros(6), atol=1e-4)
     np.testing.assert_allclose(plate.force_n[500] + plate.offset[:3], FORCE_N + OFFSET[:3], atol=1e-3)
@@ -56,7 +57,7 @@ def test_offset_is_removed_on_request_and_told(tmp_path, tare):
 
 
 def test_a_standing_trial_keeps_its_load_and_says_so(tmp_path):
-    capture = read_c3d(made(tmp_path / "a.c3d", Plate(2, channels(loaded=slice(None)))))
+    capture = read_c3d(made(tmp_path / "a.c3d", Plate(2, channels(loaded=slice(None)))), CaptureOptions())
     np.testing.assert_allclose(capture.plates[0].force_n, np.tile(FORCE_N, (1000, 1)), rtol=1e-6)
     assert any("loaded all the time" in note for note in capture.notes)
 
@@ -66,7 +67,7 @@ def test_plates_tell_which_axis_points_up(tmp_path, up):
     R = rotation_to_world(up)  # file -> world
     points = standing_points(FRAMES) @ R
     plate = Plate(2, channels(), corners=R.T @ CORNERS_MM)
-    capture = read_c3d(build_c3d(tmp_path / "a.c3d", points, plates=(plate,)))
+    capture = read_c3d(build_c3d(tmp_path / "a.c3d", points, plates=(plate,)), CaptureOptions())
     assert capture.up_axis == up
     np.testing.assert_allclose(capture.markers.positions_m, standing_points(FRAMES) / 1e3, atol=1e-6)
     np.testing.assert_allclose(capture.plates[0].force_n[500], FORCE_N, rtol=1e-5)
@@ -81,7 +82,7 @@ def test_several_plates_of_different_kinds(tmp_path):
         Plate(4, volts, units=("V",) * 6, calibration=calibration),
         Plate(3, np.zeros((1000, 8)), origin=(120.0, 200.0, -50.0), units=("N",) * 8),
     )
-    capture = read_c3d(made(tmp_path / "a.c3d", *plates))
+    capture = read_c3d(made(tmp_path / "a.c3d", *plates), CaptureOptions())
     assert [plate.name for plate in capture.plates] == ["1", "2", "3"]
     np.testing.assert_allclose(capture.plates[1].force_n, capture.plates[0].force_n, atol=2e-3)
     np.testing.assert_allclose(capture.plates[1].moment_nm, capture.plates[0].moment_nm, atol=2e-3)
@@ -99,35 +100,35 @@ def test_several_plates_of_different_kinds(tmp_path):
 def test_unusable_plates_are_an_error_unless_not_wanted(tmp_path, plate, reason):
     path = made(tmp_path / "a.c3d", plate)
     with pytest.raises(FileFormatError, match=reason):
-        read_c3d(path)
-    assert read_c3d(path, plates=False).plates == ()
+        read_c3d(path, CaptureOptions())
+    assert read_c3d(path, CaptureOptions(plates=False)).plates == ()
 
 
 def test_forces_that_are_no_numbers_are_refused(tmp_path):
     broken = channels()
     broken[420, 2] = np.nan
     with pytest.raises(InvalidInput, match=r"force plate 1: 1 of 1000 samples .* 0\.420 s"):
-        read_c3d(made(tmp_path / "a.c3d", Plate(2, broken)))
+        read_c3d(made(tmp_path / "a.c3d", Plate(2, broken)), CaptureOptions())
 
 
 def test_plates_without_channels_are_left_out_and_absent_channels_an_error(tmp_path):
     path = made(
         tmp_path / "a.c3d", Plate(2, channels()), extra={("FORCE_PLATFORM", "CHANNEL"): np.zeros((6, 1))}
     )
-    capture = read_c3d(path)
+    capture = read_c3d(path, CaptureOptions())
     assert capture.plates == ()
     assert any("left out" in note for note in capture.notes)
     far = {("FORCE_PLATFORM", "CHANNEL"): np.arange(3.0, 9.0)[:, None]}
     with pytest.raises(FileFormatError, match="names channel 8, the file has 6"):
-        read_c3d(made(tmp_path / "b.c3d", Plate(2, channels()), extra=far))
+        read_c3d(made(tmp_path / "b.c3d", Plate(2, channels()), extra=far), CaptureOptions())
 
 
 def test_doubtful_plates_are_remarked(tmp_path):
-    pulling = read_c3d(made(tmp_path / "a.c3d", Plate(2, -channels())))
+    pulling = read_c3d(made(tmp_path / "a.c3d", Plate(2, -channels())), CaptureOptions())
     assert any("pulls the body down" in note for note in pulling.notes)
     in_metres = channels()
     in_metres[:, 3:] *= 10.0
-    off = read_c3d(made(tmp_path / "b.c3d", Plate(2, in_metres)))
+    off = read_c3d(made(tmp_path / "b.c3d", Plate(2, in_metres)), CaptureOptions())
     assert any("off the plate" in note for note in off.notes)
 
 
@@ -138,6 +139,6 @@ def test_events_are_in_order_with_minutes_added(tmp_path):
         ("EVENT", "LABELS"): ["Foot Off", "Foot Strike"],
         ("EVENT", "TIMES"): np.array([[1.0, 0.0], [2.5, 3.25]]),
     }
-    events = read_c3d(build_c3d(tmp_path / "a.c3d", extra=extra)).events
+    events = read_c3d(build_c3d(tmp_path / "a.c3d", extra=extra), CaptureOptions()).events
     found = [(event.time_s, event.context, event.label) for event in events]
     assert found == [(3.25, "Right", "Foot Strike"), (62.5, "Left", "Foot Off")]

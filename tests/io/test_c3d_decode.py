@@ -11,6 +11,7 @@ from mbkf.errors import MbkfError
 from mbkf.io.c3d import read_c3d
 from mbkf.io.c3d_decode import Processor, decode
 from mbkf.io.c3d_layout import check_layout
+from mbkf.io.capture_options import CaptureOptions
 from tests.io.c3d_builder import standing_points
 from tests.io.c3d_bytes import DEC, INTEL, MIPS, c3d_bytes, floats, integers
 
@@ -119,6 +120,6 @@ def test_a_damaged_file_is_read_or_refused_in_our_own_words(tmp_path_factory, se
     path = tmp_path_factory.mktemp("damaged") / "x.c3d"
     path.write_bytes(content[: int(rng.integers(0, len(content) + 1))] if rng.random() < 0.2 else content)
     try:
-        read_c3d(path)
+        read_c3d(path, CaptureOptions())
     except MbkfError as error:
         assert str(path) in str(error)

@@ -8,6 +8,7 @@ import pytest
 from mbkf.errors import FileFormatError
 from mbkf.io.c3d import read_c3d
 from mbkf.io.c3d_layout import check_layout
+from mbkf.io.capture_options import CaptureOptions
 from tests.io.c3d_builder import Plate, build_c3d, standing_points
 
 
@@ -34,7 +35,7 @@ def test_a_file_cut_anywhere_is_refused(whole, tmp_path, share):
     data_end = (check_start(whole) - 1) * 512 + 12 * (4 * 9 + 60) * 4
     path.write_bytes(whole[: int(share * data_end)])
     with pytest.raises(FileFormatError, match=r"cut short|empty|not a C3D"):
-        read_c3d(path)
+        read_c3d(path, CaptureOptions())
 
 
 def check_start(content: bytes) -> int:
@@ -49,14 +50,14 @@ def test_other_files_are_refused(content, tmp_path):
     path = tmp_path / "other.c3d"
     path.write_bytes(content)
     with pytest.raises(FileFormatError, match="not a C3D file"):
-        read_c3d(path)
+        read_c3d(path, CaptureOptions())
 
 
 def test_missing_files_and_folders_are_refused(tmp_path):
     with pytest.raises(FileFormatError, match="no such file"):
-        read_c3d(tmp_path / "none.c3d")
+        read_c3d(tmp_path / "none.c3d", CaptureOptions())
     with pytest.raises(FileFormatError, match="is a folder"):
-        read_c3d(tmp_path)
+        read_c3d(tmp_path, CaptureOptions())
 
 
 @pytest.mark.parametrize(("processor", "order", "word"), [(84, "<", 7), (85, "<", 6), (86, ">", 6)])
@@ -83,7 +84,7 @@ def test_header_and_parameters_must_agree(whole, tmp_path, word):
     path = tmp_path / "odd.c3d"
     path.write_bytes(content)
     with pytest.raises(FileFormatError, match="header counts"):
-        read_c3d(path)
+        read_c3d(path, CaptureOptions())
 
 
 def test_random_bytes_in_the_parameters_are_harmless_or_refused(whole, tmp_path):

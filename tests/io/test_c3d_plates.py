@@ -11,9 +11,9 @@ from mbkf.io.c3d_plates import (
     CHANNELS_OF_TYPE,
     RawPlate,
     check_geometry,
-    plate_axes,
     wrench_at_surface,
 )
+from mbkf.io.plate_corners import plate_axes
 from tests.io.c3d_builder import CORNERS_MM, PLATE_AXES
 
 A_MM, B_MM, DEPTH_MM = 120.0, 200.0, 55.0
@@ -98,7 +98,7 @@ def test_wrench_of_each_type(kind, flipped, force, place, torque):
     arm = PLATE_AXES @ np.array([*place, 0.0]) * 1e-3
     moment = np.cross(arm, world_force) + PLATE_AXES @ [0.0, 0.0, torque * 1e-3]
     check_geometry(plate, "file", "mm")
-    found = wrench_at_surface(plate, "mm")
+    found = wrench_at_surface(plate, "mm", [])
     np.testing.assert_allclose(found, [np.concatenate([world_force, moment])], atol=1e-8)
 
 
@@ -111,21 +111,21 @@ def test_units_of_moments(unit, moment_unit, factor):
     readings = np.array([[0.0, 0.0, -100.0, 7.0, 0.0, 0.0]])
     plate = plate_of(2, readings, units=("N",) * 3 + (moment_unit,) * 3)
     np.testing.assert_allclose(
-        wrench_at_surface(plate, unit)[0, 3:], PLATE_AXES[:, 0] * 7.0 * factor, atol=1e-12
+        wrench_at_surface(plate, unit, [])[0, 3:], PLATE_AXES[:, 0] * 7.0 * factor, atol=1e-12
     )
 
 
 def test_kilonewtons_are_newtons_times_a_thousand():
     plate = plate_of(2, np.array([[0.0, 0.0, -0.7, 0.0, 0.0, 0.0]]), units=("kN",) * 3 + ("kNm",) * 3)
-    np.testing.assert_allclose(wrench_at_surface(plate, "mm")[0, :3], [0.0, 0.0, 700.0])
+    np.testing.assert_allclose(wrench_at_surface(plate, "mm", [])[0, :3], [0.0, 0.0, 700.0])
 
 
 def test_axes_are_orthonormal_and_point_down_even_for_surveyed_corners():
     noisy = CORNERS_MM + np.random.default_rng(0).normal(0.0, 2.0, (3, 4))
-    axes = plate_axes(noisy)
+    axes = plate_axes(noisy.T)
     np.testing.assert_allclose(axes.T @ axes, np.eye(3), atol=1e-12)
     np.testing.assert_allclose(axes, PLATE_AXES, atol=0.02)
-    np.testing.assert_array_equal(plate_axes(CORNERS_MM), PLATE_AXES)
+    np.testing.assert_array_equal(plate_axes(CORNERS_MM.T), PLATE_AXES)
 
 
 @pytest.mark.parametrize(

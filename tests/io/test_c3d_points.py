@@ -6,6 +6,7 @@ import pytest
 from mbkf.io.c3d import read_c3d
 from mbkf.io.c3d_parameters import C3dParameters
 from mbkf.io.c3d_points import point_labels
+from mbkf.io.capture_options import CaptureOptions
 from tests.io.c3d_builder import build_c3d, standing_points
 
 
@@ -31,7 +32,7 @@ def test_negative_residual_and_exact_zero_are_missing(tmp_path):
     points[2, 3] = 0.0
     residuals = np.zeros((5, 6))
     residuals[1, 4] = -1.0
-    markers = read_c3d(build_c3d(tmp_path / "a.c3d", points, residuals=residuals)).markers
+    markers = read_c3d(build_c3d(tmp_path / "a.c3d", points, residuals=residuals), CaptureOptions()).markers
     expected = np.ones((5, 6), bool)
     expected[2, 3] = expected[1, 4] = False
     np.testing.assert_array_equal(markers.present, expected)
@@ -42,7 +43,7 @@ def test_more_points_than_one_parameter_holds(tmp_path):
     count = 600
     points = standing_points(3, count)
     labels = [f"P{i}" for i in range(count)]
-    markers = read_c3d(build_c3d(tmp_path / "many.c3d", points, labels)).markers
+    markers = read_c3d(build_c3d(tmp_path / "many.c3d", points, labels), CaptureOptions()).markers
     assert markers.names == tuple(labels)
     np.testing.assert_allclose(markers.positions_m, points / 1000.0, rtol=1e-6)
 
@@ -56,7 +57,7 @@ def test_derived_points_keep_their_unit_and_axes(tmp_path):
         ("POINT", "MOMENT_UNITS"): ["Nmm"],
     }
     points = standing_points()
-    capture = read_c3d(build_c3d(tmp_path / "d.c3d", points, labels, extra=extra), up="y")
+    capture = read_c3d(build_c3d(tmp_path / "d.c3d", points, labels, extra=extra), CaptureOptions(up="y"))
     assert capture.markers.names == ("LASI", "RASI", "C7", "CLAV", "M7")
     assert [(d.name, d.kind, d.unit) for d in capture.derived] == [
         ("LKneeAngles", "angle", "deg"),

@@ -9,7 +9,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from mbkf.errors import InvalidInput
-from mbkf.io.c3d import read_c3d, write_c3d
+from mbkf.io.c3d import read_c3d
+from mbkf.io.c3d_write import write_c3d
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.records import (
     AnalogChannel,
     Capture,
@@ -55,7 +57,7 @@ def test_markers_round_trip(tmp_path, values, hidden, rate_hz, first, unlabelled
     markers = markers_of(values, names, rate_hz, first / rate_hz)
     path = tmp_path / "a.c3d"
     write_c3d(Capture("", markers), path)
-    back = read_c3d(path, unit="mm").markers
+    back = read_c3d(path, CaptureOptions(unit="mm")).markers
     assert (back.names, back.rate_hz, back.start_time_s) == (names, rate_hz, pytest.approx(first / rate_hz))
     np.testing.assert_allclose(back.positions_m, values, atol=1e-6)
 
@@ -73,7 +75,7 @@ def test_everything_round_trips(tmp_path, corners):
         (AnalogChannel("EMG", emg, "V", 1000.0),), events, subject_mass_kg=71.5,
     )  # fmt: skip
     write_c3d(capture, tmp_path / "a.c3d")
-    back = read_c3d(tmp_path / "a.c3d", tare=False)
+    back = read_c3d(tmp_path / "a.c3d", CaptureOptions(tare=False))
     np.testing.assert_allclose(back.markers.positions_m, positions, atol=1e-6)
     (again,) = back.plates
     assert (again.rate_hz, again.start_time_s) == (1000.0, 0.5)
@@ -98,7 +100,7 @@ def test_places_among_derived_points_are_turned_into_world_axes(tmp_path):
     centre = DerivedPoint("LHJC", "point", np.tile([1.0, 2.0, 3.0], (5, 1)), "cm")
     write_c3d(Capture("", markers_of(positions), derived=(centre,), up_axis="y"), tmp_path / "a.c3d")
     np.testing.assert_allclose(
-        read_c3d(tmp_path / "a.c3d").derived[0].values[0], [10.0, -30.0, 20.0], atol=1e-5
+        read_c3d(tmp_path / "a.c3d", CaptureOptions()).derived[0].values[0], [10.0, -30.0, 20.0], atol=1e-5
     )
 
 
@@ -110,7 +112,7 @@ def test_rates_that_do_not_divide_are_interpolated(tmp_path):
         plate, force_n=ramp, moment_nm=0.0 * ramp, centre_of_pressure_m=np.full((1000, 3), np.nan)
     )
     write_c3d(Capture("", markers_of(positions, rate_hz=60.0), (plate,)), tmp_path / "a.c3d")
-    (back,) = read_c3d(tmp_path / "a.c3d", tare=False).plates
+    (back,) = read_c3d(tmp_path / "a.c3d", CaptureOptions(tare=False)).plates
     assert back.rate_hz == 17 * 60.0
     inside = back.times_s < 0.99
     np.testing.assert_allclose(back.force_n[inside, 2], 1000.0 * back.times_s[inside], atol=1e-2)
@@ -119,7 +121,7 @@ def test_rates_that_do_not_divide_are_interpolated(tmp_path):
 def test_many_markers_round_trip(tmp_path):
     positions = standing_points(2, 400) / 1e3
     write_c3d(Capture("", markers_of(positions)), tmp_path / "a.c3d")
-    back = read_c3d(tmp_path / "a.c3d").markers
+    back = read_c3d(tmp_path / "a.c3d", CaptureOptions()).markers
     assert back.names == tuple(f"M{i}" for i in range(400))
     np.testing.assert_allclose(back.positions_m, positions, atol=1e-6)
 
@@ -137,14 +139,14 @@ def test_more_plates_than_the_format_counts_are_refused_and_as_many_as_it_counts
     with pytest.raises(InvalidInput, match="258 analog channels"):
         write_c3d(Capture("", markers_of(positions), (plate,) * 43), tmp_path / "a.c3d")
     write_c3d(Capture("", markers_of(positions), (plate,) * 42), tmp_path / "b.c3d")
-    assert len(read_c3d(tmp_path / "b.c3d").plates) == 42
+    assert len(read_c3d(tmp_path / "b.c3d", CaptureOptions()).plates) == 42
 
 
 def test_computed_places_with_names_of_their_own_do_not_come_back_as_markers(tmp_path):
     positions = standing_points(5) / 1e3
     place = DerivedPoint("Anything", "point", np.tile([1.0, 2.0, 3.0], (5, 1)), "m", "what it is, x ° y")
     write_c3d(Capture("", markers_of(positions), derived=(place,)), tmp_path / "a.c3d")
-    back = read_c3d(tmp_path / "a.c3d")
+    back = read_c3d(tmp_path / "a.c3d", CaptureOptions())
     assert "Anything" not in back.markers.names
     (found,) = back.derived
     assert (found.name, found.kind, found.unit, found.description) == (
@@ -158,4 +160,4 @@ def test_more_events_than_a_list_holds_come_back(tmp_path, count):
     labels = ("Foot Strike", "Foot Off", "General")
     events = tuple(CaptureEvent(labels[k % 3], ("Left", "Right")[k % 2], 0.25 * k) for k in range(count))
     write_c3d(Capture("", markers_of(standing_points(5) / 1e3), events=events), tmp_path / "a.c3d")
-    assert read_c3d(tmp_path / "a.c3d").events == events
+    assert read_c3d(tmp_path / "a.c3d", CaptureOptions()).events == events

@@ -9,11 +9,11 @@ from benchmarks.any_capture.forces import readings
 from mbkf.errors import FileFormatError, InvalidInput, MbkfError
 from mbkf.io.axes import rotation_to_world
 from mbkf.io.capture import read_capture
-from mbkf.io.forces import write_forces_mot
 from mbkf.io.records import AxesSource, MarkerTrajectories, PlateReadings
 from mbkf.io.trc import write_trc
 from tests.io.c3d_builder import Plate, build_c3d, standing_points
 from tests.io.true_capture import made_truth
+from tests.mot_files import write_forces_mot
 
 
 def forces_file(path, start_s=0.0):

@@ -6,6 +6,7 @@ import pytest
 from benchmarks.any_capture.dialects import write_cortex
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.capture import read_capture
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.cortex import read_forces_cortex
 from tests.io.true_capture import check_plates, made_truth
 
@@ -20,7 +21,7 @@ def written(path, up="y"):
 def test_weight_tells_the_axis_and_the_free_moment_is_about_it(tmp_path, up):
     notes = []
     true = written(tmp_path / "a.forces", up)
-    plates = read_forces_cortex(tmp_path / "a.forces", notes=notes)
+    plates = read_forces_cortex(tmp_path / "a.forces", CaptureOptions(tare=False, notes=notes))
     check_plates(true, plates)
     assert [plate.name for plate in plates] == ["1", "2"]
     assert any("taken as mm" in note for note in notes)
@@ -32,7 +33,7 @@ def test_a_later_first_sample_is_a_later_start(tmp_path):
     written(path)
     lines = path.read_text().splitlines()
     path.write_text("\n".join([*lines[:5], *lines[105:]]) + "\n")
-    assert read_forces_cortex(path)[0].start_time_s == pytest.approx(100 / 500.0)
+    assert read_forces_cortex(path, CaptureOptions(tare=False))[0].start_time_s == pytest.approx(100 / 500.0)
 
 
 def test_counts_that_disagree_are_told(tmp_path):
@@ -40,7 +41,7 @@ def test_counts_that_disagree_are_told(tmp_path):
     written(path)
     text = path.read_text().replace("Samples=300", "Samples=900").replace("Plates=2", "Plates=7")
     path.write_text(text)
-    read_forces_cortex(path, notes=notes)
+    read_forces_cortex(path, CaptureOptions(tare=False, notes=notes))
     assert "the header counts 900 samples, 300 are there" in notes
     assert "the header counts 7 force plates, 2 have columns" in notes
 
@@ -63,7 +64,7 @@ def test_damaged_files_give_one_clear_error(tmp_path, change, reason):
     written(path)
     path.write_text(change(path.read_text()))
     with pytest.raises(FileFormatError, match=reason):
-        read_forces_cortex(path)
+        read_forces_cortex(path, CaptureOptions(tare=False))
 
 
 def test_a_force_that_is_no_number_is_refused(tmp_path):
@@ -71,7 +72,7 @@ def test_a_force_that_is_no_number_is_refused(tmp_path):
     written(path)
     path.write_text(path.read_text().replace("\n9\t0", "\n9\tnan"))
     with pytest.raises(InvalidInput, match="set '1': 1 of 300 samples"):
-        read_forces_cortex(path)
+        read_forces_cortex(path, CaptureOptions(tare=False))
 
 
 def test_reference_forces(real_data):

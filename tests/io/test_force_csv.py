@@ -6,6 +6,7 @@ import pytest
 from benchmarks.any_capture.dialects import write_devices_table, write_plate_tables
 from mbkf.errors import FileFormatError, UnknownName
 from mbkf.io.capture import read_capture
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.force_csv import read_forces_csv
 from tests.io.true_capture import check_plates, made_truth
 
@@ -15,6 +16,10 @@ TRUE = made_truth()
 def saved(path, text):
     path.write_text(text)
     return path
+
+
+def read(path, **options):
+    return read_forces_csv(path, CaptureOptions(tare=False, **options))
 
 
 def changed(path, change):
@@ -33,7 +38,9 @@ def simple(mark=",", titles=("time", "Fx", "Fy", "Fz", "COPx", "COPy", "COPz", "
 @pytest.mark.parametrize(("mark", "decimal"), [(",", "."), ("\t", "."), (";", "."), (";", ","), (" ", ".")])
 def test_plain_tables(tmp_path, mark, decimal):
     notes = []
-    plates = read_forces_csv(saved(tmp_path / "a.csv", simple(mark, decimal=decimal)), notes=notes)
+    plates = read_forces_csv(
+        saved(tmp_path / "a.csv", simple(mark, decimal=decimal)), CaptureOptions(tare=False, notes=notes)
+    )
     check_plates(made_one(), plates)
     assert notes == ["the ground reactions carry weight along z; taken as up in their file (--up changes it)"]
 
@@ -44,7 +51,7 @@ def made_one():
 
 def test_all_plates_with_units_a_rate_and_moments_about_their_middles(tmp_path):
     write_devices_table(TRUE, tmp_path / "a.csv")
-    check_plates(TRUE, read_forces_csv(tmp_path / "a.csv"))
+    check_plates(TRUE, read(tmp_path / "a.csv"))
 
 
 def test_a_rate_and_frames_give_the_times(tmp_path):
@@ -54,7 +61,7 @@ def test_a_rate_and_frames_give_the_times(tmp_path):
     text = "\n".join(",".join(f"{value:.12g}" for value in row) for row in rows)
     head = f"Devices\n500\n,,Plate - Force,,,Plate - CoP,,\n{titles}\n,,N,N,N,mm,mm,mm\n"
     path = saved(tmp_path / "a.csv", f"{head}{text}\n\nTrajectories\n100\n")
-    (found,) = read_forces_csv(path)
+    (found,) = read(path)
     assert (found.rate_hz, found.start_time_s) == (500.0, pytest.approx(0.1))
     np.testing.assert_allclose(found.force_n, plate.force_n, atol=1e-9)
     np.testing.assert_allclose(found.origin_m[:2], plate.point_m[plate.force_n[:, 2] > 20, :2].mean(axis=0))
@@ -63,7 +70,7 @@ def test_a_rate_and_frames_give_the_times(tmp_path):
 def test_plates_in_files_of_their_own_with_corners(tmp_path):
     first = write_plate_tables(TRUE, tmp_path)
     notes = []
-    plates = read_forces_csv(first, notes=notes)
+    plates = read(first, notes=notes)
     check_plates(TRUE, plates)
     assert [plate.name for plate in plates] == ["1", "2"]
     np.testing.assert_allclose(plates[1].corners_m, TRUE.plates[1].corners_m, atol=1e-8)
@@ -80,7 +87,7 @@ def test_corners_in_mm(tmp_path):
     for path in (first, first.with_name("walk_force plate 2.csv")):
         lines = path.read_text().splitlines()
         path.write_text("\n".join(in_mm(line) if "Corner" in line else line for line in lines) + "\n")
-    check_plates(TRUE, read_forces_csv(first))
+    check_plates(TRUE, read(first))
 
 
 def test_a_file_name_names_the_columns_of_a_table_without_titles(tmp_path):
@@ -89,7 +96,7 @@ def test_a_file_name_names_the_columns_of_a_table_without_titles(tmp_path):
     path = tmp_path / "stoop_F1Cop1F2Cop2.csv"
     np.savetxt(path, rows, delimiter=",")
     notes = []
-    plates = read_forces_csv(path, notes=notes)
+    plates = read(path, notes=notes)
     assert [plate.name for plate in plates] == ["1", "2"]
     for plate, truth in zip(plates, TRUE.plates, strict=True):
         np.testing.assert_allclose(plate.force_n, truth.force_n, atol=1e-9)
@@ -97,7 +104,7 @@ def test_a_file_name_names_the_columns_of_a_table_without_titles(tmp_path):
         np.testing.assert_allclose(plate.centre_of_pressure_m[pressed], truth.point_m[pressed], atol=1e-9)
     assert sum("free moment is taken as 0" in note for note in notes) == 2
     with pytest.raises(FileFormatError, match="no line names the columns of a force"):
-        read_forces_csv(path.rename(tmp_path / "stoop.csv"))
+        read(path.rename(tmp_path / "stoop.csv"))
 
 
 @pytest.mark.parametrize(
@@ -116,25 +123,25 @@ def test_a_file_name_names_the_columns_of_a_table_without_titles(tmp_path):
 def test_damaged_tables_give_one_clear_error(tmp_path, change, error, reason):
     path = changed(saved(tmp_path / "a.csv", simple()), change)
     with pytest.raises(error, match=reason):
-        read_forces_csv(path)
+        read(path)
 
 
 def test_a_plate_without_pressure_or_corners_is_refused(tmp_path):
     first = write_plate_tables(TRUE, tmp_path)
     changed(first, lambda text: text.replace("Corner", "Edge"))
     with pytest.raises(FileFormatError, match="no point of application"):
-        read_forces_csv(first)
+        read(first)
     write_plate_tables(TRUE, tmp_path)
     changed(first, lambda text: text.replace("Mx,My,Mz", "a,b,c"))
     with pytest.raises(FileFormatError, match="plate '1' has neither centre of pressure nor moments"):
-        read_forces_csv(first)
+        read(first)
 
 
 def test_missing_file_and_unknown_axis(tmp_path):
     with pytest.raises(FileFormatError, match="no such file"):
-        read_forces_csv(tmp_path / "none.csv")
+        read(tmp_path / "none.csv")
     with pytest.raises(UnknownName, match="axis 'up'"):
-        read_forces_csv(saved(tmp_path / "a.csv", simple()), up="up")
+        read(saved(tmp_path / "a.csv", simple()), up="up")
 
 
 def test_reference_forces(real_data):

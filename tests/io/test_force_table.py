@@ -7,7 +7,8 @@ import pytest
 
 from mbkf.errors import FileFormatError
 from mbkf.io.axes import WORLD_AXES, rotation_to_world
-from mbkf.io.force_table import ForceTable, plates_of_table, up_of_table, vertical_axis
+from mbkf.io.capture_options import CaptureOptions
+from mbkf.io.force_table import ForceTable, plates_of_table, vertical_axis
 from tests.io.true_capture import RATE_HZ, check_plates, made_truth
 
 TRUE = made_truth()
@@ -32,7 +33,7 @@ def without(one: ForceTable, *names: str) -> ForceTable:
 
 
 def read(one: ForceTable, up="z", notes=None):
-    return plates_of_table(one, up=up, threshold_n=20.0, tare=False, notes=[] if notes is None else notes)
+    return plates_of_table(one, CaptureOptions(up=up, tare=False, notes=[] if notes is None else notes))
 
 
 @pytest.mark.parametrize("up", WORLD_AXES)
@@ -114,13 +115,11 @@ def test_what_cannot_be_completed_is_refused(names, reason):
 
 
 def test_weight_tells_the_axis():
-    for axis in "xyz":
-        assert up_of_table(table(axis), None, axis, []) == axis
+    for axis in WORLD_AXES:
         notes = []
-        assert up_of_table(table(axis), None, "y", notes) == axis
-        assert bool(notes) == (axis != "y")
-    assert up_of_table(table("x"), "z", "y", []) == "z"
-    assert up_of_table(table("-z"), None, "y", []) == "-z"
-    assert up_of_table(table("z", -1.0, on_body=False), None, "y", []) == "z"
+        check_plates(TRUE, read(table(axis), None, notes))
+        told = f"the ground reactions carry weight along {axis}; taken as up in their file (--up changes it)"
+        assert notes == [told] * (axis != "y")
+    check_plates(TRUE, read(table("z", -1.0, on_body=False), None))
     assert vertical_axis([np.zeros((5, 3))]) is None
     assert vertical_axis([np.tile([300.0, 0.0, 300.0], (5, 1))]) is None

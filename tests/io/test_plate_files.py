@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 from mbkf.io.c3d import read_c3d
 from mbkf.io.c3d_plates import CALIBRATION_OF_TYPE, CHANNELS_OF_TYPE
 from mbkf.io.capture import read_capture
+from mbkf.io.capture_options import CaptureOptions
 from tests.io.c3d_builder import CENTRE_M, CORNERS_MM, PLATE_AXES, standing_points
 from tests.io.c3d_bytes import DEC, INTEL, MIPS, c3d_bytes, floats, integers
 from tests.io.test_c3d_plates import CALIBRATIONS, arrangement, signals
@@ -69,7 +70,7 @@ def plate_file(path, kind, turn=TURNS[0], processor=INTEL, whole=False, moments=
 def test_the_wrench_is_the_one_that_was_applied(tmp_path, kind, turn, processor, whole):
     path = tmp_path / "plate.c3d"
     force, moment, pressed, loaded = plate_file(path, kind, turn, processor, whole)
-    (plate,) = read_c3d(path).plates
+    (plate,) = read_c3d(path, CaptureOptions()).plates
     assert np.abs(plate.force_n - force).max() < 0.1
     assert np.abs(plate.moment_nm - moment).max() < 0.05
     assert np.linalg.norm(plate.centre_of_pressure_m - pressed, axis=1)[loaded].max() < 1e-4
@@ -80,7 +81,7 @@ def test_the_wrench_is_the_one_that_was_applied(tmp_path, kind, turn, processor,
 def test_moments_in_another_unit_are_known_by_where_they_press(tmp_path, moments, factor):
     path = tmp_path / "plate.c3d"
     _, moment, pressed, loaded = plate_file(path, 2, moments=moments)
-    found = read_c3d(path)
+    found = read_c3d(path, CaptureOptions())
     (plate,) = found.plates
     np.testing.assert_allclose(plate.moment_nm, moment, atol=0.05)
     assert np.linalg.norm(plate.centre_of_pressure_m - pressed, axis=1)[loaded].max() < 1e-4
@@ -90,7 +91,7 @@ def test_moments_in_another_unit_are_known_by_where_they_press(tmp_path, moments
 def test_moments_in_their_own_unit_are_left(tmp_path):
     path = tmp_path / "plate.c3d"
     plate_file(path, 2)
-    assert not any("moments are taken" in note for note in read_c3d(path).notes)
+    assert not any("moments are taken" in note for note in read_c3d(path, CaptureOptions()).notes)
 
 
 @pytest.mark.parametrize("kind", sorted(CHANNELS_OF_TYPE))
@@ -99,7 +100,7 @@ def test_either_sign_of_origin_presses_where_it_was_pressed_and_the_wrong_one_is
     places = []
     for flipped in (False, True):
         _, _, pressed, loaded = plate_file(path, kind, flipped=flipped)
-        found = read_c3d(path)
+        found = read_c3d(path, CaptureOptions())
         places.append(found.plates[0].centre_of_pressure_m[loaded])
         assert np.linalg.norm(places[-1] - pressed[loaded], axis=1).max() < 1e-4
         assert any(told in note for note in found.notes) is flipped

@@ -7,19 +7,19 @@ import pytest
 
 from mbkf.errors import FileFormatError, InvalidInput
 from mbkf.io.axes import rotation_to_world
-from mbkf.io.c3d_plates import plate_axes
+from mbkf.io.capture_options import CaptureOptions
+from mbkf.io.plate_corners import plate_axes
 from mbkf.io.plate_table import PlateTable, check_corners, faced_axis, plates_with_corners
 from tests.io.true_capture import RATE_HZ, check_plates, made_plate, made_truth
 
 TRUE = made_truth()
-OPTIONS = {"up": "z", "threshold_n": 20.0, "tare": False}
 
 
 def table(
     plate, local=True, sign=1.0, factor=1.0, about_centre=True, described=True, pressure=True
 ) -> PlateTable:
     """A true plate as a file may hold it."""
-    axes = plate_axes(plate.corners_m.T) if local else np.eye(3)
+    axes = plate_axes(plate.corners_m) if local else np.eye(3)
     middle = plate.corners_m.mean(axis=0)
     moment = plate.about_middle() if about_centre else plate.wrench[:, 3:]
     point = (plate.point_m - middle) @ axes if local else plate.point_m
@@ -36,8 +36,8 @@ def table(
     )
 
 
-def read(tables, **options):
-    return plates_with_corners(tables, **{**OPTIONS, "notes": [], **options})
+def read(tables, up="z", **options):
+    return plates_with_corners(tables, up, CaptureOptions(**{"tare": False, **options}))
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -69,7 +69,9 @@ def test_axes_that_nothing_tells_are_refused():
     at_origin = replace(
         plate, corners_m=plate.corners_m - [0.0, 0.2, 0.0], point_m=plate.point_m - [0.0, 0.2, 0.0]
     )
-    with pytest.raises(FileFormatError, match="plate '1': nothing tells whether"):
+    with pytest.raises(
+        FileFormatError, match="plate '1': its vectors fit plate and laboratory axes equally well"
+    ):
         read([table(at_origin, described=False)])
     with pytest.raises(FileFormatError, match="plate '1': neither axes nor a centre of pressure"):
         read([table(plate, described=False, pressure=False)])

@@ -6,7 +6,9 @@ import pytest
 from benchmarks.any_capture.dialects import write_qualisys
 from mbkf.errors import FileFormatError, InvalidInput, UnknownName
 from mbkf.io.capture import read_capture
-from mbkf.io.qualisys import plate_files, read_forces_qualisys, read_qualisys
+from mbkf.io.capture_options import CaptureOptions
+from mbkf.io.numbered_files import plate_files
+from mbkf.io.qualisys import PLATE_FILE, read_forces_qualisys, read_qualisys
 from mbkf.io.trc import write_trc
 from tests.io.true_capture import check_markers, check_plates, made_truth
 
@@ -51,16 +53,16 @@ def test_plates_named_with_forces_join_other_markers(tmp_path, local):
 @pytest.mark.parametrize("described", ["", "Force data"])
 def test_centres_of_pressure_tell_axes_that_are_not_described(tmp_path, local, described):
     true = written(tmp_path / "walk.tsv", local)
-    for path in plate_files(tmp_path / "walk.tsv"):
+    for path in plate_files(tmp_path / "walk.tsv", PLATE_FILE):
         words = "local (force plate)" if local else "world (lab)"
         changed(path, lambda text, words=words: text.replace(f"Force data in {words} coordinates", described))
-    check_plates(true, read_forces_qualisys(tmp_path / "walk_f_1.tsv"))
+    check_plates(true, read_forces_qualisys(tmp_path / "walk_f_1.tsv", CaptureOptions()))
 
 
 @BOTH
 def test_centres_of_pressure_tell_the_unit_of_moments(tmp_path, local):
     true = written(tmp_path / "walk.tsv", local)
-    for path in plate_files(tmp_path / "walk.tsv"):
+    for path in plate_files(tmp_path / "walk.tsv", PLATE_FILE):
         lines = path.read_text().splitlines()
         start = next(i for i, line in enumerate(lines) if line.startswith("SAMPLE"))
         for i in range(start + 1, len(lines)):
@@ -69,14 +71,14 @@ def test_centres_of_pressure_tell_the_unit_of_moments(tmp_path, local):
                 [*cells[:5], *(f"{1e3 * float(cell):.12g}" for cell in cells[5:8]), *cells[8:]]
             )
         path.write_text("\n".join(lines) + "\n")
-    check_plates(true, read_forces_qualisys(tmp_path / "walk_f_1.tsv"))
+    check_plates(true, read_forces_qualisys(tmp_path / "walk_f_1.tsv", CaptureOptions()))
 
 
 def test_moments_that_contradict_the_centres_of_pressure_are_told(tmp_path):
     written(tmp_path / "walk.tsv")
     notes = []
     changed(tmp_path / "walk_f_1.tsv", lambda text: text.replace("COP_X\tCOP_Y", "COP_Y\tCOP_X"))
-    read_forces_qualisys(tmp_path / "walk_f_1.tsv", notes=notes)
+    read_forces_qualisys(tmp_path / "walk_f_1.tsv", CaptureOptions(notes=notes))
     assert any("plate '1': moments and centres of pressure disagree" in note for note in notes)
 
 
@@ -91,7 +93,7 @@ def test_missing_samples_events_duplicates_and_counts(tmp_path):
             .replace("NO_OF_MARKERS\t8", "NO_OF_MARKERS\t9")
         ),
     )
-    capture = read_qualisys(path)
+    capture = read_qualisys(path, CaptureOptions())
     assert capture.markers.names[:3] == ("A", "A_2", "C")
     assert [(event.label, event.time_s) for event in capture.events] == [("Foot strike", 0.2)]
     assert not capture.markers.present[10:14, 2].any()
@@ -102,12 +104,12 @@ def test_missing_samples_events_duplicates_and_counts(tmp_path):
 def test_without_plates_the_axis_is_told_or_given(tmp_path):
     path = tmp_path / "walk.tsv"
     true = written(path)
-    for plate in plate_files(path):
+    for plate in plate_files(path, PLATE_FILE):
         plate.unlink()
-    capture = read_qualisys(path)
+    capture = read_qualisys(path, CaptureOptions())
     assert any("taken as z" in note for note in capture.notes)
     assert capture.plates == ()
-    turned = read_qualisys(path, up="x", unit="mm").markers.positions_m
+    turned = read_qualisys(path, CaptureOptions(up="x", unit="mm")).markers.positions_m
     np.testing.assert_allclose(turned[..., 2], true.markers.positions_m[..., 0], atol=1e-9)
 
 
@@ -117,7 +119,7 @@ def test_without_plates_the_axis_is_told_or_given(tmp_path):
         (lambda text: "", "line 1: not a TSV file of Qualisys"),
         (lambda text: text.replace("MARKER_NAMES", "NAMES"), "holds no trajectories"),
         (lambda text: text.replace("INCLUDED\t3D", "INCLUDED\t2D"), "holds no trajectories"),
-        (lambda text: text.replace("FREQUENCY\t100", "FREQUENCY\tEXT"), "FREQUENCY is no rate"),
+        (lambda text: text.replace("FREQUENCY\t100", "FREQUENCY\tEXT"), "FREQUENCY is not a rate"),
         (lambda text: text.partition("Frame\t")[0], "cut short: no rows"),
         (lambda text: text[: len(text) // 2], "cut short"),
         (lambda text: text.replace("\n3\t0.02\t", "\n3\t0.02\tx"), "line 15: not a number"),
@@ -131,7 +133,7 @@ def test_damaged_trajectories_give_one_clear_error(tmp_path, change, reason):
     written(tmp_path / "walk.tsv")
     changed(tmp_path / "walk.tsv", change)
     with pytest.raises(FileFormatError, match=reason):
-        read_qualisys(tmp_path / "walk.tsv")
+        read_qualisys(tmp_path / "walk.tsv", CaptureOptions())
 
 
 @pytest.mark.parametrize(
@@ -159,13 +161,13 @@ def test_damaged_plates_give_one_clear_error(tmp_path, change, error, reason):
     changed(tmp_path / "walk_f_1.tsv", change)
     with pytest.raises(error, match=reason):
         read_capture(tmp_path / "walk.tsv")
-    assert read_qualisys(tmp_path / "walk.tsv", plates=False).plates == ()
+    assert read_qualisys(tmp_path / "walk.tsv", CaptureOptions(plates=False)).plates == ()
 
 
 def test_trajectories_are_no_plate(tmp_path):
     path = tmp_path / "walk.tsv"
     written(path)
-    for plate in plate_files(path):
+    for plate in plate_files(path, PLATE_FILE):
         plate.unlink()
     with pytest.raises(FileFormatError, match="holds no force plate"):
-        read_forces_qualisys(path)
+        read_forces_qualisys(path, CaptureOptions())

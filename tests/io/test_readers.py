@@ -113,3 +113,17 @@ def test_suffixes_are_known_without_heavy_libraries():
     code = "import sys, mbkf.io.capture, mbkf.io.imu.files; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert not {"ezc3d", "scipy", "h5py", "pinocchio"} & set(loaded.split())
+
+
+def test_a_function_is_imported_at_its_first_call():
+    code = "import sys\nfrom mbkf.io.readers import lazily\nnorms = lazily('norms', 'read_norms')\n"
+    code += "before = 'mbkf.io.norms' in sys.modules\ntry:\n    norms('none.toml')\n"
+    code += (
+        "except Exception as error:\n    print(before, type(error).__name__, 'mbkf.io.norms' in sys.modules)"
+    )
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert shown.split() == ["False", "FileFormatError", "True"]
+
+
+def test_help_texts_list_suffixes_without_a_look_up():
+    assert CAPTURES.suffixes_so_far[:4] == (".c3d", ".trc", ".csv", ".tsv")

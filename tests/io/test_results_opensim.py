@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.results_opensim import (
     angles_lab_table,
     angles_table,
@@ -120,7 +121,7 @@ def test_frames_not_tracked_and_values_not_known_are_left_out_and_nothing_is_nan
     np.testing.assert_allclose(torques.times_s, r.times_s[tracked][1:])
     for name in ("angles.mot", "torques.sto", "reactions.mot"):
         assert "nan" not in (tmp_path / name).read_text().split("endheader")[1].lower()
-    markers = read_trc(tmp_path / "markers.trc").markers
+    markers = read_trc(tmp_path / "markers.trc", CaptureOptions()).markers
     np.testing.assert_allclose(markers.times_s, r.times_s[2:11])
     assert np.argwhere(~markers.present[:, 0]).ravel().tolist() == [4]
 
@@ -128,7 +129,7 @@ def test_frames_not_tracked_and_values_not_known_are_left_out_and_nothing_is_nan
 def test_markers_come_back_from_the_file(tmp_path):
     r = made_up()
     write_opensim(r, tmp_path)
-    markers = read_trc(tmp_path / "markers.trc").markers
+    markers = read_trc(tmp_path / "markers.trc", CaptureOptions()).markers
     assert markers.names == r.marker_names
     np.testing.assert_allclose(markers.positions_m, r.predicted_m, atol=1e-8)
 

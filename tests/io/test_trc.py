@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from mbkf.errors import FileFormatError, InvalidInput, UnknownName
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.records import MarkerTrajectories
 from mbkf.io.trc import read_trc, write_trc
 
@@ -36,7 +37,7 @@ def text(header=TIDY, names="Frame#\tTime\tHead\t\t\tL.Toe Tip\t\t", rows=ROWS, 
 def read(tmp_path, content: str, **options):
     path = tmp_path / "a.trc"
     path.write_text(content)
-    return read_trc(path, **options)
+    return read_trc(path, CaptureOptions(**options))
 
 
 def check_values(capture):
@@ -93,7 +94,7 @@ def test_units_come_from_the_header_or_the_caller(tmp_path):
     assert read(tmp_path, text(), unit="cm").markers.positions_m[0, 0, 2] == 15.0
     unstated = read(tmp_path, text("50\t50\t3\t2"))
     assert unstated.length_unit == "mm"
-    assert any("no unit" in note for note in unstated.notes)
+    assert any("no length unit" in note for note in unstated.notes)
     with pytest.raises(FileFormatError, match=r"'ells'.*--unit"):
         read(tmp_path, text(TIDY.replace("mm", "ells")))
     many = "\t".join(str(i * 0.2) for i in range(12))
@@ -181,7 +182,7 @@ def test_the_order_of_markers_does_not_matter(tmp_path, order):
     values = np.arange(24.0).reshape(2, 4, 3) / 10.0 + 0.1
     markers = MarkerTrajectories(tuple("ABCD"), values, 100.0)
     write_trc(markers.select(tuple("ABCD"[i] for i in order)), tmp_path / "a.trc")
-    back = read_trc(tmp_path / "a.trc", unit="mm").markers.select(markers.names)
+    back = read_trc(tmp_path / "a.trc", CaptureOptions(unit="mm")).markers.select(markers.names)
     np.testing.assert_allclose(back.positions_m, values, atol=1e-9)
 
 
@@ -219,7 +220,7 @@ def test_uneven_times_of_another_rate_stay_as_they_are(tmp_path):
 
 def test_missing_file(tmp_path):
     with pytest.raises(FileFormatError, match="no such file"):
-        read_trc(tmp_path / "none.trc")
+        read_trc(tmp_path / "none.trc", CaptureOptions())
 
 
 @quick
@@ -234,7 +235,7 @@ def test_round_trip(tmp_path, values, hidden, rate_hz, start_s):
     values = np.where(missing[:, :, None], np.nan, values)
     markers = MarkerTrajectories(("A", "R.Toe Tip", "*2"), values, rate_hz, start_s)
     write_trc(markers, tmp_path / "a.trc")
-    back = read_trc(tmp_path / "a.trc", unit="mm").markers
+    back = read_trc(tmp_path / "a.trc", CaptureOptions(unit="mm")).markers
     assert (back.names, back.rate_hz) == (markers.names, rate_hz)
     assert back.start_time_s == pytest.approx(start_s, abs=1e-7)
     np.testing.assert_allclose(back.positions_m, values, atol=1e-9)
@@ -254,7 +255,7 @@ def test_round_trip(tmp_path, values, hidden, rate_hz, start_s):
     ],
 )
 def test_reference_captures(real_data, name, markers, rate_hz, frames, start_s, shifted):
-    capture = read_trc(real_data / name)
+    capture = read_trc(real_data / name, CaptureOptions())
     found = capture.markers
     assert (len(found.names), found.rate_hz, found.frames, found.start_time_s) == (
         markers,
@@ -270,6 +271,6 @@ def test_reference_captures(real_data, name, markers, rate_hz, frames, start_s, 
 
 def test_a_reference_capture_whose_header_counts_from_the_start_of_the_recording(real_data):
     """Frames 1163 to 1300 of a recording, which its header counts as 1300."""
-    capture = read_trc(real_data / "biobuddy_functional" / "static.trc", up="z")
+    capture = read_trc(real_data / "biobuddy_functional" / "static.trc", CaptureOptions(up="z"))
     assert (capture.markers.frames, len(capture.markers.names)) == (138, 49)
     assert capture.notes == ("the header counts 1300 frames, 138 are there",)

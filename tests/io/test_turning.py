@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbkf.errors import ShapeError
+from mbkf.io.plate_corners import plate_normal
 from mbkf.io.records import AxesSource, PlateReadings
-from mbkf.io.turning import plate_normal, recentred, turned, turned_plate
+from mbkf.io.turning import recentred, turned, turned_plate
 from tests.captures import made_capture
 
 

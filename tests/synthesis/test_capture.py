@@ -8,6 +8,7 @@ from scipy.stats import chi2
 from mbkf.errors import InvalidInput
 from mbkf.io.c3d import read_c3d
 from mbkf.io.c3d_write import write_c3d
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.synthesis import cameras, plates
 from mbkf.synthesis.capture import CaptureSettings, synthesise_capture
 from mbkf.synthesis.person import LIMIT, STATURE_RANGE, body_of, synthesise_subject
@@ -109,7 +110,7 @@ def test_static_is_a_full_quiet_standing(capture):
 
 def test_c3d_round_trip(capture, tmp_path):
     write_c3d(capture.trial, tmp_path / "trial.c3d")
-    back = read_c3d(tmp_path / "trial.c3d")
+    back = read_c3d(tmp_path / "trial.c3d", CaptureOptions())
     assert np.nanmax(np.abs(back.markers.positions_m - capture.trial.markers.positions_m)) < 1e-6
     assert np.array_equal(back.markers.present, capture.trial.markers.present)
     assert len(back.plates) == len(capture.trial.plates)

@@ -21,12 +21,12 @@ from mbkf.io.imu.readings import ImuReadings
 from mbkf.io.imu.session import read_folder, read_together
 from mbkf.io.imu.table import read_imu_csv
 from mbkf.io.imu.xsens_text import is_xsens, is_xsens_folder, read_xsens, read_xsens_folder
-from mbkf.io.readers import FOLDER, FileFormat, FormatRegistry
+from mbkf.io.readers import FOLDER, FileFormat, FormatRegistry, lazily
 
 
 @dataclass(frozen=True)
 class ImuOptions:
-    """How a file of inertial readings is read.
+    """Options of a reader of inertial readings.
 
     Attributes:
         units: Unit by quantity of a table that does not state them, see :func:`mbkf.io.imu.table.read_imu_csv`.
@@ -58,7 +58,7 @@ def register_imu_reader(
     Args:
         suffixes: Lower-case endings of its files, each with its dot, or :data:`mbkf.io.readers.FOLDER`.
         title: Name of the format, for people.
-        recognises: Whether a file of such a suffix is of this kind; None where the suffix decides.
+        recognises: True for a file of this kind, by its content; None where the suffix decides.
 
     Raises:
         InvalidInput: A suffix is not one, or is taken.
@@ -106,7 +106,7 @@ def read_imu_session(
         paths: The files.
         units: As for :func:`read_imu`.
         rate_hz: As for :func:`read_imu`.
-        started_together: Whether all recordings started at the same moment, whatever their clocks tell.
+        started_together: All recordings started at the same moment, whatever their clocks say.
 
     Raises:
         FileFormatError: A file is missing, of no known kind, or broken.
@@ -135,39 +135,26 @@ def _read_xsens(path: Path, options: ImuOptions) -> tuple[ImuReadings, ...]:
     return (read_xsens(path, options.rate_hz),)
 
 
-@register_imu_reader(".mvnx", title="Xsens MVN export")
-def _read_mvnx(path: Path, options: ImuOptions) -> tuple[ImuReadings, ...]:  # noqa: ARG001  (the file states all)
-    from mbkf.io.imu.mvnx import read_mvnx
-
-    return read_mvnx(path)
+def _with_units(module: str, function: str) -> ReadImu:
+    read = lazily(module, function)
+    return lambda path, options: read(path, options.units)
 
 
-@register_imu_reader(".mat", title="MATLAB file of BROAD or qmt")
-def _read_mat(path: Path, options: ImuOptions) -> tuple[ImuReadings, ...]:  # noqa: ARG001  (the file states all)
-    from mbkf.io.imu.mat import read_imu_mat
-
-    return read_imu_mat(path)
-
-
-@register_imu_reader(".h5", ".hdf5", title="APDM recording")
-def _read_apdm(path: Path, options: ImuOptions) -> tuple[ImuReadings, ...]:  # noqa: ARG001  (the file states all)
-    from mbkf.io.imu.apdm import read_apdm
-
-    return read_apdm(path)
+def _stating_all(module: str, function: str) -> ReadImu:
+    """A reader of files that state units and rate themselves."""
+    read = lazily(module, function)
+    return lambda path, _: read(path)
 
 
-@register_imu_reader(".xdf", ".xdfz", title="Lab Streaming Layer recording")
-def _read_xdf(path: Path, options: ImuOptions) -> tuple[ImuReadings, ...]:
-    from mbkf.io.imu.xdf import read_xdf
-
-    return read_xdf(path, options.units)
-
-
-@register_imu_reader(".c3d", title="C3D file with channels of inertial sensors")
-def _read_c3d(path: Path, options: ImuOptions) -> tuple[ImuReadings, ...]:
-    from mbkf.io.imu.c3d_channels import read_c3d_sensors
-
-    return read_c3d_sensors(path, options.units)
+register_imu_reader(".mvnx", title="Xsens MVN export")(_stating_all("imu.mvnx", "read_mvnx"))
+register_imu_reader(".mat", title="MATLAB file of BROAD or qmt")(_stating_all("imu.mat", "read_imu_mat"))
+register_imu_reader(".h5", ".hdf5", title="APDM recording")(_stating_all("imu.apdm", "read_apdm"))
+register_imu_reader(".xdf", ".xdfz", title="Lab Streaming Layer recording")(
+    _with_units("imu.xdf", "read_xdf")
+)
+register_imu_reader(".c3d", title="C3D file with channels of inertial sensors")(
+    _with_units("imu.c3d_channels", "read_c3d_sensors")
+)
 
 
 @register_imu_reader(FOLDER, ".zip", title="recording with a table per quantity", recognises=is_by_quantity)

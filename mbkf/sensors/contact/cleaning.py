@@ -12,8 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from mbkf.conventions import GRAVITY_M_S2, BoolArray
+from mbkf.io.plate_corners import plate_normal
 from mbkf.io.records import PlateReadings
-from mbkf.io.turning import plate_normal
 from mbkf.io.wrench import centre_of_pressure
 from mbkf.numerics.runs import runs
 from mbkf.sensors.contact.faults import NO_FAULT, bridged, faults_of

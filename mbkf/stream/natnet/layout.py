@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray, read_only
 from mbkf.errors import InvalidInput
+from mbkf.io.plate_corners import has_area
 from mbkf.io.records import PlateReadings
 from mbkf.io.wrench import DEFAULT_COP_THRESHOLD_N
 from mbkf.stream.natnet import packets
 from mbkf.stream.natnet.descriptions import Descriptions, ForcePlate, MarkerSet
 from mbkf.stream.natnet.frames import Frame
-from mbkf.stream.natnet.player import axes_of, has_area
+from mbkf.stream.natnet.player import axes_of
 from mbkf.stream.source import PlateSamples, SourceFrame, StreamDescription, empty_plate
 
 WHOLE_RATE = 2e-3

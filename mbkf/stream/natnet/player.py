@@ -12,7 +12,7 @@ import numpy as np
 from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.io.axes import rotation_to_world
-from mbkf.io.c3d_plates import plate_axes
+from mbkf.io.plate_corners import has_area, plate_axes
 from mbkf.io.records import PlateReadings
 from mbkf.stream.natnet import packets
 from mbkf.stream.played import Played, PlayedFrame
@@ -22,8 +22,6 @@ UP = "y"
 
 FORGET_S = 5.0
 """A client that has not been heard of for this long is gone."""
-
-LEAST_SIDE_M = 0.02
 
 
 class NatNetPlayer:
@@ -150,15 +148,9 @@ def axes_of(corners_m: Array | None) -> Array:
     """(3, 3) axes of a plate as columns, by its corners (4, 3); those of the world where it has none."""
     if corners_m is None or not has_area(corners_m):
         return np.eye(3)
-    axes = plate_axes(np.asarray(corners_m).T)
+    axes = plate_axes(corners_m)
     near = np.round(axes)
     return near if np.abs(axes - near).max() < 1e-6 else axes
-
-
-def has_area(corners_m: Array) -> bool:
-    """Whether corners (4, 3) span a plate."""
-    sides = np.diff(np.asarray(corners_m)[[0, 1, 2]], axis=0)
-    return bool(np.linalg.norm(np.cross(*sides)) > LEAST_SIDE_M**2)
 
 
 def _description(k: int, plate: PlateReadings) -> packets.PlateDescription:

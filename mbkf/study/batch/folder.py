@@ -18,7 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from mbkf.errors import FileFormatError
-from mbkf.io.capture import CAPTURES, FORCES
+from mbkf.io.capture import CAPTURES, FORCES, folder_suffixes
 from mbkf.io.results_folder import MOTION_FILE
 from mbkf.io.session import HEIGHT_M, MASS_KG, SESSION_FILE, SessionNotes, TrialKind, read_session
 from mbkf.study.batch.plan import (
@@ -31,9 +31,6 @@ from mbkf.study.batch.plan import (
     folder_name,
     planned,
 )
-
-CAPTURE_SUFFIXES = (".c3d", ".trc")
-"""Captures of a folder, the more telling first; other formats are named in a list."""
 
 SUBJECT_FILE = "subject.toml"
 """A person scaled before, in the session's folder."""
@@ -111,7 +108,7 @@ def _is_other(file: Path) -> bool:
 def captures_in(folder: Path) -> list[Path]:
     """The captures that lie in a folder itself, one for each name, the more telling format first."""
     by_stem: dict[str, Path] = {}
-    for suffix in reversed(CAPTURE_SUFFIXES):
+    for suffix in reversed(folder_suffixes()):
         for path in sorted(folder.iterdir()):
             if path.suffix.lower() == suffix and path.is_file() and not path.name.startswith("."):
                 by_stem[path.stem.lower()] = path
@@ -127,7 +124,7 @@ def session_folders(root: Path) -> list[Path]:
     for place, folders, files in os.walk(root):
         folders[:] = [name for name in folders if not name.startswith(".")]
         seen = [
-            name for name in files if not name.startswith(".") and name.lower().endswith(CAPTURE_SUFFIXES)
+            name for name in files if not name.startswith(".") and name.lower().endswith(folder_suffixes())
         ]
         if seen and MOTION_FILE not in files and any((Path(place) / name).is_file() for name in seen):
             found.append(Path(place))

@@ -8,8 +8,9 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.io.axes import nearest_axis
+from mbkf.io.plate_corners import plate_normal
 from mbkf.io.records import Capture, PlateReadings
-from mbkf.io.turning import plate_normal, turned_plate
+from mbkf.io.turning import turned_plate
 from mbkf.trial.axes.evidence import MarkerPlaces
 
 PUSHING_N, LEAST_SAMPLES = 50.0, 20

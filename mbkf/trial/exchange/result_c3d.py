@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mbkf.io.c3d import write_c3d
+from mbkf.io.c3d_write import write_c3d
 from mbkf.io.contacts import FEET
 from mbkf.io.records import Capture, CaptureEvent, DerivedPoint, MarkerTrajectories
 from mbkf.io.results import Reconstruction

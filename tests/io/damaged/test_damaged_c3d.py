@@ -7,6 +7,7 @@ import pytest
 
 from mbkf.io.c3d import read_c3d
 from mbkf.io.capture import read_capture
+from mbkf.io.capture_options import CaptureOptions
 from tests.io.c3d_bytes import INTEL, c3d_bytes, floats, integers
 from tests.io.damaged.refusal import MOST_BYTES, refusal
 
@@ -127,7 +128,7 @@ def test_no_byte_of_the_header_does_harm(tmp_path, at):
     for value in (0, 1, 0x7F, 0x80, 0xFF):
         path.write_bytes(with_bytes(at, bytes([value])))
         try:
-            found = read_c3d(path)
+            found = read_c3d(path, CaptureOptions())
         except Exception as error:  # whatever it is, it has to be our own
             assert type(error).__module__ == "mbkf.errors" and path.name in str(error)
         else:

@@ -5,6 +5,7 @@ from functools import partial
 import pytest
 
 from mbkf.io.capture import read_capture
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.io.forces import read_forces_mot
 from mbkf.io.imu.files import read_imu
 from mbkf.io.storage import read_storage
@@ -47,6 +48,10 @@ XSENS = "// Update Rate: 100.0Hz\nPacketCounter\tAcc_X\tAcc_Y\tAcc_Z\n" + "".joi
 )
 
 
+def read_mot(path):
+    return read_forces_mot(path, CaptureOptions())
+
+
 def with_forces(path):
     markers = path.parent / "markers.trc"
     markers.write_text(TRC)
@@ -56,7 +61,7 @@ def with_forces(path):
 SAMPLES = {
     "a.trc": (read_capture, TRC), "motive.csv": (read_capture, MOTIVE), "q.tsv": (read_capture, QUALISYS),
     "c.forces": (with_forces, CORTEX), "devices.csv": (with_forces, DEVICES), "plain.csv": (with_forces, PLAIN),
-    "grf.mot": (read_forces_mot, MOT), "table.sto": (read_storage, MOT), "imu.csv": (read_imu, IMU),
+    "grf.mot": (read_mot, MOT), "table.sto": (read_storage, MOT), "imu.csv": (read_imu, IMU),
     "xsens.txt": (partial(read_imu), XSENS),
 }  # fmt: skip
 
@@ -115,17 +120,17 @@ CASES = [
         "motive.csv",
         ",Type,Marker,Marker,Marker\n,Name,A,A,A\n,ID,1,1,1\n,,Position,Position,Position\n",
         ",Name,A,A,A\n,Type,Marker,Marker,Marker\n",
-        "no row tells",
+        "no row states",
     ),
     ("motive.csv", "1,0.01", "1,nan", "no time"),
     ("motive.csv", "1,0.01", "1,1e308", "out of order"),
     ("motive.csv", "1,0.01", '1,"0.01', ""),
     ("motive.csv", "Rate,100", "Rate,1e300", "rate"),
-    ("motive.csv", "Units,Meters", "Units,Ells", "no unit of length"),
+    ("motive.csv", "Units,Meters", "Units,Ells", "not a unit of length"),
     ("motive.csv", "Frame,Time", "Frame,Tame", "no column of times"),
     ("q.tsv", "2\t0.01", "2\t0.5", "out of order"),
     ("q.tsv", "FREQUENCY\t100", "FREQUENCY\t1e300", "rate"),
-    ("q.tsv", "FREQUENCY\t100", "FREQUENCY\t-1", "no rate"),
+    ("q.tsv", "FREQUENCY\t100", "FREQUENCY\t-1", "not a rate"),
     ("q.tsv", "MARKER_NAMES\tA", "MARKER_NAMES", "no trajectories"),
     ("c.forces", "2 0 700", "9 0 700", "out of order"),
     ("c.forces", "2 0 700", "2 0 1e7", "reads a force"),

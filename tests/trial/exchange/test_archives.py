@@ -5,6 +5,7 @@ import pytest
 
 from mbkf.io.c3d import read_c3d
 from mbkf.io.capture import read_capture
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.trial.exchange.result_c3d import write_result_c3d
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import reconstruct
@@ -31,7 +32,7 @@ def both(real_data, tmp_path_factory):
     subject = scale(read_capture(folder / "HC032A_Static_HC032A01.c3d"), [], mass_kg=60.3)
     path = tmp_path_factory.mktemp("archive") / "walk.c3d"
     write_result_c3d(reconstruct(trial, subject, settings=ReconstructSettings(angles="pig")), path)
-    ours = read_c3d(path)
+    ours = read_c3d(path, CaptureOptions())
     return {p.name: p.values for p in trial.derived}, {p.name: p.values for p in ours.derived}, trial, ours
 
 

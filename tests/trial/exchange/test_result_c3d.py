@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mbkf.io.c3d import read_c3d
+from mbkf.io.capture_options import CaptureOptions
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.trial.exchange.result_c3d import result_capture, write_result_c3d
 from mbkf.trial.gait.events import foot_events
@@ -175,12 +176,12 @@ def test_strikes_and_offs_are_events(theirs, path):
     assert told(theirs, "LABELS", "EVENT") == [label for _, _, label in expected]
     icons = {"Foot Strike": 1, "Foot Off": 2}
     assert list(told(theirs, "ICON_IDS", "EVENT")) == [icons[label] for _, _, label in expected]
-    own = [(e.context, e.label) for e in read_c3d(path).events]
+    own = [(e.context, e.label) for e in read_c3d(path, CaptureOptions()).events]
     assert own == [(side, label) for _, side, label in expected]
 
 
 def test_the_own_reader_finds_the_same_and_takes_no_computed_point_for_a_marker(path, points):
-    back, r = read_c3d(path), result()
+    back, r = read_c3d(path, CaptureOptions()), result()
     assert back.markers.names == r.marker_names
     assert (back.markers.rate_hz, back.markers.start_time_s) == (r.rate_hz, pytest.approx(0.4))
     assert back.subject_mass_kg == pytest.approx(r.subject.mass_kg, rel=1e-6)
@@ -202,7 +203,7 @@ def test_lost_frames_leave_gaps(tmp_path):
     kept = np.r_[0:50, 60:90]
     short = cut(r, kept)
     write_result_c3d(short, tmp_path / "x.c3d")
-    back = read_c3d(tmp_path / "x.c3d")
+    back = read_c3d(tmp_path / "x.c3d", CaptureOptions())
     assert back.markers.frames == 90
     knee = next(point.values for point in back.derived if point.name == "RKneeAngles")
     np.testing.assert_array_equal(np.isnan(knee[:, 0]), (np.arange(90) >= 50) & (np.arange(90) < 60))
@@ -251,7 +252,7 @@ def test_events_keep_their_place_among_the_frames_whenever_the_trial_began(tmp_p
     r = result()
     moved = replace(r, times_s=r.times_s - r.times_s[0] + start_s)
     write_result_c3d(moved, tmp_path / "x.c3d")
-    back = read_c3d(tmp_path / "x.c3d")
+    back = read_c3d(tmp_path / "x.c3d", CaptureOptions())
     assert abs(back.markers.start_time_s - start_s) < 0.51 / r.rate_hz or back.markers.start_time_s == 0.0
     expected = [event.time_s - r.times_s[0] for event in result_capture(r).events]
     found = [event.time_s - back.markers.start_time_s for event in back.events]

@@ -32,7 +32,10 @@ def test_without_a_browser_one_sentence_says_what_to_install(tmp_path, monkeypat
 
 def test_without_its_driver_the_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "playwright", None)
-    with pytest.raises(MissingDependency, match=r"pip install 'mbkf\[film\]'"), shown_page("", 10, 10):
+    with (
+        pytest.raises(MissingDependency, match=r"pip install playwright \(in a clone"),
+        shown_page("", 10, 10),
+    ):
         pass
 
 

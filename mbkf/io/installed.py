@@ -1,0 +1,51 @@
+"""Readers and motions of other installed packages: modules that entry points name, imported when they may be needed.
+
+A package names a module under a group of its ``pyproject.toml``; importing the module registers what it brings::
+
+    [project.entry-points."mbkf.readers"]
+    xyz = "my_laboratory.xyz_reader"
+"""
+
+from __future__ import annotations
+
+import warnings
+from threading import RLock
+from typing import TYPE_CHECKING
+
+from mbkf.errors import MbkfWarning
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+READERS, MOTIONS = "mbkf.readers", "mbkf.motions"
+"""Groups of entry points."""
+
+_lock = RLock()
+_imported: set[str] = set()
+
+
+def import_installed(group: str) -> None:
+    """Imports the modules of a group, once in a process; one that fails is named in a warning and left out.
+
+    Args:
+        group: :data:`READERS` or :data:`MOTIONS`.
+    """
+    from importlib.metadata import entry_points  # costs more than the rest of `mbkf --help`
+
+    with _lock:  # another thread waits; a module that reads a file while it is imported does not
+        if group in _imported:
+            return
+        _imported.add(group)
+        for point in entry_points(group=group):
+            try:
+                point.load()
+            except Exception as error:
+                warnings.warn(_failure(point, error), MbkfWarning, stacklevel=2)
+
+
+def _failure(point: EntryPoint, error: Exception) -> str:
+    package = "an installed package" if point.dist is None else f"the package '{point.dist.name}'"
+    return (
+        f"'{point.name}' ({point.group}) of {package} could not be loaded and is left out "
+        f"({type(error).__name__}: {error}); repair, update or uninstall the package"
+    )

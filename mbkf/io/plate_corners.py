@@ -1,0 +1,48 @@
+"""Geometry of a force plate's surface from its corners, which lie in its quadrants (+x+y), (−x+y), (−x−y), (+x−y).
+
+The plate's own z axis points down.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbkf.conventions import Array
+
+LEAST_SIDE_M = 0.02
+"""Corners that enclose less than the square of this are those of no plate."""
+
+
+def plate_sides(corners: Array) -> tuple[Array, Array]:
+    """Twice the sides (3,) of a plate along its x and y, from corners (4, 3)."""
+    a, b, c, d = corners
+    return a + d - b - c, a + b - c - d
+
+
+def plate_axes(corners: Array) -> Array:
+    """(3, 3) rotation whose columns are the plate's x, y and z in the axes of its corners (4, 3), in any unit."""
+    x, y = plate_sides(corners)
+    x = x / np.linalg.norm(x)
+    z = np.cross(x, y)
+    z = z / np.linalg.norm(z)
+    return np.column_stack([x, np.cross(z, x), z])
+
+
+def plate_normal(corners: Array) -> Array:
+    """(3,) unit normal of a plate's surface, the way that the order of its corners (4, 3) makes it face."""
+    normal = np.cross(corners[0] - corners[2], corners[3] - corners[1])
+    return np.asarray(normal / np.linalg.norm(normal))
+
+
+def upward_normal(corners: Array) -> Array:
+    """(3,) unit normal of a plate's surface, the way that points up in world axes."""
+    normal = plate_normal(corners)
+    return normal if normal[2] >= 0.0 else -normal
+
+
+def has_area(corners_m: Array, farthest_m: float = np.inf) -> bool:
+    """True where corners (4, 3) enclose a surface and lie within a distance of the origin along each axis."""
+    if not (np.abs(corners_m) <= min(farthest_m, np.finfo(float).max)).all():
+        return False
+    sides = np.diff(corners_m[:3], axis=0)
+    return bool(np.linalg.norm(np.cross(*sides)) > LEAST_SIDE_M**2)
