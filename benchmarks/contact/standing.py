@@ -11,7 +11,7 @@ import numpy as np
 from mbkf.conventions import SIDES, Array
 from mbkf.model.body import Body
 from mbkf.synthesis.contact import Load, LoadPlan
-from mbkf.synthesis.curves import ripple
+from mbkf.synthesis.curves import sinusoid
 from mbkf.synthesis.motions import motion_names, register_motion
 from mbkf.synthesis.plan import FeetPlan, MotionPlan
 from mbkf.synthesis.squat import squat_plan
@@ -85,8 +85,8 @@ def _load(
         forward_m: How far ahead of the ankles.
         rng: Source of rates and phases.
     """
-    share = ripple(SHIFT, rng.uniform(0.2, 0.4), rng.uniform(0, 6.28), 0.5)
-    forth = ripple(0.006, rng.uniform(0.2, 0.5), rng.uniform(0, 6.28), forward_m)
+    share = sinusoid(SHIFT, rng.uniform(0.2, 0.4), rng.uniform(0, 6.28), 0.5)
+    forth = sinusoid(0.006, rng.uniform(0.2, 0.5), rng.uniform(0, 6.28), forward_m)
 
     def load(times: Array) -> Load:
         poses, ahead = feet(times), forth(times).value

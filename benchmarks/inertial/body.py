@@ -45,7 +45,7 @@ SETTLED_S = 5.0
 
 
 @dataclass(frozen=True)
-class Worn:
+class SensorMounts:
     """A motion, the standing posture before it, and the sensors' readings in both."""
 
     name: str
@@ -55,7 +55,7 @@ class Worn:
     standing: tuple[ImuReadings, ...]
 
 
-def worn(name: str, motion: BodyMotion, posture: Array, seed: int = 0) -> Worn:
+def worn(name: str, motion: BodyMotion, posture: Array, seed: int = 0) -> SensorMounts:
     """Sensors with random misalignment on a moving body, and on the body standing still.
 
     Args:
@@ -70,7 +70,7 @@ def worn(name: str, motion: BodyMotion, posture: Array, seed: int = 0) -> Worn:
     posture_course = np.tile(posture, (len(still), 1))
     standing = virtual_imus(model, times, posture_course, still, still, mounts, seed=seed)
     walking = virtual_imus(model, motion.times_s, motion.q, motion.v, motion.a, mounts, seed=seed)
-    return Worn(name, motion, posture, walking, standing)
+    return SensorMounts(name, motion, posture, walking, standing)
 
 
 def angle_rows(context: Context) -> Iterator[Check]:
@@ -80,7 +80,7 @@ def angle_rows(context: Context) -> Iterator[Check]:
         yield from _angle_rows(rajagopal_walk(context), long=False)
 
 
-def synthetic_walk(seconds: float) -> Worn:
+def synthetic_walk(seconds: float) -> SensorMounts:
     """The synthetic person standing, then walking."""
     model = body_of(synthesise_subject(0))
     stand = synthesise_motion(model, "stand", 2.0, RATE_HZ, 0)
@@ -89,7 +89,7 @@ def synthetic_walk(seconds: float) -> Worn:
     return worn(f"synthetic walk, {seconds:g} s", motion, stand.q[0])
 
 
-def rajagopal_walk(context: Context) -> Worn:
+def rajagopal_walk(context: Context) -> SensorMounts:
     """The reconstructed walk, and the posture of its static trial."""
     source = SOURCES["rajagopal walk"]
     folder = context.require_data() / source.folder
@@ -106,7 +106,7 @@ def rajagopal_walk(context: Context) -> Worn:
     )
 
 
-def _angle_rows(one: Worn, long: bool) -> Iterator[Check]:
+def _angle_rows(one: SensorMounts, long: bool) -> Iterator[Check]:
     smooth = AnglesSettings()
     live = AnglesSettings(OrientSettings("ekf", ekf=OrientationSettings(integrating=False)))
     for name, error in _errors(one, smooth, one.posture).items():
@@ -129,7 +129,7 @@ def _angle_rows(one: Worn, long: bool) -> Iterator[Check]:
         yield Check(f"{one.name}, {label}: worst, {worst}", _rms(errors[worst][skip:]), math.inf, "<=", "deg")
 
 
-def _errors(one: Worn, settings: AnglesSettings, posture: Array | None) -> dict[str, Array]:
+def _errors(one: SensorMounts, settings: AnglesSettings, posture: Array | None) -> dict[str, Array]:
     """(T,) error of every sagittal angle, degrees."""
     found = imu_angles(
         one.walking, one.motion.model, standing=one.standing, posture=posture, settings=settings

@@ -210,14 +210,14 @@ def _real_rows(context: Context, name: str) -> Iterator[Check]:
 def _magnetometer_rows(case: Case, sensors: int) -> Iterator[Check]:
     """Each magnetometer made bad in two ways: it alone is named, and no angle changes."""
     sound = case.found()
-    yield Check("magnetometers: sound ones accused", float(len(sound.strange_fields)), 0.0, "<=")
+    yield Check("magnetometers: sound ones accused", float(len(sound.disturbed_fields)), 0.0, "<=")
     named, changed = [], 0.0
     for k in range(sensors):
         for spoil in BAD.values():
             bad = list(case.moving)
             bad[k] = replace(bad[k], magnetic_field=spoil(bad[k].magnetic_field))
             found = case.found(bad)
-            named.append([one.sensor for one in found.strange_fields] == [bad[k].name])
+            named.append([one.sensor for one in found.disturbed_fields] == [bad[k].name])
             apart = np.degrees(np.abs(found.result.angles - sound.result.angles))
             changed = max(changed, float(np.nanmax(apart)))
     yield Check(

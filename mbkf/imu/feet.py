@@ -40,12 +40,12 @@ class Placement:
 def placements(
     times_s: Sequence[Array], paths_m: Sequence[Array], first_ways_m: Sequence[Array]
 ) -> list[Placement]:
-    """How to bring the paths of one or several feet into one frame.
+    """Motion that brings the paths of one or several feet into one frame.
 
     Args:
         times_s: Per foot (T,) times on one clock.
         paths_m: Per foot (T, 3) positions, NaN where unknown.
-        first_ways_m: Per foot (3,) displacement of its first stride, zero where it makes none.
+        first_ways_m: Per foot (3,) displacement of its first stride, zero without strides.
     """
     headings = [0.0]
     offsets = [-_first_known(paths_m[0])]

@@ -1,4 +1,4 @@
-"""When a magnetometer sees another field than usual, told with its times: iron or a magnet is near."""
+"""Times at which a magnetometer sees another field than usual: iron or a magnet is near."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ SIZE_SHARE, DIP_RAD = 0.2, 0.26
 """A field that differs from the usual one by more, in size or dip, is disturbed."""
 
 MEAN_S, SHORTEST_S = 0.5, 1.0
-"""Over so long it is averaged; shorter disturbances are not told."""
+"""Averaging time; shorter disturbances are not reported."""
 
 
 def field_remarks(one: ImuReadings, quaternion: Array) -> tuple[str, ...]:
-    """One remark on the times at which a sensor's field is disturbed, or none.
+    """A remark on the times at which a sensor's field is disturbed; empty without disturbance.
 
     Args:
         one: Its readings.

@@ -172,7 +172,7 @@ class FootStep:
         state: After the sample's reading.
         P: (18, 18) its covariance.
         Phi: (18, 18) transition from the sample before.
-        reading: Information of the stance on (δv, δp, δr), None where the foot did not stand.
+        reading: Information of the stance on (δv, δp, δr); None: the foot did not stand.
     """
 
     state: FootState
@@ -214,7 +214,7 @@ def follow_foot(
         rate_hz: Sample rate.
         still: (T,) samples that look like rest.
         settings: Noise.
-        rolling: (T,) samples in which the foot may stand though it turns; none by default.
+        rolling: (T,) samples in which the foot may stand though it turns; by default, never.
 
     Raises:
         InvalidInput: The foot never rests.
@@ -247,7 +247,7 @@ def follow_foot(
             if not fits and not believed:
                 refused += 1
             else:
-                if not fits:  # what the filter knew was wrong
+                if not fits:  # the filter's estimate was wrong
                     covariance += _lost(settings)
                 reading = _reading(state, stance, settings, memory)
                 found = correct(covariance, reading)
@@ -266,7 +266,7 @@ class _Stance(NamedTuple):
 
 
 def _stance(state: FootState, w: Array, settings: FootFilterSettings) -> _Stance:
-    """What a stance reads of a state."""
+    """Readings of a state by a stance."""
     turning = w - state.gyro_bias
     by_lever = -state.rotation @ pin.skew(turning)
     sd = np.hypot(settings.standing_speed_m_s, settings.rolling_m * np.linalg.norm(turning))
@@ -310,11 +310,11 @@ def _first_stance(
         raise InvalidInput("the foot never stands still, so nothing holds its velocity; check rate and units")
     early = [one for one in stances if one[0] <= stances[0][0] + _EARLY_S * rate_hz]
 
-    def unrest(one: tuple[int, int]) -> float:
+    def stance_statistic(one: tuple[int, int]) -> float:
         off = np.linalg.norm(f[slice(*one)], axis=1) - GRAVITY_M_S2
         return float((off**2 + GRAVITY_M_S2 * (w[slice(*one)] ** 2).sum(axis=1)).mean())
 
-    return min(early, key=unrest)
+    return min(early, key=stance_statistic)
 
 
 def _start(
@@ -344,7 +344,7 @@ def _start(
 def _plant_noises(f: Array, settings: FootFilterSettings, dt: float) -> Array:
     """(T,) spectral density of the specific force over the step to each sample, (m/s²)²/Hz.
 
-    What a sample misses of the force between it and its neighbours is a share of the second difference.
+    The force between a sample and its neighbours that the sample misses is a share of the second difference.
     """
     rough = np.zeros(len(f))
     rough[1:-1] = settings.roughness * np.linalg.norm(f[2:] - 2.0 * f[1:-1] + f[:-2], axis=1)
@@ -360,7 +360,7 @@ def _lost(settings: FootFilterSettings) -> Array:
 
 
 def _add_noise(covariance: Array, density: float, settings: FootFilterSettings, dt: float) -> None:
-    """Adds to the covariance what one step adds."""
+    """Adds the process noise of one step to the covariance."""
     places = np.arange(SIZE)
     own = np.zeros(SIZE)
     own[V] = density * dt

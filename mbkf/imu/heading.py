@@ -21,7 +21,7 @@ ARBITRARY_SD_RAD = 3.0
 
 @dataclass(frozen=True)
 class HeadingSettings:
-    """How headings drift, and how strongly joints constrain them.
+    """Drift of headings, and strength of the joints' constraints.
 
     Attributes:
         walk_rad: Random walk of a segment's heading error, rad/√s: gyroscope drift or a disturbed field.
@@ -72,7 +72,7 @@ def held_headings(
     sd = np.radians([spread for _, _, spread in holding]) * s.spread_scale
     apart = heading @ H.T
     apart -= 2.0 * np.pi * np.round(np.median(apart, axis=0) / (2.0 * np.pi))
-    # All headings are told against that of one sensor, the first whose heading is known.
+    # Headings are relative to that of one sensor, the first whose heading is known.
     known_one = next((k for k in range(n) if k not in arbitrary), 0)
     P = np.diag([ARBITRARY_SD_RAD**2 if k in arbitrary else s.start_sd_rad**2 for k in range(n)])
     P[known_one, known_one] = 1e-12

@@ -41,7 +41,7 @@ class KeyPointSettings:
         first: Sample at which the first window begins: the result depends much on where the windows fall.
         weights: α_σ, α_μ, α_ω.
         threshold: E_s.
-        low_pass_hz: Corner of the accelerometer's low pass (Butterworth, no delay); None leaves it as it is.
+        low_pass_hz: Corner of the accelerometer's low pass (Butterworth, no delay); None: no low pass.
         still_s: The mean angular velocity of the first rest, at most this long, is the gyroscope's bias; 0 leaves it.
         loss: α of stride eq. 2, the share of gravity lost per step from a key point; the study sets it by trial.
         by_sample: Carry gravity and integrate sample by sample between key windows, not window by window (ours).
@@ -110,7 +110,7 @@ def follow_key_points(
         start_s: Time of the first sample.
 
     Raises:
-        InvalidInput: There is no key point, or not one whole window.
+        InvalidInput: Key points are missing, or every window is incomplete.
     """
     f, w = prepared(specific_force_mps2, angular_velocity_rad_s, rate_hz, settings)
     N = settings.window

@@ -27,7 +27,7 @@ REST_S = 0.25
 """A sensor that hardly turns over this time starts at rest."""
 
 GIVEN_SD_RAD = 0.03
-"""How far a start that is given is off."""
+"""Standard deviation of a given start."""
 
 _SIDE_BY_SIDE = 20
 """From so many sensors on arrays over sensors beat floats."""
@@ -73,7 +73,7 @@ class Orientation:
 
 @dataclass(frozen=True)
 class OrientSettings:
-    """How orientations are found.
+    """Settings of the orientation filters.
 
     Attributes:
         method: One of :data:`METHODS`.
@@ -143,8 +143,8 @@ def euler_angles(quaternion: Array) -> Array:
 def first_readings(one: ImuReadings, seconds: float = START_S) -> tuple[Array, Array | None]:
     """Mean specific force (3,) and field (3,) or None over the first part of a recording, in the first sample's axes.
 
-    Readings are turned back by the gyroscope, so that a sensor in motion shows the vertical, too: what accelerates it
-    one way soon accelerates it back.
+    Readings are turned back by the gyroscope, so that a sensor in motion shows the vertical, too: a force that
+    accelerates it one way soon accelerates it back.
 
     Args:
         one: The readings.
@@ -164,7 +164,7 @@ def first_readings(one: ImuReadings, seconds: float = START_S) -> tuple[Array, A
 
 
 def _resting_rate(one: ImuReadings) -> Array:
-    """(3,) root mean square rate over the first part of a recording, rad/s; 0 where there is none."""
+    """(3,) root mean square rate over the first part of a recording, rad/s; 0 without samples."""
     rates = one.angular_velocity_rad_s[: max(1, round(REST_S * one.rate_hz))]
     rates = rates[np.isfinite(rates).all(axis=1)]
     return np.sqrt((rates**2).mean(axis=0)) if len(rates) else np.zeros(3)

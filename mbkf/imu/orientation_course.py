@@ -1,4 +1,4 @@
-"""Orientations of sensors over a whole recording: by the compiled kernel, or step by step where there is none."""
+"""Orientations of sensors over a whole recording: by the compiled kernel, or step by step without it."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ class OrientationSettings:
         field_tolerance: Relative change of the field's strength that counts as a disturbance of size 1.
         dip_tolerance_rad: Change of its dip that does.
         field_memory_s: Time in which a new field becomes the usual one.
-        field_direction_sd_rad: How far iron in a room bends the field's direction for good. No reading tells; it is
+        field_direction_sd_rad: Lasting bend of the field's direction by iron in a room. Readings cannot show it; it is
             part of the stated spread of headings (root mean square of seven trials of BROAD, the largest 7°).
         integrating: Whether a reading is the mean since the one before, as digital sensors give it (on BROAD this
             halves the error that the other reading leaves), or the value at its time, as virtual sensors have it.
@@ -100,7 +100,7 @@ class OrientationState(NamedTuple):
         velocity: (N, 3) in the world, m/s.
         P: (N, 9, 9) covariance of the error.
         movement: (N,) mean square of recent movement: departure of the specific force from gravity, and turning, m²/s⁴.
-        field: (N, 2) usual strength and dip (rad) of the field; NaN where none was seen.
+        field: (N, 2) usual strength and dip (rad) of the field; NaN where the sensor saw no field.
         calm: (N, 7) running mean of gyroscope and accelerometer, and for how long they have been near it, s.
         last: (N, 6) the sample's angular velocity (sensor axes, bias included) and specific force (world axes).
     """

@@ -1,4 +1,4 @@
-"""How far an orientation is from a reference: in all, in heading, in inclination (BROAD's protocol, no alignment)."""
+"""Error of an orientation against a reference: total, heading, inclination (BROAD's protocol, no alignment)."""
 
 from __future__ import annotations
 

@@ -47,12 +47,12 @@ def typical_mounts(
     Args:
         model: The body.
         segments: Which of :data:`EIGHT`.
-        seed: Chooses how carelessly each was put on; None for exactly.
+        seed: Of the random error of each placement; None: exact placement.
         turn_sd_rad: Spread of its rotation, per axis.
         place_sd_m: Spread of its place, per axis.
 
     Raises:
-        InvalidInput: There is no usual place on a segment.
+        InvalidInput: A segment has no usual place for a sensor.
     """
     rng = None if seed is None else np.random.default_rng([seed, 7])
     mounts = []
@@ -74,7 +74,7 @@ def typical_mounts(
 
 
 def usual_place(model: Body, segment: str) -> Array:
-    """(3,) where a sensor usually sits on a segment, m; the middle of its mass where there is no custom."""
+    """(3,) where a sensor usually sits on a segment, m; its centre of mass where no custom is known."""
     description = model.description.segment(segment)
     place = np.array(_PLACES[segment][0]) if segment in _PLACES else description.com_m
     return model.axis_scale(description) * place

@@ -1,4 +1,4 @@
-"""When a foot rests, told at once: the statistic of :mod:`mbkf.imu.zero_velocity` over the readings until now."""
+"""Rests of a foot recognised at once: the statistic of :mod:`mbkf.imu.zero_velocity` over the readings until now."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from mbkf.imu.zero_velocity import StillnessSettings
 class RestWatch:
     """Follows one foot's sensor, sample by sample.
 
-    The window ends with the newest sample instead of lying about it, so that a rest is told up to a window later than
-    in a recording. Its end is told at once: the newest sample alone has to be below the threshold, too.
+    The window ends with the newest sample instead of lying about it, so that a rest is recognised up to a window
+    later than in a recording. Its end shows at once: the newest sample alone has to be below the threshold, too.
     """
 
     def __init__(self, rate_hz: float, settings: StillnessSettings) -> None:
@@ -68,7 +68,7 @@ class FeetAtRest:
         ]
 
     def push(self, imus: Array | None) -> Array:
-        """(2,) 1 where the right, the left foot rests, in the next frame (S, 6); None for a lost one."""
+        """(2,) 1 where the right, the left foot rests, in the next frame (S, 6); None: a lost frame."""
         found = np.zeros(2)
         for foot, k, watch in self._feet:
             one = np.full(6, np.nan) if imus is None else imus[k]

@@ -15,7 +15,7 @@ from mbkf.numerics.cardan import quaternion_matrices
 def configurations(body: HumanModel, segments: Sequence[str], course: Array) -> Array:
     """(T, nq) from orientations of segments; a joint turns as the nearest sensors above and below it.
 
-    The root turns with the first segment, as what lies between them does.
+    The root turns with the first segment, as the segments between them do.
 
     Args:
         body: The body.

@@ -1,4 +1,4 @@
-"""How sensors are turned on their segments: from standing, and from movements in which the legs swing fore and aft."""
+"""Orientation of sensors on their segments: from standing, and from movements in which the legs swing fore and aft."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def facing(
     standing: Array,
     knees: Sequence[tuple[str, str]],
 ) -> float | None:
-    """Heading of forward while standing, rad about the vertical from the world's x axis; None where legs hardly swing.
+    """Heading of forward while standing, rad about the vertical from the world's x axis; None: legs hardly swing.
 
     Thighs and shanks swing about the side-to-side axis, the first principal axis of their angular velocities
     seen from above; of its two senses it is the left one about which shanks have turned against thighs, for knees bend
@@ -37,7 +37,7 @@ def facing(
     """
     swinging = {name for pair in knees for name in pair}
     legs = [k for k, name in enumerate(segments) if name in swinging]
-    orientation = facing_as_stood(orientation, standing[0])
+    orientation = heading_from_standing(orientation, standing[0])
     left = swing_axis(orientation[:, legs], gyro[:, legs]) if legs else None
     if left is None:
         return None
@@ -52,7 +52,7 @@ def facing(
     return float(np.arctan2(-left[0], left[1]))
 
 
-def facing_as_stood(orientation: Array, standing: Array) -> Array:
+def heading_from_standing(orientation: Array, standing: Array) -> Array:
     """(T, S, 4) orientations, less how the pelvis, the first segment, has turned about the vertical since standing.
 
     Args:
@@ -66,7 +66,7 @@ def facing_as_stood(orientation: Array, standing: Array) -> Array:
 
 
 def swing_axis(orientation: Array, gyro: Array) -> Array | None:
-    """(2,) level axis about which segments swing, of either sense; None where they hardly do.
+    """(2,) level axis about which segments swing, of either sense; None: they hardly swing.
 
     Args:
         orientation: (T, S, 4) sensor → world, z up.

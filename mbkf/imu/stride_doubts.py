@@ -1,4 +1,4 @@
-"""Which strides no person makes, or nobody knows: each with its reason."""
+"""Strides that are impossible for a person or unknown, each with its reason."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ REACH_M = 2.0
 
 
 def doubted(strides: Sequence[Stride]) -> tuple[Stride, ...]:
-    """The strides of a foot, those that are none with their reason."""
+    """The strides of a foot, those refused with their reason."""
     swings = [stride.swing_s for stride in strides]
     usual = float(np.median(swings)) if len(swings) > 2 else np.inf
     return tuple(replace(stride, doubt=_doubt(stride, usual)) for stride in strides)

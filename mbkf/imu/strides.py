@@ -16,10 +16,10 @@ from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.numerics.runs import runs
 
 SHORTEST_M = 0.15
-"""Shorter movements (shifts of weight, shuffling on the spot) are no strides."""
+"""Shorter movements (shifts of weight, shuffling on the spot) do not count as strides."""
 
 _HALF_REST_S = 0.25
-"""Time that a stride takes of the rest at either end, where there is no rest between two strides."""
+"""Time that a stride takes of the rest at either end, where two strides follow each other without a rest."""
 
 
 @dataclass(frozen=True)

@@ -195,7 +195,7 @@ def reference_of(one: ImuReadings, frame: str) -> Array:
     """(T, 4) the orientation a file brings, in ``frame``.
 
     Raises:
-        InvalidInput: It brings none, or not in a known world.
+        InvalidInput: The file has no reference orientations, or not in a known world.
     """
     if one.orientation is None:
         raise InvalidInput(f"sensor {one.name}: the file brings no orientation; use --against smooth")

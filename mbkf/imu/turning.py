@@ -19,7 +19,7 @@ def with_turning(one: ImuReadings) -> ImuReadings:
 
 
 def has_gyroscope(one: ImuReadings) -> bool:
-    """Whether any angular velocity was read."""
+    """True where any angular velocity was read."""
     return bool(np.isfinite(one.angular_velocity_rad_s).any())
 
 

@@ -80,9 +80,9 @@ def virtual_imus(
         v: (T, nv) velocities.
         a: (T, nv) accelerations.
         mounts: The sensors.
-        errors: Their errors; None for a consumer unit's.
+        errors: Their errors; None: a consumer unit's.
         seed: Chooses them.
-        rate_hz: Sample rate; the motion's when None.
+        rate_hz: Sample rate; None: the motion's.
         field_ut: (3,) the Earth's field in the world, µT.
 
     Raises:

@@ -1,6 +1,6 @@
-"""How sensors sit on their segments without magnetometers: tilt from standing still, heading from how the legs swing.
+"""Mounts of sensors on their segments without magnetometers: tilt from standing still, heading from swinging legs.
 
-While a person stands in a known posture, gravity tells two of the three angles of each sensor against its segment. The
+While a person stands in a known posture, gravity shows two of the three angles of each sensor against its segment. The
 third, about the vertical, is taken to be as people usually strap sensors on, and is corrected where the segment turns
 mostly about its side-to-side axis: legs that walk, sit down or swing.
 """
@@ -30,7 +30,7 @@ LEAST_LEVEL = 0.3
 
 @dataclass(frozen=True)
 class MountSettings:
-    """How well mounts are known.
+    """Spread of mounts.
 
     Attributes:
         custom_sd_rad: Spread of headings of sensors about how they are usually strapped on.
@@ -38,7 +38,7 @@ class MountSettings:
         foot_swing_sd_rad: The same of a foot, which points outwards.
         tilt_sd_rad: Spread of a tilt by gravity in a posture that is known.
         posture_sd_rad: Further spread where the posture while standing is only taken to be the neutral one.
-        worn_otherwise_rad: A heading by swinging that is further from the usual one is told.
+        unusual_heading_rad: A heading by swinging that is further from the usual one is reported.
         sway_rad: How far a segment turns to and fro while the person stands still: over a standing of length T a
             gyroscope's mean reading is its bias to within this over T.
         usual_bias_rad_s: Spread of biases before anything is read.
@@ -50,22 +50,22 @@ class MountSettings:
     foot_swing_sd_rad: float = 0.15
     tilt_sd_rad: float = 0.026
     posture_sd_rad: float = 0.07
-    worn_otherwise_rad: float = 0.8
+    unusual_heading_rad: float = 0.8
     sway_rad: float = 0.005
     usual_bias_rad_s: float = 0.02
     derived_bias_sd_rad_s: float = 1e-4
 
 
 @dataclass(frozen=True)
-class Worn:
+class SensorMounts:
     """Calibrated sensors.
 
     Attributes:
-        mounts: How each sits.
+        mounts: Mount of each.
         turn_sd_rad: (S, 3) spread of its turn about its segment's axes.
         bias_rad_s: (S, 3) gyroscope's reading at rest.
         bias_sd_rad_s: (S,) spread of each component of it.
-        remarks: Sensors that are worn otherwise than usual.
+        remarks: Sensors that are mounted in an unusual way.
     """
 
     mounts: tuple[ImuMount, ...]
@@ -85,7 +85,7 @@ def worn_mounts(
     settings: MountSettings = MountSettings(),
     turned: Collection[str] = (),
     derived: Collection[str] = (),
-) -> Worn:
+) -> SensorMounts:
     """Mounts and biases from standing still and from the movement.
 
     Args:
@@ -111,7 +111,7 @@ def worn_mounts(
         R = np.eye(3) if usual is None else quaternion_matrices(usual.rotation)
         R = upright(R, felt, up)
         turn, turn_sd = _by_swing(R, one.angular_velocity_rad_s - bias, up, _swing_sd(model, segment, s), s)
-        if abs(turn) > s.worn_otherwise_rad:
+        if abs(turn) > s.unusual_heading_rad:
             remarks.append(
                 f"sensor {one.name} sits {abs(np.degrees(turn)):.0f} deg about the {segment}'s length from where it is "
                 "usually strapped on, as the segment's swinging shows; check which sensor is which"
@@ -121,11 +121,13 @@ def worn_mounts(
         spreads.append(np.sqrt((up * turn_sd) ** 2 + (1.0 - up**2) * tilt_sd**2))
         biases.append(bias)
         bias_sds.append(bias_sd)
-    return Worn(tuple(mounts), np.array(spreads), np.array(biases), np.array(bias_sds), tuple(remarks))
+    return SensorMounts(
+        tuple(mounts), np.array(spreads), np.array(biases), np.array(bias_sds), tuple(remarks)
+    )
 
 
 def upright(R: Array, felt: Array, up: Array) -> Array:
-    """(3, 3) the rotation sensor → segment nearest to R that takes what the sensor feels at rest to the vertical.
+    """(3, 3) the rotation sensor → segment nearest to R that takes the specific force at rest to the vertical.
 
     Args:
         R: (3, 3) as it usually is.
@@ -155,7 +157,7 @@ def _bias(still: ImuReadings, settings: MountSettings) -> tuple[Array, float]:
 
 
 def _swing_sd(model: Body, segment: str, settings: MountSettings) -> float | None:
-    """Spread of what swinging shows of a segment; None for one that does not swing."""
+    """Spread of the heading by swinging; None: the segment does not swing."""
     if segment in model.roles.feet:
         return settings.foot_swing_sd_rad
     if segment in {name for pair in model.roles.knees for name in pair}:
@@ -174,7 +176,7 @@ def _by_swing(
         R: (3, 3) sensor → segment as usual.
         rates: (T, 3) angular velocities without bias, sensor axes.
         up: (3,) the vertical in segment axes while standing.
-        swing_sd: Spread of what swinging shows, None where nothing swings.
+        swing_sd: Spread of the heading by swinging; None: nothing swings.
         settings: Spread of custom.
     """
     custom_sd = settings.custom_sd_rad
@@ -189,7 +191,7 @@ def _by_swing(
         return 0.0, custom_sd
     axis *= np.sign(axis @ side) or 1.0
     turn = float(np.arctan2(np.cross(axis, side) @ up, axis @ side))
-    if abs(turn) > settings.worn_otherwise_rad:
+    if abs(turn) > settings.unusual_heading_rad:
         return turn, swing_sd
     share = custom_sd**2 / (custom_sd**2 + swing_sd**2)
     return share * turn, swing_sd * share**0.5

@@ -29,7 +29,7 @@ class StillnessSettings:
         acceleration_m_s2: Spread of the specific force about a constant of gravity's size that a standing foot shows.
         angular_rate_rad_s: Spread of its angular velocity.
         threshold: The foot is still where the statistic is below.
-        shortest_s: Shorter rests are none.
+        shortest_s: Shorter rests do not count.
         bridge_s: Shorter movements within a rest are part of it.
         longest_swing_s: In a longer movement the foot has stood in between without resting: it rolled, slid or shook.
         rolling_threshold: Such a stance is where the statistic is least, if it is below.
@@ -57,7 +57,7 @@ class StillnessSettings:
                 raise InvalidInput(f"{name} must be 0 or more, got {getattr(self, name)}")
 
 
-def unrest(
+def stance_statistic(
     specific_force_mps2: Array, angular_velocity_rad_s: Array, rate_hz: float, settings: StillnessSettings
 ) -> Array:
     """(T,) mean over the window of |f − g f̄/|f̄||²/σ_f² + |ω|²/σ_ω², f̄ the window's mean specific force.
@@ -83,7 +83,7 @@ def unrest(
 def still_samples(
     specific_force_mps2: Array, angular_velocity_rad_s: Array, rate_hz: float, settings: StillnessSettings
 ) -> BoolArray:
-    """(T,) samples in which the foot stands still, by :func:`unrest`.
+    """(T,) samples in which the foot stands still, by :func:`stance_statistic`.
 
     Args:
         specific_force_mps2: (T, 3) sensor axes.
@@ -93,7 +93,9 @@ def still_samples(
     """
     from scipy.ndimage import binary_closing, binary_opening
 
-    still = unrest(specific_force_mps2, angular_velocity_rad_s, rate_hz, settings) < settings.threshold
+    still = (
+        stance_statistic(specific_force_mps2, angular_velocity_rad_s, rate_hz, settings) < settings.threshold
+    )
     gap, rest = (max(1, round(s * rate_hz)) for s in (settings.bridge_s, settings.shortest_s))
     # Beyond the ends the mask keeps its value at the ends.
     margin = gap + rest
@@ -112,7 +114,7 @@ def rolling_samples(
 ) -> BoolArray:
     """(T,) samples in which a foot that does not rest may stand: where it is stillest in long movements.
 
-    Some are no stances (a foot in swing may turn little); whether one can be, its velocity tells.
+    Some of them are not stances (a foot in swing may turn little); the velocity decides.
 
     Args:
         specific_force_mps2: (T, 3) sensor axes.
@@ -124,7 +126,7 @@ def rolling_samples(
     from scipy.signal import find_peaks
 
     short = replace(settings, window_s=settings.rolling_s)
-    unsteady = unrest(specific_force_mps2, angular_velocity_rad_s, rate_hz, short)
+    unsteady = stance_statistic(specific_force_mps2, angular_velocity_rad_s, rate_hz, short)
     found, reach = np.zeros(len(still), dtype=bool), max(1, round(0.5 * settings.rolling_s * rate_hz))
     apart = max(1, round(settings.rolling_apart_s * rate_hz))
     for start, stop in runs(~still):

@@ -259,8 +259,8 @@ class _Evidence:
         logs = logs - 0.5 * squared / variance
         moved = 0.0
         if seen.squared_m2.any():
-            unrest = unrest_m(seen, best, len(self.segments))
-            spread = np.hypot(SKIN * self.places.noise_m, unrest[index])
+            stance_statistic = unrest_m(seen, best, len(self.segments))
+            spread = np.hypot(SKIN * self.places.noise_m, stance_statistic[index])
             logs = logs - movement_cost(seen.squared_m2[:, index], spread)
             moved = float(movement_cost(np.array(3.0 * LOOKS * STRAY), np.array(1.0)))
         nothing = np.full((len(logs), 1), np.log(NO_BODY / ROOM_M3) - moved)

@@ -32,7 +32,7 @@ class CaptureSettings:
         ghosts: Most ghost reflections at a time, in the unlabelled capture.
         force_sd_n: White noise per force channel of a plate.
         moment_sd_nm: White noise per moment channel.
-        offset_n: Range of the vertical offset of plates; (0, 0) for none at all.
+        offset_n: Range of the vertical offset of plates; (0, 0): no offset.
     """
 
     markers_sd_m: float = 0.0005

@@ -30,7 +30,7 @@ LIFTS, ROUNDS = 3, 8
 FLIGHT_ROUNDS = 40
 
 HOLD_ROUNDS, NEAR_M, FAR_M = 24, 0.001, 0.02
-"""Iterations at most that bring to its place what stays on a support, how near is near enough, and how far too far."""
+"""Most iterations that bring a supported part to its place, the distance that suffices, and the one that fails."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Composition:
         return Dual(*(np.column_stack([p, h]) for p, h in zip(plane.orders, height.orders, strict=True)))
 
     def given(self, times: Array) -> Given:
-        """What the plan gives at times in s."""
+        """Values of the plan at times in s."""
         angles = {joint: tuple(curve(times) for curve in axes) for joint, axes in self.plan.angles.items()}
         hands = None if self.plan.hands is None else self.plan.hands(times)
         return Given(times, angles, self.plan.feet(times), hands)
@@ -74,7 +74,7 @@ class Composition:
         """The body without its centre of mass.
 
         Args:
-            given: What the plan gives.
+            given: Values of the plan.
             pelvis: (T,) pelvis angles about x, y and z, rad; by default the composition's own.
         """
         angles = {**given.angles, "pelvis": pelvis or self._pelvis(given.times)}
@@ -115,7 +115,7 @@ def compose(model: Body, plan: MotionPlan) -> Composition:
     """Solves balance and flight for a plan.
 
     Raises:
-        NotConverged: The flight was not found, or what is supported does not stay in place.
+        NotConverged: The flight was not found, or a supported part does not stay in place.
     """
     times = np.linspace(plan.start_s, plan.end_s, round((plan.end_s - plan.start_s) / STEP_S) + 1)
     load = plan.load(times)
@@ -158,7 +158,7 @@ def compose(model: Body, plan: MotionPlan) -> Composition:
         _, _, change = result.kinematics.momentum(pose)
         turning = np.column_stack([change[:, 1], -change[:, 0]]) / result.kinematics.total_mass
     if missed_m > FAR_M:
-        raise NotConverged("what bears the body does not stay in its place; try another seed")
+        raise NotConverged("a supported part of the body does not stay in its place; try another seed")
     if tumbling is not None and _fly(result, tumbling, FLIGHT_ROUNDS) > 1e3 * SMALL:
         raise NotConverged("the flight was not found; try another seed")
     return result
@@ -182,7 +182,7 @@ def _fly(composition: Composition, tumbling: Tumbling, rounds: int) -> float:
 
 
 def _lift(composition: Composition, pose: Pose, times: Array) -> float:
-    """How much higher the body may stand until its straightest knee has the planned flexion, m.
+    """Height by which the body may rise until its straightest knee has the planned flexion, m.
 
     With something that stays on a support, only where nothing changes for that.
     """

@@ -14,7 +14,7 @@ FRICTION = 0.8
 """Coefficient of friction of a shoe on a dry laboratory floor; horizontal force stays below this times vertical."""
 
 NEGLIGIBLE = 1e-9
-"""Part of the load that counts as none."""
+"""Share of the load that counts as unloaded."""
 
 
 @dataclass(frozen=True)
@@ -49,14 +49,14 @@ def sole_outline(model: Body, side: str) -> SoleOutline:
 
 @dataclass(frozen=True)
 class Load:
-    """How the feet are meant to carry the body.
+    """Planned load of the feet.
 
     Attributes:
         share: (T,) part of the load on the right foot, 0…1.
         pressure: (T, 2, 2) wanted centre of pressure of right and left foot on its surface, m.
         grounded: (T,) whether anything is on the ground.
-        surface_m: (T, 2) height of the surface under right and left foot, m; the floor when None.
-        apex_m: Height at which both feet's forces point, m; that of the centre of mass when None.
+        surface_m: (T, 2) height of the surface under right and left foot, m; None: the floor.
+        apex_m: Height at which both feet's forces point, m; None: that of the centre of mass.
     """
 
     share: Array

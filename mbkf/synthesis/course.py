@@ -8,11 +8,11 @@ from mbkf.conventions import Array
 from mbkf.errors import InvalidInput
 from mbkf.model.body import Body
 from mbkf.synthesis.balance import HorizontalPath
-from mbkf.synthesis.curves import Curve, added, path, ripple, spline
+from mbkf.synthesis.curves import Curve, added, path, sinusoid, spline
 from mbkf.synthesis.dual_numbers import Dual
 from mbkf.synthesis.footwork import Footwork, Spot
 from mbkf.synthesis.inverse_kinematics import InverseKinematics
-from mbkf.synthesis.plan import MotionPlan, lively, resting
+from mbkf.synthesis.plan import MotionPlan, resting, with_oscillation
 from mbkf.synthesis.standing import Angles, posture
 
 KNEE_RAD = np.deg2rad(12.0)
@@ -69,7 +69,7 @@ class Course:
         Args:
             seconds: Duration, s.
         """
-        angles = lively(posture(resting(), self._gains, self.rng), self.rng, 0.8)
+        angles = with_oscillation(posture(resting(), self._gains, self.rng), self.rng, 0.8)
         for joint, curve in (
             ("pelvis", self._facing(PELVIS_S)),
             ("torso", self._leading(TRUNK_S)),
@@ -84,7 +84,7 @@ class Course:
         """Yaw of the pelvis: half of each foot's turn, a little before the foot."""
         first = 0.5 * (self.feet.first[0].yaw + self.feet.first[1].yaw)
         return added(
-            ripple(0.0, 1.0, 0.0, first),
+            sinusoid(0.0, 1.0, 0.0, first),
             *(
                 path([(lift - 2.0 * ahead_s, 0.0), (land - 0.5 * ahead_s, 0.5 * turn)])
                 for lift, land, turn in self.feet.turned()
@@ -92,7 +92,7 @@ class Course:
         )
 
     def _leading(self, ahead_s: float) -> Curve:
-        """How much further a segment has turned that turns before the one below it."""
+        """Lead of a segment that turns before the one below it."""
         later = self._facing(PELVIS_S)
         return lambda times: later(times + ahead_s) - later(times)
 
@@ -103,7 +103,7 @@ def spare(seconds: float, needed_s: float, what: str) -> float:
     Args:
         seconds: Duration of the trial, s.
         needed_s: Duration of the parts, s.
-        what: What they are, for the message.
+        what: Their name, for the message.
 
     Raises:
         InvalidInput: The trial is too short.

@@ -60,7 +60,7 @@ def cubic_steps(case: str = "clean", seed: int = 0, *, delay_s: float = 0.0) -> 
         delay_s: Delay of the motion against the study's; the times of the samples do not change.
 
     Raises:
-        UnknownName: There is no such case.
+        UnknownName: The case does not exist.
         InvalidInput: With that delay the walk does not fit into the samples.
     """
     if case not in CASES:

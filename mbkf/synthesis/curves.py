@@ -62,7 +62,7 @@ def spline(
     return curve
 
 
-def ripple(amplitude: float, frequency_hz: float, phase: float, offset: float = 0.0) -> Curve:
+def sinusoid(amplitude: float, frequency_hz: float, phase: float, offset: float = 0.0) -> Curve:
     """The curve offset + amplitude · sin(2π f t + phase).
 
     Args:

@@ -15,7 +15,7 @@ import numpy as np
 from mbkf.conventions import Array
 
 Index: TypeAlias = int | slice | EllipsisType | tuple[int | slice | EllipsisType | None, ...]
-"""What indexes the arrays of a dual number."""
+"""An index of a dual number's arrays."""
 
 
 class Dual:

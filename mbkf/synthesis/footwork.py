@@ -10,13 +10,13 @@ from mbkf.conventions import SIDES, Array
 from mbkf.model.body import Body
 from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.contact import Load, sole_outline
-from mbkf.synthesis.curves import Curve, added, path, ripple
+from mbkf.synthesis.curves import Curve, added, path, sinusoid
 from mbkf.synthesis.dual_numbers import Dual
 from mbkf.synthesis.inverse_kinematics import SIDE_NAMES, FootPose, InverseKinematics
 from mbkf.synthesis.standing import pressed
 
 HEEL_OFF_S = 0.24
-"""How long before it leaves the ground a foot begins to turn over its ball."""
+"""Time before leaving the ground at which a foot begins to turn over its ball."""
 
 BEFORE_S = -1.0
 """A time before every motion."""
@@ -25,11 +25,11 @@ CLOSE_S = 0.02
 """Between two swings closer than this the load goes from foot to foot without a stop."""
 
 ALONE = 1.5
-"""How much more the pressure sways under one foot than under two, as part of the latter."""
+"""Additional sway of the pressure under one foot, as a share of the sway under two."""
 
 LIGHT, LIGHT_S = 0.08, 0.08
 """Part of the load that a foot still bears so long before it leaves the ground, and bears again so long after it came
-down; it does not linger with almost none."""
+down; it does not linger near zero."""
 
 PEAK, LATE = 0.45, 0.12
 """When a stepping foot is highest, and when it begins to move forward, as parts of its swing."""
@@ -70,10 +70,10 @@ class Swing:
         to: Where it comes down.
         clearance_m: How far the ankle rises over the higher of both ends.
         heel_deg: Pitch with which the heel leaves first.
-        held: None for a step; (from s, to s, forward m, pitch deg) of a foot held in the air beside the other.
+        held: None: a step; else (from s, to s, forward m, pitch deg) of a foot held in the air beside the other.
         unload_s: Time before in which its load is handed over.
         reload_s: Time after in which it takes its part again, unless the other foot's unloading comes sooner.
-        way: What the foot passes in the air, in order of time; where there is any, clearance does not count.
+        way: Points that the foot passes in the air, in order of time; with such points, clearance does not count.
     """
 
     side: int
@@ -112,12 +112,12 @@ class Footwork:
         rng, offset = self.rng, InverseKinematics(self.model).offset
         self.balls = [offset[f"{SIDE_NAMES[side]}_toes"] * [1.0, 0.0, 1.0] for side in SIDES]
         self.toes = [
-            ripple(
+            sinusoid(
                 np.deg2rad(rng.uniform(0.5, 1.5)), rng.uniform(0.3, 0.6), rng.uniform(0, 6.28), np.deg2rad(-2)
             )
             for _ in SIDES
         ]
-        self.sway = ripple(0.03 * rng.uniform(0.5, 1), rng.uniform(0.2, 0.5), rng.uniform(0, 6.28))
+        self.sway = sinusoid(0.03 * rng.uniform(0.5, 1), rng.uniform(0.2, 0.5), rng.uniform(0, 6.28))
         self.forth = [_sway(0.006, rng) for _ in SIDES]
         self.across = [_sway(0.004, rng) for _ in SIDES]
 
@@ -180,7 +180,7 @@ class Footwork:
             if swing.reload_s > 3 * LIGHT_S:
                 knots.append((swing.land_s + LIGHT_S, light, rate))
             loaded_s = swing.land_s + swing.reload_s
-        return path([*knots, (loaded_s, 0.5)]) if knots else ripple(0.0, 1.0, 0.0, 0.5)
+        return path([*knots, (loaded_s, 0.5)]) if knots else sinusoid(0.0, 1.0, 0.0, 0.5)
 
     def _pitch(self, side: int, *, in_air: bool = True) -> Curve:
         """Pitch of a foot; without ``in_air`` as the toes follow it, which bend on the floor only."""
@@ -194,7 +194,7 @@ class Footwork:
         return path([*knots, (knots[-1][0] + 1.0, 0.0)])
 
     def _roll(self, side: int) -> Curve | None:
-        """Turn of a foot about its length; None where it never turns so."""
+        """Turn of a foot about its length; None: it never turns so."""
         own = [swing for swing in self.swings if swing.side == side and swing.way]
         if not own:
             return None
@@ -281,6 +281,6 @@ def _turned(pitch: float, vector: Array) -> Array:
 def _sway(amplitude_m: float, rng: np.random.Generator) -> Curve:
     """Two slow ripples, m."""
     return added(
-        ripple(amplitude_m * rng.uniform(0.5, 1), rng.uniform(0.2, 0.5), rng.uniform(0, 6.28)),
-        ripple(0.4 * amplitude_m * rng.uniform(0.5, 1), rng.uniform(0.7, 1.1), rng.uniform(0, 6.28)),
+        sinusoid(amplitude_m * rng.uniform(0.5, 1), rng.uniform(0.2, 0.5), rng.uniform(0, 6.28)),
+        sinusoid(0.4 * amplitude_m * rng.uniform(0.5, 1), rng.uniform(0.7, 1.1), rng.uniform(0, 6.28)),
     )

@@ -21,7 +21,7 @@ CALM = 1e-8
 
 @dataclass(frozen=True)
 class Hold:
-    """What is to stay in place, and what may change for it.
+    """A part that stays in place, and the quantities that may change for it.
 
     Attributes:
         missed: (T,) times in s and the pose to (T, 2): how far ahead of its place and how far too high the part is, m.
@@ -45,7 +45,7 @@ class Correction:
         """No change at first.
 
         Args:
-            hold: What is to stay in place.
+            hold: The part that stays in place.
             times: (T,) times at which it is looked at, s.
         """
         inner = np.linspace(times[0], times[-1], max(4, round((times[-1] - times[0]) / KNOT_S) + 1))
@@ -69,7 +69,7 @@ class Correction:
         return Dual(*(spline(inside, nu=order) for order in range(3)))
 
     def improve(self, pose: Pose) -> float:
-        """Changes lean and height by what the pose misses; returns the greatest miss in m."""
+        """Changes lean and height by the miss of the pose; returns the greatest miss in m."""
         missed = self.hold.missed(self.times, pose)
         gain = [0.7 / self.hold.metres_per_rad if self.hold.lean else 0.0, -1.0]
         wanted = self._rows @ self.coefficients + missed * gain

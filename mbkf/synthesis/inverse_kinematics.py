@@ -26,7 +26,7 @@ CLOSE = (1e-13, 1e-11, 1e-9)
 """Errors of the centre of mass at which they end: m, m/s, m/s²."""
 
 GAIN = np.diag([1.2, 1.2, 1.1])
-"""How far the pelvis moves per error of the centre of mass where Newton's steps fail; legs follow a little."""
+"""Step of the pelvis per error of the centre of mass where Newton's steps fail; legs follow a little."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class FootPose:
     """Where a foot is: ``ankle`` (T, 3) m, (T,) ``yaw`` and ``pitch`` (heel up positive) and ``toes`` hinge, rad.
 
     The knee bends towards the heading of the foot, or towards a point ``knee`` (3,), m. ``roll`` (T,) is the foot's
-    turn about its length (its left side up), rad; None for none.
+    turn about its length (its left side up), rad; None: zero.
     """
 
     ankle: Dual
@@ -83,7 +83,7 @@ class Pose:
 
 @dataclass(frozen=True)
 class Posture:
-    """What is given of a pose before its centre of mass.
+    """Prescribed parts of a pose, except its centre of mass.
 
     Attributes:
         rotations: Per segment with a given one the (T, 3, 3) world rotation.
@@ -92,8 +92,8 @@ class Posture:
         angles: Per dof of a hinge or universal joint, by segment, the (T,) angles, rad.
         legs: "right" and "left" leg.
         arms: Arms whose hands' place is given.
-        fixed: (T, 3) first moment of mass with the pelvis's origin in the world's, without what limbs move, kg m.
-        mass: What moves with the pelvis's origin, besides limbs, kg.
+        fixed: (T, 3) first moment of mass with the pelvis's origin in the world's, without the limbs' share, kg m.
+        mass: Mass that moves with the pelvis's origin, without limbs, kg.
     """
 
     rotations: dict[str, Dual]
@@ -149,7 +149,7 @@ class InverseKinematics:
         feet: Mapping[str, FootPose],
         hands: Mapping[str, HandPose] | None = None,
     ) -> Posture:
-        """What is given of a pose before its centre of mass.
+        """Prescribed parts of a pose, except its centre of mass.
 
         Args:
             angles: Joint angles (x, y, z) of pelvis, torso, neck (x, y), head, arms, and the knees' small
@@ -176,7 +176,7 @@ class InverseKinematics:
 
         Args:
             com: Whole-body centre of mass.
-            posture: What else is given.
+            posture: Other prescribed coordinates.
             start: Pelvis position from which the iteration starts.
         """
         pelvis = self._pelvis(com, posture, com if start is None else start)
@@ -219,7 +219,7 @@ class InverseKinematics:
 
         Args:
             name: "right" or "left".
-            parts: The upper and the lower link, and what is at the far end; None where that has its place.
+            parts: The upper and the lower link, and the part at the far end; None: that part has its place.
             limb: The limb.
             pelvis: (T, 3) origin of the pelvis, m.
             rotations: World rotations by segment.
@@ -264,7 +264,7 @@ class InverseKinematics:
             near: Near end relative to the pelvis's origin.
             span: Way from the near to the far end.
             across: Near which the middle joint's axis lies.
-            hand: Whose mass goes with the far end; None where that is in its place.
+            hand: The part whose mass goes with the far end; None: it has its place.
         """
         upper, lower = names
         masses = self.mass[upper], self.mass[lower]

@@ -9,10 +9,10 @@ from mbkf.errors import InvalidInput
 from mbkf.model.body import Body
 from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.contact import Load, LoadPlan, sole_outline
-from mbkf.synthesis.curves import path, ripple
+from mbkf.synthesis.curves import path, sinusoid
 from mbkf.synthesis.dual_numbers import Dual
 from mbkf.synthesis.inverse_kinematics import SIDE_NAMES, FootPose, InverseKinematics
-from mbkf.synthesis.plan import FeetPlan, Flight, MotionPlan, lively, resting
+from mbkf.synthesis.plan import FeetPlan, Flight, MotionPlan, resting, with_oscillation
 from mbkf.synthesis.standing import constant, posture
 
 CROUCH_S, PUSH_S, FLIGHT_S, ABSORB_S, RECOVER_S = 0.55, 0.32, 0.34, 0.31, 0.85
@@ -26,7 +26,7 @@ TOUCH_DOWN_PITCH = (29.0, -425.0, -5000.0)
 
 CLEARANCE_M = 0.150
 STEEPNESS = 0.36
-"""How high the balls of the feet rise (times 0.53 in the middle), and how gently; 0.36 keeps hip torques small."""
+"""Rise of the balls of the feet (times 0.53 in the middle), and its smoothness; 0.36 keeps hip torques small."""
 
 CROUCH_DEG = {
     "torso": (0.0, 16.0, 0.0),
@@ -91,7 +91,7 @@ def jump_plan(model: Body, seconds: float, rng: np.random.Generator) -> MotionPl
             (end, 0.0),
         ]
     )
-    angles = lively(posture(resting(), [(crouch, CROUCH_DEG), (swing, SWING_DEG)], rng), rng)
+    angles = with_oscillation(posture(resting(), [(crouch, CROUCH_DEG), (swing, SWING_DEG)], rng), rng)
     del angles["pelvis"]
     pelvis = Flight(off, down, *_pelvis(begin, bottom, off, down, absorbed, end, rng))
     half_width, toe_out = rng.uniform(0.10, 0.13) * size, np.deg2rad(rng.uniform(4, 9))
@@ -191,7 +191,7 @@ def _load(
             (absorbed + 0.4, 0.055 * size),
         ]
     )
-    sway = ripple(0.03 * rng.uniform(0.5, 1), rng.uniform(0.2, 0.4), rng.uniform(0, 6.28), 0.5)
+    sway = sinusoid(0.03 * rng.uniform(0.5, 1), rng.uniform(0.2, 0.4), rng.uniform(0, 6.28), 0.5)
     flat = {side: pose for side, pose in feet(np.array([begin])).items()}
 
     def load(times: Array) -> Load:

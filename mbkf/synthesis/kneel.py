@@ -11,12 +11,12 @@ from mbkf.model.body import Body
 from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.contact import Load, LoadPlan, sole_outline
 from mbkf.synthesis.course import spare
-from mbkf.synthesis.curves import Curve, added, path, ripple, scaled
+from mbkf.synthesis.curves import Curve, added, path, scaled, sinusoid
 from mbkf.synthesis.dual_numbers import Dual
 from mbkf.synthesis.hands import held_hand, palm
 from mbkf.synthesis.holding import Hold
 from mbkf.synthesis.inverse_kinematics import SIDE_NAMES, FootPose, InverseKinematics, Pose
-from mbkf.synthesis.plan import FeetPlan, MotionPlan, lively, resting
+from mbkf.synthesis.plan import FeetPlan, MotionPlan, resting, with_oscillation
 from mbkf.synthesis.standing import Angles, constant, posture, pressed
 from mbkf.synthesis.support import Support
 
@@ -100,15 +100,15 @@ def kneel_plan(model: Body, seconds: float, rng: np.random.Generator) -> MotionP
         length = np.linalg.norm(over, axis=1)
         return np.column_stack([np.zeros(len(at)), (length - thigh) * length / over[:, 2]])
 
-    angles = lively(posture(resting(), [(sunk, SUNK_DEG), (bowed, _bowed(side))], rng), rng, 0.6)
-    still = ripple(np.deg2rad(0.02), 0.5, rng.uniform(0, 6.28))
+    angles = with_oscillation(posture(resting(), [(sunk, SUNK_DEG), (bowed, _bowed(side))], rng), rng, 0.6)
+    still = sinusoid(np.deg2rad(0.02), 0.5, rng.uniform(0, 6.28))
     angles[f"{name}_shank"] = (still, still, angles[f"{name}_shank"][2])
     return MotionPlan(
         start_s=0.0,
         end_s=seconds,
         angles=angles,
         feet=feet,
-        height=added(ripple(0.0, 1.0, 0.0, 0.85 * size), scaled(-0.42 * size, down)),
+        height=added(sinusoid(0.0, 1.0, 0.0, 0.85 * size), scaled(-0.42 * size, down)),
         load=_load(model, feet, side, times, rng),
         straightest_rad=np.deg2rad(14.0),
         supports=(
@@ -167,9 +167,9 @@ def _feet(model: Body, side: int, times: _Times, rng: np.random.Generator) -> tu
     ball = offset[f"{name}_toes"] * [1.0, 0.0, 1.0]
     sunk = times.there(times.knee, times.risen, DOWN_S)
     pitch = added(
-        ripple(0.0, 1.0, 0.0, np.deg2rad(STANCE_DEG)), scaled(np.deg2rad(KNEELING_DEG - STANCE_DEG), sunk)
+        sinusoid(0.0, 1.0, 0.0, np.deg2rad(STANCE_DEG)), scaled(np.deg2rad(KNEELING_DEG - STANCE_DEG), sunk)
     )
-    lifting = ripple(np.deg2rad(1.0), rng.uniform(0.3, 0.6), rng.uniform(0, 6.28), np.deg2rad(-2.0))
+    lifting = sinusoid(np.deg2rad(1.0), rng.uniform(0.3, 0.6), rng.uniform(0, 6.28), np.deg2rad(-2.0))
 
     def over_ball(at: Dual) -> Dual:
         """(T, 3) ankle from where it is on the flat foot."""
@@ -204,8 +204,8 @@ def _load(model: Body, feet: FeetPlan, side: int, times: _Times, rng: np.random.
         rng: Source of the sway.
     """
     size = float(model.scale.mean())
-    forth = ripple(0.005, rng.uniform(0.2, 0.5), rng.uniform(0, 6.28), 0.05 * size)
-    sway = ripple(0.02, rng.uniform(0.2, 0.5), rng.uniform(0, 6.28), rng.uniform(0.38, 0.44))
+    forth = sinusoid(0.005, rng.uniform(0.2, 0.5), rng.uniform(0, 6.28), 0.05 * size)
+    sway = sinusoid(0.02, rng.uniform(0.2, 0.5), rng.uniform(0, 6.28), rng.uniform(0.38, 0.44))
     rear_share = added(
         sway,
         scaled(-0.06, times.there(times.knee, times.risen, DOWN_S)),

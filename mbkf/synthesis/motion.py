@@ -17,7 +17,7 @@ from mbkf.synthesis.strength import overloaded
 from mbkf.synthesis.support import SEGMENTS, Support, fault, wrenches
 
 ATTEMPTS, BENT_RAD = 4, np.deg2rad(1.5)
-"""How often a motion that fails is tried again, each time with the knees bent a little more."""
+"""Number of times that a failed motion is tried again, each time with the knees bent a little more."""
 
 MIN_SECONDS, MAX_SECONDS = 1.0, 120.0
 
@@ -40,7 +40,7 @@ class TrueMotion:
         plate_rate_hz: Sample rate of ``plate_wrench``, a multiple of ``rate_hz``.
         plate_wrench: (S, 2, 6) the same wrenches at that rate.
         plate_surface_m: (S, 2) height of the surface under right and left foot at that rate, m.
-        flight_s: Take-off and touch-down times of a jump, or None.
+        flight_s: Take-off and touch-down times of a jump; None: no flight.
         support_names: S parts of the body that bear besides the feet, out of
             :data:`mbkf.synthesis.support.SEGMENTS`, which also names the segment that takes each wrench.
         support_wrench: (T, S, 6) force N and moment N m about the world origin, world axes, on these segments; 0
@@ -87,7 +87,7 @@ def synthesise_motion(
         seed: Chooses the motion's details.
 
     Raises:
-        UnknownName: There is no such motion.
+        UnknownName: The motion does not exist.
         InvalidInput: Duration or rate make no sense.
         NotConverged: Balance was not found for this body.
     """
@@ -170,13 +170,13 @@ def _dynamics(model: Body, composition: Composition, times: Array, every: int) -
 
 
 def _strain(model: Body, tau: Array) -> str:
-    """The joint that would have to be stronger than people are, as a sentence, "" if none."""
+    """A sentence on the joint that would need more strength than people have; "" where every torque is possible."""
     joint = overloaded(model, tau)
     return f"{joint} would have to be stronger than people are" if joint else ""
 
 
 def _fault(model: Body, moved: _Moved, supports: tuple[Support, ...]) -> str:
-    """The broken law of contact as a sentence, "" if none: the ground pushes, under the soles, within friction."""
+    """A sentence on a broken law of contact, "" without: the ground pushes, under the soles, within friction."""
     every = (len(moved.feet) - 1) // max(1, len(moved.q) - 1)
     for foot, side in enumerate(SIDES):
         name, fine = SIDE_NAMES[side], moved.feet[:, foot]

@@ -80,7 +80,7 @@ def registered_motion(name: str) -> RegisteredMotion:
     """The motion of a name.
 
     Raises:
-        UnknownName: There is no such motion; lists the known ones.
+        UnknownName: The motion does not exist; lists the known ones.
     """
     if name not in _MOTIONS:
         import_installed(MOTIONS)

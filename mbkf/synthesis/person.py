@@ -20,7 +20,7 @@ SPREAD, LIMIT = 0.03, 0.08
 BODY_MASS_INDEX = (21.0, 27.0)
 
 PLACEMENT_SD_M = {"anatomical": 0.004, "technical": 0.015, "keypoint": 0.004}
-"""How far markers are from where the protocol puts them, per coordinate."""
+"""Spread of markers about their places in the protocol, per coordinate."""
 
 SESSION_SD_M = 0.0005
 """The markers stay in place from trial to trial; only the skin moves."""
@@ -40,8 +40,8 @@ def synthesise_subject(
         seed: Chooses the person.
         protocol: Name of the marker protocol.
         body: Name of the body.
-        height_m: Height, m; a random one in :data:`STATURE_RANGE` when None.
-        mass_kg: Mass, kg; by a random index in :data:`BODY_MASS_INDEX` when None.
+        height_m: Height, m; None: a random one in :data:`STATURE_RANGE`.
+        mass_kg: Mass, kg; None: by a random index in :data:`BODY_MASS_INDEX`.
 
     Raises:
         UnknownName: The body or the protocol is unknown.

@@ -9,7 +9,7 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.synthesis.contact import LoadPlan
-from mbkf.synthesis.curves import Curve, added, path, ripple
+from mbkf.synthesis.curves import Curve, added, path, sinusoid
 from mbkf.synthesis.holding import Hold
 from mbkf.synthesis.inverse_kinematics import FootPose, HandPose
 from mbkf.synthesis.support import Support
@@ -55,15 +55,15 @@ class MotionPlan:
 
     Attributes:
         start_s, end_s: Time over which balance is solved (a margin around the recorded time, if any).
-        angles: Curves (x, y, z) by joint, and of the pelvis (where there is no flight), rad.
+        angles: Curves (x, y, z) by joint, and of the pelvis (without a flight), rad.
         feet: Poses of the feet.
         height: Height of the centre of mass over the floor, m; shifted as a whole until the legs fit.
         load: Load sharing and pressure.
         straightest_rad: Knee flexion at the straightest moment of the recorded time.
-        recorded_s: The time that is recorded; all of it when None.
+        recorded_s: The time that is recorded; None: all of it.
         flight: The spell in the air, if any.
-        supports: What bears besides the feet; not together with a flight.
-        hold: What stays in place on its support, if anything.
+        supports: Supports besides the feet; not together with a flight.
+        hold: The part that stays in place on its support, if any.
         hands: Hands whose place is given, if any.
         belts: Belts under the feet that move uniformly, the plan standing in the laboratory: 1 for both feet, 2 for one
             each; 0 on the floor.
@@ -89,15 +89,15 @@ def degrees(*knots: tuple[float, ...]) -> Curve:
     return path([(knot[0], *np.deg2rad(knot[1:])) for knot in knots])
 
 
-def lively(
+def with_oscillation(
     curves: dict[str, tuple[Curve, Curve, Curve]], rng: np.random.Generator, amplitude_deg: float = 1.0
 ) -> dict[str, tuple[Curve, Curve, Curve]]:
-    """The angles with a slow ripple added, so that no joint is ever quite still.
+    """The angles with a slow sinusoid added, so that no joint is ever quite still.
 
     Args:
         curves: Angles (x, y, z) by joint, rad.
         rng: Source of amplitudes, frequencies and phases.
-        amplitude_deg: Typical amplitude of the ripple, deg.
+        amplitude_deg: Typical amplitude of the sinusoid, deg.
     """
     moving = {}
     for joint in ("pelvis", *JOINTS):
@@ -107,7 +107,7 @@ def lively(
         axes = [
             added(
                 curve,
-                ripple(
+                sinusoid(
                     np.deg2rad(small * amplitude_deg * rng.uniform(0.5, 1.0)),
                     rng.uniform(0.3, 0.8),
                     rng.uniform(0, 2 * np.pi),

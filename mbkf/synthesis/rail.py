@@ -7,9 +7,9 @@ import numpy as np
 from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.errors import InvalidInput
 from mbkf.model.body import Body
-from mbkf.synthesis.curves import added, path, ripple, scaled
+from mbkf.synthesis.curves import added, path, scaled, sinusoid
 from mbkf.synthesis.hands import held_hand, palm, shoulder
-from mbkf.synthesis.plan import MotionPlan, lively, resting
+from mbkf.synthesis.plan import MotionPlan, resting, with_oscillation
 from mbkf.synthesis.standing import planted, posture, shifted, standing_load
 from mbkf.synthesis.support import Support
 
@@ -70,9 +70,9 @@ def rail_plan(model: Body, seconds: float, rng: np.random.Generator) -> MotionPl
     return MotionPlan(
         start_s=0.0,
         end_s=seconds,
-        angles=lively(posture(resting(), [(held, lean)], rng), rng),
+        angles=with_oscillation(posture(resting(), [(held, lean)], rng), rng),
         feet=feet,
-        height=added(ripple(0.004 * size, rng.uniform(0.3, 0.6), rng.uniform(0, 6.28), 0.95 * size)),
+        height=added(sinusoid(0.004 * size, rng.uniform(0.3, 0.6), rng.uniform(0, 6.28), 0.95 * size)),
         load=shifted(load, scaled(rng.uniform(-0.01, 0.02) * size, held)),
         straightest_rad=np.deg2rad(8.0),
         supports=(

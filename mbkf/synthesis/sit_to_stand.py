@@ -8,11 +8,11 @@ from mbkf.conventions import SIDES, Array
 from mbkf.errors import InvalidInput
 from mbkf.model.body import Body
 from mbkf.synthesis.contact import sole_outline
-from mbkf.synthesis.curves import Curve, added, path, ripple, scaled
+from mbkf.synthesis.curves import Curve, added, path, scaled, sinusoid
 from mbkf.synthesis.dual_numbers import Dual
 from mbkf.synthesis.holding import Hold
 from mbkf.synthesis.inverse_kinematics import InverseKinematics, Pose
-from mbkf.synthesis.plan import MotionPlan, lively, resting
+from mbkf.synthesis.plan import MotionPlan, resting, with_oscillation
 from mbkf.synthesis.standing import planted, posture, shifted, standing_load
 from mbkf.synthesis.support import Support
 
@@ -26,7 +26,7 @@ UNLOAD_S, RISE_S = 0.6, 1.25
 """Times in which the seat is unloaded, and in which the body then rises."""
 
 HEEL_M = 0.04
-"""How far the pressure under the feet moves back while the body leaves the seat, its centre of mass still behind."""
+"""Backward shift of the pressure under the feet while the body leaves the seat, its centre of mass still behind."""
 
 ALONE_S, BOTH_S = 2.6, 5.6
 """Shortest times for standing up, and for sitting down as well."""
@@ -78,7 +78,7 @@ def sit_to_stand_plan(model: Body, seconds: float, rng: np.random.Generator) -> 
     low = path([(off - 0.1, 1.0), (off + RISE_S, 0.0)], smooth=3)
     gains = [(sitting, SEATED_DEG), (_mirrored(leaning, off, on), LEAN_DEG)]
     largest = rng.uniform(0.76, 0.82)
-    sway = ripple(0.004, rng.uniform(0.3, 0.6), rng.uniform(0, 6.28), hip[0] - 0.01)
+    sway = sinusoid(0.004, rng.uniform(0.3, 0.6), rng.uniform(0, 6.28), hip[0] - 0.01)
 
     def missed(times: Array, pose: Pose) -> Array:
         middle = 0.5 * (pose.origins["right_thigh"].value + pose.origins["left_thigh"].value)
@@ -91,9 +91,9 @@ def sit_to_stand_plan(model: Body, seconds: float, rng: np.random.Generator) -> 
     return MotionPlan(
         start_s=0.0,
         end_s=seconds,
-        angles=lively(posture(resting(), gains, rng), rng, 0.6),
+        angles=with_oscillation(posture(resting(), gains, rng), rng, 0.6),
         feet=feet,
-        height=added(ripple(0.0, 1.0, 0.0, 0.95 * size), scaled(-0.24 * size, _mirrored(low, off, on))),
+        height=added(sinusoid(0.0, 1.0, 0.0, 0.95 * size), scaled(-0.24 * size, _mirrored(low, off, on))),
         load=shifted(standing_load(feet, 0.045 * size, rng), scaled(-HEEL_M * size, leaving)),
         straightest_rad=np.deg2rad(10.0),
         supports=(Support("pelvis", lambda times: largest * bears(times).value, point),),

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.model.body import Body
-from mbkf.synthesis.curves import Curve, added, path, ripple, scaled
-from mbkf.synthesis.plan import MotionPlan, lively, resting
+from mbkf.synthesis.curves import Curve, added, path, scaled, sinusoid
+from mbkf.synthesis.plan import MotionPlan, resting, with_oscillation
 from mbkf.synthesis.standing import planted, posture, standing_load
 
 PERIOD_S = 2.4
@@ -45,9 +45,9 @@ def squat_plan(model: Body, seconds: float, rng: np.random.Generator) -> MotionP
     return MotionPlan(
         start_s=0.0,
         end_s=seconds,
-        angles=lively(posture(resting(), [(depth, BOTTOM_DEG)], rng), rng),
+        angles=with_oscillation(posture(resting(), [(depth, BOTTOM_DEG)], rng), rng),
         feet=feet,
-        height=added(ripple(0.0, 1.0, 0.0, 0.95 * size), scaled(-DROP_M * size, depth)),
+        height=added(sinusoid(0.0, 1.0, 0.0, 0.95 * size), scaled(-DROP_M * size, depth)),
         load=standing_load(feet, 0.05 * size, rng),
         straightest_rad=np.deg2rad(10.0),
     )

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.model.body import Body
-from mbkf.synthesis.curves import Curve, added, ripple
+from mbkf.synthesis.curves import Curve, added, sinusoid
 from mbkf.synthesis.plan import JOINTS, MotionPlan
 from mbkf.synthesis.standing import planted, standing_load
 
 DEVIATION_DEG = 2.5
-"""How far a joint of a person asked to stand straight is from straight (1 sd)."""
+"""Deviation from straight of a joint of a person asked to stand straight (1 sd)."""
 
 
 def stand_plan(model: Body, seconds: float, rng: np.random.Generator) -> MotionPlan:
@@ -37,7 +37,7 @@ def stand_plan(model: Body, seconds: float, rng: np.random.Generator) -> MotionP
         ]
         angles[joint] = (axes[0], axes[1], axes[2])
     feet = planted(model, 0.10, rng.uniform(0, 6), rng)
-    sway = ripple(0.0005, 0.3, rng.uniform(0, 6.28), 0.95 * size)
+    sway = sinusoid(0.0005, 0.3, rng.uniform(0, 6.28), 0.95 * size)
     return MotionPlan(
         0.0,
         seconds,
@@ -50,4 +50,6 @@ def stand_plan(model: Body, seconds: float, rng: np.random.Generator) -> MotionP
 
 
 def _still(angle_deg: float, rng: np.random.Generator) -> Curve:
-    return added(ripple(np.deg2rad(0.1), rng.uniform(0.2, 0.5), rng.uniform(0, 6.28), np.deg2rad(angle_deg)))
+    return added(
+        sinusoid(np.deg2rad(0.1), rng.uniform(0.2, 0.5), rng.uniform(0, 6.28), np.deg2rad(angle_deg))
+    )

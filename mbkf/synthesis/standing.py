@@ -10,7 +10,7 @@ import numpy as np
 from mbkf.conventions import SIDES, Array
 from mbkf.model.body import Body
 from mbkf.synthesis.contact import Load, LoadPlan, sole_outline
-from mbkf.synthesis.curves import Curve, added, ripple, scaled
+from mbkf.synthesis.curves import Curve, added, scaled, sinusoid
 from mbkf.synthesis.dual_numbers import Dual
 from mbkf.synthesis.inverse_kinematics import FootPose
 from mbkf.synthesis.plan import JOINTS, FeetPlan
@@ -34,7 +34,7 @@ def planted(model: Body, half_width_m: float, toe_out_deg: float, rng: np.random
         rng: Source of the toes' motion.
     """
     lifting = {
-        side: ripple(
+        side: sinusoid(
             np.deg2rad(rng.uniform(0.5, 1.5)), rng.uniform(0.3, 0.6), rng.uniform(0, 6.28), np.deg2rad(-2.0)
         )
         for side in SIDES
@@ -63,13 +63,13 @@ def standing_load(feet: FeetPlan, forward_m: float, rng: np.random.Generator) ->
         forward_m: Distance of the pressure ahead of the ankles, m.
         rng: Source of the sway.
     """
-    sway = ripple(
+    sway = sinusoid(
         0.03 * rng.uniform(0.5, 1),
         rng.uniform(0.2, 0.5),
         rng.uniform(0, 6.28),
         0.5 + 0.03 * rng.uniform(-1, 1),
     )
-    forth = ripple(0.006, rng.uniform(0.2, 0.5), rng.uniform(0, 6.28), forward_m)
+    forth = sinusoid(0.006, rng.uniform(0.2, 0.5), rng.uniform(0, 6.28), forward_m)
 
     def load(times: Array) -> Load:
         poses = feet(times)
@@ -120,7 +120,7 @@ def posture(
         axes = []
         for axis in range(3):
             own = base_deg.get(joint, (0.0, 0.0, 0.0))[axis] + rng.normal(0.0, 1.0) * (joint != "pelvis")
-            parts = [ripple(0.0, 1.0, 0.0, np.deg2rad(own))]
+            parts = [sinusoid(0.0, 1.0, 0.0, np.deg2rad(own))]
             for curve, gain in gains:
                 amount = np.deg2rad(gain.get(joint, (0.0, 0.0, 0.0))[axis]) * (1 + spread * rng.normal())
                 parts.append(scaled(amount, curve))

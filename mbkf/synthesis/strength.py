@@ -1,4 +1,4 @@
-"""How strong people are: torques that the joints of a synthetic motion must not exceed."""
+"""Strength of people: torques that the joints of a synthetic motion must not exceed."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ are carried by ligaments. The rest are safe upper bounds of our own choice.
 
 
 def overloaded(model: Body, tau: Array) -> str:
-    """The first joint whose torque a person could not produce, "" if there is none.
+    """The first joint whose torque a person could not produce; "" where every torque is possible.
 
     Args:
         model: The body.

@@ -1,4 +1,4 @@
-"""What bears the body besides the feet: seats, rails, the floor under a knee or a hand."""
+"""Supports of the body besides the feet: seats, rails, the floor under a knee or a hand."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Support:
         name: One of :data:`SEGMENTS`.
         share: (T,) times in s to the part of the whole ground reaction that it takes, 0…1; 0 outside contact.
         point: (T,) times in s to (T, 3) where it presses, m.
-        force: (T,) times in s to a further force (T, 3) on the body, N; none when None.
+        force: (T,) times in s to a further force (T, 3) on the body, N; None: no further force.
         held: Whether the hand holds on, and so may pull.
     """
 
@@ -73,7 +73,7 @@ def zero_moment(
     Args:
         supports: The parts that bear besides the feet.
         times: (T,) s.
-        load: What the feet are meant to do.
+        load: Planned load of the feet.
         height: (T,) height of the centre of mass, m.
         vertical_n: (T,) vertical force of the whole surroundings on the body.
 
@@ -95,7 +95,7 @@ def zero_moment(
 
 
 def fault(supports: Sequence[Support], found: Array) -> str:
-    """The broken law of contact as a sentence, "" if none: what is not held only pushes, and does not slip.
+    """A sentence on the broken law of contact, "" where all hold: an unheld part only pushes, and does not slip.
 
     Args:
         supports: The parts that bear.

@@ -18,7 +18,7 @@ from mbkf.synthesis.plan import MotionPlan
 from mbkf.synthesis.walk import walk_and_speed
 
 APART_M = 0.08
-"""How much wider the steps are on two belts than on the floor, so that no sole reaches over the other belt."""
+"""Additional width of the steps on two belts, so that no sole reaches over the other belt."""
 
 
 def treadmill_plan(model: Body, seconds: float, rng: np.random.Generator, belts: int) -> MotionPlan:

@@ -14,10 +14,10 @@ from mbkf.conventions import SIDES, Array
 from mbkf.model.body import Body
 from mbkf.synthesis import dual_numbers
 from mbkf.synthesis.contact import Load, LoadPlan, sole_outline
-from mbkf.synthesis.curves import Curve, path, ripple, spline
+from mbkf.synthesis.curves import Curve, path, sinusoid, spline
 from mbkf.synthesis.dual_numbers import Dual
 from mbkf.synthesis.inverse_kinematics import SIDE_NAMES, FootPose, InverseKinematics
-from mbkf.synthesis.plan import MotionPlan, lively, resting
+from mbkf.synthesis.plan import MotionPlan, resting, with_oscillation
 from mbkf.synthesis.standing import posture
 
 # Timing as parts of a stride, after Perry & Burnfield, Gait Analysis, 2nd ed. 2010 (stance 62 %, double support 12 %).
@@ -87,7 +87,7 @@ def walk_and_speed(
 
     bob = BOB_M * size * rng.uniform(0.95, 1.05)
     step_hz = 2.0 / stride_s
-    height = ripple(
+    height = sinusoid(
         bob,
         step_hz,
         -2 * np.pi * step_hz * (phase_s + BOB_LATE * DOUBLE_SUPPORT * stride_s) - np.pi / 2,
@@ -96,7 +96,7 @@ def walk_and_speed(
     plan = MotionPlan(
         start,
         end,
-        lively(_angles(stride_s, phase_s, rng), rng, 0.6),
+        with_oscillation(_angles(stride_s, phase_s, rng), rng, 0.6),
         poses,
         height,
         _load(model, steps, feet, stride_s),
@@ -276,7 +276,7 @@ def _angles(
     def wave(amplitude: float, part: float, per_stride: int = 1) -> Curve:
         """Largest at the part of the stride."""
         hz = per_stride / stride_s
-        return ripple(
+        return sinusoid(
             amplitude * rng.uniform(0.9, 1.1), hz, np.pi / 2 - 2 * np.pi * hz * (phase_s + part * stride_s)
         )
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.errors import InvalidInput
-from mbkf.imu.zero_velocity import StillnessSettings, still_samples, unrest
+from mbkf.imu.zero_velocity import StillnessSettings, stance_statistic, still_samples
 from mbkf.numerics.runs import runs
 from tests.foot_walks import foot_walk
 from tests.motions import assert_near
@@ -30,7 +30,9 @@ def test_the_rests_of_a_walk_are_found_at_any_rate(rate_hz):
 
 def test_rest_is_found_in_any_direction_of_the_sensor():
     walk, other = (foot_walk(mounting_rad=turn) for turn in ((0.3, -0.2, 0.1), (2.0, 1.0, -1.5)))
-    assert np.allclose(unrest(*readings_of(walk), SETTINGS), unrest(*readings_of(other), SETTINGS))
+    assert np.allclose(
+        stance_statistic(*readings_of(walk), SETTINGS), stance_statistic(*readings_of(other), SETTINGS)
+    )
 
 
 def test_the_statistic_of_white_noise_is_its_variance_over_the_assumed_one():
@@ -38,7 +40,7 @@ def test_the_statistic_of_white_noise_is_its_variance_over_the_assumed_one():
     f = [0.0, 0.0, GRAVITY_M_S2] + 0.3 * rng.normal(size=(4000, 3))
     w = 0.2 * rng.normal(size=(4000, 3))
     settings = StillnessSettings(acceleration_m_s2=0.3, angular_rate_rad_s=0.2)
-    assert unrest(f, w, 100.0, settings).mean() == pytest.approx(6.0, rel=0.1)
+    assert stance_statistic(f, w, 100.0, settings).mean() == pytest.approx(6.0, rel=0.1)
 
 
 def test_short_rests_are_none_and_short_movements_are_bridged():
@@ -74,7 +76,7 @@ def test_a_shock_is_seen_half_a_window_before_and_after(window_s, samples):
     """The window has an odd number of samples, and three at least."""
     f, w = np.tile([0.0, 0.0, GRAVITY_M_S2], (100, 1)), np.zeros((100, 3))
     w[50] = 1.0
-    found = unrest(f, w, 100.0, StillnessSettings(window_s=window_s, angular_rate_rad_s=0.5))
+    found = stance_statistic(f, w, 100.0, StillnessSettings(window_s=window_s, angular_rate_rad_s=0.5))
     assert_near(found, np.where(abs(np.arange(100) - 50) <= samples // 2, 12.0 / samples, 0.0), 1e-9)
 
 

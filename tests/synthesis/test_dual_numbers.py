@@ -4,27 +4,27 @@ import numpy as np
 import pytest
 
 from mbkf.synthesis import dual_numbers
-from mbkf.synthesis.curves import added, path, ripple, scaled, spline
+from mbkf.synthesis.curves import added, path, scaled, sinusoid, spline
 from mbkf.synthesis.dual_numbers import Dual
 
 TIMES = np.linspace(0.1, 0.9, 9)
 CURVES = {
-    "product": lambda t: ripple(1.0, 0.7, 0.3, 2.0)(t) * ripple(0.5, 1.1, 0.1)(t),
-    "quotient": lambda t: ripple(1.0, 0.7, 0.3)(t) / ripple(0.5, 1.1, 0.1, 2.0)(t),
-    "root": lambda t: dual_numbers.sqrt(ripple(1.0, 0.7, 0.3, 2.0)(t)),
-    "arccos": lambda t: dual_numbers.arccos(ripple(0.6, 0.7, 0.3)(t)),
-    "sine": lambda t: dual_numbers.sin(ripple(2.0, 0.7, 0.3)(t)),
+    "product": lambda t: sinusoid(1.0, 0.7, 0.3, 2.0)(t) * sinusoid(0.5, 1.1, 0.1)(t),
+    "quotient": lambda t: sinusoid(1.0, 0.7, 0.3)(t) / sinusoid(0.5, 1.1, 0.1, 2.0)(t),
+    "root": lambda t: dual_numbers.sqrt(sinusoid(1.0, 0.7, 0.3, 2.0)(t)),
+    "arccos": lambda t: dual_numbers.arccos(sinusoid(0.6, 0.7, 0.3)(t)),
+    "sine": lambda t: dual_numbers.sin(sinusoid(2.0, 0.7, 0.3)(t)),
     "path": path([(0.0, 0.0, 1.0, 2.0), (1.0, 3.0)]),
     "spline": spline([0.0, 0.3, 0.7, 1.0], [0.0, 1.0, 0.5, 2.0], (1.0, 0.0), (0.0, 3.0)),
-    "sum": added(ripple(1.0, 0.7, 0.3), scaled(2.0, path([(0.0, 0.0), (1.0, 1.0)], smooth=3))),
+    "sum": added(sinusoid(1.0, 0.7, 0.3), scaled(2.0, path([(0.0, 0.0), (1.0, 1.0)], smooth=3))),
     "cross": lambda t: dual_numbers.cross(vector(t), vector(t + 0.3)),
     "unit": lambda t: dual_numbers.unit(vector(t)),
-    "rotation": lambda t: dual_numbers.euler([ripple(1.0, f, 0.2)(t) for f in (0.3, 0.5, 0.7)]),
+    "rotation": lambda t: dual_numbers.euler([sinusoid(1.0, f, 0.2)(t) for f in (0.3, 0.5, 0.7)]),
 }
 
 
 def vector(t):
-    return dual_numbers.stack([ripple(1.0, f, f, 2.0)(t) for f in (0.3, 0.5, 0.9)])
+    return dual_numbers.stack([sinusoid(1.0, f, f, 2.0)(t) for f in (0.3, 0.5, 0.9)])
 
 
 @pytest.mark.parametrize("name", CURVES)
@@ -36,7 +36,7 @@ def test_derivatives_agree_with_finite_differences(name):
 
 
 def test_local_rates_are_those_of_the_rotating_frame():
-    angle = ripple(1.0, 0.4, 0.1)(TIMES)
+    angle = sinusoid(1.0, 0.4, 0.1)(TIMES)
     rate, change = dual_numbers.local_rates(dual_numbers.rotation(2, angle))
     assert np.allclose(rate, np.outer(angle.first, [0, 0, 1]))
     assert np.allclose(change, np.outer(angle.second, [0, 0, 1]))

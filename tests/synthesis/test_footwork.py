@@ -5,7 +5,7 @@ import pytest
 
 from mbkf.conventions import SIDES
 from mbkf.synthesis.contact import sole_outline
-from mbkf.synthesis.curves import path, ripple
+from mbkf.synthesis.curves import path, sinusoid
 from mbkf.synthesis.footwork import HEEL_OFF_S, Footwork, Spot, Swing
 
 SECONDS = 6.0
@@ -106,8 +106,8 @@ def test_nudges_move_load_and_pressure(body):
     spots = (Spot(np.array([0.0, -0.11]), 0.0), Spot(np.array([0.0, 0.11]), 0.0))
     at = np.array([1.0])
     plain, nudged = (Footwork(body, spots, np.random.default_rng(1)) for _ in range(2))
-    none = ripple(0.0, 1.0, 0.0)
-    nudged.nudges.append((path([(0.0, 0.0), (1.0, 0.2), (2.0, 0.0)]), ripple(0.0, 1.0, 0.0, 0.03), none))
+    none = sinusoid(0.0, 1.0, 0.0)
+    nudged.nudges.append((path([(0.0, 0.0), (1.0, 0.2), (2.0, 0.0)]), sinusoid(0.0, 1.0, 0.0, 0.03), none))
     assert nudged.load(at).share - plain.load(at).share == pytest.approx(0.2)
     moved = nudged.load(at).pressure - plain.load(at).pressure
     assert moved[0] == pytest.approx(np.array([[0.03, 0.0], [0.03, 0.0]]))

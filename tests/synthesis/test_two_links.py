@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mbkf.synthesis import dual_numbers
-from mbkf.synthesis.curves import ripple
+from mbkf.synthesis.curves import sinusoid
 from mbkf.synthesis.dual_numbers import Dual
 from mbkf.synthesis.two_links import STRAIGHT_RAD, Limb, TwoLinks
 
@@ -15,12 +15,12 @@ UPPER, LOWER = np.array([0.02, 0.01, -0.3]), np.array([0.01, -0.02, -0.2])
 
 def moving(*means):
     return dual_numbers.stack(
-        [ripple(0.05, 0.4 + 0.1 * k, 0.3 * k, mean)(TIMES) for k, mean in enumerate(means)]
+        [sinusoid(0.05, 0.4 + 0.1 * k, 0.3 * k, mean)(TIMES) for k, mean in enumerate(means)]
     )
 
 
 def links(bends):
-    return TwoLinks(LENGTHS, ripple(0.03, 0.5, 0.1)(TIMES), ripple(0.05, 0.3, 0.4)(TIMES), bends)
+    return TwoLinks(LENGTHS, sinusoid(0.03, 0.5, 0.1)(TIMES), sinusoid(0.05, 0.3, 0.4)(TIMES), bends)
 
 
 def bend(span, bends=1.0, across=(0.2, 1.0, 0.1)):

@@ -26,14 +26,14 @@ from mbkf.io.imu.readings import ImuReadings, between
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.numerics.threads import single_threaded
-from mbkf.trial.inertial.orient import prepared
-from mbkf.trial.inertial.standing import root_first, standing_window
-from mbkf.trial.inertial.unlike_magnetometers import (
+from mbkf.trial.inertial.disturbed_magnetometers import (
     at_times,
+    disturbed_magnetometers,
     free_orientations,
     turning_rates,
-    unlike_magnetometers,
 )
+from mbkf.trial.inertial.orient import prepared
+from mbkf.trial.inertial.standing import root_first, standing_window
 
 _DOUBT_RAD, _DOUBT_SHARE, _DOUBT_EVERY = np.radians(15.0), 0.02, 5
 
@@ -89,15 +89,15 @@ def imu_angles(
 
     Args:
         readings: Sensors named after their segments; a pelvis sensor is needed.
-        model: The body; the reference body when None.
+        model: The body; None: the reference body.
         standing: Times of standing still in the recording, s, or a recording of it with the same magnetometers; by
             default the first second in which no sensor turns.
-        posture: (nq,) the posture while standing; the neutral one when None.
+        posture: (nq,) the posture while standing; None: the neutral one.
         settings: Orientation filter and headings.
         progress: Called as samples are done.
 
     Raises:
-        InvalidInput: Readings are not plausible, there is no pelvis sensor, or the person never stands still.
+        InvalidInput: Readings are not plausible, the pelvis sensor is missing, or the person never stands still.
         UnknownName: A sensor's segment is not known.
     """
     chosen, body = settings or AnglesSettings(), model or HumanModel.scaled()
@@ -117,12 +117,12 @@ def imu_angles(
         q, common = _orientations(sensors, chosen, time_s, progress)
         window = None if still is not None else standing_window(sensors, time_s, standing)
         upright = mean_orientation(q[window]) if window is not None else _attitudes(still or ())
-        strange = (
-            unlike_magnetometers(body, segments, sensors, q, upright)
+        disturbed = (
+            disturbed_magnetometers(body, segments, sensors, q, upright)
             if common and not chosen.from_file
             else ()
         )
-        left_out = [k for k, one in enumerate(sensors) if one.name in {bad.sensor for bad in strange}]
+        left_out = [k for k, one in enumerate(sensors) if one.name in {bad.sensor for bad in disturbed}]
         rest = _posture(body, posture, segments)
         headings = _headings(body, segments, q, time_s, upright, rest, common, left_out)
         q, upright = turned(q, -headings[None]), turned(upright[None], -headings[None])[0]
@@ -146,7 +146,7 @@ def imu_angles(
         for one, segment, turn in zip(sensors, segments, aligned, strict=True)
     )
     found = tuple(clinical.names[k] for k in wanted)
-    remarks = (*warnings, *(one.told for one in strange), *_doubts(body, segments, motion, common))
+    remarks = (*warnings, *(one.remark for one in disturbed), *_doubts(body, segments, motion, common))
     return ImuAngles(time_s, motion, found, values[:, wanted], mounts, remarks)
 
 
@@ -241,7 +241,7 @@ def _headings(
     usual = _by_custom(body, segments, upright, rest)
     if not common:
         return usual
-    # How the person has turned since standing is told by the first sensor whose field is sound, usually the pelvis's.
+    # The turn of the person since standing is that of the first sensor whose field is sound, usually the pelvis's.
     sound = [k for k in range(len(segments)) if k not in left_out]
     gyro = turning_rates(q, time_s)[:, sound]
     seen = facing([segments[k] for k in sound], q[:, sound], gyro, upright[sound], body.roles.knees)
@@ -284,7 +284,7 @@ def _doubts(body: HumanModel, segments: Sequence[str], motion: Array, common: bo
 
 
 def _determined(clinical: ClinicalAngles, name: str, segments: Sequence[str]) -> bool:
-    """Whether sensors on both sides of a joint determine its angle."""
+    """True where sensors on both sides of a joint determine its angle."""
     for joint in clinical.joints:
         if name in {angle.name for angle in joint.angles}:
             proximal = joint.proximal == "world" or joint.proximal in segments

@@ -1,10 +1,10 @@
-"""Magnetic fields compared between sensors: which magnetometer does not see what the others see.
+"""Magnetic fields compared between sensors, to find a magnetometer whose field differs from the others'.
 
-Where the body's motion is known without magnetometers, it tells how each sensor is turned. Turned into the world with
+Where the body's motion is known without magnetometers, it gives the attitude of each sensor. Turned into the world with
 it, all sensors of a person see one field, but for iron nearby. One that sees it from elsewhere, or of another size, is
-named (:func:`strange_fields`). Before a motion is known, gyroscope and accelerometer tell a sensor's attitude but for
+named (:func:`disturbed_fields`). Before a motion is known, gyroscope and accelerometer give a sensor's attitude but for
 its heading: all fields are as strong and as steep, and legs whose headings come from their fields swing about one
-level axis, in one sense (:func:`unlike_fields`). Neither depends on how sensors are strapped on.
+level axis, in one sense (:func:`fields_unlike_others`). Neither depends on how sensors are strapped on.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from mbkf.conventions import Array
 from mbkf.io.imu.readings import ImuReadings
 
 LEAST_SENSORS = 3
-"""Fewer fields do not tell which of them is wrong."""
+"""Fewer fields leave open which of them is wrong."""
 
 MOST_TURN_RAD = 0.45
 """A field further from the others' than this is another one; indoors fields differ by some 15°."""
@@ -32,20 +32,20 @@ SIZES = (0.6, 1.6)
 
 @dataclass(frozen=True)
 class Swing:
-    """About which level axis a segment swings, in the world of its sensor's field.
+    """Level axis about which a segment swings, in the world of its sensor's field.
 
     Attributes:
         axis_rad: Direction of the axis about the vertical.
-        told: Whether it points to the left; otherwise it may point to the right as well.
+        points_left: The axis points to the left; otherwise it may point to the right as well.
     """
 
     axis_rad: float
-    told: bool
+    points_left: bool
 
 
 @dataclass(frozen=True)
-class StrangeField:
-    """A magnetometer that does not see what the others see.
+class DisturbedField:
+    """A magnetometer whose field differs from the others'.
 
     Attributes:
         sensor: Its name.
@@ -58,15 +58,17 @@ class StrangeField:
     size: float
 
     @property
-    def told(self) -> str:
-        """What is the matter."""
+    def remark(self) -> str:
+        """The finding in one sentence."""
         return (
             f"magnetometer of {self.sensor}: its field is turned by {np.degrees(self.turn_rad):.0f} deg against the "
             f"other sensors' and has {self.size:.2f} of its size; it is left out"
         )
 
 
-def strange_fields(readings: Sequence[ImuReadings], rotations: Sequence[Array]) -> tuple[StrangeField, ...]:
+def disturbed_fields(
+    readings: Sequence[ImuReadings], rotations: Sequence[Array]
+) -> tuple[DisturbedField, ...]:
     """Magnetometers that do not see the field of the others.
 
     Args:
@@ -89,15 +91,15 @@ def strange_fields(readings: Sequence[ImuReadings], rotations: Sequence[Array]) 
     return _named([name for name, _ in known], turns, sizes)
 
 
-def unlike_fields(
+def fields_unlike_others(
     readings: Sequence[ImuReadings], free: Sequence[Array], swing: Sequence[Swing | None]
-) -> tuple[StrangeField, ...]:
+) -> tuple[DisturbedField, ...]:
     """Magnetometers whose field has another size or dip than the others', or a heading by which its leg swings askew.
 
     Args:
         readings: Sensors with magnetometers.
         free: (T, 3, 3) of each, sensor → a world of its own, z up, without its magnetometer.
-        swing: How each segment swings; None for one that does not.
+        swing: Swing of each segment; None: it does not swing.
     """
     parts = [
         _level_and_up(one.magnetic_field, R)
@@ -128,7 +130,7 @@ def _level_and_up(field_ut: Array, rotations: Array) -> Array:
 
 
 def _askew(swing: Sequence[Swing | None]) -> Array:
-    """(S,) angles, rad, between axes and the one that others are nearest to; 0 where there is none.
+    """(S,) angles, rad, between axes and the one that others are nearest to; 0 with fewer than three.
 
     Of axes that point to the left most do so: one that does not is turned by more than a right angle.
     """
@@ -141,15 +143,15 @@ def _askew(swing: Sequence[Swing | None]) -> Array:
         *most_central(np.column_stack([np.cos(2.0 * angles), np.sin(2.0 * angles)]))[::-1]
     )
     along = np.cos(angles - axis)
-    senses = np.sign(along) * [one.told for _, one in known]
+    senses = np.sign(along) * [one.points_left for _, one in known]
     most = np.sign(senses.sum()) if abs(senses.sum()) >= 2 else 0.0
     cosines = np.where(senses * most < 0.0, -np.abs(along), np.abs(along))
     found[[k for k, _ in known]] = np.arccos(np.clip(cosines, -1.0, 1.0))
     return found
 
 
-def _named(names: Sequence[str], turns: Array, sizes: Array) -> tuple[StrangeField, ...]:
-    """Those whose field is too far from the others'; none where it is most of them, of which it cannot be told.
+def _named(names: Sequence[str], turns: Array, sizes: Array) -> tuple[DisturbedField, ...]:
+    """Those whose field is too far from the others'; empty where most of them differ.
 
     Args:
         names: (S,) sensors.
@@ -157,7 +159,7 @@ def _named(names: Sequence[str], turns: Array, sizes: Array) -> tuple[StrangeFie
         sizes: (S,) sizes as shares of theirs.
     """
     found = tuple(
-        StrangeField(name, float(turn), float(size))
+        DisturbedField(name, float(turn), float(size))
         for name, turn, size in zip(names, turns, sizes, strict=True)
         if turn > MOST_TURN_RAD or not SIZES[0] <= size <= SIZES[1]
     )

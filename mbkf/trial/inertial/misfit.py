@@ -1,8 +1,8 @@
-"""How badly a body explains what its sensors read: what decides between ways in which they may be worn.
+"""Misfit between a body and the readings of its sensors, which decides between ways of mounting them.
 
 A body whose sensors are exchanged, or strapped on the other way round than it takes them to be, cannot stand on feet
-that rest while its sensors turn as they do. What is left of the gyroscopes' innovations, times what is left of feet
-that should rest, is least for what is true.
+that rest while its sensors turn as they do. The gyroscopes' innovations times the motion of feet
+that should rest is least for the true mounting.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ SETTLED_S = 0.3
 
 
 def misfit(filter: WornTracking, recording: Recording) -> float:
-    """Gyroscopes' innovations (root mean square, whitened) times those of feet that stand; inf for no person.
+    """Gyroscopes' innovations (root mean square, whitened) times those of feet that stand; inf: implausible.
 
     Args:
         filter: The filter.

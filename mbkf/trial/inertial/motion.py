@@ -21,7 +21,7 @@ from mbkf.imu.orientation import OrientSettings, orientations
 from mbkf.imu.segment_course import configurations
 from mbkf.imu.segments import segment_of
 from mbkf.imu.turning import has_gyroscope, with_turning
-from mbkf.imu.worn_mounts import MountSettings, Worn, worn_mounts
+from mbkf.imu.worn_mounts import MountSettings, SensorMounts, worn_mounts
 from mbkf.io.imu.mount import ImuMount
 from mbkf.io.imu.readings import ImuReadings, between
 from mbkf.io.results import Reconstruction
@@ -30,7 +30,7 @@ from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
 from mbkf.numerics.cardan import quaternion_matrices
 from mbkf.numerics.threads import single_threaded
-from mbkf.trial.inertial.fields import StrangeField, strange_fields
+from mbkf.trial.inertial.fields import DisturbedField, disturbed_fields
 from mbkf.trial.inertial.misfit import misfit
 from mbkf.trial.inertial.motion_inputs import (
     MotionSettings,
@@ -42,9 +42,9 @@ from mbkf.trial.inertial.motion_inputs import (
 )
 from mbkf.trial.inertial.motion_result import Timeline, motion_result
 from mbkf.trial.inertial.motion_start import StartSettings, first_posture
+from mbkf.trial.inertial.mounted_reversed import SensorPlacement, mounted_reversed
 from mbkf.trial.inertial.orient import prepared
 from mbkf.trial.inertial.standing import carrier_first, standing_window
-from mbkf.trial.inertial.worn_otherwise import WornOtherwise, worn_otherwise
 
 GUESS_S = 20.0
 """A start in motion is guessed from orientations over so long."""
@@ -58,7 +58,7 @@ ANY_HEADING = HeadingSettings(start_sd_rad=3.0)
 
 @dataclass(frozen=True)
 class InertialMotionSettings:
-    """How a motion is found from inertial sensors alone.
+    """Settings of a motion from inertial sensors alone.
 
     Attributes:
         filter: Noise of the sensors, how still feet stand, how exactly Newton's law holds.
@@ -79,7 +79,7 @@ class InertialMotionSettings:
 
 @dataclass(frozen=True)
 class InertialMotion:
-    """What inertial sensors tell of a body.
+    """Result of inertial sensors on a body.
 
     Attributes:
         result: Motion, torques and reactions, with their standard deviations.
@@ -87,20 +87,20 @@ class InertialMotion:
         gyro_bias_rad_s: (S, 3) gyroscopes' readings at rest.
         sensors: Names of the sensors.
         worn: Sensors that are worn otherwise than named or usual.
-        strange_fields: Magnetometers that do not see what the others see.
+        disturbed_fields: Magnetometers whose field differs from the others'.
     """
 
     result: Reconstruction
     mounts: tuple[ImuMount, ...]
     gyro_bias_rad_s: Array
     sensors: tuple[str, ...]
-    worn: WornOtherwise
-    strange_fields: tuple[StrangeField, ...]
+    worn: SensorPlacement
+    disturbed_fields: tuple[DisturbedField, ...]
 
 
 @dataclass(frozen=True)
 class _Plan:
-    """Sensors in order, with their segments, what they read at rest, and the frames.
+    """Sensors in order, with their segments, their readings at rest, and the frames.
 
     Attributes:
         model: The body.
@@ -143,12 +143,12 @@ def inertial_motion(
 
     Args:
         readings: Sensors named after their segments: on the whole body, on one leg, on any of them. Without one on
-            the pelvis it moves with the segment nearest to it, and the joint between them is not told. Reactions and
+            the pelvis it moves with the segment nearest to it, and the joint between them stays unknown. Reactions and
             torques need sensors on both feet. Magnetometers are not used.
         subject: The scaled person.
         standing: Times of standing still in the recording, s, or a recording of it; by default the first second in
             which no sensor turns. The motion begins there, unless it is a recording of its own.
-        posture: (nq,) the posture while standing; None for the neutral one.
+        posture: (nq,) the posture while standing; None: the neutral one.
         trial: Name of the result.
         settings: Noise and priors.
         progress: Called with the stage, frames done and frames in all.
@@ -156,7 +156,7 @@ def inertial_motion(
     Raises:
         InvalidInput: Readings are not plausible, a segment has two sensors, or the person never stands still.
         UnknownName: A sensor's segment is not known.
-        NotObservable: The sensors' readings are no person's.
+        NotObservable: The readings lead to an implausible motion.
     """
     chosen, model = settings or InertialMotionSettings(), HumanModel.of(subject)
     report = progress or (lambda *_: None)
@@ -171,7 +171,7 @@ def inertial_motion(
                 name for name, k in zip(segments, order, strict=True) if not has_gyroscope(readings[k])
             ),
         )
-        found = worn_otherwise(
+        found = mounted_reversed(
             model, segments, lambda turned, names: misfit(*_filter(_renamed(plan, turned, names)))
         )
         plan = replace(plan, turned=found.turned)
@@ -184,19 +184,19 @@ def inertial_motion(
             body=MountErrors(model, segments, worn.turn_sd_rad),
             progress=partial(report, "Filtering"),
         )
-        notes = (*warnings, *worn.remarks, *found.told)
-        strange = strange_fields(*_magnetometers(plan, worn, tracked))
+        notes = (*warnings, *worn.remarks, *found.remarks)
+        disturbed = disturbed_fields(*_magnetometers(plan, worn, tracked))
         result = motion_result(
             subject,
             segments,
             Timeline(trial, 1.0 / _dt(plan), float(plan.times_s[0])),
             tracked,
-            notes=(*notes, *(one.told for one in strange)),
-            told={"inertial": asdict(chosen)},
+            notes=(*notes, *(one.remark for one in disturbed)),
+            more={"inertial": asdict(chosen)},
             smooth=chosen.smooth,
         )
     return InertialMotion(
-        result, worn.mounts, worn.bias_rad_s, tuple(one.name for one in sensors), found, strange
+        result, worn.mounts, worn.bias_rad_s, tuple(one.name for one in sensors), found, disturbed
     )
 
 
@@ -213,18 +213,18 @@ def _renamed(plan: _Plan, turned: frozenset[str], names: Mapping[str, str]) -> _
     return replace(plan, turned=turned, segments=segments, derived=derived)
 
 
-def _worn(plan: _Plan) -> Worn:
-    """How the sensors sit."""
+def _worn(plan: _Plan) -> SensorMounts:
+    """Mounts of the sensors."""
     known = plan.model, plan.segments, plan.still, plan.sensors, plan.posture, plan.posture_known
     return worn_mounts(*known, plan.settings.mounts, plan.turned, plan.derived)
 
 
-def _filter(plan: _Plan, worn: Worn | None = None) -> tuple[WornTracking, Recording]:
+def _filter(plan: _Plan, worn: SensorMounts | None = None) -> tuple[WornTracking, Recording]:
     """The filter and its readings.
 
     Args:
         plan: Sensors and frames.
-        worn: How the sensors sit; None where it is to be found.
+        worn: Mounts of the sensors; None: to be found.
     """
     sensors, s = worn or _worn(plan), plan.settings
     inputs = motion_inputs(plan.model, _dt(plan), plan.segments)
@@ -234,7 +234,7 @@ def _filter(plan: _Plan, worn: Worn | None = None) -> tuple[WornTracking, Record
     return filter, motion_recording(*known, causal=not s.smooth)
 
 
-def _magnetometers(plan: _Plan, worn: Worn, tracked: Track) -> tuple[list[ImuReadings], list[Array]]:
+def _magnetometers(plan: _Plan, worn: SensorMounts, tracked: Track) -> tuple[list[ImuReadings], list[Array]]:
     """Sensors with their fields at the frames, and how each is turned then.
 
     Args:
@@ -276,7 +276,7 @@ def _planned(
         sensors: The sensors.
         segments: Segments that carry them.
         standing: As for :func:`inertial_motion`.
-        posture: (nq,) or None.
+        posture: (nq,); None: neutral.
         settings: Of the whole.
     """
     at_rest, known = (model.neutral(), False) if posture is None else (posture, True)
@@ -298,8 +298,8 @@ def _dt(plan: _Plan) -> float:
     return float(plan.times_s[1] - plan.times_s[0])
 
 
-def _first(plan: _Plan, worn: Worn) -> FirstPosture:
-    """The first posture: that of standing, or what the sensors' orientations tell of a start in motion."""
+def _first(plan: _Plan, worn: SensorMounts) -> FirstPosture:
+    """The first posture: that of standing, or by the sensors' orientations at a start in motion."""
     dt, s = _dt(plan), plan.settings
     if plan.from_standing:
         return first_posture(plan.model, plan.segments, np.tile(plan.posture, (2, 1)), dt, True, s.start)

@@ -16,7 +16,7 @@ from mbkf.filters.kinematic.filter import KinematicFilter
 from mbkf.filters.kinematic.settings import KinematicSettings
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.imu.rest_watch import FeetAtRest
-from mbkf.imu.worn_mounts import Worn
+from mbkf.imu.worn_mounts import SensorMounts
 from mbkf.imu.zero_velocity import StillnessSettings, still_samples
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.model.body import Body
@@ -53,8 +53,8 @@ class MotionSettings:
         stillness: When a foot's own sensor is at rest.
         transfer: How load passes from foot to foot in walking.
         unseen: Moment of arms and head, which no sensor shows.
-        residual_force_n, residual_moment_nm: How exactly Newton's law holds: arms and head move, and no sensor tells.
-        posture_scale: Factor on the spread of the posture prior. Sensors tell a posture's changes much better than the
+        residual_force_n, residual_moment_nm: Spread of Newton's law: arms and head move unseen.
+        posture_scale: Factor on the spread of the posture prior. Sensors show a posture's changes much better than the
             posture: the usual weight, in every frame, would draw the mounts along.
     """
 
@@ -102,9 +102,9 @@ def carrier(model: HumanModel, segments: Sequence[str]) -> str:
 
 
 def untold(model: HumanModel, segments: Sequence[str]) -> BoolArray:
-    """(nv,) dofs that no sensor tells of; they keep the neutral posture.
+    """(nv,) dofs that no sensor observes; they keep the neutral posture.
 
-    A root without a sensor moves with the segment of :func:`carrier`: the joint between them is untold.
+    A root without a sensor moves with the segment of :func:`carrier`: the joint between them is unobserved.
     """
     found = np.ones(model.nv, dtype=bool)
     first = carrier(model, segments)
@@ -121,7 +121,7 @@ def motion_recording(
     settings: MotionSettings,
     causal: bool = False,
 ) -> Recording:
-    """What the sensors read at the frames' times, and when each foot is at rest.
+    """Readings of the sensors at the frames' times, and times at which each foot is at rest.
 
     Args:
         readings: The sensors.
@@ -129,7 +129,7 @@ def motion_recording(
         model: The body.
         times_s: (T,) the frames, s.
         settings: When a foot is at rest.
-        causal: Whether that is told by the readings until then, as live.
+        causal: Rests are recognised by the readings until then, as live.
     """
     frames, dt_s = len(times_s), float(times_s[1] - times_s[0])
     imus = frame_readings(readings, times_s)
@@ -171,7 +171,7 @@ def _rest(
 
 def worn_filter(
     inputs: FilterInputs,
-    worn: Worn,
+    worn: SensorMounts,
     first: FirstPosture,
     settings: MotionSettings,
     standing_q: Array | None = None,
@@ -191,9 +191,9 @@ def worn_filter(
         s.law, residual_force_n=settings.residual_force_n, residual_moment_nm=settings.residual_moment_nm
     )
     sensors, bias_sd = InertialSensor(model, worn.mounts), np.repeat(worn.bias_sd_rad_s[:, None], 3, axis=1)
-    told = {mount.segment for mount in worn.mounts}
-    # A foot without a sensor may be anywhere, and so may what it carries.
-    ground = _ground(model, dt, law, s.contact, settings) if told >= set(model.roles.feet) else []
+    sensed = {mount.segment for mount in worn.mounts}
+    # A foot without a sensor may be anywhere, and so may its load.
+    ground = _ground(model, dt, law, s.contact, settings) if sensed >= set(model.roles.feet) else []
     blocks: list[AnyBlock] = [
         Markers(inputs.sensor, inputs.noise_m, dt, unobservable, s.markers),
         *ground,
@@ -214,16 +214,16 @@ def _ground(
     contact: FootContactSettings,
     settings: MotionSettings,
 ) -> list[AnyBlock]:
-    """Newton's law, the feet's contact, how load passes between them, and the moment of what is not seen.
+    """Newton's law, the feet's contact, the transfer of load between them, and the moment of unseen segments.
 
     Args:
         model: The body.
         dt_s: Time between frames.
         law: How exactly the law holds.
         contact: Noise of the reactions.
-        settings: How load passes from foot to foot, and what is not seen.
+        settings: Of the load transfer and of unseen segments.
     """
-    by_pitch = replace(contact, free_push_share=np.inf)  # heights of soles do not tell it
+    by_pitch = replace(contact, free_push_share=np.inf)  # heights of soles leave it open
     return [
         NewtonEulerLaw(NewtonEuler(model), law),
         FootContact(ContactDetector(model, (), dt_s), GRAVITY_M_S2 * model.mass_kg, dt_s, by_pitch),

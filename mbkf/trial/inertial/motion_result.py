@@ -39,18 +39,18 @@ def motion_result(
     tracked: Track,
     *,
     notes: Sequence[str] = (),
-    told: Mapping[str, object] | None = None,
+    more: Mapping[str, object] | None = None,
     smooth: bool = False,
 ) -> Reconstruction:
-    """Motion, torques and reactions of what a filter followed.
+    """Motion, torques and reactions of a tracked trial.
 
     Args:
         subject: The person.
         segments: (S,) segments that carry sensors.
         timeline: The frames.
-        tracked: What the filter found, (T,) frames.
+        tracked: The track, (T,) frames.
         notes: Remarks for the reader.
-        told: Settings to be kept beside the usual ones.
+        more: Settings to be kept beside the usual ones.
         smooth: Whether later frames corrected earlier ones.
     """
     frames, dt_s = len(tracked.q), 1.0 / timeline.rate_hz
@@ -60,4 +60,4 @@ def motion_result(
     capture = Capture(timeline.trial, none, notes=tuple(notes))
     hidden = np.zeros((frames, 0), dtype=bool)
     found = assemble(capture, subject, settings, none, hidden, inputs, tracked)
-    return replace(found, protocol="inertial sensors", settings={**found.settings, **(told or {})})
+    return replace(found, protocol="inertial sensors", settings={**found.settings, **(more or {})})

@@ -15,12 +15,12 @@ from mbkf.sensors.contact.feet import FeetOnBody
 
 @dataclass(frozen=True)
 class StartSettings:
-    """How well the first posture is known.
+    """Spread of the first posture.
 
     Attributes:
         tilt_sd_rad, heading_sd_rad: Spread of a segment's tilt and heading, the root's heading excepted: it is where
             the laboratory's x axis points.
-        joint_sd_rad: Spread of joints between sensors that the two do not tell of.
+        joint_sd_rad: Spread of joints between sensors that the two do not observe.
         place_sd_m: Spread of the root's place.
         rate_sd_rad_s, speed_sd_m_s: Spread of joints' and the root's velocity in a start in motion.
         still_rate_sd_rad_s, still_speed_sd_m_s: The same while the person stands.
@@ -53,7 +53,7 @@ def first_posture(
     Args:
         model: The body.
         segments: Segments that carry sensors.
-        course: (2, nq) configurations of the first two frames as sensors' orientations tell them, at the origin.
+        course: (2, nq) configurations of the first two frames by the sensors' orientations, at the origin.
         dt_s: Time between them.
         standing: Whether the person stands still.
         settings: How well this is known.

@@ -32,7 +32,7 @@ LEAST_TURNING_RAD_S = 0.3
 """A sensor whose segment turns less than this (root mean square) is not calibrated on its motion."""
 
 PLACE_SD_M, BIAS_SD_RAD_S = 0.04, 0.01
-"""How far a sensor sits from its usual place, and what gyroscopes read at rest, before anything is measured."""
+"""Spread of a sensor about its usual place, and of gyroscopes' readings at rest, before any measurement."""
 
 _ROUNDS = 5
 _FORCE_WEIGHT = 0.1

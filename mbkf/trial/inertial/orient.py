@@ -43,7 +43,7 @@ def prepared(
     """The sensors wanted, checked and on a regular grid, and the warnings.
 
     Raises:
-        UnknownName: There is no such sensor.
+        UnknownName: The sensor does not exist.
         InvalidInput: Something is wrong that would make results wrong.
     """
     names = [one.name for one in readings]
@@ -94,13 +94,13 @@ def orient(
             errors.append((one.name, orientation_error(course.quaternion, reference)))
             if one.moving is not None:
                 moving.append((one.name, orientation_error(course.quaternion, reference, one.moving)))
-    told = [
+    disturbances = [
         remark
         for one, course in zip(sensors, courses, strict=True)
         if chosen.magnetometer
         for remark in field_remarks(one, change_frame(course.quaternion, frame, "NWU"))
     ]
-    return OrientResult(courses, compared, tuple(errors), tuple(moving), (*warnings, *told))
+    return OrientResult(courses, compared, tuple(errors), tuple(moving), (*warnings, *disturbances))
 
 
 def orientation_summary(result: OrientResult, settings: OrientSettings) -> dict[str, object]:

@@ -22,7 +22,7 @@ def root_first(names: Sequence[str], root: str) -> list[int]:
     """The root segment, usually the pelvis, first.
 
     Raises:
-        InvalidInput: There is none, or a segment has two sensors.
+        InvalidInput: No sensor is on a segment, or a segment has two sensors.
     """
     if root not in names:
         raise InvalidInput(f"joint angles need a sensor on the {root}; there are {', '.join(names)}")
@@ -51,17 +51,17 @@ def standing_window(sensors: Sequence[ImuReadings], time_s: Array, standing: obj
     Args:
         sensors: The sensors' readings.
         time_s: (T,) the samples, s.
-        standing: Its first and last time, s; None for the first second in which no sensor turns, and what of the
+        standing: Its first and last time, s; None: the first second in which no sensor turns, and the part of the
             seconds after it is as calm, up to :data:`CALIBRATED_S` in all.
 
     Raises:
-        InvalidInput: There are no readings then, or the person never stands still.
+        InvalidInput: Readings are missing then, or the person never stands still.
     """
     if isinstance(standing, tuple):
         first, last = (float(one) for one in standing)
         chosen = np.flatnonzero((time_s >= first) & (time_s <= last))
         if not len(chosen):
-            raise InvalidInput(f"there are no readings from {first:g} to {last:g} s; correct --standing")
+            raise InvalidInput(f"readings are missing from {first:g} to {last:g} s; correct --standing")
         return slice(int(chosen[0]), int(chosen[-1]) + 1)
     width = max(2, round(STILL_S * sensors[0].rate_hz))
     worst = np.zeros(len(time_s))

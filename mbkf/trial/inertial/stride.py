@@ -29,7 +29,7 @@ METHODS = {
 }
 
 STRAIGHT_DEG = 20.0
-"""Strides that turn the foot by more are no part of means."""
+"""Strides that turn the foot by more are left out of means."""
 
 
 _MOST_TOLD = 3
@@ -40,7 +40,7 @@ LEAST_S = 1.0
 
 @dataclass(frozen=True)
 class StrideSettings:
-    """How strides are measured: ``method`` out of :data:`METHODS`, and the settings of its parts."""
+    """Settings of stride measurement: ``method`` out of :data:`METHODS`, and those of its parts."""
 
     method: str = "smoother"
     stillness: StillnessSettings = field(default_factory=StillnessSettings)
@@ -62,7 +62,7 @@ class FootResult:
         rate_hz: Rate of its readings.
         time_s: (T,).
         position_m, velocity_m_s: (T, 3) x along the first stride, z up; NaN before the first rest.
-        orientation: (T, 4) sensor → world as quaternions (x, y, z, w); None where the method has none.
+        orientation: (T, 4) sensor → world as quaternions (x, y, z, w); None: the method gives no orientation.
         still: (T,) samples in which the foot stands.
         strides: In order of time.
         refused: Samples that looked like rest but contradicted the estimated velocity.
@@ -134,7 +134,7 @@ def usable(reading: ImuReadings) -> ImuReadings:
     """The readings, if they can be integrated.
 
     Raises:
-        InvalidInput: The capture is too short for a stride, there is no gyroscope, or samples are missing.
+        InvalidInput: The capture is too short for a stride, or the gyroscope or samples are missing.
     """
     where = f"sensor {reading.name}"
     if reading.samples < LEAST_S * reading.rate_hz:
@@ -199,7 +199,7 @@ def _accepted(strides: Sequence[Stride]) -> list[Stride]:
 
 
 def _within_reach(feet: Sequence[FootResult]) -> tuple[FootResult, ...]:
-    """The feet with the strides that no person makes, alone or beside the other foot, told apart."""
+    """The feet with impossible strides, alone or beside the other foot, marked as refused."""
     own = [replace(foot, strides=doubted(foot.strides)) for foot in feet]
     if len(own) != 2:
         return tuple(own)
@@ -233,7 +233,7 @@ def _together(feet: Sequence[FootResult]) -> tuple[FootResult, ...]:
 
 
 def stride_summary(measured: StrideMeasurement) -> dict[str, object]:
-    """Plain data for summary.json; None where something is unknown."""
+    """Plain data for summary.json; null: unknown."""
     feet, settings = measured.feet, measured.settings
     summary: dict[str, object] = {
         "version": __version__,
@@ -271,7 +271,7 @@ def _foot_numbers(foot: FootResult) -> dict[str, object]:
 
 
 def _both_numbers(feet: Sequence[FootResult]) -> dict[str, object]:
-    """What the feet show together: step times from landing to landing, cadence, and how alike the sides are."""
+    """Joint measures of both feet: step times from landing to landing, cadence, and symmetry."""
     landings = sorted(
         (float(foot.time_s[_landing(foot, stride)]), n)
         for n, foot in enumerate(feet)

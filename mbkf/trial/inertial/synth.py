@@ -78,8 +78,8 @@ def synthesise_imus(
         motion: The motion.
         segments: Segments that carry one sensor each, at its usual place.
         mounts: Sensors placed anywhere instead.
-        errors: Their errors; None for a consumer unit's.
-        rate_hz: Sample rate; the motion's when None.
+        errors: Their errors; None: a consumer unit's.
+        rate_hz: Sample rate; None: the motion's.
         seed: Chooses errors and how carelessly sensors were put on.
         careless: Whether they were.
 

@@ -16,7 +16,7 @@ from mbkf.conventions import Array
 from mbkf.filters.dynamic.worn_tracking import WornTracking
 from mbkf.filters.mount_errors import MountErrors
 from mbkf.imu.segments import segment_of
-from mbkf.imu.worn_mounts import MountSettings, Worn, worn_mounts
+from mbkf.imu.worn_mounts import MountSettings, SensorMounts, worn_mounts
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.model.human import HumanModel
 from mbkf.trial.inertial.motion_inputs import MotionSettings, carrier, motion_inputs, worn_filter
@@ -59,7 +59,7 @@ class LiveWorn:
 
     columns: tuple[int, ...]
     segments: tuple[str, ...]
-    worn: Worn
+    worn: SensorMounts
     inputs: FilterInputs
     filter: WornTracking
     body: MountErrors

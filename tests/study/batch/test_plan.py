@@ -29,7 +29,7 @@ def test_shards_make_up_the_whole_and_share_nothing(count, shards):
 
 @pytest.mark.parametrize("number, count", [(0, 3), (4, 3), (-1, 2), (1, 0)])
 def test_a_shard_that_is_not_there_is_refused(number, count):
-    with pytest.raises(InvalidInput, match="shard .* does not exist"):
+    with pytest.raises(InvalidInput, match=r"shard .* does not exist"):
         Plan(tuple(trials(3))).shard(number, count)
 
 

@@ -5,7 +5,13 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from mbkf.io.imu.readings import ImuReadings
-from mbkf.trial.inertial.fields import Swing, most_central, strange_fields, unlike_fields, world_field
+from mbkf.trial.inertial.fields import (
+    Swing,
+    disturbed_fields,
+    fields_unlike_others,
+    most_central,
+    world_field,
+)
 
 FIELD = np.array([24.0, 3.0, -39.0])
 
@@ -39,17 +45,19 @@ def test_the_bad_one_is_named(k, how):
     field = one.magnetic_field
     bad = 0.3 * field if how == "weak" else field[:, [1, 0, 2]] * [1.0, -1.0, 1.0]
     sensors[k] = (changed(one, bad), R)
-    (found,) = strange_fields(*zip(*sensors, strict=True))
-    assert found.sensor == f"s{k}" and f"s{k}" in found.told
+    (found,) = disturbed_fields(*zip(*sensors, strict=True))
+    assert found.sensor == f"s{k}" and f"s{k}" in found.remark
     if how == "weak":
         assert found.size == pytest.approx(0.3, abs=0.06)
 
 
 def test_good_ones_are_not_accused_and_two_do_not_judge():
     sensors = worn()
-    assert strange_fields(*zip(*sensors, strict=True)) == ()
+    assert disturbed_fields(*zip(*sensors, strict=True)) == ()
     one, R = sensors[0]
-    assert strange_fields(*zip(*[(changed(one, 0.1 * one.magnetic_field), R), sensors[1]], strict=True)) == ()
+    assert (
+        disturbed_fields(*zip(*[(changed(one, 0.1 * one.magnetic_field), R), sensors[1]], strict=True)) == ()
+    )
 
 
 def upside(sensors):
@@ -62,12 +70,12 @@ def upside(sensors):
 @pytest.mark.parametrize("k", [0, 3, 5])
 def test_size_and_dip_are_compared_without_headings(k):
     sensors, none = upside(worn(seed=k)), [None] * 8
-    assert unlike_fields(*zip(*sensors, strict=True), none) == ()
+    assert fields_unlike_others(*zip(*sensors, strict=True), none) == ()
     one, R = sensors[k]
     for field in (0.3 * one.magnetic_field, one.magnetic_field[:, [1, 0, 2]] * [1.0, -1.0, 1.0]):
         bad = [*sensors]
         bad[k] = (changed(one, field), R)
-        assert [found.sensor for found in unlike_fields(*zip(*bad, strict=True), none)] == [f"s{k}"]
+        assert [found.sensor for found in fields_unlike_others(*zip(*bad, strict=True), none)] == [f"s{k}"]
 
 
 @pytest.mark.parametrize(
@@ -77,15 +85,17 @@ def test_a_leg_that_swings_askew_has_another_heading(k, off_deg, found):
     """About half a turn is seen only where an axis points to the left by itself, as those of shanks do."""
     sensors = upside(worn())
     swing = [None, None, *(Swing(1.0 + 0.1 * n, n >= 2) for n in range(6))]
-    sound = unlike_fields(*zip(*sensors, strict=True), swing)
+    sound = fields_unlike_others(*zip(*sensors, strict=True), swing)
     assert sound == ()
     swing[k] = Swing(swing[k].axis_rad + np.radians(off_deg), swing[k].told)
-    assert [one.sensor for one in unlike_fields(*zip(*sensors, strict=True), swing)] == [f"s{k}"] * found
+    assert [one.sensor for one in fields_unlike_others(*zip(*sensors, strict=True), swing)] == [
+        f"s{k}"
+    ] * found
 
 
 def test_most_of_them_cannot_be_strange():
     sensors = [(changed(one, one.magnetic_field * (1.0 + k)), R) for k, (one, R) in enumerate(worn())]
-    assert unlike_fields(*zip(*upside(sensors), strict=True), [None] * 8) == ()
+    assert fields_unlike_others(*zip(*upside(sensors), strict=True), [None] * 8) == ()
 
 
 def test_the_middle_of_fields_is_one_of_them():

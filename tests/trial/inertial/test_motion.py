@@ -9,7 +9,7 @@ from mbkf.errors import InvalidInput
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.trial.inertial import misfit
 from mbkf.trial.inertial.motion import InertialMotionSettings, inertial_motion
-from mbkf.trial.inertial.worn_otherwise import WornOtherwise
+from mbkf.trial.inertial.mounted_reversed import SensorPlacement
 from tests.worn import exchanged, worn
 
 FLEXION = [f"{joint}_{side}" for joint in ("hip_flexion", "knee_angle", "ankle_angle") for side in "rl"]
@@ -64,14 +64,14 @@ def test_the_ground_bears_the_body(walk, found):
 
 
 def test_magnetometers_change_nothing_and_a_bad_one_is_named(walk, found):
-    assert found.strange_fields == () and found.worn == WornOtherwise()
+    assert found.disturbed_fields == () and found.worn == SensorPlacement()
     bad = list(walk.moving)
     bad[3] = replace(bad[3], magnetic_field=0.3 * bad[3].magnetic_field)
     settings = InertialMotionSettings(smooth=False)
     other = inertial_motion(
         bad, walk.subject, standing=walk.standing, posture=walk.posture, settings=settings
     )
-    assert [one.sensor for one in other.strange_fields] == [bad[3].name]
+    assert [one.sensor for one in other.disturbed_fields] == [bad[3].name]
     np.testing.assert_array_equal(other.result.q, found.result.q)
     assert any(bad[3].name in text for text in other.result.warnings)
 

@@ -28,7 +28,7 @@ def test_it_is_what_the_filter_found(tracked):
     turn, segments, found = tracked
     timeline = Timeline("turn", RATE_HZ, 2.0)
     result = motion_result(
-        turn.subject, segments, timeline, found, notes=["a remark"], told={"inertial": {"x": 1}}
+        turn.subject, segments, timeline, found, notes=["a remark"], more={"inertial": {"x": 1}}
     )
     np.testing.assert_array_equal(result.q, found.q)
     np.testing.assert_allclose(result.times_s, 2.0 + np.arange(40) / RATE_HZ, atol=1e-12)

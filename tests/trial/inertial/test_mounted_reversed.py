@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mbkf.trial.inertial.worn_otherwise import WornOtherwise, groups, likely, worn_otherwise
+from mbkf.trial.inertial.mounted_reversed import SensorPlacement, groups, likely, mounted_reversed
 from tests.worn import worn
 
 SEGMENTS = ("pelvis", "right_thigh", "left_thigh", "right_shank", "left_foot", "torso")
@@ -34,13 +34,13 @@ def judged(best_turned, best_names, seen=None):
 def test_what_is_turned_is_found_group_by_group_and_then_exchanges():
     legs = frozenset({"right_thigh", "left_thigh", "right_shank"})
     names = {"right_thigh": "left_thigh", "left_thigh": "right_thigh"}
-    found = worn_otherwise(worn().model, SEGMENTS, judged(legs | {"pelvis"}, names))
+    found = mounted_reversed(worn().model, SEGMENTS, judged(legs | {"pelvis"}, names))
     assert found.turned == legs | {"pelvis"}
     assert found.exchange is not None and set(found.exchange.segments) == set(names)
-    assert len(found.told) == 2 and "exchanged" in found.told[0] and "pelvis" in found.told[1]
+    assert len(found.remarks) == 2 and "exchanged" in found.remarks[0] and "pelvis" in found.remarks[1]
 
 
 def test_sensors_worn_as_usual_are_not_accused():
-    assert worn_otherwise(worn().model, SEGMENTS, judged(frozenset(), {})) == WornOtherwise()
-    assert worn_otherwise(worn().model, SEGMENTS, lambda *_: np.inf) == WornOtherwise()
-    assert WornOtherwise().told == ()
+    assert mounted_reversed(worn().model, SEGMENTS, judged(frozenset(), {})) == SensorPlacement()
+    assert mounted_reversed(worn().model, SEGMENTS, lambda *_: np.inf) == SensorPlacement()
+    assert SensorPlacement().remarks == ()

@@ -10,12 +10,12 @@ from mbkf.imu.frames import attitude
 from mbkf.imu.heading import turned
 from mbkf.imu.orientation import OrientSettings, orientations
 from mbkf.numerics.cardan import quaternion_matrices
-from mbkf.trial.inertial.unlike_magnetometers import (
+from mbkf.trial.inertial.disturbed_magnetometers import (
     at_times,
+    disturbed_magnetometers,
     free_orientations,
     leg_swings,
     turning_rates,
-    unlike_magnetometers,
 )
 from tests.worn import worn
 
@@ -35,7 +35,7 @@ def by_fields(moving, standing):
 def accused(walk, change):
     moving, standing = ([change(one) for one in readings] for readings in (walk.moving, walk.standing))
     known = walk.model, [one.name for one in moving], moving
-    return [one.sensor for one in unlike_magnetometers(*known, *by_fields(moving, standing))]
+    return [one.sensor for one in disturbed_magnetometers(*known, *by_fields(moving, standing))]
 
 
 def field_turned(one, angle):
@@ -74,7 +74,7 @@ def test_legs_swing_about_the_left_and_others_do_not(walk):
     segments, times = [one.name for one in walk.moving], walk.moving[0].time_s
     swing = leg_swings(walk.model, segments, q, turning_rates(q, times), upright)
     assert [name for name, one in zip(segments, swing, strict=True) if one is None] == ["pelvis", "torso"]
-    told = {name: one for name, one in zip(segments, swing, strict=True) if one is not None and one.told}
+    told = {name: one for name, one in zip(segments, swing, strict=True) if one is not None and one.points_left}
     assert set(told) == {"right_shank", "left_shank", "right_foot", "left_foot"}
     forward = walk.motion.q[-1, :2] - walk.motion.q[0, :2]
     left = np.arctan2(forward[0], -forward[1])

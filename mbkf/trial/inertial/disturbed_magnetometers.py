@@ -20,7 +20,7 @@ from mbkf.imu.sensor_to_segment import swing_axis, turn_about
 from mbkf.io.imu.readings import ImuReadings
 from mbkf.model.human import HumanModel
 from mbkf.numerics.cardan import quaternion_matrices
-from mbkf.trial.inertial.fields import StrangeField, Swing, unlike_fields
+from mbkf.trial.inertial.fields import DisturbedField, Swing, fields_unlike_others
 
 LEAST_BEND_RAD = 0.05
 """A shank that is turned by less since standing, in the mean, does not show where the left is."""
@@ -29,10 +29,10 @@ FIELDS_EVERY = 5
 """Every so many samples fields are compared."""
 
 
-def unlike_magnetometers(
+def disturbed_magnetometers(
     body: HumanModel, segments: Sequence[str], sensors: Sequence[ImuReadings], q: Array, upright: Array
-) -> tuple[StrangeField, ...]:
-    """Magnetometers that do not see what the others see.
+) -> tuple[DisturbedField, ...]:
+    """Magnetometers whose field differs from the others'.
 
     Args:
         body: The body.
@@ -43,25 +43,25 @@ def unlike_magnetometers(
     """
     time_s = sensors[0].time_s
     free, rates = free_orientations(sensors, time_s), turning_rates(q, time_s)
-    # How the pelvis turns is told by its gyroscope alone: its field may be the strange one.
+    # The pelvis's turn follows from its gyroscope alone: its field may be the disturbed one.
     twist = multiply(free[:, 0], conjugate(free[0, 0]))
     back = -2.0 * np.arctan2(twist[:, 2], twist[:, 3])
     stood = turned(q, np.tile(back[:, None], (1, len(segments))))
     thinned = slice(None, None, FIELDS_EVERY)
     rotations = [quaternion_matrices(free[thinned, k]) for k in range(len(segments))]
     fields = [_field_at(one, time_s[thinned]) for one in sensors]
-    # Size and dip come first: a foot's heading is told by its shank's.
-    found = unlike_fields(fields, rotations, [None] * len(segments))
-    strange = {one.sensor for one in found}
-    sound = [k for k, one in enumerate(sensors) if one.name not in strange]
+    # Size and dip come first: a foot's heading follows from its shank's.
+    found = fields_unlike_others(fields, rotations, [None] * len(segments))
+    disturbed = {one.sensor for one in found}
+    sound = [k for k, one in enumerate(sensors) if one.name not in disturbed]
     swing = leg_swings(body, [segments[k] for k in sound], stood[:, sound], rates[:, sound], upright[sound])
-    return found + unlike_fields([fields[k] for k in sound], [rotations[k] for k in sound], swing)
+    return found + fields_unlike_others([fields[k] for k in sound], [rotations[k] for k in sound], swing)
 
 
 def leg_swings(
     body: HumanModel, segments: Sequence[str], stood: Array, rates: Array, upright: Array
 ) -> list[Swing | None]:
-    """How segments of the legs swing, each in the world of its own field; None for others and those that do not.
+    """Swing of the legs' segments, each in the world of its own field; None: other segments and those without swing.
 
     Args:
         body: The body.
@@ -72,23 +72,23 @@ def leg_swings(
     """
     legs = {*(one for knee in body.roles.knees for one in knee), *body.roles.feet}
     axes = {name: swing_axis(stood[:, [k]], rates[:, [k]]) for k, name in enumerate(segments) if name in legs}
-    level, told = np.nan_to_num(rotate(stood, rates))[..., :2], set[str]()
+    level, with_sense = np.nan_to_num(rotate(stood, rates))[..., :2], set[str]()
     for (_, shank), foot in zip(body.roles.knees, body.roles.feet, strict=True):
         left = axes.get(shank)
         bend = 0.0 if left is None else turn_about(stood[:, (k := segments.index(shank))], upright[k], left)
         if left is None or abs(bend) < LEAST_BEND_RAD:
             continue
         axes[shank] = left = left * np.sign(bend)
-        told.add(shank)
+        with_sense.add(shank)
         own = axes.get(foot)
         if own is not None:
             together = (level[:, k] @ left) @ (level[:, segments.index(foot)] @ own)
             axes[foot] = own * (1.0 if together > 0.0 else -1.0)
-            told.add(foot)
+            with_sense.add(foot)
     found = list[Swing | None]()
     for name in segments:
         axis = axes.get(name)
-        found.append(None if axis is None else Swing(float(np.arctan2(axis[1], axis[0])), name in told))
+        found.append(None if axis is None else Swing(float(np.arctan2(axis[1], axis[0])), name in with_sense))
     return found
 
 

@@ -1,7 +1,7 @@
-"""Sensors that are worn otherwise than named or usual, found by how well the body explains what they read.
+"""Sensors that are mounted reversed or under each other's name, found by the body's misfit to their readings.
 
 Two kinds are looked for: groups of sensors strapped on the other way round (pelvis, trunk, legs, feet), which are put
-right, and two sensors under each other's name, which are told.
+right, and two sensors under each other's name, which are reported.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ import numpy as np
 from mbkf.model.human import HumanModel
 
 CLEARLY = 0.6
-"""An exchange is told where it leaves a smaller share of the misfit than the names as given."""
+"""An exchange is reported where it leaves a smaller share of the misfit than the names as given."""
 
 TURNED, TURNED_TOO = 0.7, 0.99
 """Sensors are taken to be strapped on the other way round where that leaves a smaller share of the misfit: clearly
-smaller for a person who else follows custom, smaller at all for one who does not. How pelvis and trunk are worn shows
-little in walking."""
+smaller for a person who else follows custom, smaller at all for one who does not. The mounting of pelvis and trunk
+shows little in walking."""
 
 Judge = Callable[[frozenset[str], Mapping[str, str]], float]
 """Misfit with sensors on some segments the other way round, and some segments named anew."""
@@ -32,15 +32,15 @@ class Exchange:
 
     Attributes:
         segments: They.
-        share: What is left of the misfit with them exchanged, 0 to 1.
+        share: Misfit with them exchanged over the misfit as named, 0 to 1.
     """
 
     segments: tuple[str, str]
     share: float
 
     @property
-    def told(self) -> str:
-        """What is the matter, and what to do."""
+    def remark(self) -> str:
+        """The finding and its remedy."""
         one, other = self.segments
         return (
             f"the sensors of {one} and {other} seem to be exchanged: the body explains the readings with "
@@ -49,12 +49,12 @@ class Exchange:
 
 
 @dataclass(frozen=True)
-class WornOtherwise:
-    """What was found.
+class SensorPlacement:
+    """Mounting of the sensors as found.
 
     Attributes:
         turned: Segments whose sensors are strapped on the other way round than usual.
-        exchange: Two sensors under each other's name, or None.
+        exchange: Two sensors under each other's name; None: no exchange.
     """
 
     turned: frozenset[str] = frozenset()
@@ -66,9 +66,9 @@ class WornOtherwise:
         return {} if self.exchange is None else both_ways(self.exchange.segments)
 
     @property
-    def told(self) -> tuple[str, ...]:
+    def remarks(self) -> tuple[str, ...]:
         """Remarks."""
-        found = [] if self.exchange is None else [self.exchange.told]
+        found = [] if self.exchange is None else [self.exchange.remark]
         if self.turned:
             listed = ", ".join(sorted(self.turned))
             found.append(
@@ -78,15 +78,15 @@ class WornOtherwise:
         return tuple(found)
 
 
-def worn_otherwise(model: HumanModel, segments: Sequence[str], judge: Judge) -> WornOtherwise:
-    """How the sensors are worn: whatever lessens the misfit most comes first, as long as anything does.
+def mounted_reversed(model: HumanModel, segments: Sequence[str], judge: Judge) -> SensorPlacement:
+    """Mounting of the sensors: the change that lessens the misfit most comes first, as long as one does.
 
     Args:
         model: The body.
         segments: Segments that carry sensors.
         judge: Misfit of a way in which they may be worn.
     """
-    found, least = WornOtherwise(), judge(frozenset(), {})
+    found, least = SensorPlacement(), judge(frozenset(), {})
     if not np.isfinite(least):
         return found
     open_groups = list(groups(model, segments))
@@ -100,9 +100,9 @@ def worn_otherwise(model: HumanModel, segments: Sequence[str], judge: Judge) -> 
         )
         swap, pair = min(swaps, default=(np.inf, ("", "")))
         if swap < min(CLEARLY * least, turn):
-            found, least = WornOtherwise(found.turned, Exchange(pair, swap / least)), swap
+            found, least = SensorPlacement(found.turned, Exchange(pair, swap / least)), swap
         elif turn < (TURNED_TOO if found.turned else TURNED) * least:
-            found, least = WornOtherwise(found.turned | group, found.exchange), turn
+            found, least = SensorPlacement(found.turned | group, found.exchange), turn
             open_groups.remove(group)
         else:
             return found
