@@ -81,7 +81,7 @@ def _by_sensors(logged: Logged, subject: Subject, notes: tuple[str, ...], tracke
     segments = [segment_of(name, joints) for name in stream.sensors]
     timeline = Timeline(stream.trial, stream.rate_hz, _start_s(logged))
     with single_threaded(), np.errstate(invalid="ignore", divide="ignore"):
-        return motion_result(subject, segments, timeline, tracked, notes=notes, told=logged.settings)
+        return motion_result(subject, segments, timeline, tracked, notes=notes, more=logged.settings)
 
 
 def _start_s(logged: Logged) -> float:

@@ -87,7 +87,7 @@ def test_a_leg_that_swings_askew_has_another_heading(k, off_deg, found):
     swing = [None, None, *(Swing(1.0 + 0.1 * n, n >= 2) for n in range(6))]
     sound = fields_unlike_others(*zip(*sensors, strict=True), swing)
     assert sound == ()
-    swing[k] = Swing(swing[k].axis_rad + np.radians(off_deg), swing[k].told)
+    swing[k] = Swing(swing[k].axis_rad + np.radians(off_deg), swing[k].points_left)
     assert [one.sensor for one in fields_unlike_others(*zip(*sensors, strict=True), swing)] == [
         f"s{k}"
     ] * found
