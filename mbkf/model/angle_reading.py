@@ -1,7 +1,7 @@
-"""Ways to read joint angles off a posture: constant anatomical axes on the segments, and the order of the rotations.
+"""Conventions of joint angles: constant anatomical axes on the segments, and the order of the rotations.
 
-A segment's frame is the body file's. A reading turns it: A_p and A_d are the anatomical axes of a joint's proximal and
-distal segment, in those segments' frames, and the angles are those of A_pᵀ R A_d with R the joint's own rotation.
+A segment's frame is the body file's. A convention turns it: A_p and A_d are the anatomical axes of a joint's proximal
+and distal segment, in those segments' frames, and the angles are those of A_pᵀ R A_d with R the joint's rotation.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ LINE_ORDER = np.array([1, 2, 0])
 
 @dataclass(frozen=True)
 class Line:
-    """A distal segment of which only a line is read; its turn about it follows the proximal segment.
+    """A distal segment of which only a line is read; its turn about the line follows the proximal segment.
 
-    With U = G_pᵀ R G_d = R_y(a) R_z(b) R_x(c), the segment stands as if c were 0. So do the feet of Plug-in Gait, whose
-    frames are made of the line from ankle to forefoot and the flexion axis of the shank.
+    With U = G_pᵀ R G_d = R_y(a) R_z(b) R_x(c), c is taken as 0. The feet of Plug-in Gait are read so: their frames
+    are made of the line from ankle to forefoot and the flexion axis of the shank.
 
     Attributes:
         proximal, distal: (3, 3) G_p and G_d, in the segments' frames; x of G_d is the line, y of G_p what it follows.
@@ -40,7 +40,7 @@ class JointAxes:
     Attributes:
         proximal, distal: (3, 3) rotations A_p and A_d; A_p of a root's joint is not used.
         order: Axes of the successive rotations, e.g. "yxz"; "" for those of the body file.
-        line: Where only a line of the distal segment is read.
+        line: The line, where only a line of the distal segment is read.
     """
 
     proximal: Array
@@ -81,7 +81,7 @@ class JointAxes:
 
 @dataclass(frozen=True)
 class AngleReading:
-    """How angles are read.
+    """A convention of joint angles.
 
     Attributes:
         name: "model" for the body file's own axes, or the convention's name.

@@ -1,7 +1,7 @@
-"""What filters and sensors ask of a body: its manifold, its joints' places, its masses, its priors and its roles.
+"""Interface of a scaled body, as filters and sensors need it: manifold, joints, masses, priors and roles.
 
-:class:`~mbkf.model.human.HumanModel` is the one mbkf makes from a body file. Anything else that has these
-members can be followed by the kinematic filter as well.
+:class:`~mbkf.model.human.HumanModel` implements it from a body file. The kinematic filter follows any other class
+with these members as well.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from typing import Protocol, runtime_checkable
 
 import pinocchio as pin
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray
 from mbkf.kernel.tree import CompiledTree
 from mbkf.model.description import BodyDescription, Roles, Segment
 
 
 @dataclass(frozen=True)
 class SegmentJoint:
-    """Where a segment's joint lies in q and v, and its place among the joints.
+    """Place of a segment's joint among the joints, in q and in v.
 
     Attributes:
         segment: Segment name.
@@ -42,82 +42,49 @@ class SegmentJoint:
 class Body(Protocol):
     """A scaled body. Configurations q (nq,) lie on a manifold whose tangent vectors v have nv components.
 
-    Attributes of every body:
-
-    * ``description``, ``roles``: the reference body and what its segments are to the algorithms;
-    * ``mass_kg``, ``nq``, ``nv``;
-    * ``joints``: one :class:`SegmentJoint` per segment, by name, depth-first; ``root``: the free one;
-    * ``posture_sd`` (nv,): spread of each dof about the neutral posture, rad; 0 where there is no prior;
-    * ``acceleration_sd``, ``movement_sd`` (nv,): typical acceleration of each dof, and its standard deviation over a
-      movement, m/s² or rad/s²;
-    * ``limits`` (nv, 2): least and greatest rotation from neutral, rad; ±inf where there is no limit;
-    * ``supports`` (joints, nv): True where a dof moves a joint's segment;
-    * ``pin_model``: its Pinocchio model, for the equations that take it directly;
-    * ``tree``: the same compiled, or None.
+    Attributes:
+        description: The reference body.
+        roles: Roles of its segments in the algorithms (root, feet, toes, …).
+        scale: (K,) independent scale factors.
+        mass_kg: Mass of the whole body.
+        nq, nv: Dimensions of configuration and tangent space.
+        joints: The joint of every segment, by segment name, depth-first.
+        posture_sd: (nv,) spread of each dof about the neutral posture, rad; 0 where there is no prior.
+        acceleration_sd: (nv,) typical acceleration of each dof, m/s² or rad/s².
+        movement_sd: (nv,) standard deviation of each dof's acceleration over a movement, m/s² or rad/s².
+        limits: (nv, 2) least and greatest rotation from neutral, rad; ±inf where there is no limit.
+        supports: (joints, nv) True where a dof moves a joint's segment.
+        pin_model: The Pinocchio model (gravity along −z), for the equations that take it directly.
     """
 
-    @property
-    def description(self) -> BodyDescription:
-        """The reference body."""
-
-    @property
-    def roles(self) -> Roles:
-        """What its segments are to the algorithms."""
-
-    @property
-    def pin_model(self) -> pin.Model:
-        """Its Pinocchio model."""
-
-    @property
-    def tree(self) -> CompiledTree | None:
-        """Its equations in compiled code; None where there is none."""
-
-    @property
-    def scale(self) -> Array:
-        """(K,) independent scale factors of the reference body."""
-
-    @property
-    def mass_kg(self) -> float:
-        """Mass of the whole body."""
-
-    @property
-    def nq(self) -> int:
-        """Numbers of a configuration."""
-
-    @property
-    def nv(self) -> int:
-        """Degrees of freedom."""
-
-    @property
-    def joints(self) -> Mapping[str, SegmentJoint]:
-        """The joint of every segment, depth-first."""
+    description: BodyDescription
+    roles: Roles
+    scale: Array
+    mass_kg: float
+    nq: int
+    nv: int
+    joints: Mapping[str, SegmentJoint]
+    posture_sd: Array
+    acceleration_sd: Array
+    movement_sd: Array
+    limits: Array
+    supports: BoolArray
+    pin_model: pin.Model
 
     @property
     def root(self) -> SegmentJoint:
-        """The free joint."""
+        """The free joint of the root segment."""
 
     @property
-    def posture_sd(self) -> Array:
-        """(nv,) spread about the neutral posture, rad."""
-
-    @property
-    def acceleration_sd(self) -> Array:
-        """(nv,) typical acceleration, m/s² or rad/s²."""
-
-    @property
-    def movement_sd(self) -> Array:
-        """(nv,) standard deviation of the acceleration over a movement, m/s² or rad/s²."""
-
-    @property
-    def limits(self) -> Array:
-        """(nv, 2) least and greatest rotation from neutral, rad."""
-
-    @property
-    def supports(self) -> Array:
-        """(joints, nv) whether a dof moves a joint's segment."""
+    def tree(self) -> CompiledTree | None:
+        """The body's equations in compiled code; None without the compiled kernel."""
 
     def joint(self, segment: str) -> SegmentJoint:
-        """The joint that carries a segment."""
+        """The joint that carries a segment.
+
+        Raises:
+            UnknownName: There is no such segment.
+        """
 
     def axis_scale(self, segment: Segment) -> Array:
         """(3,) scale factors of a segment's x, y, z axes."""
@@ -174,4 +141,7 @@ class Body(Protocol):
 
         Returns:
             (6, nv) rows linear, then angular, in world axes.
+
+        Raises:
+            UnknownName: There is no such segment.
         """

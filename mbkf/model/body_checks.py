@@ -1,4 +1,4 @@
-"""Whether a body description can be a body: a tree of joints, real inertias, spreads for every degree of freedom."""
+"""Checks of a body description: a tree of joints, rigid inertias, a spread for every degree of freedom."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import numpy as np
 from mbkf.model.description import JOINT_DOF, BodyDescription, Segment
 
 MASS_TOLERANCE = 0.01
-"""How far the masses of the segments may sum to something else than the reference mass, as a share of it."""
+"""Greatest difference between the sum of the segments' masses and the reference mass, as a share of the latter."""
 
 SHAPE_KINDS = {"limb": 2, "ellipsoid": 6, "tube": 4, "foot": 0, "toes": 0}
-"""How many numbers each kind of shape has; a tube a multiple of it."""
+"""Count of numbers of each kind of shape; of a tube, per section."""
 
 _AXES = {"free": 0, "spherical": 0, "universal": 2, "hinge": 1}
 
@@ -21,21 +21,22 @@ def check_body(body: BodyDescription) -> None:
     """Refuses a description that cannot be a body.
 
     Raises:
-        ValueError: With what is wrong where, and what would be right.
+        ValueError: The first fault, with its place and the rule it breaks.
     """
-    for complaint in _complaints(body):
-        raise ValueError(complaint)
+    for fault in _faults(body):
+        raise ValueError(fault)
 
 
-def _complaints(body: BodyDescription) -> Iterator[str]:
+def _faults(body: BodyDescription) -> Iterator[str]:
     yield from _tree(body)
     for segment in body.segments:
-        yield from _joint(segment)
-        yield from _inertia(segment)
+        where = f"segment {segment.name}"
+        yield from (f"{where}: {fault}" for fault in (*_joint(segment), *_inertia(segment)))
     yield from _masses(body)
     yield from _clinical(body)
     yield from _sole(body)
-    yield from _shapes(body)
+    for shape in body.shapes:
+        yield from (f"shape of {shape}: {fault}" for fault in _shape(body, shape))
 
 
 def _tree(body: BodyDescription) -> Iterator[str]:
@@ -43,8 +44,8 @@ def _tree(body: BodyDescription) -> Iterator[str]:
     roots = [segment.name for segment in body.segments if segment.parent == "world"]
     if roots != names[:1] or roots != [body.roles.root]:
         yield (
-            f"the first segment is the root: its parent is 'world' and it stands in [roles]; segments on the world "
-            f"are {roots}, the first one is {names[0]}, the root of [roles] {body.roles.root}"
+            "the first segment, and no other, has the parent 'world' and is the root of [roles]; found: first segment "
+            f"{names[0]}, parent 'world' {roots}, root of [roles] {body.roles.root}"
         )
     chain: list[str] = []
     for segment in body.segments:
@@ -54,46 +55,45 @@ def _tree(body: BodyDescription) -> Iterator[str]:
             chain.pop()
         if segment.parent != "world" and not chain:
             yield (
-                f"segment {segment.name} must follow its parent {segment.parent} or a segment that this carries "
+                f"segment {segment.name} must follow its parent {segment.parent} or a segment of the same branch "
                 "(depth-first order)"
             )
         chain.append(segment.name)
         if (segment.joint == "free") != (segment.parent == "world"):
-            yield f"segment {segment.name}: the root's joint is 'free', no other one's"
+            yield (
+                f"segment {segment.name}: the root, and no other segment, has a 'free' joint; "
+                f"its joint is '{segment.joint}'"
+            )
 
 
 def _joint(segment: Segment) -> Iterator[str]:
-    where, dof = f"segment {segment.name}", JOINT_DOF[segment.joint]
-    axes = segment.axes
+    kind, dof, axes = f"{segment.joint} joint", JOINT_DOF[segment.joint], segment.axes
     if len(axes) != _AXES[segment.joint] or len(set(axes)) != len(axes) or set(axes) - set("xyz"):
-        yield (
-            f"{where}: a {segment.joint} joint has {_AXES[segment.joint]} axes out of x, y and z, not '{axes}'"
-        )
+        yield f"a {kind} has {_AXES[segment.joint]} axes out of x, y and z, not '{axes}'"
     for name in ("origin_m", "com_m", "inertia_kg_m2"):
         values = getattr(segment, name)
         if values.shape != (3,) or not np.isfinite(values).all():
-            yield f"{where}: {name} needs three finite numbers"
-    for name, shown in (
-        ("posture_sd_rad", "posture_sd_deg"),
-        ("acceleration_sd", "acceleration_sd"),
-        ("movement_sd", "movement_sd"),
+            yield f"{name} needs three finite numbers"
+    for name, values in (
+        ("posture_sd_deg", segment.posture_sd_rad),
+        ("acceleration_sd", segment.acceleration_sd),
+        ("movement_sd", segment.movement_sd),
     ):
-        values = getattr(segment, name)
         if values.shape != (dof,) or not (np.isfinite(values).all() and (values >= 0).all()):
-            yield f"{where}: {shown} needs {dof} numbers, 0 or more, for its {segment.joint} joint"
+            yield f"{name} needs {dof} numbers, 0 or more, for its {kind}"
     limits = segment.limits_rad
     if limits.shape != (dof, 2) or not (limits[:, 0] < limits[:, 1]).all():
-        yield f"{where}: limits_deg needs {dof} pairs [least, greatest] for its {segment.joint} joint"
+        yield f"limits_deg needs {dof} pairs [least, greatest] for its {kind}"
 
 
 def _inertia(segment: Segment) -> Iterator[str]:
     moments = np.sort(segment.inertia_kg_m2)
     if not segment.mass_kg > 0:
-        yield f"segment {segment.name}: mass_kg must be positive, not {segment.mass_kg}"
+        yield f"mass_kg must be positive, not {segment.mass_kg}"
     if not (moments > 0).all() or moments[2] > moments[0] + moments[1]:
         yield (
-            f"segment {segment.name}: no rigid body has the principal moments {segment.inertia_kg_m2.tolist()}; all "
-            "are positive, and the largest is at most the sum of the others"
+            f"a rigid body cannot have the principal moments {segment.inertia_kg_m2.tolist()} kg m²; all are positive, "
+            "and the largest is at most the sum of the others"
         )
 
 
@@ -103,8 +103,8 @@ def _masses(body: BodyDescription) -> Iterator[str]:
     total = sum(segment.mass_kg for segment in body.segments)
     if abs(total - body.reference_mass_kg) > MASS_TOLERANCE * body.reference_mass_kg:
         yield (
-            f"the segments' masses sum to {total:.2f} kg, reference_mass_kg is {body.reference_mass_kg:.2f}; give what "
-            "is not modelled to the segment that carries it (a pelvis with trunk, head and arms)"
+            f"the segments' masses sum to {total:.2f} kg, but reference_mass_kg is {body.reference_mass_kg:.2f}; add "
+            "the mass of parts without a segment to the segment that carries them (trunk, head and arms to a pelvis)"
         )
 
 
@@ -112,7 +112,7 @@ def _clinical(body: BodyDescription) -> Iterator[str]:
     for segment, joint in zip(body.segments, body.clinical_joints, strict=True):
         where = f"clinical joint {joint.name}"
         if joint.proximal != segment.parent:
-            yield f"{where}: {segment.name} hangs on {segment.parent}, not on {joint.proximal}"
+            yield f"{where}: the parent of {segment.name} is {segment.parent}, not {joint.proximal}"
         turns = segment.axes or "xyz"
         if len(joint.order) != len(turns) or (segment.axes and joint.order != turns):
             yield f"{where}: order '{joint.order}' does not suit a {segment.joint} joint about {', '.join(turns)}"
@@ -129,20 +129,17 @@ def _sole(body: BodyDescription) -> Iterator[str]:
         yield "sole: outer_y_m must lie to the right (less y) of inner_y_m; the sole is that of the right foot"
 
 
-def _shapes(body: BodyDescription) -> Iterator[str]:
-    names = {segment.name for segment in body.segments}
-    for shape in body.shapes.values():
-        where = f"shape of {shape.segment}"
-        if shape.kind not in SHAPE_KINDS:
-            yield f"{where}: kind '{shape.kind}' is not one of {', '.join(SHAPE_KINDS)}"
-            continue
-        count, given = SHAPE_KINDS[shape.kind], len(shape.numbers)
-        fits = given % 4 == 0 and given > 4 if shape.kind == "tube" else given == count
-        if not fits:
-            yield f"{where}: a {shape.kind} has {count}{' n' if shape.kind == 'tube' else ''} numbers, not {given}"
-        if shape.kind == "limb" and shape.to not in names:
-            yield f"{where}: a limb ends at a segment named by 'to', not '{shape.to}'"
-        if shape.kind == "toes" and shape.segment not in body.roles.toes:
-            yield f"{where}: only a segment of the role toes is drawn as toes"
-        if shape.kind == "foot" and shape.segment not in body.roles.feet:
-            yield f"{where}: only a segment of the role feet is drawn as a foot"
+def _shape(body: BodyDescription, segment: str) -> Iterator[str]:
+    shape = body.shapes[segment]
+    if shape.kind not in SHAPE_KINDS:
+        yield f"kind '{shape.kind}' is not one of {', '.join(SHAPE_KINDS)}"
+        return
+    count, given, tube = SHAPE_KINDS[shape.kind], len(shape.numbers), shape.kind == "tube"
+    if not (given % count == 0 and given > count if tube else given == count):
+        yield f"{shape.kind} needs {count}{' n' if tube else ''} numbers, not {given}"
+    if shape.kind == "limb" and shape.to not in [one.name for one in body.segments]:
+        yield f"a limb ends at a segment named by 'to', not '{shape.to}'"
+    if shape.kind == "toes" and segment not in body.roles.toes:
+        yield "only a segment of the role toes is drawn as toes"
+    if shape.kind == "foot" and segment not in body.roles.feet:
+        yield "only a segment of the role feet is drawn as a foot"

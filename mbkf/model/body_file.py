@@ -1,7 +1,7 @@
-"""Reference bodies from files: those that come with mbkf, and a user's own from anywhere.
+"""Reference bodies from files: those that come with mbkf, and a user's own.
 
-A body file is TOML; ``models/human18.toml`` shows every entry. Everything the algorithms need to know of a body stands
-in it: segments and joints, inertias, scale factors, landmarks, the sole, roles, clinical coordinates, shapes.
+A body file is TOML; ``models/human18.toml`` shows every entry: segments and joints, inertias, scale factors,
+landmarks, the sole, roles, clinical coordinates, shapes.
 
 The masses of the segments sum to the reference person's: Newton's law for the whole body relates the ground reactions
 to the movement of all of its mass. A body of the legs alone therefore carries head, arms and trunk as part of its
@@ -37,7 +37,7 @@ AXES_BY_JOINT = {"free": "", "spherical": "", "universal": "xy", "hinge": "y"}
 """Axes of each kind of joint where the file gives none."""
 
 _NOTES = ("_source", "_printed_m", "_printed_kg_m2", "_correction")
-"""Endings of keys of a segment that only document where its numbers come from."""
+"""Endings of a segment's keys that document the source of its numbers."""
 
 _SEGMENT_KEYS = {
     "name", "parent", "joint", "axes", "origin_m", "mass_kg", "com_m", "inertia_kg_m2", "scale", "length_factor",
@@ -62,7 +62,9 @@ def load_body(body: str | Path = "human18") -> BodyDescription:
         try:
             text = path.read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
-            raise FileFormatError(path, f"cannot be read ({error}); name a body file or a body") from error
+            raise FileFormatError(
+                path, f"cannot be read ({error}); give the name of a body or the path of a body file"
+            ) from error
         return parse_body(text, path)
     return _shipped(str(body))
 
@@ -72,7 +74,7 @@ def _shipped(name: str) -> BodyDescription:
     path = data_folder("models") / f"{name}.toml"
     if not path.is_file():
         names = [p.stem for p in data_folder("models").glob("*.toml")]
-        raise UnknownName("body", name, names, "a body of your own is named by its file, ending in .toml")
+        raise UnknownName("body", name, names, "give your own body by its file, ending in .toml")
     return _parse(path.read_text(encoding="utf-8"), path, "")
 
 
@@ -82,7 +84,7 @@ def parse_body(text: str, path: str | Path) -> BodyDescription:
 
     Args:
         text: The file's contents.
-        path: Where they come from, for error messages.
+        path: Their source, for error messages.
 
     Raises:
         UnknownName: As for :func:`load_body`.
@@ -98,9 +100,9 @@ def _parse(text: str, path: Path, kept: str) -> BodyDescription:
     except MbkfError:
         raise
     except KeyError as error:
-        raise FileFormatError(path, f"not a valid body description (it lacks {error})") from error
+        raise FileFormatError(path, f"not a valid body description: it lacks {error}") from error
     except (AttributeError, TypeError, ValueError) as error:
-        raise FileFormatError(path, f"not a valid body description ({error})") from error
+        raise FileFormatError(path, f"not a valid body description: {error}") from error
     return body
 
 
@@ -110,9 +112,7 @@ def _body(table: dict[str, Any], path: Path, kept: str) -> BodyDescription:
     names = [segment.name for segment in segments]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
-        raise FileFormatError(
-            path, f"the segment {twice[0]} stands twice; give every segment a name of its own"
-        )
+        raise FileFormatError(path, f"two segments are named {twice[0]}; give every segment its own name")
     return BodyDescription(
         name=table["name"],
         reference_mass_kg=float(table["reference_mass_kg"]),
@@ -171,7 +171,7 @@ def _limits(entry: dict[str, Any]) -> Array:
 def _scale_matrix(names: list[str], factors: tuple[str, ...]) -> Array:
     if len(names) != 3 or set(names) == {"mean"}:
         raise ValueError(
-            "scale names the factors of the x, y and z axes; 'mean' stands for that of the others"
+            "scale needs the names of three factors, for x, y and z; 'mean' is the mean of the other axes"
         )
     rows = np.zeros((3, len(factors)))
     for axis, name in enumerate(names):
@@ -194,7 +194,7 @@ def _known(name: str, segments: tuple[Segment, ...], where: str) -> str:
 def _landmarks(
     entries: list[dict[str, Any]], segments: tuple[Segment, ...], path: Path
 ) -> dict[str, Landmark]:
-    """Landmarks by full name: a paired segment's or an off-midline one exists on both sides."""
+    """Landmarks by full name: one of a paired segment or off the midline exists on both sides."""
     names = {segment.name for segment in segments}
     found = {}
     for entry in entries:
@@ -225,22 +225,22 @@ def _roles(table: dict[str, Any], segments: tuple[Segment, ...], path: Path) -> 
     feet = several("feet", [])
     if len(set(feet)) != 2:
         raise FileFormatError(
-            path, f"roles: feet names two segments, the right one first, not {list(feet)}; "
-            "ground reactions act on them"
+            path, f"roles: feet must name two segments, the right one first, not {list(feet)}; ground reactions act on "
+            "them"
         )  # fmt: skip
     toes = several("toes", [])
     root = _known(roles["root"], segments, f"{where}, root")
     parents = {segment.name: segment.parent for segment in segments}
     if [parents[name] for name in toes] not in ([], list(feet)):
         raise FileFormatError(
-            path, f"roles: toes {list(toes)} must join the feet {list(feet)}, or be left out"
+            path, f"roles: toes {list(toes)} must be children of the feet {list(feet)}; else leave them out"
         )
     both = [name for foot in feet for name in reversed(_chain(foot, parents)) if name != root]
     legs = list(dict.fromkeys(both))
     knees = tuple(tuple(pair) for pair in roles.get("knees", ()))
     for pair in knees:
         if len(pair) != 2 or parents[_known(pair[1], segments, f"{where}, knees")] != pair[0]:
-            raise FileFormatError(path, f"roles: knees holds pairs of thigh and shank, not {list(pair)}")
+            raise FileFormatError(path, f"roles: knees needs pairs of thigh and shank, not {list(pair)}")
     return Roles(
         root=root,
         feet=(feet[0], feet[1]),
@@ -295,7 +295,7 @@ def _clinical(
 def _shapes(
     entries: list[dict[str, Any]], segments: tuple[Segment, ...], path: Path
 ) -> dict[str, SegmentShape]:
-    """Shapes by segment; one written for a right segment is the left one's, too, where that exists."""
+    """Shapes by segment; the shape of a right segment also serves the left one, where that exists."""
     names = {segment.name for segment in segments}
     found: dict[str, SegmentShape] = {}
     for entry in entries:
@@ -310,7 +310,7 @@ def _shapes(
 
 
 def _bearings(entries: list[dict[str, Any]], segments: tuple[Segment, ...], path: Path) -> dict[str, Bearing]:
-    """Parts that may bear load; one written for a right segment is the left one's, too, where that exists."""
+    """Parts that may bear load; the part of a right segment is mirrored to the left one, where that exists."""
     names = {segment.name for segment in segments}
     found: dict[str, Bearing] = {}
     for entry in entries:
@@ -319,7 +319,8 @@ def _bearings(entries: list[dict[str, Any]], segments: tuple[Segment, ...], path
         size = (float(entry["radius_m"]), float(entry["lever_m"]))
         if place.shape != (3,) or not np.isfinite(place).all() or min(size) <= 0.0:
             raise FileFormatError(
-                path, f"bearing {name}: three finite numbers of position_m, radius_m and lever_m > 0"
+                path,
+                f"bearing {name}: position_m needs three finite numbers, radius_m and lever_m are positive",
             )
         found[name] = Bearing(name, segment, read_only(place), *size)
         other = mirrored(segment)

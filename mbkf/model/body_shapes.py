@@ -1,6 +1,6 @@
 """Simple shapes of a body's segments, scaled to a person, for drawing only.
 
-Each shape stands in its segment's frame (origin at the proximal joint, x forward, y left, z up). Lengths come from
+Each shape is given in its segment's frame (origin at the proximal joint, x forward, y left, z up). Lengths come from
 the person's joints; breadths grow as √(k_m / k) with mass factor k_m and length factor k, so that volume goes with
 mass.
 """
@@ -15,7 +15,7 @@ from mbkf.conventions import Array
 from mbkf.model.body import Body
 
 PLAIN_RADII_M = (0.045, 0.035)
-"""Radii of a limb of the reference body whose shape the body file does not give."""
+"""Radii of a limb of the reference body without a shape in the body file."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ def segment_shapes(model: Body) -> dict[str, tuple[Shape, ...]]:
 
 
 def as_plain(shapes: dict[str, tuple[Shape, ...]]) -> list[dict[str, object]]:
-    """The shapes as JSON can hold them, tenths of a millimetre kept."""
+    """The shapes as plain JSON data, rounded to a tenth of a millimetre."""
     return [
         {
             "name": name,

@@ -29,8 +29,8 @@ class Segment:
         com_m: (3,) reference centre of mass, m.
         inertia_kg_m2: (3,) reference principal moments about the centre of mass, kg m².
         scale_matrix: (3, K) rows that turn the K independent factors into the x, y, z factors.
-        length_index: Which independent factor is the length factor k: moments of inertia grow as k_m k² with the mass
-            factor k_m.
+        length_index: Index of the independent factor that is the length factor k: moments of inertia grow as k_m k²
+            with the mass factor k_m.
         posture_sd_rad: (dof,) spread of the joint about the neutral standing posture, rad (0: no prior).
         acceleration_sd: (dof,) typical acceleration of each dof, m/s² or rad/s².
         movement_sd: (dof,) standard deviation of the acceleration of each dof over a movement, m/s² or rad/s².
@@ -91,7 +91,7 @@ class Bearing:
         segment: The segment that the load acts on.
         position_m: (3,) middle of the part in the segment's frame.
         radius_m: From the middle to the surface that touches.
-        lever_m: How far from the middle the centre of pressure may lie.
+        lever_m: Greatest distance of the centre of pressure from the middle.
     """
 
     name: str
@@ -103,7 +103,7 @@ class Bearing:
 
 @dataclass(frozen=True)
 class Roles:
-    """What segments are to the algorithms; paired ones right side first.
+    """Roles of segments in the algorithms; paired ones right side first.
 
     Attributes:
         root: The segment whose joint is free: it carries the residual force and moment.
@@ -157,7 +157,7 @@ class BodyDescription:
         scale_factors: Names of the independent scale factors.
         segments: The segments, depth-first.
         landmarks: Landmarks by name.
-        roles: What segments are to the algorithms.
+        roles: Roles of segments in the algorithms.
         clinical_joints: The clinical coordinates of every segment's joint, in the order of the segments.
         shapes: Shapes for drawing, by segment; segments without one are drawn as plain limbs.
         bearings: Parts that may bear load besides the feet, by name.

@@ -22,15 +22,15 @@ class LinearAcceleration:
 
 
 class ForcedBody(Protocol):
-    """A body with configuration q, velocity v in its tangent space (nv,), and external forces u = T_e (nu,)."""
+    """A body with configuration q, velocity v in its tangent space (nv,), and external forces u = T_e (nu,).
 
-    @property
-    def nv(self) -> int:
-        """Degrees of freedom."""
+    Attributes:
+        nv: Degrees of freedom.
+        nu: Number of forces: residual, joint torques, reactions.
+    """
 
-    @property
-    def nu(self) -> int:
-        """Number of forces: residual, joint torques, reactions."""
+    nv: int
+    nu: int
 
     def integrate(self, q: Array, dv: Array) -> Array:
         """The configuration q ⊕ dv."""

@@ -14,35 +14,23 @@ import numpy as np
 import pinocchio as pin
 from numpy.lib.stride_tricks import as_strided
 
-from mbkf.conventions import GRAVITY_M_S2, Array, read_only
+from mbkf.conventions import GRAVITY_M_S2, Array, BoolArray, read_only
 from mbkf.errors import InvalidInput, ShapeError, UnknownName
 from mbkf.io.inertia import SegmentInertia
 from mbkf.io.subject import Subject
 from mbkf.kernel.loading import library
 from mbkf.kernel.tree import CompiledTree
-from mbkf.model.body import SegmentJoint
+from mbkf.model.body import Body, SegmentJoint
 from mbkf.model.body_file import load_body, parse_body
 from mbkf.model.description import JOINT_DOF, BodyDescription, Roles, Segment
 from mbkf.numerics.rotations import travel_by_turn
 
 
-class HumanModel:
+class HumanModel(Body):
     """A body scaled to one person.
 
     Attributes:
-        description: The reference body it was built from.
-        roles: What its segments are to the algorithms (root, feet, toes, ...).
-        scale: (K,) independent scale factors.
-        mass_kg: Body mass.
         inertia: By segment, the person's own mass and centre of mass, where they differ from the table.
-        pin_model: The Pinocchio model (gravity along −z).
-        joints: One :class:`SegmentJoint` per segment, by segment name, in depth-first order.
-        nq, nv: Dimensions of configuration and tangent space.
-        posture_sd: (nv,) spread of each dof about the neutral posture, rad; 0 where there is no prior.
-        acceleration_sd: (nv,) typical acceleration of each dof, m/s² or rad/s².
-        movement_sd: (nv,) standard deviation of each dof's acceleration over a movement, m/s² or rad/s².
-        limits: (nv, 2) least and greatest rotation from neutral, rad; ±inf where there is no limit.
-        supports: (joints, nv) True where a dof moves a joint's segment.
     """
 
     def __init__(
@@ -73,19 +61,22 @@ class HumanModel:
         if self.scale.shape != (len(description.scale_factors),):
             raise ShapeError("scale", f"({len(description.scale_factors)},)", self.scale.shape)
         if not (np.isfinite(mass_kg) and mass_kg > 0):
-            raise InvalidInput(f"mass must be positive, got {mass_kg} kg")
+            raise InvalidInput(f"the body mass must be positive, got {mass_kg} kg")
         if not (np.isfinite(self.scale).all() and (self.scale > 0).all()):
-            raise InvalidInput("scale factors must be positive")
+            raise InvalidInput(f"scale factors must be positive, got {self.scale.tolist()}")
         self.mass_kg = float(mass_kg)
         self.pin_model = pin.Model()
         self.pin_model.name = description.name
         self.pin_model.gravity.linear = np.array([0.0, 0.0, -GRAVITY_M_S2])
-        self.joints: dict[str, SegmentJoint] = {}
+        joints: dict[str, SegmentJoint] = {}
         for segment in description.segments:
-            self.joints[segment.name] = self._add(segment)
+            joints[segment.name] = self._add(segment, joints)
+        self.joints = joints
         self._data = self.pin_model.createData()
         if not self.pin_model.check(self._data):
-            raise InvalidInput("body description is not depth-first: each subtree must be contiguous")
+            raise InvalidInput(
+                f"body {description.name} is not in depth-first order; list each segment after its parent's branch"
+            )
         self.nq, self.nv = self.pin_model.nq, self.pin_model.nv
         segments = description.segments
         self.posture_sd = read_only(np.concatenate([_per_dof(s.posture_sd_rad, s) for s in segments]))
@@ -109,7 +100,7 @@ class HumanModel:
         Args:
             factors: Scale factor by name; 1 where there is none.
             mass_kg: Body mass; that of the reference body when None.
-            body: The reference body: its name, its file, or what :func:`~mbkf.model.body_file.load_body` read.
+            body: The reference body: its name, its file, or the result of :func:`~mbkf.model.body_file.load_body`.
             inertia: By segment, the person's own mass and centre of mass; the table's where there is none.
 
         Raises:
@@ -140,12 +131,11 @@ class HumanModel:
         """The free joint of the root segment."""
         return self.joints[self.roles.root]
 
-    def _add(self, segment: Segment) -> SegmentJoint:
+    def _add(self, segment: Segment, before: Mapping[str, SegmentJoint]) -> SegmentJoint:
         model = self.pin_model
         parent_id, origin = 0, np.zeros(3)
         if segment.parent != "world":
-            parent = self.joints[segment.parent]
-            parent_id = parent.joint_id
+            parent_id = before[segment.parent].joint_id
             origin = self.axis_scale(self.description.segment(segment.parent)) * segment.origin_m
         placement = pin.SE3(np.eye(3), origin)
         first_q, first_v = model.nq, model.nv
@@ -159,14 +149,8 @@ class HumanModel:
             kind = pin.JointModelFreeFlyer if segment.joint == "free" else pin.JointModelSpherical
         joint_id = model.addJoint(parent_id, kind(), placement, segment.name)
         model.appendBodyToJoint(joint_id, self._inertia(segment), pin.SE3.Identity())
-        return SegmentJoint(
-            segment.name,
-            segment.joint,
-            segment.axes,
-            joint_id,
-            slice(first_q, model.nq),
-            slice(first_v, model.nv),
-        )
+        q, v = slice(first_q, model.nq), slice(first_v, model.nv)
+        return SegmentJoint(segment.name, segment.joint, segment.axes, joint_id, q, v)
 
     def axis_scale(self, segment: Segment) -> Array:
         """(3,) scale factors of a segment's x, y, z axes."""
@@ -182,7 +166,7 @@ class HumanModel:
             k_m, com = k_m * own.mass_factor, com + own.centre_shift_m
         return pin.Inertia(k_m * segment.mass_kg, com, np.diag(k_m * k**2 * segment.inertia_kg_m2))
 
-    def _supports(self) -> np.ndarray:
+    def _supports(self) -> BoolArray:
         supports = np.zeros((self.pin_model.njoints, self.nv), dtype=bool)
         for j in range(1, self.pin_model.njoints):
             supports[j] = supports[self.pin_model.parents[j]]
@@ -192,11 +176,7 @@ class HumanModel:
         return supports
 
     def joint(self, segment: str) -> SegmentJoint:
-        """The joint that carries a segment.
-
-        Raises:
-            UnknownName: There is no such segment.
-        """
+        """The joint that carries a segment."""
         if segment not in self.joints:
             raise UnknownName("segment", segment, self.joints)
         return self.joints[segment]
@@ -242,7 +222,7 @@ class HumanModel:
 
     @property
     def tree(self) -> CompiledTree | None:
-        """Its equations in compiled code, None where there is no compiled kernel."""
+        """The body's equations in compiled code; None without the compiled kernel."""
         if library() is None:
             return None
         if self._tree is None:
@@ -271,13 +251,7 @@ class HumanModel:
         return self.frames_and_jacobian(q)[1]
 
     def inverse_dynamics(self, q: Array, v: Array, a: Array) -> Array:
-        """(nv,) generalised forces M a − Q_g without contact, Q_g from gravity and velocities.
-
-        Args:
-            q: (nq,) configuration.
-            v: (nv,) velocity in the tangent space.
-            a: (nv,) acceleration.
-        """
+        """(nv,) generalised forces M a − Q_g without contact, Q_g from gravity and velocities."""
         return pin.rnea(self.pin_model, self._data, q, v, a)
 
     def mass_matrix(self, q: Array) -> Array:
@@ -293,19 +267,7 @@ class HumanModel:
         return pin.centerOfMass(self.pin_model, self._data, q).copy()
 
     def segment_jacobian(self, q: Array, segment: str, point_m: Array) -> Array:
-        """World Jacobian of a point fixed to a segment.
-
-        Args:
-            q: (nq,) configuration.
-            segment: Name of the segment.
-            point_m: (3,) the point in the world, m.
-
-        Returns:
-            (6, nv) rows linear, then angular, in world axes.
-
-        Raises:
-            UnknownName: There is no such segment.
-        """
+        """(6, nv) world Jacobian of a point fixed to a segment."""
         jacobian = pin.computeJointJacobians(self.pin_model, self._data, q)
         jacobian = np.where(self.supports[self.joint(segment).joint_id], jacobian, 0.0)
         jacobian[:3] += np.cross(jacobian[3:].T, point_m).T
@@ -345,7 +307,7 @@ def _frames_in(data: pin.Data) -> Array:
     number, joint = axes.itemsize, 12 * axes.itemsize
     places = [place.rotation.T.ctypes.data for place in data.oMi]
     if places != list(range(places[0], places[0] + len(places) * joint, joint)):
-        raise RuntimeError("this version of Pinocchio keeps placements in another way")
+        raise RuntimeError("this version of Pinocchio does not store joint placements side by side")
     return as_strided(axes, (4 * len(places), 3), (3 * number, number))
 
 

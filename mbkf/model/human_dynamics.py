@@ -18,26 +18,26 @@ import scipy.linalg
 from mbkf.conventions import Array, BoolArray
 from mbkf.errors import UnknownName
 from mbkf.model.body import Body
-from mbkf.model.forced_body import LinearAcceleration
+from mbkf.model.forced_body import ForcedBody, LinearAcceleration
 
 WRENCH_FRAMES = ("ankle", "foot", "thesis")
-"""Where a wrench state lives; the moment is in the foot's axes in each.
+"""Coordinates of a wrench state; the moment is in the foot's axes in each.
 
 "ankle": force in world axes on the ankle. A turn of the foot changes nothing, a turn of the leg little.
-"foot": force in the foot's axes on the ankle; a turn of the foot swings the whole load about.
+"foot": force in the foot's axes on the ankle; a turn of the foot turns the whole load.
 "thesis": force in world axes on the foot's centre of mass (section 4.1.4.1), below the ankle, where it topples the
 foot.
 """
 
 
 FORCE_STATES = ("inertial", "torque")
-"""What stands for residual and joint torques T_d in u, and so stays constant between frames.
+"""Coordinates of residual and joint torques T_d in u, which stay constant between frames.
 
-"torque": T_d itself, as in the thesis. A loaded leg is a column: under torques that do not answer, its errors grow
-at 50 to 100 per second, and every movement needs changes of torque that the plant did not expect.
+"torque": T_d itself, as in the thesis. A loaded leg is a column: under constant torques its errors grow at 50 to
+100 per second, and every movement needs changes of torque that the plant did not expect.
 "inertial": the part of it that accelerates, M z̈ = T_d + B_pᵀ T_p + Q_g; T_d follows by subtracting what loads,
-gravity and velocity ask for. A limb then goes on as it moves. Reactions and motion meet in the residual, which is to
-be read as nearly zero. Accelerations and T_e of a frame are the same either way; u is only another coordinate of it.
+gravity and velocity ask for. A limb then keeps its acceleration. Reactions and motion meet in the residual, which
+is measured as nearly zero. Accelerations and T_e of a frame are the same either way; only the coordinate u differs.
 """
 
 
@@ -51,7 +51,7 @@ class JointForces:
     by_u: Array
 
 
-class HumanDynamics:
+class HumanDynamics(ForcedBody):
     """A body of :class:`Body` moved by u = [for residual and joint torques (50), right (6) and left wrench (6)].
 
     Attributes:
@@ -59,8 +59,8 @@ class HumanDynamics:
         fixed: (nv,) dofs that do not move.
         kinematic: (nv,) dofs with prescribed acceleration: the toes and the fixed ones.
         torque_dofs: The dofs that u's first entries act on: the root's six, then the joints but for the toes.
-        wrench_frame: Where u's wrenches live, see :data:`WRENCH_FRAMES`.
-        force_state: What its first entries are, see :data:`FORCE_STATES`.
+        wrench_frame: Coordinates of u's wrenches, see :data:`WRENCH_FRAMES`.
+        force_state: Coordinates of its first entries, see :data:`FORCE_STATES`.
         nv, nu: Degrees of freedom, forces (62 for the reference body).
     """
 
@@ -76,8 +76,8 @@ class HumanDynamics:
         Args:
             model: The body.
             fixed: (nv,) dofs that do not move; none when None.
-            wrench_frame: Where u's wrenches live, one of :data:`WRENCH_FRAMES`.
-            force_state: What u's first entries are, one of :data:`FORCE_STATES`.
+            wrench_frame: Coordinates of u's wrenches, one of :data:`WRENCH_FRAMES`.
+            force_state: Coordinates of u's first entries, one of :data:`FORCE_STATES`.
 
         Raises:
             UnknownName: There is no such wrench frame or force state.
@@ -102,8 +102,8 @@ class HumanDynamics:
         self._data = model.pin_model.createData()
         self._weightless = model.pin_model.copy()
         self._weightless.gravity.linear = np.zeros(3)
-        self._loads = _no_forces(model.pin_model)
-        # Whether loads, gravity and velocity act themselves, or u has taken them off.
+        self._loads = pin.StdVec_Force([pin.Force.Zero()] * model.pin_model.njoints)
+        # True where loads, gravity and velocity act on the accelerations; else u has subtracted them.
         self._acting = force_state == "torque"
         self._selector = np.zeros((model.nv, len(self.torque_dofs)))
         self._selector[self.torque_dofs, np.arange(len(self.torque_dofs))] = 1.0
@@ -127,23 +127,17 @@ class HumanDynamics:
     def transport(self, v: Array) -> Array:
         """(nv, nv) −ad(v) of each joint: δ̇ = −v × δ + δv for errors in the joints' own axes."""
         T = np.zeros((self.nv, self.nv))
-        root = -cross_matrix(v[3:6])
+        root = -pin.skew(v[3:6])
         T[:3, :3] = T[3:6, 3:6] = root
-        T[:3, 3:6] = -cross_matrix(v[:3])
+        T[:3, 3:6] = -pin.skew(v[:3])
         for dofs in self._turning:
-            T[dofs, dofs] = -cross_matrix(v[dofs])
+            T[dofs, dofs] = -pin.skew(v[dofs])
         return T
 
     # Forces.
 
     def acceleration(self, q: Array, v: Array, u: Array) -> Array:
-        """(nv,) M⁻¹ (Q_g + Bᵀ T_e) of the free dofs, 0 of the kinematic ones.
-
-        Args:
-            q: (nq,) configuration.
-            v: (nv,) velocity in the tangent space.
-            u: (nu,) forces.
-        """
+        """(nv,) M⁻¹ (Q_g + Bᵀ T_e) of the free dofs, 0 of the kinematic ones."""
         dofs = len(self.torque_dofs)
         push = self._selector @ u[:dofs]
         if self._acting:
@@ -155,11 +149,6 @@ class HumanDynamics:
         """The acceleration with its complete analytic derivatives.
 
         ∂z̈/∂q = M⁻¹ (∂(Bᵀ T_e + Q_g)/∂q − ∂(M a)/∂q), a constant in the last term.
-
-        Args:
-            q: (nq,) configuration.
-            v: (nv,) velocity in the tangent space.
-            u: (nu,) forces.
         """
         nv, rows, dofs = self.nv, self._free, len(self.torque_dofs)
         given = self._given(q, v, u[dofs:]) if self._acting else _Given.nothing(nv)
@@ -218,7 +207,7 @@ class HumanDynamics:
         return JointForces(u[:dofs] - given.force[rows], -given.by_q[rows], -given.by_v[rows], by_u)
 
     def force_rows(self, q: Array) -> Array:
-        """(nu, nv + 12) how u follows from accelerations and wrench states, δu = rows (δa, δw)."""
+        """(nu, nv + 12) derivative of u by accelerations and wrench states, δu = rows (δa, δw)."""
         dofs = len(self.torque_dofs)
         rows = np.zeros((self.nu, self.nv + 12))
         rows[:dofs, : self.nv] = self.model.mass_matrix(q)[self.torque_dofs]
@@ -261,9 +250,9 @@ class HumanDynamics:
             turned = back @ state[force]
             local[force], local[moment] = turned, state[moment] + np.cross(point, turned)
             by_state[force, force], by_state[moment, moment] = back, np.eye(3)
-            by_state[moment, force] = cross_matrix(point) @ back
-            swing = cross_matrix(turned) @ turns[side]
-            by_q[at : at + 6] = np.concatenate([swing, cross_matrix(point) @ swing])
+            by_state[moment, force] = pin.skew(point) @ back
+            swing = pin.skew(turned) @ turns[side]
+            by_q[at : at + 6] = np.concatenate([swing, pin.skew(point) @ swing])
         return local, by_state, by_q
 
     def _foot_jacobians(self) -> list[Array]:
@@ -276,7 +265,7 @@ class HumanDynamics:
         return np.concatenate(self._foot_jacobians(), axis=0).T
 
     def _given(self, q: Array, v: Array, state: Array) -> _Given:
-        """What wrench states, gravity and velocity do to all dofs, with derivatives."""
+        """Generalised forces of wrench states, gravity and velocity on all dofs, with derivatives."""
         model, still = self.model.pin_model, np.zeros(self.nv)
         local, by_state, by_q = self.local_wrench(q, state)
         pull = self._pull()
@@ -314,16 +303,3 @@ class _Given:
     def nothing(cls, nv: int) -> _Given:
         none = np.zeros((nv, nv))
         return cls(np.zeros(nv), none, none, np.zeros((nv, 12)))
-
-
-def cross_matrix(vector: Array) -> Array:
-    """(3, 3) matrix of the product vector × ·."""
-    x, y, z = vector
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-
-
-def _no_forces(model: pin.Model) -> pin.StdVec_Force:
-    forces = pin.StdVec_Force()
-    for _ in range(model.njoints):
-        forces.append(pin.Force.Zero())
-    return forces

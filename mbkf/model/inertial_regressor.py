@@ -10,22 +10,23 @@ about the segment's origin, in its own frame (C. G. Atkeson, C. H. An, J. M. Hol
 from __future__ import annotations
 
 import numpy as np
+import pinocchio as pin
 
 from mbkf.conventions import Array
 from mbkf.model.body import Body
+from mbkf.numerics.rotations import skew
 
 PER_SEGMENT = 10
 """Inertial parameters of a segment."""
 
 PER_OWN = 4
-"""Numbers that tell how a segment differs from the table: relative mass, and shift of the centre of mass (3), m."""
+"""Numbers of a segment's difference from the table: relative mass, and shift of the centre of mass (3), m."""
 
-_PAIRS = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
+_ROWS, _COLUMNS = [0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]
 """Places of the six moments in the matrix, in Pinocchio's order."""
 
 _MOMENTS = np.zeros((3, 3, 6))
-for _k, (_i, _j) in enumerate(_PAIRS):
-    _MOMENTS[_i, _j, _k] = _MOMENTS[_j, _i, _k] = 1.0
+_MOMENTS[_ROWS, _COLUMNS, range(6)] = _MOMENTS[_COLUMNS, _ROWS, range(6)] = 1.0
 
 
 class InertialRegressor:
@@ -56,11 +57,11 @@ class InertialRegressor:
         speed = moving[:3].T + np.cross(turning, origins)
         found = np.zeros((6, len(self.names), PER_SEGMENT))
         found[:3, :, 0] = speed.T
-        found[:3, :, 1:4] = (_crosses(turning) @ rotations).transpose(1, 0, 2)
-        found[3:, :, 1:4] = -(_crosses(speed) @ rotations).transpose(1, 0, 2)
+        found[:3, :, 1:4] = (skew(turning) @ rotations).transpose(1, 0, 2)
+        found[3:, :, 1:4] = -(skew(speed) @ rotations).transpose(1, 0, 2)
         own = np.einsum("sji,sj->si", rotations, turning)
         found[3:, :, 4:] = np.einsum("sab,bck,sc->ask", rotations, _MOMENTS, own)
-        found[3:] += np.einsum("sab,bsk->ask", _crosses(origins), found[:3])
+        found[3:] += np.einsum("sab,bsk->ask", skew(origins), found[:3])
         return found.reshape(6, -1)
 
     def weight(self, q: Array) -> Array:
@@ -68,7 +69,7 @@ class InertialRegressor:
         rotations, origins = self._placements(self.model.frames(q))
         found = np.zeros((6, len(self.names), PER_SEGMENT))
         found[:3, :, 0] = self._gravity[:, None]
-        pull = -_crosses(self._gravity[None])[0]
+        pull = -skew(self._gravity)
         found[3:, :, 0] = pull @ origins.T
         found[3:, :, 1:4] = np.einsum("ab,sbk->ask", pull, rotations)
         return found.reshape(6, -1)
@@ -87,26 +88,15 @@ class InertialRegressor:
         found, slope = np.zeros((size, PER_SEGMENT)), np.zeros((size, PER_SEGMENT, size, PER_OWN))
         for s, (change, *shift) in enumerate(difference.reshape(size, PER_OWN)):
             inertia = self.model.pin_model.inertias[int(self._joints[s])]
-            centre, mass = np.array(inertia.lever) + shift, float(inertia.mass)
-            about = np.array(inertia.inertia) + mass * (
-                centre @ centre * np.eye(3) - np.outer(centre, centre)
-            )
-            per_mass = np.concatenate([[mass], mass * centre, [about[pair] for pair in _PAIRS]])
+            centre, mass = inertia.lever + shift, float(inertia.mass)
+            per_mass = pin.Inertia(mass, centre, inertia.inertia).toDynamicParameters()
             found[s], slope[s, :, s, 0] = (1.0 + change) * per_mass, per_mass
             for axis, unit in enumerate(np.eye(3)):
                 turned = 2.0 * centre[axis] * np.eye(3) - np.outer(unit, centre) - np.outer(centre, unit)
                 slope[s, 1:4, s, 1 + axis] = (1.0 + change) * mass * unit
-                slope[s, 4:, s, 1 + axis] = (1.0 + change) * mass * np.array([turned[p] for p in _PAIRS])
+                slope[s, 4:, s, 1 + axis] = (1.0 + change) * mass * turned[_ROWS, _COLUMNS]
         return found.ravel(), slope.reshape(size * PER_SEGMENT, size * PER_OWN)
 
     def _placements(self, frames: Array) -> tuple[Array, Array]:
         by_joint = frames.reshape(-1, 4, 3)[self._joints]
         return by_joint[:, :3].transpose(0, 2, 1), by_joint[:, 3]
-
-
-def _crosses(vectors: Array) -> Array:
-    """(n, 3, 3) matrices of the products vector × · of (n, 3)."""
-    found = np.zeros((len(vectors), 3, 3))
-    for x, y, z in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        found[:, x, y], found[:, x, z] = -vectors[:, z], vectors[:, y]
-    return found

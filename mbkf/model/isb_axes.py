@@ -2,9 +2,9 @@
 
 G. Wu et al., J. Biomech. 35 (2002) 543-548: pelvis, femur, ankle; E. S. Grood, W. J. Suntay, J. Biomech. Eng. 105
 (1983) 136-144: knee, whose shank has its long axis from knee to ankle centre. Wu's axes are x forward, y up, z right;
-written here in the body's x forward, y left, z up. The foot has no axes of its own points there: in the neutral posture
-they are those of the shank at the knee, so that tibial torsion stays in the ankle's rotation. The upper limb (Wu,
-J. Biomech. 38 (2005) 981-992) is read in the body's own axes.
+written here in the body's x forward, y left, z up. The standards define no axes of the foot by points: in the neutral
+posture they are those of the shank at the knee, so that tibial torsion stays in the ankle's rotation. The upper limb
+(Wu, J. Biomech. 38 (2005) 981-992) is read in the body's own axes.
 """
 
 from __future__ import annotations
@@ -15,12 +15,13 @@ import numpy as np
 
 from mbkf.conventions import Array
 from mbkf.model.angle_reading import AngleReading, JointAxes
+from mbkf.numerics.orthonormal import axes_from
 
 SIDES = {"r": "right", "l": "left"}
 
 
 def isb_axes(places: Mapping[str, Array]) -> AngleReading:
-    """The reading for a person.
+    """The convention for a person.
 
     Args:
         places: (3,) places in the body's neutral posture, in which all segments' frames are the world's, m: ``sacrum``,
@@ -28,7 +29,7 @@ def isb_axes(places: Mapping[str, Array]) -> AngleReading:
             and ``ankle_medial``.
     """
     right, left = places["right_asis"], places["left_asis"]
-    pelvis = _from_y_and_x(left - right, 0.5 * (right + left) - places["sacrum"])
+    pelvis = axes_from("y", left - right, "x", 0.5 * (right + left) - places["sacrum"])
     joints = {"pelvis": JointAxes(np.eye(3), pelvis)}
     for suffix, side in SIDES.items():
         leftward = -1.0 if side == "left" else 1.0
@@ -36,34 +37,10 @@ def isb_axes(places: Mapping[str, Array]) -> AngleReading:
             (places[f"{side}_{name}"], places[f"{side}_{name}_medial"]) for name in ("knee", "ankle")
         )
         knee, ankle = 0.5 * (knees[0] + knees[1]), 0.5 * (ankles[0] + ankles[1])
-        thigh = _from_z_and_y(places[f"{side}_hip_centre"] - knee, leftward * (knees[1] - knees[0]))
-        shank = _from_z_and_y(knee - ankle, leftward * (knees[1] - knees[0]))
-        between = _from_y_and_z(leftward * (ankles[1] - ankles[0]), knee - ankle)
+        thigh = axes_from("z", places[f"{side}_hip_centre"] - knee, "y", leftward * (knees[1] - knees[0]))
+        shank = axes_from("z", knee - ankle, "y", leftward * (knees[1] - knees[0]))
+        between = axes_from("y", leftward * (ankles[1] - ankles[0]), "z", knee - ankle)
         joints[f"hip_{suffix}"] = JointAxes(pelvis, thigh)
         joints[f"knee_{suffix}"] = JointAxes(thigh, shank)
         joints[f"ankle_{suffix}"] = JointAxes(between, shank)
     return AngleReading("isb", joints)
-
-
-def _from_y_and_x(y: Array, x: Array) -> Array:
-    """(3, 3) axes with this y, and x as near to the given one as can be."""
-    y = y / np.linalg.norm(y)
-    z = np.cross(x, y)
-    z = z / np.linalg.norm(z)
-    return np.column_stack([np.cross(y, z), y, z])
-
-
-def _from_z_and_y(z: Array, y: Array) -> Array:
-    """(3, 3) axes with this z, and y as near to the given one as can be."""
-    z = z / np.linalg.norm(z)
-    x = np.cross(y, z)
-    x = x / np.linalg.norm(x)
-    return np.column_stack([x, np.cross(z, x), z])
-
-
-def _from_y_and_z(y: Array, z: Array) -> Array:
-    """(3, 3) axes with this y, and z as near to the given one as can be."""
-    y = y / np.linalg.norm(y)
-    x = np.cross(y, z)
-    x = x / np.linalg.norm(x)
-    return np.column_stack([x, y, np.cross(x, y)])

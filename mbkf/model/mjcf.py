@@ -1,11 +1,11 @@
-"""The body as MJCF, for MuJoCo: the native joints themselves.
+"""The body as MJCF, for MuJoCo, with its native joints.
 
 A free joint carries the pelvis; spherical joints are balls, hinges are hinges, a universal joint (the neck)
 is two hinges. Ball and free joints are named after their segments, hinges after their dof.
 MuJoCo writes quaternions (w, x, y, z) and gives the free joint's linear velocity in world axes, mbkf in the
-pelvis's; everything else of q and v is the same, in the same order. Markers are sites. Bodies carry explicit
-inertias; the capsules are only for the eye: no mass, no contact, no limits, so that the body floats freely in
-standard gravity.
+pelvis's; all other components of q and v are the same, in the same order. Markers are sites. Bodies have explicit
+inertias; the capsules are for drawing only, without mass or contact. Joints have no limits, and the body floats freely
+in standard gravity.
 """
 
 from __future__ import annotations

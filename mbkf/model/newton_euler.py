@@ -1,4 +1,4 @@
-"""Newton–Euler on the whole body: the generalised forces that a motion and two foot wrenches ask for.
+"""Newton–Euler on the whole body: the generalised forces of a motion under two foot wrenches.
 
 τ = ID(q, v, a) − Σ J_fᵀ w_f. Its first six rows are the residual at the root, zero for a body that obeys Newton's
 law; the others are the joint torques. Wrenches are about the world's origin in world axes, so that a constant one
@@ -31,30 +31,6 @@ class RootBalance:
 
     residual: Array
     by_state: Array
-
-    @property
-    def by_q(self) -> Array:
-        """(6, nv) by the configuration."""
-        return self.by_state[:, : self._nv]
-
-    @property
-    def by_v(self) -> Array:
-        """(6, nv) by the velocity."""
-        return self.by_state[:, self._nv : 2 * self._nv]
-
-    @property
-    def by_a(self) -> Array:
-        """(6, nv) by the acceleration."""
-        return self.by_state[:, 2 * self._nv : 3 * self._nv]
-
-    @property
-    def by_wrench(self) -> Array:
-        """(6, 6) by either foot's wrench."""
-        return self.by_state[:, -ROOT:]
-
-    @property
-    def _nv(self) -> int:
-        return (self.by_state.shape[1] - 2 * ROOT) // 3
 
 
 @dataclass(frozen=True)
@@ -121,7 +97,7 @@ class NewtonEuler:
         data, nv = self._data, self.model.nv
         by_state = np.empty((ROOT, 3 * nv + 2 * ROOT))
         by_wrench = -data.J[:, :ROOT].T
-        # What stands still in the world turns in the pelvis's axes when these turn.
+        # A wrench that is constant in the world turns in the pelvis's axes when these turn.
         own = by_wrench @ wrench
         np.concatenate([by_q[:ROOT], by_v[:ROOT], by_a[:ROOT], by_wrench, by_wrench], axis=1, out=by_state)
         by_state[:, :ROOT] += _turned_wrench(own)
@@ -157,10 +133,10 @@ class NewtonEuler:
         return found
 
     def loaded(self, found: JointTorques, loads: Mapping[int, Array]) -> None:
-        """Counts further loads in torques just found by :meth:`torques`, in place: τ −= Σ Jᵀ w.
+        """Adds further loads to the last result of :meth:`torques`, in place: τ −= Σ Jᵀ w.
 
         Args:
-            found: What :meth:`torques` gave in its last call.
+            found: The last result of :meth:`torques`.
             loads: (6,) wrench about the world's origin by the index of the joint whose segment bears it.
         """
         J = self._J
@@ -174,7 +150,7 @@ class NewtonEuler:
             found.by_state[chain[:, None], chain] -= after * (own.T @ _turned_wrench(wrench) @ own)
 
     def jacobian(self, joint: int) -> Array:
-        """(6, nv) velocity at the world's origin of a joint's segment, where :meth:`torques` was last asked."""
+        """(6, nv) velocity at the world's origin of a joint's segment, at the motion of the last :meth:`torques`."""
         return np.where(self.model.supports[joint], self._J, 0.0)
 
     def tau(self, q: Array, v: Array, a: Array, wrenches: Array) -> Array:
@@ -201,32 +177,13 @@ class NewtonEuler:
 
 def _moved_by(model: Body, chain: NDArray[np.intp]) -> Array:
     """(n, n) 1 where the axis of a chain's dof (row) turns with a dof (column): the same joint's or one before it."""
-    mine = _joint_of(model)[chain]
+    mine = np.repeat(np.arange(model.pin_model.njoints), model.pin_model.nvs)[chain]
     return (mine[:, None] >= mine[None, :]).astype(float)
 
 
-def _joint_of(model: Body) -> NDArray[np.int32]:
-    """(nv,) Pinocchio joint of every dof."""
-    joint_of = np.empty(model.nv, dtype=np.int32)
-    for joint in range(1, model.pin_model.njoints):
-        first = model.pin_model.joints[joint].idx_v
-        joint_of[first : first + model.pin_model.joints[joint].nv] = joint
-    return joint_of
-
-
 def _turned_wrench(wrench: Array) -> Array:
-    """(6, 6) X with (J_k × J_i) · w = J_iᵀ X J_k: what a turn of axis i by dof k changes."""
-    return (_TURNED @ wrench).reshape(6, 6)
-
-
-def _turned_wrench_table() -> Array:
-    """(36, 6) :func:`_turned_wrench` of each component: a vector's cross products with force and moment."""
-    cross = np.zeros((3, 3, 3))
-    for x, y, z in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        cross[x, y, z], cross[x, z, y] = -1.0, 1.0
-    table = np.zeros((6, 6, 6))
-    table[:3, 3:, :3] = table[3:, :3, :3] = table[3:, 3:, 3:] = cross
-    return table.reshape(36, 6)
-
-
-_TURNED = _turned_wrench_table()
+    """(6, 6) X with (J_k × J_i) · w = J_iᵀ X J_k: effect on axis i of a turn by dof k."""
+    turned = np.zeros((6, 6))
+    turned[:3, 3:] = turned[3:, :3] = pin.skew(wrench[:3])
+    turned[3:, 3:] = pin.skew(wrench[3:])
+    return turned

@@ -14,12 +14,14 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from mbkf.conventions import Array
 from mbkf.model.angle_reading import AngleReading, JointAxes, Line
+from mbkf.numerics.orthonormal import axes_from
 
 MARKER_RADIUS_M = 0.007
-"""Half of Plug-in Gait's 14 mm, whatever diameter a file tells."""
+"""Half of Plug-in Gait's 14 mm, whatever diameter a file states."""
 
 HIP_ANGLES_RAD = (0.5, 0.314)
 """θ and β of Davis' regression."""
@@ -31,13 +33,13 @@ _TOLERANCE_RAD, _MOST_STEPS = 1e-9, 100
 
 @dataclass(frozen=True)
 class Measured:
-    """What a laboratory told Plug-in Gait of a person; None where it is not known.
+    """Measurements of a person that a laboratory gave Plug-in Gait; None where unknown.
 
     Attributes:
         leg_m, knee_m, ankle_m: Length of each leg, widths of knees and ankles, right and left.
         hip_depth_m: ASIS to greater trochanter, front to back.
         asis_m: Distance of the two ASIS.
-        thigh_rad, shank_rad: How far the wands stand off.
+        thigh_rad, shank_rad: Offset angles of the wands.
         torsion_rad, ankle_tilt_rad: Tibial torsion, and tilt of the ankle's axis.
         foot_rad: (plantar flexion, rotation) of the line of the foot in the static trial.
     """
@@ -55,11 +57,7 @@ class Measured:
 
 
 def measured_of(stored: Mapping[str, float]) -> Measured:
-    """What a file's PROCESSING group tells.
-
-    Args:
-        stored: Its numbers by names in capitals: lengths in mm, angles in rad.
-    """
+    """The measurements in a file's PROCESSING group, whose lengths are in mm and angles in rad."""
 
     def length(name: str) -> float | None:
         value = stored.get(name, 0.0)
@@ -90,14 +88,14 @@ def measured_of(stored: Mapping[str, float]) -> Measured:
 
 
 def plug_in_gait(places: Mapping[str, Array], measured: Measured) -> AngleReading:
-    """The reading for a person.
+    """The convention for a person.
 
     Args:
         places: (3,) places in the body's neutral posture, in which all segments' frames are the world's, m:
             ``asis``, ``knee``, ``knee_medial``, ``ankle``, ``ankle_medial``, ``heel``, ``toe``, ``knee_centre`` and
             ``ankle_centre`` with ``right_`` and ``left_`` before them, ``sacrum``, and where there are wands
             ``thigh_wand`` and ``shank_wand``.
-        measured: What is known of the person besides.
+        measured: Measurements of the person.
     """
     pelvis, hips = _pelvis(places, measured)
     joints = {"pelvis": JointAxes(np.eye(3), pelvis)}
@@ -120,9 +118,7 @@ def _pelvis(places: Mapping[str, Array], measured: Measured) -> tuple[Array, tup
     """Axes of the pelvis and the hip centres, right and left."""
     right, left = places["right_asis"], places["left_asis"]
     middle = 0.5 * (right + left)
-    y = _unit(left - right)
-    z = _unit(np.cross(middle - places["sacrum"], y))
-    axes = np.column_stack([np.cross(y, z), y, z])
+    axes = axes_from("y", left - right, "x", middle - places["sacrum"])
     legs = [measured.leg_m[n] or _leg_length(places, side) for n, side in enumerate(("right", "left"))]
     theta, beta = HIP_ANGLES_RAD
     C = 0.115 * float(np.mean(legs)) - 0.0153
@@ -147,7 +143,7 @@ def _leg_length(places: Mapping[str, Array], side: str) -> float:
 
 @dataclass(frozen=True)
 class _Leg:
-    """One leg's places, its number (0 right, 1 left) and what is known of the person."""
+    """One leg's places, its number (0 right, 1 left) and the person's measurements."""
 
     places: Mapping[str, Array]
     number: int
@@ -169,20 +165,20 @@ class _Leg:
         offset, tilt = (self.measured.shank_rad[n], self.measured.ankle_tilt_rad[n]) if wand else (0.0, 0.0)
         at_ankle, centre = self._chord("ankle", "shank_wand", knee, self.measured.ankle_m[n], offset, tilt)
         torsion = self.side * self.measured.torsion_rad[n]
-        return at_ankle @ _about_z(torsion), at_ankle, centre
+        return at_ankle @ Rotation.from_euler("Z", torsion).as_matrix(), at_ankle, centre
 
     def foot(self, shank: Array, ankle: Array) -> tuple[Array, Array]:
         """Axes along the line from ankle centre to forefoot, and those that the static trial makes of them."""
         toe = self.places["toe"]
-        line = _axes_along(toe - ankle, shank[:, 1])
+        line = axes_from("x", toe - ankle, "y", shank[:, 1])
         known = self.measured.foot_rad[self.number]
         if known is not None:
             flexion, rotation = -known[0], -self.side * known[1]
         else:  # the sole stands flat, and the foot points from heel to forefoot
             sole = (toe - self.places["heel"]) * np.array([1.0, 1.0, 0.0])
-            x, y, z = line.T @ _unit(sole)
+            x, y, z = line.T @ sole
             flexion, rotation = float(np.arctan2(-z, x)), float(np.arctan2(y, np.hypot(x, z)))
-        return line, line @ _about_y(flexion) @ _about_z(rotation)
+        return line, line @ Rotation.from_euler("YZ", [flexion, rotation]).as_matrix()
 
     def _chord(
         self, joint: str, wand: str, top: Array, width_m: float | None, offset: float, tilt: float
@@ -202,43 +198,16 @@ class _Leg:
         up = (top - marker) / length
         right_angle = 0.5 * np.pi + self.side * tilt
         at_marker = np.pi - right_angle - np.arcsin(away * np.sin(right_angle) / length)
-        ahead = _unit(np.cross(up, beside - marker))
+        ahead = np.cross(up, beside - marker)
+        ahead /= np.linalg.norm(ahead)
         out, turned, wanted = np.cross(ahead, up), 0.0, self.side * offset
         for _ in range(_MOST_STEPS):
             inward = -np.cos(turned) * out - np.sin(turned) * ahead
             centre = marker + away * (np.cos(at_marker) * up + np.sin(at_marker) * inward)
-            axes = _axes_up(top - centre, self.side * (marker - centre))
-            _, wand_x, wand_y = (beside - centre) @ np.column_stack([axes[:, 2], axes[:, 0], axes[:, 1]])
+            axes = axes_from("z", top - centre, "y", self.side * (marker - centre))
+            wand_x, wand_y, _ = (beside - centre) @ axes
             off = float(np.arctan2(-self.side * wand_x, self.side * wand_y)) - wanted
             turned += off
             if abs(off) < _TOLERANCE_RAD:
                 break
         return axes, centre
-
-
-def _axes_up(z: Array, y: Array) -> Array:
-    """(3, 3) axes with this z, and y as near to the given one as can be."""
-    up = _unit(z)
-    x = _unit(np.cross(y, up))
-    return np.column_stack([x, np.cross(up, x), up])
-
-
-def _axes_along(x: Array, y: Array) -> Array:
-    """(3, 3) axes with this x, and y as near to the given one as can be."""
-    along = _unit(x)
-    z = _unit(np.cross(along, y))
-    return np.column_stack([along, np.cross(z, along), z])
-
-
-def _about_z(angle: float) -> Array:
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
-def _about_y(angle: float) -> Array:
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
-
-
-def _unit(vector: Array) -> Array:
-    return np.asarray(vector / np.linalg.norm(vector))

@@ -1,4 +1,4 @@
-"""Point masses on the segments of a body, whose mass matrix sums up what many points say about the configuration.
+"""Point masses on the segments of a body, whose mass matrix is the information of many points on the configuration.
 
 Readings of points with standard deviations σ inform about the configuration by Λ = Σ σ⁻² HᵀH, H (3, nv) being a point's
 Jacobian. That is the mass matrix of masses σ⁻² at the points, which the composite rigid body algorithm finds without
@@ -44,7 +44,7 @@ class PointMasses:
         return pin.crba(self._model, self._data, q)
 
     def _count(self, counted: BoolArray) -> None:
-        """Gives the segments whose points have changed their masses."""
+        """Updates the inertias of segments whose set of counted points has changed."""
         for joint in set(self.joint_ids[counted != self._counted]):
             mine = counted & (self.joint_ids == joint)
             inertia = pin.Inertia.Zero()

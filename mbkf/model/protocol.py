@@ -1,4 +1,4 @@
-"""Marker protocols: which markers a laboratory sticks where, read from files in ``markers/``."""
+"""Marker protocols: names, segments and places of a laboratory's markers, read from files in ``markers/``."""
 
 from __future__ import annotations
 
@@ -20,17 +20,22 @@ from mbkf.model.description import BodyDescription
 from mbkf.model.sides import mirrored
 
 KINDS = ("anatomical", "technical", "computed", "keypoint")
-"""Anatomical: on a landmark, stays near it. Technical: anywhere on the segment, its position comes from the data.
-Computed: a point that software stored (a joint centre); used for scaling, never followed. Keypoint: a point that a
-neural network found in videos (a joint centre or a feature); followed, with noise that stays for a while."""
+"""Anatomical: on a landmark, and stays near it. Technical: anywhere on the segment; its position comes from the data.
+Computed: a point that software stored (a joint centre); used for scaling, never tracked. Keypoint: a point that a
+neural network found in videos (a joint centre or a feature); tracked, with correlated noise."""
 
 DEFAULT_PLACEMENT_SD_M = {"anatomical": 0.010, "technical": 0.060, "computed": 0.006, "keypoint": 0.025}
 DEFAULT_NOISE_M = {"anatomical": 0.005, "technical": 0.005, "computed": 0.005, "keypoint": 0.020}
 DEFAULT_CORRELATED_M = {"anatomical": 0.0, "technical": 0.0, "computed": 0.0, "keypoint": 0.010}
 FARTHEST_M, MOST_SD_MM = 3.0, 1000.0
-"""No marker sits further from its segment's origin, nor is less known where it sits."""
+"""Greatest distance of a marker from its segment's origin, and greatest standard deviation of its place or noise."""
 
 DEFAULT_CORRELATION_S = 0.3
+
+_KEYS = {
+    "name", "landmark", "segment", "position_m", "kind", "placement_sd_mm", "noise_mm", "correlated_mm",
+    "correlation_s", "aliases", "mirror", "mirror_aliases", "static_only", "probability", "alternatives",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -42,15 +47,15 @@ class ProtocolMarker:
         segment: Segment that carries it.
         position_m: (3,) position in the reference body's segment frame, m.
         kind: One of :data:`KINDS`.
-        placement_sd_m: How far the marker may sit from that position, per coordinate (1 sd), m.
+        placement_sd_m: Spread of its place about that position, per coordinate (1 sd), m.
         noise_m: Measurement noise with skin movement, per coordinate (1 sd), m.
         aliases: Other names for the same marker.
-        static_only: Whether it is usually taken off after the static trial.
+        static_only: True where it is usually taken off after the static trial.
         landmark: Landmark of the body that it sits on, "" where the position alone is given.
-        probability: That it is on this segment; below 1 where it was inferred.
+        probability: Probability of this segment; below 1 where it was inferred.
         alternatives: Other segments that it may be on, each with its probability, likeliest first.
-        correlated_m: The part of the noise (1 sd) that stays for a while, m; what is left is new in every frame.
-        correlation_s: Time after which a share 1/e of that part is left, s.
+        correlated_m: The correlated part of the noise (1 sd), m; the rest is new in every frame.
+        correlation_s: Correlation time of that part, s.
     """
 
     name: str
@@ -74,11 +79,11 @@ class Protocol:
 
     Attributes:
         name: Its name.
-        title: The same for people.
+        title: Its title in messages and pages.
         body: The reference body that the markers are placed on.
         markers: The markers in file order.
-        source: Where its definition comes from, "" where the file does not tell.
-        ignored: The reason by name of each point that is to be left out: no part of the body, or placed by nothing.
+        source: Source of its definition, "" where the file states none.
+        ignored: Points to be left out, by name, each with the reason.
     """
 
     name: str
@@ -89,7 +94,7 @@ class Protocol:
     ignored: Mapping[str, str] = field(default_factory=dict)
 
     def match(self, names: Iterable[str]) -> dict[str, ProtocolMarker]:
-        """Which of the given capture names belong to which protocol marker (by name, then alias)."""
+        """Protocol marker of each capture name that belongs to one (by name, then alias)."""
         return match_names(names, self.markers)
 
 
@@ -104,7 +109,7 @@ def load_protocol(name: str | Path, body: BodyDescription | None = None) -> Prot
     Args:
         name: The protocol's name, or its file.
         body: The body to place the markers on; by default the one the file names. Markers of segments and landmarks
-            that this body does not have are left out: a full-body protocol serves a body of the legs.
+            that this body lacks are left out, so that a full-body protocol also serves a body of the legs.
 
     Raises:
         UnknownName: No such protocol, or it names a segment or landmark that its own body does not have.
@@ -128,17 +133,17 @@ def _shipped_file(name: str) -> Path:
 
 
 def detect_protocol(names: Iterable[str], body: BodyDescription | None = None) -> Protocol:
-    """The shipped protocol that explains most of the capture's marker names.
+    """The shipped protocol that knows most of the capture's marker names.
 
-    Ties go to the protocol with fewer markers that the capture lacks: first of those on the segments that it shows,
-    less those usually worn in a static trial only, then of all.
+    Ties go to the protocol with fewer markers that the capture lacks: first among those on the segments that it shows,
+    without those of static trials only, then among all.
 
     Args:
         names: Names of the capture's markers.
         body: The body to place the markers on, as for :func:`load_protocol`.
 
     Raises:
-        UnknownName: No protocol knows even six of the names.
+        UnknownName: No protocol knows six or more of the names.
     """
     present = tuple(names)
     best, best_score = None, (0, 0, 0)
@@ -157,7 +162,7 @@ def detect_protocol(names: Iterable[str], body: BodyDescription | None = None) -
             "marker set",
             ", ".join(present[:6]) or "(no markers)",
             protocol_names(),
-            "no protocol knows these markers, give --protocol",
+            "no protocol knows six of the capture's markers; give --protocol",
         )
     return best
 
@@ -172,21 +177,21 @@ def _parse(path: Path, body: BodyDescription | None = None) -> Protocol:
             markers += _markers(entry, body, own, path)
         name, title = table["name"], table.get("title", table["name"])
         if not isinstance(name, str) or not isinstance(title, str):
-            raise ValueError("name and title must be texts")
+            raise ValueError("name and title must be strings")
         ignored = {str(one["name"]): str(one.get("reason", "")) for one in table.get("ignored", [])}
     except OSError as error:
         raise FileFormatError(path, f"cannot be read ({error.strerror})") from error
     except (KeyError, TypeError, ValueError) as error:
-        raise FileFormatError(path, f"not a valid protocol ({error})") from error
+        raise FileFormatError(path, f"not a valid protocol: {error}") from error
     names = Counter(marker.name for marker in markers)
     for marker, times in names.items():
         if times > 1:
-            raise FileFormatError(path, f"marker '{marker}' stands twice")
+            raise FileFormatError(path, f"marker '{marker}' is defined twice")
     return Protocol(name, title, body, tuple(markers), str(table.get("source", "")), ignored)
 
 
 def _own_body(table: dict[str, Any], path: Path) -> BodyDescription:
-    """The body a protocol was written for; a file is looked for beside the protocol's."""
+    """The body a protocol was written for; the path of a file is relative to the protocol's folder."""
     name = str(table.get("body", "human18"))
     return load_body(path.parent / name if name.endswith(".toml") else name)
 
@@ -194,9 +199,9 @@ def _own_body(table: dict[str, Any], path: Path) -> BodyDescription:
 def _markers(
     entry: dict[str, Any], body: BodyDescription, own: BodyDescription, path: Path
 ) -> list[ProtocolMarker]:
-    """The marker of an entry on a body, and its mirror image where the entry names one.
+    """The marker of an entry on a body, with its mirror image where the entry names one.
 
-    None where only the protocol's own body has the place.
+    Empty where only the protocol's own body has the place.
     """
     segments = {segment.name for segment in body.segments}
     key, known, lacking = (
@@ -224,26 +229,9 @@ def _markers(
 
 
 def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> ProtocolMarker:
-    known = {
-        "name",
-        "landmark",
-        "segment",
-        "position_m",
-        "kind",
-        "placement_sd_mm",
-        "noise_mm",
-        "correlated_mm",
-        "correlation_s",
-        "aliases",
-        "mirror",
-        "mirror_aliases",
-        "static_only",
-        "probability",
-        "alternatives",
-    }
     for key in entry:
-        if key not in known:
-            raise UnknownName("key", key, sorted(known), f"{path}, marker {entry.get('name', '?')}")
+        if key not in _KEYS:
+            raise UnknownName("key", key, sorted(_KEYS), f"{path}, marker {entry.get('name', '?')}")
     where = f"{path}, marker {entry['name']}"
     if "landmark" in entry:
         if entry["landmark"] not in body.landmarks:
@@ -251,59 +239,48 @@ def _marker(entry: dict[str, Any], body: BodyDescription, path: Path) -> Protoco
         landmark = body.landmark(entry["landmark"])
         segment, position = landmark.segment, landmark.position_m
     else:
-        segment = entry["segment"]
-        position = read_only(entry["position_m"])
+        segment, position = entry["segment"], read_only(entry["position_m"])
         if position.shape != (3,) or not (np.abs(position) <= FARTHEST_M).all():
-            reason = (
+            raise ValueError(
                 f"marker {entry['name']}: position_m needs three finite numbers of at most {FARTHEST_M:g} m"
             )
-            raise FileFormatError(path, reason)
     if segment not in {s.name for s in body.segments}:
         raise UnknownName("segment", segment, [s.name for s in body.segments], where)
     if not isinstance(entry.get("static_only", False), bool):
-        raise FileFormatError(path, f"marker {entry['name']}: static_only is true or false")
+        raise ValueError(f"marker {entry['name']}: static_only must be true or false")
     kind = entry.get("kind", "anatomical" if "landmark" in entry else "technical")
     if kind not in KINDS:
         raise UnknownName("marker kind", kind, KINDS, where)
-    noise, correlated, lasting = _noise(entry, kind, path)
-    texts = [
-        entry["name"],
-        entry.get("mirror", "-"),
-        *entry.get("aliases", ()),
-        *entry.get("mirror_aliases", ()),
-    ]
-    if not all(isinstance(text, str) for text in texts):
-        raise ValueError(f"marker {entry['name']}: names and aliases are texts")
+    noise, correlated, correlation_s = _noise(entry, kind)
+    aliases, others = entry.get("aliases", ()), entry.get("mirror_aliases", ())
+    if not all(isinstance(text, str) for text in (entry["name"], entry.get("mirror", ""), *aliases, *others)):
+        raise ValueError(f"marker {entry['name']}: names and aliases must be strings")
+    usual_mm = 1e3 * DEFAULT_PLACEMENT_SD_M[kind]
     return ProtocolMarker(
         name=entry["name"],
         segment=segment,
         position_m=position,
         kind=kind,
-        placement_sd_m=number_between(
-            entry, "placement_sd_mm", 0.0, MOST_SD_MM, 1e3 * DEFAULT_PLACEMENT_SD_M[kind]
-        )
-        / 1e3,
+        placement_sd_m=number_between(entry, "placement_sd_mm", 0.0, MOST_SD_MM, usual_mm) / 1e3,
         noise_m=noise,
-        aliases=tuple(entry.get("aliases", ())),
+        aliases=tuple(aliases),
         static_only=entry.get("static_only", False),
         landmark=entry.get("landmark", ""),
         probability=number_between(entry, "probability", 0.0, 1.0, 1.0),
         alternatives=tuple((str(other), float(odds)) for other, odds in entry.get("alternatives", [])),
         correlated_m=correlated,
-        correlation_s=lasting,
+        correlation_s=correlation_s,
     )
 
 
-def _noise(entry: dict[str, Any], kind: str, path: Path) -> tuple[float, float, float]:
-    """Noise, m, the part of it that stays for a while, m, and for how long, s."""
+def _noise(entry: dict[str, Any], kind: str) -> tuple[float, float, float]:
+    """Noise, m, its correlated part, m, and that part's correlation time, s."""
     noise = number_between(entry, "noise_mm", 0.0, MOST_SD_MM, 1e3 * DEFAULT_NOISE_M[kind]) / 1e3
     usual = min(DEFAULT_CORRELATED_M[kind], 0.5 * noise)
     correlated = entry.get("correlated_mm", 1e3 * usual) / 1e3
-    lasting = entry.get("correlation_s", DEFAULT_CORRELATION_S if correlated else 0.0)
-    if not (0.0 <= correlated <= noise and lasting >= 0.0):
-        raise FileFormatError(
-            path,
-            f"marker {entry['name']}: correlated_mm is a part of noise_mm, at most all of it, and "
-            "correlation_s is not negative",
+    correlation_s = entry.get("correlation_s", DEFAULT_CORRELATION_S if correlated else 0.0)
+    if not (0.0 <= correlated <= noise and correlation_s >= 0.0):
+        raise ValueError(
+            f"marker {entry['name']}: correlated_mm must be between 0 and noise_mm, correlation_s 0 or more"
         )
-    return noise, correlated, lasting
+    return noise, correlated, correlation_s

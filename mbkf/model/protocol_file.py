@@ -1,4 +1,4 @@
-"""Writing marker protocols as files of the form that :func:`mbkf.model.protocol.load_protocol` reads."""
+"""Writing marker protocols as the files that :func:`mbkf.model.protocol.load_protocol` reads."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _HEADING = (
 
 
 def protocol_text(protocol: Protocol, body: str = "") -> str:
-    """A protocol as TOML: what :func:`mbkf.model.protocol.load_protocol` makes the same protocol of.
+    """A protocol as TOML, from which :func:`mbkf.model.protocol.load_protocol` makes the same protocol.
 
     A marker is written by its landmark where it sits exactly there, else by its segment and position. Standard
-    deviations stand in mm: one that was read comes back to the last bit, any other to a last bit or two.
+    deviations are in mm; a value that was read from a file is written back exactly.
 
     Args:
         protocol: The protocol.
-        body: What to call its body, a name or a file beside the protocol's; by default the body's own name.
+        body: Name of its body, or a body file beside the protocol's; by default the body's own name.
     """
     lines = [
         *_HEADING,
@@ -45,14 +45,14 @@ def protocol_text(protocol: Protocol, body: str = "") -> str:
 
 
 def write_protocol(protocol: Protocol, path: str | Path) -> None:
-    """Writes a protocol, whole or not at all; a body of a user's own is written beside it, as ``STEM_body.toml``.
+    """Writes a protocol, whole or not at all; a user's own body is written beside it, as ``STEM_body.toml``.
 
     Args:
         protocol: The protocol.
         path: The file, which must end in ``.toml`` to be read again.
 
     Raises:
-        InvalidInput: The file does not end in ``.toml``, or the body's file is there and holds another body.
+        InvalidInput: The file does not end in ``.toml``, or the body's file exists and holds another body.
         OSError: It cannot be written.
     """
     target = checked_name(path)
@@ -61,7 +61,7 @@ def write_protocol(protocol: Protocol, path: str | Path) -> None:
     if text and not (beside.is_file() and beside.read_text(encoding="utf-8") == text):
         if beside.exists():
             raise InvalidInput(
-                f"{beside} holds another body; remove it, or name another file for the marker set"
+                f"{beside} exists and holds another body; remove it, or choose another name for the marker set"
             )
         with replacing(beside) as partial:
             partial.write_text(text, encoding="utf-8")
@@ -70,16 +70,16 @@ def write_protocol(protocol: Protocol, path: str | Path) -> None:
 
 
 def checked_name(path: str | Path) -> Path:
-    """The file, if a marker set can be written to it; commands call it before long work.
+    """The file, if a marker set can be written to it; commands check this before long work.
 
     Raises:
         InvalidInput: It does not end in ``.toml``, or is a folder.
     """
     target = Path(path)
     if target.suffix != ".toml":
-        raise InvalidInput(f"{target}: a marker set is a TOML file; let its name end in .toml")
+        raise InvalidInput(f"{target}: a marker set is a TOML file; give a name that ends in .toml")
     if target.is_dir():
-        raise InvalidInput(f"{target} is a folder; name a file that ends in .toml")
+        raise InvalidInput(f"{target} is a folder; give a file name that ends in .toml")
     return target
 
 

@@ -1,4 +1,4 @@
-"""How the joints of a scaled body move with its scale factors, along the chain from the root."""
+"""Derivatives of a scaled body's joint origins by its scale factors, along the chain from the root."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from mbkf.model.body import Body
 
 
 class OriginLevers:
-    """What of these derivatives does not change: a joint's origin is the sum of levers of all joints before it.
+    """The constant part of these derivatives: a joint's origin is the sum of levers of all joints before it.
 
     Attributes:
         parents: (S,) joint in whose segment each of S joints lies.
@@ -18,7 +18,6 @@ class OriginLevers:
     """
 
     def __init__(self, model: Body) -> None:
-        """Args: the scaled body."""
         body = model.description
         segments = [segment for segment in body.segments if segment.parent != "world"]
         own = [model.joint(segment.name).joint_id for segment in segments]
@@ -41,7 +40,7 @@ class OriginLevers:
         Args:
             rotations: (…, J, 3, 3) world rotations of all joints, of one configuration or many.
             levers: (S, 3, r) :attr:`levers`, or these times directions (K, r) of the scale factors.
-            joints: Which joints.
+            joints: The joints whose derivatives are wanted.
         """
         turned = rotations[..., self.parents, :, :] @ levers
         found: Array = self._before[joints] @ turned.reshape(*turned.shape[:-2], -1)

@@ -12,7 +12,7 @@ from mbkf.model.body import Body
 def segment_poses(model: Body, q: Array) -> Array:
     """(T, S, 7) world position m and quaternion (x, y, z, w) of every segment; NaN where q (T, nq) is NaN.
 
-    Successive quaternions of a segment lie in one hemisphere, so that they can be interpolated and pack well.
+    Successive quaternions of a segment lie in one hemisphere, so that they can be interpolated and compressed.
     """
     ids = [joint.joint_id for joint in model.joints.values()]
     poses = np.full((len(q), len(ids), 7), np.nan)

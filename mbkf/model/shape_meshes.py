@@ -1,4 +1,4 @@
-"""Shapes of segments as closed triangle meshes, as fine as the viewer draws them (mbkf/viz/assets/scene.js)."""
+"""Shapes of segments as closed triangle meshes, in the resolution of the viewer (mbkf/viz/assets/scene.js)."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.model.body_shapes import Shape
+from mbkf.numerics.orthonormal import axes_from
 
 LIMB_CORNERS, ELLIPSOID_CORNERS, TUBE_CORNERS = 28, 36, 40
 """Corners of a ring."""
@@ -17,7 +18,7 @@ LIMB_CORNERS, ELLIPSOID_CORNERS, TUBE_CORNERS = 28, 36, 40
 CAP_RINGS, SIDE_RINGS, ELLIPSOID_RINGS, TUBE_PARTS, BEVEL_RINGS = 8, 7, 23, 4, 4
 
 SWELL = 0.10
-"""How much a limb swells between its ends, as a share of the radius at its beginning."""
+"""Swelling of a limb between its ends, as a share of the radius at its beginning."""
 
 BEVEL_M, BEVEL_OUT_M = 0.010, 0.005
 """Breadth of the bevel of a foot's edge, and how far the side view grows along it."""
@@ -107,13 +108,9 @@ def _circle(corners: int) -> Array:
 
 def _axes_along(direction: Array) -> Array:
     """(3, 3) axes whose z has this direction; the world's where it has none."""
-    length = np.linalg.norm(direction)
-    if length == 0.0:
+    if not direction.any():
         return np.eye(3)
-    z = direction / length
-    x = np.cross(np.eye(3)[int(np.argmin(np.abs(z)))], z)
-    x /= np.linalg.norm(x)
-    return np.column_stack([x, np.cross(z, x), z])
+    return axes_from("z", direction, "y", np.eye(3)[int(np.argmin(np.abs(direction)))])
 
 
 def _rounded(sections: Array) -> Array:
@@ -146,7 +143,7 @@ def _closed(rings: Array, first: Array, last: Array) -> tuple[Array, NDArray[np.
 
 
 def _smooth(vertices: Array, triangles: NDArray[np.int64]) -> Mesh:
-    """With normals that are means over a vertex's triangles, by their areas."""
+    """A mesh whose normals are means over a vertex's triangles, weighted by their areas."""
     normals = np.zeros_like(vertices)
     for corner in range(3):
         np.add.at(normals, triangles[:, corner], _crossed(vertices, triangles))
@@ -154,7 +151,7 @@ def _smooth(vertices: Array, triangles: NDArray[np.int64]) -> Mesh:
 
 
 def _flat(vertices: Array, triangles: NDArray[np.int64]) -> Mesh:
-    """With triangles that share no vertices, so that edges show."""
+    """A mesh whose triangles share no vertices, so that edges show."""
     normals = np.repeat(_unit(_crossed(vertices, triangles)), 3, axis=0)
     return Mesh(vertices[triangles.ravel()], normals, np.arange(triangles.size).reshape(-1, 3))
 

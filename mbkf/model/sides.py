@@ -1,4 +1,4 @@
-"""Names of right and left: the segments and landmarks of one side and their mirror images."""
+"""Names of right and left segments and landmarks."""
 
 
 def mirrored(name: str) -> str:

@@ -1,4 +1,4 @@
-"""Where the joints of a scaled body lie: the lengths other programs need to build the same skeleton."""
+"""Places of a scaled body's joints: the lengths with which other programs build the same skeleton."""
 
 from __future__ import annotations
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import pinocchio as pin
 
 from mbkf.conventions import Array
-from mbkf.model.human_dynamics import HumanDynamics, cross_matrix
+from mbkf.model.human_dynamics import HumanDynamics
 
 
 @dataclass(frozen=True)
@@ -51,15 +52,13 @@ class FootWrenchSensor:
         through, turned = np.zeros((12, 12)), np.zeros((12, len(jacobian[0])))
         for side, joint in enumerate(self.ids):
             force, moment = slice(6 * side, 6 * side + 3), slice(6 * side + 3, 6 * side + 6)
-            A, arm = rotations[joint], cross_matrix(origins[joint] - points_m[side])
+            A, arm = rotations[joint], pin.skew(origins[joint] - points_m[side])
             f, n = A @ local[force], A @ local[moment]
             wrench[force], wrench[moment] = f, n + arm @ f
             through[force, force], through[moment, moment] = A, A
             through[moment, force] = arm @ A
             moves = np.where(self.dynamics.model.supports[joint], jacobian, 0.0)
-            linear, angular = moves[:3] - cross_matrix(origins[joint]) @ moves[3:], moves[3:]
-            turned[force] = -cross_matrix(f) @ angular
-            turned[moment] = (
-                -cross_matrix(n) @ angular - arm @ cross_matrix(f) @ angular - cross_matrix(f) @ linear
-            )
+            linear, angular = moves[:3] - pin.skew(origins[joint]) @ moves[3:], moves[3:]
+            turned[force] = -pin.skew(f) @ angular
+            turned[moment] = -pin.skew(n) @ angular - arm @ pin.skew(f) @ angular - pin.skew(f) @ linear
         return WrenchReading(wrench, turned + through @ by_q, through @ by_state)

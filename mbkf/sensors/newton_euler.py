@@ -72,7 +72,7 @@ class NewtonEulerLaw(Block[LoadedState, Rows, Notes, None]):
         rows = np.zeros((6, max(part.stop for part in (support, unseen) if part is not None)))
         np.multiply(root.by_state, sharp, out=rows[:, : 3 * nv + 12])
         if support is not None:
-            np.multiply(root.by_wrench, sharp, out=rows[:, support])
+            np.multiply(root.by_state[:, -6:], sharp, out=rows[:, support])
         if unseen is not None:
             residual = residual.copy()
             residual[3:] += state.extra[self._unseen_extra]

@@ -7,7 +7,7 @@ import pinocchio as pin
 import pytest
 
 from mbkf.errors import UnknownName
-from mbkf.model.human_dynamics import FORCE_STATES, WRENCH_FRAMES, HumanDynamics, cross_matrix
+from mbkf.model.human_dynamics import FORCE_STATES, WRENCH_FRAMES, HumanDynamics
 from tests.motions import assert_near, central_difference, moderate_pose, random_model, worst
 
 each_state = pytest.mark.parametrize(("force_state", "frame"), list(product(FORCE_STATES, WRENCH_FRAMES)))
@@ -135,11 +135,6 @@ def test_tangent_space_turns_with_the_motion():
     assert_near((forth - back) / (2.0 * h), m.body.transport(m.v), 1e-8)
     assert_near(m.body.retraction(m.q, np.zeros(m.body.nv))[1], np.eye(m.body.nv), 1e-12)
     assert_near(m.body.difference(m.q, m.body.integrate(m.q, 0.1 * m.v)), 0.1 * m.v, 1e-12)
-
-
-def test_cross_matrix_is_the_vector_product():
-    a, b = np.random.default_rng(0).normal(size=(2, 3))
-    assert_near(cross_matrix(a) @ b, np.cross(a, b), 1e-15)
 
 
 def test_unknown_names_are_refused():

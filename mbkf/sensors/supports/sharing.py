@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.model.human_dynamics import cross_matrix
+from mbkf.numerics.rotations import skew
 
 SPREAD_SHARE = 0.5
 """Spread of a part's force beforehand, as a share of the whole."""
@@ -79,5 +79,5 @@ def _shared(whole: Array, points_m: Array, levers_m: Array, used: BoolArray) -> 
 def about(point_m: Array) -> Array:
     """(6, 6) that takes a wrench about the world's origin to one about a point (3,)."""
     X = np.eye(6)
-    X[3:, :3] = -cross_matrix(point_m)
+    X[3:, :3] = -skew(point_m)
     return X
