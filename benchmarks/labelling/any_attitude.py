@@ -36,8 +36,8 @@ from mbkf.io.records import MarkerTrajectories
 from mbkf.io.subject import Subject
 from mbkf.labelling.assignment import HIDDEN, Indices
 from mbkf.model.protocol import load_protocol
-from mbkf.trial.label import labelled_capture
 from mbkf.trial.label_unscaled import label_unscaled
+from mbkf.trial.labelling.result import labelled_capture
 from mbkf.trial.labelling.score import LabelScore, score
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import reconstruct

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from mbkf.conventions import StageCallback
     from mbkf.io.records import Capture
     from mbkf.io.subject import Subject
-    from mbkf.trial.label import Labelling, LabelSummary
+    from mbkf.trial.labelling.result import Labelling, LabelSummary
 
 _EPILOG = """\
 examples:

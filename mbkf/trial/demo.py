@@ -16,8 +16,9 @@ from mbkf.io.subject import write_subject
 from mbkf.io.truth import Truth
 from mbkf.model.clinical import ClinicalAngles
 from mbkf.model.human import HumanModel
-from mbkf.trial.label import LabelSummary, label
+from mbkf.trial.label import label
 from mbkf.trial.labelling.files import write_labels
+from mbkf.trial.labelling.result import LabelSummary
 from mbkf.trial.labelling.score import score
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import reconstruct

@@ -20,7 +20,8 @@ from mbkf.labelling.naming import trajectories
 from mbkf.labelling.tracks import Tracks, follow
 from mbkf.model.protocol import Protocol, ProtocolMarker
 from mbkf.numerics.threads import single_threaded
-from mbkf.trial.label import Labelling, label
+from mbkf.trial.label import label
+from mbkf.trial.labelling.result import Labelling
 from mbkf.trial.protocol.inferred import InferredSet, infer_marker_set
 from mbkf.trial.scale import scale
 

@@ -32,9 +32,11 @@ from mbkf.scaling.renaming import in_line, likeliest
 from mbkf.sensors.marker_sensor import MarkerSensor
 from mbkf.sensors.pose_fit import fit_pose, segment_by_segment
 from mbkf.sensors.posture_sensor import PostureSensor
-from mbkf.trial.label import Labelling, Start, label
+from mbkf.trial.label import label
 from mbkf.trial.labelling.any_attitude import STAGE, name_tracks_of_frame
 from mbkf.trial.labelling.doubts import Doubts, doubts
+from mbkf.trial.labelling.result import Labelling
+from mbkf.trial.labelling.starts import Start
 
 ANCHORS = (0.35, 0.65, 0.05, 0.95)
 """Where in the capture a body is matched with the tracks, until two outcomes agree; the likeliest is kept."""

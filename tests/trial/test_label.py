@@ -5,7 +5,8 @@ import pytest
 
 from mbkf.errors import NotObservable
 from mbkf.labelling.assignment import HIDDEN
-from mbkf.trial.label import label, label_summary, labelled_capture
+from mbkf.trial.label import label
+from mbkf.trial.labelling.result import label_summary, labelled_capture
 from mbkf.trial.labelling.score import score
 from mbkf.trial.preparation.settings import ReconstructSettings
 from mbkf.trial.reconstruct import reconstruct

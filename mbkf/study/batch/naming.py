@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from mbkf.io.records import Capture
 from mbkf.io.subject import Subject
 from mbkf.trial.axes.captures import turned_like_subject
-from mbkf.trial.label import LabelSummary, label, label_summary, labelled_capture
+from mbkf.trial.label import label
 from mbkf.trial.label_nameless import label_nameless
 from mbkf.trial.label_unscaled import label_unscaled
+from mbkf.trial.labelling.result import LabelSummary, label_summary, labelled_capture
 
 NAMED_SHARE = 0.5
 """A capture that names a smaller share of the person's markers, and has points without names, is labelled."""

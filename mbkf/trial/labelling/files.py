@@ -8,7 +8,7 @@ from pathlib import Path
 from mbkf.io.atomic import replacing
 from mbkf.io.capture import write_capture
 from mbkf.io.records import Capture
-from mbkf.trial.label import Labelling, LabelSummary, label_summary, labelled_capture
+from mbkf.trial.labelling.result import Labelling, LabelSummary, label_summary, labelled_capture
 from mbkf.trial.labelling.score import LabelScore
 
 

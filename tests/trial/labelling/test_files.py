@@ -7,8 +7,8 @@ import pytest
 
 from mbkf.io.capture import read_capture
 from mbkf.labelling.assignment import HIDDEN
-from mbkf.trial.label import Labelling
 from mbkf.trial.labelling.files import write_labels
+from mbkf.trial.labelling.result import Labelling
 from tests.walker import walker
 
 

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mbkf.trial.label import label, label_summary
+from mbkf.trial.label import label
 from mbkf.trial.labelling.doubts import DOUBTFUL_ODDS
+from mbkf.trial.labelling.result import label_summary
 from mbkf.trial.labelling.score import score
 from tests.walker import unlabelled, walker
 
