@@ -165,7 +165,7 @@ class OwnPlant:
         q = self.model.integrate(planned, noise[0])
         v, a = state.v + plant.c1 * state.a + noise[1], plant.rho * state.a + noise[2]
         root = self.balance.root(q, v, a, np.zeros(12))
-        total = np.linalg.solve(-root.by_wrench, root.residual + self.law_sd * rng.normal(size=6))
+        total = np.linalg.solve(-root.by_state[:, -6:], root.residual + self.law_sd * rng.normal(size=6))
         return DynamicState(q, v, a, np.concatenate([share * total, (1.0 - share) * total]), state.P)
 
     def readings(self, true: DynamicState, rng: np.random.Generator) -> Frame:
