@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbkf.conventions import Array
+from mbkf.numerics.orthonormal import axes_from
 
 LEAST_SIDE_M = 0.02
 """Corners that enclose less than the square of this are those of no plate."""
@@ -22,10 +23,7 @@ def plate_sides(corners: Array) -> tuple[Array, Array]:
 def plate_axes(corners: Array) -> Array:
     """(3, 3) rotation whose columns are the plate's x, y and z in the axes of its corners (4, 3), in any unit."""
     x, y = plate_sides(corners)
-    x = x / np.linalg.norm(x)
-    z = np.cross(x, y)
-    z = z / np.linalg.norm(z)
-    return np.column_stack([x, np.cross(z, x), z])
+    return axes_from("x", x, "y", y)
 
 
 def plate_normal(corners: Array) -> Array:

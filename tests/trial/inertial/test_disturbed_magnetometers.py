@@ -74,7 +74,9 @@ def test_legs_swing_about_the_left_and_others_do_not(walk):
     segments, times = [one.name for one in walk.moving], walk.moving[0].time_s
     swing = leg_swings(walk.model, segments, q, turning_rates(q, times), upright)
     assert [name for name, one in zip(segments, swing, strict=True) if one is None] == ["pelvis", "torso"]
-    told = {name: one for name, one in zip(segments, swing, strict=True) if one is not None and one.points_left}
+    told = {
+        name: one for name, one in zip(segments, swing, strict=True) if one is not None and one.points_left
+    }
     assert set(told) == {"right_shank", "left_shank", "right_foot", "left_foot"}
     forward = walk.motion.q[-1, :2] - walk.motion.q[0, :2]
     left = np.arctan2(forward[0], -forward[1])
