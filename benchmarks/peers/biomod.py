@@ -56,7 +56,7 @@ class Fixed:
 
 
 @dataclass(frozen=True)
-class Body:
+class BiomodBody:
     """A whole body: a joint for every segment, parents before children; inertia by segment; markers in their order."""
 
     joints: tuple[Hinges, ...]
@@ -69,7 +69,7 @@ class Body:
         return tuple(name for joint in self.joints for name in (*joint.free, *joint.coordinates))
 
 
-def biomod(body: Body) -> str:
+def biomod(body: BiomodBody) -> str:
     """The file's text."""
     lines = ["version 4", "", f"gravity 0 {-GRAVITY_M_S2} 0", ""]
     for joint in body.joints:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from benchmarks.peers.biomod import WORLD, Body, Fixed, Hinges, Inertia
+from benchmarks.peers.biomod import WORLD, BiomodBody, Fixed, Hinges, Inertia
 from benchmarks.peers.required import opensim
 from mbkf.conventions import Array
 
@@ -18,12 +18,12 @@ BENT_RAD = 1.2
 SMALL_BENDS_RAD = np.linspace(-0.4, 0.4, 5)
 
 
-def body_of(model: Path) -> Body:
+def body_of(model: Path) -> BiomodBody:
     """A model for biorbd; patellas stay where they are, and so do coordinates that are locked."""
     read = opensim().Model(str(model))
     state = read.initSystem()
     joints = _parents_first([_hinges(read, state, joint) for joint in read.getJointSet()])
-    return Body(joints, {body.getName(): _inertia(body) for body in read.getBodySet()}, _markers(read))
+    return BiomodBody(joints, {body.getName(): _inertia(body) for body in read.getBodySet()}, _markers(read))
 
 
 def _hinges(model: Any, state: Any, joint: Any) -> Hinges:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.peers.biomod import Body, biomod
+from benchmarks.peers.biomod import BiomodBody, biomod
 from benchmarks.peers.required import biorbd, quiet
 from benchmarks.peers.shared import FEET, Loads
 from mbkf.conventions import Array
@@ -79,7 +79,7 @@ class Tracking:
         return Motion(q, v, a, markers(self.model, q))
 
 
-def follow(body: Body, lab_m: Array, rate_hz: float, noise: Noise = DEFAULT) -> Motion:
+def follow(body: BiomodBody, lab_m: Array, rate_hz: float, noise: Noise = DEFAULT) -> Motion:
     """Follows a trial.
 
     Args:
@@ -91,7 +91,7 @@ def follow(body: Body, lab_m: Array, rate_hz: float, noise: Noise = DEFAULT) -> 
     return Tracking(read(body), lab_m, rate_hz, noise).motion()
 
 
-def read(body: Body) -> Any:
+def read(body: BiomodBody) -> Any:
     """A body as biorbd's model."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / "body.bioMod"
@@ -99,7 +99,7 @@ def read(body: Body) -> Any:
         return biorbd().Model(str(path))
 
 
-def with_markers(body: Body, names: Sequence[str]) -> Body:
+def with_markers(body: BiomodBody, names: Sequence[str]) -> BiomodBody:
     """The body with these markers only, in this order."""
     known = {marker.name: marker for marker in body.markers}
     return replace(body, markers=tuple(known[name] for name in names))
@@ -123,7 +123,7 @@ def markers(model: Any, q: Array) -> Array:
     return np.array([[m.to_array() for m in model.markers(lib.GeneralizedCoordinates(row))] for row in q])
 
 
-def correct_markers(body: Body, lab_m: Array, rate_hz: float, rounds: int) -> Body:
+def correct_markers(body: BiomodBody, lab_m: Array, rate_hz: float, rounds: int) -> BiomodBody:
     """The body with its markers where a trial shows them on their segments, as mbkf does with its own.
 
     Args:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from benchmarks.dynamic.methods import Method, corrected
 from benchmarks.peers import biorbd_tool, opensim_ik, opensim_model
-from benchmarks.peers.biomod import Body
+from benchmarks.peers.biomod import BiomodBody
 from benchmarks.peers.biomod_from_osim import body_of
 from benchmarks.peers.biorbd_tool import DEFAULT, Motion, Noise
 from benchmarks.peers.required import opensim
@@ -39,7 +39,7 @@ class PeerBody:
     """
 
     model: Path
-    body: Body
+    body: BiomodBody
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from benchmarks.peers.biomod import WORLD, Body, Fixed, Hinges, Inertia, biomod
+from benchmarks.peers.biomod import WORLD, BiomodBody, Fixed, Hinges, Inertia, biomod
 
 RNG = np.random.default_rng(0)
 
@@ -30,7 +30,7 @@ def body():
     markers = tuple(
         Fixed(f"m{k}", name, RNG.normal(size=3)) for k, name in enumerate(("pelvis", "femur", "tibia"))
     )
-    return Body((root, limb, shank), dict.fromkeys(("pelvis", "femur", "tibia"), inertia), markers)
+    return BiomodBody((root, limb, shank), dict.fromkeys(("pelvis", "femur", "tibia"), inertia), markers)
 
 
 def placed(own, values):
