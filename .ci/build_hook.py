@@ -6,9 +6,12 @@ The stable ABI makes one build serve every Python from 3.11 on.
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import shutil
+import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import cast
 
@@ -58,27 +61,51 @@ class KernelHook(BuildHookInterface):
         cast(list[str], build_data["artifacts"]).append(f"/{built.relative_to(self.root).as_posix()}")
 
 
-def compiled(folder: Path) -> Path:
+def compiled(folder: Path, flags: Sequence[str] = ("-O3", "-fno-math-errno", "-fvisibility=hidden")) -> Path:
     """Compiles all sources of a folder into one module of Python's stable ABI, in the same folder.
+
+    Args:
+        folder: ``mbkf/kernel``; its declarations become prototypes and binding first.
+        flags: Options of compilers other than Microsoft's.
 
     Raises:
         Exception: Any that setuptools raises where no compiler is found or a source does not compile.
     """
+    import numpy as np
     from setuptools import Distribution, Extension
     from setuptools.command.build_ext import build_ext
 
-    sources = sorted(str(path) for path in folder.glob("*.c"))
-    kernel = Extension(NAME, sources, py_limited_api=True, libraries=["m"] if os.name == "posix" else [])
     with tempfile.TemporaryDirectory() as scratch:
+        kernel = Extension(
+            NAME,
+            sorted(str(path) for path in folder.glob("*.c")),
+            include_dirs=[scratch, str(folder), np.get_include()],
+            libraries=["m"] if os.name == "posix" else [],
+            py_limited_api=True,
+        )
+        write_binding(folder, Path(scratch))
         command = build_ext(Distribution({"ext_modules": [kernel]}))
         command.build_lib = command.build_temp = scratch
         command.ensure_finalized()
         if command.compiler != "msvc":
-            kernel.extra_compile_args = ["-O3", "-fno-math-errno"]
+            kernel.extra_compile_args = kernel.extra_link_args = list(flags)
         command.run()
         built = Path(command.get_ext_fullpath(NAME))
         fresh = shutil.copy(built, folder / f"{built.name}.new")
         return Path(fresh).replace(folder / built.name)  # in one go: others may be loading it
+
+
+def write_binding(folder: Path, to: Path) -> None:
+    """Writes what ``kernel_binding.py`` makes of the declarations in a folder."""
+    spec = importlib.util.spec_from_file_location(
+        "kernel_binding", Path(__file__).with_name("kernel_binding.py")
+    )
+    assert spec is not None and spec.loader is not None
+    made = sys.modules[spec.name] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(made)
+    found = made.declarations(folder)
+    (to / "declared.h").write_text(made.header(found), encoding="utf-8")
+    (to / "binding.h").write_text(made.binding(found), encoding="utf-8")
 
 
 def _platform() -> str:

@@ -30,6 +30,9 @@ Array = NDArray[np.float64]
 
 BoolArray = NDArray[np.bool_]
 
+Int32Array = NDArray[np.int32]
+"""Indices as compiled code takes them."""
+
 TomlTable: TypeAlias = dict[str, Any]
 """A table of a TOML file as tomllib reads it; readers check each value that they take."""
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from mbkf.conventions import data_folder
-from mbkf.kernel.loading import told
+from mbkf.kernel.loading import kernel_name
 from mbkf.version import __version__
 
 pytestmark = pytest.mark.slow
@@ -88,5 +88,5 @@ def test_public_names_of_the_installed_package_can_be_imported(site, tmp_path):
 
 
 def test_installed_command_gives_its_version_and_help(site, tmp_path):
-    assert run_installed(site, tmp_path, "-m", "mbkf", "--version") == f"mbkf {__version__}, {told()}"
+    assert run_installed(site, tmp_path, "-m", "mbkf", "--version") == f"mbkf {__version__}, {kernel_name()}"
     assert "reconstruct" in run_installed(site, tmp_path, "-m", "mbkf", "--help")

@@ -41,7 +41,7 @@ def measured(folder: Path, data: Path | None, change: Change | None = None) -> I
     if data is not None:
         yield from hidden_metrics(data, changed)
     kernel = library()
-    if kernel is not None and kernel.vectors():
+    if kernel is not None and kernel.vector_bits():
         yield Metric(TIME, _step_seconds(COMPILED) / _step_seconds(REFERENCE), "", is_time=True)
 
 
@@ -60,5 +60,5 @@ def left_out(name: str, data: Path | None) -> bool:
     """
     kernel = library()
     if name == TIME:
-        return kernel is None or not kernel.vectors()
+        return kernel is None or not kernel.vector_bits()
     return data is None and name.startswith((*REAL, *CAPTURES))

@@ -57,9 +57,9 @@ class _Version(argparse.Action):
     """Prints version and kernel; the kernel is looked for only when asked."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        from mbkf.kernel.loading import told
+        from mbkf.kernel.loading import kernel_name
 
-        print(f"mbkf {__version__}, {told()}")
+        print(f"mbkf {__version__}, {kernel_name()}")
         parser.exit()
 
 

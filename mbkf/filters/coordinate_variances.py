@@ -28,7 +28,8 @@ class CoordinateVariances:
         where = self._layout
         self.dofs = where.dofs
         self._columns = np.concatenate([where.columns.ravel(), where.single_columns])
-        self._places = np.column_stack([where.quaternions, where.order]).astype(np.int32)
+        self._quaternions = np.array(where.quaternions, dtype=np.int32)
+        self._order = np.array(where.order, dtype=np.int32)
         self._signs = np.column_stack([where.parity, where.signs]).astype(float)
         self._axes = np.ascontiguousarray(where.root_axes, dtype=float)
 
@@ -40,16 +41,14 @@ class CoordinateVariances:
             blocks: k times (n + 1, 3, 3), the covariances' blocks of :attr:`dofs`.
             diagonals: k times (nv,), their diagonals.
         """
-        covariance = np.array(blocks)
-        variance = np.empty(covariance.shape[:-1])
-        kernel = library()
+        covariance, where, kernel = np.array(blocks), self._layout, library()
         if kernel is None:
-            where = self._layout
             E = self._clinical.rate_matrix(q)[where.columns[:, :, None], where.dofs[:, None, :]]
-            variance[:] = ((E @ covariance) * E).sum(axis=-1)
+            variance = ((E @ covariance) * E).sum(axis=-1)
         else:
-            root = self._layout.root_quaternion
-            kernel.joint_variances(q, self._places, self._signs, root, self._axes, covariance, variance)
+            variance = kernel.joint_variances(
+                q, self._quaternions, self._order, self._signs, where.root_quaternion, self._axes, covariance
+            )
         found = np.empty((len(covariance), len(self._columns)))
         joined = variance.reshape(len(covariance), -1)
         found[:, self._columns[: joined.shape[1]]] = joined

@@ -57,7 +57,7 @@ class SpreadReader:
     def rise_jacobian(self, q: Array) -> Array:
         """(2, nv) derivative of the height of right and left foot by the configuration q (nq,)."""
         if self._tree is not None:
-            return self._tree.rise_jacobian(q, self._feet)
+            return self._tree.height_jacobian(q, self._feet)
         frames, jacobian = self.model.frames_and_jacobian(q)
         x, y, _ = frames[self._origins].T[:, :, None]
         rise: Array = jacobian[3] * y

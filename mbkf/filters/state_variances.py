@@ -74,33 +74,24 @@ def _compiled(
     kernel = library()
     if kernel is None:
         return None
-    nv, N = len(errors.information), len(errors.P)
-    m, heights = len(by_state), len(by_position)
-    found = np.empty(N + m + heights + 9 * len(dofs))
-    failed = kernel.errors(
+    nv = len(errors.information)
+    failed, diagonal, torque, height, blocks = kernel.error_variances(
         errors.P,
         np.ascontiguousarray(errors.information),
         errors.seen.astype(np.int32),
         errors.size,
-        np.array([errors.skin, errors.rate_rad_s]),
+        errors.skin,
+        errors.rate_rad_s,
         errors.added,
         np.asfortranarray(by_state),
         np.asfortranarray(by_position),
         dofs[:, 0].astype(np.int32),
-        found,
     )
     if failed:
         return None
-    wrench, torque = found[3 * nv : 3 * nv + 12], found[N : N + m]
+    wrench = diagonal[3 * nv : 3 * nv + 12]
     if errors.difference is not None:
         wrench += np.tile(np.diagonal(errors.difference), 2)
         apart = by_state[:, 3 * nv : 3 * nv + 6] - by_state[:, 3 * nv + 6 : 3 * nv + 12]
         torque += np.einsum("ij,ij->i", apart @ errors.difference, apart)
-    return StateVariances(
-        found[:nv],
-        found[nv : 2 * nv],
-        wrench,
-        torque,
-        found[N + m : N + m + heights],
-        found[N + m + heights :].reshape(-1, 3, 3),
-    )
+    return StateVariances(diagonal[:nv], diagonal[nv : 2 * nv], wrench, torque, height, blocks)

@@ -10,6 +10,7 @@ from mbkf.conventions import GRAVITY_M_S2, Array
 from mbkf.imu.orientation_ekf import OrientationFilter, OrientationState, Passage
 from mbkf.imu.orientation_smoothing import SmoothedOrientation, smoothed
 from mbkf.kernel.loading import library
+from mbkf.kernel.state_functions import OrientationNoise
 
 
 def orientation_course(
@@ -35,16 +36,28 @@ def orientation_course(
     """
     kernel = library()
     if kernel is not None:
-        course = np.empty((gyro.shape[1], len(gyro), 16))
-        given = (None if one is None else _numbers(one) for one in (gyro, specific_force, magnetic_field))
-        rates, force, field = given
-        assert rates is not None
-        assert force is not None
-        if kernel.orientation_course(_noise(kalman), _start(start), rates, force, field, course, smooth):
+        rates, force = _numbers(gyro), _numbers(specific_force)
+        field = None if magnetic_field is None else _numbers(magnetic_field)
+        state = OrientationState(*map(_numbers, start))
+        positive, *course = kernel.orientation_course(
+            _noise(kalman),
+            state.quaternion,
+            state.gyro_bias,
+            state.velocity,
+            state.P,
+            state.movement,
+            state.field,
+            state.calm,
+            state.last,
+            rates,
+            force,
+            field,
+            smooth,
+        )
+        if positive:
             for _ in range(len(gyro) - 1 if count_one is not None else 0):
                 count_one()  # type: ignore[misc]
-            whole = course.transpose(1, 0, 2)
-            return SmoothedOrientation(whole[..., :4], whole[..., 4:7], whole[..., 7:])
+            return SmoothedOrientation(*course)
     passages = _counted(kalman.run(gyro, specific_force, magnetic_field, start), count_one)
     if smooth:
         return smoothed(start, passages)
@@ -67,24 +80,32 @@ def _numbers(values: Array) -> Array:
     return np.ascontiguousarray(values, dtype=np.float64)
 
 
-def _start(state: OrientationState) -> Array:
-    """(N, 108) numbers of a state, field by field."""
-    n = len(state.quaternion)
-    return np.ascontiguousarray(np.hstack([np.reshape(part, (n, -1)) for part in state]))
-
-
-def _noise(kalman: OrientationFilter) -> Array:
-    """The numbers of ``OrientationNoise`` in ``mbkf/kernel/orientation.h``, in its order."""
+def _noise(kalman: OrientationFilter) -> OrientationNoise:
+    """The filter's settings as numbers per step."""
     s, dt = kalman.settings, kalman.dt_s
-    return np.array(
-        [
-            dt, GRAVITY_M_S2, s.gyro_noise**2, s.gyro_scale_noise**2, s.bias_walk**2 * dt,
-            s.accelerometer_noise**2 * dt, 1.0 - np.exp(-dt / s.acceleration_memory_s), s.turning_mps**2,
-            s.still_velocity_sd_m_s**2,
-            s.velocity_memory_s**2, s.velocity_sd_m_s**2, s.velocity_memory_s / dt,
-            s.heading_sd_rad**2 * s.heading_memory_s / dt, s.heading_memory_s / dt, s.field_tolerance,
-            s.dip_tolerance_rad**2, s.field_memory_s,
-            1.0 - np.exp(-dt / (0.5 * s.rest_after_s)), s.rest_rate_rad_s, s.rest_force_mps2, s.rest_after_s,
-            s.gyro_noise**2 / dt, float(s.rest_bias), float(s.integrating),
-        ]
-    )  # fmt: skip
+    return OrientationNoise(
+        dt_s=dt,
+        gravity_m_s2=GRAVITY_M_S2,
+        gyro_noise=s.gyro_noise**2,
+        gyro_scale_noise=s.gyro_scale_noise**2,
+        bias_walk=s.bias_walk**2 * dt,
+        accelerometer_noise=s.accelerometer_noise**2 * dt,
+        moved=1.0 - np.exp(-dt / s.acceleration_memory_s),
+        turning=s.turning_mps**2,
+        still_variance=s.still_velocity_sd_m_s**2,
+        memory_squared=s.velocity_memory_s**2,
+        most_variance=s.velocity_sd_m_s**2,
+        velocity_samples=s.velocity_memory_s / dt,
+        heading=s.heading_sd_rad**2 * s.heading_memory_s / dt,
+        heading_samples=s.heading_memory_s / dt,
+        field_tolerance=s.field_tolerance,
+        dip_variance=s.dip_tolerance_rad**2,
+        field_memory_s=s.field_memory_s,
+        calm=1.0 - np.exp(-dt / (0.5 * s.rest_after_s)),
+        rest_rate_rad_s=s.rest_rate_rad_s,
+        rest_force_m_s2=s.rest_force_mps2,
+        rest_after_s=s.rest_after_s,
+        rest_variance=s.gyro_noise**2 / dt,
+        resting=s.rest_bias,
+        integrating=s.integrating,
+    )

@@ -1,18 +1,31 @@
 /* ContactDetector.decide of mbkf/sensors/contact/causal.py and UnmeasuredFeet.decide of unmeasured.py, whose rules and
  * names these are. */
-#include "contact.h"
-
 #include <math.h>
 #include <string.h>
+
+#include "call.h"
+#include "floor_motion.h"
+
+enum { UNMEASURED = -1, AIR = 0, MEASURED = 1, SHARED = 2 };
+enum { BOTH = 2, NONE = -1 };
+
+/* Flags beside the kinds of contact (those of right and left foot, plus one, in two bits each). */
+enum { STRAY = 16, ON_ONE_PLATE = 32, ON_OPEN_FLOOR = 64, MOVING_OR_NEAR = 128, BELOW = 256 };
+
+/* State and readings of a frame; wrench (plates x 6) is NaN where not recorded. */
+typedef struct {
+    const double *q, *v, *a, *wrench;
+    int supported;
+} Seen;
 
 /* The frame as far as it is decided. */
 typedef struct {
     const Feet *feet;
-    const double *before; /* record of the frame before */
+    const double *before; /* memory from the frame before */
     Motion motion;
     int kind[FEET];
-    int unloaded, silent;                  /* how many plates */
-    double floor_m, floor_m_s[2];          /* height, NaN where not known, and horizontal velocity */
+    int unloaded, silent;         /* how many plates */
+    double floor_m, floor_m_s[2]; /* height, NaN where not known, and horizontal velocity */
     int may_bear[FEET], carries[FEET];
 } Scene;
 
@@ -21,11 +34,11 @@ static const double *plate_before(const Scene *scene, int k) { return scene->bef
 /* ContactDetector._both_on */
 static int both_on(Scene *scene, const Plate *plate, double slack)
 {
-    const Limits *limits = &scene->feet->limits;
+    const ContactLimits *limits = &scene->feet->limits;
     double *point[FEET], velocity[FEET][3];
     for (int f = 0; f < FEET; f++)
         point[f] = scene->motion.sole[f][lowest_of(scene->motion.sole[f], SOLE)];
-    if (!(fabs(point[RIGHT][2] - point[LEFT][2]) < limits->level))
+    if (!(fabs(point[RIGHT][2] - point[LEFT][2]) < limits->level_m))
         return 0;
     for (int f = 0; f < FEET; f++) {
         if (!over_plate(plate, point[f][0], point[f][1]))
@@ -34,30 +47,30 @@ static int both_on(Scene *scene, const Plate *plate, double slack)
     }
     for (int i = 0; i < 3; i++)
         velocity[0][i] -= velocity[1][i];
-    return hypot(hypot(velocity[0][0], velocity[0][1]), velocity[0][2]) < slack * limits->parted;
+    return hypot(hypot(velocity[0][0], velocity[0][1]), velocity[0][2]) < slack * limits->parted_m_s;
 }
 
 /* ContactDetector._owner and soles.nearer_foot */
 static int owner_of(Scene *scene, const Plate *plate, const double *pressed, int before)
 {
-    const Limits *limits = &scene->feet->limits;
+    const ContactLimits *limits = &scene->feet->limits;
     double away[FEET];
     if (both_on(scene, plate, before == BOTH ? limits->leave_slack : 1.0))
         return BOTH;
     for (int f = 0; f < FEET; f++)
         away[f] = distance_to_sole(pressed[0], pressed[1], scene->motion.sole[f]);
     int nearest = away[RIGHT] <= away[LEFT] ? RIGHT : LEFT;
-    if ((before == RIGHT || before == LEFT) && away[before] <= away[nearest] + limits->keep)
+    if ((before == RIGHT || before == LEFT) && away[before] <= away[nearest] + limits->keep_m)
         nearest = before;
-    return away[nearest] <= limits->reach ? nearest : NONE;
+    return away[nearest] <= limits->reach_m ? nearest : NONE;
 }
 
-/* Plates to feet, and what those read; flags of the decision. */
-static int plates_assigned(Scene *scene, const Seen *seen, double *after, const Told *told)
+/* Assigns plates to feet and sums their readings, those below a load apart; returns flags of the decision. */
+static int plates_assigned(Scene *scene, const Seen *seen, double *after, double *foot_wrench, double *below)
 {
     int flags = 0;
-    memset(told->wrench, 0, 12 * sizeof *told->wrench);
-    memset(told->below, 0, 6 * sizeof *told->below);
+    memset(foot_wrench, 0, 12 * sizeof *foot_wrench);
+    memset(below, 0, 6 * sizeof *below);
     memcpy(after + HEAD, scene->before + HEAD, sizeof *after * PER_PLATE * scene->feet->plates);
     for (int k = 0; k < scene->feet->plates; k++) {
         const Plate *plate = &scene->feet->plate[k];
@@ -69,7 +82,7 @@ static int plates_assigned(Scene *scene, const Seen *seen, double *after, const 
             if (w[2] > 0.0) {
                 flags |= BELOW;
                 for (int i = 0; i < 6; i++)
-                    told->below[i] += w[i];
+                    below[i] += w[i];
             }
             continue;
         }
@@ -82,7 +95,7 @@ static int plates_assigned(Scene *scene, const Seen *seen, double *after, const 
             if (owner == f || owner == BOTH) {
                 scene->kind[f] = owner == BOTH ? SHARED : MEASURED;
                 for (int i = 0; i < 6; i++)
-                    told->wrench[6 * f + i] += w[i];
+                    foot_wrench[6 * f + i] += w[i];
             }
     }
     return flags;
@@ -118,7 +131,7 @@ static void floor_found(Scene *scene, double *after)
     for (int f = 0; f < FEET; f++)
         point[f] = soles[f][lowest_of(soles[f], SOLE_ENDS)];
     const int foot = point[LEFT][2] < point[RIGHT][2] ? LEFT : RIGHT;
-    if (point[foot][2] < scene->floor_m + scene->feet->limits.stand_height)
+    if (point[foot][2] < scene->floor_m + scene->feet->limits.stand_height_m)
         velocity_of(&scene->motion, foot, point[foot], low);
     movement_followed(scene->feet, scene->before, low, scene->motion.pelvis, after);
     movement_floor(scene->feet, after, scene->floor_m_s);
@@ -143,7 +156,7 @@ static int watched(Scene *scene, const Seen *seen, int foot)
         if (plate->known ? over_plate(plate, x, y)
                          : kept[PRESSED_BY] == foot &&
                                (belt || distance_to_sole(kept[PRESSED], kept[PRESSED + 1], sole) <=
-                                            scene->feet->limits.reach))
+                                            scene->feet->limits.reach_m))
             return 1;
     }
     return 0;
@@ -163,28 +176,28 @@ static int touches(Scene *scene, int foot, double floor_m, double height, double
 /* UnmeasuredFeet._carried_on and _touching */
 static double touched_for(Scene *scene, const Seen *seen, int foot)
 {
-    const Limits *limits = &scene->feet->limits;
+    const ContactLimits *limits = &scene->feet->limits;
     double since = scene->before[TOUCHING + foot];
     if (!scene->may_bear[foot] || !scene->motion.down[foot])
         return 0.0;
     for (int k = 0; k < scene->feet->plates; k++) {
         const int owner = (int)plate_before(scene, k)[FOOT_OF_PLATE];
         if (isnan(seen->wrench[6 * k + 2]) && (owner == foot || owner == BOTH))
-            since = limits->stand_after + scene->feet->dt_s;
+            since = limits->stand_after_s + scene->feet->dt_s;
     }
-    const double slack = since > limits->stand_after ? limits->leave_slack : 1.0;
-    const int down = touches(scene, foot, scene->floor_m, slack * limits->stand_height, slack * limits->stand_speed);
+    const double slack = since > limits->stand_after_s ? limits->leave_slack : 1.0;
+    const int down = touches(scene, foot, scene->floor_m, slack * limits->stand_height_m, slack * limits->stand_speed_m_s);
     return down ? since + scene->feet->dt_s : 0.0;
 }
 
 /* UnmeasuredFeet._alone */
 static int carries_alone(Scene *scene, const Seen *seen, int foot)
 {
-    const Limits *limits = &scene->feet->limits;
+    const ContactLimits *limits = &scene->feet->limits;
     const double floor_m = isnan(scene->floor_m)         ? scene->feet->floor_m
                            : isnan(scene->feet->floor_m) ? scene->floor_m
                                                          : lesser(scene->floor_m, scene->feet->floor_m);
-    if (!scene->may_bear[foot] || !touches(scene, foot, floor_m, limits->alone_height, limits->alone_speed))
+    if (!scene->may_bear[foot] || !touches(scene, foot, floor_m, limits->alone_height_m, limits->alone_speed_m_s))
         return 0;
     for (int k = 0; k < scene->feet->plates; k++)
         if (reads_nothing(scene, seen, k) && !scene->feet->plate[k].known &&
@@ -202,7 +215,7 @@ static int falls(const Scene *scene, const Seen *seen)
     cross(seen->v + 3, seen->v, rise);
     for (int i = 0; i < 3; i++)
         rise[i] += seen->a[i];
-    return dot3(up, rise) < scene->feet->limits.fall;
+    return dot3(up, rise) < scene->feet->limits.fall_m_s2;
 }
 
 /* _near */
@@ -220,7 +233,7 @@ static double near_of(Scene *scene, int foot, double height, double speed)
     return exp(-0.5 * least);
 }
 
-/* Where both feet are in the air and nothing else carries the body, what does: UnmeasuredFeet.decide */
+/* Feet that carry the body where both seemed to be in the air and nothing else carries it: UnmeasuredFeet.decide */
 static void something_carries(Scene *scene, const Seen *seen, const double *after)
 {
     int *carries = scene->carries;
@@ -233,18 +246,18 @@ static void something_carries(Scene *scene, const Seen *seen, const double *afte
         return;
     const double height[FEET] = {height_of(scene, RIGHT), height_of(scene, LEFT)};
     for (int f = 0; f < FEET; f++)
-        carries[f] = height[f] <= lesser(height[RIGHT], height[LEFT]) + scene->feet->limits.touch_height;
+        carries[f] = height[f] <= lesser(height[RIGHT], height[LEFT]) + scene->feet->limits.lower_m;
 }
 
 /* UnmeasuredFeet.decide, of feet that no plate reads */
 static void elsewhere_decided(Scene *scene, const Seen *seen, double *after, double *near)
 {
-    const Limits *limits = &scene->feet->limits;
+    const ContactLimits *limits = &scene->feet->limits;
     int *carries = scene->carries;
     for (int f = 0; f < FEET; f++) {
         scene->may_bear[f] = scene->kind[f] == AIR && !watched(scene, seen, f);
         after[TOUCHING + f] = touched_for(scene, seen, f);
-        carries[f] = scene->may_bear[f] && after[TOUCHING + f] > limits->stand_after;
+        carries[f] = scene->may_bear[f] && after[TOUCHING + f] > limits->stand_after_s;
     }
     const int in_air = scene->kind[RIGHT] == AIR && scene->kind[LEFT] == AIR && !seen->supported;
     if (in_air && !carries[RIGHT] && !carries[LEFT])
@@ -253,21 +266,37 @@ static void elsewhere_decided(Scene *scene, const Seen *seen, double *after, dou
     after[AIRBORNE] = flies ? after[AIRBORNE] + 1.0 : 0.0;
     for (int f = 0; f < FEET; f++)
         if (scene->may_bear[f] && !carries[f])
-            near[f] = near_of(scene, f, alone ? limits->alone_height : limits->stand_height,
-                              alone ? limits->alone_speed : limits->stand_speed);
+            near[f] = near_of(scene, f, alone ? limits->alone_height_m : limits->stand_height_m,
+                              alone ? limits->alone_speed_m_s : limits->stand_speed_m_s);
 }
 
-int contact_decided(const Feet *feet, const Seen *seen, const double *before, double *after, const Told *told)
+/* True if a memory's counts stay within it. */
+static int is_memory(const Feet *feet, const double *memory)
 {
+    for (int i = FRAMES; i < HEAD; i++)
+        if (!(memory[i] >= 0.0 && memory[i] <= (i == FRAMES ? feet->window : memory[FRAMES])))
+            return 0;
+    return 1;
+}
+
+int mbkf_decide_contact(Feet *feet, const double *q, const double *v, const double *a, const double *wrench,
+                        int supported, const double *before, double *after, double *foot_wrench, double *middles,
+                        double *below, double *soles, double *pelvis, double *near, double *floor_velocity)
+{
+    const Seen seen = {q, v, a, wrench, supported};
     Scene scene = {.feet = feet, .before = before};
-    double near[FEET] = {0.0, 0.0};
-    memset(after, 0, sizeof *after * record_length(feet));
-    feet_at(feet, seen->q, seen->v, &scene.motion);
-    int flags = plates_assigned(&scene, seen, after, told);
+    if (!is_memory(feet, before)) {
+        refuse("the memory belongs to other feet: its counts exceed it");
+        return 0;
+    }
+    near[RIGHT] = near[LEFT] = 0.0;
+    memset(after, 0, sizeof *after * feet->memory);
+    feet_at(feet, q, v, &scene.motion);
+    int flags = plates_assigned(&scene, &seen, after, foot_wrench, below);
     floor_found(&scene, after);
     after[TOUCHING] = after[TOUCHING + 1] = 0.0;
     if (scene.kind[RIGHT] == AIR || scene.kind[LEFT] == AIR)
-        elsewhere_decided(&scene, seen, after, near);
+        elsewhere_decided(&scene, &seen, after, near);
     else
         after[AIRBORNE] = 0.0;
     for (int f = 0; f < FEET; f++) {
@@ -275,13 +304,13 @@ int contact_decided(const Feet *feet, const Seen *seen, const double *before, do
         const double lowest = after[TOUCHING + f] > 0.0 ? before[LOWEST_BALL + f] : INFINITY;
         after[LOWEST_BALL + f] = lesser(sole[1][2], lowest);
         for (int i = 0; i < 3; i++)
-            told->middles[3 * f + i] = 0.5 * (sole[0][i] + sole[2][i]);
+            middles[3 * f + i] = 0.5 * (sole[0][i] + sole[2][i]);
         flags |= ((scene.carries[f] ? UNMEASURED : scene.kind[f]) + 1) << 2 * f;
     }
-    memcpy(told->rest, scene.motion.sole, sizeof scene.motion.sole);
-    memcpy(told->rest + 18, scene.motion.pelvis, sizeof scene.motion.pelvis);
-    memcpy(told->rest + 21, near, sizeof near);
-    memcpy(told->rest + 23, scene.floor_m_s, sizeof scene.floor_m_s);
-    const int told_of = near[0] != 0.0 || near[1] != 0.0 || scene.floor_m_s[0] != 0.0 || scene.floor_m_s[1] != 0.0;
-    return flags | (scene.carries[RIGHT] && scene.carries[LEFT] ? ON_OPEN_FLOOR : 0) | (told_of ? MOVING_OR_NEAR : 0);
+    memcpy(soles, scene.motion.sole, sizeof scene.motion.sole);
+    memcpy(pelvis, scene.motion.pelvis, sizeof scene.motion.pelvis);
+    memcpy(floor_velocity, scene.floor_m_s, sizeof scene.floor_m_s);
+    if (near[RIGHT] != 0.0 || near[LEFT] != 0.0 || scene.floor_m_s[0] != 0.0 || scene.floor_m_s[1] != 0.0)
+        flags |= MOVING_OR_NEAR;
+    return flags | (scene.carries[RIGHT] && scene.carries[LEFT] ? ON_OPEN_FLOOR : 0);
 }

@@ -1,128 +1,198 @@
-"""Functions of the kernel on feet and plates (``contact.c``, ``wrenches.c``): what they take and give."""
+"""Functions of the compiled kernel on feet, plates and their wrenches (grammar: ``declaration.py``)."""
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Annotated as In
+from typing import Annotated as Made
+from typing import Annotated as Out
+from typing import NamedTuple, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
+from mbkf.conventions import Array, BoolArray, Int32Array
+from mbkf.kernel.body_functions import Tree
+from mbkf.kernel.declaration import Handle, requires
 
-from mbkf.conventions import Array
+
+class Feet(Handle):
+    """Both feet of a body and the plates below them (``feet.h``); a memory holds so many numbers."""
+
+    nq: int
+    nv: int
+    plates: int
+    memory: int
+
+
+class ContactLimits(NamedTuple):
+    """Limits of contact in m, m/s, m/s², s and shares: :mod:`mbkf.sensors.contact.rules` explains each."""
+
+    reach_m: float
+    keep_m: float
+    belt_from_m_s: float
+    lower_m: float
+    stand_height_m: float
+    stand_speed_m_s: float
+    stand_after_s: float
+    alone_height_m: float
+    alone_speed_m_s: float
+    leave_slack: float
+    floor_share: float
+    level_m: float
+    parted_m_s: float
+    faces_down: float
+    fall_m_s2: float
+
+
+class PossibleLoads(NamedTuple):
+    """Bounds of a person's load on a plate (:mod:`mbkf.sensors.contact.possible`); all but the first are shares."""
+
+    weight_n: float
+    most: float
+    pull: float
+    friction: float
+    slack: float
 
 
 class ContactFunctions(Protocol):
-    """Contact of the feet, and their wrenches. Arrays are in C order unless they are symmetric."""
+    """Contact of the feet, and readings of plates. A wrench is force N, moment N m about the world's origin."""
 
-    def feet(self, tree: object, whole: NDArray[np.int32], numbers: Array, plates: Array, /) -> object:
-        """A handle of feet and plates: see :class:`mbkf.kernel.contact.CompiledFeet`.
+    @requires("root_joint >= 1", "root_joint < joints", "window >= 1", "still >= 1", "fall >= 4")
+    def make_feet(
+        self,
+        tree: Tree,
+        point_joints: In[Int32Array, "6 in 1:joints"],
+        foot_joints: In[Int32Array, "2 in 1:joints"],
+        root_joint: int,
+        points: In[Array, "6 3"],
+        window: int,
+        still: int,
+        fall: int,
+        floor_m: float,
+        dt_s: float,
+        limits: ContactLimits,
+        plate_known: In[BoolArray, "plates"],
+        plate_least_n: In[Array, "plates"],
+        plate_surface_m: In[Array, "plates"],
+        plate_box: In[Array, "plates 4"],
+        plate_edges: In[Array, "plates 4 4"],
+        /,
+    ) -> Feet:
+        """Feet and plates for :meth:`decide_contact`.
 
         Args:
-            tree: The body's handle.
-            whole: (12,) joints and numbers of frames, 32-bit integers.
-            numbers: (35,) places, times and limits.
-            plates: (K, 23) the plates.
-
-        Raises:
-            ValueError: They do not fit the tree.
+            tree: The body.
+            point_joints, points: Joints, and places in their frames, m, of heel, ball and toe end, right before left.
+            foot_joints, root_joint: Joints of the right and the left foot, and of the root.
+            window, still, fall: Numbers of frames: of the floor's velocity, of a floor that stands still, of a fall.
+            floor_m: Height of the lowest plate; NaN without plates.
+            dt_s: Time between frames.
+            limits: Limits of contact.
+            plate_known: True for plates with an outline.
+            plate_least_n: Least vertical force that counts as a load.
+            plate_surface_m: Heights.
+            plate_box, plate_edges: Outlines from above: least x and y, greatest x and y; and x, y, length along x and
+                along y of each edge.
         """
 
-    def stand(
+    def decide_contact(
         self,
-        feet: object,
-        q: Array,
-        v: Array,
-        a: Array,
-        plates: Array,
+        feet: Feet,
+        q: In[Array, "nq"],
+        v: In[Array, "nv"],
+        a: In[Array, "nv"],
+        wrench: In[Array, "plates 6"],
         supported: bool,
-        before: Array,
-        after: Array,
-        wrench: Array,
-        middles: Array,
-        below: Array,
-        rest: Array,
+        before: In[Array, "memory"],
         /,
-    ) -> int:
-        """Fills what the feet stand on: see :class:`mbkf.kernel.contact.Stand`.
+    ) -> tuple[
+        int,
+        Made[Array, "after: memory"],
+        Made[Array, "foot_wrench: 2 6"],
+        Made[Array, "middles: 2 3"],
+        Made[Array, "below: 6"],
+        Made[Array, "soles: 2 3 3"],
+        Made[Array, "pelvis: 3"],
+        Made[Array, "near: 2"],
+        Made[Array, "floor_velocity: 2"],
+    ]:
+        """Contact of the feet in one frame: flags and arrays of :class:`mbkf.kernel.contact.Stand`.
 
         Args:
-            feet: The handle.
-            q: (nq,) configuration.
-            v: (nv,) velocity.
-            a: (nv,) acceleration.
-            plates: (K, 6) wrenches, NaN where not recorded.
-            supported: Whether another part than the feet bears.
+            feet: Feet and plates.
+            q, v, a: Predicted motion.
+            wrench: Readings of the plates; NaN where not recorded.
+            supported: True if another part than the feet bears load.
             before: Memory from the frame before.
-            after: Memory filled.
-            wrench: (2, 6) filled.
-            middles: (2, 3) filled.
-            below: (6,) filled.
-            rest: (25,) filled.
-
-        Returns:
-            The decision's flags.
 
         Raises:
-            ValueError: The memory is that of other feet.
+            ValueError: The memory's counts exceed it: it belongs to other feet.
         """
 
     def wrench_rows(
         self,
-        middles: Array,
-        right: Array,
-        left: Array,
-        expected: Array,
-        w: Array,
+        middles: In[Array, "2 3"],
+        right: In[Array, "6"],
+        left: In[Array, "6"],
+        expected: In[Array, "2 6"],
+        w: In[Array, "2 6"],
         left_first: bool,
-        rows: Array,
-        values: Array,
+        /,
+    ) -> tuple[Made[Array, "rows: 12 12"], Made[Array, "values: 12"]]:
+        """Whitened rows and innovations of the feet's wrenches (:mod:`mbkf.sensors.foot_contact`).
+
+        Args:
+            middles: Of the soles, m.
+            right, left: 1/sd of each foot's rows.
+            expected: Wrenches as read.
+            w: Predicted wrenches.
+            left_first: Rows of the left foot come first.
+        """
+
+    @requires("first >= 0", "first + 12 <= N")
+    def add_wrench_walk(
+        self,
+        P: Out[Array, "N N symmetric"],
+        first: int,
+        middles: In[Array, "2 3"],
+        sd: In[Array, "2"],
+        belt: In[Array, "2"],
         /,
     ) -> None:
-        """Fills rows that read the feet's wrenches: see :meth:`mbkf.sensors.foot_contact.FootContact.linearise`.
+        """Adds the random walk of the feet's wrenches to P.
 
         Args:
-            middles: (2, 3) of the soles.
-            right: (6,) 1/sd of the right foot's rows.
-            left: (6,) of the left foot's.
-            expected: (2, 6) wrenches as read.
-            w: (12,) wrenches.
-            left_first: Whether the rows of the left foot come first.
-            rows: (12, 12) filled.
-            values: (12,) innovations, filled.
+            P: Covariance, changed in place.
+            first: First component of the wrenches.
+            middles: Of the soles, m.
+            sd: Of force and moment.
+            belt: Root of a belt's part of the horizontal moments.
         """
 
-    def wrench_walk(self, P: Array, first: int, middles: Array, sd: Array, belt: Array, /) -> None:
-        """Adds the wrenches' random walk to P: see :meth:`mbkf.sensors.foot_contact.FootContact.inflate`.
+    def wrenches_possible(
+        self, readings: In[Array, "*n plates 6"], reach: In[Array, "plates"], limits: PossibleLoads, /
+    ) -> bool:
+        """True if a person can load plates like this in all readings.
 
         Args:
-            P: (N, N) covariance.
-            first: The wrenches' first component.
-            middles: (2, 3) of the soles.
-            sd: (2,) of force and moment.
-            belt: (2,) root of what a belt adds to the horizontal moments.
+            readings: Wrenches about the plates' origins.
+            reach: Farthest that a foot can press from a plate's origin, m.
+            limits: Bounds.
         """
 
-    def wrenches_possible(self, readings: Array, reach: Array, limits: Array, /) -> bool:
-        """Whether a person can make plates read this: see :func:`mbkf.sensors.contact.possible.all_possible`.
-
-        Args:
-            readings: (..., K, 6) readings.
-            reach: (K,) of the plates.
-            limits: (5,) the weight, and the most vertical force, pull, friction and slack.
-        """
-
+    @requires("first >= 0", "size >= 1")
     def wrench_means(
-        self, ring: Array, first: int, weights: Array, width: float, origins: Array, means: Array, /
-    ) -> None:
-        """Fills plates' means over a window: see :meth:`mbkf.stream.receiving.plate_buffer.PlateBuffer.mean`.
+        self,
+        ring: In[Array, "size 6*plates"],
+        first: int,
+        weights: In[Array, "n"],
+        width: float,
+        origins: In[Array, "plates 3"],
+        /,
+    ) -> Made[Array, "means: plates 6"]:
+        """Means of plates' readings over a window, about the world's origin.
 
         Args:
-            ring: (size, 6 K) the latest readings.
-            first: The window's first sample.
-            weights: (n,) or (n, 1) of the samples from there on.
-            width: The window's width, in samples.
-            origins: (K, 3) of the plates.
-            means: (K, 6) filled: about the world's origin.
-
-        Raises:
-            ValueError: The ring's size does not fit, or the window lies before its beginning.
+            ring: Latest readings, about the plates' origins.
+            first: Row of the window's first sample.
+            weights: Of the samples from there on.
+            width: Width of the window, in samples.
+            origins: Of the plates, m.
         """

@@ -1,24 +1,30 @@
-/* Prediction and update of a covariance, as mbkf/filters/dynamic/plant.py and
- * mbkf/numerics/information_update.py state them. Products of whole matrices are BLAS's. */
-#include "covariance.h"
-
+/* Prediction and update of a covariance P, which leave out products with zeros:
+ *
+ *     Phi P Phi' + Q                     Phi couples the dofs of one joint and is diagonal between q, v and a
+ *     (P^-1 + L)^-1 = P - F F'           F = P G C^-T, L = G G', C C' = I + G' P G (Cholesky factors)
+ *     P (l + H'y)
+ *
+ * as mbkf/filters/dynamic/plant.py and mbkf/numerics/information_update.py compute them with whole matrices. */
 #include <string.h>
 
 #include "bands.h"
 #include "blas.h"
+#include "call.h"
 #include "factor.h"
+#include "joints.h"
 #include "product.h"
 #include "symmetric.h"
+#include "tree.h"
 #include "vectorised.h"
 
-/* out = A P + B S of one joint's rows, from first on, for all columns. */
-VECTORISED static void joint_rows(int first, int dofs, int nv, int N, const double *A, const double *B,
+/* out = A P + B S of one joint's rows, from first to end. */
+VECTORISED static void joint_rows(int first, int end, int nv, int N, const double *A, const double *B,
                                   const double *P, const double *S, double *out)
 {
-    for (int i = first; i < first + dofs; i++) {
+    for (int i = first; i < end; i++) {
         double *o = out + (long)i * N;
         memset(o, 0, sizeof(double) * N);
-        for (int k = first; k < first + dofs; k++) {
+        for (int k = first; k < end; k++) {
             const double a = A[i * nv + k], b = B[i * nv + k];
             const double *p = P + (long)k * N, *s = S + (long)k * N;
             if (a == 0.0 && b == 0.0)
@@ -29,30 +35,30 @@ VECTORISED static void joint_rows(int first, int dofs, int nv, int N, const doub
     }
 }
 
-/* carried[q, q] = R_q A' + S_q B' of one joint's columns, in the rows that end on or above the diagonal. */
-static void joint_columns(int first, int dofs, int nv, int N, const double *A, const double *B, const double *R,
-                          const double *S, double *carried)
+/* after[q, q] = R_q A' + S_q B' of one joint's columns, in the rows that end on or above the diagonal. */
+static void joint_columns(int first, int end, int nv, int N, const double *A, const double *B, const double *R,
+                          const double *S, double *after)
 {
-    for (int i = 0; i < first + dofs; i++) {
+    for (int i = 0; i < end; i++) {
         const double *r = R + (long)i * N, *s = S + (long)i * nv;
-        for (int j = first; j < first + dofs; j++) {
+        for (int j = first; j < end; j++) {
             double sum = 0.0;
-            for (int k = first; k < first + dofs; k++)
+            for (int k = first; k < end; k++)
                 sum += r[k] * A[j * nv + k] + s[k] * B[j * nv + k];
-            carried[(long)i * N + j] = sum;
+            after[(long)i * N + j] = sum;
         }
     }
 }
 
 /* The rows of q, v, a and the rest, from the diagonal of their blocks on; R are those of q times Phi_q'. */
 VECTORISED static void other_columns(int nv, int N, const double *P, const Singer *s, const double *R,
-                                     double *carried)
+                                     double *after)
 {
     const double c1 = s->c1, rho = s->rho;
     const int v = nv, a = 2 * nv, rest = 3 * nv;
     for (int i = 0; i < nv; i++) {
         const double *r = R + (long)i * N;
-        double *x = carried + (long)i * N;
+        double *x = after + (long)i * N;
         for (int j = 0; j < nv; j++)
             x[v + j] = r[v + j] + c1 * r[a + j];
         for (int j = 0; j < nv; j++)
@@ -61,7 +67,7 @@ VECTORISED static void other_columns(int nv, int N, const double *P, const Singe
     }
     for (int i = 0; i < nv; i++) {
         const double *p = P + (long)(v + i) * N, *d = P + (long)(a + i) * N;
-        double *x = carried + (long)(v + i) * N;
+        double *x = after + (long)(v + i) * N;
         for (int j = i; j < nv; j++)
             x[v + j] = p[v + j] + c1 * d[v + j] + c1 * (p[a + j] + c1 * d[a + j]);
         for (int j = 0; j < nv; j++)
@@ -71,79 +77,103 @@ VECTORISED static void other_columns(int nv, int N, const double *P, const Singe
     }
     for (int i = 0; i < nv; i++) {
         const double *d = P + (long)(a + i) * N;
-        double *x = carried + (long)(a + i) * N;
+        double *x = after + (long)(a + i) * N;
         for (int j = i; j < nv; j++)
             x[a + j] = rho * rho * d[a + j];
         for (int j = rest; j < N; j++)
             x[j] = rho * d[j];
     }
     for (int i = rest; i < N; i++)
-        memcpy(carried + (long)i * N + i, P + (long)i * N + i, sizeof(double) * (N - i));
+        memcpy(after + (long)i * N + i, P + (long)i * N + i, sizeof(double) * (N - i));
 }
 
 /* S = dt P_v + c2 P_a, the rows that B multiplies; and the same of the columns of R. */
-VECTORISED static void pushed_rows(int nv, int N, const double *P, const Singer *s, double *S)
+VECTORISED static void step_rows(int nv, int N, const double *P, const Singer *s, double *S)
 {
     const double *v = P + (long)nv * N, *a = P + 2L * nv * N;
     for (long i = 0; i < (long)nv * N; i++)
-        S[i] = s->dt * v[i] + s->c2 * a[i];
+        S[i] = s->dt_s * v[i] + s->c2 * a[i];
 }
 
-VECTORISED static void pushed_columns(int nv, int N, const double *R, const Singer *s, double *S)
+VECTORISED static void step_columns(int nv, int N, const double *R, const Singer *s, double *S)
 {
     for (int i = 0; i < nv; i++) {
         const double *v = R + (long)i * N + nv, *a = R + (long)i * N + 2 * nv;
         for (int j = 0; j < nv; j++)
-            S[(long)i * nv + j] = s->dt * v[j] + s->c2 * a[j];
+            S[(long)i * nv + j] = s->dt_s * v[j] + s->c2 * a[j];
     }
 }
 
-long carry_work(int nv, int N) { return 2L * nv * N; }
-
-void carry(int nv, int N, const double *P, const double *A, const double *B, const int *joints, int n_joints,
-           const Singer *singer, const double *noise, const double *sd, double *carried, double *work)
+/* Adds diagonals of a number of blocks to the blocks on and above the diagonal, and copies these below. */
+static void add_noise(int blocks, int nv, int N, const double *noise, const double *sd, double *after)
 {
-    double *S = work, *R = work + (long)nv * N;
-    pushed_rows(nv, N, P, singer, S);
-    for (int k = 0; k < n_joints; k++)
-        joint_rows(joints[2 * k], joints[2 * k + 1], nv, N, A, B, P, S, R);
-    pushed_columns(nv, N, R, singer, S);
-    for (int k = 0; k < n_joints; k++)
-        joint_columns(joints[2 * k], joints[2 * k + 1], nv, N, A, B, R, S, carried);
-    other_columns(nv, N, P, singer, R, carried);
-    for (int row = 0; row < 3; row++)
-        for (int column = row; column < 3; column++)
+    for (int row = 0; row < blocks; row++)
+        for (int column = row; column < blocks; column++)
             for (int i = 0; i < nv; i++)
-                carried[(long)(row * nv + i) * N + column * nv + i] += noise[3 * row + column] * sd[i] * sd[i];
-    mirror(N, carried);
+                after[(long)(row * nv + i) * N + column * nv + i] +=
+                    sd ? noise[blocks * row + column] * sd[i] * sd[i] : noise[(blocks * row + column) * nv + i];
+    mirror(N, after);
 }
 
-void carry_velocities(int nv, const double *P, const double *A, const double *B, const int *joints, int n_joints,
-                      double dt, const double *noise, double *carried, double *work)
+static void propagate(int N, int nv, int J, const double *P, const double *A, const double *B, const int *joints,
+                      const Singer *singer, const double *noise, const double *sd, double *after, double *work)
+{
+    double *S = work, *R = work + (long)nv * N;
+    step_rows(nv, N, P, singer, S);
+    for (int k = 0; k < J; k++)
+        joint_rows(joints[2 * k], joints[2 * k + 1], nv, N, A, B, P, S, R);
+    step_columns(nv, N, R, singer, S);
+    for (int k = 0; k < J; k++)
+        joint_columns(joints[2 * k], joints[2 * k + 1], nv, N, A, B, R, S, after);
+    other_columns(nv, N, P, singer, R, after);
+    add_noise(3, nv, N, noise, sd, after);
+}
+
+void mbkf_predict(int N, int J, Tree *tree, const double *P, const double *q, const double *v, const double *a,
+                  const int *joints, const Singer *singer, const double *noise, const double *sd, double *P_after,
+                  double *q_after, double *v_after, double *a_after)
+{
+    const int nv = tree->nv;
+    const long square = (long)nv * nv;
+    double *step = are_all_dofs(J, joints, nv) ? workspace(nv + 2 * square + 2L * nv * N) : NULL;
+    if (!step)
+        return;
+    for (int i = 0; i < nv; i++) {
+        step[i] = singer->dt_s * v[i] + singer->c2 * a[i];
+        v_after[i] = v[i] + singer->c1 * a[i];
+        a_after[i] = singer->rho * a[i];
+    }
+    double *A = step + nv, *B = A + square;
+    mbkf_integrate(tree, q, step, q_after);
+    mbkf_integration_derivatives(tree, step, A, B);
+    propagate(N, nv, J, P, A, B, joints, singer, noise, sd, P_after, B + square);
+}
+
+void mbkf_propagate_velocities(int nv, int J, const double *P, const double *A, const double *B, const int *joints,
+                               double dt, const double *noise, double *after)
 {
     const int N = 2 * nv;
-    double *S = work, *R = work + (long)nv * N;
+    double *S = are_all_dofs(J, joints, nv) ? workspace(2L * nv * N) : NULL;
+    if (!S)
+        return;
+    double *R = S + (long)nv * N;
     for (long i = 0; i < (long)nv * N; i++)
         S[i] = dt * P[(long)nv * N + i];
-    for (int k = 0; k < n_joints; k++)
+    for (int k = 0; k < J; k++)
         joint_rows(joints[2 * k], joints[2 * k + 1], nv, N, A, B, P, S, R);
     for (int i = 0; i < nv; i++)
         for (int j = 0; j < nv; j++)
             S[(long)i * nv + j] = dt * R[(long)i * N + nv + j];
-    for (int k = 0; k < n_joints; k++)
-        joint_columns(joints[2 * k], joints[2 * k + 1], nv, N, A, B, R, S, carried);
+    for (int k = 0; k < J; k++)
+        joint_columns(joints[2 * k], joints[2 * k + 1], nv, N, A, B, R, S, after);
     for (int i = 0; i < nv; i++) {
-        memcpy(carried + (long)i * N + nv, R + (long)i * N + nv, sizeof(double) * nv);
-        memcpy(carried + (long)(nv + i) * N + nv, P + (long)(nv + i) * N + nv, sizeof(double) * nv);
+        memcpy(after + (long)i * N + nv, R + (long)i * N + nv, sizeof(double) * nv);
+        memcpy(after + (long)(nv + i) * N + nv, P + (long)(nv + i) * N + nv, sizeof(double) * nv);
     }
-    for (int row = 0; row < 2; row++)
-        for (int column = row; column < 2; column++)
-            for (int i = 0; i < nv; i++)
-                carried[(long)(row * nv + i) * N + column * nv + i] += noise[(2 * row + column) * nv + i];
-    mirror(N, carried);
+    add_noise(2, nv, N, noise, NULL, after);
 }
 
-/* G with G G' = L: lower Cholesky factor; components that nothing informs about are set aside. */
+/* G with G G' = L: lower Cholesky factor; rows and columns of components without information are zero. */
 static int square_root(int n, const double *L, double *G)
 {
     for (int j = 0; j < n; j++)
@@ -195,15 +225,13 @@ static int reduced_by_rows(int N, const double *P, int n, const double *K, const
     return half(N, m, W, Q);
 }
 
-long inform_work(int n, int m, int N)
+int mbkf_add_information(int N, int n, int m, const double *P, const double *information, const double *rows,
+                         double *after)
 {
-    return (long)N * (n + m) + 4L * n * n + (long)m * (n + m + N);
-}
-
-int inform(int N, const double *P, int n, const double *information, int m, const double *rows, double *informed,
-           double *work)
-{
-    double *F = work, *W = F + (long)N * n, *G = W + (long)N * m, *across = G + (long)n * n;
+    double *F = workspace((long)N * (n + m) + 4L * n * n + (long)m * (n + m + N));
+    if (!F)
+        return 0;
+    double *W = F + (long)N * n, *G = W + (long)N * m, *across = G + (long)n * n;
     double *T = across + (long)n * n, *S = T + (long)n * n, *Y = S + (long)n * n, *Q = Y + (long)m * n;
     if (square_root(n, information, G))
         return 1;
@@ -216,8 +244,8 @@ int inform(int N, const double *P, int n, const double *information, int m, cons
     product(WHOLE, N, n, n, 1.0, P, N, across, n, 0.0, NULL, F, N);
     if (m && reduced_by_rows(N, P, n, G, F, m, rows, W, Y, Q, Q + (long)m * m))
         return 3;
-    product(LOWER, N, N, n + m, -1.0, F, N, F, N, 1.0, P, informed, N);
-    mirror(N, informed);
+    product(LOWER, N, N, n + m, -1.0, F, N, F, N, 1.0, P, after, N);
+    mirror(N, after);
     return 0;
 }
 
@@ -228,9 +256,12 @@ VECTORISED static void plus(int N, double a, const double *x, double *y)
         y[i] += a * x[i];
 }
 
-void correction(int N, const double *P, int n, const double *vector, int m, const double *rows, const double *values,
-                double *step, double *total)
+void mbkf_correction(int N, int n, int m, const double *P, const double *vector, const double *rows,
+                     const double *values, double *step)
 {
+    double *total = workspace(N);
+    if (!total)
+        return;
     memset(total, 0, sizeof *total * N);
     memcpy(total, vector, sizeof *total * n);
     memset(step, 0, sizeof *step * N);

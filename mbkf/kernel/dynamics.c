@@ -14,10 +14,10 @@ static void set_inertia(const Joint *joint, const double *R, Inertia *inertia)
 {
     const double m = joint->mass;
     double c[3], half[9], I[6], *second = inertia->second;
-    turned(R, joint->lever, c);
+    rotated(R, joint->lever, c);
     for (int i = 0; i < 3; i++) {
         c[i] += R[9 + i];
-        turned(R, joint->inertia + 3 * i, half + 3 * i);
+        rotated(R, joint->inertia + 3 * i, half + 3 * i);
     }
     for (int i = 0, k = 0; i < 3; i++)
         for (int j = i; j < 3; j++, k++)
@@ -49,27 +49,27 @@ static void set_gyration(const Inertia *inertia, const double *velocity, double 
     }
 }
 
-static void set_motion(const Tree *tree, const Joint *joint, const double *v, const double *a, Carried *one)
+static void set_motion(const Tree *tree, const Joint *joint, const double *v, const double *a, Composite *one)
 {
-    const Carried *parent = &tree->carried[joint->parent];
+    const Composite *parent = &tree->composite[joint->parent];
     double velocity[6] = {0}, acceleration[6] = {0}, turning[6];
     for (int k = joint->at_v; k < joint->at_v + joint->dofs; k++)
         for (int i = 0; i < 6; i++) {
             velocity[i] += tree->axes[k][i] * v[k];
             acceleration[i] += tree->axes[k][i] * a[k];
         }
-    carried(parent->velocity, velocity, turning);
+    cross_motion(parent->velocity, velocity, turning);
     for (int i = 0; i < 6; i++) {
         one->velocity[i] = parent->velocity[i] + velocity[i];
         one->acceleration[i] = parent->acceleration[i] + acceleration[i] + turning[i];
     }
 }
 
-static void set_force(Carried *one)
+static void set_force(Composite *one)
 {
     double moving[6], centrifugal[6];
     momentum(&one->inertia, one->velocity, moving);
-    swung(one->velocity, moving, centrifugal);
+    cross_force(one->velocity, moving, centrifugal);
     momentum(&one->inertia, one->acceleration, one->force);
     for (int i = 0; i < 6; i++)
         one->force[i] += centrifugal[i];
@@ -79,12 +79,12 @@ static void set_force(Carried *one)
 /* From the root to the leaves: motion, inertia and force of every segment by itself. */
 static void segments(Tree *tree, const double *v, const double *a)
 {
-    Carried *world = &tree->carried[0];
-    memset(tree->carried, 0, tree->joints * sizeof *tree->carried);
+    Composite *world = &tree->composite[0];
+    memset(tree->composite, 0, tree->joints * sizeof *tree->composite);
     for (int i = 0; i < 6; i++)
         world->acceleration[i] = -tree->gravity[i];
     for (int i = 1; i < tree->joints; i++) {
-        Carried *one = &tree->carried[i];
+        Composite *one = &tree->composite[i];
         set_motion(tree, &tree->joint[i], v, a, one);
         if (tree->joint[i].mass == 0.0)
             continue;
@@ -95,11 +95,11 @@ static void segments(Tree *tree, const double *v, const double *a)
 }
 
 /* force += D s. */
-static void add_gyration(const Carried *one, const double *s, double *force)
+static void add_gyration(const Composite *one, const double *s, double *force)
 {
     double across[3], along[3];
     cross(s + 3, one->impulse, across);
-    turned(one->gyration, s + 3, along);
+    rotated(one->gyration, s + 3, along);
     for (int i = 0; i < 3; i++) {
         force[i] += 2.0 * across[i];
         force[3 + i] += along[i];
@@ -107,13 +107,13 @@ static void add_gyration(const Carried *one, const double *s, double *force)
 }
 
 /* Of one dof, whose axis moves with joint one behind the joint before. */
-static void differentiate(const Carried *one, const Carried *before, const double *axis, Derivative *by)
+static void differentiate(const Composite *one, const Composite *before, const double *axis, Derivative *by)
 {
     double own[6], pulled[6], dragged[6];
-    carried(one->velocity, axis, own);
-    carried(before->velocity, axis, by->drag);
-    carried(before->acceleration, axis, pulled);
-    carried(before->velocity, by->drag, dragged);
+    cross_motion(one->velocity, axis, own);
+    cross_motion(before->velocity, axis, by->drag);
+    cross_motion(before->acceleration, axis, pulled);
+    cross_motion(before->velocity, by->drag, dragged);
     for (int i = 0; i < 6; i++) {
         by->by_v[i] = own[i] + by->drag[i];
         by->by_q[i] = pulled[i] + dragged[i];
@@ -123,10 +123,10 @@ static void differentiate(const Carried *one, const Carried *before, const doubl
     momentum(&one->inertia, by->by_q, by->force_by_q);
     add_gyration(one, axis, by->force_by_v);
     add_gyration(one, by->drag, by->force_by_q);
-    swung(axis, one->force, by->swung);
+    cross_force(axis, one->force, by->turned_force);
 }
 
-static void gather(Carried *to, const Carried *from)
+static void gather(Composite *to, const Composite *from)
 {
     to->inertia.mass += from->inertia.mass;
     for (int i = 0; i < 3; i++) {
@@ -141,27 +141,27 @@ static void gather(Carried *to, const Carried *from)
         to->gyration[i] += from->gyration[i];
 }
 
-void tree_loaded(Tree *tree, const double *q, const double *v, const double *a)
+void tree_forces(Tree *tree, const double *q, const double *v, const double *a)
 {
-    tree_placed(tree, q);
+    tree_place(tree, q);
     segments(tree, v, a);
     for (int i = tree->joints - 1; i > 0; i--) {
         const int parent = tree->joint[i].parent;
         for (int k = 0; parent && k < 6; k++)
-            tree->carried[parent].force[k] += tree->carried[i].force[k];
+            tree->composite[parent].force[k] += tree->composite[i].force[k];
     }
 }
 
-void tree_differentiated(Tree *tree, const double *q, const double *v, const double *a)
+void tree_force_derivatives(Tree *tree, const double *q, const double *v, const double *a)
 {
-    tree_placed(tree, q);
+    tree_place(tree, q);
     segments(tree, v, a);
     for (int i = tree->joints - 1; i > 0; i--) {
         const Joint *joint = &tree->joint[i];
-        Carried *before = &tree->carried[joint->parent];
+        Composite *before = &tree->composite[joint->parent];
         for (int k = joint->at_v; k < joint->at_v + joint->dofs; k++)
-            differentiate(&tree->carried[i], before, tree->axes[k], &tree->by[k]);
+            differentiate(&tree->composite[i], before, tree->axes[k], &tree->by[k]);
         if (joint->parent)
-            gather(before, &tree->carried[i]);
+            gather(before, &tree->composite[i]);
     }
 }

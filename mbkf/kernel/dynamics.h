@@ -4,16 +4,10 @@
 
 #include "tree.h"
 
-/* Fills the forces of carried, of all that a joint carries and without load; not by. */
-void tree_loaded(Tree *tree, const double *q, const double *v, const double *a);
+/* Sums up the forces of composites, without loads; derivatives are not touched. */
+void tree_forces(Tree *tree, const double *q, const double *v, const double *a);
 
-/* Fills carried and by, forces without load. */
-void tree_differentiated(Tree *tree, const double *q, const double *v, const double *a);
-
-/* The root's six equations under a wrench about the world's origin. The first joint is free.
- *
- * residual: (6); by_state: (6 x (3 nv + 12)) by q, v, a and either of two wrenches. */
-void tree_root(Tree *tree, const double *q, const double *v, const double *a, const double *wrench, double *residual,
-               double *by_state);
+/* Sums up composites and their derivatives, without loads. */
+void tree_force_derivatives(Tree *tree, const double *q, const double *v, const double *a);
 
 #endif

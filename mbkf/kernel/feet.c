@@ -2,17 +2,55 @@
 #include "feet.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "call.h"
+#include "floor_motion.h"
+
+Feet *mbkf_make_feet(int plates, Tree *tree, const int *point_joints, const int *foot_joints, int root_joint,
+                     const double *points, int window, int still, int fall, double floor_m, double dt_s,
+                     const ContactLimits *limits, const char *plate_known, const double *plate_least_n,
+                     const double *plate_surface_m, const double *plate_box, const double *plate_edges)
+{
+    Feet *feet = calloc(1, sizeof *feet);
+    Plate *plate = calloc(plates + 1, sizeof *plate);
+    if (!feet || !plate) {
+        refuse(out_of_memory);
+        free(feet);
+        free(plate);
+        return NULL;
+    }
+    for (int k = 0; k < plates; k++) {
+        plate[k].known = plate_known[k], plate[k].least_n = plate_least_n[k], plate[k].surface_m = plate_surface_m[k];
+        memcpy(plate[k].box, plate_box + 4 * k, sizeof plate[k].box);
+        memcpy(plate[k].edges, plate_edges + 16 * k, sizeof plate[k].edges);
+    }
+    *feet = (Feet){.tree = tree, .nq = tree->nq, .nv = tree->nv, .plates = plates, .root = root_joint,
+                   .window = window, .still = still, .fall = fall, .floor_m = floor_m, .dt_s = dt_s,
+                   .limits = *limits, .plate = plate};
+    feet->memory = memory_length(feet);
+    memcpy(feet->joint, point_joints, sizeof feet->joint);
+    memcpy(feet->foot, foot_joints, sizeof feet->foot);
+    memcpy(feet->point, points, sizeof feet->point);
+    return feet;
+}
+
+void mbkf_free_feet(Feet *feet)
+{
+    free(feet->plate);
+    free(feet);
+}
 
 /* FeetOnBody.at */
 void feet_at(const Feet *feet, const double *q, const double *v, Motion *motion)
 {
     const Tree *tree = feet->tree;
-    tree_placed(feet->tree, q);
+    tree_place(feet->tree, q);
     for (int k = 0; k < FEET * SOLE; k++) {
         const double *frame = tree->frames + 12 * feet->joint[k];
         double *point = motion->sole[k / SOLE][k % SOLE];
-        turned(frame, feet->place[k], point);
+        rotated(frame, feet->point[k], point);
         for (int i = 0; i < 3; i++)
             point[i] += frame[9 + i];
     }

@@ -6,30 +6,25 @@
 
 enum { RIGHT = 0, LEFT = 1, FEET = 2, SOLE = 3, SOLE_ENDS = 2 };
 
-/* Numbers of mbkf/sensors/contact/rules.py, in the order of mbkf/kernel/contact.py. */
+/* A plate's outline from above as a box (least x and y, greatest x and y) and edges (x, y, along x, along y). */
 typedef struct {
-    double reach, keep, belt_from, touch_height, stand_height, stand_speed, stand_after, alone_height, alone_speed;
-    double leave_slack, floor_share, level, parted, faces_down, fall;
-} Limits;
-
-/* A plate: its outline from above as a box (least x and y, most x and y) and edges (x, y, along x, along y). */
-typedef struct {
-    double known, least_n, surface_m, box[4], edges[4][4];
+    int known;
+    double least_n, surface_m, box[4], edges[4][4];
 } Plate;
 
-/* What does not change. Points are heel, ball and toe end of the right and of the left sole. */
-typedef struct {
+/* Constants. Points are heel, ball and toe end of the right and of the left sole. */
+struct Feet {
     Tree *tree;
+    int nq, nv, plates, memory; /* memory: numbers that a frame keeps for the next, see floor_motion.h */
     int joint[FEET * SOLE], foot[FEET], root;
     int window, still, fall; /* frames of the floor's velocity, of a floor that stands still, and of a fall */
-    int plates;
-    double place[FEET * SOLE][3];
+    double point[FEET * SOLE][3];
     double floor_m, dt_s;
-    Limits limits;
+    ContactLimits limits;
     Plate *plate;
-} Feet;
+};
 
-/* The feet at a state: soles, pelvis, velocity of each foot at the world's origin, and whether its sole faces down. */
+/* The feet at a state: soles, pelvis, velocity of each foot at the world's origin, and feet whose soles face down. */
 typedef struct {
     double sole[FEET][SOLE][3], pelvis[3], twist[FEET][6];
     int down[FEET];
@@ -37,7 +32,7 @@ typedef struct {
 
 void feet_at(const Feet *feet, const double *q, const double *v, Motion *motion);
 
-/* Which of a sole's first so many points is the lowest. */
+/* Index of the lowest of a sole's first so many points. */
 int lowest_of(double (*sole)[3], int points);
 
 void velocity_of(const Motion *motion, int foot, const double *point, double *velocity);
@@ -49,7 +44,7 @@ int over_plate(const Plate *plate, double x, double y);
 
 double distance_to_sole(double x, double y, double (*sole)[3]);
 
-/* The lesser and the greater of two numbers as Python takes them: the first where one is no number. */
+/* The lesser and the greater of two numbers as Python takes them: the first if one is NaN. */
 static inline double lesser(double a, double b) { return b < a ? b : a; }
 static inline double greater(double a, double b) { return b > a ? b : a; }
 

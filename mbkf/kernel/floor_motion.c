@@ -81,7 +81,7 @@ void movement_floor(const Feet *feet, const double *record, double *floor_m_s)
     for (int i = 0; i < 2; i++)
         found[i] = median(record + at + (2 * i + 1) * window, (int)record[RANKED + i], feet->still);
     const double speed = hypot(found[0], found[1]), lasted_s = frames * feet->dt_s;
-    if (speed < feet->limits.belt_from)
+    if (speed < feet->limits.belt_from_m_s)
         return;
     const double *first = record + at + 4 * window, *last = first + 3 * (frames - 1);
     for (int i = 0; i < 2; i++)
@@ -103,5 +103,5 @@ int movement_held_up(const Feet *feet, const double *record)
         along += parabola * height[3 * i];
         square += parabola * parabola;
     }
-    return 2.0 * along / square / (feet->dt_s * feet->dt_s) > feet->limits.fall;
+    return 2.0 * along / square / (feet->dt_s * feet->dt_s) > feet->limits.fall_m_s2;
 }

@@ -1,4 +1,4 @@
-/* The floor's own motion, and whether the body falls; see floor_motion.c. */
+/* Velocity of the floor, and a body that does not fall; see floor_motion.c. */
 #ifndef MBKF_FLOOR_MOTION_H
 #define MBKF_FLOOR_MOTION_H
 
@@ -8,7 +8,7 @@
 enum { SOLE_HEIGHT = 0, TOUCHING = 1, LOWEST_BALL = 3, AIRBORNE = 5, FRAMES = 6, RANKED = 7, HEAD = 9 };
 enum { FOOT_OF_PLATE = 0, PRESSED = 1, PRESSED_BY = 3, PER_PLATE = 4, NEVER = -2 };
 
-static inline int record_length(const Feet *feet) { return HEAD + PER_PLATE * feet->plates + 7 * feet->window; }
+static inline int memory_length(const Feet *feet) { return HEAD + PER_PLATE * feet->plates + 7 * feet->window; }
 
 /* One frame more: horizontal velocity of the lowest sole point, NaN where it is not near the floor. */
 void movement_followed(const Feet *feet, const double *before, const double *low, const double *pelvis, double *after);
@@ -16,7 +16,7 @@ void movement_followed(const Feet *feet, const double *before, const double *low
 /* Horizontal velocity of the floor; zero unless a belt is evident. */
 void movement_floor(const Feet *feet, const double *record, double *floor_m_s);
 
-/* Whether a body whose feet are both held to be in the air was seen not to fall. */
+/* True if a body whose feet were both decided to be in the air did not fall. */
 int movement_held_up(const Feet *feet, const double *record);
 
 #endif

@@ -1,8 +1,8 @@
 /* Variances of the angles and rates of joints with three angles: diagonals of E C E' with the rates' matrix E of
  * mbkf/numerics/cardan.py, from rotation matrices alone, without an angle. */
-#include "joint_rates.h"
-
 #include <math.h>
+
+#include "declared.h"
 
 static const double LEAST_COSINE = 1e-9;
 
@@ -36,7 +36,7 @@ static void rates(const double *u, const int *axis, const double *signs, double 
 }
 
 /* E of the root's position: axes R. */
-static void told(const double *u, const double *axes, double E[3][3])
+static void root_rates(const double *u, const double *axes, double E[3][3])
 {
     double R[3][3];
     rotation(u, R);
@@ -45,23 +45,26 @@ static void told(const double *u, const double *axes, double E[3][3])
             E[i][j] = axes[3 * i] * R[0][j] + axes[3 * i + 1] * R[1][j] + axes[3 * i + 2] * R[2][j];
 }
 
-void joint_variances(const JointReading *r, const double *q, int sets, const double *covariance, double *variance)
+void mbkf_joint_variances(int nq, int n, int k, const double *q, const int *quaternions, const int *axes,
+                          const double *signs, int root, const double *root_axes, const double *covariance,
+                          double *variance)
 {
-    for (int b = 0; b <= r->count; b++) {
+    (void)nq;
+    for (int b = 0; b <= n; b++) {
         double E[3][3];
-        if (b < r->count)
-            rates(q + r->places[4 * b], r->places + 4 * b + 1, r->signs + 4 * b, E);
+        if (b < n)
+            rates(q + quaternions[b], axes + 3 * b, signs + 4 * b, E);
         else
-            told(q + r->root, r->axes, E);
-        for (int set = 0; set < sets; set++) {
-            const long at = (long)set * (r->count + 1) + b;
+            root_rates(q + root, root_axes, E);
+        for (int set = 0; set < k; set++) {
+            const long at = (long)set * (n + 1) + b;
             const double *C = covariance + 9 * at;
-            for (int k = 0; k < 3; k++) {
+            for (int angle = 0; angle < 3; angle++) {
                 double sum = 0.0;
                 for (int i = 0; i < 3; i++)
                     for (int j = 0; j < 3; j++)
-                        sum += E[k][i] * C[3 * i + j] * E[k][j];
-                variance[3 * at + k] = sum;
+                        sum += E[angle][i] * C[3 * i + j] * E[angle][j];
+                variance[3 * at + angle] = sum;
             }
         }
     }

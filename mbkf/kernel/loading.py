@@ -1,18 +1,18 @@
-"""Whether the compiled kernel is used: where it was built, unless the variable ``MBKF_KERNEL`` says ``reference``."""
+"""Loads the compiled kernel, unless it was not built or the variable ``MBKF_KERNEL`` asks for the reference."""
 
 from __future__ import annotations
 
 import importlib
 import os
 from functools import cache
+from pathlib import Path
 from typing import Protocol
 
 from mbkf.errors import InvalidInput
+from mbkf.kernel.body_functions import BodyFunctions
 from mbkf.kernel.contact_functions import ContactFunctions
-from mbkf.kernel.covariance_functions import CovarianceFunctions
-from mbkf.kernel.orientation_functions import OrientationFunctions
-from mbkf.kernel.readings_functions import ReadingFunctions
-from mbkf.kernel.tree_functions import TreeFunctions
+from mbkf.kernel.declaration import fingerprint
+from mbkf.kernel.state_functions import StateFunctions
 
 SWITCH = "MBKF_KERNEL"
 """Environment variable: ``compiled`` asks for the kernel, ``reference`` for numpy and Pinocchio."""
@@ -20,22 +20,21 @@ SWITCH = "MBKF_KERNEL"
 COMPILED, REFERENCE = "compiled", "reference"
 
 
-class Library(
-    CovarianceFunctions, TreeFunctions, ReadingFunctions, ContactFunctions, OrientationFunctions, Protocol
-):
-    """The functions of ``mbkf/kernel/module.c``."""
+class Library(BodyFunctions, ContactFunctions, StateFunctions, Protocol):
+    """The functions of the compiled kernel."""
 
 
 @cache
 def library() -> Library | None:
-    """The compiled kernel; None where it was not built, or is not wanted.
+    """The compiled kernel; None if it was not built, or if the environment asks for the reference.
 
     Raises:
-        InvalidInput: ``MBKF_KERNEL`` is neither, or asks for a kernel that is not there.
+        InvalidInput: ``MBKF_KERNEL`` is neither, or asks for a kernel that was not built; or the kernel was built from
+            other declarations than this tree's.
     """
     wanted = os.environ.get(SWITCH, "")
     if wanted not in {"", COMPILED, REFERENCE}:
-        raise InvalidInput(f"{SWITCH}={wanted} is not known; it is {COMPILED}, {REFERENCE} or not set")
+        raise InvalidInput(f"{SWITCH}={wanted} is unknown; set {COMPILED} or {REFERENCE}, or unset it")
     if wanted == REFERENCE:
         return None
     try:
@@ -43,17 +42,18 @@ def library() -> Library | None:
     except ImportError as error:
         if wanted == COMPILED:
             raise InvalidInput(
-                f"there is no compiled kernel ({error}); install mbkf where a C compiler is, or unset {SWITCH}"
+                f"mbkf was installed without its compiled kernel ({error}); install it again with a C compiler, "
+                f"or unset {SWITCH}"
             ) from error
         return None
 
 
-def told() -> str:
-    """Which arithmetic is used, for people: ``compiled kernel (512-bit vectors)``, ``reference kernel (numpy)``."""
+def kernel_name() -> str:
+    """The kernel in use, for people: ``compiled kernel (512-bit vectors)``, ``reference kernel (numpy)``."""
     found = library()
     if found is None:
         return f"{REFERENCE} kernel (numpy)"
-    bits = found.vectors()
+    bits = found.vector_bits()
     return f"{COMPILED} kernel ({f'{bits}-bit vectors' if bits else 'BLAS'})"
 
 
@@ -62,9 +62,15 @@ def _connected() -> Library:
 
     Raises:
         ImportError: It was not built, or SciPy offers other routines.
+        InvalidInput: It was built from other declarations.
     """
     from scipy.linalg import cython_blas, cython_lapack
 
     module = importlib.import_module("mbkf.kernel._kernel")
+    if getattr(module, "fingerprint", None) != fingerprint(Path(__file__).parent):
+        raise InvalidInput(
+            f"the compiled kernel {module.__file__} does not match its declaration, because mbkf changed since it was "
+            f"compiled; install mbkf again, or set {SWITCH}={REFERENCE} to run without it"
+        )
     module.connect({**cython_blas.__pyx_capi__, **cython_lapack.__pyx_capi__})
     return module

@@ -1,9 +1,8 @@
 /* Steps on the manifold of configurations, joint by joint, as Pinocchio takes them: q + step = q exp(step). */
-#include "manifold.h"
-
 #include <string.h>
 
 #include "rotation.h"
+#include "tree.h"
 
 /* Left Jacobian V of a turn w times u: how far exp6(u, w) goes. */
 static void travelled(const double *w, const double *u, double *p)
@@ -33,24 +32,24 @@ static void step_free(const double *q, const double *step, double *stepped)
     turned_by(q + 3, own, moved);
     for (int i = 0; i < 3; i++)
         stepped[i] = q[i] + moved[i];
-    exponential(step + 3, turn);
-    joined(q + 3, turn, stepped + 3);
+    quaternion_of(step + 3, turn);
+    quaternion_product(q + 3, turn, stepped + 3);
     if (turn[3] < 0.0) /* of two quaternions of a rotation the one near the old */
         for (int i = 3; i < 7; i++)
             stepped[i] = -stepped[i];
 }
 
-void tree_stepped(const Tree *tree, const double *q, const double *step, double *stepped)
+void mbkf_integrate(Tree *tree, const double *q, const double *step, double *moved)
 {
     for (int i = 1; i < tree->joints; i++) {
         const Joint *joint = &tree->joint[i];
         const double *from = q + joint->at_q, *by = step + joint->at_v;
-        double *to = stepped + joint->at_q, turn[4];
+        double *to = moved + joint->at_q, turn[4];
         if (joint->kind == FREE)
             step_free(from, by, to);
         else if (joint->kind == SPHERICAL) {
-            exponential(by, turn);
-            joined(from, turn, to);
+            quaternion_of(by, turn);
+            quaternion_product(from, turn, to);
         } else
             to[0] = from[0] + by[0];
     }
@@ -68,8 +67,8 @@ static void turn_derivatives(const double *w, double *by_q, double *by_step)
 {
     double c[3];
     coefficients(w, c);
-    series(w, -c[0], c[1], by_q);
-    series(w, -c[1], c[2], by_step);
+    rotation_series(w, -c[0], c[1], by_q);
+    rotation_series(w, -c[1], c[2], by_step);
 }
 
 /* How the travel of exp6(u, w) changes with w, in its own axes: T. Barfoot, State Estimation for Robotics (2017),
@@ -89,13 +88,13 @@ static void travel_by_turn(const double *u, const double *w, double *found)
     }
     cross_matrix(back_u, U);
     cross_matrix(back_w, W);
-    multiplied(W, U, WU);
-    multiplied(U, W, UW);
-    multiplied(WU, W, WUW);
-    multiplied(W, WU, WWU);
-    multiplied(UW, W, UWW);
-    multiplied(WUW, W, WUWW);
-    multiplied(W, WUW, WWUW);
+    matrix_product(W, U, WU);
+    matrix_product(U, W, UW);
+    matrix_product(WU, W, WUW);
+    matrix_product(W, WU, WWU);
+    matrix_product(UW, W, UWW);
+    matrix_product(WUW, W, WUWW);
+    matrix_product(W, WUW, WWUW);
     for (int i = 0; i < 9; i++)
         found[i] = 0.5 * U[i] + c1 * (WU[i] + UW[i] + WUW[i]) + c2 * (WWU[i] + UWW[i] - 3.0 * WUW[i]) +
                    c3 * (WUWW[i] + WWUW[i]);
@@ -112,13 +111,13 @@ static void free_derivatives(const double *step, double *by_q, double *by_step, 
     for (int i = 0; i < 3; i++)
         p[i] = -p[i];
     cross_matrix(p, P);
-    multiplied(back, P, swing);
+    matrix_product(back, P, swing);
     put(swing, by_q, nv, first, turn);
     travel_by_turn(step, step + 3, swing);
     put(swing, by_step, nv, first, turn);
 }
 
-void tree_step_derivatives(const Tree *tree, const double *step, double *by_q, double *by_step)
+void mbkf_integration_derivatives(Tree *tree, const double *step, double *by_q, double *by_step)
 {
     const long nv = tree->nv;
     memset(by_q, 0, nv * nv * sizeof *by_q);
@@ -146,10 +145,10 @@ static void turn_between(const double *p, const double *q, double *turn)
     turn[3] = p[3] * q[3] + p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 
-void tree_deviation(const Tree *tree, const double *start, const double *q, double *deviation, double *jacobian)
+void mbkf_deviation(Tree *tree, const double *start, const double *q, double *angles, double *jacobian)
 {
     const long nv = tree->nv;
-    memset(deviation, 0, nv * sizeof *deviation);
+    memset(angles, 0, nv * sizeof *angles);
     memset(jacobian, 0, nv * nv * sizeof *jacobian);
     for (int i = 1; i < tree->joints; i++) {
         const Joint *joint = &tree->joint[i];
@@ -157,10 +156,10 @@ void tree_deviation(const Tree *tree, const double *start, const double *q, doub
         double block[9], turn[4];
         if (joint->kind == SPHERICAL) {
             turn_between(start + joint->at_q, q + joint->at_q, turn);
-            logarithm(turn, deviation + first, block);
+            rotation_vector_of(turn, angles + first, block);
             put(block, jacobian, nv, first, first);
         } else if (joint->kind == HINGE) {
-            deviation[first] = q[joint->at_q] - start[joint->at_q];
+            angles[first] = q[joint->at_q] - start[joint->at_q];
             jacobian[first * (nv + 1)] = 1.0;
         }
     }

@@ -1,25 +1,28 @@
 /* Markers on a tree. Their information is the mass matrix of point masses 1/sd^2: mbkf/model/point_masses.py says why,
- * and mbkf/sensors/marker_sensor.py is what is repeated here. */
-#include "markers.h"
-
+ * and mbkf/sensors/marker_sensor.py is the reference. */
 #include <math.h>
 #include <string.h>
 
-void markers_placed(const Tree *tree, const Markers *markers, double *places)
+#include "tree.h"
+
+void mbkf_marker_places(int M, Tree *tree, const int *joint_ids, const double *local, const double *q, double *places,
+                        double *jacobian)
 {
-    for (int m = 0; m < markers->count; m++) {
-        const double *frame = tree->frames + 12 * markers->joint[m];
-        turned(frame, markers->local + 3 * m, places + 3 * m);
+    tree_place(tree, q);
+    for (int m = 0; m < M; m++) {
+        const double *frame = tree->frames + 12 * joint_ids[m];
+        rotated(frame, local + 3 * m, places + 3 * m);
         for (int i = 0; i < 3; i++)
             places[3 * m + i] += frame[9 + i];
     }
+    memcpy(jacobian, tree->axes, sizeof *tree->axes * tree->nv);
 }
 
-int markers_apart(int count, const double *measured, const double *places, double radius, double *innovation,
-                  double *squared, char *seen)
+int mbkf_marker_innovations(int M, const double *measured, const double *places, double radius, double *innovation,
+                            double *squared, char *seen)
 {
-    int found = 0, near = 1;
-    for (int m = 0; m < count; m++) {
+    int near = 1;
+    for (int m = 0; m < M; m++) {
         double *y = innovation + 3 * m;
         for (int i = 0; i < 3; i++)
             y[i] = measured[3 * m + i] - places[3 * m + i];
@@ -27,13 +30,12 @@ int markers_apart(int count, const double *measured, const double *places, doubl
         seen[m] = !isnan(length);
         squared[m] = seen[m] ? length : 0.0;
         near = near && squared[m] <= radius * radius;
-        found += seen[m];
     }
-    return near ? found : -1;
+    return near;
 }
 
-/* A reading's share of its segment's composite mass, and of the force on it; places are told from a centre. */
-static void count(Carried *on, double weight, const double *p, const double *y)
+/* Adds a reading as a point mass at p with force weight y; p is taken from the markers' middle. */
+static void accumulate_reading(Composite *on, double weight, const double *p, const double *y)
 {
     double force[3], moment[3];
     Inertia *all = &on->inertia;
@@ -55,7 +57,7 @@ static void count(Carried *on, double weight, const double *p, const double *y)
     }
 }
 
-static void add(Carried *to, const Carried *from)
+static void accumulate(Composite *to, const Composite *from)
 {
     to->inertia.mass += from->inertia.mass;
     for (int i = 0; i < 3; i++)
@@ -67,10 +69,10 @@ static void add(Carried *to, const Carried *from)
 }
 
 /* Dofs of a joint against those of its own and of the joints that bear it. */
-static void spread_out(const Tree *tree, int i, const double (*motion)[6], double *matrix, double *vector)
+static void project(const Tree *tree, int i, const double (*motion)[6], double *matrix, double *vector)
 {
     const Joint *joint = &tree->joint[i];
-    const Carried *on = &tree->carried[i];
+    const Composite *on = &tree->composite[i];
     for (int d = joint->at_v; d < joint->at_v + joint->dofs; d++) {
         double moved[6];
         momentum(&on->inertia, motion[d], moved);
@@ -83,18 +85,18 @@ static void spread_out(const Tree *tree, int i, const double (*motion)[6], doubl
     }
 }
 
-double markers_information(const Tree *tree, const Markers *markers, const double *weights, const char *trusted,
-                           const double *axes, const double *places, const double *innovation, double *matrix,
-                           double *vector)
+double mbkf_marker_information(int M, Tree *tree, const int *joint_ids, const double *weights, const char *trusted,
+                               const double *jacobian, const double *places, const double *innovation, double *matrix,
+                               double *vector)
 {
     double centre[3] = {0.0, 0.0, 0.0}, squared = 0.0;
     double(*motion)[6] = tree->motion;
     int used = 0;
     memset(matrix, 0, sizeof *matrix * tree->nv * tree->nv);
     memset(vector, 0, sizeof *vector * tree->nv);
-    memset(tree->carried, 0, sizeof *tree->carried * tree->joints);
+    memset(tree->composite, 0, sizeof *tree->composite * tree->joints);
     /* Moments about the markers' middle: far from the world's origin they would lose digits. */
-    for (int m = 0; m < markers->count; m++)
+    for (int m = 0; m < M; m++)
         if (trusted[m]) {
             used++;
             for (int i = 0; i < 3; i++)
@@ -102,17 +104,17 @@ double markers_information(const Tree *tree, const Markers *markers, const doubl
         }
     for (int i = 0; i < 3; i++)
         centre[i] /= used ? used : 1;
-    for (int m = 0; m < markers->count; m++)
+    for (int m = 0; m < M; m++)
         if (trusted[m]) {
             const double *y = innovation + 3 * m;
             double p[3];
             for (int i = 0; i < 3; i++)
                 p[i] = places[3 * m + i] - centre[i];
-            count(&tree->carried[markers->joint[m]], weights[m], p, y);
+            accumulate_reading(&tree->composite[joint_ids[m]], weights[m], p, y);
             squared += weights[m] * dot3(y, y);
         }
     for (int d = 0; d < tree->nv; d++) {
-        const double *axis = axes + 6 * d;
+        const double *axis = jacobian + 6 * d;
         double along[3];
         cross(axis + 3, centre, along);
         for (int i = 0; i < 3; i++) {
@@ -121,9 +123,9 @@ double markers_information(const Tree *tree, const Markers *markers, const doubl
         }
     }
     for (int i = tree->joints - 1; i; i--) {
-        spread_out(tree, i, (const double(*)[6])motion, matrix, vector);
+        project(tree, i, (const double(*)[6])motion, matrix, vector);
         if (tree->joint[i].parent)
-            add(&tree->carried[tree->joint[i].parent], &tree->carried[i]);
+            accumulate(&tree->composite[tree->joint[i].parent], &tree->composite[i]);
     }
     return squared;
 }

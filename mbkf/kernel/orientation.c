@@ -56,13 +56,13 @@ static void crossed(const double *v, const double *M, int n, double scale, doubl
     }
 }
 
-void orientation_turned(const OrientationNoise *noise, const OrientationStep *step, const double *M, double *out)
+void orientation_transition(const OrientationNoise *noise, const OrientationStep *step, const double *M, double *out)
 {
     memcpy(out, M, sizeof(double) * SQUARE);
-    crossed(step->force, M, ERRORS, -noise->dt, out + 6 * ERRORS);
+    crossed(step->force, M, ERRORS, -noise->dt_s, out + 6 * ERRORS);
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) {
-            const double share = -noise->dt * step->R[3 * i + k];
+            const double share = -noise->dt_s * step->R[3 * i + k];
             for (int j = 0; j < ERRORS; j++)
                 out[i * ERRORS + j] += share * M[(3 + k) * ERRORS + j];
         }
@@ -137,9 +137,9 @@ static void headed(const OrientationNoise *noise, double *P, double *dx, const d
     steep = tan(steep > 1.4 ? 1.4 : steep);
     const double variance = noise->heading * (1.0 + disturbance) * (1.0 + disturbance) +
                             noise->heading_samples * tilted * steep * steep;
-    const double weight = noise->dt * (noise->dip_variance / (noise->dip_variance + tilted));
+    const double weight = noise->dt_s * (noise->dip_variance / (noise->dip_variance + tilted));
     double lasted = (first || isnan(usual[2]) ? 0.0 : usual[2]) + weight;
-    lasted = lasted < noise->field_memory ? lasted : noise->field_memory;
+    lasted = lasted < noise->field_memory_s ? lasted : noise->field_memory_s;
     const double gain = weight / (lasted > 1e-12 ? lasted : 1e-12);
     learnt[0] = known + gain * (strength - known);
     learnt[1] = usual_dip + gain * off;
@@ -155,11 +155,11 @@ static void rested(const OrientationNoise *noise, double *P, double *dx, const O
     int near = 1;
     for (int i = 0; i < 6; i++) {
         const double now = i < 3 ? gyro[i] : force[i - 3], mean = before->calm[i];
-        near = near && fabs(now - mean) < (i < 3 ? noise->rest_rate : noise->rest_force);
+        near = near && fabs(now - mean) < (i < 3 ? noise->rest_rate_rad_s : noise->rest_force_m_s2);
         calm[i] = isfinite(now) ? mean + noise->calm * (now - mean) : mean;
     }
-    calm[6] = near ? before->calm[6] + noise->dt : 0.0;
-    const double variance = calm[6] >= noise->rest_after ? noise->rest_variance : NO_READING;
+    calm[6] = near ? before->calm[6] + noise->dt_s : 0.0;
+    const double variance = calm[6] >= noise->rest_after_s ? noise->rest_variance : NO_READING;
     for (int axis = 0; axis < 3; axis++) {
         const double apart = gyro[axis] - before->bias[axis];
         read_one(P, dx, 3 + axis, (isfinite(apart) ? apart : 0.0) - dx[3 + axis], variance);
@@ -167,18 +167,18 @@ static void rested(const OrientationNoise *noise, double *P, double *dx, const O
 }
 
 /* Phi P Phi' and the step's noise. */
-static void carried(const OrientationNoise *noise, const OrientationState *before, const double *rate, int turning,
+static void propagate(const OrientationNoise *noise, const OrientationState *before, const double *rate, int turning,
                     OrientationStep *step)
 {
     double half[SQUARE], across[SQUARE];
-    orientation_turned(noise, step, before->P, half);
+    orientation_transition(noise, step, before->P, half);
     transposed(half, across);
-    orientation_turned(noise, step, across, half);
+    orientation_transition(noise, step, across, half);
     for (int i = 0; i < ERRORS; i++) /* rounding that is not symmetric would grow */
         for (int j = 0; j < ERRORS; j++)
             step->prior[i * ERRORS + j] = 0.5 * (half[i * ERRORS + j] + half[j * ERRORS + i]);
     const double square = rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2];
-    const double turned_by = noise->dt * (turning ? square * noise->gyro_scale_noise + noise->gyro_noise : 1.0);
+    const double turned_by = noise->dt_s * (turning ? square * noise->gyro_scale_noise + noise->gyro_noise : 1.0);
     for (int i = 0; i < ERRORS; i++)
         step->prior[i * (ERRORS + 1)] += i < 3 ? turned_by : i < 6 ? noise->bias_walk : noise->accelerometer_noise;
 }
@@ -187,13 +187,13 @@ void orientation_step(const OrientationNoise *noise, const OrientationState *bef
                       const double *force, const double *mag, OrientationState *after, OrientationStep *step)
 {
     const int turning = finite3(gyro), forced = finite3(force);
-    const double up[3] = {0.0, 0.0, noise->gravity};
+    const double up[3] = {0.0, 0.0, noise->gravity_m_s2};
     double rate[3], turn[4], q[4], velocity[3], square = 0.0;
     for (int i = 0; i < 3; i++) {
         const double now = turning ? gyro[i] : before->bias[i];
         rate[i] = (noise->integrating ? now : 0.5 * (now + before->last[i])) - before->bias[i];
         after->last[i] = now;
-        velocity[i] = noise->dt * rate[i];
+        velocity[i] = noise->dt_s * rate[i];
     }
     turn_of(velocity, turn);
     product(before->quaternion, turn, q);
@@ -203,12 +203,12 @@ void orientation_step(const OrientationNoise *noise, const OrientationState *bef
         memcpy(step->force, up, sizeof up);
     for (int i = 0; i < 3; i++) {
         const double pushed = noise->integrating ? step->force[i] : 0.5 * (step->force[i] + before->last[3 + i]);
-        velocity[i] = before->velocity[i] + noise->dt * (pushed - up[i]);
+        velocity[i] = before->velocity[i] + noise->dt_s * (pushed - up[i]);
         after->last[3 + i] = step->force[i];
         square += step->force[i] * step->force[i];
     }
-    carried(noise, before, rate, turning, step);
-    const double size = sqrt(square) - noise->gravity;
+    propagate(noise, before, rate, turning, step);
+    const double size = sqrt(square) - noise->gravity_m_s2;
     const double present =
         size * size + noise->turning * (rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2]);
     after->movement = before->movement + noise->moved * (present - before->movement);
@@ -218,7 +218,7 @@ void orientation_step(const OrientationNoise *noise, const OrientationState *bef
     if (mag)
         headed(noise, after->P, step->dx, step->R, mag, before->field, after->field);
     memcpy(after->calm, before->calm, sizeof after->calm);
-    if (noise->resting != 0.0)
+    if (noise->resting)
         rested(noise, after->P, step->dx, before, gyro, force, after->calm);
     turn_of(step->dx, turn);
     product(turn, q, after->quaternion);

@@ -1,18 +1,26 @@
 /* A sensor's whole recording: the filter's steps and the backward pass of mbkf/imu/orientation_smoothing.py. */
-#include <math.h>
-#include <string.h>
-
 #include "orientation.h"
 
-static void written(const OrientationState *state, double *row)
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "call.h"
+
+/* A sample's place in the results. */
+typedef struct {
+    double *quaternion, *bias, *variances;
+} Row;
+
+static void write_row(const OrientationState *state, Row row)
 {
-    memcpy(row, state->quaternion, 4 * sizeof(double));
-    memcpy(row + 4, state->bias, 3 * sizeof(double));
+    memcpy(row.quaternion, state->quaternion, sizeof state->quaternion);
+    memcpy(row.bias, state->bias, sizeof state->bias);
     for (int i = 0; i < ERRORS; i++)
-        row[7 + i] = state->P[i * (ERRORS + 1)];
+        row.variances[i] = state->P[i * (ERRORS + 1)];
 }
 
-/* Lower factor of a symmetric positive matrix, in place; 0 where it is none. */
+/* Lower factor of a symmetric positive matrix, in place; 0 where it is not positive. */
 static int factored(double *A)
 {
     for (int j = 0; j < ERRORS; j++) {
@@ -53,7 +61,7 @@ static int smoothed_back(const OrientationNoise *noise, const OrientationState *
 {
     double gain[SQUARE], factor[SQUARE], sum[ERRORS], middle[SQUARE]; /* gain: C' = prior^-1 Phi P */
     memcpy(factor, next->prior, sizeof factor);
-    orientation_turned(noise, next, state->P, gain);
+    orientation_transition(noise, next, state->P, gain);
     if (!factored(factor))
         return 0;
     solved(factor, gain);
@@ -84,41 +92,56 @@ static int smoothed_back(const OrientationNoise *noise, const OrientationState *
     return 1;
 }
 
-/* The quaternion of a row turned by a correction, in the world. */
-static void corrected(const double *delta, const double *variances, double *row)
+/* A row's quaternion rotated by a correction in the world, and its bias and variances. */
+static void correct_row(const double *delta, const double *P, Row row)
 {
     const double half = 0.5 * sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]);
     const double share = 0.5 * (half > 0.0 ? sin(half) / half : 1.0);
     const double a[4] = {share * delta[0], share * delta[1], share * delta[2], cos(half)};
-    const double b[4] = {row[0], row[1], row[2], row[3]};
-    row[0] = a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1];
-    row[1] = a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0];
-    row[2] = a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3];
-    row[3] = a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2];
-    const double length = sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2] + row[3] * row[3]);
+    double b[4], *q = row.quaternion;
+    memcpy(b, q, sizeof b);
+    q[0] = a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1];
+    q[1] = a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0];
+    q[2] = a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3];
+    q[3] = a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2];
+    const double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     for (int i = 0; i < 4; i++)
-        row[i] /= length;
+        q[i] /= length;
     for (int i = 0; i < 3; i++)
-        row[4 + i] += delta[3 + i];
+        row.bias[i] += delta[3 + i];
     for (int i = 0; i < ERRORS; i++)
-        row[7 + i] = variances[i * (ERRORS + 1)];
+        row.variances[i] = P[i * (ERRORS + 1)];
 }
 
-int orientation_course(const OrientationNoise *noise, const OrientationState *start, int T, long stride,
-                       const double *gyro, const double *force, const double *mag, double *course,
-                       OrientationState *states, OrientationStep *steps)
+/* Readings and results of one sensor among N. */
+typedef struct {
+    int N, T;
+    const double *gyro, *force, *mag;
+    double *quaternions, *biases, *variances;
+} Course;
+
+static Row row_of(const Course *course, int k)
+{
+    const long at = (long)k * course->N;
+    return (Row){course->quaternions + 4 * at, course->biases + 3 * at, course->variances + ERRORS * at};
+}
+
+/* One sensor, smoothed unless states (T) and steps (T) are NULL; 0 where a covariance is not positive. */
+static int follow(const OrientationNoise *noise, const OrientationState *start, const Course *course,
+                  OrientationState *states, OrientationStep *steps)
 {
     OrientationState here = *start, after;
     OrientationStep step;
     double P[SQUARE], delta[ERRORS] = {0.0};
-    written(&here, course);
+    write_row(&here, row_of(course, 0));
     if (states)
         states[0] = here;
-    for (int k = 1; k < T; k++) {
-        const long at = k * stride;
-        orientation_step(noise, &here, gyro + at, force + at, mag ? mag + at : NULL, &after, &step);
+    for (int k = 1; k < course->T; k++) {
+        const long at = 3L * k * course->N;
+        orientation_step(noise, &here, course->gyro + at, course->force + at, course->mag ? course->mag + at : NULL,
+                         &after, &step);
         here = after;
-        written(&here, course + (long)k * COURSE_NUMBERS);
+        write_row(&here, row_of(course, k));
         if (states) {
             states[k] = here;
             steps[k] = step;
@@ -127,10 +150,39 @@ int orientation_course(const OrientationNoise *noise, const OrientationState *st
     if (!states)
         return 1;
     memcpy(P, here.P, sizeof P);
-    for (int k = T - 2; k >= 0; k--) {
+    for (int k = course->T - 2; k >= 0; k--) {
         if (!smoothed_back(noise, &states[k], &steps[k + 1], P, delta))
             return 0;
-        corrected(delta, P, course + (long)k * COURSE_NUMBERS);
+        correct_row(delta, P, row_of(course, k));
     }
     return 1;
+}
+
+int mbkf_orientation_course(int N, int T, const OrientationNoise *noise, const double *quaternion,
+                            const double *gyro_bias, const double *velocity, const double *P, const double *movement,
+                            const double *field, const double *calm, const double *last, const double *gyro,
+                            const double *specific_force, const double *magnetic_field, int smooth,
+                            double *quaternions, double *biases, double *variances)
+{
+    OrientationState *states = smooth ? malloc(sizeof *states * T) : NULL;
+    OrientationStep *steps = smooth ? malloc(sizeof *steps * T) : NULL;
+    int sound = !smooth || (states && steps);
+    if (!sound)
+        refuse(out_of_memory);
+    for (int n = 0; n < N && sound; n++) {
+        OrientationState start = {.movement = movement[n]};
+        const Course course = {N, T, gyro + 3 * n, specific_force + 3 * n, magnetic_field ? magnetic_field + 3 * n : NULL,
+                               quaternions + 4 * n, biases + 3 * n, variances + ERRORS * n};
+        memcpy(start.quaternion, quaternion + 4 * n, sizeof start.quaternion);
+        memcpy(start.bias, gyro_bias + 3 * n, sizeof start.bias);
+        memcpy(start.velocity, velocity + 3 * n, sizeof start.velocity);
+        memcpy(start.P, P + SQUARE * n, sizeof start.P);
+        memcpy(start.field, field + 3 * n, sizeof start.field);
+        memcpy(start.calm, calm + 7 * n, sizeof start.calm);
+        memcpy(start.last, last + 6 * n, sizeof start.last);
+        sound = follow(noise, &start, &course, states, steps);
+    }
+    free(states);
+    free(steps);
+    return sound;
 }

@@ -1,5 +1,5 @@
-/* Joints' rotations from neutral as readings of the configuration. */
-#include "posture.h"
+/* Joints' rotations from neutral as readings of the configuration, and their limits. */
+#include "tree.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,8 +19,8 @@ static void add_block(long nv, long first, int dofs, const double *residual, con
     }
 }
 
-void tree_posture(const Tree *tree, const double *residual, const double *jacobian, const double *weights,
-                  double *matrix, double *vector)
+void mbkf_posture_information(Tree *tree, const double *residual, const double *jacobian, const double *weights,
+                              double *matrix, double *vector)
 {
     const long nv = tree->nv;
     memset(matrix, 0, nv * nv * sizeof *matrix);
@@ -32,37 +32,38 @@ void tree_posture(const Tree *tree, const double *residual, const double *jacobi
     }
 }
 
-static int within(const double *turn, const double *lower, const double *upper)
+static int is_within(const double *angles, const double *lower, const double *upper)
 {
     for (int i = 0; i < 3; i++)
-        if (!(turn[i] >= lower[i] && turn[i] <= upper[i]))
+        if (!(angles[i] >= lower[i] && angles[i] <= upper[i]))
             return 0;
     return 1;
 }
 
-static int within_other_way_round(const double *turn, const double *lower, const double *upper)
+/* The same rotation by the other way round, beyond half a turn. */
+static int is_within_other_way_round(const double *angles, const double *lower, const double *upper)
 {
-    const double scale = 1.0 - 2.0 * acos(-1.0) / sqrt(dot3(turn, turn));
-    const double other[3] = {scale * turn[0], scale * turn[1], scale * turn[2]};
-    return within(other, lower, upper);
+    const double scale = 1.0 - 2.0 * acos(-1.0) / sqrt(dot3(angles, angles));
+    const double other[3] = {scale * angles[0], scale * angles[1], scale * angles[2]};
+    return is_within(other, lower, upper);
 }
 
-int tree_beyond(const Tree *tree, const double *deviation, const double *lower, const double *upper, double *beyond)
+int mbkf_limit_excess(Tree *tree, const double *angles, const double *lower, const double *upper, double *excess)
 {
-    int passed = 0;
-    memset(beyond, 0, tree->nv * sizeof *beyond);
+    int count = 0;
+    memset(excess, 0, tree->nv * sizeof *excess);
     for (int i = 1; i < tree->joints; i++) {
         const Joint *joint = &tree->joint[i];
         const int first = joint->at_v;
-        const double *turn = deviation + first, *low = lower + first, *high = upper + first;
-        int mine = 0;
+        const double *angle = angles + first, *low = lower + first, *high = upper + first;
+        int own = 0;
         for (int k = 0; k < joint->dofs; k++)
-            mine += turn[k] < low[k] || turn[k] > high[k];
-        if (!mine || (joint->kind == SPHERICAL && within_other_way_round(turn, low, high)))
+            own += angle[k] < low[k] || angle[k] > high[k];
+        if (!own || (joint->kind == SPHERICAL && is_within_other_way_round(angle, low, high)))
             continue;
-        passed += mine;
+        count += own;
         for (int k = 0; k < joint->dofs; k++)
-            beyond[first + k] = turn[k] < low[k] ? turn[k] - low[k] : turn[k] > high[k] ? turn[k] - high[k] : 0.0;
+            excess[first + k] = angle[k] < low[k] ? angle[k] - low[k] : angle[k] > high[k] ? angle[k] - high[k] : 0.0;
     }
-    return passed;
+    return count;
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "blas.h"
+#include "declared.h"
 
 #if defined(__GNUC__) && defined(__x86_64__)
 #define HAS_TILES 1
@@ -112,7 +113,9 @@ int product_is_own(void)
     return own;
 }
 
-void product_choose(int wanted) { own = wanted && possible(); }
+void mbkf_choose_products(int wanted) { own = wanted && possible(); }
+
+int mbkf_vector_bits(void) { return product_is_own() ? 512 : 0; }
 
 void product(int part, int rows, int columns, int inner, double factor, const double *A, int lda, const double *B,
              int ldb, double keep, const double *D, double *C, int ldc)

@@ -9,10 +9,7 @@ enum { WHOLE = 0, LOWER = 1 };
 void product(int part, int rows, int columns, int inner, double factor, const double *A, int lda, const double *B,
              int ldb, double keep, const double *D, double *C, int ldc);
 
-/* Whether product has instructions of its own here, rather than BLAS's. */
+/* True if products are made by 512-bit instructions here, and not by BLAS. */
 int product_is_own(void);
-
-/* Chooses: instructions of its own, where the processor has them, or BLAS's. */
-void product_choose(int wanted);
 
 #endif

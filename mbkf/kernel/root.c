@@ -8,8 +8,8 @@ static void in_root_axes(const double *frame, const double *force, double *colum
     cross(frame + 9, force, lever);
     for (int i = 0; i < 3; i++)
         moment[i] = force[3 + i] - lever[i];
-    turned_back(frame, force, parts);
-    turned_back(frame, moment, parts + 3);
+    rotated_back(frame, force, parts);
+    rotated_back(frame, moment, parts + 3);
     for (int i = 0; i < 6; i++)
         column[i * stride] = parts[i];
 }
@@ -19,31 +19,31 @@ static void add_turned(const Tree *tree, const double *wrench, double *by_q, lon
 {
     for (int i = 0; i < 6; i++) {
         double turning[6];
-        swung(tree->axes[i], wrench, turning);
+        cross_force(tree->axes[i], wrench, turning);
         for (int k = 0; k < 6; k++)
             by_q[i * stride + k] -= dot6(tree->axes[k], turning);
     }
 }
 
-void tree_root(Tree *tree, const double *q, const double *v, const double *a, const double *wrench, double *residual,
-               double *by_state)
+void mbkf_root_dynamics(Tree *tree, const double *q, const double *v, const double *a, const double *wrench,
+                        double *residual, double *by_state)
 {
     const long nv = tree->nv, stride = 3 * nv + 12;
     const double *frame = tree->frames + 12;
     double left[6];
-    tree_differentiated(tree, q, v, a);
+    tree_force_derivatives(tree, q, v, a);
     for (long k = 0; k < nv; k++) {
         Derivative *by = &tree->by[k];
         if (k >= 6) /* forces turn with these dofs and the root's axes do not */
             for (int i = 0; i < 6; i++)
-                by->force_by_q[i] += by->swung[i];
+                by->force_by_q[i] += by->turned_force[i];
         in_root_axes(frame, by->force_by_q, by_state + k, stride);
         in_root_axes(frame, by->force_by_v, by_state + nv + k, stride);
         in_root_axes(frame, by->force_by_a, by_state + 2 * nv + k, stride);
     }
     for (int i = 0; i < 6; i++) {
         double *by_wrench = by_state + i * stride + 3 * nv;
-        left[i] = tree->carried[1].force[i] - wrench[i];
+        left[i] = tree->composite[1].force[i] - wrench[i];
         for (int k = 0; k < 6; k++)
             by_wrench[k] = by_wrench[6 + k] = -tree->axes[i][k];
     }

@@ -13,7 +13,7 @@ static inline void cross_matrix(const double *w, double *W)
     W[3] = w[2], W[6] = -w[1], W[7] = w[0];
 }
 
-static inline void multiplied(const double *A, const double *B, double *C)
+static inline void matrix_product(const double *A, const double *B, double *C)
 {
     for (int i = 0; i < 9; i += 3)
         for (int j = 0; j < 3; j++)
@@ -21,7 +21,7 @@ static inline void multiplied(const double *A, const double *B, double *C)
 }
 
 /* 1 + a [w]x + b [w]x [w]x. */
-static inline void series(const double *w, double a, double b, double *sum)
+static inline void rotation_series(const double *w, double a, double b, double *sum)
 {
     const double square = dot3(w, w);
     cross_matrix(w, sum);
@@ -30,7 +30,7 @@ static inline void series(const double *w, double a, double b, double *sum)
             sum[3 * i + j] = a * sum[3 * i + j] + b * w[i] * w[j] + (i == j ? 1.0 - b * square : 0.0);
 }
 
-/* Coefficients of the exponential's series: sin t / t, (1 - cos t) / t^2, (t - sin t) / t^3. */
+/* Coefficients of the quaternion_of's rotation_series: sin t / t, (1 - cos t) / t^2, (t - sin t) / t^3. */
 static inline void coefficients(const double *w, double c[3])
 {
     const double square = dot3(w, w), t = sqrt(square), half = sin(0.5 * t);
@@ -46,7 +46,7 @@ static inline void coefficients(const double *w, double c[3])
 }
 
 /* product = p q of unit quaternions, of unit length. */
-static inline void joined(const double *p, const double *q, double *product)
+static inline void quaternion_product(const double *p, const double *q, double *product)
 {
     const double x = p[3] * q[0] + p[0] * q[3] + p[1] * q[2] - p[2] * q[1];
     const double y = p[3] * q[1] - p[0] * q[2] + p[1] * q[3] + p[2] * q[0];
@@ -57,7 +57,7 @@ static inline void joined(const double *p, const double *q, double *product)
 }
 
 /* Quaternion of a rotation vector. */
-static inline void exponential(const double *w, double *q)
+static inline void quaternion_of(const double *w, double *q)
 {
     const double square = dot3(w, w), t = sqrt(square);
     const double share = t < 1e-3 ? 0.5 - square / 48.0 : sin(0.5 * t) / t;
@@ -67,14 +67,14 @@ static inline void exponential(const double *w, double *q)
 }
 
 /* Rotation vector of a quaternion, of at most half a turn, and its derivative by a turn in its own axes. */
-static inline void logarithm(const double *q, double *w, double *jacobian)
+static inline void rotation_vector_of(const double *q, double *w, double *jacobian)
 {
     const double n = sqrt(dot3(q, q)), sign = q[3] < 0.0 ? -1.0 : 1.0, t = 2.0 * atan2(n, sign * q[3]);
     const double share = sign * (n < 1e-12 ? 2.0 : t / n), square = t * t;
     for (int i = 0; i < 3; i++)
         w[i] = share * q[i];
     const double along = t < 1e-2 ? 1.0 - square / 12.0 * (1.0 + square / 60.0) : 0.5 * t / tan(0.5 * t);
-    series(w, 0.5, t < 1e-2 ? 1.0 / 12.0 + square / 720.0 : (1.0 - along) / square, jacobian);
+    rotation_series(w, 0.5, t < 1e-2 ? 1.0 / 12.0 + square / 720.0 : (1.0 - along) / square, jacobian);
 }
 
 #endif

@@ -1,27 +1,36 @@
-/* The backward pass as mbkf/numerics/smoothing.py states it, in products that leave out what is zero: a transition
- * couples a joint's dofs alone, readings tell of the first components and of a few rows. */
-#include "smoothing.h"
-
+/* Backward pass of a smoother in its curvature L, as mbkf/numerics/smoothing.py computes it with whole matrices. Products
+ * with zeros are left out: a transition couples a joint's dofs alone, readings are of the first components and of a few
+ * rows, whose columns are bands (bands.h). */
 #include <string.h>
 
 #include "bands.h"
+#include "call.h"
+#include "declared.h"
+#include "joints.h"
 #include "product.h"
 #include "symmetric.h"
 #include "vectorised.h"
 
-/* The rows of one joint: of A' L to `carried`, of B' L to `pushed`. */
-VECTORISED static void joint_rows_before(int first, int dofs, int N, const Rates *phi, const double *L, double *carried,
+/* Phi of mbkf/numerics/rate_transition.py: A, B (nv x nv), joints (J x 2), push (orders), rates (orders x orders). */
+typedef struct {
+    int nv, orders, J;
+    const double *A, *B, *push, *rates;
+    const int *joints;
+} Transition;
+
+/* Rows of one joint: of A' L to `out`, of B' L to `pushed`. */
+VECTORISED static void joint_rows_before(int first, int end, int N, const Transition *phi, const double *L, double *out,
                                          double *pushed)
 {
-    for (int i = first; i < first + dofs; i++) {
-        double *c = carried + (long)i * N, *p = pushed + (long)i * N;
-        memset(c, 0, sizeof(double) * N);
+    for (int i = first; i < end; i++) {
+        double *o = out + (long)i * N, *p = pushed + (long)i * N;
+        memset(o, 0, sizeof(double) * N);
         memset(p, 0, sizeof(double) * N);
-        for (int k = first; k < first + dofs; k++) {
+        for (int k = first; k < end; k++) {
             const double a = phi->A[k * phi->nv + i], b = phi->B[k * phi->nv + i];
             const double *l = L + (long)k * N;
             for (int j = 0; j < N; j++) {
-                c[j] += a * l[j];
+                o[j] += a * l[j];
                 p[j] += b * l[j];
             }
         }
@@ -29,11 +38,11 @@ VECTORISED static void joint_rows_before(int first, int dofs, int N, const Rates
 }
 
 /* out = Phi' L, row by row. */
-VECTORISED static void rows_before(int N, const double *L, const Rates *phi, double *out, double *pushed)
+VECTORISED static void rows_before(int N, const double *L, const Transition *phi, double *out, double *pushed)
 {
     const int nv = phi->nv, orders = phi->orders;
     const long rest = (long)(1 + orders) * nv * N;
-    for (int k = 0; k < phi->n_joints; k++)
+    for (int k = 0; k < phi->J; k++)
         joint_rows_before(phi->joints[2 * k], phi->joints[2 * k + 1], N, phi, L, out, pushed);
     for (int order = 0; order < orders; order++) {
         double *o = out + (long)(1 + order) * nv * N;
@@ -50,25 +59,33 @@ VECTORISED static void rows_before(int N, const double *L, const Rates *phi, dou
     memcpy(out + rest, L + rest, sizeof(double) * ((long)N * N - rest));
 }
 
-long motion_work(int N, int nv) { return (long)N * (N + nv); }
-
-void curvature_before_motion(int N, const double *L, const Rates *phi, double *before, double *work)
+void mbkf_curvature_before_motion(int N, int nv, int J, int orders, const double *L, const double *A, const double *B,
+                                  const int *joints, const double *push, const double *rates, double *before)
 {
-    rows_before(N, L, phi, before, work + (long)N * N);
-    transpose(N, before, work);
-    rows_before(N, work, phi, before, work + (long)N * N);
+    const Transition phi = {nv, orders, J, A, B, push, rates, joints};
+    double *turned = are_all_dofs(J, joints, nv) ? workspace((long)N * (N + nv)) : NULL;
+    if (!turned)
+        return;
+    double *pushed = turned + (long)N * N;
+    rows_before(N, L, &phi, before, pushed);
+    transpose(N, before, turned);
+    rows_before(N, turned, &phi, before, pushed);
 }
 
-void smoothed_covariance(int N, const double *P, const double *L, double *smoothed, double *LP, double *work)
+/* Column by column, P L row by row is L P. */
+void mbkf_smoothed_covariance(int N, const double *P, const double *L, double *smoothed, double *PL)
 {
-    product(WHOLE, N, N, N, 1.0, L, N, P, N, 0.0, NULL, LP, N);
-    transpose(N, LP, work);
-    product(LOWER, N, N, N, -1.0, P, N, work, N, 1.0, P, smoothed, N);
+    double *turned = workspace((long)N * N);
+    if (!turned)
+        return;
+    product(WHOLE, N, N, N, 1.0, L, N, P, N, 0.0, NULL, PL, N);
+    transpose(N, PL, turned);
+    product(LOWER, N, N, N, -1.0, P, N, turned, N, 1.0, P, smoothed, N);
     mirror(N, smoothed);
 }
 
-/* Z = L P + M smoothed / 2 (column by column); R: rows' transpose; S: (N x m) to work in. */
-static void half_told(int N, const double *smoothed, const double *LP, int n, const double *information, int m,
+/* Z = L P + M smoothed / 2 (column by column); R: rows' transpose; S: (N x m), working memory. */
+static void half_before(int N, const double *smoothed, const double *LP, int n, const double *information, int m,
                       const double *rows, const double *R, double *S, double *Z)
 {
     memcpy(Z, LP, sizeof(double) * N * N);
@@ -84,14 +101,15 @@ static void half_told(int N, const double *smoothed, const double *LP, int n, co
     }
 }
 
-long readings_work(int N, int m) { return (long)N * (N + 2L * m); }
-
-void curvature_before_readings(int N, const double *L, const double *smoothed, const double *LP, int n,
-                               const double *information, int m, const double *rows, double *before, double *work)
+void mbkf_curvature_before_readings(int N, int n, int m, const double *L, const double *smoothed, const double *PL,
+                                    const double *information, const double *rows, double *before)
 {
-    double *Z = work, *R = Z + (long)N * N, *S = R + (long)N * m;
+    double *Z = workspace((long)N * (N + 2L * m));
+    if (!Z)
+        return;
+    double *R = Z + (long)N * N, *S = R + (long)N * m;
     transposed(N, m, rows, N, R);
-    half_told(N, smoothed, LP, n, information, m, rows, R, S, Z);
+    half_before(N, smoothed, PL, n, information, m, rows, R, S, Z);
     /* Half of the sum, whose transpose is added at the end. */
     product(WHOLE, N, n, n, -1.0, Z, N, information, n, 0.5, L, before, N);
     for (long i = (long)n * N; i < (long)N * N; i++)

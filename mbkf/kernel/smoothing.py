@@ -1,4 +1,4 @@
-"""Backward pass of a smoother by the compiled kernel (``smoothing.c``), which leaves out what is zero in Φ and Λ."""
+"""Backward pass of a smoother by the compiled kernel (``smoothing.c``), which leaves out zeros of Φ and Λ."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from mbkf.numerics.smoothing import BackwardPass
 
 
 class SparseBackwardPass(BackwardPass):
-    """A :class:`mbkf.numerics.smoothing.BackwardPass` that is told readings and transitions by their parts.
+    """A :class:`mbkf.numerics.smoothing.BackwardPass` that takes readings and transitions by their parts.
 
-    Where there is no kernel, the parts are put together.
+    Without a kernel, the parts are assembled.
     """
 
     def __init__(self, size: int, covariances: bool = True) -> None:
@@ -21,7 +21,7 @@ class SparseBackwardPass(BackwardPass):
         self._kernel = library() if covariances else None
         self._of: Array | None = None
         if self._kernel is not None:  # fresh memory costs more than the products that go there
-            self._smoothed, self._product, self._spare = np.empty((3, size, size))
+            self._smoothed, self._PL, self._spare = np.empty((3, size, size))
 
     def covariance(self, P: Array) -> Array:
         """(N, N) smoothed covariance of a frame with posterior covariance P.
@@ -35,13 +35,13 @@ class SparseBackwardPass(BackwardPass):
         return self._smoothed.copy()
 
     def _smooth(self, P: Array, curvature: Array) -> None:
-        """Works out P − P L P and L P; kept, since a frame's answer and its readings both need them."""
+        """Works out P − P L P and P L; kept, since a frame's answer and its readings both need them."""
         if self._of is not P and self._kernel is not None:
-            self._kernel.smoothed(P, curvature, self._smoothed, self._product)
+            self._kernel.smoothed_covariance(P, curvature, self._smoothed, self._PL)
             self._of = P
 
     def _swap(self) -> None:
-        """The curvature is what was worked out in the spare memory."""
+        """The curvature worked out in the spare memory becomes the current one."""
         if self.curvature is not None:
             self._spare, self.curvature, self._of = self.curvature, self._spare, None
 
@@ -65,7 +65,9 @@ class SparseBackwardPass(BackwardPass):
         if self.curvature is not None and self._kernel is not None:
             self._smooth(P, self.curvature)
             known = matrix, np.ascontiguousarray(rows)
-            self._kernel.before_readings(self.curvature, self._smoothed, self._product, *known, self._spare)
+            self._kernel.curvature_before_readings(
+                self.curvature, self._smoothed, self._PL, *known, self._spare
+            )
             self._swap()
         kept = self.gradient - vector
         change = P @ kept
@@ -80,7 +82,7 @@ class SparseBackwardPass(BackwardPass):
         self.gradient = transition.backward(self.gradient)
         if self.curvature is not None and self._kernel is not None:
             A, B = np.ascontiguousarray(transition.A), np.ascontiguousarray(transition.B)
-            self._kernel.before_motion(
+            self._kernel.curvature_before_motion(
                 self.curvature, A, B, transition.joints, transition.push, transition.rates, self._spare
             )
             self._swap()

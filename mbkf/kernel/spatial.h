@@ -20,7 +20,7 @@ static inline double dot3(const double *a, const double *b) { return a[0] * b[0]
 static inline double dot6(const double *a, const double *b) { return dot3(a, b) + dot3(a + 3, b + 3); }
 
 /* Motion b as a motion m carries it along: m x b. */
-static inline void carried(const double *m, const double *b, double *c)
+static inline void cross_motion(const double *m, const double *b, double *c)
 {
     double x[3], y[3];
     cross(m + 3, b, x);
@@ -31,7 +31,7 @@ static inline void carried(const double *m, const double *b, double *c)
 }
 
 /* Force f as a motion m carries it along: m x* f. */
-static inline void swung(const double *m, const double *f, double *c)
+static inline void cross_force(const double *m, const double *f, double *c)
 {
     double x[3], y[3];
     cross(m + 3, f, c);
@@ -56,13 +56,13 @@ static inline void momentum(const Inertia *inertia, const double *m, double *f)
 }
 
 /* c = R b of a matrix whose columns stand one after the other, and R' b. */
-static inline void turned(const double *R, const double *b, double *c)
+static inline void rotated(const double *R, const double *b, double *c)
 {
     for (int i = 0; i < 3; i++)
         c[i] = R[i] * b[0] + R[3 + i] * b[1] + R[6 + i] * b[2];
 }
 
-static inline void turned_back(const double *R, const double *b, double *c)
+static inline void rotated_back(const double *R, const double *b, double *c)
 {
     for (int i = 0; i < 3; i++)
         c[i] = dot3(R + 3 * i, b);

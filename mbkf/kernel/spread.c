@@ -1,12 +1,28 @@
-/* Variances that a state's errors give to what is read off it: diagonals of T S T' without S and without its square.
- * P is symmetric, which halves T P T', and W is a triangle. Matrices stand column by column. */
-#include "spread.h"
-
+/* Parts of the covariance of a state's errors (mbkf/filters/error_covariance.py),
+ *
+ *     E = S P S + C' skin + rows' rows,   S = diag(size), C' built of the inverse of one frame's information,
+ *
+ * without E itself: its diagonal, the diagonals of T E T' and U E U', and blocks of three components. P is symmetric,
+ * which halves T S P S T'; the inverse is W'W with a triangle W. Matrices stand column by column. */
 #include <string.h>
 
+#include "call.h"
+#include "declared.h"
 #include "factor.h"
 #include "product.h"
 #include "vectorised.h"
+
+/* Errors of a state (q, v, a, rest) of N components. */
+typedef struct {
+    int N, nv;
+    const double *P, *information; /* (N x N), (nv x nv) */
+    int n_seen;
+    const int *seen;    /* dofs that markers observe */
+    const double *size; /* (N) diagonal of S */
+    double skin, rate;  /* variance of the markers' skin, and its rate of movement */
+    int n_rows;
+    const double *rows; /* (n_rows x N), row by row */
+} Errors;
 
 enum { BLOCK = 24 };
 
@@ -26,7 +42,7 @@ VECTORISED static void inverted(int n, const double *L, double *W)
     }
 }
 
-/* sum of x[i] y[i] */
+/* x . y */
 VECTORISED static double dot(int n, const double *x, const double *y)
 {
     double sum[4] = {0.0, 0.0, 0.0, 0.0};
@@ -47,9 +63,9 @@ VECTORISED static void gather(int n, int columns, double factor, const double *x
             total[i] += factor * x[i] * y[i];
 }
 
-long root_work(int nv) { return 2L * nv * nv; }
-
-int error_diagonal(const Errors *e, double *root, double *diagonal, double *work)
+/* diagonal (N) of the errors' covariance, and root (n_seen x nv): W, column by column, 0 in columns that are not seen.
+ * Returns 1 if the information has no factor. work: 2 nv^2 numbers. */
+static int error_diagonal(const Errors *e, double *root, double *diagonal, double *work)
 {
     const int n = e->n_seen, nv = e->nv, N = e->N;
     double *L = work, *W = work + (long)n * n;
@@ -75,8 +91,6 @@ int error_diagonal(const Errors *e, double *root, double *diagonal, double *work
     return 0;
 }
 
-long error_work(int m, int n, int nv) { return (long)m * (n + 2L * nv + 2 * BLOCK); }
-
 /* variance += diagonal of T P T' for T (m x n): what stands left of P's diagonal counts twice. Y: (m x BLOCK) */
 static void symmetric_form(int m, int n, const double *T, int N, const double *P, double *variance, double *Y)
 {
@@ -90,8 +104,8 @@ static void symmetric_form(int m, int n, const double *T, int N, const double *P
     }
 }
 
-/* What positions and accelerations, which swing in opposition, and velocities between them make of T: (2 m x nv). */
-VECTORISED static void swung(int m, int n, int nv, double rate, const double *T, double *parts)
+/* T on an oscillation: positions and accelerations, which are in opposition, and velocities between them: (2 m x nv). */
+VECTORISED static void oscillation(int m, int n, int nv, double rate, const double *T, double *parts)
 {
     const int has_v = n >= 2 * nv, has_a = n >= 3 * nv;
     for (int j = 0; j < nv; j++) {
@@ -138,14 +152,18 @@ VECTORISED static void added(int m, double factor, const double *x, double *y)
         y[i] += factor * x[i];
 }
 
-void error_of(const Errors *e, const double *root, int m, int n, const double *T, double *variance, double *work)
+static long error_work(int m, int n, int nv) { return (long)m * (n + 2L * nv + 2 * BLOCK); }
+
+/* variance (m) of quantities T (m x n, column by column) of the first n components. work: error_work numbers. */
+static void error_of(const Errors *e, const double *root, int m, int n, const double *T, double *variance,
+                     double *work)
 {
     double *sized = work, *parts = sized + (long)m * n, *Y = parts + 2L * m * e->nv;
     memset(variance, 0, sizeof(double) * m);
     scaled(m, n, e->size, T, sized);
     symmetric_form(m, n, sized, e->N, e->P, variance, Y);
     if (e->n_seen && e->skin > 0.0) {
-        swung(m, n, e->nv, e->rate, T, parts);
+        oscillation(m, n, e->nv, e->rate, T, parts);
         repeated(e, root, m, parts, variance, Y);
     }
     for (int k = 0; k < e->n_rows; k++) {
@@ -162,7 +180,8 @@ void error_of(const Errors *e, const double *root, int m, int n, const double *T
     }
 }
 
-void error_blocks(const Errors *e, const double *root, int n_blocks, const int *first, double *blocks)
+/* blocks (n_blocks x 3 x 3) of the errors' covariance, of three components of q each, from `first` on. */
+static void error_blocks(const Errors *e, const double *root, int n_blocks, const int *first, double *blocks)
 {
     const int n = e->n_seen;
     for (int b = 0; b < n_blocks; b++)
@@ -172,4 +191,20 @@ void error_blocks(const Errors *e, const double *root, int n_blocks, const int *
                 blocks[9 * b + 3 * i + j] = e->P[(long)p * e->N + q] * e->size[p] * e->size[q] +
                                             e->skin * dot(n, root + (long)p * n, root + (long)q * n);
             }
+}
+
+int mbkf_error_variances(int N, int nv, int s, int k, int m, int n, int l, int p, int b, const double *P,
+                         const double *information, const int *seen, const double *size, double skin, double rate,
+                         const double *rows, const double *T, const double *U, const int *first, double *diagonal,
+                         double *of_T, double *of_U, double *blocks)
+{
+    const Errors e = {N, nv, P, information, s, seen, size, skin, rate, k, rows};
+    const long square = (long)nv * nv;
+    double *root = workspace(3 * square + error_work(m, n, nv) + error_work(l, p, nv));
+    if (!root || error_diagonal(&e, root, diagonal, root + square))
+        return 1;
+    error_of(&e, root, m, n, T, of_T, root + square);
+    error_of(&e, root, l, p, U, of_U, root + square);
+    error_blocks(&e, root, b, first, blocks);
+    return 0;
 }

@@ -4,11 +4,9 @@
  * and not J_i. A dof k before i, or of the same joint, turns both alike; besides, f changes by Y (acceleration by k) +
  * D (velocity by k) as in dynamics.c, and J_i . Y s = s . Y J_i, J_i . D s = s . D'J_i. Dofs of which neither is before
  * the other do not meet. */
-#include "torques.h"
+#include "dynamics.h"
 
 #include <string.h>
-
-#include "dynamics.h"
 
 /* X J_k with (J_k x J_i) . w = J_i' X J_k: what a turn by dof k changes (_turned_wrench of newton_euler.py). */
 static void turned_wrench(const double *w, const double *column, double *found)
@@ -22,11 +20,11 @@ static void turned_wrench(const double *w, const double *column, double *found)
 }
 
 /* Angular part of D'J; the linear part is zero. */
-static void gyrated(const Carried *one, const double *axis, double *found)
+static void gyrated(const Composite *one, const double *axis, double *found)
 {
     double across[3];
     cross(one->impulse, axis, across);
-    turned_back(one->gyration, axis + 3, found);
+    rotated_back(one->gyration, axis + 3, found);
     for (int i = 0; i < 3; i++)
         found[i] += 2.0 * across[i];
 }
@@ -38,7 +36,7 @@ static void meet(const Tree *tree, const Joint *joint, int same, int i, const do
     const Derivative *of = &tree->by[i];
     double whole[6];
     for (int c = 0; c < 6; c++)
-        whole[c] = of->force_by_q[c] + of->swung[c];
+        whole[c] = of->force_by_q[c] + of->turned_force[c];
     for (int k = joint->at_v; k < joint->at_v + joint->dofs; k++) {
         const Derivative *by = &tree->by[k];
         const double *axis = tree->axes[k];
@@ -55,7 +53,7 @@ static void meet(const Tree *tree, const Joint *joint, int same, int i, const do
 }
 
 /* Takes the feet's wrenches off. */
-static void unload(const Tree *tree, const int *moves, const double *wrenches, double *tau)
+static void unload(const Tree *tree, const char *moves, const double *wrenches, double *tau)
 {
     for (int foot = 0; foot < 2; foot++)
         for (int k = 0; k < tree->nv; k++)
@@ -64,7 +62,7 @@ static void unload(const Tree *tree, const int *moves, const double *wrenches, d
 }
 
 /* by_state for one foot: its wrench stands still when dofs before turn an axis. */
-static void unload_derivatives(const Tree *tree, const int *own, const double *w, double *by_state, double *by_wrench)
+static void unload_derivatives(const Tree *tree, const char *own, const double *w, double *by_state, double *by_wrench)
 {
     const long nv = tree->nv;
     for (int n = 1; n < tree->joints; n++) {
@@ -83,27 +81,27 @@ static void unload_derivatives(const Tree *tree, const int *own, const double *w
     }
 }
 
-void tree_tau(Tree *tree, const double *q, const double *v, const double *a, const int *moves, const double *wrenches,
-              double *tau)
+void mbkf_generalised_forces(Tree *tree, const double *q, const double *v, const double *a, const char *moves,
+                             const double *wrenches, double *tau)
 {
-    tree_loaded(tree, q, v, a);
+    tree_forces(tree, q, v, a);
     for (int n = 1; n < tree->joints; n++) {
         const Joint *joint = &tree->joint[n];
         for (int k = joint->at_v; k < joint->at_v + joint->dofs; k++)
-            tau[k] = dot6(tree->axes[k], tree->carried[n].force);
+            tau[k] = dot6(tree->axes[k], tree->composite[n].force);
     }
     unload(tree, moves, wrenches, tau);
 }
 
-void tree_torques(Tree *tree, const double *q, const double *v, const double *a, const int *moves,
-                  const double *wrenches, double *tau, double *by_state)
+void mbkf_torque_derivatives(Tree *tree, const double *q, const double *v, const double *a, const char *moves,
+                             const double *wrenches, double *tau, double *by_state, double *jacobian)
 {
     const long nv = tree->nv, block = nv * nv;
     memset(by_state, 0, sizeof(double) * nv * (3 * nv + 12));
-    tree_differentiated(tree, q, v, a);
+    tree_force_derivatives(tree, q, v, a);
     for (int n = 1; n < tree->joints; n++) {
         const Joint *joint = &tree->joint[n];
-        const Carried *one = &tree->carried[n];
+        const Composite *one = &tree->composite[n];
         for (int i = joint->at_v; i < joint->at_v + joint->dofs; i++) {
             double gyration[3];
             tau[i] = dot6(tree->axes[i], one->force);
@@ -116,4 +114,5 @@ void tree_torques(Tree *tree, const double *q, const double *v, const double *a,
     unload(tree, moves, wrenches, tau);
     for (int foot = 0; foot < 2; foot++)
         unload_derivatives(tree, moves + foot * nv, wrenches + 6 * foot, by_state, by_state + 3 * block + 6 * foot * nv);
+    memcpy(jacobian, tree->axes, sizeof *tree->axes * nv);
 }

@@ -1,43 +1,77 @@
 /* Places and axes of a tree's joints, from the root to the leaves. */
 #include "tree.h"
 
+#include "call.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-Tree *tree_made(int joints, int nq, int nv)
+/* A joint from its row of each array; 0 where it exceeds the tree's sizes. */
+static int is_filled(Tree *tree, int i, int parent, int kind, int first_q, int first_v)
+{
+    static const int dofs[] = {6, 3, 1}, components[] = {7, 4, 1};
+    Joint *joint = &tree->joint[i];
+    joint->parent = parent, joint->kind = kind, joint->at_q = first_q, joint->at_v = first_v, joint->dofs = dofs[kind];
+    return parent < i && first_q + components[kind] <= tree->nq && first_v + dofs[kind] <= tree->nv;
+}
+
+Tree *mbkf_make_tree(int joints, int nq, int nv, const int *parent, const int *kind, const int *first_q,
+                     const int *first_v, const double *axis, const double *rotation, const double *origin,
+                     const double *mass, const double *lever, const double *inertia, const double *gravity)
 {
     Tree *tree = calloc(1, sizeof *tree);
-    if (!tree)
+    if (!tree) {
+        refuse(out_of_memory);
         return NULL;
+    }
     tree->joints = joints, tree->nq = nq, tree->nv = nv;
     tree->joint = calloc(joints, sizeof *tree->joint);
     tree->frames = calloc(joints, 12 * sizeof *tree->frames);
     tree->axes = calloc(nv, sizeof *tree->axes);
     tree->motion = calloc(nv, sizeof *tree->motion);
-    tree->carried = calloc(joints, sizeof *tree->carried);
+    tree->composite = calloc(joints, sizeof *tree->composite);
     tree->by = calloc(nv, sizeof *tree->by);
-    if (!tree->joint || !tree->frames || !tree->axes || !tree->motion || !tree->carried || !tree->by) {
-        tree_freed(tree);
+    int sound = tree->joint && tree->frames && tree->axes && tree->motion && tree->composite && tree->by;
+    if (!sound)
+        refuse(out_of_memory);
+    for (int i = 1; sound && i < joints; i++) {
+        Joint *joint = &tree->joint[i];
+        memcpy(joint->axis, axis + 3 * i, sizeof joint->axis);
+        for (int row = 0; row < 3; row++)
+            for (int column = 0; column < 3; column++)
+                joint->rotation[3 * column + row] = rotation[9 * i + 3 * row + column];
+        memcpy(joint->origin, origin + 3 * i, sizeof joint->origin);
+        joint->mass = mass[i];
+        memcpy(joint->lever, lever + 3 * i, sizeof joint->lever);
+        memcpy(joint->inertia, inertia + 9 * i, sizeof joint->inertia);
+        if (!is_filled(tree, i, parent[i], kind[i], first_q[i], first_v[i]) || kind[1] != FREE) {
+            refuse("the joints do not make a tree with a free root");
+            sound = 0;
+        }
+    }
+    if (!sound) {
+        mbkf_free_tree(tree);
         return NULL;
     }
+    memcpy(tree->gravity, gravity, sizeof tree->gravity);
     tree->frames[0] = tree->frames[4] = tree->frames[8] = 1.0;
     return tree;
 }
 
-void tree_freed(Tree *tree)
+void mbkf_free_tree(Tree *tree)
 {
     free(tree->joint);
     free(tree->frames);
     free(tree->axes);
     free(tree->motion);
-    free(tree->carried);
+    free(tree->composite);
     free(tree->by);
     free(tree);
 }
 
 /* Rotation of a unit quaternion x y z w. */
-static void turn_of_quaternion(const double *q, double *R)
+static void rotation_of_quaternion(const double *q, double *R)
 {
     const double x = q[0], y = q[1], z = q[2], w = q[3];
     R[0] = 1.0 - 2.0 * (y * y + z * z), R[1] = 2.0 * (x * y + z * w), R[2] = 2.0 * (x * z - y * w);
@@ -46,7 +80,7 @@ static void turn_of_quaternion(const double *q, double *R)
 }
 
 /* Rotation by an angle about a unit axis. */
-static void turn_of_hinge(const double *n, double angle, double *R)
+static void rotation_of_hinge(const double *n, double angle, double *R)
 {
     const double c = cos(angle), s = sin(angle), rest = 1.0 - c;
     R[0] = c + rest * n[0] * n[0], R[1] = rest * n[0] * n[1] + s * n[2], R[2] = rest * n[0] * n[2] - s * n[1];
@@ -57,27 +91,27 @@ static void turn_of_hinge(const double *n, double angle, double *R)
 static void place(const Joint *joint, const double *q, const double *parent, double *frame)
 {
     double own[9], before[9], at[3];
-    memcpy(at, joint->shift, sizeof at);
+    memcpy(at, joint->origin, sizeof at);
     if (joint->kind == FREE) {
         double moved[3];
-        turned(joint->turn, q, moved);
+        rotated(joint->rotation, q, moved);
         for (int i = 0; i < 3; i++)
             at[i] += moved[i];
-        turn_of_quaternion(q + 3, own);
+        rotation_of_quaternion(q + 3, own);
     } else if (joint->kind == SPHERICAL)
-        turn_of_quaternion(q, own);
+        rotation_of_quaternion(q, own);
     else
-        turn_of_hinge(joint->axis, q[0], own);
+        rotation_of_hinge(joint->axis, q[0], own);
     for (int i = 0; i < 9; i += 3)
-        turned(parent, joint->turn + i, before + i);
+        rotated(parent, joint->rotation + i, before + i);
     for (int i = 0; i < 9; i += 3)
-        turned(before, own + i, frame + i);
-    turned(parent, at, frame + 9);
+        rotated(before, own + i, frame + i);
+    rotated(parent, at, frame + 9);
     for (int i = 0; i < 3; i++)
         frame[9 + i] += parent[9 + i];
 }
 
-/* Velocity by a turn about an axis through a frame's origin. */
+/* Velocity by a rotation about an axis through a frame's origin. */
 static void turning(const double *frame, const double *axis, double *column)
 {
     memcpy(column + 3, axis, 3 * sizeof *column);
@@ -88,7 +122,7 @@ static void move(const Joint *joint, const double *frame, double (*columns)[6])
 {
     if (joint->kind == HINGE) {
         double axis[3];
-        turned(frame, joint->axis, axis);
+        rotated(frame, joint->axis, axis);
         turning(frame, axis, columns[0]);
         return;
     }
@@ -101,7 +135,7 @@ static void move(const Joint *joint, const double *frame, double (*columns)[6])
         turning(frame, frame + 3 * i, columns[i]);
 }
 
-void tree_placed(Tree *tree, const double *q)
+void tree_place(Tree *tree, const double *q)
 {
     for (int i = 1; i < tree->joints; i++) {
         const Joint *joint = &tree->joint[i];
@@ -111,11 +145,22 @@ void tree_placed(Tree *tree, const double *q)
     }
 }
 
-void tree_rise(const Tree *tree, int joint, double *rise)
+void mbkf_frames_and_jacobian(Tree *tree, const double *q, double *frames, double *jacobian)
 {
-    const double x = tree->frames[12 * joint + 9], y = tree->frames[12 * joint + 10];
-    memset(rise, 0, sizeof *rise * tree->nv);
-    for (int i = joint; i; i = tree->joint[i].parent)
-        for (int k = tree->joint[i].at_v; k < tree->joint[i].at_v + tree->joint[i].dofs; k++)
-            rise[k] = tree->axes[k][3] * y - tree->axes[k][4] * x + tree->axes[k][2];
+    tree_place(tree, q);
+    memcpy(frames, tree->frames, sizeof(double) * 12 * tree->joints);
+    memcpy(jacobian, tree->axes, sizeof *tree->axes * tree->nv);
+}
+
+/* Height of a point p on a joint: its velocity (v + w x p)_z by each dof below the joint. */
+void mbkf_height_jacobian(int n, Tree *tree, const double *q, const int *joint_ids, double *heights)
+{
+    tree_place(tree, q);
+    memset(heights, 0, sizeof *heights * n * tree->nv);
+    for (int row = 0; row < n; row++, heights += tree->nv) {
+        const double *p = tree->frames + 12 * joint_ids[row] + 9;
+        for (int i = joint_ids[row]; i; i = tree->joint[i].parent)
+            for (int k = tree->joint[i].at_v; k < tree->joint[i].at_v + tree->joint[i].dofs; k++)
+                heights[k] = tree->axes[k][3] * p[1] - tree->axes[k][4] * p[0] + tree->axes[k][2];
+    }
 }

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, BoolArray, Int32Array
 from mbkf.kernel.loading import Library, library
 
 FREE, SPHERICAL, HINGE = range(3)
@@ -22,9 +21,9 @@ KINDS = {
 
 
 class CompiledTree:
-    """A Pinocchio model's equations in compiled code; arrays that it returns are new ones.
+    """A Pinocchio model's equations in compiled code (:class:`mbkf.kernel.body_functions.BodyFunctions`).
 
-    The model's numbers are read once: later changes of it do not count.
+    The model's numbers are read once: later changes of it do not count. Motions may be rows or columns of tables.
 
     Attributes:
         handle: The kernel's tree.
@@ -38,24 +37,32 @@ class CompiledTree:
             kernel: The compiled kernel.
             model: One whose joints :data:`KINDS` has.
         """
-        self._kernel, self._nq, self.nv = kernel, model.nq, model.nv
-        self._frames, self._neutral = (4 * model.njoints, 3), _read(pin.neutral(model))
-        whole, numbers = np.zeros((model.njoints, 4), dtype=np.int32), np.zeros((model.njoints, 28))
-        for i in range(1, model.njoints):
-            joint = model.joints[i]
-            kind = KINDS[joint.shortname()]
-            whole[i] = model.parents[i], kind, joint.idx_q, joint.idx_v
-            place, inertia = model.jointPlacements[i], model.inertias[i]
-            numbers[i, :3] = _axis(joint) if kind == HINGE else 0.0
-            numbers[i, 3:12], numbers[i, 12:15] = place.rotation.T.ravel(), place.translation
-            numbers[i, 15], numbers[i, 16:19] = inertia.mass, inertia.lever
-            numbers[i, 19:28] = inertia.inertia.ravel()
-        sizes = np.array([model.nq, model.nv], dtype=np.int32)
-        self.handle = kernel.tree(whole, numbers, np.array(model.gravity.vector), sizes)
+        self._kernel, self.nv, self._neutral = kernel, model.nv, _read(pin.neutral(model))
+        joints, places, inertias = model.joints[1:], model.jointPlacements, model.inertias
+        kinds = [KINDS[joint.shortname()] for joint in joints]
+        axes = [
+            _axis(joint) if kind == HINGE else np.zeros(3) for joint, kind in zip(joints, kinds, strict=True)
+        ]
+        self.handle = kernel.make_tree(
+            model.nq,
+            model.nv,
+            np.array(model.parents, dtype=np.int32),
+            # Of the world, joint 0, nothing is read.
+            np.array([0, *kinds], dtype=np.int32),
+            np.array([0, *(joint.idx_q for joint in joints)], dtype=np.int32),
+            np.array([0, *(joint.idx_v for joint in joints)], dtype=np.int32),
+            np.array([np.zeros(3), *axes]),
+            np.array([place.rotation for place in places]),
+            np.array([place.translation for place in places]),
+            np.array([inertia.mass for inertia in inertias]),
+            np.array([inertia.lever for inertia in inertias]),
+            np.array([inertia.inertia for inertia in inertias]),
+            np.array(model.gravity.vector),
+        )
 
     @classmethod
     def where_built(cls, model: pin.Model) -> CompiledTree | None:
-        """One, or None where there is no compiled kernel, or the model's joints are others or its root not free."""
+        """A tree; None without a compiled kernel, with joints of other kinds, or with a root that is not free."""
         kernel = library()
         names = [joint.shortname() for joint in model.joints][1:]
         known = names and KINDS.get(names[0]) == FREE and all(name in KINDS for name in names)
@@ -63,9 +70,7 @@ class CompiledTree:
 
     def frames_and_jacobian(self, q: Array) -> tuple[Array, Array]:
         """(4 J, 3) frames and (6, nv) Jacobian as :meth:`mbkf.model.body.Body.frames_and_jacobian`."""
-        frames, jacobian = np.empty(self._frames), np.empty((6, self.nv), order="F")
-        self._kernel.place(self.handle, _read(q), frames, jacobian)
-        return frames, jacobian
+        return self._kernel.frames_and_jacobian(self.handle, _read(q))
 
     def root(self, q: Array, v: Array, a: Array, wrench: Array) -> tuple[Array, Array]:
         """The root's six equations ID(q, v, a) − Jᵀ w, in its own axes; force N, moment N m.
@@ -80,26 +85,23 @@ class CompiledTree:
             (6,) residual, and (6, 3 nv + 12) its derivatives by q (in the tangent space), v, a and either of two
             wrenches whose sum is w.
         """
-        residual, by_state = np.empty(6), np.empty((6, 3 * self.nv + 12))
-        self._kernel.root(self.handle, _read(q), _read(v), _read(a), _read(wrench), residual, by_state)
-        return residual, by_state
+        return self._kernel.root_dynamics(self.handle, _read(q), _read(v), _read(a), _read(wrench))
 
-    def tau(self, q: Array, v: Array, a: Array, moves: NDArray[np.int32], wrenches: Array) -> Array:
+    def tau(self, q: Array, v: Array, a: Array, moves: BoolArray, wrenches: Array) -> Array:
         """(nv,) generalised forces ID(q, v, a) − Σ J_fᵀ w_f.
 
         Args:
             q: (nq,) configuration.
             v: (nv,) velocity in the tangent space.
             a: (nv,) acceleration.
-            moves: (2, nv) whether a dof moves a foot.
+            moves: (2, nv) True where a dof moves a foot.
             wrenches: (12,) of the feet: force N and moment N m about the world's origin.
         """
-        tau = np.empty(self.nv)
-        self._kernel.tau(self.handle, _read(q), _read(v), _read(a), moves, _read(wrenches), tau)
-        return tau
+        motion = _read(q), _read(v), _read(a)
+        return self._kernel.generalised_forces(self.handle, *motion, moves, _read(wrenches))
 
     def torques(
-        self, q: Array, v: Array, a: Array, moves: NDArray[np.int32], wrenches: Array
+        self, q: Array, v: Array, a: Array, moves: BoolArray, wrenches: Array
     ) -> tuple[Array, Array, Array]:
         """:meth:`tau`, its derivatives (nv, 3 nv + 12) by q, v, a and the wrenches, and the Jacobian (6, nv).
 
@@ -107,36 +109,23 @@ class CompiledTree:
             q: (nq,) configuration.
             v: (nv,) velocity in the tangent space.
             a: (nv,) acceleration.
-            moves: (2, nv) whether a dof moves a foot.
+            moves: (2, nv) True where a dof moves a foot.
             wrenches: (12,) of the feet: force N and moment N m about the world's origin.
         """
-        nv = self.nv
-        tau, by_state, jacobian = (
-            np.empty(nv),
-            np.empty((nv, 3 * nv + 12), order="F"),
-            np.empty((6, nv), order="F"),
-        )
-        given = _read(q), _read(v), _read(a), moves, _read(wrenches)
-        self._kernel.torques(self.handle, *given, tau, by_state, jacobian)
-        return tau, by_state, jacobian
+        motion = _read(q), _read(v), _read(a)
+        return self._kernel.torque_derivatives(self.handle, *motion, moves, _read(wrenches))
 
-    def rise_jacobian(self, q: Array, joints: NDArray[np.int32]) -> Array:
+    def height_jacobian(self, q: Array, joint_ids: Int32Array) -> Array:
         """(n, nv) derivative of the heights of the origins of n joints by the configuration q (nq,)."""
-        rise = np.empty((len(joints), self.nv))
-        self._kernel.rise(self.handle, _read(q), joints, rise)
-        return rise
+        return self._kernel.height_jacobian(self.handle, _read(q), joint_ids)
 
     def integrate(self, q: Array, dv: Array) -> Array:
         """(nq,) configuration reached from q by the tangent vector dv (nv,)."""
-        stepped = np.empty(self._nq)
-        self._kernel.step(self.handle, _read(q), _read(dv), stepped)
-        return stepped
+        return self._kernel.integrate(self.handle, _read(q), _read(dv))
 
     def integration_derivatives(self, dv: Array) -> tuple[Array, Array]:
         """(nv, nv) derivatives of :meth:`integrate` by q and by dv; the configuration does not matter."""
-        by_q, by_step = np.empty((self.nv, self.nv)), np.empty((self.nv, self.nv))
-        self._kernel.step_derivatives(self.handle, _read(dv), by_q, by_step)
-        return by_q, by_step
+        return self._kernel.integration_derivatives(self.handle, _read(dv))
 
     def deviation(self, q: Array, start: Array | None = None) -> tuple[Array, Array]:
         """(nv,) rotation of every joint from another configuration, rad, and its Jacobian (nv, nv) by q.
@@ -147,25 +136,20 @@ class CompiledTree:
             q: (nq,) configuration.
             start: (nq,) the other; None for Pinocchio's neutral one.
         """
-        deviation, jacobian = np.empty(self.nv), np.empty((self.nv, self.nv))
-        other = self._neutral if start is None else _read(start)
-        self._kernel.deviation(self.handle, other, _read(q), deviation, jacobian)
-        return deviation, jacobian
+        return self._kernel.deviation(self.handle, self._neutral if start is None else _read(start), _read(q))
 
     def posture_information(self, residual: Array, jacobian: Array, weights: Array) -> tuple[Array, Array]:
         """Information matrix JᵀW²J (nv, nv) and vector −JᵀW²r (nv,) of readings of the joints' rotations.
 
         Args:
-            residual: (nv,) r, rotation less what is read, rad.
+            residual: (nv,) r, rotation less the reading, rad.
             jacobian: (nv, nv) J, that of :meth:`deviation`: entries between joints are not read.
             weights: (nv,) W's diagonal, 1/sd of each reading, 1/rad.
         """
-        matrix, vector = np.empty((self.nv, self.nv)), np.empty(self.nv)
-        self._kernel.posture(self.handle, residual, _read(jacobian), _read(weights), matrix, vector)
-        return matrix, vector
+        return self._kernel.posture_information(self.handle, residual, _read(jacobian), _read(weights))
 
-    def beyond(self, deviation: Array, lower: Array, upper: Array) -> Array | None:
-        """(nv,) how far each rotation lies beyond its limits, rad; None where none does.
+    def limit_excess(self, deviation: Array, lower: Array, upper: Array) -> Array | None:
+        """(nv,) distance of each rotation from the range of its limits, rad; None where all lie within.
 
         A spherical joint that is within them the other way round, beyond half a turn, is within them.
 
@@ -174,12 +158,12 @@ class CompiledTree:
             lower: (nv,) least, rad.
             upper: (nv,) greatest, rad.
         """
-        beyond = np.empty(self.nv)
-        return beyond if self._kernel.beyond(self.handle, _read(deviation), lower, upper, beyond) else None
+        count, excess = self._kernel.limit_excess(self.handle, _read(deviation), lower, upper)
+        return excess if count else None
 
 
 def _read(values: Array) -> Array:
-    """An array as the kernel reads it: columns of tables and whole numbers are copied."""
+    """An array as the kernel takes it: columns of tables and integers are copied."""
     return np.ascontiguousarray(values, dtype=float)
 
 

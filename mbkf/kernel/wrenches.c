@@ -1,18 +1,18 @@
 /* FootContact.linearise, of feet that do not bear together, and FootContact.inflate of mbkf/sensors/foot_contact.py;
  * all_possible of mbkf/sensors/contact/possible.py; PlateBuffer.mean of mbkf/stream/receiving/plate_buffer.py. */
-#include "wrenches.h"
-
 #include <math.h>
 #include <string.h>
 
+#include "declared.h"
 #include "rotation.h"
 
-void wrench_rows(const double *middles, const double *const weights[2], const double *expected, const double *w,
-                 int first, double *rows, double *values)
+void mbkf_wrench_rows(const double *middles, const double *right, const double *left, const double *expected,
+                      const double *w, int left_first, double *rows, double *values)
 {
+    const double *const weights[2] = {right, left};
     memset(rows, 0, 144 * sizeof *rows);
     for (int f = 0; f < 2; f++) {
-        const int at = 6 * (f != first);
+        const int at = 6 * (f != left_first);
         double lever[9];
         cross_matrix(middles + 3 * f, lever);
         for (int i = 0; i < 6; i++) {
@@ -30,12 +30,12 @@ void wrench_rows(const double *middles, const double *const weights[2], const do
 }
 
 /* With S = [1 0; [c]x 1] of a middle c, S diag(sd^2) S'. */
-void wrench_walk(double *P, int N, int at, const double *middles, const double *sd, const double *belt)
+void mbkf_add_wrench_walk(int N, double *P, int first, const double *middles, const double *sd, const double *belt)
 {
     const double force = sd[0] * sd[0], moment = sd[1] * sd[1];
     for (int f = 0; f < 2; f++) {
         const double *c = middles + 3 * f, square = dot3(c, c);
-        double *own = P + (size_t)(at + 6 * f) * (N + 1), lever[9];
+        double *own = P + (size_t)(first + 6 * f) * (N + 1), lever[9];
         cross_matrix(c, lever);
         for (int i = 0; i < 3; i++) {
             own[i * (N + 1)] += force;
@@ -50,9 +50,10 @@ void wrench_walk(double *P, int N, int at, const double *middles, const double *
     }
 }
 
-int wrenches_possible(long count, const double *readings, int plates, const double *reach, const Possible *limits)
+int mbkf_wrenches_possible(int n, int plates, const double *readings, const double *reach, const PossibleLoads *limits)
 {
-    const double W = limits->weight;
+    const double W = limits->weight_n;
+    const long count = (long)n * plates;
     int possible = 1;
     for (long s = 0; s < count; s++) {
         const double *w = readings + 6 * s, vertical = w[2], farthest = reach[s % plates];
@@ -65,12 +66,12 @@ int wrenches_possible(long count, const double *readings, int plates, const doub
     return possible;
 }
 
-void wrench_means(const double *ring, long rows, int plates, long first, int n, const double *weights, double width,
-                  const double *origins, double *means)
+void mbkf_wrench_means(int size, int n, int plates, const double *ring, int first, const double *weights, double width,
+                       const double *origins, double *means)
 {
     memset(means, 0, 6 * plates * sizeof *means);
     for (int i = 0; i < n; i++) {
-        const double *row = ring + (first + i) % rows * 6 * plates;
+        const double *row = ring + ((long)first + i) % size * 6 * plates;
         for (int c = 0; c < 6 * plates; c++)
             means[c] += weights[i] * row[c];
     }

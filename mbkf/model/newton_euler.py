@@ -79,7 +79,7 @@ class NewtonEuler:
         self._tree = model.tree
         self._others: dict[int, tuple[NDArray[np.intp], Array]] = {}
         self._J = self._data.J
-        self._moves_feet = np.array(self._moves, dtype=np.int32)
+        self._moves_feet = np.array(self._moves, dtype=bool)
 
     def root(self, q: Array, v: Array, a: Array, wrenches: Array) -> RootBalance:
         """The pelvis's equations for the feet's wrenches (12,).

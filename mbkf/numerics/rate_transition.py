@@ -13,9 +13,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from mbkf.conventions import Array
+from mbkf.conventions import Array, Int32Array
 
 
 class RateTransition(NamedTuple):
@@ -24,14 +23,14 @@ class RateTransition(NamedTuple):
     Attributes:
         A: (nv, nv) derivative of the next configuration by this one.
         B: (nv, nv) by the step.
-        joints: (J, 2) first dof and number of dofs of each joint, 32-bit integers; A and B are zero between joints.
+        joints: (J, 2) first dof and end of each joint; A and B are zero between joints.
         push: (k,) p, what each order of rates adds to the step.
         rates: (k, k) R, the next rates of a dof by its rates.
     """
 
     A: Array
     B: Array
-    joints: NDArray[np.int32]
+    joints: Int32Array
     push: Array
     rates: Array
 

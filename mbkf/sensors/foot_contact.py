@@ -155,7 +155,7 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
         x, y = contact.floor_m_s
         carried = BELT_FORCE * self._weight_n * self._dt_s * np.array([y, -x]) if x or y else _NO_BELT
         if self._kernel is not None:
-            self._kernel.wrench_walk(P, self._first, contact.centres_m, self._walk_sd, carried)
+            self._kernel.add_wrench_walk(P, self._first, contact.centres_m, self._walk_sd, carried)
             return
         shift = _about(-contact.centres_m) * self._walk
         walk = shift @ shift.transpose(0, 2, 1)
@@ -197,9 +197,7 @@ class FootContact(Block[LoadedState, None, FootDecision, KeptContact]):
             left_first: Whether the rows of the left foot come first.
         """
         if self._kernel is not None:
-            rows, values = np.empty((12, 12)), np.empty(12)
-            self._kernel.wrench_rows(middles_m, *weights, expected, w, left_first, rows, values)
-            return rows, values
+            return self._kernel.wrench_rows(middles_m, *weights, expected, w, left_first)
         X = _about(middles_m)
         X *= np.array(weights)[:, :, None]
         return _stacked(X, np.vecdot(X, (expected - w)[:, None]), left_first)

@@ -91,11 +91,11 @@ class JointLimits(Block[State, Information | None, None, None]):
         return Information(rows.T @ rows, -(beyond[passed] / self.sd_rad) @ rows, 0.0, 0)
 
     def _compiled(self, tree: CompiledTree, deviation: Array, jacobian: Array) -> Information | None:
-        beyond = tree.beyond(deviation, self.lower, self.upper)
-        if beyond is None:
+        excess = tree.limit_excess(deviation, self.lower, self.upper)
+        if excess is None:
             return None
-        weights = (beyond != 0.0) / self.sd_rad
-        return Information(*tree.posture_information(beyond, jacobian, weights), 0.0, 0)
+        weights = (excess != 0.0) / self.sd_rad
+        return Information(*tree.posture_information(excess, jacobian, weights), 0.0, 0)
 
     def _is_within(self, rotation: Array, dofs: slice) -> bool:
         return bool(((rotation >= self.lower[dofs]) & (rotation <= self.upper[dofs])).all())

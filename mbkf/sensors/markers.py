@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mbkf.conventions import Array, BoolArray
-from mbkf.kernel.markers import Apart, apart
+from mbkf.kernel.markers import Innovations, innovations
 from mbkf.numerics.kalman import Information
 from mbkf.sensors.block import NO_DOFS, Block, Channels, Frame, Notes, OperatingPoint, State
 from mbkf.sensors.gating import TRACK_LOSS_M, ObservedDofs, gated
@@ -182,7 +182,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
     ) -> MarkerDecision:
         """Gates the markers and notes which dofs they leave unobserved."""
         s, predicted = self.settings, at.prepared.positions_m
-        found = apart(frame.markers_m, predicted, s.gate_radius_m)
+        found = innovations(frame.markers_m, predicted, s.gate_radius_m)
         innovation = frame.markers_m - predicted if found is None else found.innovation_m
         if found is not None and (found.near or self._close(found, memory.noise_scale)):
             seen, trusted, squared, displaced, lost = found.seen, found.seen, found.squared_m2, None, False
@@ -205,7 +205,7 @@ class Markers(Block[State, MarkerReading, MarkerDecision, MarkerMemory]):
             frame.markers_m, innovation, squared, trusted, memory.noise_scale, moved, memory.before_m
         )
 
-    def _close(self, found: Apart, noise_scale: float) -> bool:
+    def _close(self, found: Innovations, noise_scale: float) -> bool:
         """Whether no marker lies further off than its noise alone lets pass."""
         limit = np.maximum(noise_scale * self._passes_m2, self.settings.gate_radius_m**2)
         np.minimum(limit, TRACK_LOSS_M**2, out=limit)

@@ -17,7 +17,7 @@ from math import exp
 import numpy as np
 
 from mbkf.conventions import Array
-from mbkf.kernel.differences import third_differences
+from mbkf.kernel.loading import library
 
 QUANTILE, STEP = 0.25, 0.1
 """The level followed, and η: the level falls to a tenth in thirty samples."""
@@ -48,8 +48,10 @@ class WhiteNoise:
         samples, sd = (*self.last, now), self.sd
         if not sd:
             return WhiteNoise(_first_sd(samples, self.least), self.least, samples[1:])
-        counted = third_differences(samples, _LEVEL * sd)
-        known, below = _counted(samples, _LEVEL * sd) if counted is None else counted
+        kernel = library()
+        count = _third_differences if kernel is None else kernel.third_differences
+        first, second, third, latest = samples
+        known, below = count(first, second, third, latest, _LEVEL * sd)
         if known:
             sd = max(self.least, sd * exp(STEP * (QUANTILE - below / known)))
         return WhiteNoise(sd, self.least, samples[1:])
@@ -57,7 +59,7 @@ class WhiteNoise:
 
 def _first_sd(samples: Sequence[Array], least: float) -> float:
     """What four samples show at once; 0 where nothing is read."""
-    differences = _third(samples)
+    differences = _third(*samples)
     known = np.sort(differences[~np.isnan(differences)])
     if not known.size:
         return 0.0
@@ -66,14 +68,15 @@ def _first_sd(samples: Sequence[Array], least: float) -> float:
     return max(least, float(level) / _LEVEL)
 
 
-def _third(samples: Sequence[Array]) -> Array:
+def _third(first: Array, second: Array, third: Array, latest: Array) -> Array:
     """Absolute third differences of four samples."""
-    first, second, third, latest = samples
     return np.abs(latest - 3.0 * third + 3.0 * second - first)
 
 
-def _counted(samples: Sequence[Array], level: float) -> tuple[int, int]:
-    """How many third differences of four samples are numbers, and how many of these lie below a level."""
-    differences = _third(samples)
+def _third_differences(
+    first: Array, second: Array, third: Array, latest: Array, level: float
+) -> tuple[int, int]:
+    """Number of third differences of four samples that are numbers, and of those below a level."""
+    differences = _third(first, second, third, latest)
     # NaN compares as false.
     return int(np.count_nonzero(differences >= 0.0)), int(np.count_nonzero(differences < level))

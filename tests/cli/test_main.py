@@ -11,7 +11,7 @@ import pytest
 from mbkf.cli import main as cli
 from mbkf.cli.main import COMMANDS, build_parser, main
 from mbkf.errors import FileFormatError
-from mbkf.kernel.loading import told
+from mbkf.kernel.loading import kernel_name
 from mbkf.version import __version__
 
 
@@ -59,7 +59,7 @@ def test_help_lists_every_command_with_what_it_does(capsys):
 
 
 def test_version(capsys):
-    assert usage(["--version"], capsys) == (0, f"mbkf {__version__}, {told()}\n", "")
+    assert usage(["--version"], capsys) == (0, f"mbkf {__version__}, {kernel_name()}\n", "")
 
 
 @pytest.mark.parametrize("command", COMMANDS)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mbkf.imu.orientation_course import _noise, _start, orientation_course
+from mbkf.imu.orientation_course import orientation_course
 from mbkf.imu.orientation_ekf import OrientationFilter, OrientationSettings
 from mbkf.kernel.loading import SWITCH, library
 
@@ -50,27 +50,6 @@ def test_the_kernel_repeats_the_reference(monkeypatch, smooth, settings, magneti
         assert ours.shape == theirs.shape
         assert np.abs(ours - theirs).max() < 1e-9 * np.abs(theirs).max()
     np.testing.assert_allclose(compiled.variance, reference.variance, rtol=1e-6)
-
-
-def test_what_the_kernel_is_given_has_the_size_it_expects():
-    gyro, force, field = readings(count=5)
-    kalman = OrientationFilter(0.01)
-    start = kalman.begin(force[0], field[0], gyro[0])
-    assert _noise(kalman).shape == (24,)
-    assert _start(start).shape == (3, 108)
-    kernel = library()
-    if kernel is None:
-        pytest.skip("the kernel is not compiled here")
-    course = np.empty((3, 5, 16))
-    for wrong in (
-        (_noise(kalman)[:20], _start(start), gyro, force, field, course),
-        (_noise(kalman), _start(start)[:, :100], gyro, force, field, course),
-        (_noise(kalman), _start(start), gyro[:, :2], force, field, course),
-        (_noise(kalman), _start(start), gyro, force[:3], field, course),
-        (_noise(kalman), _start(start), gyro, force, field, course[:2]),
-    ):
-        with pytest.raises((ValueError, BufferError)):
-            kernel.orientation_course(*(np.ascontiguousarray(one) for one in wrong), True)
 
 
 def test_every_sample_is_counted(either_kernel):

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-NEEDED = ("pyproject.toml", "README.md", "LICENSE", ".ci/build_hook.py")
-FOLDERS = ("mbkf/kernel", "models", "markers")
+NEEDED = ("pyproject.toml", "README.md", "LICENSE", "mbkf/version.py")
+FOLDERS = ("mbkf/kernel", "models", "markers", ".ci")
 
 
 @pytest.fixture
@@ -21,8 +21,7 @@ def tree(tmp_path) -> Path:
         shutil.copytree(
             ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("*.so", "__pycache__")
         )
-    for name in (*NEEDED, "mbkf/version.py"):
-        (tmp_path / name).parent.mkdir(exist_ok=True)
+    for name in NEEDED:
         shutil.copy(ROOT / name, tmp_path / name)
     return tmp_path
 

@@ -48,11 +48,11 @@ def products(request):
     kernel = library()
     if kernel is None:
         pytest.skip("the kernel is not compiled here")
-    kernel.choose(request.param)
-    if request.param and not kernel.vectors():
+    kernel.choose_products(request.param)
+    if request.param and not kernel.vector_bits():
         pytest.skip("the processor has no 512-bit vectors")
     yield
-    kernel.choose(True)
+    kernel.choose_products(True)
 
 
 @pytest.mark.usefixtures("products")
@@ -103,34 +103,11 @@ def test_information_without_a_factor_and_covariances_spoilt_by_rounding_are_the
 
 
 @needs_kernel
-def test_arrays_that_do_not_fit_are_refused():
-    kernel = library()
-    P = np.eye(4)
-    with pytest.raises(ValueError, match="sizes"):
-        kernel.inform(P, np.eye(5), np.zeros((1, 4)), np.empty((4, 4)))
-    with pytest.raises(ValueError, match="sizes"):
-        kernel.inform(P, np.eye(2), np.zeros((1, 3)), np.empty((4, 4)))
-    with pytest.raises(ValueError, match="type or size"):
-        kernel.inform(P, np.eye(2), np.zeros((1, 4)), np.empty((3, 4)))
-    with pytest.raises(ValueError, match="type or size"):
-        kernel.inform(P.astype(np.float32), np.eye(2), np.zeros((1, 4)), np.empty((4, 4)))
-    with pytest.raises(ValueError, match="sizes"):
-        kernel.inform(np.eye(4)[:, :2].copy(), np.eye(2), np.zeros((1, 4)), np.empty((4, 4)))
-    with pytest.raises(ValueError, match="dofs"):
-        joints = np.array([[0, 3]], dtype=np.int32)
-        kernel.carry_velocities(P, np.eye(2), np.eye(2), joints, 0.1, np.zeros((2, 2, 2)), np.empty((4, 4)))
-    with pytest.raises(TypeError):
-        kernel.inform(P, np.eye(2))
-    tree, nv, nq = reference_model().tree.handle, reference_model().nv, reference_model().nq
-    v, joints = np.zeros(nv), np.array([[0, nv]], dtype=np.int32)
-    states = np.zeros((nq,)), v, v, joints, np.zeros(4), np.eye(3), v
-    with pytest.raises(ValueError, match="type or size"):
-        kernel.predict(tree, P, *states, np.empty((4, 4)), np.empty(nq), np.empty(nv), np.empty(nv))
-    N, wrong = 3 * nv + 12, np.array([[1, nv]], dtype=np.int32)
-    with pytest.raises(ValueError, match="dofs"):
-        kernel.predict(
-            tree, np.eye(N), *states[:3], wrong, *states[4:], np.empty((N, N)), states[0], v.copy(), v.copy()
-        )
+@pytest.mark.parametrize("joints", [[[0, 3]], [[1, 2]], [[0, 1], [0, 2]], [[0, 1], [1, 1]], []])
+def test_joints_that_do_not_have_all_dofs_once_are_refused(joints):
+    ranges, one = np.array(joints, dtype=np.int32).reshape(-1, 2), np.eye(2)
+    with pytest.raises(ValueError, match="joints must"):
+        library().propagate_velocities(np.eye(4), one, one, ranges, 0.1, np.zeros((2, 2, 2)))
 
 
 MODELS = {"reference": reference_model(), "random": random_model(np.random.default_rng(4))}
@@ -207,15 +184,6 @@ def test_the_correction_is_the_reference_s(reference_kernel):
     P, rows = covariance(rng, 12), banded_rows(rng, 3, 12)
     expected = P[:, :5] @ np.arange(5.0) + P @ rows.T @ np.ones(3)
     assert worst(correction(P, np.arange(5.0), rows, np.ones(3)) - expected) <= 1e-12 * worst(expected)
-
-
-@needs_kernel
-def test_corrections_that_do_not_fit_are_refused():
-    P = np.eye(4)
-    with pytest.raises(ValueError, match="sizes"):
-        correction(P, np.zeros(5), np.zeros((1, 4)), np.zeros(1))
-    with pytest.raises(ValueError, match="type or size"):
-        correction(P, np.zeros(2), np.zeros((1, 3)), np.zeros(1))
 
 
 @needs_kernel

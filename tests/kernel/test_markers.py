@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbkf.kernel.loading import library
-from mbkf.kernel.markers import CompiledMarkers, apart
+from mbkf.kernel.markers import innovations
 from mbkf.model.point_masses import PointMasses
 from mbkf.sensors.marker_sensor import MarkerInformation
 from tests.motions import moderate_pose, protocol_sensor, random_model, worst
@@ -86,29 +86,15 @@ def test_innovations_tell_who_is_seen_and_whether_all_are_near(seed):
     y[rng.random(9) < 0.3, rng.integers(3)] = np.nan
     length = np.linalg.norm(y, axis=1)
     for radius in (0.5, 0.015, 0.001):
-        found = apart(predicted + y, predicted, radius)
+        found = innovations(predicted + y, predicted, radius)
         np.testing.assert_array_equal(found.seen, ~np.isnan(length))
         np.testing.assert_array_equal(found.innovation_m, predicted + y - predicted)
         assert worst(found.squared_m2 - np.nan_to_num(length) ** 2) <= ROUNDING
         assert found.near == bool((np.nan_to_num(length) <= radius).all())
 
 
-def test_markers_that_do_not_fit_are_refused():
-    rng, sensor, q = wearing(1)
-    kernel, tree = library(), sensor.model.tree
-    with pytest.raises(ValueError, match="not the tree's"):
-        CompiledMarkers(kernel, tree, np.array([99]), np.zeros((1, 3))).places(q)
-    with pytest.raises(ValueError, match="type or size"):
-        CompiledMarkers(kernel, tree, sensor.joint_ids, sensor.local_m[1:]).places(q)
-    with pytest.raises(ValueError, match="three coordinates"):
-        apart(rng.normal(size=(4, 2)), np.zeros((4, 3)), 1.0)
-    reading, few = sensor.reading(q), np.ones(3)
-    with pytest.raises(ValueError, match="type or size"):
-        sensor.compiled.information(few, few > 0.0, reading.spatial, reading.positions_m, reading.positions_m)
-
-
 @pytest.mark.usefixtures("reference_kernel")
 def test_the_reference_has_no_compiled_markers():
     _, sensor, _ = wearing(2)
     assert sensor.compiled is None
-    assert apart(np.zeros((2, 3)), np.zeros((2, 3)), 1.0) is None
+    assert innovations(np.zeros((2, 3)), np.zeros((2, 3)), 1.0) is None

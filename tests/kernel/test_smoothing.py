@@ -9,7 +9,7 @@ from mbkf.kernel.loading import library
 from mbkf.kernel.smoothing import SparseBackwardPass
 from mbkf.numerics.rate_transition import RateTransition
 from mbkf.numerics.smoothing import BackwardPass
-from tests.kernel.test_covariance import banded_rows, covariance, information, needs_kernel
+from tests.kernel.test_covariance import banded_rows, covariance, information
 from tests.motions import worst
 
 
@@ -17,11 +17,11 @@ def transition(rng, nv, orders):
     """Joints of one to three dofs, near the identity."""
     joints, first = [], 0
     while first < nv:
-        joints.append((first, min(int(rng.integers(1, 4)), nv - first)))
-        first += joints[-1][1]
+        joints.append((first, min(first + int(rng.integers(1, 4)), nv)))
+        first = joints[-1][1]
     A, B = np.eye(nv), np.eye(nv)
-    for start, dofs in joints:
-        own = slice(start, start + dofs)
+    for start, end in joints:
+        own, dofs = slice(start, end), end - start
         A[own, own] += 0.3 * rng.normal(size=(dofs, dofs))
         B[own, own] += 0.3 * rng.normal(size=(dofs, dofs))
     rates = np.triu(rng.uniform(0.1, 1.0, (orders, orders)))
@@ -82,11 +82,11 @@ def products(request):
     kernel = library()
     if kernel is None:
         pytest.skip("the kernel is not compiled here")
-    kernel.choose(request.param)
-    if request.param and not kernel.vectors():
+    kernel.choose_products(request.param)
+    if request.param and not kernel.vector_bits():
         pytest.skip("the processor has no 512-bit vectors")
     yield
-    kernel.choose(True)
+    kernel.choose_products(True)
 
 
 @pytest.mark.usefixtures("products")
@@ -114,23 +114,3 @@ def test_a_covariance_is_that_of_the_frame_asked_for(either_kernel):
         np.testing.assert_allclose(back.covariance(P), BackwardPass.covariance(back, P), atol=1e-9 * worst(P))
     with pytest.raises(ValueError, match="no covariances"):
         SparseBackwardPass(15, covariances=False).covariance(one[0])
-
-
-@needs_kernel
-def test_arrays_that_do_not_fit_are_refused():
-    kernel, L, joints = library(), np.eye(6), np.array([[0, 2]], dtype=np.int32)
-    A, push, rates, out = np.eye(2), np.ones(2), np.eye(2), np.empty((6, 6))
-    with pytest.raises(ValueError, match="smaller"):
-        kernel.before_motion(np.eye(5), A, A, joints, push, rates, out)
-    with pytest.raises(ValueError, match="dofs"):
-        kernel.before_motion(L, A, A, joints + 1, push, rates, out)
-    with pytest.raises(ValueError, match="type or size"):
-        kernel.before_motion(L, A, A, joints, push, np.eye(1), out)
-    with pytest.raises(ValueError, match="type or size"):
-        kernel.smoothed(L, np.eye(5), out, out.copy())
-    with pytest.raises(ValueError, match="sizes"):
-        kernel.before_readings(L, L, L, np.eye(7), np.zeros((1, 6)), out)
-    with pytest.raises(ValueError, match="sizes"):
-        kernel.before_readings(L, L, L, np.eye(2), np.zeros((1, 5)), out)
-    with pytest.raises(TypeError):
-        kernel.smoothed(L, L, out)

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbkf.kernel.loading import library
-from mbkf.kernel.tree import CompiledTree
+from mbkf.kernel.tree import FREE, HINGE, CompiledTree
 from mbkf.model.human import HumanModel
 from mbkf.sensors.joint_limits import JointLimits
 from mbkf.sensors.posture_sensor import PostureSensor
@@ -99,7 +99,7 @@ def test_torques_and_their_derivatives_are_pinocchio_s(seed):
     """Each foot hangs on any joint; its wrench stands still in the world."""
     s = moving(seed)
     nv, feet = s.model.nv, s.rng.integers(1, s.model.njoints, size=2)
-    moves = np.array([[_is_before(s.model, k, foot) for k in range(nv)] for foot in feet], dtype=np.int32)
+    moves = np.array([[_is_before(s.model, k, foot) for k in range(nv)] for foot in feet])
     tau, by_state, jacobian = s.tree.torques(s.q, s.v, s.a, moves, s.w)
     by_q, by_v, by_a = pin.computeRNEADerivatives(s.model, s.data, s.q, s.v, s.a)
     expected, by_q = s.data.tau.copy(), by_q.copy()
@@ -136,9 +136,7 @@ def test_heights_change_as_their_joints_velocities_say(seed):
     expected = [
         pin.getJointJacobian(s.model, s.data, int(joint), pin.LOCAL_WORLD_ALIGNED)[2] for joint in joints
     ]
-    assert_same(s.tree.rise_jacobian(s.q, joints), np.array(expected))
-    with pytest.raises(ValueError, match="no such joint"):
-        s.tree.rise_jacobian(s.q, joints + 1)
+    assert_same(s.tree.height_jacobian(s.q, joints), np.array(expected))
 
 
 def test_rows_of_tables_and_whole_numbers_are_read():
@@ -172,25 +170,23 @@ def test_the_reference_has_no_tree():
     assert CompiledTree.where_built(reference_model().pin_model) is None
 
 
-def test_arrays_and_trees_that_do_not_fit_are_refused():
-    s, kernel = moving(0), library()
-    with pytest.raises(ValueError, match="type or size"):
-        s.tree.frames_and_jacobian(s.q[1:])
-    with pytest.raises(ValueError, match="type or size"):
-        s.tree.root(s.q, s.v, s.a, s.w[:5])
-    with pytest.raises(ValueError, match="Capsule"):
-        kernel.place(None, s.q, s.q, s.q)
-    with pytest.raises(TypeError):
-        kernel.place(None)
-    sizes, gravity = np.array([7, 6], dtype=np.int32), np.zeros(6)
-    loop = np.array([[0, 0, 0, 0], [1, 0, 0, 0]], dtype=np.int32)
-    with pytest.raises(ValueError, match="make a tree"):
-        kernel.tree(loop, np.zeros((2, 28)), gravity, sizes)
-    with pytest.raises(ValueError, match="needs joints"):
-        kernel.tree(loop[:1], np.zeros((1, 28)), gravity, sizes)
-    beyond = np.array([[0, 0, 0, 0], [0, 0, 1, 0]], dtype=np.int32)
-    with pytest.raises(ValueError, match="make a tree"):
-        kernel.tree(beyond, np.zeros((2, 28)), gravity, sizes)
+@pytest.mark.parametrize(
+    "change", [{"parent": [0, 2, 1]}, {"kind": [0, 1, 2]}, {"first_q": [0, 2, 7]}, {"first_v": [0, 2, 6]}]
+)
+def test_joints_that_make_no_tree_are_refused(change):
+    joints = {"parent": [0, 0, 1], "kind": [0, FREE, HINGE], "first_q": [0, 0, 7], "first_v": [0, 0, 6]}
+    made = tree_of(**joints)
+    assert made is not None
+    with pytest.raises(ValueError, match="make_tree: the joints do not make a tree"):
+        tree_of(**joints | change)
+
+
+def tree_of(**joints):
+    """A tree of two joints without mass."""
+    indices = (np.array(joints[name], dtype=np.int32) for name in ("parent", "kind", "first_q", "first_v"))
+    vectors, matrices = np.zeros((3, 3)), np.zeros((3, 3, 3))
+    numbers = (vectors, matrices, vectors, np.zeros(3), vectors, matrices, np.zeros(6))
+    return library().make_tree(8, 7, *indices, *numbers)
 
 
 @often

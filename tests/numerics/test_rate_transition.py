@@ -10,10 +10,10 @@ DOFS = 5
 
 
 def transition(rng, orders):
-    joints = np.array([[0, 3], [3, 1], [4, 1]], dtype=np.int32)
+    joints = np.array([[0, 3], [3, 4], [4, 5]], dtype=np.int32)
     A, B = np.zeros((2, DOFS, DOFS))
-    for first, dofs in joints:
-        own = slice(first, first + dofs)
+    for first, end in joints:
+        own, dofs = slice(first, end), end - first
         A[own, own], B[own, own] = rng.normal(size=(2, dofs, dofs))
     return RateTransition(A, B, joints, rng.normal(size=orders), rng.normal(size=(orders, orders)))
 

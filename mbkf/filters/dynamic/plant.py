@@ -20,7 +20,9 @@ from scipy.linalg import expm
 
 from mbkf.conventions import Array, BoolArray
 from mbkf.filters.filter import Plant
-from mbkf.kernel.covariance import CompiledPrediction, first_and_number
+from mbkf.kernel.covariance import joint_ranges
+from mbkf.kernel.loading import library
+from mbkf.kernel.state_functions import Singer
 from mbkf.model.body import Body
 from mbkf.numerics.diagonals import block_diagonals
 from mbkf.numerics.rate_transition import RateTransition
@@ -113,11 +115,10 @@ class SingerPlant(Plant[DynamicState]):
         self._quiet = (s.quiet_share * self.acceleration_sd) ** 2
         self._busiest = self.acceleration_sd * np.where(np.arange(nv) < 3, *s.busy_shares)
         self._walk = self.layout.walk_variance(dt_s)
-        singer = np.array([dt_s, self.c1, self.c2, self.rho])
-        dofs = [joint.v for joint in model.joints.values()]
-        self._joints = first_and_number(dofs)
+        self._joints = joint_ranges(joint.v for joint in model.joints.values())
         self._push, self._rates = np.array([dt_s, self.c2]), np.array([[1.0, self.c1], [0.0, self.rho]])
-        self._compiled = CompiledPrediction.where_built(dofs, singer, self.covariance)
+        singer = Singer(dt_s, self.c1, self.c2, self.rho)
+        self._kernel, self._constants = library(), (self._joints, singer, self.covariance)
 
     def begin(self) -> Array | None:
         """No motion was seen yet."""
@@ -160,8 +161,10 @@ class SingerPlant(Plant[DynamicState]):
             noise: (nv,) σ_a for this step; None for the table's.
         """
         sd = self.acceleration_sd if noise is None else noise
-        if self._compiled is not None and (tree := self.model.tree) is not None:
-            P, q, v, a = self._compiled.predicted(tree, state.P, state.q, state.v, state.a, sd)
+        if self._kernel is not None and (tree := self.model.tree) is not None:
+            P, q, v, a = self._kernel.predict(
+                tree.handle, state.P, state.q, state.v, state.a, *self._constants, sd
+            )
         else:
             P, q, v, a = self._predicted(state, sd)
         if len(self._walk):
@@ -169,21 +172,18 @@ class SingerPlant(Plant[DynamicState]):
         return DynamicState(q, v, a, state.w, P.T, state.extra)
 
     def _predicted(self, state: DynamicState, sd: Array) -> tuple[Array, Array, Array, Array]:
-        """P, q, v and a one step later.
+        """P, q, v and a one step later, in whole matrices.
 
         Args:
             state: The state.
             sd: (nv,) σ_a of the step.
         """
-        step = self.dt_s * state.v + self.c2 * state.a
-        A, B = self.model.integration_derivatives(state.q, step)
-        if self._compiled is None:
-            P = self._carried(A, B, state.P if state.P.flags.c_contiguous else state.P.T)
-            diagonals = block_diagonals(P, 3, self.model.nv)
-            diagonals += self.covariance[:, :, None] * (sd * sd)
-        else:
-            P = self._compiled.carried(state.P, A, B, sd)
-        q = self.model.integrate(state.q, step)
+        phi = self.transition(state)
+        P = phi @ state.P @ phi.T
+        P = 0.5 * (P + P.T)
+        diagonals = block_diagonals(P, 3, self.model.nv)
+        diagonals += self.covariance[:, :, None] * sd**2
+        q = self.model.integrate(state.q, self.dt_s * state.v + self.c2 * state.a)
         return P, q, state.v + self.c1 * state.a, self.rho * state.a
 
     def difference(self, origin: DynamicState, state: DynamicState) -> Array:
@@ -204,51 +204,6 @@ class SingerPlant(Plant[DynamicState]):
             P,
             state.extra + step[w:],
         )
-
-    def _carried(self, A: Array, B: Array, P: Array) -> Array:
-        """(N, N) Φ P Φᵀ from the blocks of a symmetric P, with Φ_q = [A, B Δt, B c₂, 0]."""
-        nv = self.model.nv
-        q, v, a, w = slice(nv), slice(nv, 2 * nv), slice(2 * nv, 3 * nv), slice(3 * nv, None)
-        new = np.empty(P.shape)
-        self._carry_rates(P, new)
-        by_step = B * self.dt_s
-        rows = A @ P[q]
-        rows += by_step @ self._pushed(P[v], P[a])
-        half = rows[:, q] @ A.T
-        half += self._pushed(rows[:, v], rows[:, a]) @ by_step.T
-        half *= 0.5
-        np.add(half, half.T, out=new[q, q])
-        ahead = new[q, v]
-        np.multiply(rows[:, a], self.c1, out=ahead)
-        ahead += rows[:, v]
-        np.multiply(rows[:, a], self.rho, out=new[q, a])
-        new[q, w] = rows[:, w]
-        new[nv:, q] = new[q, nv:].T
-        return new
-
-    def _pushed(self, v: Array, a: Array) -> Array:
-        """What velocities and accelerations add to positions, per Δt: v + a c₂ / Δt."""
-        pushed = a * (self.c2 / self.dt_s)
-        pushed += v
-        return pushed
-
-    def _carry_rates(self, P: Array, new: Array) -> None:
-        """The blocks of v, a and w, into ``new``."""
-        nv, c1, rho = self.model.nv, self.c1, self.rho
-        v, a, w = slice(nv, 2 * nv), slice(2 * nv, 3 * nv), slice(3 * nv, None)
-        ahead = P[a] * c1
-        ahead += P[v]
-        half = ahead[:, a] * c1
-        half += ahead[:, v]
-        half *= 0.5
-        np.add(half, half.T, out=new[v, v])
-        np.multiply(ahead[:, a], rho, out=new[v, a])
-        new[v, w] = ahead[:, w]
-        np.multiply(P[a, a], rho * rho, out=new[a, a])
-        np.multiply(P[a, w], rho, out=new[a, w])
-        new[w, w] = P[w, w]
-        new[2 * nv :, v] = new[v, 2 * nv :].T
-        new[w, a] = new[a, w].T
 
 
 def _singer_noise(dt_s: float, decay_s: float) -> Array:

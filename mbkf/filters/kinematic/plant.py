@@ -8,11 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import blas
 
 from mbkf.conventions import Array
 from mbkf.filters.filter import Plant
-from mbkf.kernel.covariance import CompiledVelocityPrediction, first_and_number
+from mbkf.kernel.covariance import joint_ranges
+from mbkf.kernel.loading import library
 from mbkf.model.body import Body
 from mbkf.numerics.diagonals import block_diagonals
 from mbkf.numerics.rate_transition import RateTransition
@@ -65,10 +65,9 @@ class WhiteAccelerationPlant(Plant[KinematicState]):
         self.velocity_noise = variance * dt_s**2
         blocks = [[self.position_noise, self.cross_noise], [self.cross_noise, self.velocity_noise]]
         self._noise = np.array(blocks)
-        dofs = [joint.v for joint in model.joints.values()]
-        self._joints = first_and_number(dofs)
+        self._joints = joint_ranges(joint.v for joint in model.joints.values())
         self._push, self._rates = np.array([dt_s]), np.ones((1, 1))
-        self._compiled = CompiledVelocityPrediction.where_built(dofs, dt_s, self._noise)
+        self._kernel = library()
 
     def begin(self) -> None:
         """The noise is constant."""
@@ -102,32 +101,20 @@ class WhiteAccelerationPlant(Plant[KinematicState]):
     def predict(self, state: KinematicState, noise: Array | None = None) -> KinematicState:
         """The state one step later; its P = Φ P Φᵀ + Q is exactly symmetric and in Fortran order."""
         del noise
-        step = state.v * self.dt_s
-        A, B = self.model.integration_derivatives(state.q, step)
-        q = self.model.integrate(state.q, step)
-        if self._compiled is not None:
-            return KinematicState(q, state.v, self._compiled.carried(state.P, A, B).T)
-        return KinematicState(q, state.v, self._carried(state.P, A, B))
-
-    def _carried(self, P_before: Array, A: Array, B: Array) -> Array:
-        """(2 nv, 2 nv) Φ P Φᵀ + Q in Fortran order.
-
-        Args:
-            P_before: (2 nv, 2 nv) covariance.
-            A: (nv, nv) derivative of the next configuration by this one.
-            B: (nv, nv) by the step.
-        """
-        nv = self.model.nv
-        # In Fortran order the second product with them takes half the time.
-        rows = np.empty((nv, 2 * nv), order="F")
-        rows[:, :nv] = A
-        np.multiply(B, self.dt_s, out=rows[:, nv:])
-        P = np.empty((2 * nv, 2 * nv))
-        carried = np.matmul(rows, P_before.T, out=P[:nv])
-        P[nv:, :nv] = carried[:, nv:].T
-        half = blas.dgemm(0.5, rows, carried.T)
-        np.add(half, half.T, out=P[:nv, :nv])
-        P[nv:, nv:] = P_before.T[nv:, nv:]  # symmetric, and so copied row by row
-        diagonals = block_diagonals(P, 2, nv)
-        diagonals += self._noise
-        return P.T
+        transition = self.transition_parts(state)
+        if self._kernel is not None:
+            P = self._kernel.propagate_velocities(
+                state.P,
+                np.ascontiguousarray(transition.A),
+                np.ascontiguousarray(transition.B),
+                self._joints,
+                self.dt_s,
+                self._noise,
+            )
+        else:
+            phi = transition.matrix(len(state.P))
+            P = phi @ state.P @ phi.T
+            P = 0.5 * (P + P.T)
+            diagonals = block_diagonals(P, 2, self.model.nv)
+            diagonals += self._noise
+        return KinematicState(self.model.integrate(state.q, state.v * self.dt_s), state.v, P.T)

@@ -6,8 +6,6 @@ support without plates of their own, is left to :mod:`.stances`.
 
 from __future__ import annotations
 
-import numpy as np
-
 from mbkf.conventions import Array
 from mbkf.kernel.contact import (
     BELOW,
@@ -17,8 +15,10 @@ from mbkf.kernel.contact import (
     ON_OPEN_FLOOR,
     STRAY,
     CompiledFeet,
+    FeetConstants,
     Stand,
 )
+from mbkf.kernel.contact_functions import ContactLimits
 from mbkf.kernel.tree import CompiledTree
 from mbkf.model.body import Body
 from mbkf.sensors.contact import rules
@@ -30,22 +30,23 @@ from mbkf.sensors.contact.stances import free_stance, shared_between
 _CONTACTS = tuple((Contact((bits & 3) - 1), Contact((bits >> 2) - 1)) for bits in range(KINDS + 1))
 """What right and left foot stand on, by the bits that say so."""
 
-_LIMITS = (
-    rules.REACH_M,
-    rules.KEEP_M,
-    rules.BELT_FROM_M_S,
-    rules.LOWER_M,
-    *rules.STANDING,
-    rules.STAND_AFTER_S,
-    *rules.STANDING_ALONE,
-    rules.LEAVE_SLACK,
-    rules.FLOOR_SHARE,
-    rules.LEVEL_M,
-    rules.PARTED_M_S,
-    rules.FACES_DOWN,
-    rules.FALL_M_S2,
+_LIMITS = ContactLimits(
+    reach_m=rules.REACH_M,
+    keep_m=rules.KEEP_M,
+    belt_from_m_s=rules.BELT_FROM_M_S,
+    lower_m=rules.LOWER_M,
+    stand_height_m=rules.STANDING.height_m,
+    stand_speed_m_s=rules.STANDING.speed_m_s,
+    stand_after_s=rules.STAND_AFTER_S,
+    alone_height_m=rules.STANDING_ALONE.height_m,
+    alone_speed_m_s=rules.STANDING_ALONE.speed_m_s,
+    leave_slack=rules.LEAVE_SLACK,
+    floor_share=rules.FLOOR_SHARE,
+    level_m=rules.LEVEL_M,
+    parted_m_s=rules.PARTED_M_S,
+    faces_down=rules.FACES_DOWN,
+    fall_m_s2=rules.FALL_M_S2,
 )
-"""Limits in the order of ``mbkf/kernel/feet.h``."""
 
 
 class CompiledContact:
@@ -61,16 +62,20 @@ class CompiledContact:
                 (:meth:`mbkf.sensors.contact.plates.PlateAreas.outlines`).
             dt_s: Time between frames.
         """
-        segments, places = sole_locals(model)
-        joints = [model.joint(segment).joint_id for segment in (*segments, *model.roles.feet)]
-        frames = [frames_of(time_s, dt_s) for time_s in (rules.BELT_WINDOW_S, rules.STILL_FLOOR_S)]
-        whole = np.array([*joints, model.root.joint_id, *frames, fall_frames(dt_s)], dtype=np.int32)
-        self._surfaces_m = plates[:, 2].tolist()
-        floor_m = min(self._surfaces_m, default=np.nan)
-        self._feet = CompiledFeet(
-            tree, whole, np.array([*places.ravel(), floor_m, dt_s, *_LIMITS]), np.ascontiguousarray(plates)
+        segments, points_m = sole_locals(model)
+        feet = FeetConstants(
+            point_joints=[model.joint(segment).joint_id for segment in segments],
+            points_m=points_m,
+            foot_joints=[model.joint(segment).joint_id for segment in model.roles.feet],
+            root_joint=model.root.joint_id,
+            window=frames_of(rules.BELT_WINDOW_S, dt_s),
+            still=frames_of(rules.STILL_FLOOR_S, dt_s),
+            fall=fall_frames(dt_s),
+            dt_s=dt_s,
         )
-        self._plates, self._window = len(plates), frames[0]
+        self._feet = CompiledFeet(tree, feet, _LIMITS, plates)
+        self._surfaces_m = plates[:, 2].tolist()
+        self._plates, self._window = len(plates), feet.window
 
     @classmethod
     def where_built(cls, model: Body, plates: Array, dt_s: float) -> CompiledContact | None:
@@ -120,15 +125,16 @@ class CompiledContact:
             stand: As compiled code tells it.
             plate_wrench: (K, 6) what the plates read.
         """
-        flags, numbers, kept, shared, free = stand.flags, stand.rest.tolist(), decision[4], None, None
+        flags, kept, shared, free = stand.flags, decision[4], None, None
         if flags & (ON_ONE_PLATE | ON_OPEN_FLOOR):
-            soles, pelvis_m = stand.rest[:18].reshape(2, 3, 3).tolist(), numbers[18:21]
+            soles, pelvis_m = stand.soles_m.tolist(), stand.pelvis_m.tolist()
             if flags & ON_ONE_PLATE:
                 shared = shared_between(soles, pelvis_m, plate_wrench, kept.foot_of_plate, self._surfaces_m)
             if flags & ON_OPEN_FLOOR:
                 _, right_s, left_s, right_m, left_m = kept.numbers[:5].tolist()
                 free = free_stance(soles, pelvis_m, (right_m, left_m), (right_s, left_s))
-        near_right, near_left, floor_x, floor_y = numbers[21:]
+        near_right, near_left = stand.near.tolist()
+        floor_x, floor_y = stand.floor_m_s.tolist()
         return ContactDecision(
             *decision,
             shared,

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from mbkf.conventions import Array
 from mbkf.io.records import PlateReadings
+from mbkf.kernel.contact_functions import PossibleLoads
 from mbkf.kernel.loading import library
 
 MOST_WEIGHTS = 20.0
@@ -110,7 +111,9 @@ def all_possible(readings: Array, weight_n: float, reach_m: Array) -> bool:
     kernel = library()
     if kernel is None:
         return not impossible(readings, weight_n, reach_m).any()
-    limits = np.array([weight_n, MOST_WEIGHTS, PULL_WEIGHTS, FRICTION, SLACK_WEIGHTS])
+    limits = PossibleLoads(
+        weight_n=weight_n, most=MOST_WEIGHTS, pull=PULL_WEIGHTS, friction=FRICTION, slack=SLACK_WEIGHTS
+    )
     return kernel.wrenches_possible(np.ascontiguousarray(readings), reach_m, limits)
 
 

@@ -152,9 +152,7 @@ class PlateBuffer:
         """
         size, kernel = len(self._values), library()
         if kernel is not None and self._count:
-            loads = np.empty((self._count, 6))
-            kernel.wrench_means(self._values, first % size, weights, width, self._origins, loads)
-            return loads
+            return kernel.wrench_means(self._values, first % size, weights.ravel(), width, self._origins)
         samples = self._values[np.arange(first, first + len(weights)) % size]
         loads = ((weights * samples).sum(axis=0) / width).reshape(self._count, 6)
         loads[np.isnan(loads.sum(axis=1))] = np.nan

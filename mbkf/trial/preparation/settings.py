@@ -14,7 +14,7 @@ from mbkf.filters.settings import flat
 from mbkf.filters.spread import ASKED
 from mbkf.filters.torque.settings import TorqueSettings
 from mbkf.io.results import LAG_KEY
-from mbkf.kernel.loading import told
+from mbkf.kernel.loading import kernel_name
 
 
 @dataclass(frozen=True)
@@ -99,4 +99,4 @@ def recorded(settings: ReconstructSettings) -> dict[str, object]:
     found: dict[str, object] = {**asdict(settings), "dynamic": flat(settings.dynamic)}
     del found["lag_s"]
     lag_ms = round(1e3 * settings.lag_s, 6)
-    return {**found, "smooth": settings.smooths, LAG_KEY: lag_ms, "kernel": told()}
+    return {**found, "smooth": settings.smooths, LAG_KEY: lag_ms, "kernel": kernel_name()}

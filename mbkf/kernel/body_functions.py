@@ -1,0 +1,243 @@
+"""Functions of the compiled kernel on a body: its joints and the markers on it (grammar: ``declaration.py``)."""
+
+from __future__ import annotations
+
+from typing import Annotated as In
+from typing import Annotated as Made
+from typing import Protocol
+
+from mbkf.conventions import Array, BoolArray, Int32Array
+from mbkf.kernel.declaration import Handle, requires
+
+
+class Tree(Handle):
+    """A body as a tree of joints (``tree.h``); joint 0 is the world."""
+
+    nq: int
+    nv: int
+    joints: int
+
+
+class BodyFunctions(Protocol):
+    """Kinematics and dynamics of a tree of joints, and markers on it.
+
+    Configurations q, velocities v and accelerations a are those of Pinocchio; a wrench is force N, moment N m about the
+    world's origin.
+    """
+
+    @requires("joints >= 2", "nq >= 7", "nv >= 6")
+    def make_tree(
+        self,
+        nq: int,
+        nv: int,
+        parent: In[Int32Array, "joints in 0:joints"],
+        kind: In[Int32Array, "joints in 0:3"],
+        first_q: In[Int32Array, "joints in 0:nq"],
+        first_v: In[Int32Array, "joints in 0:nv"],
+        axis: In[Array, "joints 3"],
+        rotation: In[Array, "joints 3 3"],
+        origin: In[Array, "joints 3"],
+        mass: In[Array, "joints"],
+        lever: In[Array, "joints 3"],
+        inertia: In[Array, "joints 3 3"],
+        gravity: In[Array, "6"],
+        /,
+    ) -> Tree:
+        """Tree of joints, of which the first after the world is free.
+
+        Args:
+            nq, nv: Sizes of configuration and velocity.
+            parent: Joint that carries a joint; it comes before it.
+            kind: Free, spherical or hinge (:data:`mbkf.kernel.tree.KINDS`).
+            first_q, first_v: First component of a joint in q and v.
+            axis: Unit axis of a hinge in its own frame.
+            rotation, origin: Axes, row by row, and origin of a joint in its parent's frame, m.
+            mass, lever, inertia: Of a segment: kg, centre of mass in the joint's frame, m, and inertia about it, kg m².
+            gravity: Linear and angular acceleration, m/s².
+
+        Raises:
+            ValueError: The joints do not make a tree.
+        """
+
+    def frames_and_jacobian(
+        self, tree: Tree, q: In[Array, "nq"], /
+    ) -> tuple[Made[Array, "frames: 4*joints 3"], Made[Array, "jacobian: 6 nv fortran"]]:
+        """Three axes and origin of every joint, and the spatial Jacobian of all dofs."""
+
+    def root_dynamics(
+        self,
+        tree: Tree,
+        q: In[Array, "nq"],
+        v: In[Array, "nv"],
+        a: In[Array, "nv"],
+        wrench: In[Array, "6"],
+        /,
+    ) -> tuple[Made[Array, "residual: 6"], Made[Array, "by_state: 6 3*nv+12"]]:
+        """The root's six equations, see :meth:`mbkf.kernel.tree.CompiledTree.root`.
+
+        Args:
+            tree: The body.
+            q, v, a: Motion.
+            wrench: Sum of all contacts.
+        """
+
+    def generalised_forces(
+        self,
+        tree: Tree,
+        q: In[Array, "nq"],
+        v: In[Array, "nv"],
+        a: In[Array, "nv"],
+        moves: In[BoolArray, "2 nv"],
+        wrenches: In[Array, "12"],
+        /,
+    ) -> Made[Array, "tau: nv"]:
+        """Generalised forces under the feet's wrenches.
+
+        Args:
+            tree: The body.
+            q, v, a: Motion.
+            moves: True where a dof moves the right, the left foot.
+            wrenches: Of both feet.
+        """
+
+    def torque_derivatives(
+        self,
+        tree: Tree,
+        q: In[Array, "nq"],
+        v: In[Array, "nv"],
+        a: In[Array, "nv"],
+        moves: In[BoolArray, "2 nv"],
+        wrenches: In[Array, "12"],
+        /,
+    ) -> tuple[
+        Made[Array, "tau: nv"],
+        Made[Array, "by_state: nv 3*nv+12 fortran"],
+        Made[Array, "jacobian: 6 nv fortran"],
+    ]:
+        """Generalised forces, their derivatives by q, v, a and wrenches, and the spatial Jacobian.
+
+        Args:
+            tree: The body.
+            q, v, a: Motion.
+            moves: True where a dof moves the right, the left foot.
+            wrenches: Of both feet.
+        """
+
+    def height_jacobian(
+        self, tree: Tree, q: In[Array, "nq"], joint_ids: In[Int32Array, "n in 1:joints"], /
+    ) -> Made[Array, "heights: n nv"]:
+        """Derivatives of the heights of joints' origins by the configuration.
+
+        Args:
+            tree: The body.
+            q: Configuration.
+            joint_ids: The joints.
+        """
+
+    def integrate(self, tree: Tree, q: In[Array, "nq"], step: In[Array, "nv"], /) -> Made[Array, "moved: nq"]:
+        """Configuration reached by a tangent vector.
+
+        Args:
+            tree: The body.
+            q: Configuration.
+            step: Tangent vector.
+        """
+
+    def integration_derivatives(
+        self, tree: Tree, step: In[Array, "nv"], /
+    ) -> tuple[Made[Array, "by_q: nv nv"], Made[Array, "by_step: nv nv"]]:
+        """Derivatives of :meth:`integrate` by q and by the step."""
+
+    def deviation(
+        self, tree: Tree, start: In[Array, "nq"], q: In[Array, "nq"], /
+    ) -> tuple[Made[Array, "angles: nv"], Made[Array, "jacobian: nv nv"]]:
+        """Rotation vectors of all joints but free ones from a start, rad, and their derivative by q.
+
+        Args:
+            tree: The body.
+            start: Configuration from which joints rotate.
+            q: Configuration.
+        """
+
+    def posture_information(
+        self,
+        tree: Tree,
+        residual: In[Array, "nv"],
+        jacobian: In[Array, "nv nv"],
+        weights: In[Array, "nv"],
+        /,
+    ) -> tuple[Made[Array, "matrix: nv nv"], Made[Array, "vector: nv"]]:
+        """JᵀW²J and −JᵀW²r of a Jacobian that is zero between joints.
+
+        Args:
+            tree: The body.
+            residual: r, rad.
+            jacobian: J; between joints it is not read.
+            weights: Diagonal of W, 1/rad.
+        """
+
+    def limit_excess(
+        self,
+        tree: Tree,
+        angles: In[Array, "nv"],
+        lower: In[Array, "nv"],
+        upper: In[Array, "nv"],
+        /,
+    ) -> tuple[int, Made[Array, "excess: nv"]]:
+        """Number of dofs beyond their limits, and their excess in rad.
+
+        Args:
+            tree: The body.
+            angles: Those of :meth:`deviation`.
+            lower, upper: Limits, rad.
+        """
+
+    def marker_places(
+        self,
+        tree: Tree,
+        joint_ids: In[Int32Array, "M in 0:joints"],
+        local: In[Array, "M 3"],
+        q: In[Array, "nq"],
+        /,
+    ) -> tuple[Made[Array, "places: M 3"], Made[Array, "jacobian: 6 nv fortran"]]:
+        """Markers in the world, m, and the spatial Jacobian of all dofs.
+
+        Args:
+            tree: The body.
+            joint_ids: Joints that carry the markers.
+            local: Places in their frames, m.
+            q: Configuration.
+        """
+
+    def marker_innovations(
+        self, measured: In[Array, "M 3"], places: In[Array, "M 3"], radius: float, /
+    ) -> tuple[bool, Made[Array, "innovation: M 3"], Made[Array, "squared: M"], Made[BoolArray, "seen: M"]]:
+        """True where all seen markers lie within a radius; innovations, their squared lengths, and seen markers.
+
+        Args:
+            measured: Measured places, m; NaN where missing.
+            places: Predicted ones.
+            radius: Greatest distance, m.
+        """
+
+    def marker_information(
+        self,
+        tree: Tree,
+        joint_ids: In[Int32Array, "M in 0:joints"],
+        weights: In[Array, "M"],
+        trusted: In[BoolArray, "M"],
+        jacobian: In[Array, "6 nv fortran"],
+        places: In[Array, "M 3"],
+        innovation: In[Array, "M 3"],
+        /,
+    ) -> tuple[float, Made[Array, "matrix: nv nv"], Made[Array, "vector: nv"]]:
+        """yᵀR⁻¹y, HᵀR⁻¹H and HᵀR⁻¹y of the trusted markers.
+
+        Args:
+            tree: The body.
+            joint_ids: Joints that carry the markers.
+            weights: 1/sd², 1/m².
+            trusted: True for the markers that count.
+            jacobian, places: Those of :meth:`marker_places`.
+            innovation: y, m.
+        """
