@@ -14,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from benchmarks.checks import Check
+from benchmarks.inertial.cubic_steps import CASES, RATE_HZ, cubic_steps
 from benchmarks.inertial.stride_measured import Compared
 from benchmarks.inertial.stride_study import (
     ALIGNED,
@@ -34,7 +35,6 @@ from benchmarks.inertial.stride_study import (
 )
 from benchmarks.thesis_report.figures import BLUE, GREEN, ORANGE, TRUTH, axes
 from mbkf.imu.key_points import KeyPointSettings
-from mbkf.synthesis.cubic_steps import CASES, RATE_HZ, cubic_steps
 
 PAGE = "stride.html"
 RED = "#b3261e"

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from benchmarks.inertial.cubic_steps import CASES, RATE_HZ, CubicSteps, cubic_steps
 from mbkf.conventions import Array
 from mbkf.imu.foot_filter import FootFilterSettings, follow_foot
 from mbkf.imu.foot_track import smoothed_track
@@ -18,7 +19,6 @@ from mbkf.imu.key_points import (
     follow_key_points,
 )
 from mbkf.imu.zero_velocity import StillnessSettings, still_samples
-from mbkf.synthesis.cubic_steps import CASES, RATE_HZ, CubicSteps, cubic_steps
 
 KEY_POINTS, KEY_POINTS_WITH_BIAS, KALMAN = "key points", "key points, bias left in", "Kalman"
 

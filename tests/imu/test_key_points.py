@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+from benchmarks.inertial.cubic_steps import RATE_HZ, cubic_steps
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.errors import InvalidInput
 from mbkf.imu.key_points import (
@@ -16,7 +17,6 @@ from mbkf.imu.key_points import (
     follow_key_points,
     stability,
 )
-from mbkf.synthesis.cubic_steps import RATE_HZ, cubic_steps
 from tests.foot_walks import foot_walk
 
 

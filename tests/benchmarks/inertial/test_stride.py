@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from benchmarks.inertial.cubic_steps import CASES, cubic_steps
 from benchmarks.inertial.stride import measured_rows, study_rows
 from benchmarks.inertial.stride_measured import Compared, ReferenceStride, matched
 from benchmarks.inertial.stride_page import write_page
@@ -16,7 +17,6 @@ from benchmarks.inertial.stride_study import (
     measure_study,
     settings_of,
 )
-from mbkf.synthesis.cubic_steps import CASES, cubic_steps
 from mbkf.trial.inertial.stride import measure_strides
 from tests.foot_walks import foot_walk
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from benchmarks.inertial.cubic_steps import CASES, RATE_HZ, cubic_steps
 from mbkf.conventions import GRAVITY_M_S2
 from mbkf.errors import InvalidInput, UnknownName
-from mbkf.synthesis.cubic_steps import CASES, RATE_HZ, cubic_steps
 
 
 def test_positions_are_those_the_study_describes():
